@@ -1,0 +1,77 @@
+"""Sliding systems in which the friction vector rotates.
+
+>>> import stiction as st
+>>> run = st.simulate(st.presets.nakano_popov_2020(), duration="20 ms", sample_rate="10 kHz")
+>>> run.status.ok
+True
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from stiction import presets, theory
+    from stiction.description import Description, Settings
+    from stiction.drive import ConstantLoad, ConstantVelocity
+    from stiction.errors import DescriptionError, ResultError, Status, StictionError
+    from stiction.friction import Coulomb, ExponentialWeakening
+    from stiction.initial import Initial
+    from stiction.simulate import simulate
+    from stiction.slider import Slider
+    from stiction.trajectory import Trajectory, load
+
+__version__ = "0.1.0"
+
+# where each public name lives; imported when first used, so that `import stiction` is light
+_HOME = {
+    "ConstantLoad": "drive",
+    "ConstantVelocity": "drive",
+    "Coulomb": "friction",
+    "Description": "description",
+    "DescriptionError": "errors",
+    "ExponentialWeakening": "friction",
+    "Initial": "initial",
+    "ResultError": "errors",
+    "Settings": "description",
+    "Slider": "slider",
+    "Status": "errors",
+    "StictionError": "errors",
+    "Trajectory": "trajectory",
+    "load": "trajectory",
+    "simulate": "simulate",
+}
+_ROOMS = ("presets", "theory")
+
+__all__ = [  # noqa: PLE0604
+    "ConstantLoad",
+    "ConstantVelocity",
+    "Coulomb",
+    "Description",
+    "DescriptionError",
+    "ExponentialWeakening",
+    "Initial",
+    "ResultError",
+    "Settings",
+    "Slider",
+    "Status",
+    "StictionError",
+    "Trajectory",
+    "load",
+    "presets",
+    "simulate",
+    "theory",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _ROOMS:
+        return import_module(f"stiction.{name}")
+    if name in _HOME:
+        return getattr(import_module(f"stiction.{_HOME[name]}"), name)
+    raise AttributeError(f"module 'stiction' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__])

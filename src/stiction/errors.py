@@ -1,0 +1,67 @@
+"""What can go wrong, and how a run ended."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from enum import Enum
+from typing import NamedTuple
+
+
+class StictionError(Exception):
+    """Any error that this package raises on purpose; its text is meant for the user."""
+
+
+class Fault(NamedTuple):
+    """One thing wrong with a description: where it is, and what to write instead."""
+
+    path: str
+    message: str
+
+    def __str__(self) -> str:
+        """Return ``path: message``."""
+        return f"{self.path}: {self.message}" if self.path else self.message
+
+
+class DescriptionError(StictionError, ValueError):
+    """A description that cannot be simulated, with every fault in it at once.
+
+    Attributes
+    ----------
+    faults : tuple of Fault
+        Each fault with its path, in the order in which the description is read.
+    """
+
+    def __init__(self, faults: Sequence[Fault]) -> None:
+        self.faults = tuple(faults)
+        super().__init__("\n".join(str(fault) for fault in self.faults))
+
+    def __reduce__(self) -> tuple[type[DescriptionError], tuple[tuple[Fault, ...]]]:
+        """Pickle by the faults, not by the text."""
+        return type(self), (self.faults,)
+
+
+class ResultError(StictionError, ValueError):
+    """A file that is not a result of this package, or does not hold what is asked of it."""
+
+
+class Status(Enum):
+    """How a run ended; each value is the message that explains it.
+
+    The order is the contract with the compiled loop, which returns the position.
+    """
+
+    COMPLETED = "the run reached its duration"
+    STEP_UNDERFLOW = (
+        "the step size fell below the resolution of time: the solution changes faster than "
+        "floating-point time can follow; check the parameters, or loosen rtol"
+    )
+    NON_FINITE = (
+        "the state became infinite or not a number; check the parameters "
+        "for magnitudes that cannot belong together"
+    )
+    TOO_MANY_STEPS = "the run used up its max_steps; raise max_steps or shorten the duration"
+
+    @property
+    def ok(self) -> bool:
+        """Whether the run came to its intended end."""
+        return self is Status.COMPLETED

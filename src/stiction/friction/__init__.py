@@ -1,0 +1,19 @@
+"""Friction laws: how large the friction force is, given the slip speed.
+
+A law is a NamedTuple of floats with two methods, ``coefficient(law, v)`` and
+``slope(law, v)``, in plain Python with `math`; the solver compiles them. A new law
+is one file here and one line in `LAWS`.
+"""
+
+from __future__ import annotations
+
+from stiction.friction.coulomb import Coulomb
+from stiction.friction.exponential_weakening import ExponentialWeakening
+from stiction.friction.law import FrictionLaw
+
+LAWS: dict[str, type[FrictionLaw]] = {
+    "coulomb": Coulomb,
+    "exponential-weakening": ExponentialWeakening,
+}
+
+__all__ = ["LAWS", "Coulomb", "ExponentialWeakening", "FrictionLaw"]

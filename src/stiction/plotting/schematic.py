@@ -1,0 +1,186 @@
+"""The system seen from above: block, spring, drive, and the angles between them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import copysign, cos, degrees, pi, radians, sin
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
+
+from stiction.plotting import shapes
+from stiction.plotting.shapes import Points, polar
+from stiction.plotting.style import BLUE, GREEN, GREY, PURPLE, RED
+from stiction.slider import Slider
+
+Placement = Callable[[ArrayLike], Points]
+
+# half a side of the block, where the bracket stands along x and y, how far it overhangs
+BLOCK, WALL_X, WALL_Y, OVERHANG = 0.6, 3.0, 2.7, 0.75
+BACK = 3.0  # how far F and the axes reach behind the block
+FLOOR = "#F5F4F0"
+LEAST, EXAGGERATED = radians(20), radians(24)
+
+
+def drawn_misalignment(phi: float) -> float:
+    """Return the angle at which a misalignment `phi` is drawn (both rad).
+
+    Angles too close to 0 or to a right angle to be seen are exaggerated; 0 and 90 degrees
+    themselves are drawn as they are.
+    """
+    size = abs(phi)
+    if min(size, abs(pi / 2 - size)) < 1e-9:
+        return phi
+    if size < LEAST:
+        return copysign(EXAGGERATED, phi)
+    return copysign(min(size, pi / 2 - EXAGGERATED) if size > pi / 2 - LEAST else size, phi)
+
+
+def drawn_slip_angle(drawn: float) -> float:
+    """Return the angle theta (rad) of slip and friction to x in the drawing, between phi and 90 deg.
+
+    Without misalignment the slip has no reason to leave X: theta = phi.
+    """
+    return drawn if drawn == 0 else (drawn + copysign(pi / 2, drawn)) / 2
+
+
+def misalignment_note(phi: float) -> str:
+    """Return the misalignment in words, saying so where it is not drawn to scale."""
+    drawn, size = drawn_misalignment(phi), f"{degrees(phi):.4g}°".replace("-", "−")
+    if abs(drawn - phi) < 1e-9:
+        return rf"$\varphi$ = {size}"
+    return rf"$\varphi$ = {size}, " + f"drawn at {degrees(drawn):.0f}°".replace("-", "−")
+
+
+def draw_schematic(ax: Axes, slider: Slider) -> Axes:
+    """Draw the slider from above (Nakano & Popov, Fig. 2(b)).
+
+    Blue is the drive direction X, red are the principal axes x and y of the spring; the far
+    end of the spring is a bracket that moves with the drive. The friction F on the block is
+    opposite to its slip velocity; psi is its angle to X, theta its angle to x. Lengths are
+    not to scale; the misalignment is, where it is large enough to be seen.
+
+    Parameters
+    ----------
+    ax : Axes
+        Drawn on as the floor, with equal aspect and without ticks.
+    slider : Slider
+        The system, with or without dampers, pulled either way or not at all.
+    """
+    drawn = drawn_misalignment(slider.phi)
+    side = copysign(1.0, drawn)
+    phi, theta = abs(drawn), abs(drawn_slip_angle(drawn))
+    velocity = slider.motion.rate(0.0)[0]
+
+    def lab(points: ArrayLike) -> Points:
+        """From the axes of the spring, mirrored for negative phi, to the drawing."""
+        turn = np.array([[cos(phi), sin(phi)], [-sin(phi), cos(phi)]])
+        placed: Points = (np.asarray(points) @ turn.T) * (1.0, side)
+        return placed
+
+    ends = [
+        *_draw_axes(ax, lab, phi, side),
+        *_draw_spring(ax, lab, slider),
+        *_draw_drive(ax, lab, phi, velocity),
+        *_draw_slip(ax, lab, phi, theta, backward=velocity < 0),
+    ]
+    _frame(ax, np.vstack(ends), misalignment_note(slider.phi))
+    return ax
+
+
+def _reach(phi: float) -> float:
+    """Distance along X from the block's centre to the bracket."""
+    return min(WALL_X / max(cos(phi), 1e-9), WALL_Y / max(sin(phi), 1e-9))
+
+
+def _draw_axes(ax: Axes, lab: Placement, phi: float, side: float) -> list[Points]:
+    """Draw the principal axes and, between x and X, the misalignment."""
+    x = lab([(-BACK, 0), (WALL_X + 1.9, 0)])
+    y = lab([(0, -1.5), (0, WALL_Y + 1.1)] if side > 0 else [(0, WALL_Y + 0.7), (0, -1.9)])
+    for axis, text in ((x, "x"), (y, "y")):
+        shapes.line(ax, axis, RED, 0.7, "-.", zorder=1)
+        shapes.arrow(ax, axis[1] - 0.1 * _unit(axis), axis[1], RED, 0.7)
+        together = text == "x" and phi == 0 or text == "y" and abs(phi - pi / 2) < 1e-9
+        if not together:
+            shapes.name(ax, axis[1] + 0.35 * _unit(axis), f"${text}$", RED)
+    if phi > 0:
+        radius = 0.55 + max(_reach(phi), 3.6 if phi > 0.7 else 0.0)
+        shapes.line(ax, lab(shapes.arc_path((0, 0), radius, 0, phi)))
+        shapes.name(ax, lab(polar(radius + 0.35, phi / 2)), r"$\varphi$")
+    return [x, y]
+
+
+def _draw_spring(ax: Axes, lab: Placement, slider: Slider) -> list[Points]:
+    """Draw the block, the bracket, and between them the springs and dampers."""
+    corners = BLOCK * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+    bracket = lab([(WALL_X, -OVERHANG), (WALL_X, WALL_Y), (-OVERHANG, WALL_Y)])
+    shapes.polygon(ax, lab(corners), face="#D5D5D5")
+    shapes.name(ax, (0, 0), "$m$")
+    shapes.line(ax, bracket, GREY, 3.0)
+    for c, axis, swap, length in (
+        (slider.c_x, "x", 1, WALL_X),
+        (slider.c_y, "y", -1, WALL_Y),
+    ):
+        offset = 0.3 if c > 0 else 0.0
+        ends = np.array([(BLOCK, offset), (length, offset)])[:, ::swap]
+        shapes.line(ax, lab(shapes.spring_path(*ends)))
+        if c > 0:
+            shapes.dashpot(ax, *lab(ends * (1, -1) if swap > 0 else ends * (-1, 1)))
+        text = f"$k_{axis}$, $c_{axis}$" if c > 0 else f"$k_{axis}$"
+        beside = (0.5 * (BLOCK + length), -0.55 - offset - (0.3 if c > 0 and swap < 0 else 0))
+        shapes.name(ax, lab(beside[::swap]), text)
+    return [bracket]
+
+
+def _draw_drive(ax: Axes, lab: Placement, phi: float, velocity: float) -> list[Points]:
+    """Draw the drive direction X and, where there is one, the velocity of the bracket."""
+    start = _reach(phi) + 0.1
+    X = lab([polar(start, phi), polar(start + 2.2, phi)])
+    shapes.line(ax, X, BLUE, 0.7, "-.", zorder=1)
+    shapes.line(ax, lab([(0, 0), polar(-BACK, phi)]), BLUE, 0.7, "-.", zorder=1)
+    shapes.arrow(ax, X[1] - 0.1 * _unit(X), X[1], BLUE, 0.7)
+    together = "$X$, $x$" if phi == 0 else "$X$, $y$" if abs(phi - pi / 2) < 1e-9 else "$X$"
+    shapes.name(ax, X[1] + (0.6 if "," in together else 0.35) * _unit(X), together, BLUE)
+    if velocity:
+        ends = lab([polar(start, phi), polar(start + 1.4, phi)])
+        shapes.arrow(ax, *(ends if velocity > 0 else ends[::-1]), BLUE, 2.0)
+    above = polar(start + 0.75, phi) + (0.6 if not velocity else 0.45) * polar(1, phi + pi / 2)
+    shapes.name(ax, lab(above), "$V$" if velocity else "$V = 0$", BLUE)
+    return [X]
+
+
+def _draw_slip(
+    ax: Axes, lab: Placement, phi: float, theta: float, backward: bool
+) -> list[Points]:
+    """Draw slip velocity and friction, opposite to each other, and their angles."""
+    corner = np.array([BLOCK, BLOCK])
+    ahead = lab([corner, corner + polar(1.5, theta)])
+    behind = lab([polar(-BLOCK / max(cos(theta), sin(theta)), theta), polar(-BACK, theta)])
+    velocity, force = (GREEN, r"$v_\mathrm{slip}$"), (PURPLE, "$F$")
+    for ends, (color, text), gap in zip(
+        (ahead, behind), (force, velocity) if backward else (velocity, force), (0.4, 0.35)
+    ):
+        shapes.arrow(ax, *ends, color, 1.6)
+        shapes.name(ax, ends[1] + gap * _unit(ends), text, color)
+    between = pi + (phi + theta) / 2
+    for radius, start, text in ((1.55, phi, r"$\psi$"), (2.25, 0.0, r"$\theta$")):
+        if theta > start:
+            shapes.line(ax, lab(shapes.arc_path((0, 0), radius, pi + start, pi + theta)))
+            shapes.name(ax, lab(polar(radius + 0.3, between)), text)
+    return [behind, ahead]
+
+
+def _unit(ends: Points) -> Points:
+    way: Points = ends[1] - ends[0]
+    return way / np.hypot(*way)
+
+
+def _frame(ax: Axes, points: Points, note: str) -> None:
+    """Make the axes the floor, with room for what is named at the ends."""
+    (left, bottom), (right, top) = points.min(axis=0) - 0.8, points.max(axis=0) + 0.8
+    ax.set(xlim=(left, right), ylim=(bottom - 0.4, top), xticks=[], yticks=[], facecolor=FLOOR)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.spines[:].set_visible(False)
+    for x, text, place in ((0.02, "floor ($XY$ plane)", "left"), (0.98, note, "right")):
+        ax.text(x, 0.02, text, transform=ax.transAxes, ha=place, va="bottom", fontsize=7)

@@ -1,0 +1,98 @@
+"""How figures look: sizes of a journal's columns, colours for every eye, one style sheet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import EngFormatter
+
+# Okabe & Ito, "Color Universal Design" (2008): told apart with any colour vision
+BLACK = "#000000"
+BLUE = "#0072B2"
+RED = "#D55E00"
+GREEN = "#009E73"
+ORANGE = "#E69F00"
+SKY = "#56B4E9"
+PURPLE = "#CC79A7"
+GREY = "#6E6E6E"
+PALE = "#E9E9E9"
+
+COLUMN = 3.375  # width of one column of Phys. Rev. E, in
+PAGE = 7.0  # width of both, in
+
+SHEET = {
+    "font.family": "sans-serif",
+    "font.size": 8.0,
+    "mathtext.fontset": "dejavusans",
+    "axes.labelsize": 8.0,
+    "axes.titlesize": 8.0,
+    "axes.titlelocation": "left",
+    "axes.linewidth": 0.6,
+    "axes.formatter.use_mathtext": True,
+    "xtick.labelsize": 7.0,
+    "ytick.labelsize": 7.0,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "xtick.top": True,
+    "ytick.right": True,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.minor.width": 0.4,
+    "ytick.minor.width": 0.4,
+    "xtick.major.size": 3.0,
+    "ytick.major.size": 3.0,
+    "legend.fontsize": 7.0,
+    "legend.frameon": False,
+    "legend.handlelength": 1.8,
+    "lines.linewidth": 0.9,
+    "patch.linewidth": 0.8,
+    "hatch.linewidth": 0.5,
+    "figure.constrained_layout.h_pad": 0.03,
+    "figure.constrained_layout.w_pad": 0.03,
+    "figure.constrained_layout.hspace": 0.02,
+    "figure.constrained_layout.wspace": 0.02,
+    "savefig.dpi": 200.0,
+    "pdf.fonttype": 42,
+    "svg.fonttype": "none",
+}
+
+
+@contextmanager
+def style() -> Iterator[None]:
+    """Use the style sheet for whatever is drawn inside the ``with`` block, and only there."""
+    with mpl.rc_context():
+        mpl.rcdefaults()  # a user's own settings would change sizes that were chosen together
+        mpl.rcParams.update(SHEET)
+        yield
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """Return an empty figure of the given size (in), free of any global list of figures."""
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def panel_letter(ax: Axes, letter: str) -> None:
+    """Write ``(letter)`` into the upper left corner of the axes."""
+    ax.annotate(
+        f"({letter})",
+        (0, 1),
+        (3, -3),
+        xycoords="axes fraction",
+        textcoords="offset points",
+        ha="left",
+        va="top",
+        fontweight="bold",
+        fontsize=8,
+        zorder=10,
+    )
+
+
+def quantity(value: float, unit: str) -> str:
+    """Return a value in an SI unit in words, e.g. ``10 MN/m``; masses in kg keep their unit."""
+    if unit in ("kg", "") or value == 0:
+        return f"{value:.4g} {unit}".rstrip()
+    return EngFormatter(unit=unit)(float(f"{value:.4g}"))

@@ -1,0 +1,146 @@
+"""The described system: a mass on a plane, pulled by a spring with two stiffnesses."""
+
+from __future__ import annotations
+
+from math import cos, pi, sin
+from pathlib import Path
+from typing import Annotated, Any, Self
+
+from pydantic import AfterValidator
+
+from stiction.drive import ConstantLoad, ConstantVelocity, Drive, Load
+from stiction.friction import FrictionLaw
+from stiction.units import Angle, Damping, Force, Mass, Stiffness
+from stiction.validation import Described
+
+
+def _within_a_right_angle(phi: float) -> float:
+    if abs(phi) > pi / 2 * (1 + 1e-12):
+        raise ValueError(
+            f"must lie between -90 deg and 90 deg, is {phi * 180 / pi:g} deg; "
+            "name the axis x that lies nearer to the drive direction"
+        )
+    return phi
+
+
+def _is_law(value: Any) -> Any:
+    if not all(callable(getattr(value, name, None)) for name in ("coefficient", "slope")):
+        raise ValueError(f"{value!r} is not a friction law; write for example st.Coulomb(mu_0=0.2)")
+    return value
+
+
+def _is_drive(value: Any) -> Any:
+    if not all(callable(getattr(value, name, None)) for name in ("travel", "rate")):
+        raise ValueError(
+            f"{value!r} is not a drive; write for example st.ConstantVelocity('1 mm/s')"
+        )
+    return value
+
+
+class Apparatus(Described):
+    """The mechanical part: mass, springs, dampers, misalignment, load (see `Slider`)."""
+
+    mass: Mass
+    k_x: Stiffness
+    k_y: Stiffness
+    phi: Annotated[Angle, AfterValidator(_within_a_right_angle)]
+    normal_load: Force
+    c_x: Damping = 0.0
+    c_y: Damping = 0.0
+
+
+class Slider(Apparatus):
+    """A mass in frictional contact with a plane, pulled through an anisotropic spring.
+
+    The axes x and y are the principal axes of the spring; the drive moves along X, which
+    lies at the misalignment angle phi from x (Nakano & Popov, Figs. 1 and 2). Each
+    parameter is a number in SI or a string with its unit; phi needs its unit.
+
+    Parameters
+    ----------
+    mass : float or str
+        m, kg.
+    k_x, k_y : float or str
+        Principal stiffnesses, N/m.
+    phi : str
+        Misalignment angle between x and X, within 90 degrees of zero.
+    normal_load : float or str
+        W, N.
+    friction : FrictionLaw
+        For example `ExponentialWeakening` or `Coulomb`.
+    drive : Drive
+        For example `ConstantVelocity`.
+    c_x, c_y : float or str, optional
+        Damping constants of the spring along x and y, N s/m; none in the paper.
+
+    Raises
+    ------
+    DescriptionError
+        With every fault at once.
+
+    Notes
+    -----
+    Glossary of the symbols used throughout, with the paper's equations:
+
+    ========== ======================================================= ===== =====
+    symbol     meaning                                                 unit  Eq.
+    ========== ======================================================= ===== =====
+    u_x, u_y   spring elongations along the principal axes             m     1
+    v_x, v_y   elongation rates du_x/dt, du_y/dt                       m/s   2
+    v_slip     slip speed, magnitude of drive velocity minus (v_x,v_y) m/s   3
+    theta      angle of the friction force (and slip) to x             rad   1
+    psi        angle of the friction force to X, theta - phi           rad   1
+    X, Y       position of the mass in the laboratory                  m     6
+    V          drive velocity                                          m/s   2
+    F_0        friction force at vanishing slip, mu_0 W                N     7
+    l_x        slip length F_0/k_x                                     m     8
+    omega_x    sqrt(k_x/m), the low natural frequency                  rad/s 10
+    omega_y    sqrt(k_y/m), the high natural frequency                 rad/s 9
+    A          mu_0 W/(2 V sin(phi) sqrt(m k_x))                       1     10
+    zeta       instantaneous damping ratio A sin^3(theta)              1     10
+    ========== ======================================================= ===== =====
+    """
+
+    friction: Annotated[Any, AfterValidator(_is_law)]
+    drive: Annotated[Any, AfterValidator(_is_drive)] = ConstantVelocity(0.0)
+
+    @property
+    def law(self) -> FrictionLaw:
+        """The friction law, typed."""
+        law: FrictionLaw = self.friction
+        return law
+
+    @property
+    def motion(self) -> Drive:
+        """The drive, typed."""
+        drive: Drive = self.drive
+        return drive
+
+    @property
+    def load(self) -> Load:
+        """The normal load in time."""
+        return ConstantLoad(self.normal_load)
+
+    @property
+    def direction(self) -> tuple[float, float]:
+        """Unit vector of X in the axes (x, y): (cos phi, sin phi), exact at a right angle."""
+        c, s = cos(self.phi), sin(self.phi)
+        return (0.0, s) if abs(c) < 1e-15 else (c, s)
+
+    @property
+    def F_0(self) -> float:
+        """Friction force at vanishing slip, mu_0 W, in N."""
+        return self.law.coefficient(0.0) * self.load.at(0.0)
+
+    def replace(self, **changes: Any) -> Self:
+        """Return the same slider with some parameters changed, e.g. ``phi="3 deg"``."""
+        values = {name: getattr(self, name) for name in type(self).model_fields}
+        values["phi"] = f"{self.phi!r} rad"
+        return type(self)(**(values | changes))
+
+    @classmethod
+    def from_toml(cls, path: str | Path) -> Slider:
+        """Read the slider of a description file; see `Description` for the whole of it."""
+        from stiction.description import Description
+
+        return Description.from_toml(path).slider

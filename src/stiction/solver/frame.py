@@ -1,0 +1,113 @@
+"""The axes in which one step of slip is computed.
+
+e is the slip direction at the step's start (at take-off: the direction of the force that
+held). In these axes the slip velocity is s = p (1, w), and with a = (K u + C du/dt)/m +
+dv_d/dt and f = F(|s|)/m, Eqs. (4) and (5) read
+
+    p'   = a_1 - f/sqrt(1 + w^2)
+    p w' = a_2 - w a_1
+
+which is regular at p = 0: friction acts along the slip and cannot turn it.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import NamedTuple
+
+from stiction.solver.compiled import compiled
+from stiction.solver.problem import Problem, at, coefficient, rate, rate_change, slope, travel
+
+
+class Frame(NamedTuple):
+    """Start of a step in its own axes.
+
+    Direction e and the laboratory's X in the axes; slip speed r and elongation (y_1, y_2)
+    at the start; stiffness and damping tensors over mass.
+    """
+
+    e_x: float
+    e_y: float
+    X_1: float
+    X_2: float
+    r: float
+    y_1: float
+    y_2: float
+    k_11: float
+    k_12: float
+    k_22: float
+    c_11: float
+    c_12: float
+    c_22: float
+
+
+@compiled
+def frame_of(problem: Problem, u_x: float, u_y: float, r: float, e_x: float, e_y: float) -> Frame:
+    """Return the axes along (e_x, e_y) at elongation u and slip speed r."""
+    s = problem.system
+    k_x, k_y, c_x, c_y = s.k_x / s.mass, s.k_y / s.mass, s.c_x / s.mass, s.c_y / s.mass
+    xx, xy, yy = e_x * e_x, e_x * e_y, e_y * e_y
+    return Frame(
+        e_x,
+        e_y,
+        s.cos_phi * e_x + s.sin_phi * e_y,
+        s.sin_phi * e_x - s.cos_phi * e_y,
+        r,
+        u_x * e_x + u_y * e_y,
+        u_y * e_x - u_x * e_y,
+        k_x * xx + k_y * yy,
+        (k_y - k_x) * xy,
+        k_y * xx + k_x * yy,
+        c_x * xx + c_y * yy,
+        (c_y - c_x) * xy,
+        c_y * xx + c_x * yy,
+    )
+
+
+@compiled
+def in_frame(frame: Frame, vector: tuple[float, float]) -> tuple[float, float]:
+    """Return a laboratory vector (X, Y) in the step's axes."""
+    X, Y = vector
+    return X * frame.X_1 - Y * frame.X_2, X * frame.X_2 + Y * frame.X_1
+
+
+@compiled
+def pull(
+    problem: Problem, frame: Frame, t: float, dt: float
+) -> tuple[float, float, float, float]:
+    """Return the acceleration that the drive alone gives after `dt`, and its rate of change.
+
+    The elongation there would be the one at the start plus the drive's travel; what slip
+    takes away from it is added by the caller. The rate leaves out the drive's jerk.
+    """
+    d_1, d_2 = in_frame(frame, travel(problem.drive, t, dt))
+    v_1, v_2 = in_frame(frame, rate(problem.drive, t + dt))
+    g_1, g_2 = in_frame(frame, rate_change(problem.drive, t + dt))
+    y_1, y_2 = frame.y_1 + d_1, frame.y_2 + d_2
+    k_11, k_12, k_22 = frame.k_11, frame.k_12, frame.k_22
+    c_11, c_12, c_22 = frame.c_11, frame.c_12, frame.c_22
+    return (
+        k_11 * y_1 + k_12 * y_2 + c_11 * v_1 + c_12 * v_2 + g_1,
+        k_12 * y_1 + k_22 * y_2 + c_12 * v_1 + c_22 * v_2 + g_2,
+        k_11 * v_1 + k_12 * v_2 + c_11 * g_1 + c_12 * g_2,
+        k_12 * v_1 + k_22 * v_2 + c_12 * g_1 + c_22 * g_2,
+    )
+
+
+@compiled
+def friction(problem: Problem, t: float, r: float) -> tuple[float, float]:
+    """Return the friction force over mass and its slope at slip speed `r`.
+
+    Below zero the law is continued linearly: an iterate may overshoot a landing.
+    """
+    weight = at(problem.load, t) / problem.system.mass
+    v = max(r, 0.0)
+    gradient = slope(problem.law, v) * weight
+    return coefficient(problem.law, v) * weight + gradient * (r - v), gradient
+
+
+@compiled
+def turned(frame: Frame, w: float) -> tuple[float, float]:
+    """Return the direction of (1, w) in the axes (x, y)."""
+    g = 1.0 / sqrt(1.0 + w * w)
+    return (frame.e_x - w * frame.e_y) * g, (frame.e_y + w * frame.e_x) * g

@@ -1,0 +1,61 @@
+"""The end of a slip in closed form: the classical pursuit curve.
+
+Near zero slip the spring acceleration a and the friction deceleration f are constant,
+and s' = a - f s/|s|. For |a| < f, zero slip is reached after T = r (f + |a| cos alpha) /
+(f^2 - |a|^2), with r the slip speed and alpha its angle to a (project reference; classical,
+e.g. Bouguer 1732). The displacement is closed as well: with P = a.s and R = |s|,
+
+    d/dt (f R + P)         = |a|^2 - f^2
+    d/dt (f R P + P^2/2)   = (|a|^2 - 2 f^2) P + f |a|^2 R,   d/dt R^2 = 2 P - 2 f R
+    d/dt ((2 f R + P) b)   = (|a|^2 - 4 f^2) b,   b the slip across a
+
+integrate from the start to R = 0.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from stiction.solver.compiled import compiled
+
+
+@compiled
+def landing_time(r: float, a_along: float, a_squared: float, f: float) -> float:
+    """Return the time to zero slip.
+
+    Parameters
+    ----------
+    r : float
+        Slip speed, m/s.
+    a_along, a_squared : float
+        Spring acceleration along the slip, m/s^2, and its magnitude squared.
+    f : float
+        Friction force over mass, m/s^2, larger than the magnitude of a.
+    """
+    return r * (f + a_along) / (f * f - a_squared)
+
+
+@compiled
+def landing_slip(r: float, a1: float, a2: float, f: float) -> tuple[float, float]:
+    """Return the distance slipped until zero slip, along and across the initial slip, in m.
+
+    Parameters
+    ----------
+    r : float
+        Slip speed, m/s.
+    a1, a2 : float
+        Spring acceleration along and across the initial slip, m/s^2.
+    f : float
+        Friction force over mass, m/s^2, larger than the magnitude of a.
+    """
+    square = a1 * a1 + a2 * a2
+    a = sqrt(square)
+    if a < 1e-8 * f:
+        return 0.5 * r * r / f, 0.0
+    along, across = r * a1 / a, -r * a2 / a  # slip in the axes of a
+    distance_along = (f * r * along + 0.5 * a * (along * along + r * r)) / (2 * (f * f - square))
+    distance_across = across * (2 * f * r + a * along) / (4 * f * f - square)
+    return (
+        (a1 * distance_along - a2 * distance_across) / a,
+        (a2 * distance_along + a1 * distance_across) / a,
+    )

@@ -1,0 +1,239 @@
+"""The loop: stick, take off, slip, land, until the time or the step budget is used up."""
+
+from __future__ import annotations
+
+from math import inf, isfinite, sqrt
+
+import numpy as np
+
+from stiction.solver.compiled import compiled
+from stiction.solver.frame import Frame, frame_of, friction, in_frame, pull, turned
+from stiction.solver.landing import landing_slip, landing_time
+from stiction.solver.newton import products
+from stiction.solver.problem import Problem, next_break, travel
+from stiction.solver.radau import A, dot, step_factor
+from stiction.solver.sampling import fill, sample_slip, sample_stick
+from stiction.solver.state import (
+    COMPLETED,
+    NON_FINITE,
+    RUNNING,
+    STEP_UNDERFLOW,
+    Counts,
+    Memory,
+    Motion,
+    State,
+    cooled,
+)
+from stiction.solver.step import step
+from stiction.solver.stick import holding, in_principal_axes, stick_duration
+
+GROWTH = 2.0
+
+
+@compiled
+def stick(
+    problem: Problem,
+    state: State,
+    t_stop: float,
+    times: np.ndarray,
+    samples: np.ndarray,
+    k: int,
+    sticks: np.ndarray,
+) -> tuple[State, int]:
+    """Hold zero slip as long as friction can, then turn the slip direction to take-off."""
+    motion, memory, counts = state
+    t, u_x, u_y = motion.t, motion.u_x, motion.u_y
+    duration = stick_duration(problem, t, u_x, u_y)
+    end = t_stop if t + duration >= t_stop else t + duration
+    if end > t:
+        k = sample_stick(problem, t, u_x, u_y, end, times, samples, k)
+        d_x, d_y = in_principal_axes(problem, travel(problem.drive, t, end - t))
+        u_x, u_y = u_x + d_x, u_y + d_y
+        sticks[counts.sticks, 0] = t
+        sticks[counts.sticks, 1] = end
+        counts = Counts(
+            counts.steps,
+            counts.rejected,
+            counts.iterations,
+            counts.sticks + 1,
+            counts.stuck + (end - t),
+        )
+    a_x, a_y = holding(problem, end, u_x, u_y)
+    a = sqrt(a_x * a_x + a_y * a_y)
+    e_x, e_y = (a_x / a, a_y / a) if a > 0.0 else (motion.e_x, motion.e_y)
+    motion = Motion(end, u_x, u_y, 0.0, e_x, e_y)
+    return State(motion, cooled(memory, memory.h_takeoff), counts), k
+
+
+@compiled
+def pursuit(
+    problem: Problem, frame: Frame, t: float, tolerance: float, speed: float
+) -> tuple[float, float, float]:
+    """Return the time (s) to landing and the slip until then (m), in closed form.
+
+    Infinite unless spring and friction stay constant until then, to a tenth of the tolerance.
+    """
+    r = frame.r
+    b_1, b_2, db_1, db_2 = pull(problem, frame, t, 0.0)
+    a_1, a_2 = b_1 - frame.c_11 * r, b_2 - frame.c_12 * r
+    f, gradient = friction(problem, t, r)
+    square = a_1 * a_1 + a_2 * a_2
+    if not square < f * f:
+        return inf, 0.0, 0.0
+    T = landing_time(r, a_1, square, f)
+    jerk = abs(db_1) + abs(db_2) + (frame.k_11 + frame.k_22) * r
+    relaxation = abs(gradient) + frame.c_11 + frame.c_22
+    if T * (T * jerk + relaxation * r) > 0.1 * tolerance * speed and T > 1e-15:
+        return inf, 0.0, 0.0
+    slid_1, slid_2 = landing_slip(r, a_1, a_2, f)
+    return T, slid_1, slid_2
+
+
+@compiled
+def land(
+    problem: Problem,
+    frame: Frame,
+    state: State,
+    closed: tuple[float, float, float],
+    times: np.ndarray,
+    samples: np.ndarray,
+    k: int,
+) -> tuple[State, int]:
+    """End the slip by the pursuit curve."""
+    motion, memory, counts = state
+    t, r = motion.t, frame.r
+    T, slid_1, slid_2 = closed
+    f = friction(problem, t, r)[0] * problem.system.mass
+    while k < len(times) and times[k] < t + T:
+        x = (times[k] - t) / T
+        d_1, d_2 = in_frame(frame, travel(problem.drive, t, x * T))
+        y_1, y_2 = frame.y_1 + d_1 - x * slid_1, frame.y_2 + d_2 - x * slid_2
+        k = fill(frame, y_1, y_2, r * (1.0 - x), 0.0, f, samples, k)
+    d_1, d_2 = in_frame(frame, travel(problem.drive, t, T))
+    u_x, u_y = elongation(frame, frame.y_1 + d_1 - slid_1, frame.y_2 + d_2 - slid_2)
+    landed = Motion(t + T, u_x, u_y, 0.0, frame.e_x, frame.e_y)
+    return State(landed, cooled(memory, memory.h_takeoff), counts), k
+
+
+@compiled
+def elongation(frame: Frame, y_1: float, y_2: float) -> tuple[float, float]:
+    """Return an elongation in the step's axes in (x, y)."""
+    return y_1 * frame.e_x - y_2 * frame.e_y, y_1 * frame.e_y + y_2 * frame.e_x
+
+
+@compiled
+def slip(
+    problem: Problem,
+    frame: Frame,
+    state: State,
+    t_stop: float,
+    tolerance: float,
+    speed: float,
+    times: np.ndarray,
+    samples: np.ndarray,
+    k: int,
+) -> tuple[bool, State, int]:
+    """Take one step of slip and plan the next."""
+    motion, memory, counts = state
+    t, r = motion.t, motion.r
+    done, landing, h, p, w, error, rejected, iterations = step(
+        problem, frame, t, t_stop, memory, tolerance, speed
+    )
+    counts = Counts(
+        counts.steps + 1,
+        counts.rejected + rejected,
+        counts.iterations + iterations,
+        counts.sticks,
+        counts.stuck,
+    )
+    if not done:
+        return False, State(motion, memory, counts), k
+    k = sample_slip(problem, frame, t, h, p, w, times, samples, k)
+    d_1, d_2 = in_frame(frame, travel(problem.drive, t, h))
+    slid_1, slid_2 = h * dot(A[2], p), h * dot(A[2], products(p, w))
+    u_x, u_y = elongation(frame, frame.y_1 + d_1 - slid_1, frame.y_2 + d_2 - slid_2)
+    e_x, e_y = turned(frame, w[2])
+    factor = step_factor(error, GROWTH)
+    h_takeoff = memory.h_takeoff
+    if r == 0.0:
+        h_takeoff = h * factor
+    elif memory.warm:  # Gustafsson's predictive control: errors that grow will grow on
+        trend = h / memory.h_last * sqrt(sqrt(memory.error_last)) * 0.9 / sqrt(error + 1e-10)
+        factor = min(factor, max(0.2, trend))
+    end = t_stop if t + h >= t_stop else t + h
+    memory = Memory(
+        h * factor if h > 0.1 * memory.h or end < t_stop else memory.h,
+        h_takeoff,
+        h,
+        max(error, 0.01),
+        not landing,
+        (r, p[0], p[1], p[2]),
+        (0.0, w[0], w[1], w[2]),
+    )
+    r = 0.0 if landing else p[2] * sqrt(1.0 + w[2] * w[2])
+    return True, State(Motion(end, u_x, u_y, r, e_x, e_y), memory, counts), k
+
+
+@compiled
+def advance(
+    problem: Problem,
+    state: State,
+    t_end: float,
+    tolerance: float,
+    speed: float,
+    budget: int,
+    times: np.ndarray,
+    samples: np.ndarray,
+    k: int,
+    sticks: np.ndarray,
+) -> tuple[int, State, int]:
+    """Advance until `t_end`, or until the budget of steps or the room in `sticks` is used up.
+
+    Parameters
+    ----------
+    problem, state
+        The system, and where it is.
+    t_end : float
+        s.
+    tolerance, speed : float
+        Local tolerance, relative to the slip speed plus `speed` (m/s).
+    budget : int
+        Steps to take at most.
+    times, samples : ndarray
+        Ascending output times (n,), and rows to fill (n, 7); see `sampling`.
+    k : int
+        The next row to fill.
+    sticks : ndarray
+        Rows (start, end) of stick intervals to fill, from ``state.counts.sticks`` on.
+
+    Returns
+    -------
+    code, state, k
+    """
+    for _ in range(budget):
+        motion = state.motion
+        t = motion.t
+        if t >= t_end:
+            return COMPLETED, state, k
+        if not (isfinite(motion.u_x) and isfinite(motion.u_y) and isfinite(motion.r)):
+            return NON_FINITE, state, k
+        if state.counts.sticks >= len(sticks):
+            return RUNNING, state, k
+        t_stop = min(t_end, next_break(problem.drive, t))
+        if motion.r == 0.0:
+            state, k = stick(problem, state, t_stop, times, samples, k, sticks)
+            motion = state.motion
+            if motion.t >= t_stop:
+                continue
+        frame = frame_of(problem, motion.u_x, motion.u_y, motion.r, motion.e_x, motion.e_y)
+        if motion.r > 0.0:
+            closed = pursuit(problem, frame, t, tolerance, speed)
+            if t + closed[0] < t_stop:
+                state, k = land(problem, frame, state, closed, times, samples, k)
+                continue
+        done, state, k = slip(
+            problem, frame, state, t_stop, tolerance, speed, times, samples, k
+        )
+        if not done:
+            return STEP_UNDERFLOW, state, k
+    return RUNNING, state, k

@@ -1,0 +1,85 @@
+"""Newton's method for one step of slip."""
+
+from __future__ import annotations
+
+from stiction.solver.compiled import compiled
+from stiction.solver.frame import Frame
+from stiction.solver.problem import Problem
+from stiction.solver.radau import Triple
+from stiction.solver.slip import correction, factors, stage
+
+ITERATIONS = 10
+
+
+@compiled
+def solve(
+    problem: Problem,
+    frame: Frame,
+    t: float,
+    h: float,
+    landing: bool,
+    p: Triple,
+    w: Triple,
+    tolerance: float,
+    speed: float,
+) -> tuple[bool, Triple, Triple, float, int]:
+    """Solve the collocation equations of one step.
+
+    Parameters
+    ----------
+    problem, frame, t, h
+        The system, the step's axes, its start (s) and its size (s).
+    landing : bool
+        Whether the step ends at zero slip; its size is then found, from `h` on.
+    p, w : triple of float
+        First guess of the stages (m/s, 1).
+    tolerance, speed : float
+        Local tolerance, relative to the slip speed plus `speed` (m/s), and for w to 1.
+
+    Returns
+    -------
+    converged, p, w, h, iterations
+
+    Notes
+    -----
+    The first Jacobian is exact and kept while it contracts. One exact iteration squares
+    the (relative) error, hence the test on the first correction's square.
+    """
+    s0 = stage(problem, frame, t, h, 0, p, w, products(p, w))
+    s1 = stage(problem, frame, t, h, 1, p, w, products(p, w))
+    s2 = stage(problem, frame, t, h, 2, p, w, products(p, w))
+    m = factors(frame, h, landing, p, w, s0, s1, s2)
+    last = 1.0
+    for iteration in range(1, ITERATIONS + 1):
+        dp, dw = correction(m, s0, s1, s2)
+        w = (w[0] - dw[0], w[1] - dw[1], w[2] - dw[2])
+        if landing:
+            h -= dp[2]
+            p = (p[0] - dp[0], p[1] - dp[1], 0.0)
+            size = abs(dp[2]) / (abs(h) + 1e-300)
+        else:
+            p = (p[0] - dp[0], p[1] - dp[1], p[2] - dp[2])
+            size = abs(dp[2]) / (speed + abs(p[2]))
+        size = max(size, abs(dp[0]) / (speed + abs(p[0])), abs(dp[1]) / (speed + abs(p[1])))
+        size = max(size, abs(dw[0]), abs(dw[1]), abs(dw[2]))
+        if not size < 1e10 or h <= 0.0:
+            return False, p, w, h, iteration
+        rate = size if iteration == 1 else size / last
+        enough = tolerance if iteration == 1 else 0.03 * tolerance
+        if size < 0.03 * tolerance or size * rate < enough:
+            return True, p, w, h, iteration
+        if iteration > 3 and rate > 1.0:
+            return False, p, w, h, iteration
+        s0 = stage(problem, frame, t, h, 0, p, w, products(p, w))
+        s1 = stage(problem, frame, t, h, 1, p, w, products(p, w))
+        s2 = stage(problem, frame, t, h, 2, p, w, products(p, w))
+        if rate > 0.1:
+            m = factors(frame, h, landing, p, w, s0, s1, s2)
+        last = size
+    return False, p, w, h, ITERATIONS
+
+
+@compiled
+def products(p: Triple, w: Triple) -> Triple:
+    """Return p w: the slip velocity across the step's axis."""
+    return p[0] * w[0], p[1] * w[1], p[2] * w[2]

@@ -1,0 +1,122 @@
+"""Output samples from dense output; they do not influence the steps.
+
+A row is u_x, u_y (m), slip_x, slip_y (m/s), friction_x, friction_y (N; while stuck, the
+force that holds) and 1 while sticking, else 0.
+
+Inside a slip step the slip distance is the quintic through its value and first two
+derivatives at both ends, accurate to h^6 like the step itself; the direction of slip,
+which must stay accurate where the slip vanishes, is the collocation cubic's.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import numpy as np
+
+from stiction.solver.compiled import compiled
+from stiction.solver.frame import Frame, friction, in_frame, pull
+from stiction.solver.problem import Problem, travel
+from stiction.solver.radau import A, Triple, cubic, dot
+from stiction.solver.slip import stage
+from stiction.solver.stick import holding, in_principal_axes
+
+COLUMNS = 7
+
+
+@compiled
+def quintic(
+    h: float, x: float, v0: float, a0: float, y1: float, v1: float, a1: float
+) -> tuple[float, float]:
+    """Return value and derivative at x h of the quintic with y(0) = 0 and the given ends."""
+    b, c = v0 * h, 0.5 * a0 * h * h
+    dy, dv, da = y1 - b - c, v1 * h - b - 2 * c, a1 * h * h - 2 * c
+    c3, c4, c5 = 10 * dy - 4 * dv + 0.5 * da, 7 * dv - 15 * dy - da, 6 * dy - 3 * dv + 0.5 * da
+    y = x * (b + x * (c + x * (c3 + x * (c4 + x * c5))))
+    v = (b + x * (2 * c + x * (3 * c3 + x * (4 * c4 + x * 5 * c5)))) / h
+    return y, v
+
+
+@compiled
+def sample_stick(
+    problem: Problem,
+    t: float,
+    u_x: float,
+    u_y: float,
+    end: float,
+    times: np.ndarray,
+    samples: np.ndarray,
+    k: int,
+) -> int:
+    """Fill the samples of a stick interval that starts at `t`; return the next index."""
+    while k < len(times) and times[k] <= end:
+        d_x, d_y = in_principal_axes(problem, travel(problem.drive, t, times[k] - t))
+        a_x, a_y = holding(problem, times[k], u_x + d_x, u_y + d_y)
+        samples[k, 0] = u_x + d_x
+        samples[k, 1] = u_y + d_y
+        samples[k, 2] = 0.0
+        samples[k, 3] = 0.0
+        samples[k, 4] = a_x * problem.system.mass
+        samples[k, 5] = a_y * problem.system.mass
+        samples[k, 6] = 1.0
+        k += 1
+    return k
+
+
+@compiled
+def sample_slip(
+    problem: Problem,
+    frame: Frame,
+    t: float,
+    h: float,
+    p: Triple,
+    w: Triple,
+    times: np.ndarray,
+    samples: np.ndarray,
+    k: int,
+) -> int:
+    """Fill the samples of an accepted slip step; return the next index."""
+    q = (p[0] * w[0], p[1] * w[1], p[2] * w[2])
+    r = frame.r
+    b_1, b_2, _, _ = pull(problem, frame, t, 0.0)
+    first_1 = b_1 - frame.c_11 * r - friction(problem, t, r)[0]
+    first_2 = b_2 - frame.c_12 * r
+    end = stage(problem, frame, t, h, 2, p, w, q)
+    last_1, last_2 = end.a_1 - end.f * end.g, end.a_2 - end.f * end.g * w[2]
+    slid_1, slid_2 = h * dot(A[2], p), h * dot(A[2], q)
+    while k < len(times) and times[k] <= t + h:
+        dt = times[k] - t
+        x = dt / h
+        z_1, s_1 = quintic(h, x, r, first_1, slid_1, p[2], last_1)
+        z_2, s_2 = quintic(h, x, 0.0, first_2, slid_2, q[2], last_2)
+        d_1, d_2 = in_frame(frame, travel(problem.drive, t, dt))
+        speed = sqrt(s_1 * s_1 + s_2 * s_2)
+        slope = cubic((0.0, w[0], w[1], w[2]), x)
+        force = friction(problem, times[k], speed)[0] * problem.system.mass
+        k = fill(frame, frame.y_1 + d_1 - z_1, frame.y_2 + d_2 - z_2, speed, slope, force, samples, k)
+    return k
+
+
+@compiled
+def fill(
+    frame: Frame,
+    y_1: float,
+    y_2: float,
+    speed: float,
+    w: float,
+    force: float,
+    samples: np.ndarray,
+    k: int,
+) -> int:
+    """Write one row of a slip step, from its axes to (x, y); return the next index."""
+    e_x, e_y = frame.e_x, frame.e_y
+    g = 1.0 / sqrt(1.0 + w * w)
+    n_x, n_y = (e_x - w * e_y) * g, (e_y + w * e_x) * g
+    samples[k, 0] = y_1 * e_x - y_2 * e_y
+    samples[k, 1] = y_1 * e_y + y_2 * e_x
+    samples[k, 2] = speed * n_x
+    samples[k, 3] = speed * n_y
+    samples[k, 4] = force * n_x
+    samples[k, 5] = force * n_y
+    samples[k, 6] = 0.0
+    return k + 1

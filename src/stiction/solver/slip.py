@@ -1,0 +1,150 @@
+"""One step of slip: the collocation equations and their solution by Newton's method.
+
+Unknown are p and w at the three stages (see `frame`); in a step that ends in a landing
+p is zero at the last stage and the step size takes its place.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import NamedTuple
+
+from stiction.solver.compiled import compiled
+from stiction.solver.frame import Frame, friction, pull
+from stiction.solver.problem import Problem
+from stiction.solver.radau import A, C, D, Matrix, Triple, dot, inverse, less, product, times
+
+
+class Stage(NamedTuple):
+    """Residuals of the two equations at one stage, and what their derivatives need."""
+
+    residual_p: float
+    residual_w: float
+    a_1: float
+    a_2: float
+    da_1: float  # change of the acceleration with the step size, at constant stages
+    da_2: float
+    f: float
+    gradient: float
+    g: float
+
+
+@compiled
+def stage(
+    problem: Problem,
+    frame: Frame,
+    t: float,
+    h: float,
+    i: int,
+    p: Triple,
+    w: Triple,
+    q: Triple,
+) -> Stage:
+    """Evaluate stage `i`; q = p w."""
+    slid_1, slid_2 = dot(A[i], p), dot(A[i], q)
+    b_1, b_2, db_1, db_2 = pull(problem, frame, t, C[i] * h)
+    da_1 = C[i] * db_1 - frame.k_11 * slid_1 - frame.k_12 * slid_2
+    da_2 = C[i] * db_2 - frame.k_12 * slid_1 - frame.k_22 * slid_2
+    p_i, w_i, q_i = p[i], w[i], q[i]
+    a_1 = b_1 - h * (frame.k_11 * slid_1 + frame.k_12 * slid_2)
+    a_2 = b_2 - h * (frame.k_12 * slid_1 + frame.k_22 * slid_2)
+    a_1 -= frame.c_11 * p_i + frame.c_12 * q_i
+    a_2 -= frame.c_12 * p_i + frame.c_22 * q_i
+    square = 1.0 + w_i * w_i
+    g = 1.0 / sqrt(square)
+    f, gradient = friction(problem, t + C[i] * h, p_i * square * g)
+    dp = dot(D[i], (p[0] - frame.r, p[1] - frame.r, p[2] - frame.r))
+    residual_p = dp - h * (a_1 - f * g)
+    residual_w = p_i * dot(D[i], w) - h * (a_2 - w_i * a_1)
+    return Stage(residual_p, residual_w, a_1, a_2, da_1, da_2, f, gradient, g)
+
+
+@compiled
+def jacobian_rows(
+    frame: Frame, h: float, i: int, p: Triple, w: Triple, at_i: Stage
+) -> tuple[Triple, Triple, Triple, Triple]:
+    """Return the derivatives of stage i's residuals: (p by p), (p by w), (w by p), (w by w)."""
+    k_11, k_12, k_22 = frame.k_11, frame.k_12, frame.k_22
+    c_11, c_12, c_22 = frame.c_11, frame.c_12, frame.c_22
+    p_i, w_i, a, d, g = p[i], w[i], A[i], D[i], at_i.g
+    square = h * h
+    turned_1, turned_2 = k_12 - w_i * k_11, k_22 - w_i * k_12
+    pp = (
+        d[0] + square * a[0] * (k_11 + k_12 * w[0]),
+        d[1] + square * a[1] * (k_11 + k_12 * w[1]),
+        d[2] + square * a[2] * (k_11 + k_12 * w[2]),
+    )
+    pw = (square * a[0] * k_12 * p[0], square * a[1] * k_12 * p[1], square * a[2] * k_12 * p[2])
+    wp = (
+        square * a[0] * (turned_1 + turned_2 * w[0]),
+        square * a[1] * (turned_1 + turned_2 * w[1]),
+        square * a[2] * (turned_1 + turned_2 * w[2]),
+    )
+    ww = (
+        p_i * d[0] + square * a[0] * turned_2 * p[0],
+        p_i * d[1] + square * a[1] * turned_2 * p[1],
+        p_i * d[2] + square * a[2] * turned_2 * p[2],
+    )
+    # terms of the stage's own unknowns: friction, damping, and the products p w', w a_1
+    force = at_i.gradient * p_i * w_i * g * g - at_i.f * g * g * g * w_i
+    own_pp = h * (at_i.gradient + c_11 + c_12 * w_i)
+    own_pw = h * (force + c_12 * p_i)
+    own_wp = dot(d, w) + h * (c_12 + c_22 * w_i - w_i * (c_11 + c_12 * w_i))
+    own_ww = h * (at_i.a_1 + c_22 * p_i - w_i * c_12 * p_i)
+    return added(pp, i, own_pp), added(pw, i, own_pw), added(wp, i, own_wp), added(ww, i, own_ww)
+
+
+@compiled
+def added(row: Triple, i: int, x: float) -> Triple:
+    """Return the row with x added to its entry i."""
+    return (
+        row[0] + (x if i == 0 else 0.0),
+        row[1] + (x if i == 1 else 0.0),
+        row[2] + (x if i == 2 else 0.0),
+    )
+
+
+class Factors(NamedTuple):
+    """The Jacobian eliminated block by block: w first, then p."""
+
+    inverse_ww: Matrix
+    w_by_p: Matrix
+    p_by_w: Matrix
+    inverse_pp: Matrix
+
+
+@compiled
+def factors(
+    frame: Frame, h: float, landing: bool, p: Triple, w: Triple, s0: Stage, s1: Stage, s2: Stage
+) -> Factors:
+    """Return the eliminated Jacobian at the given stages."""
+    pp0, pw0, wp0, ww0 = jacobian_rows(frame, h, 0, p, w, s0)
+    pp1, pw1, wp1, ww1 = jacobian_rows(frame, h, 1, p, w, s1)
+    pp2, pw2, wp2, ww2 = jacobian_rows(frame, h, 2, p, w, s2)
+    if landing:  # the last unknown is the step size
+        pp0, wp0 = by_step_size(h, w[0], s0, pp0, wp0)
+        pp1, wp1 = by_step_size(h, w[1], s1, pp1, wp1)
+        pp2, wp2 = by_step_size(h, w[2], s2, pp2, wp2)
+    inverse_ww = inverse((ww0, ww1, ww2))
+    w_by_p = product(inverse_ww, (wp0, wp1, wp2))
+    p_by_w = (pw0, pw1, pw2)
+    feedback = product(p_by_w, w_by_p)
+    inverse_pp = inverse((less(pp0, feedback[0]), less(pp1, feedback[1]), less(pp2, feedback[2])))
+    return Factors(inverse_ww, w_by_p, p_by_w, inverse_pp)
+
+
+@compiled
+def by_step_size(h: float, w: float, s: Stage, pp: Triple, wp: Triple) -> tuple[Triple, Triple]:
+    """Return the rows with the derivative by the step size as their last entry."""
+    dp = s.f * s.g - s.a_1 - h * s.da_1
+    dw = w * s.a_1 - s.a_2 - h * (s.da_2 - w * s.da_1)
+    return (pp[0], pp[1], dp), (wp[0], wp[1], dw)
+
+
+@compiled
+def correction(m: Factors, s0: Stage, s1: Stage, s2: Stage) -> tuple[Triple, Triple]:
+    """Return what Newton's method subtracts from (p, w)."""
+    w = times(m.inverse_ww, (s0.residual_w, s1.residual_w, s2.residual_w))
+    p = less((s0.residual_p, s1.residual_p, s2.residual_p), times(m.p_by_w, w))
+    dp = times(m.inverse_pp, p)
+    return dp, less(w, times(m.w_by_p, dp))

@@ -1,0 +1,75 @@
+"""What the loop carries from step to step, so that it can pause anywhere and go on."""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import NamedTuple
+
+from stiction.solver.compiled import compiled
+from stiction.solver.problem import System
+
+RUNNING, COMPLETED, STEP_UNDERFLOW, NON_FINITE, TOO_MANY_STEPS = -1, 0, 1, 2, 3
+
+
+class Motion(NamedTuple):
+    """Time (s), elongation (m), slip speed (m/s; zero while sticking) and its direction."""
+
+    t: float
+    u_x: float
+    u_y: float
+    r: float
+    e_x: float
+    e_y: float
+
+
+class Memory(NamedTuple):
+    """What the last steps teach the next one.
+
+    h : size to try next, s; h_takeoff : the same for the first step after a stick;
+    h_last, error_last : size and error over tolerance of the last step; warm : whether
+    `p` and `w`, values of its cubics at 0 and the stages, predict the next.
+    """
+
+    h: float
+    h_takeoff: float
+    h_last: float
+    error_last: float
+    warm: bool
+    p: tuple[float, float, float, float]
+    w: tuple[float, float, float, float]
+
+
+class Counts(NamedTuple):
+    """Steps accepted and rejected, Newton iterations, stick intervals and their sum (s)."""
+
+    steps: int
+    rejected: int
+    iterations: int
+    sticks: int
+    stuck: float
+
+
+class State(NamedTuple):
+    """Everything that a paused run needs to go on, and come out the same."""
+
+    motion: Motion
+    memory: Memory
+    counts: Counts
+
+
+def start(system: System, t: float, u: tuple[float, float], slip: tuple[float, float]) -> State:
+    """Return the state from which a run starts."""
+    r = sqrt(slip[0] ** 2 + slip[1] ** 2)
+    e = (slip[0] / r, slip[1] / r) if r > 0.0 else (1.0, 0.0)
+    h = 0.05 / sqrt(max(system.k_x, system.k_y) / system.mass)
+    nothing = (0.0, 0.0, 0.0, 0.0)
+    memory = Memory(h, h, h, 1.0, False, nothing, nothing)
+    return State(Motion(t, u[0], u[1], r, e[0], e[1]), memory, Counts(0, 0, 0, 0, 0.0))
+
+
+@compiled
+def cooled(memory: Memory, h: float) -> Memory:
+    """Return a memory whose cubics predict nothing: the motion has a kink here."""
+    return Memory(
+        h, memory.h_takeoff, memory.h_last, memory.error_last, False, memory.p, memory.w
+    )

@@ -1,0 +1,177 @@
+"""One accepted step of slip: prediction, collocation, error control."""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+
+from stiction.solver.compiled import compiled
+from stiction.solver.frame import Frame, friction, pull
+from stiction.solver.newton import products, solve
+from stiction.solver.problem import Problem
+from stiction.solver.radau import (
+    DEFECT_WEIGHT,
+    DERIVATIVE,
+    INTEGRAL,
+    INTERIOR,
+    VALUE,
+    C,
+    Triple,
+    cubic,
+    dot,
+    step_factor,
+)
+from stiction.solver.state import Memory
+
+# a step that has not succeeded after so many tries will not; 0.4^100 is beyond any float
+ATTEMPTS = 100
+
+
+@compiled
+def time_to_landing(problem: Problem, frame: Frame, t: float) -> float:
+    """Return when the slip speed would vanish, from its first two derivatives, in s."""
+    r = frame.r
+    b_1, _, db_1, _ = pull(problem, frame, t, 0.0)
+    change = b_1 - frame.c_11 * r - friction(problem, t, r)[0]
+    curvature = db_1 - frame.k_11 * r
+    square = change * change - 2 * r * curvature
+    if square <= 0.0:
+        return inf
+    root = sqrt(square)
+    if change < 0.0:
+        return 2 * r / (root - change)
+    return (change + root) / -curvature if curvature < 0.0 else inf
+
+
+@compiled
+def predicted(
+    problem: Problem, frame: Frame, t: float, h: float, memory: Memory
+) -> tuple[Triple, Triple]:
+    """Return a first guess of the stages (p, w)."""
+    if memory.warm:
+        x = h / memory.h_last
+        c = (1.0 + C[0] * x, 1.0 + C[1] * x, 1.0 + C[2] * x)
+        p = (cubic(memory.p, c[0]), cubic(memory.p, c[1]), cubic(memory.p, c[2]))
+        w, turn = memory.w, memory.w[3]
+        return p, (cubic(w, c[0]) - turn, cubic(w, c[1]) - turn, cubic(w, c[2]) - turn)
+    r = frame.r
+    b_1, _, db_1, db_2 = pull(problem, frame, t, 0.0)
+    c = (C[0] * h, C[1] * h, C[2] * h)
+    if r == 0.0:  # take-off: |s| grows with t^2, and turns with the force that held
+        a = 0.5 * db_1
+        x = db_2 / b_1
+        return (a * c[0] * c[0], a * c[1] * c[1], a * c[2] * c[2]), (x * c[0], x * c[1], x * c[2])
+    change = b_1 - frame.c_11 * r - friction(problem, t, r)[0]
+    p = (
+        max(r + change * c[0], r * (1 - C[0])),
+        max(r + change * c[1], r * (1 - C[1])),
+        max(r + change * c[2], 0.1 * r),
+    )
+    return p, (0.0, 0.0, 0.0)
+
+
+@compiled
+def local_error(
+    problem: Problem, frame: Frame, t: float, h: float, p: Triple, w: Triple, speed: float
+) -> float:
+    """Return the largest relative error of the collocation cubic inside the step.
+
+    Its defect at an interior point, times the step size, relative to the slip speed plus
+    `speed` for p and to 1 for w; the latter divided by how stiffly w follows the force.
+    """
+    r, dt = frame.r, INTERIOR * h
+    p_in = VALUE[0] * r + VALUE[1] * p[0] + VALUE[2] * p[1] + VALUE[3] * p[2]
+    w_in = VALUE[1] * w[0] + VALUE[2] * w[1] + VALUE[3] * w[2]
+    dp = DERIVATIVE[0] * r + DERIVATIVE[1] * p[0] + DERIVATIVE[2] * p[1] + DERIVATIVE[3] * p[2]
+    dw = DERIVATIVE[1] * w[0] + DERIVATIVE[2] * w[1] + DERIVATIVE[3] * w[2]
+    slid_1, slid_2 = h * dot(INTEGRAL, p), h * dot(INTEGRAL, products(p, w))
+    b_1, b_2, _, _ = pull(problem, frame, t, dt)
+    a_1 = b_1 - frame.k_11 * slid_1 - frame.k_12 * slid_2 - (frame.c_11 + frame.c_12 * w_in) * p_in
+    a_2 = b_2 - frame.k_12 * slid_1 - frame.k_22 * slid_2 - (frame.c_12 + frame.c_22 * w_in) * p_in
+    stretch = sqrt(1.0 + w_in * w_in)
+    f = friction(problem, t + dt, p_in * stretch)[0]
+    defect_p = abs(dp - h * (a_1 - f / stretch))
+    defect_w = abs(p_in * dw - h * (a_2 - w_in * a_1))
+    size = abs(p_in)
+    stiffness = size + DEFECT_WEIGHT * h * abs(a_1)
+    if p_in < 0.0:
+        return inf
+    return DEFECT_WEIGHT * max(defect_p / (speed + size), defect_w / (stiffness + 1e-300))
+
+
+@compiled
+def dips(r: float, p: Triple, w: Triple) -> bool:
+    """Return whether the slip passes below zero inside the step and comes back."""
+    if p[0] < 0.0 or p[1] < 0.0:
+        return True
+    return p[2] > p[1] and p[1] < r and cubic((r, p[0], p[1], p[2]), 0.5 * (1.0 + C[1])) < 0.0
+
+
+@compiled
+def step(
+    problem: Problem,
+    frame: Frame,
+    t: float,
+    t_stop: float,
+    memory: Memory,
+    tolerance: float,
+    speed: float,
+) -> tuple[bool, bool, float, Triple, Triple, float, int, int]:
+    """Take one step of slip, as long as the tolerance and `t_stop` allow.
+
+    Returns
+    -------
+    done : bool
+        False if the step size fell below the resolution of time.
+    landing : bool
+        Whether the step ends at zero slip.
+    h, p, w, error
+        Step size (s), stages, and error over tolerance.
+    rejected, iterations : int
+    """
+    h = memory.h
+    until = inf if frame.r == 0.0 else time_to_landing(problem, frame, t)
+    if 0.6 * until < h < 1.4 * until:
+        h = 0.6 * until  # two even steps rather than a long and a short one
+    landing = h >= until
+    if landing:
+        h = until
+    resolution = 4e-16 * abs(t)
+    rejected = iterations = 0
+    retry = False
+    p = w = (0.0, 0.0, 0.0)
+    for _ in range(ATTEMPTS):
+        if t + h >= t_stop:
+            h, landing = t_stop - t, False
+        elif not h > resolution:
+            break
+        tried = h
+        if not retry:
+            p, w = predicted(problem, frame, t, h, memory)
+        retry = False
+        if landing:
+            p = (p[0], p[1], 0.0)
+        converged, p, w, h, count = solve(
+            problem, frame, t, h, landing, p, w, tolerance, speed
+        )
+        iterations += count
+        if not converged:
+            rejected += 1
+            h, landing = 0.3 * tried, False
+            continue
+        if landing and t + h > t_stop:
+            h, landing = t_stop - t, False
+            continue
+        if not landing and p[2] < 0.0:
+            if frame.r == 0.0:
+                rejected += 1
+                h *= 0.3
+            else:
+                h *= frame.r / (frame.r - p[2])
+                p, landing, retry = (0.5 * frame.r, 0.2 * frame.r, 0.0), True, True
+            continue
+        error = local_error(problem, frame, t, h, p, w, speed) / tolerance
+        if error <= 1.0 and not dips(frame.r, p, w):
+            return True, landing, h, p, w, error, rejected, iterations
+        rejected += 1
+        h, landing = h * (step_factor(error, 1.0) if error > 1.0 else 0.4), False
+    return False, False, h, p, w, inf, rejected, iterations

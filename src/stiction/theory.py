@@ -1,0 +1,280 @@
+"""The paper's closed forms, as plain functions of floats or arrays.
+
+K. Nakano and V. L. Popov, "Dynamic stiction without static friction: The role of friction vector
+rotation", Phys. Rev. E 102, 063001 (2020), cited below as the paper; equation numbers are those of
+its preprint, arXiv:2008.01854. Arguments broadcast against each other; everything is in SI units
+and every angle in radians. A value that the theory does not give is NaN.
+
+The creep before slip (Eq. 7) is quasistatic: friction keeps its magnitude F_0 = mu_0 W and turns,
+the spring follows with k_x u_x = F_0 cos(theta), u_y is constant. With s = V t/l_x the angle obeys
+
+    d theta/ds = -sin(theta - phi)/sin^2(theta),    theta(0) = pi/2,
+
+whose solution is s = G(pi/2) - G(theta), with
+
+    G(theta) = -cos(theta + phi) + sin^2(phi) ln tan((theta - phi)/2).
+
+At early times that is a difference of nearly equal numbers, and at late ones theta - phi falls
+below the spacing of floats. So the functions here use the turn delta = pi/2 - theta and
+
+    w = ln[tan(pi/4 - phi/2) / tan((theta - phi)/2)],    0 <= w < infinity,
+
+which give the same closed form without a cancellation at either end:
+
+    s = 2 sin(delta/2) cos(phi - delta/2) + sin^2(phi) w.
+
+Since ds/dw = sin^2(theta) falls as w grows, s(w) is concave, and Newton's method started at a lower
+bound of w climbs to the root and never passes it: no bracket, no failure.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Floats = NDArray[np.float64]
+
+# Zeros and infinities below are limits (no misalignment, no end of creep), not accidents.
+_limits = np.errstate(divide="ignore", invalid="ignore", over="ignore")
+
+
+def natural_frequency(stiffness: ArrayLike, mass: ArrayLike) -> Floats:
+    """Angular natural frequency sqrt(stiffness/mass), rad/s (omega_x, omega_y of the paper).
+
+    Parameters
+    ----------
+    stiffness : principal stiffness, k_x or k_y (N/m).
+    mass : mass m (kg).
+    """
+    stiffness, mass = _floats(stiffness, mass)
+    return np.sqrt(stiffness / mass)
+
+
+def friction_force(mu_0: ArrayLike, normal_load: ArrayLike) -> Floats:
+    """Friction at vanishing slip speed, F_0 = mu_0 W (N); mu_0 (-), normal load W (N)."""
+    mu_0, normal_load = _floats(mu_0, normal_load)
+    return mu_0 * normal_load
+
+
+def slip_length(F_0: ArrayLike, k_x: ArrayLike) -> Floats:
+    """Elongation that carries the whole friction, F_0/k_x (m), of Eq. (8); F_0 (N), k_x (N/m)."""
+    F_0, k_x = _floats(F_0, k_x)
+    return F_0 / k_x
+
+
+@_limits
+def elongation_rate(u_x: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -> Floats:
+    """Right-hand side of Eq. (7): du_x/dt of the quasistatic creep (m/s).
+
+    Parameters
+    ----------
+    u_x : elongation along x (m); NaN beyond `l_x`.
+    V : drive velocity (m/s).
+    phi : misalignment (rad).
+    l_x : slip length (m), see `slip_length`.
+    """
+    u_x, V, phi, l_x = _floats(u_x, V, phi, l_x)
+    x = u_x / l_x
+    return V * (np.cos(phi) - np.sin(phi) * x / np.sqrt((1.0 - x) * (1.0 + x)))
+
+
+@_limits
+def creep_time(theta: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -> Floats:
+    """Time at which the friction force has turned to `theta` (s): closed form of Eq. (7).
+
+    The paper leaves Eq. (7) as a differential equation; this is its solution from u_x(0) = 0.
+
+    Parameters
+    ----------
+    theta : angle of the friction force to the x axis (rad), phi <= theta <= pi/2, else NaN;
+        infinite at theta = phi > 0.
+    V, phi, l_x : drive velocity (m/s), misalignment (rad), slip length (m).
+    """
+    theta, V, phi, l_x = _floats(theta, V, phi, l_x)
+    delta, half = np.pi / 2 - theta, (theta - phi) / 2
+    w = np.log1p(np.sin(delta / 2) / (np.cos(np.pi / 4 - phi / 2) * np.sin(half)))
+    s = np.where((delta >= 0) & (half >= 0), _scaled_time(delta, w, phi), np.nan)
+    return s * l_x / V
+
+
+def creep_force_angle(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -> Floats:
+    """Angle theta of the friction force to the x axis during creep (rad): Eq. (7), solved.
+
+    The inverse of `creep_time`: falls from pi/2 at t = 0 towards phi, which it reaches only
+    exponentially. At phi = 0 it is arccos(V t/l_x) until V t = l_x, and 0 from then on.
+
+    Parameters
+    ----------
+    t : time since the drive started with u_x = 0 (s), t >= 0, else NaN.
+    V : drive velocity (m/s).
+    phi : misalignment (rad), 0 <= phi <= pi/2, else NaN.
+    l_x : slip length (m), see `slip_length`.
+    """
+    delta, rest, phi = _creep(t, V, phi, l_x)
+    return np.where(delta < rest, np.pi / 2 - delta, phi + rest)[()]  # the less rounded of the two
+
+
+def creep_elongation(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -> Floats:
+    """Elongation during creep, u_x(t) = l_x cos(theta) (m): the solution of Eq. (7).
+
+    Parameters are those of `creep_force_angle`.
+    """
+    delta, _, _ = _creep(t, V, phi, l_x)
+    return np.asarray(l_x, dtype=np.float64) * np.sin(delta)
+
+
+@_limits
+def creep_velocity(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -> Floats:
+    """Laboratory velocity during creep, X'(t) = V sin(phi) cos(theta - phi)/sin(theta) (m/s).
+
+    Eq. (7) in Eq. (6) with constant u_y. Grows from V sin^2(phi) to V. At phi = 0 it is 0 until
+    V t = l_x and V from then on, the limit of small misalignment.
+
+    Parameters are those of `creep_force_angle`.
+    """
+    delta, rest, phi = _creep(t, V, phi, l_x)
+    t, V, l_x = _floats(t, V, l_x)
+    ratio = np.sin(phi) * np.sin(phi + delta) / np.sin(phi + rest)  # cos(rest), well rounded
+    return V * np.where((phi == 0) & (rest == 0), V * t > l_x, ratio)
+
+
+def creep_velocity_approximation(
+    t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike
+) -> Floats:
+    """Creep velocity at small misalignment, V phi (phi + s/sqrt(1 - s^2)), s = V t/l_x (m/s).
+
+    Eq. (8), corrected. The paper prints s^2 in the numerator; expanding Eq. (7) gives s, which is
+    also what the paper's text says ("linear in phi and of second order in V": V s). The relative
+    error against `creep_velocity` is of first order in phi, because Eq. (8) keeps only one of the
+    two terms in phi^2; the other is -V phi^2 (1 - c)/c^3, c = sqrt(1 - s^2).
+
+    Parameters are those of `creep_force_angle`; NaN unless 0 <= s < 1.
+    """
+    return _creep_expansion(t, V, phi, l_x, power=1)
+
+
+def creep_velocity_as_printed(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -> Floats:
+    """Eq. (8) as printed, V phi (phi + s^2/sqrt(1 - s^2)), s = V t/l_x (m/s), for comparison only.
+
+    It is not the limit of Eq. (7): see `creep_velocity_approximation`, which takes the same
+    parameters.
+    """
+    return _creep_expansion(t, V, phi, l_x, power=2)
+
+
+def transverse_deflection(F_0: ArrayLike, k_y: ArrayLike) -> Floats:
+    """Mean transverse elongation during creep, F_0/k_y (m); F_0 (N), k_y (N/m). From Eq. (9)."""
+    F_0, k_y = _floats(F_0, k_y)
+    return F_0 / k_y
+
+
+def transverse_amplitude_bound(V: ArrayLike, phi: ArrayLike, omega_y: ArrayLike) -> Floats:
+    """Largest amplitude of the transverse oscillation without reversal of slip (m). From Eq. (9).
+
+    The oscillation about `transverse_deflection` is free while u_y' < V sin(phi), which bounds
+    its amplitude by V sin(phi)/omega_y.
+
+    Parameters
+    ----------
+    V, phi : drive velocity (m/s), misalignment (rad).
+    omega_y : transverse natural frequency (rad/s), see `natural_frequency`.
+    """
+    V, phi, omega_y = _floats(V, phi, omega_y)
+    return V * np.sin(phi) / omega_y
+
+
+@_limits
+def damping_number(
+    F_0: ArrayLike, V: ArrayLike, phi: ArrayLike, m: ArrayLike, k_x: ArrayLike
+) -> Floats:
+    """Damping number A = F_0/(2 V sin(phi) sqrt(m k_x)) of Eq. (10), dimensionless.
+
+    Parameters
+    ----------
+    F_0 : friction force mu_0 W (N).
+    V, phi : drive velocity (m/s), misalignment (rad).
+    m, k_x : mass (kg), stiffness along x (N/m).
+    """
+    F_0, V, phi, m, k_x = _floats(F_0, V, phi, m, k_x)
+    return F_0 / (2.0 * V * np.sin(phi) * np.sqrt(m * k_x))
+
+
+def damping_ratio(A: ArrayLike, theta: ArrayLike) -> Floats:
+    """Damping ratio zeta = A sin^3(theta) of Eq. (10); A = `damping_number`, theta in rad."""
+    A, theta = _floats(A, theta)
+    zeta: Floats = A * np.sin(theta) ** 3
+    return zeta
+
+
+@_limits
+def critical_angle(A: ArrayLike) -> Floats:
+    """Force angle at which zeta = 1 in Eq. (10), arcsin(A^(-1/3)) (rad): slow slip turns fast.
+
+    NaN where the `damping_number` A < 1: such a system is underdamped from the start.
+    """
+    (A,) = _floats(A)
+    return np.arcsin(1.0 / np.cbrt(A))
+
+
+@_limits
+def first_stick_duration(
+    F_0: ArrayLike, V: ArrayLike, phi: ArrayLike, k_x: ArrayLike, k_y: ArrayLike
+) -> Floats:
+    """Duration of the first stick of the undamped system, from rest at u = 0 (s).
+
+    Not in the paper, which has no stick: with set-valued friction at zero slip the object rests
+    until the spring force |K u| = V t sqrt((k_x cos phi)^2 + (k_y sin phi)^2) reaches F_0.
+
+    Parameters
+    ----------
+    F_0 : friction force mu_0 W (N).
+    V, phi : drive velocity (m/s), misalignment (rad).
+    k_x, k_y : principal stiffnesses (N/m).
+    """
+    F_0, V, phi, k_x, k_y = _floats(F_0, V, phi, k_x, k_y)
+    return F_0 / (V * np.hypot(k_x * np.cos(phi), k_y * np.sin(phi)))
+
+
+def _floats(*values: ArrayLike) -> tuple[Floats, ...]:
+    return tuple(np.asarray(value, dtype=np.float64) for value in values)
+
+
+def _scaled_time(delta: Floats, w: Floats, phi: Floats) -> Floats:
+    """V t/l_x of the creep, see the module's docstring; the term in w vanishes with phi."""
+    sin2 = np.sin(phi) ** 2
+    return 2.0 * np.sin(delta / 2) * np.cos(phi - delta / 2) + np.where(sin2 > 0, sin2 * w, 0.0)
+
+
+@_limits
+def _creep(
+    t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike
+) -> tuple[Floats, Floats, Floats]:
+    """Turn made, delta = pi/2 - theta, turn to come, theta - phi, and phi itself (rad)."""
+    t, V, phi, l_x = _floats(t, V, phi, l_x)
+    s = V * t / l_x
+    s = np.where((s >= 0) & (phi >= 0) & (phi <= np.pi / 2), s, np.nan)
+    sin2, start = np.sin(phi) ** 2, np.cos(phi) / (1.0 + np.sin(phi))  # start = tan(pi/4 - phi/2)
+
+    def turns(w: Floats) -> tuple[Floats, Floats]:
+        decay = np.exp(-w)
+        made = np.arctan(-start * np.expm1(-w) / (1.0 + start**2 * decay))
+        return 2.0 * made, 2.0 * np.arctan(start * decay)
+
+    # Lower bounds: ds/dw <= 1, and delta <= pi/2 - phi. Without misalignment s = tanh(w).
+    w = np.fmax(s, (s - np.cos(2.0 * phi) - np.sin(phi)) / sin2)
+    w = np.where(sin2 > 0, w, np.arctanh(np.minimum(s, 1.0)))
+    for _ in range(100):  # 37 are the most it takes, for phi -> 0 at s = 1
+        delta, rest = turns(w)
+        step = (s - _scaled_time(delta, w, phi)) / np.sin(phi + rest) ** 2
+        climbed = w + np.where((step > 0) & (sin2 > 0), step, 0.0)
+        if np.array_equal(climbed, w, equal_nan=True):
+            break
+        w = climbed
+    return *turns(w), phi
+
+
+def _creep_expansion(
+    t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike, power: int
+) -> Floats:
+    t, V, phi, l_x = _floats(t, V, phi, l_x)
+    s = V * t / l_x
+    s = np.where((s >= 0) & (s < 1), s, np.nan)
+    return V * phi * (phi + s**power / np.sqrt((1.0 - s) * (1.0 + s)))

@@ -1,0 +1,110 @@
+"""Units at the boundary: ``"10 mm/s"`` becomes SI; inside there are floats only.
+
+Each name below is a type for a field of a description. A number is taken as SI,
+a string must carry its unit, and an angle must be a string, because a bare number
+does not say whether it is in degrees or radians.
+"""
+
+from __future__ import annotations
+
+from functools import cache, partial
+from math import isfinite
+from typing import Annotated, Any, NamedTuple
+
+from pydantic import BeforeValidator, Field, PlainSerializer
+from pydantic_core import PydanticCustomError
+
+
+class Kind(NamedTuple):
+    """A physical quantity: what it is called, its SI unit, and an example to write."""
+
+    name: str
+    unit: str
+    example: str
+
+
+@cache
+def _registry() -> Any:
+    import pint  # slow to import and only needed where a string is read
+
+    return pint.UnitRegistry()
+
+
+def to_si(value: object, kind: Kind) -> float:
+    """Return `value` as a float in the SI unit of `kind`.
+
+    Parameters
+    ----------
+    value : float, int or str
+        A bare number in SI, or a string of a number and a unit.
+    kind : Kind
+        The quantity that is wanted.
+
+    Raises
+    ------
+    PydanticCustomError
+        With the rule, the offending value and what to write instead.
+    """
+    angle = kind.unit == "rad"
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        raise _fault(f"{value!r} is not {kind.name}; write for example {kind.example!r}")
+    if isinstance(value, str):
+        number = _parse(value, kind)
+    elif angle:
+        raise _fault(f"degree or radian? write '{value} deg' or '{value} rad'")
+    else:
+        number = float(value)
+    if not isfinite(number):
+        raise _fault(f"{value!r} is not finite; write for example {kind.example!r}")
+    return number
+
+
+def _parse(text: str, kind: Kind) -> float:
+    import pint
+
+    try:
+        quantity = _registry().Quantity(text)
+        magnitude = float(quantity.magnitude)
+    except Exception as error:  # pint raises whatever its tokenizer meets
+        raise _fault(
+            f"cannot read {text!r} as a number with a unit; write for example {kind.example!r}"
+        ) from error
+    if quantity.unitless and kind.unit:
+        raise _fault(f"{text!r} has no unit; write for example {kind.example!r}")
+    try:
+        return float(quantity.to(kind.unit).magnitude) if kind.unit else magnitude
+    except pint.DimensionalityError as error:
+        raise _fault(
+            f"{text!r} is in {quantity.units:~P}, not a unit of {kind.name}; "
+            f"write for example {kind.example!r}"
+        ) from error
+
+
+def _fault(message: str) -> PydanticCustomError:
+    # braces would be read as fields of a template
+    return PydanticCustomError("unit", message.replace("{", "(").replace("}", ")"))  # type: ignore[arg-type]
+
+
+def reader(name: str, unit: str, example: str) -> BeforeValidator:
+    """Return the validator that reads a quantity with the given SI unit."""
+    return BeforeValidator(partial(to_si, kind=Kind(name, unit, example)))
+
+
+def _radians(value: float) -> str:
+    return f"{value!r} rad"
+
+
+Angle = Annotated[float, reader("an angle", "rad", "1 deg"), PlainSerializer(_radians)]
+Coefficient = Annotated[float, reader("a number", "", "0.20"), Field(ge=0)]
+Number = Annotated[float, reader("a number", "", "1e-6")]
+Mass = Annotated[float, reader("a mass", "kg", "0.25 kg"), Field(gt=0)]
+Stiffness = Annotated[float, reader("a stiffness", "N/m", "1 kN/m"), Field(gt=0)]
+Damping = Annotated[float, reader("a damping constant", "N*s/m", "0.5 N*s/m"), Field(ge=0)]
+Force = Annotated[float, reader("a force", "N", "10 N"), Field(gt=0)]
+Length = Annotated[float, reader("a length", "m", "0.1 mm")]
+Velocity = Annotated[float, reader("a velocity", "m/s", "1 mm/s")]
+Speed = Annotated[float, reader("a velocity", "m/s", "1 mm/s"), Field(ge=0)]
+PositiveSpeed = Annotated[float, reader("a velocity", "m/s", "10 mm/s"), Field(gt=0)]
+Time = Annotated[float, reader("a time", "s", "5 s")]
+Duration = Annotated[float, reader("a time", "s", "5 s"), Field(gt=0)]
+Rate = Annotated[float, reader("a frequency", "Hz", "10 kHz"), Field(gt=0)]

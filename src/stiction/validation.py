@@ -1,0 +1,110 @@
+"""From pydantic's errors to faults with a path, a rule, the offending value and a remedy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from difflib import get_close_matches
+from functools import cache
+from inspect import signature
+from typing import Any, TypeVar, get_type_hints
+
+from pydantic import BaseModel, ConfigDict, ValidationError, create_model
+from pydantic_core import ErrorDetails
+
+from stiction.errors import DescriptionError, Fault
+
+T = TypeVar("T")
+
+
+class Described(BaseModel):
+    """A frozen piece of a description; a bad one raises `DescriptionError` with every fault."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
+
+    def __init__(self, **values: Any) -> None:
+        collect(type(self).__name__, super().__init__, type(self).model_fields, values)
+
+
+def collect(
+    path: str, build: Callable[..., T], known: Iterable[str], values: Mapping[str, Any]
+) -> T:
+    """Call ``build(**values)``, turning a `ValidationError` into a `DescriptionError`."""
+    try:
+        return build(**values)
+    except ValidationError as error:
+        raise DescriptionError(faults(error, path, known)) from None
+
+
+def faults(error: ValidationError, path: str, known: Iterable[str]) -> list[Fault]:
+    """Return each fault of a pydantic error below `path`; `known` are the keys allowed there."""
+    return [
+        Fault(".".join([path, *map(str, detail["loc"])]), _message(detail, tuple(known)))
+        for detail in error.errors()
+    ]
+
+
+def _message(detail: ErrorDetails, known: tuple[str, ...]) -> str:
+    value = detail["input"]
+    limit = detail.get("ctx", {})
+    match detail["type"]:
+        case "missing":
+            return "missing; it has no default"
+        case "extra_forbidden":
+            return unknown("key", str(detail["loc"][-1]), known)
+        case "unexpected_keyword_argument":
+            return unknown("parameter", str(detail["loc"][-1]), known)
+        case "greater_than":
+            return f"must be greater than {limit['gt']:g}, is {value!r}"
+        case "greater_than_equal":
+            return f"must not be below {limit['ge']:g}, is {value!r}"
+        case "less_than_equal":
+            return f"must not be above {limit['le']:g}, is {value!r}"
+        case "less_than":
+            return f"must be below {limit['lt']:g}, is {value!r}"
+        case "unit" | "value_error":
+            return detail["msg"].removeprefix("Value error, ")
+        case _:
+            return f"{detail['msg']}, is {value!r}"
+
+
+def unknown(what: str, name: str, known: Iterable[str]) -> str:
+    """Return the message for a name that is not one of `known`, with the nearest that is."""
+    known = sorted(known)
+    near = get_close_matches(name, known, 1)
+    remedy = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(known)}"
+    return f"unknown {what} {name!r}; {remedy}"
+
+
+@cache
+def fields(kind: type[Any]) -> type[Described]:
+    """Return the model that validates the parameters of a NamedTuple `kind`."""
+    hints = get_type_hints(kind, include_extras=True)
+    defaults = kind._field_defaults
+    return create_model(
+        kind.__name__,
+        __base__=Described,
+        **{name: (hints[name], defaults.get(name, ...)) for name in kind._fields},
+    )
+
+
+def validated(kind: type[T]) -> type[T]:
+    """Class decorator: a NamedTuple whose parameters are read, with units, when it is made.
+
+    The compiled solver takes the tuple as it is: floats in SI. The parameters are
+    declared once, as the tuple's annotated fields.
+    """
+    plain: Any = kind.__new__
+    parameters = signature(plain)
+
+    def new(cls: type[T], *args: Any, **values: Any) -> T:
+        names = tuple(parameters.parameters)[1:]
+        given = dict(zip(names, args, strict=False)) | values
+        if len(args) > len(names):
+            raise TypeError(f"{kind.__name__} takes {', '.join(names)}")
+        model = fields(kind)(**given)
+        made: T = plain(cls, **{name: getattr(model, name) for name in names})
+        return made
+
+    new.__doc__ = plain.__doc__
+    kind.__new__ = staticmethod(new)  # type: ignore[method-assign,assignment]
+    return kind
