@@ -22,7 +22,7 @@ def contestants() -> list[Contestant]:
     rows = [
         Contestant(
             SOLVER,
-            f"rtol={rtol:g}",
+            f"rtol={rtol:.0e}",
             solve=partial(spring_force, rtol),
             measure=partial(_run, sample_rate=None, rtol=rtol),
         )

@@ -1,4 +1,4 @@
-"""What a benchmark run found: rows, ratios and where it ran."""
+"""What a benchmark run found, and where it ran."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PACKAGES = ("stiction", "numba", "numpy", "scipy", "xarray", "numbalsoda")
 
 
 class Row(NamedTuple):
-    """A solver with its settings, its wall times (s) and its accuracy; `note` says why not."""
+    """A solver with its settings, its wall times (s) and its accuracy, or a note on why not."""
 
     solver: str
     settings: str
@@ -30,25 +30,13 @@ class Row(NamedTuple):
         return median(self.times)
 
 
-class Ratio(NamedTuple):
-    """How many times longer a peer takes than our fastest row that is at least as accurate."""
-
-    peer: Row
-    ours: Row
-    ratio: float
-
-
-def ratios(rows: Sequence[Row]) -> list[Ratio]:
-    """Return the ratio for each peer that some row of ours matches in accuracy."""
-    done = [(row, row.accuracy) for row in rows if row.times and row.accuracy is not None]
-    own = [(row, found) for row, found in done if row.solver == SOLVER]
-    found_ratios = []
-    for peer, error in done:
-        matching = [row for row, found in own if as_accurate(found, error)]
-        if peer.solver != SOLVER and matching:
-            fastest = min(matching, key=lambda row: row.median)
-            found_ratios.append(Ratio(peer, fastest, peer.median / fastest.median))
-    return found_ratios
+def matched(peer: Row, rows: Sequence[Row]) -> Row | None:
+    """Return the fastest row of ours that is at least as accurate as a peer's, if there is one."""
+    if peer.accuracy is None or peer.solver == SOLVER:
+        return None
+    own = [row for row in rows if row.solver == SOLVER and row.times and row.accuracy]
+    matching = [row for row in own if as_accurate(row.accuracy, peer.accuracy)]
+    return min(matching, key=lambda row: row.median, default=None)
 
 
 def environment() -> dict[str, str]:

@@ -48,6 +48,4 @@ def fixed_step() -> list[Contestant]:
         steps = round((times[1] - times[0]) / dt)
         return _loop(initial_state(), len(times) - 1, steps, dt)
 
-    return [
-        on_times("RK4, fixed step", f"dt={dt:g} s", partial(solve, dt=dt)) for dt in STEPS
-    ]
+    return [on_times("RK4, fixed step", f"dt={dt:g} s", partial(solve, dt=dt)) for dt in STEPS]

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from stiction.errors import DescriptionError, ResultError, Status, StictionError
     from stiction.friction import Coulomb, ExponentialWeakening
     from stiction.initial import Initial
-    from stiction.simulate import simulate
+    from stiction.simulation import simulate
     from stiction.slider import Slider
     from stiction.trajectory import Trajectory, load
 
@@ -40,11 +40,11 @@ _HOME = {
     "StictionError": "errors",
     "Trajectory": "trajectory",
     "load": "trajectory",
-    "simulate": "simulate",
+    "simulate": "simulation",
 }
 _ROOMS = ("presets", "theory")
 
-__all__ = [  # noqa: PLE0604
+__all__ = [
     "ConstantLoad",
     "ConstantVelocity",
     "Coulomb",

@@ -123,7 +123,9 @@ def _friction(table: dict[str, Any]) -> Any:
     name = table.pop("law", None)
     if not isinstance(name, str) or name not in LAWS:
         message = (
-            f"missing; known: {', '.join(LAWS)}" if name is None else unknown("law", str(name), LAWS)
+            f"missing; known: {', '.join(LAWS)}"
+            if name is None
+            else unknown("law", str(name), LAWS)
         )
         raise DescriptionError([Fault("friction.law", message)])
     return _made(LAWS[name], table)

@@ -22,16 +22,16 @@ class Drive(Protocol):
 
     def _asdict(self) -> dict[str, Any]: ...
 
-    def travel(drive, t: float, dt: float) -> tuple[float, float]:  # noqa: N805
+    def travel(drive, t: float, dt: float) -> tuple[float, float]:
         """Return the displacement from time `t` to `t + dt`, in m."""
 
-    def rate(drive, t: float) -> tuple[float, float]:  # noqa: N805
+    def rate(drive, t: float) -> tuple[float, float]:
         """Return the velocity at time `t`, in m/s."""
 
-    def rate_change(drive, t: float) -> tuple[float, float]:  # noqa: N805
+    def rate_change(drive, t: float) -> tuple[float, float]:
         """Return the acceleration at time `t`, in m/s^2."""
 
-    def next_break(drive, t: float) -> float:  # noqa: N805
+    def next_break(drive, t: float) -> float:
         """Return the first time after `t` at which the velocity or its derivative jumps."""
 
 
@@ -43,7 +43,7 @@ class Load(Protocol):
 
     def _asdict(self) -> dict[str, Any]: ...
 
-    def at(load, t: float) -> float:  # noqa: N805
+    def at(load, t: float) -> float:
         """Return the normal load at time `t`, in N."""
 
 
@@ -59,19 +59,19 @@ class ConstantVelocity(NamedTuple):
 
     velocity: Velocity
 
-    def travel(drive, t: float, dt: float) -> tuple[float, float]:  # noqa: N805
+    def travel(drive, t: float, dt: float) -> tuple[float, float]:
         """Return V dt along X."""
         return drive.velocity * dt, 0.0
 
-    def rate(drive, t: float) -> tuple[float, float]:  # noqa: N805
+    def rate(drive, t: float) -> tuple[float, float]:
         """Return V along X."""
         return drive.velocity, 0.0
 
-    def rate_change(drive, t: float) -> tuple[float, float]:  # noqa: N805
+    def rate_change(drive, t: float) -> tuple[float, float]:
         """Return zero."""
         return 0.0, 0.0
 
-    def next_break(drive, t: float) -> float:  # noqa: N805
+    def next_break(drive, t: float) -> float:
         """Return infinity: nothing ever changes."""
         return inf
 
@@ -88,6 +88,6 @@ class ConstantLoad(NamedTuple):
 
     force: Force
 
-    def at(load, t: float) -> float:  # noqa: N805
+    def at(load, t: float) -> float:
         """Return W."""
         return load.force

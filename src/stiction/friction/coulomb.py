@@ -20,10 +20,10 @@ class Coulomb(NamedTuple):
 
     mu_0: Coefficient
 
-    def coefficient(law, v: float) -> float:  # noqa: N805
+    def coefficient(law, v: float) -> float:
         """Return mu_0."""
         return law.mu_0
 
-    def slope(law, v: float) -> float:  # noqa: N805
+    def slope(law, v: float) -> float:
         """Return zero."""
         return 0.0

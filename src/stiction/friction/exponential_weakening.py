@@ -29,10 +29,10 @@ class ExponentialWeakening(NamedTuple):
     mu_inf: Coefficient
     v_f: PositiveSpeed
 
-    def coefficient(law, v: float) -> float:  # noqa: N805
+    def coefficient(law, v: float) -> float:
         """Return the friction coefficient at slip speed `v` (m/s)."""
         return law.mu_inf + (law.mu_0 - law.mu_inf) * exp(-v / law.v_f)
 
-    def slope(law, v: float) -> float:  # noqa: N805
+    def slope(law, v: float) -> float:
         """Return d(coefficient)/dv at slip speed `v` (m/s), in s/m."""
         return (law.mu_inf - law.mu_0) / law.v_f * exp(-v / law.v_f)

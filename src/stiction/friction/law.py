@@ -17,8 +17,8 @@ class FrictionLaw(Protocol):
 
     def _asdict(self) -> dict[str, Any]: ...
 
-    def coefficient(law, v: float) -> float:  # noqa: N805
+    def coefficient(law, v: float) -> float:
         """Return the friction coefficient at slip speed `v` >= 0 (m/s)."""
 
-    def slope(law, v: float) -> float:  # noqa: N805
+    def slope(law, v: float) -> float:
         """Return the derivative of the coefficient with respect to `v`, in s/m."""

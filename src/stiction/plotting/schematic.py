@@ -20,7 +20,8 @@ Placement = Callable[[ArrayLike], Points]
 BLOCK, WALL_X, WALL_Y, OVERHANG = 0.6, 3.0, 2.7, 0.75
 BACK = 3.0  # how far F and the axes reach behind the block
 FLOOR = "#F5F4F0"
-LEAST, EXAGGERATED = radians(20), radians(24)
+LEAST, EXAGGERATED = radians(20), radians(24)  # a smaller misalignment is drawn like this
+STEEP = radians(60)  # one nearer to a right angle than LEAST, like this
 
 
 def drawn_misalignment(phi: float) -> float:
@@ -34,7 +35,7 @@ def drawn_misalignment(phi: float) -> float:
         return phi
     if size < LEAST:
         return copysign(EXAGGERATED, phi)
-    return copysign(min(size, pi / 2 - EXAGGERATED) if size > pi / 2 - LEAST else size, phi)
+    return copysign(STEEP, phi) if size > pi / 2 - LEAST else phi
 
 
 def drawn_slip_angle(drawn: float) -> float:
@@ -99,13 +100,13 @@ def _draw_axes(ax: Axes, lab: Placement, phi: float, side: float) -> list[Points
     x = lab([(-BACK, 0), (WALL_X + 1.9, 0)])
     y = lab([(0, -1.5), (0, WALL_Y + 1.1)] if side > 0 else [(0, WALL_Y + 0.7), (0, -1.9)])
     for axis, text in ((x, "x"), (y, "y")):
-        shapes.line(ax, axis, RED, 0.7, "-.", zorder=1)
-        shapes.arrow(ax, axis[1] - 0.1 * _unit(axis), axis[1], RED, 0.7)
-        together = text == "x" and phi == 0 or text == "y" and abs(phi - pi / 2) < 1e-9
-        if not together:
-            shapes.name(ax, axis[1] + 0.35 * _unit(axis), f"${text}$", RED)
+        if _coincide(text, phi):  # then X is drawn over it and bears both names
+            axis[1] -= 2.0 * _unit(axis)
+            shapes.line(ax, axis, RED, 0.7, "-.", zorder=1)
+        else:
+            _draw_axis(ax, axis, f"${text}$", RED)
     if phi > 0:
-        radius = 0.55 + max(_reach(phi), 3.6 if phi > 0.7 else 0.0)
+        radius = 0.55 + max(_reach(phi), 3.9 if phi > 0.7 else 0.0)
         shapes.line(ax, lab(shapes.arc_path((0, 0), radius, 0, phi)))
         shapes.name(ax, lab(polar(radius + 0.35, phi / 2)), r"$\varphi$")
     return [x, y]
@@ -128,7 +129,8 @@ def _draw_spring(ax: Axes, lab: Placement, slider: Slider) -> list[Points]:
         if c > 0:
             shapes.dashpot(ax, *lab(ends * (1, -1) if swap > 0 else ends * (-1, 1)))
         text = f"$k_{axis}$, $c_{axis}$" if c > 0 else f"$k_{axis}$"
-        beside = (0.5 * (BLOCK + length), -0.55 - offset - (0.3 if c > 0 and swap < 0 else 0))
+        sideways = abs(lab((0, 1)[::swap])[0])  # a text is wider than high
+        beside = (0.5 * (BLOCK + length), -0.55 - offset * (1 + 1.5 * sideways))
         shapes.name(ax, lab(beside[::swap]), text)
     return [bracket]
 
@@ -137,38 +139,50 @@ def _draw_drive(ax: Axes, lab: Placement, phi: float, velocity: float) -> list[P
     """Draw the drive direction X and, where there is one, the velocity of the bracket."""
     start = _reach(phi) + 0.1
     X = lab([polar(start, phi), polar(start + 2.2, phi)])
-    shapes.line(ax, X, BLUE, 0.7, "-.", zorder=1)
+    names = ["$X$"] + [f"${axis}$" for axis in "xy" if _coincide(axis, phi)]
     shapes.line(ax, lab([(0, 0), polar(-BACK, phi)]), BLUE, 0.7, "-.", zorder=1)
-    shapes.arrow(ax, X[1] - 0.1 * _unit(X), X[1], BLUE, 0.7)
-    together = "$X$, $x$" if phi == 0 else "$X$, $y$" if abs(phi - pi / 2) < 1e-9 else "$X$"
-    shapes.name(ax, X[1] + (0.6 if "," in together else 0.35) * _unit(X), together, BLUE)
+    _draw_axis(ax, X, ", ".join(names), BLUE)
     if velocity:
         ends = lab([polar(start, phi), polar(start + 1.4, phi)])
         shapes.arrow(ax, *(ends if velocity > 0 else ends[::-1]), BLUE, 2.0)
-    above = polar(start + 0.75, phi) + (0.6 if not velocity else 0.45) * polar(1, phi + pi / 2)
+    above = polar(start + (0.75 if velocity else 1.4), phi) + polar(0.45, phi + pi / 2)
     shapes.name(ax, lab(above), "$V$" if velocity else "$V = 0$", BLUE)
     return [X]
 
 
-def _draw_slip(
-    ax: Axes, lab: Placement, phi: float, theta: float, backward: bool
-) -> list[Points]:
+def _draw_slip(ax: Axes, lab: Placement, phi: float, theta: float, backward: bool) -> list[Points]:
     """Draw slip velocity and friction, opposite to each other, and their angles."""
     corner = np.array([BLOCK, BLOCK])
     ahead = lab([corner, corner + polar(1.5, theta)])
     behind = lab([polar(-BLOCK / max(cos(theta), sin(theta)), theta), polar(-BACK, theta)])
-    velocity, force = (GREEN, r"$v_\mathrm{slip}$"), (PURPLE, "$F$")
-    for ends, (color, text), gap in zip(
-        (ahead, behind), (force, velocity) if backward else (velocity, force), (0.4, 0.35)
+    beside = (
+        corner + polar(1.0, theta) + polar(0.4, theta + (pi / 2 if theta < pi / 4 else -pi / 2))
+    )
+    names = [(GREEN, r"$v_\mathrm{slip}$"), (PURPLE, "$F$")]
+    for ends, place, (color, text) in zip(
+        (ahead, behind),
+        (lab(beside), behind[1] + 0.35 * _unit(behind)),
+        reversed(names) if backward else names,
+        strict=True,
     ):
         shapes.arrow(ax, *ends, color, 1.6)
-        shapes.name(ax, ends[1] + gap * _unit(ends), text, color)
-    between = pi + (phi + theta) / 2
+        shapes.name(ax, place, text, color)
+    between = pi + (phi + theta) / 2 if theta > phi else pi + theta / 2
     for radius, start, text in ((1.55, phi, r"$\psi$"), (2.25, 0.0, r"$\theta$")):
         if theta > start:
             shapes.line(ax, lab(shapes.arc_path((0, 0), radius, pi + start, pi + theta)))
             shapes.name(ax, lab(polar(radius + 0.3, between)), text)
     return [behind, ahead]
+
+
+def _draw_axis(ax: Axes, ends: Points, text: str, color: str) -> None:
+    shapes.line(ax, ends, color, 0.7, "-.", zorder=1)
+    shapes.arrow(ax, ends[1] - 0.1 * _unit(ends), ends[1], color, 0.7)
+    shapes.name(ax, ends[1] + (0.6 if "," in text else 0.35) * _unit(ends), text, color)
+
+
+def _coincide(axis: str, phi: float) -> bool:
+    return abs(phi - (0 if axis == "x" else pi / 2)) < 1e-9
 
 
 def _unit(ends: Points) -> Points:
@@ -178,8 +192,11 @@ def _unit(ends: Points) -> Points:
 
 def _frame(ax: Axes, points: Points, note: str) -> None:
     """Make the axes the floor, with room for what is named at the ends."""
-    (left, bottom), (right, top) = points.min(axis=0) - 0.8, points.max(axis=0) + 0.8
-    ax.set(xlim=(left, right), ylim=(bottom - 0.4, top), xticks=[], yticks=[], facecolor=FLOOR)
+    (left, bottom), (right, top) = points.min(axis=0) - 0.9, points.max(axis=0) + 0.9
+    ax.margins(0)
+    ax.update_datalim([(left, bottom - 0.6), (right, top)])
+    ax.autoscale_view()
+    ax.set(xticks=[], yticks=[], facecolor=FLOOR)
     ax.set_aspect("equal", adjustable="datalim")
     ax.spines[:].set_visible(False)
     for x, text, place in ((0.02, "floor ($XY$ plane)", "left"), (0.98, note, "right")):

@@ -70,9 +70,7 @@ def arrow(
     return drawn
 
 
-def name(
-    ax: Axes, point: ArrayLike, text: str, color: str = BLACK, size: float = 8.0
-) -> Text:
+def name(ax: Axes, point: ArrayLike, text: str, color: str = BLACK, size: float = 8.0) -> Text:
     """Write `text` centred at `point`; `size` in pt."""
     x, y = np.asarray(point)
     return ax.text(x, y, text, color=color, fontsize=size, ha="center", va="center", zorder=6)

@@ -15,15 +15,25 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
-from stiction.solver.compiled import compiled
-from stiction.solver.problem import Problem, at, coefficient, rate, rate_change, slope, travel
+from stiction.solver.compiled import inlined
+from stiction.solver.problem import (
+    Problem,
+    at,
+    coefficient,
+    in_principal_axes,
+    rate,
+    rate_change,
+    slope,
+    travel,
+)
 
 
 class Frame(NamedTuple):
     """Start of a step in its own axes.
 
-    Direction e and the laboratory's X in the axes; slip speed r and elongation (y_1, y_2)
-    at the start; stiffness and damping tensors over mass.
+    Direction e, and the laboratory's X in the axes; at the start the slip speed r, the
+    elongation (u_x, u_y) and the spring's acceleration along and across e; stiffness and
+    damping tensors over mass.
     """
 
     e_x: float
@@ -31,8 +41,10 @@ class Frame(NamedTuple):
     X_1: float
     X_2: float
     r: float
-    y_1: float
-    y_2: float
+    u_x: float
+    u_y: float
+    spring_1: float
+    spring_2: float
     k_11: float
     k_12: float
     k_22: float
@@ -41,7 +53,7 @@ class Frame(NamedTuple):
     c_22: float
 
 
-@compiled
+@inlined
 def frame_of(problem: Problem, u_x: float, u_y: float, r: float, e_x: float, e_y: float) -> Frame:
     """Return the axes along (e_x, e_y) at elongation u and slip speed r."""
     s = problem.system
@@ -53,8 +65,11 @@ def frame_of(problem: Problem, u_x: float, u_y: float, r: float, e_x: float, e_y
         s.cos_phi * e_x + s.sin_phi * e_y,
         s.sin_phi * e_x - s.cos_phi * e_y,
         r,
-        u_x * e_x + u_y * e_y,
-        u_y * e_x - u_x * e_y,
+        u_x,
+        u_y,
+        # from the forces: rotating u would let rounding of u_x into the stiff direction
+        k_x * u_x * e_x + k_y * u_y * e_y,
+        k_y * u_y * e_x - k_x * u_x * e_y,
         k_x * xx + k_y * yy,
         (k_y - k_x) * xy,
         k_y * xx + k_x * yy,
@@ -64,17 +79,15 @@ def frame_of(problem: Problem, u_x: float, u_y: float, r: float, e_x: float, e_y
     )
 
 
-@compiled
+@inlined
 def in_frame(frame: Frame, vector: tuple[float, float]) -> tuple[float, float]:
     """Return a laboratory vector (X, Y) in the step's axes."""
     X, Y = vector
     return X * frame.X_1 - Y * frame.X_2, X * frame.X_2 + Y * frame.X_1
 
 
-@compiled
-def pull(
-    problem: Problem, frame: Frame, t: float, dt: float
-) -> tuple[float, float, float, float]:
+@inlined
+def pull(problem: Problem, frame: Frame, t: float, dt: float) -> tuple[float, float, float, float]:
     """Return the acceleration that the drive alone gives after `dt`, and its rate of change.
 
     The elongation there would be the one at the start plus the drive's travel; what slip
@@ -83,18 +96,17 @@ def pull(
     d_1, d_2 = in_frame(frame, travel(problem.drive, t, dt))
     v_1, v_2 = in_frame(frame, rate(problem.drive, t + dt))
     g_1, g_2 = in_frame(frame, rate_change(problem.drive, t + dt))
-    y_1, y_2 = frame.y_1 + d_1, frame.y_2 + d_2
     k_11, k_12, k_22 = frame.k_11, frame.k_12, frame.k_22
     c_11, c_12, c_22 = frame.c_11, frame.c_12, frame.c_22
     return (
-        k_11 * y_1 + k_12 * y_2 + c_11 * v_1 + c_12 * v_2 + g_1,
-        k_12 * y_1 + k_22 * y_2 + c_12 * v_1 + c_22 * v_2 + g_2,
+        frame.spring_1 + k_11 * d_1 + k_12 * d_2 + c_11 * v_1 + c_12 * v_2 + g_1,
+        frame.spring_2 + k_12 * d_1 + k_22 * d_2 + c_12 * v_1 + c_22 * v_2 + g_2,
         k_11 * v_1 + k_12 * v_2 + c_11 * g_1 + c_12 * g_2,
         k_12 * v_1 + k_22 * v_2 + c_12 * g_1 + c_22 * g_2,
     )
 
 
-@compiled
+@inlined
 def friction(problem: Problem, t: float, r: float) -> tuple[float, float]:
     """Return the friction force over mass and its slope at slip speed `r`.
 
@@ -106,7 +118,20 @@ def friction(problem: Problem, t: float, r: float) -> tuple[float, float]:
     return coefficient(problem.law, v) * weight + gradient * (r - v), gradient
 
 
-@compiled
+@inlined
+def elongation(
+    problem: Problem, frame: Frame, t: float, dt: float, slid_1: float, slid_2: float
+) -> tuple[float, float]:
+    """Return the elongation (x, y) after `dt`, having slid (slid_1, slid_2) in the step's axes."""
+    d_x, d_y = in_principal_axes(problem, travel(problem.drive, t, dt))
+    e_x, e_y = frame.e_x, frame.e_y
+    return (
+        frame.u_x + (d_x - (slid_1 * e_x - slid_2 * e_y)),
+        frame.u_y + (d_y - (slid_1 * e_y + slid_2 * e_x)),
+    )
+
+
+@inlined
 def turned(frame: Frame, w: float) -> tuple[float, float]:
     """Return the direction of (1, w) in the axes (x, y)."""
     g = 1.0 / sqrt(1.0 + w * w)

@@ -16,10 +16,10 @@ from __future__ import annotations
 
 from math import sqrt
 
-from stiction.solver.compiled import compiled
+from stiction.solver.compiled import inlined
 
 
-@compiled
+@inlined
 def landing_time(r: float, a_along: float, a_squared: float, f: float) -> float:
     """Return the time to zero slip.
 
@@ -35,7 +35,7 @@ def landing_time(r: float, a_along: float, a_squared: float, f: float) -> float:
     return r * (f + a_along) / (f * f - a_squared)
 
 
-@compiled
+@inlined
 def landing_slip(r: float, a1: float, a2: float, f: float) -> tuple[float, float]:
     """Return the distance slipped until zero slip, along and across the initial slip, in m.
 

@@ -6,12 +6,13 @@ from math import inf, isfinite, sqrt
 
 import numpy as np
 
-from stiction.solver.compiled import compiled
-from stiction.solver.frame import Frame, frame_of, friction, in_frame, pull, turned
+from stiction.solver.blocks import dot
+from stiction.solver.compiled import compiled, inlined
+from stiction.solver.frame import Frame, elongation, frame_of, friction, pull, turned
 from stiction.solver.landing import landing_slip, landing_time
 from stiction.solver.newton import products
-from stiction.solver.problem import Problem, next_break, travel
-from stiction.solver.radau import A, dot, step_factor
+from stiction.solver.problem import Problem, in_principal_axes, next_break, travel
+from stiction.solver.radau import A, step_factor
 from stiction.solver.sampling import fill, sample_slip, sample_stick
 from stiction.solver.state import (
     COMPLETED,
@@ -25,12 +26,12 @@ from stiction.solver.state import (
     cooled,
 )
 from stiction.solver.step import step
-from stiction.solver.stick import holding, in_principal_axes, stick_duration
+from stiction.solver.stick import holding, stick_duration
 
 GROWTH = 2.0
 
 
-@compiled
+@inlined
 def stick(
     problem: Problem,
     state: State,
@@ -65,7 +66,7 @@ def stick(
     return State(motion, cooled(memory, memory.h_takeoff), counts), k
 
 
-@compiled
+@inlined
 def pursuit(
     problem: Problem, frame: Frame, t: float, tolerance: float, speed: float
 ) -> tuple[float, float, float]:
@@ -89,7 +90,7 @@ def pursuit(
     return T, slid_1, slid_2
 
 
-@compiled
+@inlined
 def land(
     problem: Problem,
     frame: Frame,
@@ -106,22 +107,14 @@ def land(
     f = friction(problem, t, r)[0] * problem.system.mass
     while k < len(times) and times[k] < t + T:
         x = (times[k] - t) / T
-        d_1, d_2 = in_frame(frame, travel(problem.drive, t, x * T))
-        y_1, y_2 = frame.y_1 + d_1 - x * slid_1, frame.y_2 + d_2 - x * slid_2
-        k = fill(frame, y_1, y_2, r * (1.0 - x), 0.0, f, samples, k)
-    d_1, d_2 = in_frame(frame, travel(problem.drive, t, T))
-    u_x, u_y = elongation(frame, frame.y_1 + d_1 - slid_1, frame.y_2 + d_2 - slid_2)
+        u_x, u_y = elongation(problem, frame, t, x * T, x * slid_1, x * slid_2)
+        k = fill(frame, u_x, u_y, r * (1.0 - x), 0.0, f, samples, k)
+    u_x, u_y = elongation(problem, frame, t, T, slid_1, slid_2)
     landed = Motion(t + T, u_x, u_y, 0.0, frame.e_x, frame.e_y)
     return State(landed, cooled(memory, memory.h_takeoff), counts), k
 
 
-@compiled
-def elongation(frame: Frame, y_1: float, y_2: float) -> tuple[float, float]:
-    """Return an elongation in the step's axes in (x, y)."""
-    return y_1 * frame.e_x - y_2 * frame.e_y, y_1 * frame.e_y + y_2 * frame.e_x
-
-
-@compiled
+@inlined
 def slip(
     problem: Problem,
     frame: Frame,
@@ -149,9 +142,8 @@ def slip(
     if not done:
         return False, State(motion, memory, counts), k
     k = sample_slip(problem, frame, t, h, p, w, times, samples, k)
-    d_1, d_2 = in_frame(frame, travel(problem.drive, t, h))
     slid_1, slid_2 = h * dot(A[2], p), h * dot(A[2], products(p, w))
-    u_x, u_y = elongation(frame, frame.y_1 + d_1 - slid_1, frame.y_2 + d_2 - slid_2)
+    u_x, u_y = elongation(problem, frame, t, h, slid_1, slid_2)
     e_x, e_y = turned(frame, w[2])
     factor = step_factor(error, GROWTH)
     h_takeoff = memory.h_takeoff
@@ -186,7 +178,7 @@ def advance(
     samples: np.ndarray,
     k: int,
     sticks: np.ndarray,
-) -> tuple[int, State, int]:
+) -> tuple[int, State, int, int]:
     """Advance until `t_end`, or until the budget of steps or the room in `sticks` is used up.
 
     Parameters
@@ -208,17 +200,18 @@ def advance(
 
     Returns
     -------
-    code, state, k
+    code, state, k, turns
+        `turns` of the loop were taken, at most `budget`.
     """
-    for _ in range(budget):
+    for turn in range(budget):
         motion = state.motion
         t = motion.t
         if t >= t_end:
-            return COMPLETED, state, k
+            return COMPLETED, state, k, turn
         if not (isfinite(motion.u_x) and isfinite(motion.u_y) and isfinite(motion.r)):
-            return NON_FINITE, state, k
+            return NON_FINITE, state, k, turn
         if state.counts.sticks >= len(sticks):
-            return RUNNING, state, k
+            return RUNNING, state, k, turn
         t_stop = min(t_end, next_break(problem.drive, t))
         if motion.r == 0.0:
             state, k = stick(problem, state, t_stop, times, samples, k, sticks)
@@ -231,9 +224,7 @@ def advance(
             if t + closed[0] < t_stop:
                 state, k = land(problem, frame, state, closed, times, samples, k)
                 continue
-        done, state, k = slip(
-            problem, frame, state, t_stop, tolerance, speed, times, samples, k
-        )
+        done, state, k = slip(problem, frame, state, t_stop, tolerance, speed, times, samples, k)
         if not done:
-            return STEP_UNDERFLOW, state, k
-    return RUNNING, state, k
+            return STEP_UNDERFLOW, state, k, turn
+    return RUNNING, state, k, budget

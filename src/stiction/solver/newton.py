@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from stiction.solver.compiled import compiled
+from stiction.solver.blocks import Triple, solved
+from stiction.solver.compiled import inlined
 from stiction.solver.frame import Frame
 from stiction.solver.problem import Problem
-from stiction.solver.radau import Triple
-from stiction.solver.slip import correction, factors, stage
+from stiction.solver.slip import factors, stage
 
 ITERATIONS = 10
 
 
-@compiled
+@inlined
 def solve(
     problem: Problem,
     frame: Frame,
@@ -51,7 +51,11 @@ def solve(
     m = factors(frame, h, landing, p, w, s0, s1, s2)
     last = 1.0
     for iteration in range(1, ITERATIONS + 1):
-        dp, dw = correction(m, s0, s1, s2)
+        dp, dw = solved(
+            m,
+            (s0.residual_p, s1.residual_p, s2.residual_p),
+            (s0.residual_w, s1.residual_w, s2.residual_w),
+        )
         w = (w[0] - dw[0], w[1] - dw[1], w[2] - dw[2])
         if landing:
             h -= dp[2]
@@ -79,7 +83,7 @@ def solve(
     return False, p, w, h, ITERATIONS
 
 
-@compiled
+@inlined
 def products(p: Triple, w: Triple) -> Triple:
     """Return p w: the slip velocity across the step's axis."""
     return p[0] * w[0], p[1] * w[1], p[2] * w[2]

@@ -15,6 +15,7 @@ from numba.extending import overload
 from stiction.drive import Drive, Load
 from stiction.friction import FrictionLaw
 from stiction.slider import Slider
+from stiction.solver.compiled import inlined
 
 
 class System(NamedTuple):
@@ -92,3 +93,10 @@ def _by_type(function: Callable[..., Any]) -> None:
 
 for _function in (coefficient, slope, travel, rate, rate_change, next_break, at):
     _by_type(_function)
+
+
+@inlined
+def in_principal_axes(problem: Problem, vector: tuple[float, float]) -> tuple[float, float]:
+    """Return a laboratory vector (X, Y) in the axes (x, y)."""
+    c, s = problem.system.cos_phi, problem.system.sin_phi
+    return vector[0] * c - vector[1] * s, vector[0] * s + vector[1] * c

@@ -2,7 +2,7 @@
 
 Hairer & Wanner, Solving Ordinary Differential Equations II, section IV.5. The stage
 values with the start value define a cubic, which predicts the next step and gives
-values inside this one. Triples are tuples so that the compiler keeps them in registers.
+values inside this one.
 """
 
 from __future__ import annotations
@@ -12,10 +12,8 @@ from math import sqrt
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from stiction.solver.compiled import compiled
-
-Triple = tuple[float, float, float]
-Matrix = tuple[Triple, Triple, Triple]
+from stiction.solver.blocks import Matrix, Triple
+from stiction.solver.compiled import inlined
 
 _S6 = sqrt(6.0)
 C: Triple = ((4 - _S6) / 10, (4 + _S6) / 10, 1.0)
@@ -60,57 +58,16 @@ _W2 = 1 / (C[1] * (C[1] - C[0]) * (C[1] - 1))
 _W3 = 1 / ((1 - C[0]) * (1 - C[1]))
 
 
-@compiled
+@inlined
 def cubic(values: tuple[float, float, float, float], c: float) -> float:
     """Return the cubic through `values` at 0 and the three stages, at `c` (1: the step's end)."""
     d1, d2, d3 = c - C[0], c - C[1], c - 1.0
-    return (
-        _W0 * d1 * d2 * d3 * values[0]
-        + c * (_W1 * d2 * d3 * values[1] + _W2 * d1 * d3 * values[2] + _W3 * d1 * d2 * values[3])
+    return _W0 * d1 * d2 * d3 * values[0] + c * (
+        _W1 * d2 * d3 * values[1] + _W2 * d1 * d3 * values[2] + _W3 * d1 * d2 * values[3]
     )
 
 
-@compiled
-def dot(a: Triple, b: Triple) -> float:
-    """Return the scalar product."""
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-@compiled
-def times(m: Matrix, x: Triple) -> Triple:
-    """Return a matrix times a column."""
-    return dot(m[0], x), dot(m[1], x), dot(m[2], x)
-
-
-@compiled
-def product(a: Matrix, b: Matrix) -> Matrix:
-    """Return a matrix times a matrix."""
-    c0 = times(a, (b[0][0], b[1][0], b[2][0]))
-    c1 = times(a, (b[0][1], b[1][1], b[2][1]))
-    c2 = times(a, (b[0][2], b[1][2], b[2][2]))
-    return (c0[0], c1[0], c2[0]), (c0[1], c1[1], c2[1]), (c0[2], c1[2], c2[2])
-
-
-@compiled
-def less(a: Triple, b: Triple) -> Triple:
-    """Return a - b."""
-    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
-
-
-@compiled
-def inverse(m: Matrix) -> Matrix:
-    """Return the inverse by cofactors: no pivoting, one division."""
-    (a, b, c), (d, e, f), (g, h, i) = m
-    c0, c1, c2 = e * i - f * h, f * g - d * i, d * h - e * g
-    q = 1.0 / (a * c0 + b * c1 + c * c2)
-    return (
-        (c0 * q, (c * h - b * i) * q, (b * f - c * e) * q),
-        (c1 * q, (a * i - c * g) * q, (c * d - a * f) * q),
-        (c2 * q, (b * g - a * h) * q, (a * e - b * d) * q),
-    )
-
-
-@compiled
+@inlined
 def step_factor(error: float, limit: float) -> float:
     """Return the factor for the step size from the local error over its tolerance.
 

@@ -14,17 +14,18 @@ from math import sqrt
 
 import numpy as np
 
-from stiction.solver.compiled import compiled
-from stiction.solver.frame import Frame, friction, in_frame, pull
-from stiction.solver.problem import Problem, travel
-from stiction.solver.radau import A, Triple, cubic, dot
+from stiction.solver.blocks import Triple, dot
+from stiction.solver.compiled import inlined
+from stiction.solver.frame import Frame, elongation, friction, pull
+from stiction.solver.problem import Problem, in_principal_axes, travel
+from stiction.solver.radau import A, cubic
 from stiction.solver.slip import stage
-from stiction.solver.stick import holding, in_principal_axes
+from stiction.solver.stick import holding
 
 COLUMNS = 7
 
 
-@compiled
+@inlined
 def quintic(
     h: float, x: float, v0: float, a0: float, y1: float, v1: float, a1: float
 ) -> tuple[float, float]:
@@ -37,7 +38,7 @@ def quintic(
     return y, v
 
 
-@compiled
+@inlined
 def sample_stick(
     problem: Problem,
     t: float,
@@ -63,7 +64,7 @@ def sample_stick(
     return k
 
 
-@compiled
+@inlined
 def sample_slip(
     problem: Problem,
     frame: Frame,
@@ -89,31 +90,31 @@ def sample_slip(
         x = dt / h
         z_1, s_1 = quintic(h, x, r, first_1, slid_1, p[2], last_1)
         z_2, s_2 = quintic(h, x, 0.0, first_2, slid_2, q[2], last_2)
-        d_1, d_2 = in_frame(frame, travel(problem.drive, t, dt))
+        u_x, u_y = elongation(problem, frame, t, dt, z_1, z_2)
         speed = sqrt(s_1 * s_1 + s_2 * s_2)
         slope = cubic((0.0, w[0], w[1], w[2]), x)
         force = friction(problem, times[k], speed)[0] * problem.system.mass
-        k = fill(frame, frame.y_1 + d_1 - z_1, frame.y_2 + d_2 - z_2, speed, slope, force, samples, k)
+        k = fill(frame, u_x, u_y, speed, slope, force, samples, k)
     return k
 
 
-@compiled
+@inlined
 def fill(
     frame: Frame,
-    y_1: float,
-    y_2: float,
+    u_x: float,
+    u_y: float,
     speed: float,
     w: float,
     force: float,
     samples: np.ndarray,
     k: int,
 ) -> int:
-    """Write one row of a slip step, from its axes to (x, y); return the next index."""
+    """Write one row of a slip step; return the next index."""
     e_x, e_y = frame.e_x, frame.e_y
     g = 1.0 / sqrt(1.0 + w * w)
     n_x, n_y = (e_x - w * e_y) * g, (e_y + w * e_x) * g
-    samples[k, 0] = y_1 * e_x - y_2 * e_y
-    samples[k, 1] = y_1 * e_y + y_2 * e_x
+    samples[k, 0] = u_x
+    samples[k, 1] = u_y
     samples[k, 2] = speed * n_x
     samples[k, 3] = speed * n_y
     samples[k, 4] = force * n_x

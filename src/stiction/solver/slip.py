@@ -9,10 +9,11 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
-from stiction.solver.compiled import compiled
+from stiction.solver.blocks import Factors, Triple, dot, eliminated
+from stiction.solver.compiled import inlined
 from stiction.solver.frame import Frame, friction, pull
 from stiction.solver.problem import Problem
-from stiction.solver.radau import A, C, D, Matrix, Triple, dot, inverse, less, product, times
+from stiction.solver.radau import A, C, D
 
 
 class Stage(NamedTuple):
@@ -29,7 +30,7 @@ class Stage(NamedTuple):
     g: float
 
 
-@compiled
+@inlined
 def stage(
     problem: Problem,
     frame: Frame,
@@ -59,7 +60,7 @@ def stage(
     return Stage(residual_p, residual_w, a_1, a_2, da_1, da_2, f, gradient, g)
 
 
-@compiled
+@inlined
 def jacobian_rows(
     frame: Frame, h: float, i: int, p: Triple, w: Triple, at_i: Stage
 ) -> tuple[Triple, Triple, Triple, Triple]:
@@ -94,7 +95,7 @@ def jacobian_rows(
     return added(pp, i, own_pp), added(pw, i, own_pw), added(wp, i, own_wp), added(ww, i, own_ww)
 
 
-@compiled
+@inlined
 def added(row: Triple, i: int, x: float) -> Triple:
     """Return the row with x added to its entry i."""
     return (
@@ -104,16 +105,7 @@ def added(row: Triple, i: int, x: float) -> Triple:
     )
 
 
-class Factors(NamedTuple):
-    """The Jacobian eliminated block by block: w first, then p."""
-
-    inverse_ww: Matrix
-    w_by_p: Matrix
-    p_by_w: Matrix
-    inverse_pp: Matrix
-
-
-@compiled
+@inlined
 def factors(
     frame: Frame, h: float, landing: bool, p: Triple, w: Triple, s0: Stage, s1: Stage, s2: Stage
 ) -> Factors:
@@ -125,26 +117,12 @@ def factors(
         pp0, wp0 = by_step_size(h, w[0], s0, pp0, wp0)
         pp1, wp1 = by_step_size(h, w[1], s1, pp1, wp1)
         pp2, wp2 = by_step_size(h, w[2], s2, pp2, wp2)
-    inverse_ww = inverse((ww0, ww1, ww2))
-    w_by_p = product(inverse_ww, (wp0, wp1, wp2))
-    p_by_w = (pw0, pw1, pw2)
-    feedback = product(p_by_w, w_by_p)
-    inverse_pp = inverse((less(pp0, feedback[0]), less(pp1, feedback[1]), less(pp2, feedback[2])))
-    return Factors(inverse_ww, w_by_p, p_by_w, inverse_pp)
+    return eliminated((pp0, pp1, pp2), (pw0, pw1, pw2), (wp0, wp1, wp2), (ww0, ww1, ww2))
 
 
-@compiled
+@inlined
 def by_step_size(h: float, w: float, s: Stage, pp: Triple, wp: Triple) -> tuple[Triple, Triple]:
     """Return the rows with the derivative by the step size as their last entry."""
     dp = s.f * s.g - s.a_1 - h * s.da_1
     dw = w * s.a_1 - s.a_2 - h * (s.da_2 - w * s.da_1)
     return (pp[0], pp[1], dp), (wp[0], wp[1], dw)
-
-
-@compiled
-def correction(m: Factors, s0: Stage, s1: Stage, s2: Stage) -> tuple[Triple, Triple]:
-    """Return what Newton's method subtracts from (p, w)."""
-    w = times(m.inverse_ww, (s0.residual_w, s1.residual_w, s2.residual_w))
-    p = less((s0.residual_p, s1.residual_p, s2.residual_p), times(m.p_by_w, w))
-    dp = times(m.inverse_pp, p)
-    return dp, less(w, times(m.w_by_p, dp))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
-from stiction.solver.compiled import compiled
+from stiction.solver.compiled import inlined
 from stiction.solver.problem import System
 
 RUNNING, COMPLETED, STEP_UNDERFLOW, NON_FINITE, TOO_MANY_STEPS = -1, 0, 1, 2, 3
@@ -67,9 +67,7 @@ def start(system: System, t: float, u: tuple[float, float], slip: tuple[float, f
     return State(Motion(t, u[0], u[1], r, e[0], e[1]), memory, Counts(0, 0, 0, 0, 0.0))
 
 
-@compiled
+@inlined
 def cooled(memory: Memory, h: float) -> Memory:
     """Return a memory whose cubics predict nothing: the motion has a kink here."""
-    return Memory(
-        h, memory.h_takeoff, memory.h_last, memory.error_last, False, memory.p, memory.w
-    )
+    return Memory(h, memory.h_takeoff, memory.h_last, memory.error_last, False, memory.p, memory.w)

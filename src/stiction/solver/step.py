@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from math import inf, sqrt
 
-from stiction.solver.compiled import compiled
+from stiction.solver.blocks import Triple, dot
+from stiction.solver.compiled import inlined
 from stiction.solver.frame import Frame, friction, pull
 from stiction.solver.newton import products, solve
 from stiction.solver.problem import Problem
@@ -15,9 +16,7 @@ from stiction.solver.radau import (
     INTERIOR,
     VALUE,
     C,
-    Triple,
     cubic,
-    dot,
     step_factor,
 )
 from stiction.solver.state import Memory
@@ -26,7 +25,7 @@ from stiction.solver.state import Memory
 ATTEMPTS = 100
 
 
-@compiled
+@inlined
 def time_to_landing(problem: Problem, frame: Frame, t: float) -> float:
     """Return when the slip speed would vanish, from its first two derivatives, in s."""
     r = frame.r
@@ -42,7 +41,7 @@ def time_to_landing(problem: Problem, frame: Frame, t: float) -> float:
     return (change + root) / -curvature if curvature < 0.0 else inf
 
 
-@compiled
+@inlined
 def predicted(
     problem: Problem, frame: Frame, t: float, h: float, memory: Memory
 ) -> tuple[Triple, Triple]:
@@ -69,7 +68,7 @@ def predicted(
     return p, (0.0, 0.0, 0.0)
 
 
-@compiled
+@inlined
 def local_error(
     problem: Problem, frame: Frame, t: float, h: float, p: Triple, w: Triple, speed: float
 ) -> float:
@@ -98,7 +97,7 @@ def local_error(
     return DEFECT_WEIGHT * max(defect_p / (speed + size), defect_w / (stiffness + 1e-300))
 
 
-@compiled
+@inlined
 def dips(r: float, p: Triple, w: Triple) -> bool:
     """Return whether the slip passes below zero inside the step and comes back."""
     if p[0] < 0.0 or p[1] < 0.0:
@@ -106,7 +105,7 @@ def dips(r: float, p: Triple, w: Triple) -> bool:
     return p[2] > p[1] and p[1] < r and cubic((r, p[0], p[1], p[2]), 0.5 * (1.0 + C[1])) < 0.0
 
 
-@compiled
+@inlined
 def step(
     problem: Problem,
     frame: Frame,
@@ -150,9 +149,7 @@ def step(
         retry = False
         if landing:
             p = (p[0], p[1], 0.0)
-        converged, p, w, h, count = solve(
-            problem, frame, t, h, landing, p, w, tolerance, speed
-        )
+        converged, p, w, h, count = solve(problem, frame, t, h, landing, p, w, tolerance, speed)
         iterations += count
         if not converged:
             rejected += 1

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from math import inf, sqrt
 
-from stiction.solver.compiled import compiled
-from stiction.solver.problem import Problem, at, coefficient, rate, rate_change
+from stiction.solver.compiled import inlined
+from stiction.solver.problem import (
+    Problem,
+    at,
+    coefficient,
+    in_principal_axes,
+    rate,
+    rate_change,
+)
 
 
-@compiled
-def in_principal_axes(problem: Problem, vector: tuple[float, float]) -> tuple[float, float]:
-    """Return a laboratory vector (X, Y) in the axes (x, y)."""
-    c, s = problem.system.cos_phi, problem.system.sin_phi
-    return vector[0] * c - vector[1] * s, vector[0] * s + vector[1] * c
-
-
-@compiled
+@inlined
 def holding(problem: Problem, t: float, u_x: float, u_y: float) -> tuple[float, float]:
     """Return the friction force over mass (x, y) that zero slip takes, in m/s^2.
 
@@ -30,13 +30,13 @@ def holding(problem: Problem, t: float, u_x: float, u_y: float) -> tuple[float, 
     )
 
 
-@compiled
+@inlined
 def limit(problem: Problem, t: float) -> float:
     """Return the largest friction force over mass at zero slip, in m/s^2."""
     return coefficient(problem.law, 0.0) * at(problem.load, t) / problem.system.mass
 
 
-@compiled
+@inlined
 def stick_duration(problem: Problem, t: float, u_x: float, u_y: float) -> float:
     """Return how long zero slip can be held from time `t` on, for a steady drive and load.
 

@@ -1,0 +1,67 @@
+"""Fig. 5: the damping diagram."""
+
+from __future__ import annotations
+
+from math import degrees, radians, sin
+
+from matplotlib.figure import Figure
+
+from stiction import theory
+from stiction.plotting.damping import CLEAR, draw_damping_map, draw_force_path
+from stiction.plotting.style import BLUE, COLUMN, GREEN, RED, new_figure, style
+from stiction.slider import Slider
+
+
+def figure5(slider: Slider, other_phi: float = radians(10)) -> Figure:
+    """Draw Fig. 5 of Nakano & Popov: the damping ratio along the way of the friction force.
+
+    Parameters
+    ----------
+    slider : Slider
+        The system, misaligned and driven; its path is red.
+    other_phi : float
+        Misalignment of the path drawn in blue, rad; everything else is the slider's.
+
+    Returns
+    -------
+    Figure
+        As wide as a column.
+
+    Raises
+    ------
+    ValueError
+        Without misalignment or drive, for which the damping number A is not defined.
+    """
+    with style():
+        fig = new_figure(COLUMN, 2.9)
+        ax = fig.subplots()
+        paths = [(damping_number(slider, phi), phi) for phi in (slider.phi, other_phi)]
+        low = min(1e-1, *(A / 10 for A, _ in paths))
+        high = max(1e5, *(A * 10 for A, _ in paths))
+        draw_damping_map(ax, (low, high), (min(0.5, degrees(abs(slider.phi)) / 2), 90.0))
+        for (A, phi), color in zip(paths, (RED, BLUE), strict=True):
+            draw_force_path(ax, A, phi, color, _label(A, phi))
+        for place, text in (
+            ((0.41, 0.93), "overdamped:\nslow creep"),
+            ((0.29, 0.15), "underdamped:\nrapid slip"),
+        ):
+            ax.text(*place, text, transform=ax.transAxes, ha="center", va="center", bbox=CLEAR)
+        at = high / 2.5
+        boundary = float(degrees(theory.critical_angle(at)))
+        ax.text(at, 0.88 * boundary, r"$\zeta$ = 1", color=GREEN, ha="right", va="top", bbox=CLEAR)
+        fig.legend(loc="outside upper center", ncols=2)
+    return fig
+
+
+def damping_number(slider: Slider, phi: float) -> float:
+    """Return A of Eq. (10) for the slider at a misalignment `phi` (rad), dimensionless."""
+    V = abs(slider.motion.rate(0.0)[0])
+    if V == 0 or sin(phi) == 0:
+        raise ValueError(f"A needs a drive and a misalignment; V is {V:g} m/s, phi {phi:g} rad")
+    return float(theory.damping_number(slider.F_0, V, abs(phi), slider.mass, slider.k_x))
+
+
+def _label(A: float, phi: float) -> str:
+    digits, power = f"{A:.1e}".split("e")
+    misalignment = f"{degrees(phi):.4g}".replace("-", "−")
+    return rf"$\varphi$ = {misalignment}°, $A$ = {digits}$\times$10$^{{{int(power)}}}$"

@@ -1,0 +1,118 @@
+"""Quantities of a run over time, one function a quantity."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patches import StepPatch
+from numpy.typing import ArrayLike, NDArray
+
+from stiction.plotting.style import BLACK, BLUE, GREY, PURPLE, RED
+from stiction.trajectory import Trajectory
+
+Floats = NDArray[np.float64]
+
+
+def envelope(time: ArrayLike, values: ArrayLike, bins: int = 1500) -> tuple[Floats, Floats]:
+    """Thin out a long series so that its line looks the same: extremes of each of `bins` bins.
+
+    Parameters
+    ----------
+    time, values : array
+        (n,); not-a-number values leave gaps only where a whole bin lacks a value.
+    bins : int
+        More than a printed line has dots.
+
+    Returns
+    -------
+    time, values : ndarray
+        (2 bins,), or what was given if that is not longer.
+    """
+    t, v = np.asarray(time, dtype=np.float64), np.asarray(values, dtype=np.float64)
+    if len(t) <= 2 * bins:
+        return t, v
+    starts = np.linspace(0, len(t), bins, endpoint=False).astype(np.intp)
+    middle = 0.5 * (t[starts] + t[np.r_[starts[1:], len(t)] - 1])
+    low, high = np.fmin.reduceat(v, starts), np.fmax.reduceat(v, starts)
+    return np.repeat(middle, 2), np.column_stack([low, high]).ravel()
+
+
+def draw_line(
+    ax: Axes, time: ArrayLike, values: ArrayLike, color: str = BLACK, width: float = 0.7
+) -> Line2D:
+    """Draw values over time (s), thinned out by `envelope`; `width` in pt."""
+    t, v = envelope(time, values)
+    (line,) = ax.plot(t, v, color=color, linewidth=width)
+    if len(t) > 1:
+        ax.set_xlim(t[0], t[-1])
+    return line
+
+
+def draw_spring_force(ax: Axes, run: Trajectory, axis: str, color: str = RED) -> Line2D:
+    """Draw the spring force (N) along the principal axis ``"x"`` or ``"y"`` over time."""
+    ax.set_ylabel(rf"$k_{axis} u_{axis}$ (N)")
+    return draw_line(ax, run.data["time"], run.data[f"spring_{axis}"], color)
+
+
+def draw_friction(ax: Axes, run: Trajectory) -> Line2D:
+    """Draw the magnitude of the friction force (N) over time; while stuck, the holding force."""
+    ax.set_ylabel("$F$ (N)")
+    return draw_line(ax, run.data["time"], run.data["friction"], PURPLE)
+
+
+def draw_direction(ax: Axes, run: Trajectory) -> Line2D:
+    """Draw the angle psi (deg) of the friction force to the drive direction over time."""
+    ax.set_ylabel(r"$\psi$ (deg)")
+    return draw_line(ax, run.data["time"], run.data["psi"], PURPLE)
+
+
+def draw_position(ax: Axes, run: Trajectory) -> Line2D:
+    """Draw the position X (mm) along the drive direction over time."""
+    ax.set_ylabel("$X$ (mm)")
+    return draw_line(ax, run.data["time"], run.data["X"] * 1e3, BLUE)
+
+
+def draw_rate(ax: Axes, run: Trajectory, axis: str) -> Line2D:
+    """Draw the elongation rate (mm/s) along the principal axis ``"x"`` or ``"y"`` over time."""
+    ax.set_ylabel(rf"$v_{axis}$ (mm/s)")
+    return draw_line(ax, run.data["time"], run.data[f"v_{axis}"] * 1e3, RED)
+
+
+def draw_slip_speed(ax: Axes, run: Trajectory) -> Line2D:
+    """Draw the slip speed (m/s) over time on a logarithmic axis; gaps where it is zero.
+
+    Speeds below 1e-7 of the largest are left out, so that a landing does not stretch the axis.
+    """
+    speed = run.data["slip_speed"].values
+    largest = np.nanmax(speed, initial=0.0)
+    ax.set_ylabel(r"$v_\mathrm{slip}$ (m/s)")
+    if not largest > 0:
+        return draw_line(ax, run.data["time"], speed)
+    ax.set_yscale("log")
+    return draw_line(ax, run.data["time"], np.where(speed > 1e-7 * largest, speed, np.nan))
+
+
+def draw_time_stuck(ax: Axes, run: Trajectory, bins: int = 300) -> StepPatch:
+    """Draw the share of time (%) spent at zero slip, from every stick interval of the run.
+
+    Stick intervals can be far shorter than the sample interval and number thousands; their share
+    in each of `bins` bins shows them all.
+    """
+    times = run.data["time"].values
+    edges = np.linspace(times[0], max(times[-1], np.nextafter(times[0], np.inf)), bins + 1)
+    share = 100.0 * np.diff(stuck_until(edges, run.sticks)) / np.diff(edges)
+    ax.set_ylabel("stuck (%)")
+    ax.set_ylim(0, 105)
+    return ax.stairs(share, edges, fill=True, color=GREY)
+
+
+def stuck_until(time: ArrayLike, sticks: ArrayLike) -> Floats:
+    """Return the time (s) spent stuck up to each `time`, for stick intervals of shape (n, 2)."""
+    ends = np.asarray(sticks, dtype=np.float64).reshape(-1, 2)
+    if len(ends) == 0:
+        return np.zeros_like(np.asarray(time, dtype=np.float64))
+    total = np.cumsum(ends[:, 1] - ends[:, 0])
+    known = np.column_stack([total - (ends[:, 1] - ends[:, 0]), total]).ravel()
+    stuck: Floats = np.interp(np.asarray(time, dtype=np.float64), ends.ravel(), known)
+    return stuck
