@@ -29,7 +29,8 @@ class Contestant(NamedTuple):
         Returns ``(k_x u_x, k_y u_y)`` in N on the grid of the problem, shape (n, 2). Raises
         `Failed`.
     measure : callable
-        Solves once without samples, or with those the settings name; this is what is timed.
+        Solves once without samples, or with those the settings name; this is what is timed. By
+        then, `solve` has been called and everything is compiled.
     missing : str
         Why the row is empty, where its solver is not there; empty otherwise.
     """

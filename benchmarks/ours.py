@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from .contestant import Contestant
+from .contestant import Contestant, Failed
 from .problem import DURATION
 
 TOLERANCES = (1e-4, 1e-5, 1e-6, 1e-8, 1e-10)
@@ -45,6 +45,8 @@ def reference() -> NDArray[np.float64]:
 def spring_force(rtol: float, every: int = 1) -> NDArray[np.float64]:
     """Return ``(k_x u_x, k_y u_y)`` on the grid, in N, from a run sampled `every` times finer."""
     run = _run(sample_rate=1e3 * every, rtol=rtol)
+    if not run.status.ok:
+        raise Failed(str(run.status.value))
     columns = [np.asarray(run.data[name])[::every] for name in ("spring_x", "spring_y")]
     return np.stack(columns, axis=1)
 

@@ -32,7 +32,7 @@ EPSILON = 1e-6
 V_X = V * math.cos(PHI)
 V_Y = V * math.sin(PHI)
 
-# Reference values of set-valued friction at t = 5 s, published with the project's description.
+# Reference values of set-valued friction at t = 5 s, as published.
 PUBLISHED_U_X = 1.3305693378e-3  # m
 PUBLISHED_U_Y = 1.474023e-7  # m
 

@@ -36,7 +36,7 @@ class Settings(Described):
 
     duration: Duration
     sample_rate: Rate | None = None
-    rtol: Number = Field(default=1e-6, gt=0, le=1e-2)
+    rtol: Number = Field(default=1e-6, ge=1e-13, le=1e-2)
     regularisation: PositiveSpeed | None = None
 
 
@@ -105,7 +105,9 @@ class Description(NamedTuple):
     def to_dict(self) -> dict[str, dict[str, Any]]:
         """Return nested tables of SI numbers, as `from_dict` reads them."""
         law = self.slider.law
-        name = next(name for name, kind in LAWS.items() if isinstance(law, kind))
+        kind = type(law)
+        own = f"{kind.__module__}:{kind.__qualname__}"  # a user's law, by its name
+        name = next((name for name, known in LAWS.items() if known is kind), own)
         return {
             "slider": self.slider.model_dump(mode="json", exclude={"friction", "drive"}),
             "friction": {"law": name, **law._asdict()},

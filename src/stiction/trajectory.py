@@ -13,6 +13,7 @@ import numpy as np
 
 from stiction.description import Description
 from stiction.errors import DescriptionError, ResultError, Status
+from stiction.initial import Initial
 from stiction.slider import Slider
 
 if TYPE_CHECKING:
@@ -100,6 +101,12 @@ class Trajectory:
     def final(self) -> xr.Dataset:
         """The last sample."""
         return self.data.isel(time=-1)
+
+    def state(self, time: float) -> Initial:
+        """Return the state at the sample nearest to `time` (s), to start another run from."""
+        at = self.data.sel(time=time, method="nearest")
+        names = ("u_x", "u_y", "v_x", "v_y", "time")
+        return Initial(**{name: float(at[name]) for name in names})
 
     def save(self, path: str | Path) -> Path:
         """Write the result as NetCDF, whole or not at all; return the path.

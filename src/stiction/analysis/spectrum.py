@@ -55,7 +55,7 @@ def spectrogram(
     Nakano & Popov, arXiv:2008.01854, caption of Fig. 4; `scipy.signal.ShortTimeFFT`.
     """
     import xarray as xr
-    from scipy.signal import ShortTimeFFT
+    from scipy.signal import ShortTimeFFT  # type: ignore[attr-defined]
     from scipy.signal.windows import hamming
 
     signal = np.asarray(values, dtype=np.float64)

@@ -1,0 +1,1 @@
+"""The paper reproduced: its figures and numbers, each beside what is computed."""

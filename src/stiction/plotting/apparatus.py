@@ -7,9 +7,9 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from stiction.plotting import shapes
-from stiction.plotting.schematic import FLOOR, drawn_misalignment, misalignment_note
+from stiction.plotting.misalignment import drawn_misalignment, misalignment_note
 from stiction.plotting.shapes import Points
-from stiction.plotting.style import BLUE, RED
+from stiction.plotting.style import BLUE, FLOOR, RED
 from stiction.slider import Slider
 
 VIEW = np.array([[1.0, 0.0], [0.35, 0.62], [0.0, 0.8]])  # oblique: where X, Y and Z point
@@ -40,7 +40,7 @@ def draw_apparatus(ax: Axes, slider: Slider) -> Axes:
         tail, head = _seen(axis)
         way = (head - tail) / np.hypot(*(head - tail))
         shapes.line(ax, [tail, head], color, 0.8, "-.", zorder=2.5)
-        shapes.arrow(ax, head - 0.1 * way, head, color, 0.8)
+        shapes.arrow(ax, [head - 0.1 * way, head], color, 0.8)
         shapes.name(ax, head + 0.2 * way, text, color)
     if phi:
         arc = np.c_[shapes.arc_path((0, 0), 2.2, -phi, 0), np.zeros(60)]
@@ -66,7 +66,7 @@ def _draw_plate(ax: Axes) -> None:
     shapes.polygon(ax, [top[1], top[2], edge[2], edge[1]], face="#B5B5B5", zorder=1.0)
     shapes.polygon(ax, top, face=FLOOR, zorder=1.0)
     shapes.name(ax, _seen((-1.6, -1.55, 0)), "plate", size=7)
-    shapes.arrow(ax, *_seen([(-0.9, -0.65, 0), (-2.1, -0.65, 0)]), BLUE, 2.0)
+    shapes.arrow(ax, _seen([(-0.9, -0.65, 0), (-2.1, -0.65, 0)]), BLUE, 2.0)
     shapes.name(ax, _seen((-1.4, -0.3, 0)), "$V$", BLUE)
 
 
@@ -92,7 +92,7 @@ def _draw_cantilever(ax: Axes, turn: Points) -> None:
     for part, face in ((front, "#A5A5A5"), (side, "#8A8A8A"), (lid, "#C9C9C9")):
         shapes.polygon(ax, put(part), face=face, zorder=3.6)
     leans = np.sign(put((0, 1, 0))[0]) or 1
-    beside = put((0, 0.5 * length, high)) + (-0.75 * leans, 0.2)
+    beside = put((0, 0.5 * length, high)) + np.array([-0.75 * leans, 0.2])
     shapes.name(ax, beside, "leaf spring", size=7)
     shapes.name(ax, (-0.4 * leans, 0.3), "pin", size=7)
 

@@ -2,56 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from math import copysign, cos, degrees, pi, radians, sin
+from math import copysign, cos, pi, sin
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import ArrayLike
 
 from stiction.plotting import shapes
+from stiction.plotting.misalignment import (
+    Placement,
+    drawn_misalignment,
+    drawn_slip_angle,
+    misalignment_note,
+    placement,
+)
 from stiction.plotting.shapes import Points, polar
-from stiction.plotting.style import BLUE, GREEN, GREY, PURPLE, RED
+from stiction.plotting.style import BLUE, FLOOR, GREEN, GREY, PURPLE, RED
 from stiction.slider import Slider
-
-Placement = Callable[[ArrayLike], Points]
 
 # half a side of the block, where the bracket stands along x and y, how far it overhangs
 BLOCK, WALL_X, WALL_Y, OVERHANG = 0.6, 3.0, 2.7, 0.75
 BACK = 3.0  # how far F and the axes reach behind the block
-FLOOR = "#F5F4F0"
-LEAST, EXAGGERATED = radians(20), radians(24)  # a smaller misalignment is drawn like this
-STEEP = radians(60)  # one nearer to a right angle than LEAST, like this
-
-
-def drawn_misalignment(phi: float) -> float:
-    """Return the angle at which a misalignment `phi` is drawn (both rad).
-
-    Angles too close to 0 or to a right angle to be seen are exaggerated; 0 and 90 degrees
-    themselves are drawn as they are.
-    """
-    size = abs(phi)
-    if min(size, abs(pi / 2 - size)) < 1e-9:
-        return phi
-    if size < LEAST:
-        return copysign(EXAGGERATED, phi)
-    return copysign(STEEP, phi) if size > pi / 2 - LEAST else phi
-
-
-def drawn_slip_angle(drawn: float) -> float:
-    """Return the angle theta (rad) of slip and friction to x in the drawing, between phi and 90 deg.
-
-    Without misalignment the slip has no reason to leave X: theta = phi.
-    """
-    return drawn if drawn == 0 else (drawn + copysign(pi / 2, drawn)) / 2
-
-
-def misalignment_note(phi: float) -> str:
-    """Return the misalignment in words, saying so where it is not drawn to scale."""
-    drawn, size = drawn_misalignment(phi), f"{degrees(phi):.4g}°".replace("-", "−")
-    if abs(drawn - phi) < 1e-9:
-        return rf"$\varphi$ = {size}"
-    return rf"$\varphi$ = {size}, " + f"drawn at {degrees(drawn):.0f}°".replace("-", "−")
 
 
 def draw_schematic(ax: Axes, slider: Slider) -> Axes:
@@ -73,13 +43,7 @@ def draw_schematic(ax: Axes, slider: Slider) -> Axes:
     side = copysign(1.0, drawn)
     phi, theta = abs(drawn), abs(drawn_slip_angle(drawn))
     velocity = slider.motion.rate(0.0)[0]
-
-    def lab(points: ArrayLike) -> Points:
-        """From the axes of the spring, mirrored for negative phi, to the drawing."""
-        turn = np.array([[cos(phi), sin(phi)], [-sin(phi), cos(phi)]])
-        placed: Points = (np.asarray(points) @ turn.T) * (1.0, side)
-        return placed
-
+    lab = placement(drawn)
     ends = [
         *_draw_axes(ax, lab, phi, side),
         *_draw_spring(ax, lab, slider),
@@ -119,33 +83,34 @@ def _draw_spring(ax: Axes, lab: Placement, slider: Slider) -> list[Points]:
     shapes.polygon(ax, lab(corners), face="#D5D5D5")
     shapes.name(ax, (0, 0), "$m$")
     shapes.line(ax, bracket, GREY, 3.0)
-    for c, axis, swap, length in (
-        (slider.c_x, "x", 1, WALL_X),
-        (slider.c_y, "y", -1, WALL_Y),
+    ex, ey = np.eye(2)
+    for axis, along, across, length, c in (
+        ("x", ex, ey, WALL_X, slider.c_x),
+        ("y", ey, ex, WALL_Y, slider.c_y),
     ):
-        offset = 0.3 if c > 0 else 0.0
-        ends = np.array([(BLOCK, offset), (length, offset)])[:, ::swap]
-        shapes.line(ax, lab(shapes.spring_path(*ends)))
+        ends, offset = np.outer([BLOCK, length], along), (0.3 if c > 0 else 0.0) * across
+        shapes.line(ax, lab(shapes.spring_path(*(ends + offset))))
+        text = f"$k_{axis}$"
+        beside = ends.mean(axis=0) - 0.55 * across
         if c > 0:
-            shapes.dashpot(ax, *lab(ends * (1, -1) if swap > 0 else ends * (-1, 1)))
-        text = f"$k_{axis}$, $c_{axis}$" if c > 0 else f"$k_{axis}$"
-        sideways = abs(lab((0, 1)[::swap])[0])  # a text is wider than high
-        beside = (0.5 * (BLOCK + length), -0.55 - offset * (1 + 1.5 * sideways))
-        shapes.name(ax, lab(beside[::swap]), text)
+            shapes.dashpot(ax, *lab(ends - offset))
+            text += f", $c_{axis}$"
+            beside -= offset * (1 + 1.5 * abs(lab(across)[0]))  # a text is wider than high
+        shapes.name(ax, lab(beside), text)
     return [bracket]
 
 
 def _draw_drive(ax: Axes, lab: Placement, phi: float, velocity: float) -> list[Points]:
     """Draw the drive direction X and, where there is one, the velocity of the bracket."""
     start = _reach(phi) + 0.1
-    X = lab([polar(start, phi), polar(start + 2.2, phi)])
+    X = lab(np.array([polar(start, phi), polar(start + 2.2, phi)]))
     names = ["$X$"] + [f"${axis}$" for axis in "xy" if _coincide(axis, phi)]
     shapes.line(ax, lab([(0, 0), polar(-BACK, phi)]), BLUE, 0.7, "-.", zorder=1)
     _draw_axis(ax, X, ", ".join(names), BLUE)
     if velocity:
         ends = lab([polar(start, phi), polar(start + 1.4, phi)])
-        shapes.arrow(ax, *(ends if velocity > 0 else ends[::-1]), BLUE, 2.0)
-    above = polar(start + (0.75 if velocity else 1.4), phi) + polar(0.45, phi + pi / 2)
+        shapes.arrow(ax, ends if velocity > 0 else ends[::-1], BLUE, 2.0)
+    above = polar(start + (0.75 if velocity else 1.4), phi) + polar(0.5, phi + pi / 2)
     shapes.name(ax, lab(above), "$V$" if velocity else "$V = 0$", BLUE)
     return [X]
 
@@ -165,7 +130,7 @@ def _draw_slip(ax: Axes, lab: Placement, phi: float, theta: float, backward: boo
         reversed(names) if backward else names,
         strict=True,
     ):
-        shapes.arrow(ax, *ends, color, 1.6)
+        shapes.arrow(ax, ends, color, 1.6)
         shapes.name(ax, place, text, color)
     between = pi + (phi + theta) / 2 if theta > phi else pi + theta / 2
     for radius, start, text in ((1.55, phi, r"$\psi$"), (2.25, 0.0, r"$\theta$")):
@@ -177,7 +142,7 @@ def _draw_slip(ax: Axes, lab: Placement, phi: float, theta: float, backward: boo
 
 def _draw_axis(ax: Axes, ends: Points, text: str, color: str) -> None:
     shapes.line(ax, ends, color, 0.7, "-.", zorder=1)
-    shapes.arrow(ax, ends[1] - 0.1 * _unit(ends), ends[1], color, 0.7)
+    shapes.arrow(ax, [ends[1] - 0.1 * _unit(ends), ends[1]], color, 0.7)
     shapes.name(ax, ends[1] + (0.6 if "," in text else 0.35) * _unit(ends), text, color)
 
 
@@ -187,7 +152,8 @@ def _coincide(axis: str, phi: float) -> bool:
 
 def _unit(ends: Points) -> Points:
     way: Points = ends[1] - ends[0]
-    return way / np.hypot(*way)
+    way /= np.hypot(*way)
+    return way
 
 
 def _frame(ax: Axes, points: Points, note: str) -> None:

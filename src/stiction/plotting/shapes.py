@@ -50,11 +50,9 @@ def polygon(
     return drawn
 
 
-def arrow(
-    ax: Axes, tail: ArrayLike, head: ArrayLike, color: str = BLACK, width: float = 1.4
-) -> FancyArrowPatch:
-    """Draw a straight arrow from `tail` to `head`; `width` in pt."""
-    (x_0, y_0), (x_1, y_1) = np.asarray(tail), np.asarray(head)
+def arrow(ax: Axes, ends: ArrayLike, color: str = BLACK, width: float = 1.4) -> FancyArrowPatch:
+    """Draw a straight arrow from the first to the second of `ends`, shape (2, 2); `width` in pt."""
+    (x_0, y_0), (x_1, y_1) = np.asarray(ends, dtype=np.float64)
     drawn = FancyArrowPatch(
         (x_0, y_0),
         (x_1, y_1),

@@ -25,7 +25,7 @@ def draw_side_view(ax: Axes, slider: Slider) -> Axes:
     _draw_floor(ax)
     shapes.polygon(ax, [(0, 0), (1.2, 0), (1.2, 0.9), (0, 0.9)], face="#D5D5D5")
     shapes.name(ax, (0.6, 0.45), "$m$")
-    shapes.arrow(ax, (0.6, 1.75), (0.6, 0.93), width=1.6)
+    shapes.arrow(ax, [(0.6, 1.75), (0.6, 0.93)], width=1.6)
     shapes.name(ax, (0.92, 1.5), "$W$")
     offset = 0.23 if damped else 0.0
     shapes.line(ax, shapes.spring_path((1.2, 0.45 + offset), (3.4, 0.45 + offset), 0.17))
@@ -35,9 +35,9 @@ def draw_side_view(ax: Axes, slider: Slider) -> Axes:
     shapes.name(ax, (2.3, 0.95 + offset / 2), "spring and damper" if damped else "spring", size=7)
     if velocity:
         ends = np.array([(3.5, 0.45), (4.6, 0.45)])
-        shapes.arrow(ax, *(ends if velocity > 0 else ends[::-1]), BLUE, 2.0)
+        shapes.arrow(ax, ends if velocity > 0 else ends[::-1], BLUE, 2.0)
     shapes.name(ax, (4.05, 0.8), "$V$" if velocity else "$V = 0$", BLUE)
-    shapes.arrow(ax, (3.9, -0.45), (4.9, -0.45), BLUE, 0.7)
+    shapes.arrow(ax, [(3.9, -0.45), (4.9, -0.45)], BLUE, 0.7)
     shapes.name(ax, (5.1, -0.45), "$X$", BLUE)
     ax.update_datalim([(-0.6, -0.6), (5.3, 1.85)])
     ax.margins(0.03)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
@@ -20,11 +21,12 @@ SKY = "#56B4E9"
 PURPLE = "#CC79A7"
 GREY = "#6E6E6E"
 PALE = "#E9E9E9"
+FLOOR = "#F5F4F0"
 
 COLUMN = 3.375  # width of one column of Phys. Rev. E, in
 PAGE = 7.0  # width of both, in
 
-SHEET = {
+SHEET: dict[str, Any] = {
     "font.family": "sans-serif",
     "font.size": 8.0,
     "mathtext.fontset": "dejavusans",
@@ -66,7 +68,8 @@ def style() -> Iterator[None]:
     """Use the style sheet for whatever is drawn inside the ``with`` block, and only there."""
     with mpl.rc_context():
         mpl.rcdefaults()  # a user's own settings would change sizes that were chosen together
-        mpl.rcParams.update(SHEET)
+        for name, value in SHEET.items():
+            mpl.rcParams[name] = value  # type: ignore[index]
         yield
 
 
@@ -76,19 +79,19 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def panel_letter(ax: Axes, letter: str) -> None:
-    """Write ``(letter)`` into the upper left corner of the axes."""
-    ax.annotate(
+    """Write ``(letter)`` beside the upper left corner of the axes."""
+    text = ax.annotate(
         f"({letter})",
         (0, 1),
-        (3, -3),
+        (-18, 2),
         xycoords="axes fraction",
         textcoords="offset points",
-        ha="left",
+        ha="right",
         va="top",
         fontweight="bold",
         fontsize=8,
-        zorder=10,
     )
+    text.set_in_layout(False)  # it stands where there are no tick labels, and needs no more room
 
 
 def quantity(value: float, unit: str) -> str:

@@ -6,12 +6,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import StepPatch
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 
-from stiction.plotting.style import BLACK, BLUE, GREY, PURPLE, RED
+from stiction.plotting.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED
 from stiction.trajectory import Trajectory
 
 Floats = NDArray[np.float64]
+
+FEW = 50  # so few samples are shown as such: what happens between them is not known
 
 
 def envelope(time: ArrayLike, values: ArrayLike, bins: int = 1500) -> tuple[Floats, Floats]:
@@ -42,41 +45,59 @@ def draw_line(
     ax: Axes, time: ArrayLike, values: ArrayLike, color: str = BLACK, width: float = 0.7
 ) -> Line2D:
     """Draw values over time (s), thinned out by `envelope`; `width` in pt."""
-    t, v = envelope(time, values)
-    (line,) = ax.plot(t, v, color=color, linewidth=width)
-    if len(t) > 1:
-        ax.set_xlim(t[0], t[-1])
+    times = np.asarray(time)
+    (line,) = ax.plot(*envelope(times, values), color=color, linewidth=width)
+    if len(times) <= FEW:
+        line.set(linestyle="none", marker="o", markersize=2.5, clip_on=False, zorder=3)
+    if times[-1] > times[0]:
+        ax.set_xlim(times[0], times[-1])
     return line
 
 
+def draw_quantity(
+    ax: Axes, run: Trajectory, variable: str, symbol: str, color: str = BLACK
+) -> Line2D:
+    """Draw a variable of the run over time, in the multiple of its unit that suits its size."""
+    values = run.data[variable].values
+    factor, prefix = prefixed(values)
+    ax.set_ylabel(f"{symbol} ({prefix}{run.data[variable].attrs['units']})")
+    return draw_line(ax, run.data["time"].values, values * factor, color)
+
+
+def prefixed(values: ArrayLike) -> tuple[float, str]:
+    """Return factor and prefix (n, µ, m, none, k) of a unit in which values are about 1 to 100."""
+    largest = np.fmax.reduce(np.abs(np.asarray(values, dtype=np.float64)), initial=0.0)
+    if not 0 < largest < np.inf:
+        return 1.0, ""
+    thousands = int(np.clip(np.floor(np.log10(5 * largest) / 3), -3, 1))
+    return 1000.0**-thousands, {-3: "n", -2: "µ", -1: "m", 0: "", 1: "k"}[thousands]
+
+
 def draw_spring_force(ax: Axes, run: Trajectory, axis: str, color: str = RED) -> Line2D:
-    """Draw the spring force (N) along the principal axis ``"x"`` or ``"y"`` over time."""
-    ax.set_ylabel(rf"$k_{axis} u_{axis}$ (N)")
-    return draw_line(ax, run.data["time"], run.data[f"spring_{axis}"], color)
+    """Draw the spring force along the principal axis ``"x"`` or ``"y"`` over time."""
+    return draw_quantity(ax, run, f"spring_{axis}", rf"$k_{axis} u_{axis}$", color)
 
 
 def draw_friction(ax: Axes, run: Trajectory) -> Line2D:
-    """Draw the magnitude of the friction force (N) over time; while stuck, the holding force."""
-    ax.set_ylabel("$F$ (N)")
-    return draw_line(ax, run.data["time"], run.data["friction"], PURPLE)
+    """Draw the magnitude of the friction force over time; while stuck, the force that holds."""
+    return draw_quantity(ax, run, "friction", "$F$", PURPLE)
 
 
 def draw_direction(ax: Axes, run: Trajectory) -> Line2D:
     """Draw the angle psi (deg) of the friction force to the drive direction over time."""
+    ax.yaxis.set_major_locator(MaxNLocator(nbins=4, steps=[1, 1.5, 3, 4.5, 9, 10]))
     ax.set_ylabel(r"$\psi$ (deg)")
-    return draw_line(ax, run.data["time"], run.data["psi"], PURPLE)
+    return draw_line(ax, run.data["time"].values, run.data["psi"].values, PURPLE)
 
 
 def draw_position(ax: Axes, run: Trajectory) -> Line2D:
-    """Draw the position X (mm) along the drive direction over time."""
-    ax.set_ylabel("$X$ (mm)")
-    return draw_line(ax, run.data["time"], run.data["X"] * 1e3, BLUE)
+    """Draw the position X along the drive direction over time."""
+    return draw_quantity(ax, run, "X", "$X$", BLUE)
 
 
 def draw_rate(ax: Axes, run: Trajectory, axis: str) -> Line2D:
-    """Draw the elongation rate (mm/s) along the principal axis ``"x"`` or ``"y"`` over time."""
-    ax.set_ylabel(rf"$v_{axis}$ (mm/s)")
-    return draw_line(ax, run.data["time"], run.data[f"v_{axis}"] * 1e3, RED)
+    """Draw the elongation rate along the principal axis ``"x"`` or ``"y"`` over time."""
+    return draw_quantity(ax, run, f"v_{axis}", rf"$v_{axis}$", RED)
 
 
 def draw_slip_speed(ax: Axes, run: Trajectory) -> Line2D:
@@ -85,12 +106,13 @@ def draw_slip_speed(ax: Axes, run: Trajectory) -> Line2D:
     Speeds below 1e-7 of the largest are left out, so that a landing does not stretch the axis.
     """
     speed = run.data["slip_speed"].values
-    largest = np.nanmax(speed, initial=0.0)
+    largest = np.fmax.reduce(speed, initial=0.0)
     ax.set_ylabel(r"$v_\mathrm{slip}$ (m/s)")
     if not largest > 0:
-        return draw_line(ax, run.data["time"], speed)
+        return draw_line(ax, run.data["time"].values, speed, GREEN)
     ax.set_yscale("log")
-    return draw_line(ax, run.data["time"], np.where(speed > 1e-7 * largest, speed, np.nan))
+    shown = np.where(speed > 1e-7 * largest, speed, np.nan)
+    return draw_line(ax, run.data["time"].values, shown, GREEN)
 
 
 def draw_time_stuck(ax: Axes, run: Trajectory, bins: int = 300) -> StepPatch:

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from math import copysign, cos, pi, sin
+from math import pi
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import ArrayLike
 
 from stiction.plotting import shapes
-from stiction.plotting.schematic import Placement, drawn_misalignment, drawn_slip_angle
+from stiction.plotting.misalignment import (
+    Placement,
+    drawn_misalignment,
+    drawn_slip_angle,
+    placement,
+)
 from stiction.plotting.shapes import Points, polar
 from stiction.plotting.style import BLUE, GREEN, RED
 from stiction.slider import Slider
@@ -29,13 +33,7 @@ def draw_velocity_triangle(ax: Axes, slider: Slider) -> Axes:
         The system; only its misalignment matters.
     """
     drawn = drawn_misalignment(slider.phi)
-    side, phi, theta = copysign(1.0, drawn), abs(drawn), abs(drawn_slip_angle(drawn))
-
-    def lab(points: ArrayLike) -> Points:
-        turn = np.array([[cos(phi), sin(phi)], [-sin(phi), cos(phi)]])
-        placed: Points = (np.asarray(points) @ turn.T) * (1.0, side)
-        return placed
-
+    phi, theta, lab = abs(drawn), abs(drawn_slip_angle(drawn)), placement(drawn)
     drive, slip = polar(1.0, phi), polar(0.32, theta)
     foot, knee = np.array([drive[0] - slip[0], 0.0]), drive - slip
     straight = theta == phi  # everything on one line: draw V beside it
@@ -49,7 +47,7 @@ def draw_velocity_triangle(ax: Axes, slider: Slider) -> Axes:
         way = head - tail
         if np.hypot(*way) < 1e-9:
             continue
-        shapes.arrow(ax, *lab([tail, head]), color, 1.6)
+        shapes.arrow(ax, lab([tail, head]), color, 1.6)
         normal = above * np.array([-way[1], way[0]]) / np.hypot(*way)
         gap = 0.08 + 0.12 * abs(lab(normal)[0]) * (text != "$V$")  # a text is wider than high
         place = tail + way / 2 + gap * normal if above else head + polar(0.1, theta - 0.2)

@@ -1,0 +1,42 @@
+"""The command line: one file a command, one line a command here."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+
+import cyclopts
+from rich.console import Console
+
+import stiction
+from stiction.errors import StictionError
+
+app = cyclopts.App(
+    name="stiction",
+    version=stiction.__version__,
+    help=(
+        "Simulate sliding in which the friction vector rotates (Nakano & Popov, 2020).\n\n"
+        "Start with `stiction paper`, which reproduces the paper, or describe an apparatus of "
+        "your own: `stiction init my.toml`, edit it, `stiction run my.toml --output my.nc`, "
+        "`stiction plot my.nc --output my.png`."
+    ),
+    help_format="markdown",
+)
+for _name in ("init", "run", "plot", "paper"):
+    app.command(f"stiction.cli.{_name}:{_name}", name=_name)
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line; whatever the user can mend ends in one message and exit status 2."""
+    errors = Console(stderr=True, soft_wrap=True)
+    try:
+        code = app(arguments, result_action="return_value", error_console=errors)
+    except StictionError as error:
+        errors.print(f"[red]error[/red] {type(error).__name__.removesuffix('Error').lower()}:")
+        for line in str(error).splitlines():
+            errors.print(f"  {line}", markup=False, highlight=False)
+        sys.exit(2)
+    except KeyboardInterrupt:
+        errors.print("interrupted; nothing was written")
+        sys.exit(130)
+    sys.exit(code if isinstance(code, int) else 0)

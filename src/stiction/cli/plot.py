@@ -1,0 +1,29 @@
+"""``stiction plot``: look at a result."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+
+def plot(result: Path, /, *, output: Annotated[Path, Parameter(alias="-o")]) -> None:
+    """Draw the overview of a result: the system, forces, direction, position, slip speed.
+
+    Parameters
+    ----------
+    result
+        A file written by `stiction run`.
+    output
+        The figure to write: .png, .pdf or .svg.
+    """
+    from stiction.errors import ResultError
+    from stiction.plotting.overview import overview
+    from stiction.plotting.save import FORMATS, write
+    from stiction.trajectory import load
+
+    if output.suffix.lower() not in FORMATS:
+        known = ", ".join(FORMATS)
+        raise ResultError(f"{output}: cannot draw {output.suffix or 'no suffix'!r}; use {known}")
+    print(f"wrote {write(overview(load(result)), output)}")

@@ -1,0 +1,44 @@
+"""``stiction run``: simulate a described apparatus."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+
+def run(config: Path, /, *, output: Annotated[Path, Parameter(alias="-o")]) -> int:
+    """Simulate the apparatus that CONFIG describes and write the result as NetCDF.
+
+    Exit status: 0 when the run reached its duration, 1 when it ended earlier (what was
+    computed is written all the same), 2 when the description cannot be simulated.
+
+    Parameters
+    ----------
+    config
+        A description in TOML; `stiction init` writes one to start from.
+    output
+        The NetCDF file to write: samples over time, and every stick interval.
+    """
+    from rich.console import Console
+
+    from stiction.cli.progress import progress
+    from stiction.description import Description
+    from stiction.simulation import run as simulate
+
+    description = Description.from_toml(config)
+    with progress(f"simulating {config.name} (the first time, compiling)") as report:
+        result = simulate(description, progress=report)
+        result.save(output)
+    console = Console(soft_wrap=True, highlight=False)
+    statistics, stuck = result.statistics, result.statistics.time_stuck
+    if not result.status.ok:
+        reached = float(result.data.time[-1])
+        console.print(f"[red]ended early[/red] at t = {reached:.6g} s: {result.status.value}")
+    console.print(
+        f"{output}: {result.data.sizes['time']} samples, {statistics.stick_count} stick intervals, "
+        f"{stuck:.6g} s stuck; {statistics.steps} steps"
+    )
+    console.print(f"next: stiction plot {output} --output {output.with_suffix('.png')}")
+    return 0 if result.status.ok else 1

@@ -1,0 +1,89 @@
+"""Slow creep before slip: the paper's theory, as it should read and as printed, and a run."""
+
+from __future__ import annotations
+
+from math import sin
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from stiction import theory
+from stiction.analysis.creep import first_slip_time, mean_creep_velocity
+from stiction.plotting.style import (
+    BLACK,
+    BLUE,
+    COLUMN,
+    GREEN,
+    RED,
+    new_figure,
+    style,
+)
+from stiction.trajectory import Trajectory
+
+THEORIES = (
+    (theory.creep_velocity, "Eq. (7), closed form", BLUE, "-"),
+    (theory.creep_velocity_approximation, "Eq. (8), corrected", GREEN, (0, (5, 2))),
+    (theory.creep_velocity_as_printed, "Eq. (8), as printed", RED, (0, (1, 1.5))),
+)
+
+
+def creep(run: Trajectory) -> Figure:
+    """Draw the creep velocity before the first slip, simulated and from theory.
+
+    (a) X' of the run, averaged over the transverse oscillation, the solution of Eq. (7), and
+    Eq. (8) with the numerator V t/l_x that its derivation gives and with the printed
+    (V t/l_x)^2. (b) Their deviations from Eq. (7).
+
+    Parameters
+    ----------
+    run : Trajectory
+        From rest at u = 0, misaligned and driven with a constant velocity.
+
+    Returns
+    -------
+    Figure
+        As wide as a column.
+
+    Raises
+    ------
+    ValueError
+        Without misalignment or drive, where there is no creep.
+    """
+    slider = run.slider
+    V, phi = abs(slider.motion.rate(0.0)[0]), abs(slider.phi)
+    if V == 0 or sin(phi) == 0:
+        raise ValueError(f"creep needs a drive and a misalignment; V is {V:g} m/s, phi {phi:g} rad")
+    l_x = float(theory.slip_length(slider.F_0, slider.k_x))
+    mean = mean_creep_velocity(run)
+    seen, speed = mean["time"].values, np.abs(mean.values)
+    time = np.linspace(0, first_slip_time(run), 1002)[1:-1]
+    with style():
+        fig = new_figure(COLUMN, 4.0)
+        value, deviation = fig.subplots(2, 1, sharex=True, height_ratios=[1.5, 1])
+        value.plot(seen, speed, ".", color=BLACK, markersize=2.5, label="simulated, mean")
+        ratio = speed / theory.creep_velocity(seen, V, phi, l_x)
+        deviation.plot(seen, 100 * (ratio - 1), ".", color=BLACK, markersize=2.5)
+        exact = theory.creep_velocity(time, V, phi, l_x)
+        for formula, label, color, dashes in THEORIES:
+            velocity = formula(time, V, phi, l_x)
+            value.plot(time, velocity, color=color, linestyle=dashes, linewidth=1.3, label=label)
+            drawn = 100 * (velocity / exact - 1)
+            deviation.plot(time, drawn, color=color, linestyle=dashes, linewidth=1.3)
+        _label(value, deviation)
+        value.set_xlim(0, time[-1])
+    return fig
+
+
+def _label(value: Axes, deviation: Axes) -> None:
+    value.set_yscale("log")
+    value.set_ylabel(r"$\dot{X}$ (m/s)")
+    value.legend(loc="upper left")
+    deviation.set_yscale("symlog", linthresh=1.0, linscale=0.6)
+    deviation.set_ylim(-100, 100)
+    deviation.set_yticks([-100, -10, -1, 0, 1, 10, 100])
+    deviation.set_yticklabels(["−100", "−10", "−1", "0", "1", "10", "100"])
+    deviation.set_ylabel("deviation (%)")
+    deviation.set_xlabel("time $t$ (s)")
+    value.set_title("(a) Creep velocity")
+    deviation.set_title("(b) Deviation from Eq. (7)")

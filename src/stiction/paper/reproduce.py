@@ -1,0 +1,89 @@
+"""The paper, end to end: simulate, draw, and hold every number against the stated one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from stiction import presets
+from stiction.errors import StictionError
+from stiction.friction import Coulomb
+from stiction.paper.creep import creep
+from stiction.paper.figure3 import figure3
+from stiction.paper.figure4 import figure4
+from stiction.paper.figure5 import figure5
+from stiction.paper.numbers import numbers
+from stiction.paper.schematic import schematic
+from stiction.paper.table import Table
+from stiction.paper.zero_slip import zero_slip
+from stiction.plotting.save import save
+from stiction.simulation import simulate
+from stiction.trajectory import Trajectory
+
+DURATION, RATE = 5.0, 10e3  # Fig. 3's time axis; Fig. 4 needs some samples a transverse period
+WINDOW = (0.500, 0.504)  # four transverse periods in the middle of the first stick phase
+FINE = 1e6
+
+
+def reproduce(
+    folder: Path, figure: int | None, report: Callable[[float], None]
+) -> tuple[list[Path], Table | None]:
+    """Write the paper's figures and numbers to `folder`.
+
+    Parameters
+    ----------
+    folder : Path
+        Made if it is not there.
+    figure : int, optional
+        Only this figure (3, 4 or 5); all of them, and the table, when None.
+    report : callable
+        Called with the fraction done.
+
+    Returns
+    -------
+    written, table
+        Paths, and the table unless one figure was asked for.
+
+    Raises
+    ------
+    StictionError
+        If the folder cannot be made.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise StictionError(f"{folder}: cannot be made: {error.strerror}") from None
+    slider = presets.nakano_popov_2020()
+    if figure == 5:
+        return save(figure5(slider), folder / "figure-5"), None
+    run = simulate(
+        slider, DURATION, sample_rate=RATE, progress=lambda fraction: report(0.3 * fraction)
+    )
+    drawings: dict[str, Callable[[], Figure]] = {
+        "figure-1-and-2": lambda: schematic(slider),
+        "figure-3": lambda: figure3(run),
+        "figure-4": lambda: figure4(run),
+        "figure-5": lambda: figure5(slider),
+        "beyond-zero-slip": lambda: zero_slip(finely(run), WINDOW),
+        "beyond-creep": lambda: creep(run),
+    }
+    if figure is not None:
+        drawings = {f"figure-{figure}": drawings[f"figure-{figure}"]}
+    written: list[Path] = []
+    for done, (name, draw) in enumerate(drawings.items(), start=1):
+        written += save(draw(), folder / name)
+        report(0.3 + 0.6 * done / len(drawings))
+    if figure is not None:
+        return written, None
+    constant = slider.replace(friction=Coulomb(mu_0=slider.law.coefficient(0.0)))
+    table = Table(numbers(run, simulate(constant, 2 * DURATION, sample_rate=RATE)))
+    report(1.0)
+    return [*written, *table.save(folder)], table
+
+
+def finely(run: Trajectory) -> Trajectory:
+    """Return the window of zero slip, restarted from a sample of `run` and sampled finely."""
+    start, end = WINDOW
+    return simulate(run.slider, end - start, sample_rate=FINE, initial=run.state(start))

@@ -1,0 +1,84 @@
+"""The table of numbers: printed, and saved as text, Markdown and JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from stiction.paper.numbers import Number
+
+HEADER = ("where", "what", "stated", "computed", "deviation", "tolerance", "unit", "verdict")
+
+
+@dataclass(frozen=True)
+class Table:
+    """Numbers beside the stated ones.
+
+    Parameters
+    ----------
+    numbers : sequence of Number
+        In the order in which they are shown.
+    """
+
+    numbers: Sequence[Number]
+
+    @property
+    def agrees(self) -> bool:
+        """Whether every number does."""
+        return all(number.agrees for number in self.numbers)
+
+    @property
+    def rows(self) -> list[tuple[str, ...]]:
+        """The cells as text, one tuple a number."""
+        return [
+            (
+                n.where,
+                n.what,
+                f"{n.stated:g}" if n.stated < 1e5 else f"{n.stated:.3g}",
+                f"{n.computed:.7g}",
+                f"{n.deviation:+.1e}",
+                f"{n.tolerance:.1e}",
+                "" if n.unit == "1" else n.unit,
+                "agrees" if n.agrees else "WRONG",
+            )
+            for n in self.numbers
+        ]
+
+    @property
+    def text(self) -> str:
+        """The table in plain text, with a line that counts the verdicts."""
+        rows = [HEADER, *self.rows]
+        widths = [max(len(row[i]) for row in rows) for i in range(len(HEADER))]
+        lines = ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)) for row in rows]
+        lines.insert(1, "  ".join("-" * width for width in widths))
+        return "\n".join(line.rstrip() for line in [*lines, "", self.summary])
+
+    @property
+    def summary(self) -> str:
+        """One line: how many numbers agree, and which do not."""
+        wrong = [n.what.strip() for n in self.numbers if not n.agrees]
+        count = f"{len(self.numbers) - len(wrong)} of {len(self.numbers)} numbers agree"
+        return f"{count}; wrong: {', '.join(wrong)}" if wrong else count
+
+    @property
+    def markdown(self) -> str:
+        """The table in Markdown."""
+        lines = [f"| {' | '.join(row)} |" for row in [HEADER, *self.rows]]
+        lines.insert(1, f"|{' --- |' * len(HEADER)}")
+        return "\n".join([*lines, "", self.summary])
+
+    def save(self, folder: Path) -> list[Path]:
+        """Write ``numbers.txt``, ``.md`` and ``.json`` to `folder`; return their paths."""
+        entries = [
+            asdict(n) | {"computed": float(n.computed), "deviation": float(n.deviation)}
+            | {"agrees": bool(n.agrees)}
+            for n in self.numbers
+        ]
+        texts = {".txt": self.text, ".md": self.markdown, ".json": json.dumps(entries, indent=2)}
+        for suffix, text in texts.items():
+            part = folder / f"numbers{suffix}.part"
+            part.write_text(text + "\n", encoding="utf-8")
+            part.replace(folder / f"numbers{suffix}")
+        return [folder / f"numbers{suffix}" for suffix in texts]

@@ -1,0 +1,1 @@
+"""Draws what it is given, on the axes it is given; nothing global, nothing shown."""

@@ -1,0 +1,63 @@
+"""Figures to files."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from stiction.errors import ResultError
+from stiction.plotting.style import style
+
+FORMATS = (".png", ".pdf", ".svg")
+# nothing that changes from one day to the next: the same figure is the same file
+METADATA: dict[str, dict[str, Any]] = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}
+
+
+def save(fig: Figure, path: str | Path) -> list[Path]:
+    """Write a figure as ``path.png``, to look at, and ``path.pdf``, to print; see `write`."""
+    bare = Path(path)
+    return [write(fig, bare.with_name(bare.name + suffix)) for suffix in (".png", ".pdf")]
+
+
+def write(fig: Figure, path: str | Path) -> Path:
+    """Write a figure to a file, whole or not at all; return the path.
+
+    Parameters
+    ----------
+    fig : Figure
+        The figure.
+    path : str or Path
+        With one of the suffixes in `FORMATS`; a file that is there is replaced.
+
+    Raises
+    ------
+    ResultError
+        If the format is not known, or the file cannot be written there.
+    """
+    target = Path(path)
+    suffix = target.suffix.lower()
+    if suffix not in FORMATS:
+        raise ResultError(f"{target}: unknown format {suffix!r}; use {', '.join(FORMATS)}")
+    if not target.parent.is_dir():
+        raise ResultError(f"{target}: no folder {target.parent}; make it first")
+    part = None
+    try:
+        handle, name = tempfile.mkstemp(dir=target.parent, suffix=".part")
+        os.close(handle)
+        part = Path(name)
+        with style():
+            fig.savefig(part, format=suffix[1:], metadata=METADATA.get(suffix))
+        mask = os.umask(0)
+        os.umask(mask)
+        part.chmod(0o666 & ~mask)
+        part.replace(target)
+    except OSError as error:
+        raise ResultError(f"{target}: cannot be written: {error.strerror or error}") from None
+    finally:
+        if part is not None:
+            part.unlink(missing_ok=True)
+    return target

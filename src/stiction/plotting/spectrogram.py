@@ -1,0 +1,75 @@
+"""Spectrograms."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
+from matplotlib.lines import Line2D
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def draw_spectrogram(
+    ax: Axes,
+    amplitude: xr.DataArray,
+    *,
+    reference: float = 1e-6,
+    decibels: tuple[float, float] = (-30.0, 40.0),
+    highest: float = 2000.0,
+) -> QuadMesh:
+    """Draw amplitudes over time and frequency, in decibels.
+
+    Parameters
+    ----------
+    ax : Axes
+        Drawn on.
+    amplitude : DataArray
+        Over ``frequency`` (Hz) and ``time`` (s), from `stiction.analysis.spectrum`.
+    reference : float
+        The amplitude of 0 dB, in the unit of `amplitude`.
+    decibels : tuple of float
+        Ends of the colour scale, dB.
+    highest : float
+        Upper end of the frequency axis, Hz.
+
+    Returns
+    -------
+    QuadMesh
+        For the colour bar.
+    """
+    shown = amplitude.sel(frequency=slice(0.0, highest))
+    level = 20.0 * np.log10(np.fmax(shown.values / reference, 1e-30))
+    mesh = ax.pcolormesh(
+        shown["time"],
+        shown["frequency"] / 1e3,
+        level,
+        shading="nearest",
+        cmap="viridis",
+        vmin=decibels[0],
+        vmax=decibels[1],
+        rasterized=True,
+    )
+    ax.set_ylim(0, min(highest, float(shown["frequency"].max())) / 1e3)
+    ax.set_ylabel("frequency (kHz)")
+    return mesh
+
+
+def mark_frequency(ax: Axes, frequency: float, text: str) -> Line2D:
+    """Mark a frequency (Hz) across a spectrogram and name it."""
+    line = ax.axhline(frequency / 1e3, color="white", linewidth=0.8, dashes=(5, 3))
+    ax.annotate(
+        text,
+        (1.0, frequency / 1e3),
+        (-4, 2),
+        xycoords=("axes fraction", "data"),
+        textcoords="offset points",
+        color="white",
+        fontsize=7,
+        ha="right",
+        va="bottom",
+    )
+    return line

@@ -1,0 +1,22 @@
+"""Runs that many tests look at, computed once."""
+
+import pytest
+
+import stiction as st
+
+
+@pytest.fixture(scope="session")
+def slider() -> st.Slider:
+    return st.presets.nakano_popov_2020()
+
+
+@pytest.fixture(scope="session")
+def paper_run(slider: st.Slider) -> st.Trajectory:
+    """Fig. 3 at the default tolerance, sampled as in the issue."""
+    return st.simulate(slider, 5.0, sample_rate=10e3)
+
+
+@pytest.fixture(scope="session")
+def sharp_run(slider: st.Slider) -> st.Trajectory:
+    """Fig. 3 at a tolerance 1e5 times tighter, on the same samples."""
+    return st.simulate(slider, 5.0, sample_rate=10e3, rtol=1e-11)

@@ -1,0 +1,145 @@
+"""Descriptions: what is read, what is refused, and how that is said."""
+
+import pickle
+from math import pi
+
+import pytest
+
+import stiction as st
+
+TOML = """
+[slider]
+mass = "0.25 kg"
+k_x = "1 kN/m"
+k_y = "10 MN/m"
+phi = "1 deg"
+normal_load = "10 N"
+
+[friction]
+law = "exponential-weakening"
+mu_0 = 0.20
+mu_inf = 0.15
+v_f = "10 mm/s"
+
+[drive]
+velocity = "1 mm/s"
+
+[initial]
+epsilon = 1e-6
+
+[run]
+duration = "5 s"
+sample_rate = "10 kHz"
+rtol = 1e-6
+"""
+
+
+def written(path, text=TOML, **changes):
+    for old, new in changes.values():
+        assert old in text
+        text = text.replace(old, new)
+    path.write_text(text)
+    return path
+
+
+def faults(path) -> dict[str, str]:
+    with pytest.raises(st.DescriptionError) as error:
+        st.Description.from_toml(path)
+    return {fault.path: fault.message for fault in error.value.faults}
+
+
+def test_the_contract_s_example_is_the_paper_s_preset(tmp_path, slider):
+    description = st.Description.from_toml(written(tmp_path / "a.toml"))
+    assert description.slider == slider == st.Slider.from_toml(tmp_path / "a.toml")
+    assert description.run.duration == 5.0
+    assert description.run.sample_rate == 1e4
+    assert description.initial.epsilon == 1e-6
+
+
+def test_units_become_si(slider):
+    assert (slider.mass, slider.k_x, slider.k_y, slider.normal_load) == (0.25, 1e3, 1e7, 10.0)
+    assert slider.phi == pytest.approx(pi / 180, rel=1e-15)
+    assert slider.friction.v_f == pytest.approx(0.01, rel=1e-15)
+    assert slider.drive.velocity == pytest.approx(1e-3, rel=1e-15)
+    assert slider.replace(phi="0.1 rad").phi == 0.1
+    assert slider.F_0 == 2.0
+
+
+def test_every_fault_at_once_by_path(tmp_path):
+    found = faults(
+        written(
+            tmp_path / "bad.toml",
+            mass=('mass = "0.25 kg"', "mass = -1"),
+            k_x=('"1 kN/m"', '"1 kN"'),
+            k_y=('k_y = "10 MN/m"', 'k_yy = "10 MN/m"'),
+            phi=('"1 deg"', "1"),
+            law=("v_f = ", "vf = "),
+            drive=('velocity = "1 mm/s"', "velocity = true"),
+            run=("rtol = 1e-6", "rtol = 2"),
+            table=("[initial]", "[inital]"),
+        )
+    )
+    assert "greater than 0" in found["slider.mass"]
+    assert "-1" in found["slider.mass"]
+    assert "'1 kN/m'" in found["slider.k_x"]  # what to write instead
+    assert "missing" in found["slider.k_y"]
+    assert "did you mean 'k_y'" in found["slider.k_yy"]
+    assert "degree or radian" in found["slider.phi"]
+    assert "did you mean 'v_f'" in found["friction.vf"]
+    assert "velocity" in found["drive.velocity"]
+    assert "0.01" in found["run.rtol"]
+    assert "did you mean 'initial'" in found["inital"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "path", "words"),
+    [
+        ('"exponential-weakening"', '"exponential-weakning"', "friction.law", "did you mean"),
+        ("[drive]\nvelocity = \"1 mm/s\"", "", "drive", "write a table [drive]"),
+        ('phi = "1 deg"', 'phi = "100 deg"', "slider.phi", "between -90 deg and 90 deg"),
+        ('phi = "1 deg"', 'phi = "1"', "slider.phi", "no unit"),
+        ('mass = "0.25 kg"', 'mass = "nan kg"', "slider.mass", "not finite"),
+        ('mass = "0.25 kg"', 'mass = "a {lot}"', "slider.mass", "cannot read"),
+        ('mass = "0.25 kg"', "mass = [1]", "slider.mass", "not a mass"),
+        ('velocity = "1 mm/s"', 'velocity = "1 mm"', "drive.velocity", "'1 mm/s'"),
+        ("epsilon = 1e-6", "v_x = 1", "initial", "v_x and v_y go together"),
+        ('duration = "5 s"', 'duration = "0 s"', "run.duration", "greater than 0"),
+    ],
+)
+def test_a_fault_says_what_to_write(tmp_path, old, new, path, words):
+    found = faults(written(tmp_path / "bad.toml", change=(old, new)))
+    assert list(found) == [path]
+    assert words in found[path]
+
+
+def test_unreadable_files(tmp_path):
+    assert "No such file" in str(*faults(tmp_path / "none.toml").values())
+    assert "not TOML" in str(*faults(written(tmp_path / "x.toml", "mass = 0.25 kg")).values())
+    (tmp_path / "y.toml").write_bytes(b"\xff\xfe\x00")
+    assert "UTF-8" in str(*faults(tmp_path / "y.toml").values())
+
+
+def test_python_reports_every_fault_too():
+    with pytest.raises(st.DescriptionError) as error:
+        st.Slider(mass="0.25 m", k_x=1, k_y=1, phi=1, normal_load=0, friction=3)
+    assert [fault.path for fault in error.value.faults] == [
+        "Slider.mass",
+        "Slider.phi",
+        "Slider.normal_load",
+        "Slider.friction",
+    ]
+    with pytest.raises(st.DescriptionError, match=r"Coulomb\.mu_0: must not be below 0"):
+        st.Coulomb(mu_0=-0.1)
+    with pytest.raises(st.DescriptionError, match="Settings.sample_rate"):
+        st.simulate(st.presets.nakano_popov_2020(), 1.0, sample_rate="10 m")
+
+
+def test_round_trip_and_pickle(tmp_path):
+    description = st.Description.from_toml(written(tmp_path / "a.toml"))
+    assert st.Description.from_json(description.to_json()) == description
+    assert pickle.loads(pickle.dumps(description)) == description
+
+
+def test_a_slider_is_frozen(slider):
+    with pytest.raises(Exception, match="frozen"):
+        slider.mass = 1.0

@@ -1,0 +1,173 @@
+"""What must hold for any system: energy, symmetry, scaling, restart; and that no run hangs."""
+
+from math import pi
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st_
+
+import stiction as st
+
+
+def log(low: float, high: float) -> st_.SearchStrategy[float]:
+    return st_.floats(np.log(low), np.log(high)).map(lambda x: float(np.exp(x)))
+
+
+@st_.composite
+def sliders(draw, damped: bool = True) -> st.Slider:
+    """Sliders around the paper's, a decade or so each way, whose runs stay short."""
+    mu_0 = draw(st_.floats(0.05, 1.0))
+    return st.Slider(
+        mass=draw(log(0.01, 10)),
+        k_x=draw(log(1e2, 1e4)),
+        k_y=draw(log(1e4, 1e8)),
+        phi=f"{draw(st_.floats(0.1, 80))} deg",
+        normal_load=draw(log(1, 100)),
+        c_x=draw(st_.sampled_from([0.0, 0.5])) if damped else 0.0,
+        c_y=draw(st_.sampled_from([0.0, 5.0])) if damped else 0.0,
+        friction=draw(
+            st_.sampled_from(
+                [
+                    st.Coulomb(mu_0=mu_0),
+                    st.ExponentialWeakening(mu_0=mu_0, mu_inf=0.7 * mu_0, v_f=0.01),
+                    st.ExponentialWeakening(mu_0=mu_0, mu_inf=1.2 * mu_0, v_f=0.01),
+                ]
+            )
+        ),
+        drive=st.ConstantVelocity(draw(log(1e-4, 1e-1))),
+    )
+
+
+def shortest_period(slider: st.Slider) -> float:
+    return 2 * pi * np.sqrt(slider.mass / max(slider.k_x, slider.k_y))
+
+
+def some_periods(slider: st.Slider, count: float = 15.0) -> float:
+    """The first stick and then `count` transverse periods."""
+    c, s = slider.direction
+    V = slider.motion.rate(0.0)[0]
+    stick = slider.F_0 / (V * np.hypot(slider.k_x * c, slider.k_y * s))
+    return stick + count * shortest_period(slider)
+
+
+def energy_residual(run: st.Trajectory, every: int) -> tuple[float, float]:
+    """Work of the drive less what became of it, and the scale of both, in J (trapezoids).
+
+    Work on the driven end = stored in springs and mass + dissipated by friction and dampers.
+    """
+    d = run.data.isel(time=slice(None, None, every))
+    s, t = run.slider, d["time"].values
+    c, n = s.direction
+    V = s.motion.rate(0.0)[0]
+    v_x, v_y = d["v_x"].values, d["v_y"].values
+    pull_x = d["spring_x"].values + s.c_x * v_x
+    pull_y = d["spring_y"].values + s.c_y * v_y
+    work = np.trapezoid((pull_x * c + pull_y * n) * V, t)
+    friction = np.trapezoid(d["friction"].values * d["slip_speed"].values, t)
+    damper = np.trapezoid(s.c_x * v_x**2 + s.c_y * v_y**2, t)
+    stored = 0.5 * (
+        s.k_x * d["u_x"].values ** 2
+        + s.k_y * d["u_y"].values ** 2
+        + s.mass * d["slip_speed"].values ** 2
+    )
+    residual = work - friction - damper - (stored[-1] - stored[0])
+    return residual, abs(work) + friction + damper + np.ptp(stored)
+
+
+@given(sliders())
+@settings(max_examples=40, deadline=None)
+def test_energy_balance(slider):
+    duration = some_periods(slider)
+    run = st.simulate(slider, duration, sample_rate=20_000 / duration, rtol=1e-8)
+    assert run.status.ok
+    fine, scale = energy_residual(run, 1)
+    coarse, _ = energy_residual(run, 2)
+    # trapezoids halve their step: the fine sum is off by a third of the difference where the
+    # integrand is smooth, by no more than all of it at the kinks of landing
+    assert abs(fine) <= abs(coarse - fine) + 1e-6 * scale
+
+
+@given(sliders())
+@settings(max_examples=25, deadline=None)
+def test_mirror_symmetry(slider):
+    """phi -> -phi mirrors the motion at the x axis, to the last bit."""
+    duration = some_periods(slider)
+    mirrored = slider.replace(phi=f"{-slider.phi!r} rad")
+    one, other = (st.simulate(s, duration, sample_rate=1e4) for s in (slider, mirrored))
+    for name, sign in (("u_x", 1), ("u_y", -1), ("slip_x", 1), ("slip_y", -1), ("friction", 1)):
+        assert np.array_equal(one.data[name].values, sign * other.data[name].values)
+    assert np.array_equal(one.sticks, other.sticks)
+
+
+@given(sliders(damped=False), log(1e-2, 1e2), log(1e-2, 1e2), log(1e-2, 1e2))
+@settings(max_examples=25, deadline=None)
+def test_dimensional_scaling(slider, mass, length, time):
+    """Other units of mass, length and time leave the dimensionless solution unchanged."""
+    law, V = slider.law, slider.motion.rate(0.0)[0]
+    speed, force = length / time, mass * length / time**2
+    scaled = slider.replace(
+        mass=slider.mass * mass,
+        k_x=slider.k_x * mass / time**2,
+        k_y=slider.k_y * mass / time**2,
+        normal_load=slider.normal_load * force,
+        friction=type(law)(**(law._asdict() | ({"v_f": 0.01 * speed} if "v_f" in law._fields else {}))),
+        drive=st.ConstantVelocity(V * speed),
+    )
+    duration = some_periods(slider, 3.0)
+    rate = 200 / duration
+    one = st.simulate(slider, duration, sample_rate=rate, rtol=1e-9)
+    other = st.simulate(scaled, duration * time, sample_rate=rate / time, rtol=1e-9)
+    for name, unit in (("u_x", length), ("u_y", length), ("slip_speed", speed)):
+        want = one.data[name].values * unit
+        got = other.data[name].values[: len(want)]
+        # rounding may flip the choice of a step, which moves the result by its tolerance;
+        # a fast slip amplifies that
+        assert got == pytest.approx(want[: len(got)], rel=1e-5, abs=1e-6 * np.abs(want).max())
+
+
+@given(sliders(), st_.integers(5, 195))
+@settings(max_examples=25, deadline=None)
+def test_restart_continues_the_trajectory(slider, k):
+    duration = some_periods(slider, 3.0)
+    rate = 200 / duration
+    whole = st.simulate(slider, duration, sample_rate=rate, rtol=1e-9)
+    at = float(whole.data["time"][k])
+    rest = st.simulate(
+        slider, duration - at, sample_rate=rate, rtol=1e-9, initial=whole.state(at)
+    )
+    for name in ("u_x", "u_y", "slip_speed", "X"):
+        want = whole.data[name].values[k:]
+        got = rest.data[name].values
+        n = min(len(want), len(got))
+        # a state from dense output is as accurate as the tolerance's local error
+        assert got[:n] == pytest.approx(want[:n], rel=1e-4, abs=1e-5 * np.abs(want).max())
+
+
+@given(
+    phi=st_.sampled_from([0.0, 0.01, 1.0, 30.0, 89.0, 90.0]),
+    ratio=log(1.0, 1e6),
+    V=log(1e-7, 1.0),
+    mass=log(1e-4, 1e3),
+    mu_inf=st_.floats(0.0, 0.5),
+)
+@settings(max_examples=60, deadline=None)
+def test_far_from_the_paper_a_run_ends_and_is_finite(phi, ratio, V, mass, mu_inf):
+    slider = st.Slider(
+        mass=mass,
+        k_x=1e3,
+        k_y=1e3 * ratio,
+        phi=f"{phi} deg",
+        normal_load=10.0,
+        friction=st.ExponentialWeakening(mu_0=0.2, mu_inf=mu_inf, v_f=0.01),
+        drive=st.ConstantVelocity(V),
+    )
+    run = st.simulate(slider, some_periods(slider, 20.0), sample_rate=None, rtol=1e-6)
+    tight = st.simulate(slider, some_periods(slider, 20.0), sample_rate=None, rtol=1e-9)
+    assert run.status.ok, run.status.value
+    assert tight.status.ok, tight.status.value
+    for name in ("u_x", "u_y"):
+        assert np.isfinite(run.data[name].values).all()
+        # twenty transverse periods amplify little: the two tolerances agree
+        scale = slider.F_0 / (slider.k_x if name == "u_x" else slider.k_y)
+        assert float(run.final[name]) == pytest.approx(float(tight.final[name]), abs=1e-3 * scale)

@@ -1,0 +1,124 @@
+"""Results: the contract's variables, units, stick intervals, files."""
+
+import h5netcdf
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.trajectory import VARIABLES
+
+
+@pytest.fixture(scope="module")
+def run(slider):
+    return st.simulate(slider, "50 ms", sample_rate="10 kHz")
+
+
+def test_variables_and_units(run):
+    assert set(run.data.variables) == {*VARIABLES, "time"}
+    for name, (unit, _) in VARIABLES.items():
+        assert run.data[name].attrs["units"] == unit
+        assert run.data[name].attrs["long_name"]
+    assert run.data["time"].attrs["units"] == "s"
+    assert run.data["u_x"].dims == ("time",)
+    assert run.data["stick_start"].dims == ("stick",)
+
+
+def test_variables_belong_together(run):
+    d, s = run.data, run.slider
+    c, n = s.direction
+    V = 1e-3
+    np.testing.assert_allclose(d["spring_x"], s.k_x * d["u_x"])
+    np.testing.assert_allclose(d["slip_speed"], np.hypot(d["slip_x"], d["slip_y"]), rtol=1e-15)
+    np.testing.assert_allclose(d["v_x"] + d["slip_x"], V * c, rtol=1e-12)
+    np.testing.assert_allclose(d["v_y"] + d["slip_y"], V * n, rtol=1e-12)
+    np.testing.assert_allclose(d["psi"], d["theta"] - 1.0, atol=1e-12)
+    np.testing.assert_allclose(  # Eq. (6)
+        d["X"], V * d["time"] - d["u_x"] * c - d["u_y"] * n, atol=1e-18
+    )
+    np.testing.assert_allclose(d["Y"], d["u_x"] * n - d["u_y"] * c, atol=1e-18)
+    # the force points along the slip, Eq. (2)
+    moving = d["slip_speed"].values > 0
+    angle = np.degrees(np.arctan2(d["slip_y"], d["slip_x"]))
+    np.testing.assert_allclose(d["theta"].values[moving], angle.values[moving], atol=1e-9)
+
+
+def test_sticking(run):
+    d = run.data
+    time, stuck = d["time"].values, d["sticking"].values.astype(bool)
+    inside = np.zeros_like(stuck)
+    for start, end in run.sticks:
+        inside |= (time > start) & (time < end)
+    assert np.array_equal(stuck, inside)
+    assert (d["slip_speed"].values[stuck] == 0).all()
+    # while stuck, friction is the force that holds: it balances the spring, up to mu_0 W
+    np.testing.assert_allclose(
+        d["friction"].values[stuck],
+        np.hypot(d["spring_x"], d["spring_y"]).values[stuck],
+        rtol=1e-12,
+    )
+    assert (d["friction"].values <= run.slider.F_0 * (1 + 1e-12)).all()
+    assert (run.sticks[:, 1] > run.sticks[:, 0]).all()
+    assert run.statistics.stick_count == len(run.sticks)
+    assert run.statistics.time_stuck == pytest.approx(np.diff(run.sticks).sum(), rel=1e-12)
+
+
+def test_the_paper_s_own_start_sticks_at_once(run):
+    # slip of 1e-9 m/s is stopped by f = 8 m/s^2 in 1.25e-10 s
+    assert float(run.data["slip_speed"][0]) == pytest.approx(1e-9, rel=1e-12)
+    assert run.sticks[0, 0] == pytest.approx(1.25e-10, rel=1e-6)
+
+
+def test_save_and_load(run, tmp_path):
+    path = run.save(tmp_path / "run.nc")
+    again = st.load(path)
+    assert again.data.identical(run.data)
+    assert again.description == run.description
+    assert again.statistics == run.statistics
+    assert again.status is run.status
+    with h5netcdf.File(path) as file:  # the contract, as another program sees it
+        assert set(file.dimensions) == {"time", "stick"}
+        assert file.attrs["status"] == "COMPLETED"
+        assert file.attrs["stiction_version"]
+        assert file.attrs["solver"]
+
+
+def test_save_and_load_refuse(run, tmp_path):
+    with pytest.raises(st.ResultError, match="make it first"):
+        run.save(tmp_path / "no" / "run.nc")
+    assert list(tmp_path.iterdir()) == []
+    with pytest.raises(st.ResultError, match="no such file"):
+        st.load(tmp_path / "none.nc")
+    (tmp_path / "text.nc").write_text("not netcdf")
+    with pytest.raises(st.ResultError, match="not a NetCDF file"):
+        st.load(tmp_path / "text.nc")
+    run.data.drop_vars("psi").to_netcdf(tmp_path / "half.nc", engine="h5netcdf")
+    with pytest.raises(st.ResultError, match="lacks psi"):
+        st.load(tmp_path / "half.nc")
+
+
+def test_without_sampling(slider):
+    run = st.simulate(slider, 0.05)
+    assert run.data["time"].values.tolist() == [0.0, 0.05]
+    assert len(run.sticks) > 10
+
+
+def test_too_many_steps_keeps_what_was_computed(slider):
+    run = st.simulate(slider, 5.0, sample_rate=1e4, max_steps=1000)
+    assert run.status is st.Status.TOO_MANY_STEPS
+    assert "max_steps" in run.status.value
+    assert 0.05 < float(run.data["time"][-1]) < 1.0
+    full = st.simulate(slider, 0.05, sample_rate=1e4)
+    n = full.data.sizes["time"]
+    assert np.array_equal(run.data["u_y"].values[: n - 5], full.data["u_y"].values[: n - 5])
+
+
+def test_pausing_changes_nothing(slider, monkeypatch):
+    from stiction.solver import integrate
+
+    whole = st.simulate(slider, 0.1, sample_rate=1e4)
+    monkeypatch.setattr(integrate, "BUDGET", 7)
+    fractions: list[float] = []
+    paused = st.simulate(slider, 0.1, sample_rate=1e4, progress=fractions.append)
+    assert paused.data.identical(whole.data)
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1.0
