@@ -95,7 +95,7 @@ def test_every_fault_at_once_by_path(tmp_path):
     ("old", "new", "path", "words"),
     [
         ('"exponential-weakening"', '"exponential-weakning"', "friction.law", "did you mean"),
-        ("[drive]\nvelocity = \"1 mm/s\"", "", "drive", "write a table [drive]"),
+        ('[drive]\nvelocity = "1 mm/s"', "", "drive", "write a table [drive]"),
         ('phi = "1 deg"', 'phi = "100 deg"', "slider.phi", "between -90 deg and 90 deg"),
         ('phi = "1 deg"', 'phi = "1"', "slider.phi", "no unit"),
         ('mass = "0.25 kg"', 'mass = "nan kg"', "slider.mass", "not finite"),
@@ -130,7 +130,7 @@ def test_python_reports_every_fault_too():
     ]
     with pytest.raises(st.DescriptionError, match=r"Coulomb\.mu_0: must not be below 0"):
         st.Coulomb(mu_0=-0.1)
-    with pytest.raises(st.DescriptionError, match="Settings.sample_rate"):
+    with pytest.raises(st.DescriptionError, match=r"Settings\.sample_rate"):
         st.simulate(st.presets.nakano_popov_2020(), 1.0, sample_rate="10 m")
 
 

@@ -111,7 +111,9 @@ def test_dimensional_scaling(slider, mass, length, time):
         k_x=slider.k_x * mass / time**2,
         k_y=slider.k_y * mass / time**2,
         normal_load=slider.normal_load * force,
-        friction=type(law)(**(law._asdict() | ({"v_f": 0.01 * speed} if "v_f" in law._fields else {}))),
+        friction=type(law)(
+            **(law._asdict() | ({"v_f": 0.01 * speed} if "v_f" in law._fields else {}))
+        ),
         drive=st.ConstantVelocity(V * speed),
     )
     duration = some_periods(slider, 3.0)
@@ -133,9 +135,7 @@ def test_restart_continues_the_trajectory(slider, k):
     rate = 200 / duration
     whole = st.simulate(slider, duration, sample_rate=rate, rtol=1e-9)
     at = float(whole.data["time"][k])
-    rest = st.simulate(
-        slider, duration - at, sample_rate=rate, rtol=1e-9, initial=whole.state(at)
-    )
+    rest = st.simulate(slider, duration - at, sample_rate=rate, rtol=1e-9, initial=whole.state(at))
     for name in ("u_x", "u_y", "slip_speed", "X"):
         want = whole.data[name].values[k:]
         got = rest.data[name].values

@@ -49,10 +49,14 @@ def test_backwards_is_forwards_mirrored():
 
 
 def test_without_friction_the_mass_swings_for_ever():
-    frictionless = slider(friction=st.Coulomb(mu_0=0.0), drive=st.ConstantVelocity(0.0), phi="0 deg")
+    frictionless = slider(
+        friction=st.Coulomb(mu_0=0.0), drive=st.ConstantVelocity(0.0), phi="0 deg"
+    )
     omega = np.sqrt(1e3 / 0.25)
     start = st.Initial(u_x=1e-3, v_x=0.0, v_y=0.0)
-    run = st.simulate(frictionless, 20 * 2 * np.pi / omega, sample_rate=1e3, rtol=1e-10, initial=start)
+    run = st.simulate(
+        frictionless, 20 * 2 * np.pi / omega, sample_rate=1e3, rtol=1e-10, initial=start
+    )
     want = 1e-3 * np.cos(omega * run.data["time"].values)
     # twenty periods, local tolerance 1e-8: phase errors add up
     np.testing.assert_allclose(run.data["u_x"], want, atol=1e-3 * 1e-6)
@@ -88,10 +92,10 @@ def test_corners_end_with_an_answer(mass, V, phi, k_y):
 class Wild(st.Coulomb):
     """A user's law that breaks down at 1 mm/s of slip."""
 
-    def coefficient(law, v):  # noqa: N805
+    def coefficient(law, v):
         return law.mu_0 if v < 1e-3 else (v - v) / (v - v)
 
-    def slope(law, v):  # noqa: N805
+    def slope(law, v):
         return 0.0
 
 

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import json
-import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple, Self
 
 from pydantic import Field
 
-from stiction.drive import ConstantVelocity
-from stiction.errors import DescriptionError, Fault
 from stiction.friction import LAWS
 from stiction.initial import Initial
-from stiction.slider import Apparatus, Slider
+from stiction.slider import SLIDER_TABLES, Slider
+from stiction.tables import Reader, gather, read_toml
 from stiction.units import Duration, Number, PositiveSpeed, Rate
-from stiction.validation import Described, fields, unknown
+from stiction.validation import Described
 
 
 class Settings(Described):
@@ -56,46 +54,13 @@ class Description(NamedTuple):
         DescriptionError
             Naming every fault with its path, or why the file cannot be read.
         """
-        try:
-            raw = tomllib.loads(Path(path).read_text(encoding="utf-8"))
-        except OSError as error:
-            raise DescriptionError([Fault(str(path), error.strerror or "cannot be read")]) from None
-        except UnicodeDecodeError:
-            message = "is not text in UTF-8; write a description with 'stiction init'"
-            raise DescriptionError([Fault(str(path), message)]) from None
-        except tomllib.TOMLDecodeError as error:
-            message = f"is not TOML: {error}; a value with a unit goes in quotes"
-            raise DescriptionError([Fault(str(path), message)]) from None
-        return cls.from_dict(raw)
+        return cls.from_dict(read_toml(path))
 
     @classmethod
     def from_dict(cls, raw: Mapping[str, Any]) -> Self:
         """Read a description from nested tables, as in the TOML file."""
-        found: list[Fault] = [
-            Fault(name, unknown("table", name, READERS)) for name in raw if name not in READERS
-        ]
-        parts: dict[str, Any] = {}
-        for name, read in READERS.items():
-            table = raw.get(name, {} if name == "initial" else None)
-            if table is None:
-                found.append(Fault(name, f"missing; write a table [{name}]"))
-            elif not isinstance(table, Mapping):
-                found.append(Fault(name, f"must be a table [{name}], is {table!r}"))
-            else:
-                try:
-                    parts[name] = read(dict(table))
-                except DescriptionError as error:
-                    found += [
-                        Fault(".".join([name, *fault.path.split(".")[1:]]), fault.message)
-                        for fault in error.faults
-                    ]
-        if found:
-            raise DescriptionError(found)
-        apparatus: Apparatus = parts["slider"]
-        slider = Slider(
-            **apparatus.model_dump(mode="json"), friction=parts["friction"], drive=parts["drive"]
-        )
-        return cls(slider, parts["initial"], parts["run"])
+        parts = gather(raw, TABLES, optional=("initial",))
+        return cls(Slider.from_parts(parts), parts["initial"], parts["run"])
 
     @classmethod
     def from_json(cls, text: str) -> Self:
@@ -121,27 +86,8 @@ class Description(NamedTuple):
         return json.dumps(self.to_dict())
 
 
-def _friction(table: dict[str, Any]) -> Any:
-    name = table.pop("law", None)
-    if not isinstance(name, str) or name not in LAWS:
-        message = (
-            f"missing; known: {', '.join(LAWS)}"
-            if name is None
-            else unknown("law", str(name), LAWS)
-        )
-        raise DescriptionError([Fault("friction.law", message)])
-    return _made(LAWS[name], table)
-
-
-def _made(kind: type[Any], table: dict[str, Any]) -> Any:
-    checked = fields(kind)(**table)
-    return kind(**checked.model_dump())
-
-
-READERS: dict[str, Callable[[dict[str, Any]], Any]] = {
-    "slider": lambda table: Apparatus(**table),
-    "friction": _friction,
-    "drive": lambda table: _made(ConstantVelocity, table),
+TABLES: dict[str, Reader] = {
+    **SLIDER_TABLES,
     "initial": lambda table: Initial(**table),
     "run": lambda table: Settings(**table),
 }

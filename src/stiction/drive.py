@@ -10,6 +10,7 @@ from __future__ import annotations
 from math import inf
 from typing import Any, NamedTuple, Protocol
 
+from stiction.tables import choose
 from stiction.units import Force, Velocity
 from stiction.validation import validated
 
@@ -91,3 +92,12 @@ class ConstantLoad(NamedTuple):
     def at(load, t: float) -> float:
         """Return W."""
         return load.force
+
+
+DRIVES: dict[str, type[Drive]] = {"constant-velocity": ConstantVelocity}
+
+
+def read_drive(table: dict[str, Any]) -> Drive:
+    """Read a description's table [drive]; without a key ``motion`` the velocity is constant."""
+    drive: Drive = choose(table, "motion", DRIVES, default="constant-velocity")
+    return drive

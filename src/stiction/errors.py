@@ -32,6 +32,7 @@ class DescriptionError(StictionError, ValueError):
     """
 
     def __init__(self, faults: Sequence[Fault]) -> None:
+        """Join the faults to one message, a line each."""
         self.faults = tuple(faults)
         super().__init__("\n".join(str(fault) for fault in self.faults))
 

@@ -111,4 +111,5 @@ def sample_times(start: float, duration: float, rate: float | None) -> np.ndarra
     if rate is None:
         return np.array([start, end])
     times: np.ndarray = start + np.arange(int(duration * rate * (1 + 1e-12)) + 1) / rate
-    return np.minimum(times, end)
+    clipped: np.ndarray = np.minimum(times, end)
+    return clipped

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import cos, pi, sin
 from pathlib import Path
 from typing import Annotated, Any, Self
 
 from pydantic import AfterValidator
 
-from stiction.drive import ConstantLoad, ConstantVelocity, Drive, Load
-from stiction.friction import FrictionLaw
+from stiction.drive import ConstantLoad, ConstantVelocity, Drive, Load, read_drive
+from stiction.friction import FrictionLaw, read_law
+from stiction.tables import Reader, gather, read_toml
 from stiction.units import Angle, Damping, Force, Mass, Stiffness
 from stiction.validation import Described
 
@@ -140,7 +142,23 @@ class Slider(Apparatus):
 
     @classmethod
     def from_toml(cls, path: str | Path) -> Slider:
-        """Read the slider of a description file; see `Description` for the whole of it."""
-        from stiction.description import Description
+        """Read the slider of a description file; `Description` reads the whole of it."""
+        raw = read_toml(path)
+        return cls.from_parts(
+            gather({name: raw[name] for name in raw if name in SLIDER_TABLES}, SLIDER_TABLES)
+        )
 
-        return Description.from_toml(path).slider
+    @classmethod
+    def from_parts(cls, parts: Mapping[str, Any]) -> Slider:
+        """Put together what the readers in `SLIDER_TABLES` returned."""
+        apparatus: Apparatus = parts["slider"]
+        return cls(
+            **apparatus.model_dump(mode="json"), friction=parts["friction"], drive=parts["drive"]
+        )
+
+
+SLIDER_TABLES: dict[str, Reader] = {
+    "slider": lambda table: Apparatus(**table),
+    "friction": read_law,
+    "drive": read_drive,
+}

@@ -82,7 +82,7 @@ def _parse(text: str, kind: Kind) -> float:
 
 def _fault(message: str) -> PydanticCustomError:
     # braces would be read as fields of a template
-    return PydanticCustomError("unit", message.replace("{", "(").replace("}", ")"))  # type: ignore[arg-type]
+    return PydanticCustomError("unit", message.replace("{", "(").replace("}", ")"))
 
 
 def reader(name: str, unit: str, example: str) -> BeforeValidator:

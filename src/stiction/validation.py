@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from difflib import get_close_matches
 from functools import cache
 from inspect import signature
-from typing import Any, TypeVar, get_type_hints
+from typing import Any, TypeVar, cast, get_type_hints
 
 from pydantic import BaseModel, ConfigDict, ValidationError, create_model
 from pydantic_core import ErrorDetails
@@ -22,6 +22,7 @@ class Described(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
 
     def __init__(self, **values: Any) -> None:
+        """Validate, or raise every fault at once."""
         collect(type(self).__name__, super().__init__, type(self).model_fields, values)
 
 
@@ -76,15 +77,16 @@ def unknown(what: str, name: str, known: Iterable[str]) -> str:
 
 
 @cache
-def fields(kind: type[Any]) -> type[Described]:
+def fields(kind: Any) -> type[Described]:
     """Return the model that validates the parameters of a NamedTuple `kind`."""
     hints = get_type_hints(kind, include_extras=True)
     defaults = kind._field_defaults
-    return create_model(
+    model: type[Described] = create_model(  # type: ignore[call-overload]
         kind.__name__,
         __base__=Described,
         **{name: (hints[name], defaults.get(name, ...)) for name in kind._fields},
     )
+    return model
 
 
 def validated(kind: type[T]) -> type[T]:
@@ -101,7 +103,7 @@ def validated(kind: type[T]) -> type[T]:
         given = dict(zip(names, args, strict=False)) | values
         if len(args) > len(names):
             raise TypeError(f"{kind.__name__} takes {', '.join(names)}")
-        model = fields(kind)(**given)
+        model = fields(cast(Any, kind))(**given)
         made: T = plain(cls, **{name: getattr(model, name) for name in names})
         return made
 

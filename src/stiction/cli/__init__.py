@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from importlib import import_module
 
 import cyclopts
 from rich.console import Console
@@ -22,8 +23,9 @@ app = cyclopts.App(
     ),
     help_format="markdown",
 )
-for _name in ("init", "run", "plot", "paper"):
-    app.command(f"stiction.cli.{_name}:{_name}", name=_name)
+COMMANDS = ("paper", "init", "run", "plot")
+for _name in COMMANDS:  # light modules: what is heavy they import when they are called
+    app.command(getattr(import_module(f"stiction.cli.{_name}"), _name))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -7,13 +7,23 @@ is one file here and one line in `LAWS`.
 
 from __future__ import annotations
 
+from typing import Any
+
 from stiction.friction.coulomb import Coulomb
 from stiction.friction.exponential_weakening import ExponentialWeakening
 from stiction.friction.law import FrictionLaw
+from stiction.tables import choose
 
 LAWS: dict[str, type[FrictionLaw]] = {
     "coulomb": Coulomb,
     "exponential-weakening": ExponentialWeakening,
 }
 
-__all__ = ["LAWS", "Coulomb", "ExponentialWeakening", "FrictionLaw"]
+
+def read_law(table: dict[str, Any]) -> FrictionLaw:
+    """Read a description's table [friction]."""
+    law: FrictionLaw = choose(table, "law", LAWS)
+    return law
+
+
+__all__ = ["LAWS", "Coulomb", "ExponentialWeakening", "FrictionLaw", "read_law"]

@@ -23,8 +23,8 @@ def figure4(run: Trajectory) -> Figure:
     transverse natural frequency omega_y/2 pi is marked: the oscillation starts there and
     falls towards each slip.
 
-    Sampling folds frequencies above half the sample rate back into view: the faint lines that
-    climb in (d) of a run sampled at 10 kHz are high harmonics of the oscillation.
+    Sampling folds what lies above half the sample rate back into view. At 10 kHz the folded
+    harmonics are below the colour scale; at much lower rates they are not.
 
     Parameters
     ----------
@@ -48,6 +48,7 @@ def figure4(run: Trajectory) -> Figure:
             mark_frequency(spectrum, natural, r"$\omega_y/2\pi$")
         for ax, letter in zip(axes, "abcd", strict=True):
             panel_letter(ax, letter)
+            ax.locator_params(axis="y", nbins=3)
         _magnify_stick(axes[0], run)
         axes[-1].set_xlabel("time $t$ (s)")
         bar = fig.colorbar(mesh, ax=axes, location="bottom", extend="both", aspect=35, pad=0.01)
@@ -61,7 +62,7 @@ def _magnify_stick(ax: Axes, run: Trajectory) -> Axes:
     start, end = float(run.data["time"][0]), first_slip_time(run)
     stick = run.data["v_x"].sel(time=slice(start, start + 0.98 * (end - start)))
     factor, prefix = prefixed(stick.values)
-    inset = ax.inset_axes((0.12, 0.2, 0.25, 0.52))
+    inset = ax.inset_axes((0.14, 0.2, 0.25, 0.52))
     draw_line(inset, stick["time"].values, stick.values * factor, RED)
     inset.set_ylabel(f"{prefix}m/s", fontsize=7, labelpad=1)
     inset.margins(y=0.15)

@@ -23,6 +23,7 @@ from stiction.simulation import simulate
 from stiction.trajectory import Trajectory
 
 DURATION, RATE = 5.0, 10e3  # Fig. 3's time axis; Fig. 4 needs some samples a transverse period
+RTOL = 1e-9  # every digit of the reference values
 WINDOW = (0.500, 0.504)  # four transverse periods in the middle of the first stick phase
 FINE = 1e6
 
@@ -59,7 +60,11 @@ def reproduce(
     if figure == 5:
         return save(figure5(slider), folder / "figure-5"), None
     run = simulate(
-        slider, DURATION, sample_rate=RATE, progress=lambda fraction: report(0.3 * fraction)
+        slider,
+        DURATION,
+        sample_rate=RATE,
+        rtol=RTOL,
+        progress=lambda fraction: report(0.3 * fraction),
     )
     drawings: dict[str, Callable[[], Figure]] = {
         "figure-1-and-2": lambda: schematic(slider),
@@ -78,7 +83,7 @@ def reproduce(
     if figure is not None:
         return written, None
     constant = slider.replace(friction=Coulomb(mu_0=slider.law.coefficient(0.0)))
-    table = Table(numbers(run, simulate(constant, 2 * DURATION, sample_rate=RATE)))
+    table = Table(numbers(run, simulate(constant, 2 * DURATION, sample_rate=RATE, rtol=RTOL)))
     report(1.0)
     return [*written, *table.save(folder)], table
 
@@ -86,4 +91,4 @@ def reproduce(
 def finely(run: Trajectory) -> Trajectory:
     """Return the window of zero slip, restarted from a sample of `run` and sampled finely."""
     start, end = WINDOW
-    return simulate(run.slider, end - start, sample_rate=FINE, initial=run.state(start))
+    return simulate(run.slider, end - start, sample_rate=FINE, rtol=RTOL, initial=run.state(start))

@@ -72,7 +72,8 @@ class Table:
     def save(self, folder: Path) -> list[Path]:
         """Write ``numbers.txt``, ``.md`` and ``.json`` to `folder`; return their paths."""
         entries = [
-            asdict(n) | {"computed": float(n.computed), "deviation": float(n.deviation)}
+            asdict(n)
+            | {"computed": float(n.computed), "deviation": float(n.deviation)}
             | {"agrees": bool(n.agrees)}
             for n in self.numbers
         ]

@@ -76,6 +76,7 @@ def draw_friction_arc(
     ax.plot(*arc.T, color=GREY, linewidth=0.8, zorder=1)
     ax.set(xlim=limits[0], ylim=limits[1])
     _name_axes(ax)
+    ax.locator_params(nbins=4)
     return slip, stick
 
 

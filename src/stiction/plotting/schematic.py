@@ -103,9 +103,9 @@ def _draw_spring(ax: Axes, lab: Placement, slider: Slider) -> list[Points]:
 def _draw_drive(ax: Axes, lab: Placement, phi: float, velocity: float) -> list[Points]:
     """Draw the drive direction X and, where there is one, the velocity of the bracket."""
     start = _reach(phi) + 0.1
-    X = lab(np.array([polar(start, phi), polar(start + 2.2, phi)]))
+    X = lab([polar(start, phi), polar(start + 2.2, phi)])
     names = ["$X$"] + [f"${axis}$" for axis in "xy" if _coincide(axis, phi)]
-    shapes.line(ax, lab([(0, 0), polar(-BACK, phi)]), BLUE, 0.7, "-.", zorder=1)
+    shapes.line(ax, lab([np.zeros(2), polar(-BACK, phi)]), BLUE, 0.7, "-.", zorder=1)
     _draw_axis(ax, X, ", ".join(names), BLUE)
     if velocity:
         ends = lab([polar(start, phi), polar(start + 1.4, phi)])

@@ -80,10 +80,10 @@ def new_figure(width: float, height: float) -> Figure:
 
 def panel_letter(ax: Axes, letter: str) -> None:
     """Write ``(letter)`` beside the upper left corner of the axes."""
-    text = ax.annotate(
+    ax.annotate(
         f"({letter})",
         (0, 1),
-        (-18, 2),
+        (-17, 2),
         xycoords="axes fraction",
         textcoords="offset points",
         ha="right",
@@ -91,7 +91,6 @@ def panel_letter(ax: Axes, letter: str) -> None:
         fontweight="bold",
         fontsize=8,
     )
-    text.set_in_layout(False)  # it stands where there are no tick labels, and needs no more room
 
 
 def quantity(value: float, unit: str) -> str:

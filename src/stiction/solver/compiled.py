@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import os
+import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
 from numba.core import config
@@ -36,45 +37,72 @@ def inlined(function: F) -> F:
     return _compile(function, inline=True)
 
 
-def _compile(function: F, inline: bool) -> F:
-    def jit(keep: bool) -> F:
-        made: F = numba.njit(
-            cache=keep, nogil=True, error_model="numpy", fastmath=FAST, forceinline=inline
-        )(function)
-        return made
+@cache
+def specialised(function: Any, *kinds: type) -> Any:
+    """Return the compiled `function` to call with arguments of these types.
 
-    with _cache_directory():
+    The package's own types share one cache. Another law or drive has a cache to itself, named
+    after the content of its file: an edit there is seen, and a process that does not know the
+    law never meets it. What has no file, as in a prompt, is compiled anew in each process.
+    """
+    own = {kind.__module__ for kind in kinds if not kind.__module__.startswith("stiction.")}
+    if not own:
+        return function
+    try:
+        digest = hashlib.sha256(b"".join(_source(module) for module in sorted(own)))
+    except OSError:
+        return _jit(function.py_func, inline=False, keep=False)
+    return _compile(function.py_func, inline=False, name=f"own-{digest.hexdigest()[:16]}")
+
+
+def _source(module: str) -> bytes:
+    file = getattr(sys.modules.get(module), "__file__", None)
+    if file is None:
+        raise OSError(f"{module} has no file")
+    return Path(file).read_bytes()
+
+
+def _compile(function: F, inline: bool, name: str = "") -> F:
+    with _cache_directory(name):
         try:
-            return jit(True)
+            return _jit(function, inline, keep=True)
         except RuntimeError:  # no directory can be written
-            return jit(False)
+            return _jit(function, inline, keep=False)
+
+
+def _jit(function: F, inline: bool, keep: bool) -> F:
+    made: Any = numba.njit(
+        cache=keep, nogil=True, error_model="numpy", fastmath=FAST, forceinline=inline
+    )(function)
+    return cast(F, made)
 
 
 @contextmanager
-def _cache_directory() -> Iterator[None]:
-    """Point numba's cache at a writable directory of our own, unless the user chose one."""
-    if os.environ.get("NUMBA_CACHE_DIR"):
-        yield
-        return
-    before = config.CACHE_DIR
-    config.CACHE_DIR = str(_directory())
+def _cache_directory(name: str) -> Iterator[None]:
+    """Point numba's cache at a writable directory of our own, while a function is decorated."""
+    settings: Any = config
+    before = settings.CACHE_DIR
+    settings.CACHE_DIR = str(_directory() / name)
     try:
         yield
     finally:
-        config.CACHE_DIR = before
+        settings.CACHE_DIR = before
 
 
 @cache
 def _directory() -> Path:
+    """Return where to keep machine code: below ``NUMBA_CACHE_DIR`` if that is set."""
     name = f"compiled-{_fingerprint()}"
-    for root in (user_cache_path("stiction"), Path(tempfile.gettempdir()) / "stiction"):
+    chosen = os.environ.get("NUMBA_CACHE_DIR")
+    fallback = Path(tempfile.gettempdir()) / "stiction"
+    for root in (Path(chosen) if chosen else user_cache_path("stiction"), fallback):
         try:
             (root / name).mkdir(parents=True, exist_ok=True)
         except OSError:
             continue
         if os.access(root / name, os.W_OK):
             return root / name
-    return root / name
+    return fallback / name
 
 
 @cache
@@ -86,7 +114,7 @@ def _fingerprint() -> str:
     """
     package = Path(__file__).parent.parent
     files = [package / "drive.py", *(package / "friction").glob("*.py")]
-    files += (package / "solver").glob("*.py")
+    files += [file for file in (package / "solver").glob("*.py") if file.stem != "twin"]
     digest = hashlib.sha256()
     for file in sorted(files):
         digest.update(file.read_bytes())

@@ -11,6 +11,7 @@ import numpy as np
 from stiction.description import Description
 from stiction.slider import Slider
 from stiction.solver import loop, regularised
+from stiction.solver.compiled import specialised
 from stiction.solver.frame import friction
 from stiction.solver.problem import Problem, problem
 from stiction.solver.sampling import COLUMNS
@@ -42,7 +43,7 @@ def tolerance(rtol: float) -> float:
     then proportional to rtol. The factor is measured on Fig. 3 over 5 s, where the relative
     error of u_x comes out at a third of rtol.
     """
-    return 1.26 * rtol**0.8
+    return 1.26 * float(rtol**0.8)
 
 
 def speed_scale(slider: Slider) -> float:
@@ -70,6 +71,9 @@ def integrate(
     end = initial.time + settings.duration
     local, speed = tolerance(settings.rtol), speed_scale(slider)
     delta = settings.regularisation
+    kinds = (type(system.law), type(system.drive), type(system.load))
+    exact = specialised(loop.advance, *kinds)
+    smooth = specialised(regularised.advance, *kinds)
     samples, sticks, k, used = np.empty((len(times), COLUMNS)), np.empty((256, 2)), 0, 0
     code = RUNNING
     while code == RUNNING:
@@ -77,14 +81,14 @@ def integrate(
         if budget <= 0:
             code = TOO_MANY_STEPS
         elif delta is None:
-            code, state, k, turns = loop.advance(
+            code, state, k, turns = exact(
                 system, state, end, local, speed, budget, times, samples, k, sticks
             )
             used += turns
             if state.counts.sticks == len(sticks):
                 sticks = np.concatenate([sticks, np.empty_like(sticks)])
         else:
-            code, state, k, turns = regularised.advance(
+            code, state, k, turns = smooth(
                 system, delta, state, end, local, speed, budget, times, samples, k
             )
             used += turns

@@ -50,7 +50,7 @@ DEFECT_WEIGHT = 0.18
 _NODES = (0.0, *C)
 VALUE = tuple(float(_lagrange(_NODES, i)(INTERIOR)) for i in range(4))
 DERIVATIVE = tuple(float(_lagrange(_NODES, i).deriv()(INTERIOR)) for i in range(4))
-INTEGRAL = tuple(float(_lagrange(C, i).integ()(INTERIOR)) for i in range(3))
+INTEGRAL = _triple(np.array([_lagrange(C, i).integ()(INTERIOR) for i in range(3)]))
 
 _W0 = -1 / (C[0] * C[1])
 _W1 = 1 / (C[0] * (C[0] - C[1]) * (C[0] - 1))

@@ -188,9 +188,9 @@ def local_error(
 @inlined
 def predicted(start: Motion, h: float, memory: Memory) -> tuple[Triple, Triple]:
     """Return a first guess of the stages."""
+    x0, y0 = start.r * start.e_x, start.r * start.e_y
     if not memory.warm:
-        x, y = start.r * start.e_x, start.r * start.e_y
-        return (x, x, x), (y, y, y)
+        return (x0, x0, x0), (y0, y0, y0)
     q = h / memory.h_last
     c = (1.0 + C[0] * q, 1.0 + C[1] * q, 1.0 + C[2] * q)
     x, y = memory.p, memory.w

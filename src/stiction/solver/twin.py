@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 from stiction.drive import ConstantLoad, ConstantVelocity
 from stiction.initial import Initial
@@ -211,47 +212,64 @@ def slip(
         dr/dt = a . (cos theta, sin theta) - F(r)/m
         r dtheta/dt = a . (-sin theta, cos theta)
 
-    Friction slows the slip down but cannot turn it. Beside r and theta, the distance slid
-    since the phase began is integrated, and the elongation is what the drive has pulled
-    less what has been slid: u itself hardly changes in a phase, and a tolerance relative
-    to it would not see the transverse motion.
+    Friction slows the slip down but cannot turn it. The direction follows a at the rate
+    |a|/r, without bound as r vanishes; hence a clock that ticks with the slip, dt = r dn.
+    Beside time, r and theta, the distance slid since the phase began is integrated: u, which
+    is what the drive has pulled less what has been slid, hardly changes in a phase, and a
+    tolerance relative to it would not see the transverse motion.
     """
 
-    def motion_of(at: float, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        slid, r, theta = y[:2], y[2], y[3]
-        direction = np.array([np.cos(theta), np.sin(theta)])
-        return u + equations.drive * (at - t) - slid, r * direction
+    def motion_of(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        elapsed, slid, r, theta = y[0], y[1:3], y[3], y[4]
+        e = np.array([np.cos(theta), np.sin(theta)])
+        return u + equations.drive * elapsed - slid, r * e
 
-    def change(at: float, y: np.ndarray) -> np.ndarray:
-        slipping = motion_of(at, y)
-        a, (r, theta) = equations.pull(*slipping), y[2:]
-        along = a[0] * np.cos(theta) + a[1] * np.sin(theta)
-        across = a[1] * np.cos(theta) - a[0] * np.sin(theta)
-        return np.array([*slipping[1], along - equations.friction(r), across / r])
+    def change(_: float, y: np.ndarray) -> np.ndarray:
+        now_u, now_s = motion_of(y)
+        a, r, e = equations.pull(now_u, now_s), y[3], now_s / y[3]
+        along, across = a @ e, e[0] * a[1] - e[1] * a[0]
+        return np.array([r, *(r * now_s), r * (along - equations.friction(r)), across])
 
-    def vanishing(at: float, y: np.ndarray) -> float:
-        return float(y[2] - VANISHING * equations.speed)
+    def vanishing(_: float, y: np.ndarray) -> float:
+        return float(y[3] / (VANISHING * equations.speed) - 1)
+
+    def over(_: float, y: np.ndarray) -> float:
+        return float(y[0] - (end - t))
 
     vanishing.terminal, vanishing.direction = True, -1  # type: ignore[attr-defined]
+    over.terminal = True  # type: ignore[attr-defined]
     distance = equations.speed / equations.rate
     solution = solve_ivp(
         change,
-        (t, end),
-        [0.0, 0.0, np.hypot(*s), np.arctan2(s[1], s[0])],
-        method="LSODA",
-        events=vanishing,
+        (0.0, np.inf),
+        [0.0, 0.0, 0.0, np.hypot(*s), np.arctan2(s[1], s[0])],
+        method=METHOD,
+        events=(vanishing, over),
         dense_output=True,
         rtol=rtol,
-        atol=rtol * np.array([distance, distance, equations.speed, 1.0]),
+        atol=rtol * np.array([1e-3 / equations.rate, distance, distance, equations.speed, 1.0]),
     )
     if not solution.success:
-        raise ArithmeticError(f"LSODA at t = {solution.t[-1]:g} s: {solution.message}")
-    return Phase(float(solution.t[-1]), lambda at: motion_of(at, solution.sol(at)))
+        raise ArithmeticError(f"after t = {t:g} s: {solution.message}")
+    global NFEV
+    NFEV += solution.nfev
+    last = solution.t[-1]
+
+    def motion(at: float) -> tuple[np.ndarray, np.ndarray]:
+        elapsed = at - t
+        if elapsed >= solution.y[0, -1]:
+            return motion_of(solution.y[:, -1])
+        n = brentq(lambda n: solution.sol(n)[0] - elapsed, 0.0, last, xtol=1e-300, rtol=1e-15)
+        return motion_of(solution.sol(n))
+
+    return Phase(end if solution.t_events[1].size else t + float(solution.y[0, -1]), motion)
 
 
-def landing(
-    equations: Equations, t: float, end: float, u: np.ndarray, s: np.ndarray
-) -> Phase:
+METHOD = "LSODA"
+NFEV = 0
+
+
+def landing(equations: Equations, t: float, end: float, u: np.ndarray, s: np.ndarray) -> Phase:
     """Landing: s' = a - f s/|s| with constant a and f, the classical pursuit curve.
 
     From d/dt (f r + a.s) = |a|^2 - f^2 zero slip follows after r (f + a.e)/(f^2 - |a|^2),
