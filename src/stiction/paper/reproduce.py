@@ -23,7 +23,7 @@ from stiction.simulation import simulate
 from stiction.trajectory import Trajectory
 
 DURATION, RATE = 5.0, 10e3  # Fig. 3's time axis; Fig. 4 needs some samples a transverse period
-RTOL = 1e-9  # every digit of the reference values
+RTOL = 1e-11  # every digit of the reference values
 WINDOW = (0.500, 0.504)  # four transverse periods in the middle of the first stick phase
 FINE = 1e6
 

@@ -25,16 +25,17 @@ FAST = {"contract", "arcp", "nsz"}
 
 def compiled(function: F) -> F:
     """Compile an entry point: cached on disk, without the GIL."""
-    return _compile(function, inline=False)
+    return _kept(function, "")
 
 
 def inlined(function: F) -> F:
     """Compile a piece of the loop, and have it merged into whatever compiled code calls it.
 
     Without this the compiler keeps the larger pieces apart and passes their many numbers
-    through memory, which takes 1.7 times as long.
+    through memory, which takes 1.7 times as long. It is kept on disk as a part of what
+    calls it, not by itself.
     """
-    return _compile(function, inline=True)
+    return _jit(function, inline=True, keep=False)
 
 
 @cache
@@ -43,7 +44,8 @@ def specialised(function: Any, *kinds: type) -> Any:
 
     The package's own types share one cache. Another law or drive has a cache to itself, named
     after the content of its file: an edit there is seen, and a process that does not know the
-    law never meets it. What has no file, as in a prompt, is compiled anew in each process.
+    law never meets it. What stands in a prompt or in the script itself is compiled anew in
+    each process.
     """
     own = {kind.__module__ for kind in kinds if not kind.__module__.startswith("stiction.")}
     if not own:
@@ -52,22 +54,22 @@ def specialised(function: Any, *kinds: type) -> Any:
         digest = hashlib.sha256(b"".join(_source(module) for module in sorted(own)))
     except OSError:
         return _jit(function.py_func, inline=False, keep=False)
-    return _compile(function.py_func, inline=False, name=f"own-{digest.hexdigest()[:16]}")
+    return _kept(function.py_func, f"own-{digest.hexdigest()[:16]}")
 
 
 def _source(module: str) -> bytes:
     file = getattr(sys.modules.get(module), "__file__", None)
-    if file is None:
-        raise OSError(f"{module} has no file")
+    if file is None or module == "__main__":  # its types are new ones in each process
+        raise OSError(f"{module} has no file to name them by")
     return Path(file).read_bytes()
 
 
-def _compile(function: F, inline: bool, name: str = "") -> F:
+def _kept(function: F, name: str) -> F:
     with _cache_directory(name):
         try:
-            return _jit(function, inline, keep=True)
+            return _jit(function, inline=False, keep=True)
         except RuntimeError:  # no directory can be written
-            return _jit(function, inline, keep=False)
+            return _jit(function, inline=False, keep=False)
 
 
 def _jit(function: F, inline: bool, keep: bool) -> F:

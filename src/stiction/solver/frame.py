@@ -26,57 +26,81 @@ from stiction.solver.problem import (
     slope,
     travel,
 )
+from stiction.solver.state import Motion
 
 
 class Frame(NamedTuple):
-    """Start of a step in its own axes.
+    """The axes of a step: direction e, the laboratory's X in them, tensors over mass.
 
-    Direction e, and the laboratory's X in the axes; at the start the slip speed r, the
-    elongation (u_x, u_y) and the spring's acceleration along and across e; stiffness and
-    damping tensors over mass.
+    Also the step's start: time, elongation (u_x, u_y), slip speed r, and the spring's
+    acceleration along and across e.
     """
 
     e_x: float
     e_y: float
     X_1: float
     X_2: float
-    r: float
-    u_x: float
-    u_y: float
-    spring_1: float
-    spring_2: float
     k_11: float
     k_12: float
     k_22: float
     c_11: float
     c_12: float
     c_22: float
+    t: float
+    u_x: float
+    u_y: float
+    r: float
+    spring_1: float
+    spring_2: float
+
+
+class Outset(NamedTuple):
+    """What acts at a step's start: acceleration a along and across e, and its rate of change
+    with the drive alone; friction over mass and its slope."""
+
+    a_1: float
+    a_2: float
+    da_1: float
+    da_2: float
+    f: float
+    gradient: float
 
 
 @inlined
-def frame_of(problem: Problem, u_x: float, u_y: float, r: float, e_x: float, e_y: float) -> Frame:
-    """Return the axes along (e_x, e_y) at elongation u and slip speed r."""
+def frame_of(problem: Problem, motion: Motion) -> Frame:
+    """Return the axes along the slip direction."""
     s = problem.system
-    k_x, k_y, c_x, c_y = s.k_x / s.mass, s.k_y / s.mass, s.c_x / s.mass, s.c_y / s.mass
+    _, u_x, u_y, r, e_x, e_y = motion
+    per_mass = 1.0 / s.mass
+    k_x, k_y, c_x, c_y = s.k_x * per_mass, s.k_y * per_mass, s.c_x * per_mass, s.c_y * per_mass
     xx, xy, yy = e_x * e_x, e_x * e_y, e_y * e_y
     return Frame(
         e_x,
         e_y,
         s.cos_phi * e_x + s.sin_phi * e_y,
         s.sin_phi * e_x - s.cos_phi * e_y,
-        r,
-        u_x,
-        u_y,
-        # from the forces: rotating u would let rounding of u_x into the stiff direction
-        k_x * u_x * e_x + k_y * u_y * e_y,
-        k_y * u_y * e_x - k_x * u_x * e_y,
         k_x * xx + k_y * yy,
         (k_y - k_x) * xy,
         k_y * xx + k_x * yy,
         c_x * xx + c_y * yy,
         (c_y - c_x) * xy,
         c_y * xx + c_x * yy,
+        motion.t,
+        u_x,
+        u_y,
+        r,
+        # from the forces: rotating u would let rounding of u_x into the stiff direction
+        k_x * u_x * e_x + k_y * u_y * e_y,
+        k_y * u_y * e_x - k_x * u_x * e_y,
     )
+
+
+@inlined
+def outset(problem: Problem, frame: Frame) -> Outset:
+    """Return what acts at the start of a step."""
+    b_1, b_2, db_1, db_2 = pull(problem, frame, 0.0)
+    f, gradient = friction(problem, frame.t, frame.r)
+    return Outset(b_1 - frame.c_11 * frame.r, b_2 - frame.c_12 * frame.r, db_1, db_2, f, gradient)
 
 
 @inlined
@@ -87,12 +111,13 @@ def in_frame(frame: Frame, vector: tuple[float, float]) -> tuple[float, float]:
 
 
 @inlined
-def pull(problem: Problem, frame: Frame, t: float, dt: float) -> tuple[float, float, float, float]:
+def pull(problem: Problem, frame: Frame, dt: float) -> tuple[float, float, float, float]:
     """Return the acceleration that the drive alone gives after `dt`, and its rate of change.
 
     The elongation there would be the one at the start plus the drive's travel; what slip
     takes away from it is added by the caller. The rate leaves out the drive's jerk.
     """
+    t = frame.t
     d_1, d_2 = in_frame(frame, travel(problem.drive, t, dt))
     v_1, v_2 = in_frame(frame, rate(problem.drive, t + dt))
     g_1, g_2 = in_frame(frame, rate_change(problem.drive, t + dt))
@@ -120,10 +145,10 @@ def friction(problem: Problem, t: float, r: float) -> tuple[float, float]:
 
 @inlined
 def elongation(
-    problem: Problem, frame: Frame, t: float, dt: float, slid_1: float, slid_2: float
+    problem: Problem, frame: Frame, dt: float, slid_1: float, slid_2: float
 ) -> tuple[float, float]:
     """Return the elongation (x, y) after `dt`, having slid (slid_1, slid_2) in the step's axes."""
-    d_x, d_y = in_principal_axes(problem, travel(problem.drive, t, dt))
+    d_x, d_y = in_principal_axes(problem, travel(problem.drive, frame.t, dt))
     e_x, e_y = frame.e_x, frame.e_y
     return (
         frame.u_x + (d_x - (slid_1 * e_x - slid_2 * e_y)),

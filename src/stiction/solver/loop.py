@@ -8,7 +8,7 @@ import numpy as np
 
 from stiction.solver.blocks import dot
 from stiction.solver.compiled import compiled, inlined
-from stiction.solver.frame import Frame, elongation, frame_of, friction, pull, turned
+from stiction.solver.frame import Frame, Outset, elongation, frame_of, outset, turned
 from stiction.solver.landing import landing_slip, landing_time
 from stiction.solver.newton import products
 from stiction.solver.problem import Problem, in_principal_axes, next_break, travel
@@ -68,21 +68,19 @@ def stick(
 
 @inlined
 def pursuit(
-    problem: Problem, frame: Frame, t: float, tolerance: float, speed: float
+    frame: Frame, start: Outset, tolerance: float, speed: float
 ) -> tuple[float, float, float]:
     """Return the time (s) to landing and the slip until then (m), in closed form.
 
     Infinite unless spring and friction stay constant until then, to a tenth of the tolerance.
     """
     r = frame.r
-    b_1, b_2, db_1, db_2 = pull(problem, frame, t, 0.0)
-    a_1, a_2 = b_1 - frame.c_11 * r, b_2 - frame.c_12 * r
-    f, gradient = friction(problem, t, r)
+    a_1, a_2, da_1, da_2, f, gradient = start
     square = a_1 * a_1 + a_2 * a_2
     if not square < f * f:
         return inf, 0.0, 0.0
     T = landing_time(r, a_1, square, f)
-    jerk = abs(db_1) + abs(db_2) + (frame.k_11 + frame.k_22) * r
+    jerk = abs(da_1) + abs(da_2) + (frame.k_11 + frame.k_22) * r
     relaxation = abs(gradient) + frame.c_11 + frame.c_22
     if T * (T * jerk + relaxation * r) > 0.1 * tolerance * speed and T > 1e-15:
         return inf, 0.0, 0.0
@@ -94,6 +92,7 @@ def pursuit(
 def land(
     problem: Problem,
     frame: Frame,
+    start: Outset,
     state: State,
     closed: tuple[float, float, float],
     times: np.ndarray,
@@ -104,12 +103,12 @@ def land(
     motion, memory, counts = state
     t, r = motion.t, frame.r
     T, slid_1, slid_2 = closed
-    f = friction(problem, t, r)[0] * problem.system.mass
+    f = start.f * problem.system.mass
     while k < len(times) and times[k] < t + T:
         x = (times[k] - t) / T
-        u_x, u_y = elongation(problem, frame, t, x * T, x * slid_1, x * slid_2)
+        u_x, u_y = elongation(problem, frame, x * T, x * slid_1, x * slid_2)
         k = fill(frame, u_x, u_y, r * (1.0 - x), 0.0, f, samples, k)
-    u_x, u_y = elongation(problem, frame, t, T, slid_1, slid_2)
+    u_x, u_y = elongation(problem, frame, T, slid_1, slid_2)
     landed = Motion(t + T, u_x, u_y, 0.0, frame.e_x, frame.e_y)
     return State(landed, cooled(memory, memory.h_takeoff), counts), k
 
@@ -118,6 +117,7 @@ def land(
 def slip(
     problem: Problem,
     frame: Frame,
+    start: Outset,
     state: State,
     t_stop: float,
     tolerance: float,
@@ -130,7 +130,7 @@ def slip(
     motion, memory, counts = state
     t, r = motion.t, motion.r
     done, landing, h, p, w, error, rejected, iterations = step(
-        problem, frame, t, t_stop, memory, tolerance, speed
+        problem, frame, start, t_stop, memory, tolerance, speed
     )
     counts = Counts(
         counts.steps + 1,
@@ -141,9 +141,9 @@ def slip(
     )
     if not done:
         return False, State(motion, memory, counts), k
-    k = sample_slip(problem, frame, t, h, p, w, times, samples, k)
+    k = sample_slip(problem, frame, start, h, p, w, times, samples, k)
     slid_1, slid_2 = h * dot(A[2], p), h * dot(A[2], products(p, w))
-    u_x, u_y = elongation(problem, frame, t, h, slid_1, slid_2)
+    u_x, u_y = elongation(problem, frame, h, slid_1, slid_2)
     e_x, e_y = turned(frame, w[2])
     factor = step_factor(error, GROWTH)
     h_takeoff = memory.h_takeoff
@@ -218,13 +218,16 @@ def advance(
             motion = state.motion
             if motion.t >= t_stop:
                 continue
-        frame = frame_of(problem, motion.u_x, motion.u_y, motion.r, motion.e_x, motion.e_y)
+        frame = frame_of(problem, motion)
+        start = outset(problem, frame)
         if motion.r > 0.0:
-            closed = pursuit(problem, frame, t, tolerance, speed)
+            closed = pursuit(frame, start, tolerance, speed)
             if t + closed[0] < t_stop:
-                state, k = land(problem, frame, state, closed, times, samples, k)
+                state, k = land(problem, frame, start, state, closed, times, samples, k)
                 continue
-        done, state, k = slip(problem, frame, state, t_stop, tolerance, speed, times, samples, k)
+        done, state, k = slip(
+            problem, frame, start, state, t_stop, tolerance, speed, times, samples, k
+        )
         if not done:
             return STEP_UNDERFLOW, state, k, turn
     return RUNNING, state, k, budget

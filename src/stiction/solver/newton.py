@@ -15,7 +15,6 @@ ITERATIONS = 10
 def solve(
     problem: Problem,
     frame: Frame,
-    t: float,
     h: float,
     landing: bool,
     p: Triple,
@@ -27,8 +26,8 @@ def solve(
 
     Parameters
     ----------
-    problem, frame, t, h
-        The system, the step's axes, its start (s) and its size (s).
+    problem, frame, h
+        The system, the step's axes and its size (s).
     landing : bool
         Whether the step ends at zero slip; its size is then found, from `h` on.
     p, w : triple of float
@@ -45,9 +44,9 @@ def solve(
     The first Jacobian is exact and kept while it contracts. One exact iteration squares
     the (relative) error, hence the test on the first correction's square.
     """
-    s0 = stage(problem, frame, t, h, 0, p, w, products(p, w))
-    s1 = stage(problem, frame, t, h, 1, p, w, products(p, w))
-    s2 = stage(problem, frame, t, h, 2, p, w, products(p, w))
+    s0 = stage(problem, frame, h, 0, p, w, products(p, w))
+    s1 = stage(problem, frame, h, 1, p, w, products(p, w))
+    s2 = stage(problem, frame, h, 2, p, w, products(p, w))
     m = factors(frame, h, landing, p, w, s0, s1, s2)
     last = 1.0
     for iteration in range(1, ITERATIONS + 1):
@@ -74,9 +73,9 @@ def solve(
             return True, p, w, h, iteration
         if iteration > 3 and rate > 1.0:
             return False, p, w, h, iteration
-        s0 = stage(problem, frame, t, h, 0, p, w, products(p, w))
-        s1 = stage(problem, frame, t, h, 1, p, w, products(p, w))
-        s2 = stage(problem, frame, t, h, 2, p, w, products(p, w))
+        s0 = stage(problem, frame, h, 0, p, w, products(p, w))
+        s1 = stage(problem, frame, h, 1, p, w, products(p, w))
+        s2 = stage(problem, frame, h, 2, p, w, products(p, w))
         if rate > 0.1:
             m = factors(frame, h, landing, p, w, s0, s1, s2)
         last = size

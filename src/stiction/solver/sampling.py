@@ -16,7 +16,7 @@ import numpy as np
 
 from stiction.solver.blocks import Triple, dot
 from stiction.solver.compiled import inlined
-from stiction.solver.frame import Frame, elongation, friction, pull
+from stiction.solver.frame import Frame, Outset, elongation, friction
 from stiction.solver.problem import Problem, in_principal_axes, travel
 from stiction.solver.radau import A, cubic
 from stiction.solver.slip import stage
@@ -68,7 +68,7 @@ def sample_stick(
 def sample_slip(
     problem: Problem,
     frame: Frame,
-    t: float,
+    start: Outset,
     h: float,
     p: Triple,
     w: Triple,
@@ -78,11 +78,9 @@ def sample_slip(
 ) -> int:
     """Fill the samples of an accepted slip step; return the next index."""
     q = (p[0] * w[0], p[1] * w[1], p[2] * w[2])
-    r = frame.r
-    b_1, b_2, _, _ = pull(problem, frame, t, 0.0)
-    first_1 = b_1 - frame.c_11 * r - friction(problem, t, r)[0]
-    first_2 = b_2 - frame.c_12 * r
-    end = stage(problem, frame, t, h, 2, p, w, q)
+    t, r = frame.t, frame.r
+    first_1, first_2 = start.a_1 - start.f, start.a_2
+    end = stage(problem, frame, h, 2, p, w, q)
     last_1, last_2 = end.a_1 - end.f * end.g, end.a_2 - end.f * end.g * w[2]
     slid_1, slid_2 = h * dot(A[2], p), h * dot(A[2], q)
     while k < len(times) and times[k] <= t + h:
@@ -90,7 +88,7 @@ def sample_slip(
         x = dt / h
         z_1, s_1 = quintic(h, x, r, first_1, slid_1, p[2], last_1)
         z_2, s_2 = quintic(h, x, 0.0, first_2, slid_2, q[2], last_2)
-        u_x, u_y = elongation(problem, frame, t, dt, z_1, z_2)
+        u_x, u_y = elongation(problem, frame, dt, z_1, z_2)
         speed = sqrt(s_1 * s_1 + s_2 * s_2)
         slope = cubic((0.0, w[0], w[1], w[2]), x)
         force = friction(problem, times[k], speed)[0] * problem.system.mass

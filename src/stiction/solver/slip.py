@@ -34,7 +34,6 @@ class Stage(NamedTuple):
 def stage(
     problem: Problem,
     frame: Frame,
-    t: float,
     h: float,
     i: int,
     p: Triple,
@@ -43,7 +42,7 @@ def stage(
 ) -> Stage:
     """Evaluate stage `i`; q = p w."""
     slid_1, slid_2 = dot(A[i], p), dot(A[i], q)
-    b_1, b_2, db_1, db_2 = pull(problem, frame, t, C[i] * h)
+    b_1, b_2, db_1, db_2 = pull(problem, frame, C[i] * h)
     da_1 = C[i] * db_1 - frame.k_11 * slid_1 - frame.k_12 * slid_2
     da_2 = C[i] * db_2 - frame.k_12 * slid_1 - frame.k_22 * slid_2
     p_i, w_i, q_i = p[i], w[i], q[i]
@@ -53,7 +52,7 @@ def stage(
     a_2 -= frame.c_12 * p_i + frame.c_22 * q_i
     square = 1.0 + w_i * w_i
     g = 1.0 / sqrt(square)
-    f, gradient = friction(problem, t + C[i] * h, p_i * square * g)
+    f, gradient = friction(problem, frame.t + C[i] * h, p_i * square * g)
     dp = dot(D[i], (p[0] - frame.r, p[1] - frame.r, p[2] - frame.r))
     residual_p = dp - h * (a_1 - f * g)
     residual_w = p_i * dot(D[i], w) - h * (a_2 - w_i * a_1)

@@ -6,7 +6,7 @@ from math import inf, sqrt
 
 from stiction.solver.blocks import Triple, dot
 from stiction.solver.compiled import inlined
-from stiction.solver.frame import Frame, friction, pull
+from stiction.solver.frame import Frame, Outset, friction, pull
 from stiction.solver.newton import products, solve
 from stiction.solver.problem import Problem
 from stiction.solver.radau import (
@@ -26,12 +26,11 @@ ATTEMPTS = 100
 
 
 @inlined
-def time_to_landing(problem: Problem, frame: Frame, t: float) -> float:
+def time_to_landing(frame: Frame, start: Outset) -> float:
     """Return when the slip speed would vanish, from its first two derivatives, in s."""
     r = frame.r
-    b_1, _, db_1, _ = pull(problem, frame, t, 0.0)
-    change = b_1 - frame.c_11 * r - friction(problem, t, r)[0]
-    curvature = db_1 - frame.k_11 * r
+    change = start.a_1 - start.f
+    curvature = start.da_1 - frame.k_11 * r
     square = change * change - 2 * r * curvature
     if square <= 0.0:
         return inf
@@ -42,9 +41,7 @@ def time_to_landing(problem: Problem, frame: Frame, t: float) -> float:
 
 
 @inlined
-def predicted(
-    problem: Problem, frame: Frame, t: float, h: float, memory: Memory
-) -> tuple[Triple, Triple]:
+def predicted(frame: Frame, start: Outset, h: float, memory: Memory) -> tuple[Triple, Triple]:
     """Return a first guess of the stages (p, w)."""
     if memory.warm:
         x = h / memory.h_last
@@ -53,13 +50,12 @@ def predicted(
         w, turn = memory.w, memory.w[3]
         return p, (cubic(w, c[0]) - turn, cubic(w, c[1]) - turn, cubic(w, c[2]) - turn)
     r = frame.r
-    b_1, _, db_1, db_2 = pull(problem, frame, t, 0.0)
     c = (C[0] * h, C[1] * h, C[2] * h)
     if r == 0.0:  # take-off: |s| grows with t^2, and turns with the force that held
-        a = 0.5 * db_1
-        x = db_2 / b_1
+        a = 0.5 * start.da_1
+        x = start.da_2 / start.a_1
         return (a * c[0] * c[0], a * c[1] * c[1], a * c[2] * c[2]), (x * c[0], x * c[1], x * c[2])
-    change = b_1 - frame.c_11 * r - friction(problem, t, r)[0]
+    change = start.a_1 - start.f
     p = (
         max(r + change * c[0], r * (1 - C[0])),
         max(r + change * c[1], r * (1 - C[1])),
@@ -70,7 +66,7 @@ def predicted(
 
 @inlined
 def local_error(
-    problem: Problem, frame: Frame, t: float, h: float, p: Triple, w: Triple, speed: float
+    problem: Problem, frame: Frame, h: float, p: Triple, w: Triple, speed: float
 ) -> float:
     """Return the largest relative error of the collocation cubic inside the step.
 
@@ -83,11 +79,11 @@ def local_error(
     dp = DERIVATIVE[0] * r + DERIVATIVE[1] * p[0] + DERIVATIVE[2] * p[1] + DERIVATIVE[3] * p[2]
     dw = DERIVATIVE[1] * w[0] + DERIVATIVE[2] * w[1] + DERIVATIVE[3] * w[2]
     slid_1, slid_2 = h * dot(INTEGRAL, p), h * dot(INTEGRAL, products(p, w))
-    b_1, b_2, _, _ = pull(problem, frame, t, dt)
+    b_1, b_2, _, _ = pull(problem, frame, dt)
     a_1 = b_1 - frame.k_11 * slid_1 - frame.k_12 * slid_2 - (frame.c_11 + frame.c_12 * w_in) * p_in
     a_2 = b_2 - frame.k_12 * slid_1 - frame.k_22 * slid_2 - (frame.c_12 + frame.c_22 * w_in) * p_in
     stretch = sqrt(1.0 + w_in * w_in)
-    f = friction(problem, t + dt, p_in * stretch)[0]
+    f = friction(problem, frame.t + dt, p_in * stretch)[0]
     defect_p = abs(dp - h * (a_1 - f / stretch))
     defect_w = abs(p_in * dw - h * (a_2 - w_in * a_1))
     size = abs(p_in)
@@ -109,7 +105,7 @@ def dips(r: float, p: Triple, w: Triple) -> bool:
 def step(
     problem: Problem,
     frame: Frame,
-    t: float,
+    start: Outset,
     t_stop: float,
     memory: Memory,
     tolerance: float,
@@ -127,8 +123,8 @@ def step(
         Step size (s), stages, and error over tolerance.
     rejected, iterations : int
     """
-    h = memory.h
-    until = inf if frame.r == 0.0 else time_to_landing(problem, frame, t)
+    t, h = frame.t, memory.h
+    until = inf if frame.r == 0.0 else time_to_landing(frame, start)
     if 0.6 * until < h < 1.4 * until:
         h = 0.6 * until  # two even steps rather than a long and a short one
     landing = h >= until
@@ -145,11 +141,11 @@ def step(
             break
         tried = h
         if not retry:
-            p, w = predicted(problem, frame, t, h, memory)
+            p, w = predicted(frame, start, h, memory)
         retry = False
         if landing:
             p = (p[0], p[1], 0.0)
-        converged, p, w, h, count = solve(problem, frame, t, h, landing, p, w, tolerance, speed)
+        converged, p, w, h, count = solve(problem, frame, h, landing, p, w, tolerance, speed)
         iterations += count
         if not converged:
             rejected += 1
@@ -166,7 +162,7 @@ def step(
                 h *= frame.r / (frame.r - p[2])
                 p, landing, retry = (0.5 * frame.r, 0.2 * frame.r, 0.0), True, True
             continue
-        error = local_error(problem, frame, t, h, p, w, speed) / tolerance
+        error = local_error(problem, frame, h, p, w, speed) / tolerance
         if error <= 1.0 and not dips(frame.r, p, w):
             return True, landing, h, p, w, error, rejected, iterations
         rejected += 1

@@ -1,0 +1,133 @@
+"""The package as a whole: light imports, public names, compiled cache, examples."""
+
+import doctest
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import stiction as st
+
+ROOT = Path(__file__).parent.parent
+HEAVY = {"numba", "scipy", "xarray", "matplotlib", "pint", "pandas"}
+
+
+def run_python(code: str, **environment: str) -> str:
+    done = subprocess.run(
+        [sys.executable, "-W", "error::DeprecationWarning:stiction", "-c", code],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        env=os.environ | environment,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("module", ["stiction", "stiction.cli"])
+def test_imports_stay_light(module):
+    loaded = run_python(f"import {module}, sys; print(*sys.modules)").split()
+    assert HEAVY.isdisjoint(loaded)
+
+
+def test_public_names():
+    for name in st.__all__:
+        assert getattr(st, name) is not None
+        assert name in dir(st)
+    assert callable(st.simulate)
+    with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
+        st.nonsense  # noqa: B018
+
+
+def test_names_survive_their_modules():
+    """A submodule's name must not hide a public function of the same name."""
+    code = "import stiction as st; st.simulate; st.simulate; import stiction.trajectory; st.load"
+    assert run_python(f"{code}; print(callable(st.simulate), callable(st.load))") == "True True\n"
+
+
+def test_every_docstring_example_runs():
+    import stiction.simulation
+
+    for module in (st, stiction.simulation):
+        result = doctest.testmod(module)
+        assert result.attempted > 0
+        assert result.failed == 0
+
+
+def test_readme_example_runs(tmp_path, monkeypatch):
+    """The README's Python block is what a reader will type."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    code = text.split("```python\n")[1].split("```")[0]
+    monkeypatch.chdir(tmp_path)
+    exec(compile(code, "README.md", "exec"), {})
+    assert (tmp_path / "run.nc").exists()
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.py")), ids=lambda p: p.stem)
+def test_examples_run(path, tmp_path):
+    done = subprocess.run(
+        [sys.executable, path],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+
+
+def test_cache_is_named_after_the_sources(tmp_path, monkeypatch):
+    """An edit in any compiled file must not meet machine code of the old one."""
+    from stiction.solver import compiled
+
+    before = compiled._fingerprint()
+    copy = tmp_path / "stiction"
+    for folder in ("solver", "friction"):
+        (copy / folder).mkdir(parents=True)
+        for file in (Path(st.__file__).parent / folder).glob("*.py"):
+            (copy / folder / file.name).write_bytes(file.read_bytes())
+    (copy / "drive.py").write_bytes((Path(st.__file__).parent / "drive.py").read_bytes())
+    monkeypatch.setattr(compiled, "__file__", str(copy / "solver" / "compiled.py"))
+    compiled._fingerprint.cache_clear()
+    assert compiled._fingerprint() == before
+    law = copy / "friction" / "coulomb.py"
+    law.write_text(law.read_text() + "\n# edited\n")
+    compiled._fingerprint.cache_clear()
+    assert compiled._fingerprint() != before
+    compiled._fingerprint.cache_clear()
+
+
+LAW = """
+from typing import NamedTuple
+import stiction as st
+
+class Mine(NamedTuple):
+    mu: float
+    def coefficient(law, v):
+        return law.mu * {factor}
+    def slope(law, v):
+        return 0.0
+"""
+
+USE = """
+import stiction as st, mylaw
+slider = st.presets.nakano_popov_2020().replace(friction=mylaw.Mine(0.2))
+print(st.simulate(slider, 0.1).sticks[0, 1])
+"""
+
+
+def test_a_user_s_law_is_compiled_cached_and_seen_when_edited(tmp_path):
+    cache = {"NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": str(tmp_path)}
+    law = tmp_path / "mylaw.py"
+    law.write_text(LAW.format(factor="1.0"))
+    one = float(run_python(USE, **cache))
+    assert float(run_python(USE, **cache)) == one
+    law.write_text(LAW.format(factor="2.0"))
+    assert float(run_python(USE, **cache)) == pytest.approx(2 * one, rel=1e-9)
+    # a process that does not know the law is not disturbed by it
+    law.unlink()
+    code = "import stiction as st; print(st.simulate(st.presets.nakano_popov_2020(), 0.02).status)"
+    assert "COMPLETED" in run_python(code, NUMBA_CACHE_DIR=cache["NUMBA_CACHE_DIR"])
