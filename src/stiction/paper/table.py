@@ -36,8 +36,8 @@ class Table:
             (
                 n.where,
                 n.what,
-                f"{n.stated:g}" if n.stated < 1e5 else f"{n.stated:.3g}",
-                f"{n.computed:.7g}",
+                f"{n.stated:.11g}",
+                f"{n.computed:.11g}",
                 f"{n.deviation:+.1e}",
                 f"{n.tolerance:.1e}",
                 "" if n.unit == "1" else n.unit,
