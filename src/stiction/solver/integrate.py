@@ -50,12 +50,17 @@ def speed_scale(slider: Slider) -> float:
     """Return the slip speed (m/s) that the tolerance is relative to, beside the slip itself.
 
     V sin(phi) is what the transverse motion slips at. Without it, V; without a drive,
-    a millionth of what friction can do to the mass on its spring.
+    a millionth of what friction can do to the mass on its spring. Friction that weakens at
+    the rate g = -F'(0)/m per second makes slip grow out of its first k V/(m g^2), which must
+    then be resolved; k is the stiffness that acts.
     """
     c, s = slider.direction
     X, Y = slider.motion.rate(0.0)
+    across, along = abs(X * s + Y * c), abs(X * c - Y * s)
     free = slider.F_0 / sqrt(slider.mass * max(slider.k_x, slider.k_y))
-    return abs(X * s + Y * c) or abs(X * c - Y * s) or 1e-6 * free or 1e-12
+    speed, k = (across, slider.k_y) if across > 0.0 else (along or 1e-6 * free, slider.k_x)
+    weakening = max(0.0, -slider.law.slope(0.0)) * slider.load.at(0.0)
+    return max(speed / (1.0 + weakening**2 / (k * slider.mass)), 1e-15)
 
 
 def integrate(

@@ -130,41 +130,38 @@ def step(
     landing = h >= until
     if landing:
         h = until
+    may_land = frame.r > 0.0
     resolution = 4e-16 * abs(t)
     rejected = iterations = 0
-    retry = False
+    warm = False
     p = w = (0.0, 0.0, 0.0)
     for _ in range(ATTEMPTS):
         if t + h >= t_stop:
             h, landing = t_stop - t, False
         elif not h > resolution:
             break
-        tried = h
-        if not retry:
+        if not warm:
             p, w = predicted(frame, start, h, memory)
-        retry = False
         if landing:
             p = (p[0], p[1], 0.0)
+        tried, warm = h, False
         converged, p, w, h, count = solve(problem, frame, h, landing, p, w, tolerance, speed)
         iterations += count
-        if not converged:
-            rejected += 1
-            h, landing = 0.3 * tried, False
+        if converged and landing and t + h > t_stop:
+            h, landing, may_land = t_stop - t, False, False
             continue
-        if landing and t + h > t_stop:
-            h, landing = t_stop - t, False
+        if converged and not landing and p[2] < 0.0 and may_land:
+            h *= frame.r / (frame.r - p[2])
+            p, landing, warm = (0.5 * frame.r, 0.2 * frame.r, 0.0), True, True
             continue
-        if not landing and p[2] < 0.0:
-            if frame.r == 0.0:
-                rejected += 1
-                h *= 0.3
-            else:
-                h *= frame.r / (frame.r - p[2])
-                p, landing, retry = (0.5 * frame.r, 0.2 * frame.r, 0.0), True, True
-            continue
-        error = local_error(problem, frame, h, p, w, speed) / tolerance
-        if error <= 1.0 and not dips(frame.r, p, w):
-            return True, landing, h, p, w, error, rejected, iterations
+        factor = 0.3
+        if converged and p[2] >= 0.0 and not dips(frame.r, p, w):
+            error = local_error(problem, frame, h, p, w, speed) / tolerance
+            if error <= 1.0:
+                return True, landing, h, p, w, error, rejected, iterations
+            factor = step_factor(error, 1.0)
         rejected += 1
-        h, landing = h * (step_factor(error, 1.0) if error > 1.0 else 0.4), False
+        if landing:  # once is enough: too long a landing is approached by shorter steps
+            may_land = False
+        h, landing = min(h, tried) * factor if h > 0.0 else tried * factor, False
     return False, False, h, p, w, inf, rejected, iterations

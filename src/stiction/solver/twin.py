@@ -4,8 +4,8 @@ Nothing compiled is used; the two are there to check each other. The motion is a
 of phases, each of which starts where the last one ended:
 
 - stick: the slip velocity s is zero, and the spring's end drags the elongation along;
-- take-off: the first moment of slip, as a series in time;
-- slip: Eqs. (4) and (5) in polar form, integrated by LSODA;
+- take-off: the first moment of slip, by successive approximation;
+- slip: Eqs. (4) and (5) in polar form, by an explicit Runge-Kutta method;
 - landing: the last moment of slip, in closed form.
 
 Equation numbers are those of Nakano & Popov, arXiv:2008.01854.
@@ -17,6 +17,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial import Chebyshev
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
@@ -24,10 +25,11 @@ from stiction.drive import ConstantLoad, ConstantVelocity
 from stiction.initial import Initial
 from stiction.slider import Slider
 
-# slip speed, relative to the motion's own, at which a landing is left to its closed form
-VANISHING = 1e-8
-# length of a take-off's series, relative to the shorter natural period over 2 pi
-TAKE_OFF = 1e-4
+TAKE_OFF = 0.1  # length of a take-off, in units of the shorter natural period over 2 pi
+DEGREE = 8  # of the polynomials in time that describe it; their error is near rounding
+VANISHING = 1e-8  # slip speed, relative to the motion's own, that a landing starts with
+
+State = tuple[np.ndarray, np.ndarray]  # elongation u (m) and slip velocity s (m/s)
 
 
 class Twin(NamedTuple):
@@ -45,30 +47,29 @@ class Twin(NamedTuple):
 
 
 class Phase(NamedTuple):
-    """A piece of the motion: when it ends (s), and (u, s) at any time until then."""
+    """A piece of the motion: when it ends (s), and the state at any time until then."""
 
     end: float
-    motion: Callable[[float], tuple[np.ndarray, np.ndarray]]
+    state: Callable[[float], State]
 
 
 class Equations(NamedTuple):
-    """Eq. (1) over the mass: m ds/dt = m a - F(|s|) s/|s|, with m a = K u + C du/dt.
+    """Eq. (1) over the mass: ds/dt = a - F(|s|)/m s/|s|, with a = (K u + C du/dt)/m.
 
-    Stiffness K/m (1/s^2), damping C/m (1/s), drive velocity v_d (m/s), all along the axes
-    x and y; friction force over mass (m/s^2) and its slope (1/s) as functions of the slip
-    speed; a slip speed (m/s) and a rate (1/s) typical of the motion.
+    Stiffness K/m (1/s^2), damping C/m (1/s) and drive velocity v_d (m/s) along x and y;
+    friction force over mass (m/s^2) as a function of the slip speed (m/s); a slip speed
+    (m/s) and a rate (1/s) typical of the motion, for tolerances.
     """
 
     stiffness: np.ndarray
     damping: np.ndarray
     drive: np.ndarray
     friction: Callable[[float], float]
-    slope: Callable[[float], float]
     speed: float
     rate: float
 
     def pull(self, u: np.ndarray, s: np.ndarray) -> np.ndarray:
-        """Return a, what spring and damper do to the slip; du/dt = v_d - s, Eq. (2)."""
+        """Return a, what spring and damper do to the slip (m/s^2); du/dt = v_d - s, Eq. (2)."""
         return self.stiffness * u + self.damping * (self.drive - s)
 
 
@@ -93,8 +94,7 @@ def twin(
     initial : Initial, optional
         The state to start from; by default the paper's.
     rtol : float, optional
-        Local tolerance of the slip phases, relative to the distance slipped and to the slip
-        speed (both with a floor where they vanish), and absolute for the direction (rad).
+        Local tolerance of the slip phases; see `slip`.
 
     Raises
     ------
@@ -106,34 +106,32 @@ def twin(
     t, end = initial.time, initial.time + duration
     u, s = np.array([initial.u_x, initial.u_y]), np.array(initial.slip(slider))
     wanted = np.array([t, end]) if times is None else np.asarray(times, dtype=np.float64)
-    rows, sticks, k = [], [], 0
+    rows, sticks = [], []
     while t < end:
         phase = next_phase(equations, t, end, u, s, rtol)
-        if phase.end > t and not s.any() and not phase.motion(phase.end)[1].any():
+        u, s, held = *phase.state(phase.end), not s.any()
+        if held and not s.any():
             sticks.append((t, phase.end))
-        while k < len(wanted) and wanted[k] <= phase.end:
-            rows.append(np.concatenate(phase.motion(wanted[k])))
-            k += 1
-        t, (u, s) = phase.end, phase.motion(phase.end)
+        rows += [np.concatenate(phase.state(at)) for at in wanted[len(rows) :] if at <= phase.end]
+        t = phase.end
     columns = np.array(rows).reshape(-1, 4).T
-    return Twin(wanted[:k], *columns, np.array(sticks).reshape(-1, 2))
+    return Twin(wanted[: len(rows)], *columns, np.array(sticks).reshape(-1, 2))
 
 
 def equations_of(slider: Slider) -> Equations:
     """Return the equations of motion of a slider."""
     if not isinstance(slider.drive, ConstantVelocity) or not isinstance(slider.load, ConstantLoad):
         raise ValueError(f"the twin knows a steady drive and load only, not {slider.drive!r}")
-    c, s = slider.direction
-    drive = slider.drive.velocity * np.array([c, s])
+    drive = slider.drive.velocity * np.array(slider.direction)
     force, law = slider.load.force / slider.mass, slider.law
-    rate = np.sqrt(max(slider.k_x, slider.k_y) / slider.mass)
+    stiffness = np.array([slider.k_x, slider.k_y]) / slider.mass
+    rate = float(np.sqrt(stiffness.max()))
     speeds = [*np.abs(drive), law.coefficient(0.0) * force / rate]
     return Equations(
-        np.array([slider.k_x, slider.k_y]) / slider.mass,
+        stiffness,
         np.array([slider.c_x, slider.c_y]) / slider.mass,
         drive,
         lambda v: law.coefficient(v) * force,
-        lambda v: law.slope(v) * force,
         min(speed for speed in speeds if speed > 0.0),
         rate,
     )
@@ -142,31 +140,31 @@ def equations_of(slider: Slider) -> Equations:
 def next_phase(
     equations: Equations, t: float, end: float, u: np.ndarray, s: np.ndarray, rtol: float
 ) -> Phase:
-    """Return the phase that begins at `t`: at zero slip, friction decides between two."""
+    """Return the phase that begins at `t` with the state (u, s)."""
     r = float(np.hypot(*s))
+    if r == 0.0:
+        held = time_held(equations, u)
+        if held > 0.0:
+            return stick(equations, t, min(t + held, end), u)
+        return take_off(equations, t, end, u)
     growing = equations.pull(u, s) @ s > equations.friction(r) * r
     if r > 2 * VANISHING * equations.speed or growing:
         return slip(equations, t, end, u, s, rtol)
-    if r > 0.0:
-        return landing(equations, t, end, u, s)
-    duration = time_held(equations, u)
-    if duration > 0.0:
-        return stick(equations, t, min(t + duration, end), u)
-    return take_off(equations, t, end, u)
+    return landing(equations, t, end, u, s)
 
 
 def time_held(equations: Equations, u: np.ndarray) -> float:
-    """Return how long friction holds the mass: until |a| reaches mu_0 W/m (s).
+    """Return how long friction holds the mass: until |a| reaches f = mu_0 W/m (s).
 
-    While s = 0, a grows steadily: a = a_0 + a' tau, a' = K v_d/m, and |a|^2 = f^2 is a
-    quadratic in tau. It ends at the root at which |a| grows. (A root within rounding of
-    zero is no stick: that is where the last one ended.)
+    While s = 0, a changes steadily with a' = K v_d/m, and |a + a' tau|^2 = f^2 is a
+    quadratic in tau; the stick ends at the root at which |a| grows. If |a| is f within
+    rounding and grows, the stick has just ended.
     """
-    still = np.zeros(2)
-    a, change = equations.pull(u, still), equations.stiffness * equations.drive
+    a, change = equations.pull(u, np.zeros(2)), equations.stiffness * equations.drive
     f = equations.friction(0.0)
     excess = a @ a - f * f
-    if excess > 1e-13 * f * f or (excess > -1e-13 * f * f and a @ change > 0.0):
+    rounding = 1e-13 * f * f
+    if excess > rounding or (excess > -rounding and a @ change > 0.0):
         return 0.0
     if not change.any():
         return np.inf
@@ -179,29 +177,49 @@ def stick(equations: Equations, t: float, end: float, u: np.ndarray) -> Phase:
 
 
 def take_off(equations: Equations, t: float, end: float, u: np.ndarray) -> Phase:
-    """Take-off: the slip starts along a and turns with it, p' = |a| - F(p)/m.
+    """Take-off: slip begins along the force that held, and turns with it.
 
-    From p = 0 this gives p = p' tau + p'' tau^2/2, p' = |a| - f, p'' = d|a|/dt - (F'/m) p'.
-    After a stick |a| = f, and p = (1/2) d|a|/dt tau^2. The error, of order tau^3, is below
-    1e-12 of the motion's own slip speed for `TAKE_OFF` = 1e-4.
+    In axes along and across a(0) the slip velocity is written p (1, w); then Eqs. (4) and
+    (5) read p' = a_1 - F(|s|)/m/sqrt(1 + w^2), p w' = a_2 - w a_1, which is regular at
+    p = 0. From p = w = 0 on, each pass takes a from what has been slid, solves the second
+    equation for w (it is linear) and integrates the first for p, at the nodes of a
+    Chebyshev polynomial in time. After a stick p begins as d|a|/dt tau^2/2; where the
+    force is larger than friction can hold, as (|a| - f) tau.
     """
-    a = equations.pull(u, np.zeros(2))
-    size = float(np.hypot(*a))
-    e = a / size
-    first = max(0.0, size - equations.friction(0.0))
-    if first < 1e-9 * size:
-        first = 0.0
-    change = equations.stiffness * equations.drive - equations.damping * first * e
-    second = change @ e - equations.slope(0.0) * first
+    length = min(t + TAKE_OFF / equations.rate, end) - t
+    e = equations.pull(u, np.zeros(2))
+    e /= np.hypot(*e)
+    across = np.array([-e[1], e[0]])
+    time = length * (1 - np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)) / 2
 
-    def motion(at: float) -> tuple[np.ndarray, np.ndarray]:
+    def through(values: np.ndarray) -> Chebyshev:
+        return Chebyshev.fit(time, values, DEGREE, domain=[0.0, length])
+
+    def slid(values: np.ndarray) -> np.ndarray:
+        return np.asarray(through(values).integ(lbnd=0.0)(time))
+
+    derivative = np.array([through(row).deriv()(time) for row in np.eye(DEGREE + 1)]).T
+    p = w = np.zeros(DEGREE + 1)
+    for _ in range(100):
+        s = np.outer(p, e) + np.outer(p * w, across)
+        gone = np.outer(slid(p), e) + np.outer(slid(p * w), across)
+        a = equations.pull(u + np.outer(time, equations.drive) - gone, s)
+        w = np.linalg.solve(p[:, None] * derivative + np.diag(a @ e), a @ across)
+        stretch = np.sqrt(1 + w * w)
+        friction = np.array([equations.friction(v) for v in np.abs(p) * stretch])
+        before, p = p, slid(a @ e - friction / stretch)
+        if np.abs(p - before).max() <= 1e-11 * np.abs(p).max():
+            break
+    else:
+        raise ArithmeticError(f"the take-off at t = {t:g} s is not found")
+    along, sideways = through(p), through(p * w)
+
+    def state(at: float) -> State:
         tau = at - t
-        direction = a + change * tau
-        p = first * tau + second * tau**2 / 2
-        slid = first * tau**2 / 2 + second * tau**3 / 6
-        return u + equations.drive * tau - slid * e, p * direction / np.hypot(*direction)
+        distance = along.integ(lbnd=0.0)(tau) * e + sideways.integ(lbnd=0.0)(tau) * across
+        return u + equations.drive * tau - distance, along(tau) * e + sideways(tau) * across
 
-    return Phase(min(t + TAKE_OFF / equations.rate, end), motion)
+    return Phase(t + length, state)
 
 
 def slip(
@@ -214,18 +232,17 @@ def slip(
 
     Friction slows the slip down but cannot turn it. The direction follows a at the rate
     |a|/r, without bound as r vanishes; hence a clock that ticks with the slip, dt = r dn.
-    Beside time, r and theta, the distance slid since the phase began is integrated: u, which
-    is what the drive has pulled less what has been slid, hardly changes in a phase, and a
-    tolerance relative to it would not see the transverse motion.
+    The tolerance is relative for the elapsed time, the distance slid in the phase (u hardly
+    changes in it) and the slip speed, with a floor, and absolute for the direction.
     """
 
-    def motion_of(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def state_of(y: np.ndarray) -> State:
         elapsed, slid, r, theta = y[0], y[1:3], y[3], y[4]
         e = np.array([np.cos(theta), np.sin(theta)])
         return u + equations.drive * elapsed - slid, r * e
 
     def change(_: float, y: np.ndarray) -> np.ndarray:
-        now_u, now_s = motion_of(y)
+        now_u, now_s = state_of(y)
         a, r, e = equations.pull(now_u, now_s), y[3], now_s / y[3]
         along, across = a @ e, e[0] * a[1] - e[1] * a[0]
         return np.array([r, *(r * now_s), r * (along - equations.friction(r)), across])
@@ -243,7 +260,7 @@ def slip(
         change,
         (0.0, np.inf),
         [0.0, 0.0, 0.0, np.hypot(*s), np.arctan2(s[1], s[0])],
-        method=METHOD,
+        method="DOP853",
         events=(vanishing, over),
         dense_output=True,
         rtol=rtol,
@@ -251,41 +268,36 @@ def slip(
     )
     if not solution.success:
         raise ArithmeticError(f"after t = {t:g} s: {solution.message}")
-    global NFEV
-    NFEV += solution.nfev
-    last = solution.t[-1]
+    last, y = solution.t[-1], solution.y[:, -1]
 
-    def motion(at: float) -> tuple[np.ndarray, np.ndarray]:
-        elapsed = at - t
-        if elapsed >= solution.y[0, -1]:
-            return motion_of(solution.y[:, -1])
-        n = brentq(lambda n: solution.sol(n)[0] - elapsed, 0.0, last, xtol=1e-300, rtol=1e-15)
-        return motion_of(solution.sol(n))
+    def state(at: float) -> State:
+        if at - t >= y[0]:
+            return state_of(y)
+        n = brentq(lambda n: solution.sol(n)[0] - (at - t), 0.0, last, xtol=1e-300, rtol=1e-15)
+        return state_of(solution.sol(n))
 
-    return Phase(end if solution.t_events[1].size else t + float(solution.y[0, -1]), motion)
-
-
-METHOD = "LSODA"
-NFEV = 0
+    return Phase(end if solution.t_events[1].size else t + float(y[0]), state)
 
 
 def landing(equations: Equations, t: float, end: float, u: np.ndarray, s: np.ndarray) -> Phase:
     """Landing: s' = a - f s/|s| with constant a and f, the classical pursuit curve.
 
     From d/dt (f r + a.s) = |a|^2 - f^2 zero slip follows after r (f + a.e)/(f^2 - |a|^2),
-    e = s/r. `VANISHING` is so small that what is slid meanwhile, about r/2 times that
-    time, matters to nobody.
+    e = s/r; straight back along a, where f may be smaller than |a|, that is r/(f + |a|).
+    What is slid until then, about r/2 times this time, is below rounding.
     """
-    a, f, r = equations.pull(u, s), equations.friction(0.0), np.hypot(*s)
-    along, size = a @ s / r, np.hypot(*a)
-    if size >= f and abs(along) < size * (1 - 1e-12):
-        raise ArithmeticError(f"at t = {t:g} s the slip turns round without ever vanishing")
-    # straight back and forth: the same expression, with f + a.e cancelled against f - |a|
-    duration = r / (f - along) if size >= f else r * (f + along) / (f * f - size * size)
+    a, f, r = equations.pull(u, s), equations.friction(0.0), float(np.hypot(*s))
+    along, size = float(a @ s) / r, float(np.hypot(*a))
+    if size < f:
+        duration = r * (f + along) / (f * f - size * size)
+    elif along < -size * (1 - 1e-12):
+        duration = r / (f + size)
+    else:
+        raise ArithmeticError(f"at t = {t:g} s the slip turns round faster than can be followed")
 
-    def motion(at: float) -> tuple[np.ndarray, np.ndarray]:
+    def state(at: float) -> State:
         x = 1.0 if at >= t + duration else (at - t) / duration
         slid = s * (x - x * x / 2) * duration
         return u + equations.drive * (at - t) - slid, s * (1 - x)
 
-    return Phase(min(t + duration, end), motion)
+    return Phase(min(t + duration, end), state)
