@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.trajectory import VARIABLES
+from stiction.labels import VARIABLES
 
 
 @pytest.fixture(scope="module")

@@ -11,9 +11,10 @@ import numpy as np
 from stiction.description import Description, Settings
 from stiction.errors import Status
 from stiction.initial import Initial
+from stiction.labels import dataset
 from stiction.slider import Slider
 from stiction.solver.integrate import integrate
-from stiction.trajectory import Statistics, Trajectory, dataset
+from stiction.trajectory import Statistics, Trajectory
 
 
 def simulate(

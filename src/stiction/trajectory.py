@@ -7,39 +7,18 @@ import tempfile
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from stiction.description import Description
 from stiction.errors import DescriptionError, ResultError, Status
 from stiction.initial import Initial
+from stiction.labels import VARIABLES
 from stiction.slider import Slider
 
 if TYPE_CHECKING:
     import xarray as xr
-
-# name: (unit, long name), as CF attributes
-VARIABLES = {
-    "u_x": ("m", "spring elongation along x"),
-    "u_y": ("m", "spring elongation along y"),
-    "v_x": ("m/s", "elongation rate along x"),
-    "v_y": ("m/s", "elongation rate along y"),
-    "slip_x": ("m/s", "slip velocity along x"),
-    "slip_y": ("m/s", "slip velocity along y"),
-    "slip_speed": ("m/s", "slip speed"),
-    "spring_x": ("N", "spring force along x, k_x u_x"),
-    "spring_y": ("N", "spring force along y, k_y u_y"),
-    "friction": ("N", "magnitude of the friction force"),
-    "theta": ("deg", "angle of the friction force to the principal axis x"),
-    "psi": ("deg", "angle of the friction force to the drive direction X"),
-    "X": ("m", "position along the drive direction"),
-    "Y": ("m", "position across the drive direction"),
-    "V_X": ("m/s", "velocity along the drive direction"),
-    "sticking": ("1", "whether the slip is zero"),
-    "stick_start": ("s", "start of a stick interval"),
-    "stick_end": ("s", "end of a stick interval"),
-}
 
 
 @dataclass(frozen=True)
@@ -74,7 +53,7 @@ class Trajectory:
     description : Description
         What was run.
     data : xarray.Dataset
-        Variables over ``time`` with units (see `VARIABLES`), and every stick interval,
+        Variables over ``time`` with units (see `stiction.labels`), and every stick interval,
         whatever the sample rate, over ``stick``.
     status : Status
         How the run ended.
@@ -161,91 +140,6 @@ def load(path: str | Path) -> Trajectory:
     except (DescriptionError, KeyError, ValueError, AttributeError) as error:
         raise ResultError(f"{path}: its attributes cannot be read: {error}") from None
     return Trajectory(description, data, status, statistics)
-
-
-def dataset(
-    description: Description,
-    times: np.ndarray,
-    samples: np.ndarray,
-    sticks: np.ndarray,
-    attributes: dict[str, Any],
-) -> xr.Dataset:
-    """Return the labelled arrays of a run from the solver's samples.
-
-    Parameters
-    ----------
-    description : Description
-        What was run.
-    times : ndarray
-        (n,), s.
-    samples : ndarray
-        (n, 7); the columns of `stiction.solver.sampling`.
-    sticks : ndarray
-        (m, 2), s.
-    attributes : dict
-        Attributes of the dataset beside the description.
-    """
-    import xarray as xr
-
-    slider = description.slider
-    c, s = slider.direction
-    u_x, u_y, slip_x, slip_y, f_x, f_y, sticking = np.ascontiguousarray(samples.T)
-    travel_X, travel_Y = _travel(slider, times)
-    rate_X, rate_Y = _rate(slider, times)
-    v_x = rate_X * c - rate_Y * s - slip_x
-    v_y = rate_X * s + rate_Y * c - slip_y
-    friction = np.hypot(f_x, f_y)
-    theta = np.degrees(np.arctan2(f_y, f_x))
-    theta[friction == 0.0] = np.nan  # no force, no direction
-    values = {
-        "u_x": u_x,
-        "u_y": u_y,
-        "v_x": v_x,
-        "v_y": v_y,
-        "slip_x": slip_x,
-        "slip_y": slip_y,
-        "slip_speed": np.hypot(slip_x, slip_y),
-        "spring_x": slider.k_x * u_x,
-        "spring_y": slider.k_y * u_y,
-        "friction": friction,
-        "theta": theta,
-        "psi": theta - np.degrees(slider.phi),
-        "X": travel_X - u_x * c - u_y * s,
-        "Y": travel_Y + u_x * s - u_y * c,
-        "V_X": slip_x * c + slip_y * s,
-        "sticking": sticking.astype(np.int8),
-        "stick_start": sticks[:, 0].copy(),
-        "stick_end": sticks[:, 1].copy(),
-    }
-    variables = {
-        name: (
-            "stick" if name.startswith("stick_") else "time",
-            value,
-            {"units": VARIABLES[name][0], "long_name": VARIABLES[name][1]},
-        )
-        for name, value in values.items()
-    }
-    time = ("time", times, {"units": "s", "long_name": "time"})
-    attributes = {"description": description.to_json(), **attributes}
-    return xr.Dataset(variables, {"time": time}, attributes)
-
-
-def _travel(slider: Slider, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the displacement of the drive from t = 0, laboratory axes, in m."""
-    return _over(times, lambda t: slider.motion.travel(0.0, t))
-
-
-def _rate(slider: Slider, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    return _over(times, slider.motion.rate)
-
-
-def _over(times: np.ndarray, vector: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Evaluate a drive's vector at all times at once, or one by one if it uses `math`."""
-    try:
-        X, Y = vector(times)
-    except TypeError:
-        X, Y = np.array([vector(t) for t in times]).T
-    return np.broadcast_to(X, times.shape), np.broadcast_to(Y, times.shape)
 
 
 def _umask() -> int:

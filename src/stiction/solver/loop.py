@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from math import inf, isfinite, sqrt
+from math import isfinite, sqrt
 
 import numpy as np
 
 from stiction.solver.blocks import dot
 from stiction.solver.compiled import compiled, inlined
 from stiction.solver.frame import Frame, Outset, elongation, frame_of, outset, turned
-from stiction.solver.landing import landing_slip, landing_time
+from stiction.solver.landing import land, pursuit
 from stiction.solver.newton import products
 from stiction.solver.problem import Problem, in_principal_axes, next_break, travel
 from stiction.solver.radau import A, step_factor
-from stiction.solver.sampling import fill, sample_slip, sample_stick
+from stiction.solver.sampling import sample_slip, sample_stick
 from stiction.solver.state import (
     COMPLETED,
     NON_FINITE,
@@ -64,53 +64,6 @@ def stick(
     e_x, e_y = (a_x / a, a_y / a) if a > 0.0 else (motion.e_x, motion.e_y)
     motion = Motion(end, u_x, u_y, 0.0, e_x, e_y)
     return State(motion, cooled(memory, memory.h_takeoff), counts), k
-
-
-@inlined
-def pursuit(
-    frame: Frame, start: Outset, tolerance: float, speed: float
-) -> tuple[float, float, float]:
-    """Return the time (s) to landing and the slip until then (m), in closed form.
-
-    Infinite unless spring and friction stay constant until then, to a tenth of the tolerance.
-    """
-    r = frame.r
-    a_1, a_2, da_1, da_2, f, gradient = start
-    square = a_1 * a_1 + a_2 * a_2
-    if not square < f * f:
-        return inf, 0.0, 0.0
-    T = landing_time(r, a_1, square, f)
-    jerk = abs(da_1) + abs(da_2) + (frame.k_11 + frame.k_22) * r
-    relaxation = abs(gradient) + frame.c_11 + frame.c_22
-    if T * (T * jerk + relaxation * r) > 0.1 * tolerance * speed and T > 1e-15:
-        return inf, 0.0, 0.0
-    slid_1, slid_2 = landing_slip(r, a_1, a_2, f)
-    return T, slid_1, slid_2
-
-
-@inlined
-def land(
-    problem: Problem,
-    frame: Frame,
-    start: Outset,
-    state: State,
-    closed: tuple[float, float, float],
-    times: np.ndarray,
-    samples: np.ndarray,
-    k: int,
-) -> tuple[State, int]:
-    """End the slip by the pursuit curve."""
-    motion, memory, counts = state
-    t, r = motion.t, frame.r
-    T, slid_1, slid_2 = closed
-    f = start.f * problem.system.mass
-    while k < len(times) and times[k] < t + T:
-        x = (times[k] - t) / T
-        u_x, u_y = elongation(problem, frame, x * T, x * slid_1, x * slid_2)
-        k = fill(frame, u_x, u_y, r * (1.0 - x), 0.0, f, samples, k)
-    u_x, u_y = elongation(problem, frame, T, slid_1, slid_2)
-    landed = Motion(t + T, u_x, u_y, 0.0, frame.e_x, frame.e_y)
-    return State(landed, cooled(memory, memory.h_takeoff), counts), k
 
 
 @inlined

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import Chebyshev
-from scipy.integrate import solve_ivp
+from scipy.integrate import solve_ivp  # type: ignore[attr-defined]
 from scipy.optimize import brentq
 
 from stiction.drive import ConstantLoad, ConstantVelocity
@@ -27,7 +27,7 @@ from stiction.slider import Slider
 
 TAKE_OFF = 0.1  # length of a take-off, in units of the shorter natural period over 2 pi
 DEGREE = 8  # of the polynomials in time that describe it; their error is near rounding
-VANISHING = 1e-8  # slip speed, relative to the motion's own, that a landing starts with
+VANISHING = 1e-10  # slip speed, relative to the motion's own, that a landing starts with
 
 State = tuple[np.ndarray, np.ndarray]  # elongation u (m) and slip velocity s (m/s)
 
@@ -70,7 +70,8 @@ class Equations(NamedTuple):
 
     def pull(self, u: np.ndarray, s: np.ndarray) -> np.ndarray:
         """Return a, what spring and damper do to the slip (m/s^2); du/dt = v_d - s, Eq. (2)."""
-        return self.stiffness * u + self.damping * (self.drive - s)
+        a: np.ndarray = self.stiffness * u + self.damping * (self.drive - s)
+        return a
 
 
 def twin(
@@ -106,7 +107,8 @@ def twin(
     t, end = initial.time, initial.time + duration
     u, s = np.array([initial.u_x, initial.u_y]), np.array(initial.slip(slider))
     wanted = np.array([t, end]) if times is None else np.asarray(times, dtype=np.float64)
-    rows, sticks = [], []
+    rows: list[np.ndarray] = []
+    sticks = []
     while t < end:
         phase = next_phase(equations, t, end, u, s, rtol)
         u, s, held = *phase.state(phase.end), not s.any()
@@ -114,8 +116,9 @@ def twin(
             sticks.append((t, phase.end))
         rows += [np.concatenate(phase.state(at)) for at in wanted[len(rows) :] if at <= phase.end]
         t = phase.end
-    columns = np.array(rows).reshape(-1, 4).T
-    return Twin(wanted[: len(rows)], *columns, np.array(sticks).reshape(-1, 2))
+    u_x, u_y, slip_x, slip_y = np.array(rows).reshape(-1, 4).T
+    intervals = np.array(sticks).reshape(-1, 2)
+    return Twin(wanted[: len(rows)], u_x, u_y, slip_x, slip_y, intervals)
 
 
 def equations_of(slider: Slider) -> Equations:
@@ -231,8 +234,9 @@ def slip(
         r dtheta/dt = a . (-sin theta, cos theta)
 
     Friction slows the slip down but cannot turn it. The direction follows a at the rate
-    |a|/r, without bound as r vanishes; hence a clock that ticks with the slip, dt = r dn.
-    The tolerance is relative for the elapsed time, the distance slid in the phase (u hardly
+    |a|/r, without bound as r vanishes; hence a clock that ticks with the slip, dt = r dn, and
+    steps of a few m/F ticks at most: in longer ones an explicit method follows noisily. The
+    tolerance is relative for the elapsed time, the distance slid in the phase (u hardly
     changes in it) and the slip speed, with a floor, and absolute for the direction.
     """
 
@@ -263,6 +267,7 @@ def slip(
         method="DOP853",
         events=(vanishing, over),
         dense_output=True,
+        max_step=3.0 / equations.friction(0.0),
         rtol=rtol,
         atol=rtol * np.array([1e-3 / equations.rate, distance, distance, equations.speed, 1.0]),
     )
@@ -273,7 +278,7 @@ def slip(
     def state(at: float) -> State:
         if at - t >= y[0]:
             return state_of(y)
-        n = brentq(lambda n: solution.sol(n)[0] - (at - t), 0.0, last, xtol=1e-300, rtol=1e-15)
+        n = brentq(lambda n: solution.sol(n)[0] - (at - t), 0.0, last, xtol=1e-300)
         return state_of(solution.sol(n))
 
     return Phase(end if solution.t_events[1].size else t + float(y[0]), state)
@@ -283,17 +288,13 @@ def landing(equations: Equations, t: float, end: float, u: np.ndarray, s: np.nda
     """Landing: s' = a - f s/|s| with constant a and f, the classical pursuit curve.
 
     From d/dt (f r + a.s) = |a|^2 - f^2 zero slip follows after r (f + a.e)/(f^2 - |a|^2),
-    e = s/r; straight back along a, where f may be smaller than |a|, that is r/(f + |a|).
-    What is slid until then, about r/2 times this time, is below rounding.
+    e = s/r. Where f is smaller than |a|, the slip came straight back along a, or all but
+    (it would not have vanished otherwise), and r/(f + |a|) is left. What is slid until
+    then, about r/2 times this time, is below rounding.
     """
     a, f, r = equations.pull(u, s), equations.friction(0.0), float(np.hypot(*s))
-    along, size = float(a @ s) / r, float(np.hypot(*a))
-    if size < f:
-        duration = r * (f + along) / (f * f - size * size)
-    elif along < -size * (1 - 1e-12):
-        duration = r / (f + size)
-    else:
-        raise ArithmeticError(f"at t = {t:g} s the slip turns round faster than can be followed")
+    size = float(np.hypot(*a))
+    duration = r * (f + a @ s / r) / (f * f - size * size) if size < f else r / (f + size)
 
     def state(at: float) -> State:
         x = 1.0 if at >= t + duration else (at - t) / duration
