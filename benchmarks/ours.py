@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from .contestant import Contestant, Failed
 from .problem import DURATION
 
-TOLERANCES = (1e-4, 1e-5, 1e-6, 1e-8, 1e-10)
+TOLERANCES = (1e-4, 1e-5, 3e-6, 1e-6, 1e-7, 1e-8, 1e-10)
 REFERENCE_RTOL = 1e-11
 SOLVER = "stiction"
 SAMPLES_EACH_GRID_STEP = 10  # 10 kHz beside the grid's 1 kHz

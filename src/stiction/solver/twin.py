@@ -278,8 +278,8 @@ def slip(
     def state(at: float) -> State:
         if at - t >= y[0]:
             return state_of(y)
-        n = brentq(lambda n: solution.sol(n)[0] - (at - t), 0.0, last, xtol=1e-300)
-        return state_of(solution.sol(n))
+        clock: Any = brentq  # its stubs are missing
+        return state_of(solution.sol(clock(lambda n: solution.sol(n)[0] - at + t, 0.0, last)))
 
     return Phase(end if solution.t_events[1].size else t + float(y[0]), state)
 
