@@ -5,16 +5,19 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple, Self
+from typing import Annotated, Any, NamedTuple, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from stiction.friction import LAWS
 from stiction.initial import Initial
 from stiction.slider import SLIDER_TABLES, Slider
 from stiction.tables import Reader, gather, read_toml
-from stiction.units import Duration, Number, PositiveSpeed, Rate
+from stiction.units import Duration, Number, Rate, Velocity
 from stiction.validation import Described
+
+MOST_SAMPLES = 2e8  # 30 GB in memory
+Smoothing = Annotated[Velocity, Field(ge=1e-11)]  # below, each step is a boundary layer
 
 
 class Settings(Described):
@@ -29,13 +32,24 @@ class Settings(Described):
     rtol : float, optional
         Relative tolerance; see `stiction.simulate`.
     regularisation : float or str, optional
-        delta of the regularised law s/sqrt(|s|^2 + delta^2), m/s; exact when left out.
+        delta of the regularised law s/sqrt(|s|^2 + delta^2), m/s, 1e-11 at least; exact when
+        left out.
     """
 
     duration: Duration
     sample_rate: Rate | None = None
     rtol: Number = Field(default=1e-6, ge=1e-13, le=1e-2)
-    regularisation: PositiveSpeed | None = None
+    regularisation: Smoothing | None = None
+
+    @model_validator(mode="after")
+    def _can_be_kept(self) -> Self:
+        if self.sample_rate is not None and self.duration * self.sample_rate > MOST_SAMPLES:
+            raise ValueError(
+                f"duration times sample_rate is {self.duration * self.sample_rate:.3g} samples, "
+                f"more than {MOST_SAMPLES:g}; lower the rate, or restart from a sample of a coarse "
+                "run and sample only a window finely"
+            )
+        return self
 
 
 class Description(NamedTuple):

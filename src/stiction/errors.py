@@ -53,8 +53,8 @@ class Status(Enum):
 
     COMPLETED = "the run reached its duration"
     STEP_UNDERFLOW = (
-        "the step size fell below the resolution of time: the solution changes faster than "
-        "floating-point time can follow; check the parameters, or loosen rtol"
+        "no step, however short, met the tolerance: the friction law has a jump or is not a "
+        "number here, or the parameters cannot belong together; check them, or loosen rtol"
     )
     NON_FINITE = (
         "the state became infinite or not a number; check the parameters "

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from stiction.description import Description, Settings
-from stiction.errors import Status
+from stiction.errors import DescriptionError, Fault, Status
 from stiction.initial import Initial
 from stiction.labels import dataset
 from stiction.slider import Slider
@@ -48,8 +48,8 @@ def simulate(
     initial : Initial, optional
         The state to start from; by default the paper's.
     regularisation : float or str, optional
-        delta (m/s): replace the set-valued law by F s/sqrt(|s|^2 + delta^2). For
-        comparison; choose it far below the creep velocity V sin^2 phi.
+        delta (m/s, 1e-11 at least): replace the set-valued law by F s/sqrt(|s|^2 + delta^2).
+        For comparison; choose it far below the creep velocity V sin^2 phi.
     max_steps : int, optional
         Give up after so many steps.
     progress : callable, optional
@@ -92,6 +92,11 @@ def run(
 ) -> Trajectory:
     """Simulate a whole description; see `simulate`."""
     _, initial, settings = description
+    if max_steps < 1:
+        raise DescriptionError([Fault("max_steps", f"must be 1 at least, is {max_steps}")])
+    if initial.time + settings.duration == initial.time:
+        message = f"is too short to be seen from t = {initial.time:g} s; start earlier"
+        raise DescriptionError([Fault("run.duration", message)])
     times = sample_times(initial.time, settings.duration, settings.sample_rate)
     solution = integrate(description, times, max_steps, progress)
     status = list(Status)[solution.code]

@@ -15,7 +15,15 @@ from stiction.solver.compiled import specialised
 from stiction.solver.frame import friction
 from stiction.solver.problem import Problem, problem
 from stiction.solver.sampling import COLUMNS
-from stiction.solver.state import COMPLETED, RUNNING, TOO_MANY_STEPS, Counts, Motion, start
+from stiction.solver.state import (
+    COMPLETED,
+    RUNNING,
+    TOO_MANY_STEPS,
+    Accuracy,
+    Counts,
+    Motion,
+    start,
+)
 from stiction.solver.stick import holding
 
 BUDGET = 100_000  # turns of the loop between two looks at the clock: some 30 ms
@@ -46,21 +54,25 @@ def tolerance(rtol: float) -> float:
     return 1.26 * float(rtol**0.8)
 
 
-def speed_scale(slider: Slider) -> float:
-    """Return the slip speed (m/s) that the tolerance is relative to, beside the slip itself.
+def accuracy(slider: Slider, rtol: float) -> Accuracy:
+    """Return what each step is held to.
 
-    V sin(phi) is what the transverse motion slips at. Without it, V; without a drive,
-    a millionth of what friction can do to the mass on its spring. Friction that weakens at
-    the rate g = -F'(0)/m per second makes slip grow out of its first k V/(m g^2), which must
-    then be resolved; k is the stiffness that acts.
+    Its speed: V sin(phi) is what the transverse motion slips at; without it, V; without a
+    drive, a millionth of what friction can do to the mass on its spring, and never more than
+    that whole. Friction that weakens at the rate g = -F'(0)/m per second makes slip grow out
+    of its first k V/(m g^2), which must then be resolved; k is the stiffness that acts.
     """
     c, s = slider.direction
     X, Y = slider.motion.rate(0.0)
     across, along = abs(X * s + Y * c), abs(X * c - Y * s)
-    free = slider.F_0 / sqrt(slider.mass * max(slider.k_x, slider.k_y))
+    free_x, free_y = (slider.F_0 / sqrt(slider.mass * k) for k in (slider.k_x, slider.k_y))
+    free = min(free_x, free_y)
     speed, k = (across, slider.k_y) if across > 0.0 else (along or 1e-6 * free, slider.k_x)
+    if free > 0.0:
+        speed = min(speed, free)
     weakening = max(0.0, -slider.law.slope(0.0)) * slider.load.at(0.0)
-    return max(speed / (1.0 + weakening**2 / (k * slider.mass)), 1e-15)
+    speed = max(speed / (1.0 + weakening**2 / (k * slider.mass)), 1e-15)
+    return Accuracy(tolerance(rtol), speed, free_x, free_y)
 
 
 def integrate(
@@ -74,7 +86,7 @@ def integrate(
     system = problem(slider)
     state = start(system.system, initial.time, (initial.u_x, initial.u_y), initial.slip(slider))
     end = initial.time + settings.duration
-    local, speed = tolerance(settings.rtol), speed_scale(slider)
+    held = accuracy(slider, settings.rtol)
     delta = settings.regularisation
     kinds = (type(system.law), type(system.drive), type(system.load))
     exact = specialised(loop.advance, *kinds)
@@ -87,14 +99,14 @@ def integrate(
             code = TOO_MANY_STEPS
         elif delta is None:
             code, state, k, turns = exact(
-                system, state, end, local, speed, budget, times, samples, k, sticks
+                system, state, end, held, budget, times, samples, k, sticks
             )
             used += turns
             if state.counts.sticks == len(sticks):
                 sticks = np.concatenate([sticks, np.empty_like(sticks)])
         else:
             code, state, k, turns = smooth(
-                system, delta, state, end, local, speed, budget, times, samples, k
+                system, delta, state, end, held, budget, times, samples, k
             )
             used += turns
         if progress is not None:

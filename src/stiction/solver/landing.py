@@ -14,7 +14,7 @@ integrate from the start to R = 0.
 
 from __future__ import annotations
 
-from math import inf, sqrt
+from math import atan2, cos, inf, sin, sqrt, tan
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from stiction.solver.compiled import inlined
 from stiction.solver.frame import Frame, Outset, elongation
 from stiction.solver.problem import Problem
 from stiction.solver.sampling import fill
-from stiction.solver.state import Motion, State, cooled
+from stiction.solver.state import Accuracy, Motion, State, cooled
 
 
 @inlined
@@ -68,12 +68,37 @@ def landing_slip(r: float, a1: float, a2: float, f: float) -> tuple[float, float
 
 
 @inlined
-def pursuit(
-    frame: Frame, start: Outset, tolerance: float, speed: float
+def slip_before_landing(
+    r: float, a1: float, a2: float, f: float, left: float
 ) -> tuple[float, float, float]:
+    """Return the slip speed, and the direction along and across the initial slip, at a time
+    `left` (s) before landing.
+
+    The curve itself: r sin(alpha)/tan(alpha/2)^(f/|a|) is constant along it; alpha falls.
+    """
+    square = a1 * a1 + a2 * a2
+    a = sqrt(square)
+    whole = atan2(abs(a2), a1)
+    if a < 1e-8 * f or sin(whole) < 1e-12:
+        return left * (f * f - square) / (f + a1), 1.0, 0.0
+    low, high, speed = 0.0, whole, r
+    for _ in range(60):
+        alpha = 0.5 * (low + high)
+        speed = r * (tan(0.5 * alpha) / tan(0.5 * whole)) ** (f / a) * sin(whole) / sin(alpha)
+        if speed * (f + a * cos(alpha)) > left * (f * f - square):
+            high = alpha
+        else:
+            low = alpha
+    turned = whole - high
+    return speed, cos(turned), sin(turned) if a2 > 0.0 else -sin(turned)
+
+
+@inlined
+def pursuit(frame: Frame, start: Outset, accuracy: Accuracy) -> tuple[float, float, float]:
     """Return the time (s) to landing and the slip until then (m), in closed form.
 
-    Infinite unless spring and friction stay constant until then, to a tenth of the tolerance.
+    Infinite unless spring and friction stay constant until then, to a tenth of the tolerance,
+    or it is over before time resolves it.
     """
     r = frame.r
     a_1, a_2, da_1, da_2, f, gradient = start
@@ -83,7 +108,8 @@ def pursuit(
     T = landing_time(r, a_1, square, f)
     jerk = abs(da_1) + abs(da_2) + (frame.k_11 + frame.k_22) * r
     relaxation = abs(gradient) + frame.c_11 + frame.c_22
-    if T * (T * jerk + relaxation * r) > 0.1 * tolerance * speed and T > 1e-15:
+    change = T * (T * jerk + relaxation * r)
+    if change > 0.1 * accuracy.tolerance * accuracy.speed and 1e-13 * (abs(frame.t) + 1e-2) < T:
         return inf, 0.0, 0.0
     slid_1, slid_2 = landing_slip(r, a_1, a_2, f)
     return T, slid_1, slid_2
@@ -102,13 +128,15 @@ def land(
 ) -> tuple[State, int]:
     """End the slip by the pursuit curve."""
     motion, memory, counts = state
-    t, r = motion.t, frame.r
+    t, r, a_1, a_2 = motion.t, frame.r, start.a_1, start.a_2
     T, slid_1, slid_2 = closed
-    f = start.f * problem.system.mass
+    force = start.f * problem.system.mass
     while k < len(times) and times[k] < t + T:
-        x = (times[k] - t) / T
-        u_x, u_y = elongation(problem, frame, x * T, x * slid_1, x * slid_2)
-        k = fill(frame, u_x, u_y, r * (1.0 - x), 0.0, f, samples, k)
+        speed, n_1, n_2 = slip_before_landing(r, a_1, a_2, start.f, t + T - times[k])
+        d_1, d_2 = landing_slip(speed, a_1 * n_1 + a_2 * n_2, a_2 * n_1 - a_1 * n_2, start.f)
+        z_1, z_2 = slid_1 - (d_1 * n_1 - d_2 * n_2), slid_2 - (d_1 * n_2 + d_2 * n_1)
+        u_x, u_y = elongation(problem, frame, times[k] - t, z_1, z_2)
+        k = fill(frame, u_x, u_y, speed, n_1, n_2, force, samples, k)
     u_x, u_y = elongation(problem, frame, T, slid_1, slid_2)
     landed = Motion(t + T, u_x, u_y, 0.0, frame.e_x, frame.e_y)
     return State(landed, cooled(memory, memory.h_takeoff), counts), k

@@ -11,7 +11,7 @@ from stiction.solver.compiled import compiled, inlined
 from stiction.solver.frame import Frame, Outset, elongation, frame_of, outset, turned
 from stiction.solver.landing import land, pursuit
 from stiction.solver.newton import products
-from stiction.solver.problem import Problem, in_principal_axes, next_break, travel
+from stiction.solver.problem import Problem, in_principal_axes, next_break, rate, travel
 from stiction.solver.radau import A, step_factor
 from stiction.solver.sampling import sample_slip, sample_stick
 from stiction.solver.state import (
@@ -19,6 +19,7 @@ from stiction.solver.state import (
     NON_FINITE,
     RUNNING,
     STEP_UNDERFLOW,
+    Accuracy,
     Counts,
     Memory,
     Motion,
@@ -61,6 +62,10 @@ def stick(
         )
     a_x, a_y = holding(problem, end, u_x, u_y)
     a = sqrt(a_x * a_x + a_y * a_y)
+    if a == 0.0:  # nothing pulls yet, as at the start without friction: slip follows da/dt
+        v_x, v_y = in_principal_axes(problem, rate(problem.drive, end))
+        a_x, a_y = problem.system.k_x * v_x, problem.system.k_y * v_y
+        a = sqrt(a_x * a_x + a_y * a_y)
     e_x, e_y = (a_x / a, a_y / a) if a > 0.0 else (motion.e_x, motion.e_y)
     motion = Motion(end, u_x, u_y, 0.0, e_x, e_y)
     return State(motion, cooled(memory, memory.h_takeoff), counts), k
@@ -73,8 +78,7 @@ def slip(
     start: Outset,
     state: State,
     t_stop: float,
-    tolerance: float,
-    speed: float,
+    accuracy: Accuracy,
     times: np.ndarray,
     samples: np.ndarray,
     k: int,
@@ -83,7 +87,7 @@ def slip(
     motion, memory, counts = state
     t, r = motion.t, motion.r
     done, landing, h, p, w, error, rejected, iterations = step(
-        problem, frame, start, t_stop, memory, tolerance, speed
+        problem, frame, start, t_stop, memory, accuracy
     )
     counts = Counts(
         counts.steps + 1,
@@ -124,8 +128,7 @@ def advance(
     problem: Problem,
     state: State,
     t_end: float,
-    tolerance: float,
-    speed: float,
+    accuracy: Accuracy,
     budget: int,
     times: np.ndarray,
     samples: np.ndarray,
@@ -140,8 +143,8 @@ def advance(
         The system, and where it is.
     t_end : float
         s.
-    tolerance, speed : float
-        Local tolerance, relative to the slip speed plus `speed` (m/s).
+    accuracy : Accuracy
+        What each step is held to.
     budget : int
         Steps to take at most.
     times, samples : ndarray
@@ -166,7 +169,9 @@ def advance(
         if state.counts.sticks >= len(sticks):
             return RUNNING, state, k, turn
         t_stop = min(t_end, next_break(problem.drive, t))
-        if motion.r == 0.0:
+        if motion.r < 1e-13 * accuracy.tolerance * accuracy.speed:  # at rest for every purpose
+            motion = Motion(t, motion.u_x, motion.u_y, 0.0, motion.e_x, motion.e_y)
+            state = State(motion, state.memory, state.counts)
             state, k = stick(problem, state, t_stop, times, samples, k, sticks)
             motion = state.motion
             if motion.t >= t_stop:
@@ -174,13 +179,12 @@ def advance(
         frame = frame_of(problem, motion)
         start = outset(problem, frame)
         if motion.r > 0.0:
-            closed = pursuit(frame, start, tolerance, speed)
+            closed = pursuit(frame, start, accuracy)
             if t + closed[0] < t_stop:
                 state, k = land(problem, frame, start, state, closed, times, samples, k)
                 continue
-        done, state, k = slip(
-            problem, frame, start, state, t_stop, tolerance, speed, times, samples, k
-        )
+        done, state, k = slip(problem, frame, start, state, t_stop, accuracy, times, samples, k)
         if not done:
             return STEP_UNDERFLOW, state, k, turn
-    return RUNNING, state, k, budget
+    code = COMPLETED if state.motion.t >= t_end else RUNNING
+    return code, state, k, budget

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from math import sqrt
+
 from stiction.solver.blocks import Triple, solved
 from stiction.solver.compiled import inlined
 from stiction.solver.frame import Frame
 from stiction.solver.problem import Problem
 from stiction.solver.slip import factors, stage
+from stiction.solver.state import Accuracy
 
 ITERATIONS = 10
+NEWTON = 0.2
 
 
 @inlined
@@ -19,8 +23,7 @@ def solve(
     landing: bool,
     p: Triple,
     w: Triple,
-    tolerance: float,
-    speed: float,
+    accuracy: Accuracy,
 ) -> tuple[bool, Triple, Triple, float, int]:
     """Solve the collocation equations of one step.
 
@@ -32,8 +35,8 @@ def solve(
         Whether the step ends at zero slip; its size is then found, from `h` on.
     p, w : triple of float
         First guess of the stages (m/s, 1).
-    tolerance, speed : float
-        Local tolerance, relative to the slip speed plus `speed` (m/s), and for w to 1.
+    accuracy : Accuracy
+        Corrections are relative to the slip speed plus ``accuracy.speed``, and for w to 1.
 
     Returns
     -------
@@ -48,6 +51,9 @@ def solve(
     s1 = stage(problem, frame, h, 1, p, w, products(p, w))
     s2 = stage(problem, frame, h, 2, p, w, products(p, w))
     m = factors(frame, h, landing, p, w, s0, s1, s2)
+    speed = accuracy.speed
+    # what is left must not show in the step's end, whose error falls faster than the tolerance
+    enough = min(NEWTON, 100.0 * sqrt(accuracy.tolerance)) * accuracy.tolerance
     last = 1.0
     for iteration in range(1, ITERATIONS + 1):
         dp, dw = solved(
@@ -68,8 +74,7 @@ def solve(
         if not size < 1e10 or h <= 0.0:
             return False, p, w, h, iteration
         rate = size if iteration == 1 else size / last
-        enough = tolerance if iteration == 1 else 0.03 * tolerance
-        if size < 0.03 * tolerance or size * rate < enough:
+        if size < enough or size * rate < enough:
             return True, p, w, h, iteration
         if iteration > 3 and rate > 1.0:
             return False, p, w, h, iteration

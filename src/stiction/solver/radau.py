@@ -42,11 +42,12 @@ def _lagrange(nodes: tuple[float, ...], i: int) -> Polynomial:
 # D = A^-1: derivatives at the stages, times h, from stage values less the start value
 D: Matrix = _inverse(A)
 
-# an interior point at which the collocation polynomial is held against the equations;
-# there the defect is 0.036 h^4 y''''/3!, and the polynomial's largest error in the step is
-# DEFECT_WEIGHT times that (integrate (c - c_1)(c - c_2)(c - 1) from 0)
+# an interior point at which the collocation cubic is held against the equations; its defect
+# goes as (c - c_1)(c - c_2)(c - 1), so its error as the integral of that, which is largest
+# at c_1; DEFECT_WEIGHT is the ratio of that error to the defect at the interior point
 INTERIOR = 0.4
-DEFECT_WEIGHT = 0.18
+_DEFECT = Polynomial.fromroots(C)
+DEFECT_WEIGHT = abs(float(_DEFECT.integ()(C[0]) / _DEFECT(INTERIOR)))
 _NODES = (0.0, *C)
 VALUE = tuple(float(_lagrange(_NODES, i)(INTERIOR)) for i in range(4))
 DERIVATIVE = tuple(float(_lagrange(_NODES, i).deriv()(INTERIOR)) for i in range(4))

@@ -33,6 +33,7 @@ from stiction.solver.state import (
     NON_FINITE,
     RUNNING,
     STEP_UNDERFLOW,
+    Accuracy,
     Counts,
     Memory,
     Motion,
@@ -119,8 +120,7 @@ def step(
     start: Motion,
     t_stop: float,
     memory: Memory,
-    tolerance: float,
-    speed: float,
+    accuracy: Accuracy,
 ) -> tuple[bool, float, Triple, Triple, float, int, int]:
     """Take one step; return (done, h, x, y, error over tolerance, rejected, iterations)."""
     h = memory.h
@@ -132,11 +132,11 @@ def step(
         elif not h > 4e-16 * abs(start.t):
             break
         x, y = predicted(start, h, memory)
-        converged, x, y, count = solve(problem, delta, start, h, x, y, tolerance, speed)
+        converged, x, y, count = solve(problem, delta, start, h, x, y, accuracy)
         iterations += count
         factor = 0.3
         if converged:
-            error = local_error(problem, delta, start, h, x, y, speed) / tolerance
+            error = local_error(problem, delta, start, h, x, y, accuracy.speed) / accuracy.tolerance
             if error <= 1.0:
                 return True, h, x, y, error, rejected, iterations
             factor = step_factor(error, 1.0)
@@ -151,8 +151,7 @@ def advance(
     delta: float,
     state: State,
     t_end: float,
-    tolerance: float,
-    speed: float,
+    accuracy: Accuracy,
     budget: int,
     times: np.ndarray,
     samples: np.ndarray,
@@ -167,7 +166,7 @@ def advance(
             return NON_FINITE, state, k, turn
         t_stop = min(t_end, next_break(problem.drive, start.t))
         done, h, x, y, error, rejected, iterations = step(
-            problem, delta, start, t_stop, memory, tolerance, speed
+            problem, delta, start, t_stop, memory, accuracy
         )
         counts = Counts(
             counts.steps + 1,
@@ -198,4 +197,5 @@ def advance(
             (y0, y[0], y[1], y[2]),
         )
         state = State(motion, memory, counts)
-    return RUNNING, state, k, budget
+    code = COMPLETED if state.motion.t >= t_end else RUNNING
+    return code, state, k, budget

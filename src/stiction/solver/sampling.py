@@ -90,9 +90,10 @@ def sample_slip(
         z_2, s_2 = quintic(h, x, 0.0, first_2, slid_2, q[2], last_2)
         u_x, u_y = elongation(problem, frame, dt, z_1, z_2)
         speed = sqrt(s_1 * s_1 + s_2 * s_2)
-        slope = cubic((0.0, w[0], w[1], w[2]), x)
+        turn = cubic((0.0, w[0], w[1], w[2]), x)
+        g = 1.0 / sqrt(1.0 + turn * turn)
         force = friction(problem, times[k], speed)[0] * problem.system.mass
-        k = fill(frame, u_x, u_y, speed, slope, force, samples, k)
+        k = fill(frame, u_x, u_y, speed, g, turn * g, force, samples, k)
     return k
 
 
@@ -102,15 +103,15 @@ def fill(
     u_x: float,
     u_y: float,
     speed: float,
-    w: float,
+    n_1: float,
+    n_2: float,
     force: float,
     samples: np.ndarray,
     k: int,
 ) -> int:
-    """Write one row of a slip step; return the next index."""
+    """Write one row, with the slip along (n_1, n_2) in the step's axes; return the next index."""
     e_x, e_y = frame.e_x, frame.e_y
-    g = 1.0 / sqrt(1.0 + w * w)
-    n_x, n_y = (e_x - w * e_y) * g, (e_y + w * e_x) * g
+    n_x, n_y = n_1 * e_x - n_2 * e_y, n_1 * e_y + n_2 * e_x
     samples[k, 0] = u_x
     samples[k, 1] = u_y
     samples[k, 2] = speed * n_x

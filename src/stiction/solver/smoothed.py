@@ -14,7 +14,7 @@ from stiction.solver.frame import friction
 from stiction.solver.newton import ITERATIONS
 from stiction.solver.problem import Problem, in_principal_axes, travel
 from stiction.solver.radau import A, C, D
-from stiction.solver.state import Motion
+from stiction.solver.state import Accuracy, Motion
 from stiction.solver.stick import holding
 
 
@@ -50,7 +50,7 @@ def change(
     f, gradient = friction(problem, start.t + dt, r)
     f /= rho
     # d(F s/rho)/ds = (F/rho) I + (F'/(r rho) - F/rho^3) s s^T
-    outer = gradient / (rho * max(r, 1e-300)) - f / (rho * rho)
+    outer = (gradient / (rho * r) if r > 0.0 else 0.0) - f / (rho * rho)
     return Change(
         a_x - (c_x + f) * s_x,
         a_y - (c_y + f) * s_y,
@@ -105,8 +105,7 @@ def solve(
     h: float,
     x: Triple,
     y: Triple,
-    tolerance: float,
-    speed: float,
+    accuracy: Accuracy,
 ) -> tuple[bool, Triple, Triple, int]:
     """Solve the collocation equations by Newton's method; return (converged, x, y, count)."""
     x0, y0 = start.r * start.e_x, start.r * start.e_y
@@ -130,10 +129,10 @@ def solve(
         x = (x[0] - dx[0], x[1] - dx[1], x[2] - dx[2])
         y = (y[0] - dy[0], y[1] - dy[1], y[2] - dy[2])
         size = max(abs(dx[0]), abs(dx[1]), abs(dx[2]), abs(dy[0]), abs(dy[1]), abs(dy[2]))
-        size /= speed + sqrt(x[2] * x[2] + y[2] * y[2])
+        size /= accuracy.speed + sqrt(x[2] * x[2] + y[2] * y[2])
         if not size < 1e10 or (iteration > 3 and size > last):
             return False, x, y, iteration
-        if size < 0.01 * tolerance:
+        if size < 0.01 * accuracy.tolerance:
             return True, x, y, iteration
         last = size
     return False, x, y, ITERATIONS

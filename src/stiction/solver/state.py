@@ -11,6 +11,21 @@ from stiction.solver.problem import System
 RUNNING, COMPLETED, STEP_UNDERFLOW, NON_FINITE, TOO_MANY_STEPS = -1, 0, 1, 2, 3
 
 
+class Accuracy(NamedTuple):
+    """What a step is held to.
+
+    tolerance : relative error of the slip velocity and of the friction's direction in a step;
+    speed : slip speed below which it is absolute, m/s; free_x, free_y : what friction alone
+    can do to the elongation rates, mu_0 W/sqrt(m k), m/s: a vigorous slip may be relative to
+    itself, but not so that the springs' own motion is lost.
+    """
+
+    tolerance: float
+    speed: float
+    free_x: float
+    free_y: float
+
+
 class Motion(NamedTuple):
     """Time (s), elongation (m), slip speed (m/s; zero while sticking) and its direction."""
 

@@ -8,7 +8,7 @@ from stiction.solver.blocks import Triple, dot
 from stiction.solver.compiled import inlined
 from stiction.solver.frame import Frame, Outset, friction, pull
 from stiction.solver.newton import products, solve
-from stiction.solver.problem import Problem
+from stiction.solver.problem import Problem, in_principal_axes, rate
 from stiction.solver.radau import (
     DEFECT_WEIGHT,
     DERIVATIVE,
@@ -19,7 +19,7 @@ from stiction.solver.radau import (
     cubic,
     step_factor,
 )
-from stiction.solver.state import Memory
+from stiction.solver.state import Accuracy, Memory
 
 # a step that has not succeeded after so many tries will not; 0.4^100 is beyond any float
 ATTEMPTS = 100
@@ -53,7 +53,7 @@ def predicted(frame: Frame, start: Outset, h: float, memory: Memory) -> tuple[Tr
     c = (C[0] * h, C[1] * h, C[2] * h)
     if r == 0.0:  # take-off: |s| grows with t^2, and turns with the force that held
         a = 0.5 * start.da_1
-        x = start.da_2 / start.a_1
+        x = start.da_2 / start.a_1 if start.a_1 > 0.0 else 0.0
         return (a * c[0] * c[0], a * c[1] * c[1], a * c[2] * c[2]), (x * c[0], x * c[1], x * c[2])
     change = start.a_1 - start.f
     p = (
@@ -66,12 +66,13 @@ def predicted(frame: Frame, start: Outset, h: float, memory: Memory) -> tuple[Tr
 
 @inlined
 def local_error(
-    problem: Problem, frame: Frame, h: float, p: Triple, w: Triple, speed: float
+    problem: Problem, frame: Frame, h: float, p: Triple, w: Triple, accuracy: Accuracy
 ) -> float:
     """Return the largest relative error of the collocation cubic inside the step.
 
-    Its defect at an interior point, times the step size, relative to the slip speed plus
-    `speed` for p and to 1 for w; the latter divided by how stiffly w follows the force.
+    Its defect at an interior point, times the step size; that of w is divided by how stiffly
+    w follows the force. Held against the slip speed, against 1 for w, and in each principal
+    axis against what the elongation rate there can be.
     """
     r, dt = frame.r, INTERIOR * h
     p_in = VALUE[0] * r + VALUE[1] * p[0] + VALUE[2] * p[1] + VALUE[3] * p[2]
@@ -84,13 +85,24 @@ def local_error(
     a_2 = b_2 - frame.k_12 * slid_1 - frame.k_22 * slid_2 - (frame.c_12 + frame.c_22 * w_in) * p_in
     stretch = sqrt(1.0 + w_in * w_in)
     f = friction(problem, frame.t + dt, p_in * stretch)[0]
-    defect_p = abs(dp - h * (a_1 - f / stretch))
-    defect_w = abs(p_in * dw - h * (a_2 - w_in * a_1))
-    size = abs(p_in)
-    stiffness = size + DEFECT_WEIGHT * h * abs(a_1)
     if p_in < 0.0:
         return inf
-    return DEFECT_WEIGHT * max(defect_p / (speed + size), defect_w / (stiffness + 1e-300))
+    error_p = dp - h * (a_1 - f / stretch)
+    stiffness = p_in + DEFECT_WEIGHT * h * abs(a_1)
+    error_w = (p_in * dw - h * (a_2 - w_in * a_1)) / (stiffness + 1e-300)
+    error_q = w_in * error_p + p_in * error_w
+    e_x, e_y, size = frame.e_x, frame.e_y, p_in * stretch
+    v_x, v_y = in_principal_axes(problem, rate(problem.drive, frame.t + dt))
+    v_x, v_y = v_x - p_in * (e_x - w_in * e_y), v_y - p_in * (e_y + w_in * e_x)
+    speed = accuracy.speed
+    scale_x = speed + min(size, abs(v_x) + accuracy.free_x)
+    scale_y = speed + min(size, abs(v_y) + accuracy.free_y)
+    return DEFECT_WEIGHT * max(
+        abs(error_p) / (speed + size),
+        abs(error_w),
+        abs(error_p * e_x - error_q * e_y) / scale_x,
+        abs(error_p * e_y + error_q * e_x) / scale_y,
+    )
 
 
 @inlined
@@ -108,15 +120,14 @@ def step(
     start: Outset,
     t_stop: float,
     memory: Memory,
-    tolerance: float,
-    speed: float,
+    accuracy: Accuracy,
 ) -> tuple[bool, bool, float, Triple, Triple, float, int, int]:
     """Take one step of slip, as long as the tolerance and `t_stop` allow.
 
     Returns
     -------
     done : bool
-        False if the step size fell below the resolution of time.
+        False if no step, however short, succeeds.
     landing : bool
         Whether the step ends at zero slip.
     h, p, w, error
@@ -131,7 +142,8 @@ def step(
     if landing:
         h = until
     may_land = frame.r > 0.0
-    resolution = 4e-16 * abs(t)
+    # far below what time resolves: a boundary layer is thin, and the motion does go on in it
+    resolution = 1e-30 * abs(t)
     rejected = iterations = 0
     warm = False
     p = w = (0.0, 0.0, 0.0)
@@ -145,7 +157,7 @@ def step(
         if landing:
             p = (p[0], p[1], 0.0)
         tried, warm = h, False
-        converged, p, w, h, count = solve(problem, frame, h, landing, p, w, tolerance, speed)
+        converged, p, w, h, count = solve(problem, frame, h, landing, p, w, accuracy)
         iterations += count
         if converged and landing and t + h > t_stop:
             h, landing, may_land = t_stop - t, False, False
@@ -156,7 +168,7 @@ def step(
             continue
         factor = 0.3
         if converged and p[2] >= 0.0 and not dips(frame.r, p, w):
-            error = local_error(problem, frame, h, p, w, speed) / tolerance
+            error = local_error(problem, frame, h, p, w, accuracy) / accuracy.tolerance
             if error <= 1.0:
                 return True, landing, h, p, w, error, rejected, iterations
             factor = step_factor(error, 1.0)

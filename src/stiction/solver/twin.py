@@ -14,7 +14,7 @@ Equation numbers are those of Nakano & Popov, arXiv:2008.01854.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import Chebyshev
