@@ -71,8 +71,8 @@ def frame_of(problem: Problem, motion: Motion) -> Frame:
     """Return the axes along the slip direction."""
     s = problem.system
     _, u_x, u_y, r, e_x, e_y = motion
-    per_mass = 1.0 / s.mass
-    k_x, k_y, c_x, c_y = s.k_x * per_mass, s.k_y * per_mass, s.c_x * per_mass, s.c_y * per_mass
+    k_x, k_y = s.k_x * s.per_mass, s.k_y * s.per_mass
+    c_x, c_y = s.c_x * s.per_mass, s.c_y * s.per_mass
     xx, xy, yy = e_x * e_x, e_x * e_y, e_y * e_y
     return Frame(
         e_x,
@@ -137,7 +137,7 @@ def friction(problem: Problem, t: float, r: float) -> tuple[float, float]:
 
     Below zero the law is continued linearly: an iterate may overshoot a landing.
     """
-    weight = at(problem.load, t) / problem.system.mass
+    weight = at(problem.load, t) * problem.system.per_mass
     v = max(r, 0.0)
     gradient = slope(problem.law, v) * weight
     return coefficient(problem.law, v) * weight + gradient * (r - v), gradient

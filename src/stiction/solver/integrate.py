@@ -72,7 +72,10 @@ def accuracy(slider: Slider, rtol: float) -> Accuracy:
         speed = min(speed, free)
     weakening = max(0.0, -slider.law.slope(0.0)) * slider.load.at(0.0)
     speed = max(speed / (1.0 + weakening**2 / (k * slider.mass)), 1e-15)
-    return Accuracy(tolerance(rtol), speed, free_x, free_y)
+    local = tolerance(rtol)
+    # Newton's error must not show in a step's end, which is better than its inside
+    newton = min(0.2, 100.0 * sqrt(local)) * local
+    return Accuracy(local, newton, speed, free_x, free_y)
 
 
 def integrate(

@@ -12,7 +12,7 @@ from stiction.solver.frame import Frame, Outset, elongation, frame_of, outset, t
 from stiction.solver.landing import land, pursuit
 from stiction.solver.newton import products
 from stiction.solver.problem import Problem, in_principal_axes, next_break, rate, travel
-from stiction.solver.radau import A, step_factor
+from stiction.solver.radau import A, ease
 from stiction.solver.sampling import sample_slip, sample_stick
 from stiction.solver.state import (
     COMPLETED,
@@ -102,19 +102,20 @@ def slip(
     slid_1, slid_2 = h * dot(A[2], p), h * dot(A[2], products(p, w))
     u_x, u_y = elongation(problem, frame, h, slid_1, slid_2)
     e_x, e_y = turned(frame, w[2])
-    factor = step_factor(error, GROWTH)
+    at_ease = ease(error)
+    factor = min(GROWTH, max(0.2, 0.9 * at_ease))
     h_takeoff = memory.h_takeoff
     if r == 0.0:
         h_takeoff = h * factor
     elif memory.warm:  # Gustafsson's predictive control: errors that grow will grow on
-        trend = h / memory.h_last * sqrt(sqrt(memory.error_last)) * 0.9 / sqrt(error + 1e-10)
+        trend = 0.9 * h / memory.h_last * at_ease * at_ease / memory.ease
         factor = min(factor, max(0.2, trend))
     end = t_stop if t + h >= t_stop else t + h
     memory = Memory(
         h * factor if h > 0.1 * memory.h or end < t_stop else memory.h,
         h_takeoff,
         h,
-        max(error, 0.01),
+        min(at_ease, 3.0),
         not landing,
         (r, p[0], p[1], p[2]),
         (0.0, w[0], w[1], w[2]),

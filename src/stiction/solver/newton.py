@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from math import sqrt
-
 from stiction.solver.blocks import Triple, solved
 from stiction.solver.compiled import inlined
 from stiction.solver.frame import Frame
@@ -12,7 +10,6 @@ from stiction.solver.slip import factors, stage
 from stiction.solver.state import Accuracy
 
 ITERATIONS = 10
-NEWTON = 0.2
 
 
 @inlined
@@ -52,8 +49,7 @@ def solve(
     s2 = stage(problem, frame, h, 2, p, w, products(p, w))
     m = factors(frame, h, landing, p, w, s0, s1, s2)
     speed = accuracy.speed
-    # what is left must not show in the step's end, whose error falls faster than the tolerance
-    enough = min(NEWTON, 100.0 * sqrt(accuracy.tolerance)) * accuracy.tolerance
+    enough = accuracy.newton
     last = 1.0
     for iteration in range(1, ITERATIONS + 1):
         dp, dw = solved(

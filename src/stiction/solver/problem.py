@@ -19,7 +19,7 @@ from stiction.solver.compiled import inlined
 
 
 class System(NamedTuple):
-    """Mass (kg), stiffnesses (N/m), dampings (N s/m) along x and y; unit vector of X."""
+    """Mass (kg), stiffnesses (N/m), dampings (N s/m) along x and y; unit vector of X; 1/mass."""
 
     mass: float
     k_x: float
@@ -28,6 +28,7 @@ class System(NamedTuple):
     c_y: float
     cos_phi: float
     sin_phi: float
+    per_mass: float
 
 
 class Problem(NamedTuple):
@@ -42,7 +43,7 @@ class Problem(NamedTuple):
 def problem(slider: Slider) -> Problem:
     """Return what the compiled solver needs of a slider."""
     s = slider
-    system = System(s.mass, s.k_x, s.k_y, s.c_x, s.c_y, *s.direction)
+    system = System(s.mass, s.k_x, s.k_y, s.c_x, s.c_y, *s.direction, 1.0 / s.mass)
     return Problem(system, s.law, s.motion, s.load)
 
 

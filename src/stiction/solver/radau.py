@@ -69,9 +69,12 @@ def cubic(values: tuple[float, float, float, float], c: float) -> float:
 
 
 @inlined
-def step_factor(error: float, limit: float) -> float:
-    """Return the factor for the step size from the local error over its tolerance.
+def ease(error: float) -> float:
+    """Return the power -1/4 of the local error over its tolerance, which falls with h^4."""
+    return 1.0 / sqrt(sqrt(error + 1e-10))
 
-    The error estimate falls with h^4; 0.9 is the usual safety.
-    """
-    return min(limit, max(0.2, 0.9 / sqrt(sqrt(error + 1e-10))))
+
+@inlined
+def step_factor(error: float, limit: float) -> float:
+    """Return the factor for the step size from the error over tolerance; 0.9 for safety."""
+    return min(limit, max(0.2, 0.9 * ease(error)))

@@ -43,7 +43,7 @@ def change(
     s_x, s_y = s
     d_x, d_y = in_principal_axes(problem, travel(problem.drive, start.t, dt))
     a_x, a_y = holding(problem, start.t + dt, start.u_x + d_x - slid[0], start.u_y + d_y - slid[1])
-    c_x, c_y = system.c_x / system.mass, system.c_y / system.mass
+    c_x, c_y = system.c_x * system.per_mass, system.c_y * system.per_mass
     square = s_x * s_x + s_y * s_y
     r = sqrt(square)
     rho = sqrt(square + delta * delta)
@@ -78,8 +78,8 @@ def changes(
 @inlined
 def factors(problem: Problem, h: float, s: tuple[Change, Change, Change]) -> Factors:
     """Return the eliminated Jacobian of the collocation equations."""
-    kx = h * h * problem.system.k_x / problem.system.mass
-    ky = h * h * problem.system.k_y / problem.system.mass
+    kx = h * h * problem.system.k_x * problem.system.per_mass
+    ky = h * h * problem.system.k_y * problem.system.per_mass
     a, b, c = s
     return eliminated(
         (

@@ -15,12 +15,14 @@ class Accuracy(NamedTuple):
     """What a step is held to.
 
     tolerance : relative error of the slip velocity and of the friction's direction in a step;
-    speed : slip speed below which it is absolute, m/s; free_x, free_y : what friction alone
+    newton : relative size of Newton corrections that do no longer matter;
+    speed : slip speed below which these are absolute, m/s; free_x, free_y : what friction alone
     can do to the elongation rates, mu_0 W/sqrt(m k), m/s: a vigorous slip may be relative to
     itself, but not so that the springs' own motion is lost.
     """
 
     tolerance: float
+    newton: float
     speed: float
     free_x: float
     free_y: float
@@ -41,14 +43,14 @@ class Memory(NamedTuple):
     """What the last steps teach the next one.
 
     h : size to try next, s; h_takeoff : the same for the first step after a stick;
-    h_last, error_last : size and error over tolerance of the last step; warm : whether
-    `p` and `w`, values of its cubics at 0 and the stages, predict the next.
+    h_last : size of the last step; ease : its error over tolerance, to the power -1/4;
+    warm : whether `p` and `w`, values of its cubics at 0 and the stages, predict the next.
     """
 
     h: float
     h_takeoff: float
     h_last: float
-    error_last: float
+    ease: float
     warm: bool
     p: tuple[float, float, float, float]
     w: tuple[float, float, float, float]
@@ -85,4 +87,4 @@ def start(system: System, t: float, u: tuple[float, float], slip: tuple[float, f
 @inlined
 def cooled(memory: Memory, h: float) -> Memory:
     """Return a memory whose cubics predict nothing: the motion has a kink here."""
-    return Memory(h, memory.h_takeoff, memory.h_last, memory.error_last, False, memory.p, memory.w)
+    return Memory(h, memory.h_takeoff, memory.h_last, memory.ease, False, memory.p, memory.w)

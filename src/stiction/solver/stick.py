@@ -25,15 +25,15 @@ def holding(problem: Problem, t: float, u_x: float, u_y: float) -> tuple[float, 
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, t))
     g_x, g_y = in_principal_axes(problem, rate_change(problem.drive, t))
     return (
-        (system.k_x * u_x + system.c_x * v_x) / system.mass + g_x,
-        (system.k_y * u_y + system.c_y * v_y) / system.mass + g_y,
+        (system.k_x * u_x + system.c_x * v_x) * system.per_mass + g_x,
+        (system.k_y * u_y + system.c_y * v_y) * system.per_mass + g_y,
     )
 
 
 @inlined
 def limit(problem: Problem, t: float) -> float:
     """Return the largest friction force over mass at zero slip, in m/s^2."""
-    return coefficient(problem.law, 0.0) * at(problem.load, t) / problem.system.mass
+    return coefficient(problem.law, 0.0) * at(problem.load, t) * problem.system.per_mass
 
 
 @inlined
@@ -46,7 +46,7 @@ def stick_duration(problem: Problem, t: float, u_x: float, u_y: float) -> float:
     system = problem.system
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, t))
     a_x, a_y = holding(problem, t, u_x, u_y)
-    j_x, j_y = system.k_x * v_x / system.mass, system.k_y * v_y / system.mass
+    j_x, j_y = system.k_x * v_x * system.per_mass, system.k_y * v_y * system.per_mass
     f = limit(problem, t)
     quadratic = j_x * j_x + j_y * j_y
     linear = a_x * j_x + a_y * j_y

@@ -179,7 +179,7 @@ def stick(equations: Equations, t: float, end: float, u: np.ndarray) -> Phase:
     return Phase(end, lambda at: (u + equations.drive * (at - t), np.zeros(2)))
 
 
-def take_off(equations: Equations, t: float, end: float, u: np.ndarray) -> Phase:
+def take_off(equations: Equations, t: float, end: float, u: np.ndarray, part: float = 1.0) -> Phase:
     """Take-off: slip begins along the force that held, and turns with it.
 
     In axes along and across a(0) the slip velocity is written p (1, w); then Eqs. (4) and
@@ -187,9 +187,10 @@ def take_off(equations: Equations, t: float, end: float, u: np.ndarray) -> Phase
     p = 0. From p = w = 0 on, each pass takes a from what has been slid, solves the second
     equation for w (it is linear) and integrates the first for p, at the nodes of a
     Chebyshev polynomial in time. After a stick p begins as d|a|/dt tau^2/2; where the
-    force is larger than friction can hold, as (|a| - f) tau.
+    force is larger than friction can hold, as (|a| - f) tau. Where the polynomial does not
+    describe it (friction may change fast), half the length is tried.
     """
-    length = min(t + TAKE_OFF / equations.rate, end) - t
+    length = min(t + part * TAKE_OFF / equations.rate, end) - t
     e = equations.pull(u, np.zeros(2))
     e /= np.hypot(*e)
     across = np.array([-e[1], e[0]])
@@ -203,7 +204,7 @@ def take_off(equations: Equations, t: float, end: float, u: np.ndarray) -> Phase
 
     derivative = np.array([through(row).deriv()(time) for row in np.eye(DEGREE + 1)]).T
     p = w = np.zeros(DEGREE + 1)
-    for _ in range(100):
+    for _ in range(50):
         s = np.outer(p, e) + np.outer(p * w, across)
         gone = np.outer(slid(p), e) + np.outer(slid(p * w), across)
         a = equations.pull(u + np.outer(time, equations.drive) - gone, s)
@@ -211,11 +212,14 @@ def take_off(equations: Equations, t: float, end: float, u: np.ndarray) -> Phase
         stretch = np.sqrt(1 + w * w)
         friction = np.array([equations.friction(v) for v in np.abs(p) * stretch])
         before, p = p, slid(a @ e - friction / stretch)
-        if np.abs(p - before).max() <= 1e-11 * np.abs(p).max():
+        change = np.abs(p - before).max()
+        if change <= 1e-11 * np.abs(p).max():
             break
-    else:
-        raise ArithmeticError(f"the take-off at t = {t:g} s is not found")
     along, sideways = through(p), through(p * w)
+    if max(change, *np.abs(along.coef[-2:])) > 1e-10 * np.abs(p).max():
+        if part < 1e-6:
+            raise ArithmeticError(f"the take-off at t = {t:g} s is not found")
+        return take_off(equations, t, end, u, part / 2)
 
     def state(at: float) -> State:
         tau = at - t
