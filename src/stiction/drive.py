@@ -4,8 +4,10 @@ A drive moves in the laboratory plane (X along the nominal drive direction, Y ac
 it). The equations are Eq. (1) for the spring's elongation, which read literally has the
 plate driven under a mass whose spring is held at rest (the paper's Fig. 1); at constant
 velocity that is the same as a spring end pulled over a resting floor (Fig. 2). With
-acceleration the two differ by the inertia m dv_d/dt, which Eq. (1) has and keeps here. Like friction laws, drives and loads are NamedTuples of floats whose methods the
-solver compiles; their first argument is the drive or load itself.
+acceleration the two differ by the inertia m dv_d/dt, which Eq. (1) has and is kept here.
+
+Like friction laws, drives and loads are NamedTuples of floats whose methods the solver
+compiles; their first argument is the drive or load itself.
 """
 
 from __future__ import annotations
