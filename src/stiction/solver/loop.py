@@ -25,6 +25,7 @@ from stiction.solver.state import (
     Motion,
     State,
     cooled,
+    counted,
 )
 from stiction.solver.step import step
 from stiction.solver.stick import holding, stick_duration
@@ -89,13 +90,7 @@ def slip(
     done, landing, h, p, w, error, rejected, iterations = step(
         problem, frame, start, t_stop, memory, accuracy
     )
-    counts = Counts(
-        counts.steps + 1,
-        counts.rejected + rejected,
-        counts.iterations + iterations,
-        counts.sticks,
-        counts.stuck,
-    )
+    counts = counted(counts, rejected, iterations)
     if not done:
         return False, State(motion, memory, counts), k
     k = sample_slip(problem, frame, start, h, p, w, times, samples, k)

@@ -34,10 +34,10 @@ from stiction.solver.state import (
     RUNNING,
     STEP_UNDERFLOW,
     Accuracy,
-    Counts,
     Memory,
     Motion,
     State,
+    counted,
 )
 from stiction.solver.step import ATTEMPTS
 
@@ -168,13 +168,7 @@ def advance(
         done, h, x, y, error, rejected, iterations = step(
             problem, delta, start, t_stop, memory, accuracy
         )
-        counts = Counts(
-            counts.steps + 1,
-            counts.rejected + rejected,
-            counts.iterations + iterations,
-            counts.sticks,
-            counts.stuck,
-        )
+        counts = counted(counts, rejected, iterations)
         if not done:
             return STEP_UNDERFLOW, State(start, memory, counts), k, turn
         k = sample(problem, delta, start, h, x, y, times, samples, k)

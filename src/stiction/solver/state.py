@@ -88,3 +88,15 @@ def start(system: System, t: float, u: tuple[float, float], slip: tuple[float, f
 def cooled(memory: Memory, h: float) -> Memory:
     """Return a memory whose cubics predict nothing: the motion has a kink here."""
     return Memory(h, memory.h_takeoff, memory.h_last, memory.ease, False, memory.p, memory.w)
+
+
+@inlined
+def counted(counts: Counts, rejected: int, iterations: int) -> Counts:
+    """Return the counts with one more step."""
+    return Counts(
+        counts.steps + 1,
+        counts.rejected + rejected,
+        counts.iterations + iterations,
+        counts.sticks,
+        counts.stuck,
+    )
