@@ -1,8 +1,10 @@
 """The command line, run for real on real files."""
 
 import json
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -109,6 +111,33 @@ def test_plot_refuses_an_unknown_format(config, tmp_path, monkeypatch, capsys):
     assert ".png" in capsys.readouterr().err
 
 
+def test_run_does_not_write_over_what_is_no_result(config, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    before = config.read_text()
+    assert inside("run", "slider.toml", "--output", "slider.toml") == 2
+    assert "name it slider.nc" in capsys.readouterr().err
+    assert config.read_text() == before
+    (tmp_path / "folder.nc").mkdir()
+    assert inside("run", "slider.toml", "--output", "folder.nc") == 2
+    assert "not a file" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_ctrl_c_ends_a_long_run_cleanly(config, tmp_path):
+    config.write_text(config.read_text().replace('"50 ms"', '"2000 s"').replace("10 kHz", "1 Hz"))
+    command = [sys.executable, "-c", "from stiction.cli import main; main()", "run", str(config)]
+    process = subprocess.Popen(
+        [*command, "--output", "long.nc"], cwd=tmp_path, stderr=subprocess.PIPE, text=True
+    )
+    time.sleep(4.0)  # imports and loading take less; the run takes some seconds more
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "interrupted" in errors
+    assert "Traceback" not in errors
+    assert not (tmp_path / "long.nc").exists()
+
+
 def test_a_run_that_ends_early_says_so(config, tmp_path, monkeypatch, capsys):
     from stiction import simulation
 
@@ -129,7 +158,9 @@ def test_paper(tmp_path, capsys):
         assert {f"{figure}.png", f"{figure}.pdf"} <= names
     entries = json.loads((tmp_path / "out" / "numbers.json").read_text())
     assert len(entries) > 20
-    assert all(entry["agrees"] for entry in entries)
+    verdicts = [entry["verdict"] for entry in entries]
+    assert set(verdicts) == {"agrees", "finding"}
+    assert verdicts.count("finding") == 2
 
 
 def test_paper_one_figure(tmp_path):
@@ -145,4 +176,4 @@ def test_a_wrong_number_is_an_exit_status(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(reproduce, "numbers", lambda *_: wrong)
     monkeypatch.setattr(reproduce, "DURATION", 0.6)
     assert inside("paper", "--out", tmp_path) == 1
-    assert "0 of 2 numbers agree; wrong: one, nothing" in capsys.readouterr().out
+    assert "0 of 2 of the paper's numbers agree; wrong: one, nothing" in capsys.readouterr().out

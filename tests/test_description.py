@@ -99,8 +99,13 @@ def test_every_fault_at_once_by_path(tmp_path):
         ('phi = "1 deg"', 'phi = "100 deg"', "slider.phi", "between -90 deg and 90 deg"),
         ('phi = "1 deg"', 'phi = "1"', "slider.phi", "no unit"),
         ('mass = "0.25 kg"', 'mass = "nan kg"', "slider.mass", "not finite"),
-        ('mass = "0.25 kg"', 'mass = "a {lot}"', "slider.mass", "cannot read"),
+        ('mass = "0.25 kg"', 'mass = "a {lot}"', "slider.mass", "not one number"),
         ('mass = "0.25 kg"', "mass = [1]", "slider.mass", "not a mass"),
+        ('mass = "0.25 kg"', 'mass = "0,25 kg"', "slider.mass", "decimal sign is a point"),
+        ('phi = "1 deg"', 'phi = "0,5 deg"', "slider.phi", "decimal sign is a point"),
+        ('phi = "1 deg"', 'phi = "1 deg 30 arcmin"', "slider.phi", "not one number"),
+        ('k_x = "1 kN/m"', 'k_x = "2*3 N/m"', "slider.k_x", "not one number"),
+        ('k_x = "1 kN/m"', 'k_x = "1 Kn/m"', "slider.k_x", "capitals matter"),
         ('velocity = "1 mm/s"', 'velocity = "1 mm"', "drive.velocity", "'1 mm/s'"),
         ("epsilon = 1e-6", "v_x = 1", "initial", "v_x and v_y go together"),
         ('duration = "5 s"', 'duration = "0 s"', "run.duration", "greater than 0"),
@@ -119,6 +124,12 @@ def test_unreadable_files(tmp_path):
     assert "UTF-8" in str(*faults(tmp_path / "y.toml").values())
 
 
+def test_a_byte_order_mark_is_no_fault(tmp_path):
+    path = written(tmp_path / "bom.toml")
+    path.write_text("\ufeff" + path.read_text(), encoding="utf-8")
+    assert st.Slider.from_toml(path).mass == 0.25
+
+
 def test_python_reports_every_fault_too():
     with pytest.raises(st.DescriptionError) as error:
         st.Slider(mass="0.25 m", k_x=1, k_y=1, phi=1, normal_load=0, friction=3)
@@ -130,6 +141,8 @@ def test_python_reports_every_fault_too():
     ]
     with pytest.raises(st.DescriptionError, match=r"Coulomb\.mu_0: must not be below 0"):
         st.Coulomb(mu_0=-0.1)
+    with pytest.raises(st.DescriptionError, match="is not a Slider"):
+        st.simulate("my.toml", 1.0)
     with pytest.raises(st.DescriptionError, match=r"Settings\.sample_rate"):
         st.simulate(st.presets.nakano_popov_2020(), 1.0, sample_rate="10 m")
 

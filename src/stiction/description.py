@@ -16,7 +16,7 @@ from stiction.tables import Reader, gather, read_toml
 from stiction.units import Duration, Number, Rate, Velocity
 from stiction.validation import Described
 
-MOST_SAMPLES = 2e8  # 30 GB in memory
+MOST_SAMPLES = 2e7  # 5 GB in memory, 3 GB on disk
 Smoothing = Annotated[Velocity, Field(ge=1e-11)]  # below, each step is a boundary layer
 
 

@@ -72,6 +72,9 @@ def simulate(
     >>> f"{run.sticks[0, 1] * 1e3:.4f} ms"
     '11.4595 ms'
     """
+    if not isinstance(slider, Slider):
+        remedy = "make one with st.Slider(...) or read one with st.Slider.from_toml(path)"
+        raise DescriptionError([Fault("slider", f"{slider!r} is not a Slider; {remedy}")])
     given: dict[str, Any] = {
         "duration": duration,
         "sample_rate": sample_rate,

@@ -22,13 +22,16 @@ def read_toml(path: str | Path) -> dict[str, Any]:
         Saying why the file cannot be read.
     """
     try:
-        return tomllib.loads(Path(path).read_text(encoding="utf-8"))
+        return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
     except OSError as error:
-        message = error.strerror or "cannot be read"
+        message = f"{error.strerror or 'cannot be read'}; write a description with 'stiction init'"
     except UnicodeDecodeError:
         message = "is not text in UTF-8; write a description with 'stiction init'"
     except tomllib.TOMLDecodeError as error:
-        message = f"is not TOML: {error}; a value with a unit goes in quotes"
+        unquoted = (
+            "; a value with a unit goes in quotes" if "Expected newline" in str(error) else ""
+        )
+        message = f"is not TOML: {error}{unquoted}"
     raise DescriptionError([Fault(str(path), message)])
 
 

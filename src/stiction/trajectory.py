@@ -44,7 +44,7 @@ class Statistics:
     time_stuck: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Trajectory:
     """The result of a run; data only.
 
@@ -65,6 +65,12 @@ class Trajectory:
     data: xr.Dataset
     status: Status
     statistics: Statistics
+
+    def __repr__(self) -> str:
+        """Say how far the run came and what is in it."""
+        n, end = self.data.sizes["time"], float(self.data["time"][-1])
+        sticks = self.statistics.stick_count
+        return f"<Trajectory to {end:g} s, {n} samples, {sticks} sticks, {self.status.name}>"
 
     @property
     def slider(self) -> Slider:
@@ -95,20 +101,38 @@ class Trajectory:
         ResultError
             If the file cannot be written there.
         """
-        target = Path(path)
-        if not target.parent.is_dir():
-            raise ResultError(f"{target}: no folder {target.parent}; make it first")
-        handle, name = tempfile.mkstemp(dir=target.parent, suffix=".part")
-        os.close(handle)
+        target = writable(path)
+        name = ""
         try:
+            handle, name = tempfile.mkstemp(dir=target.parent, suffix=".part")
+            os.close(handle)
             self.data.to_netcdf(name, engine="h5netcdf")
             os.chmod(name, 0o666 & ~_umask())
             os.replace(name, target)
         except OSError as error:
             raise ResultError(f"{target}: cannot be written: {error.strerror or error}") from None
         finally:
-            Path(name).unlink(missing_ok=True)
+            if name:
+                Path(name).unlink(missing_ok=True)
         return target
+
+
+def writable(path: str | Path) -> Path:
+    """Return the path of a result, if one can be written there.
+
+    Raises
+    ------
+    ResultError
+        If it has another suffix than .nc, no folder, or is something else than a file.
+    """
+    target = Path(path)
+    if target.suffix != ".nc":
+        raise ResultError(f"{target}: a result is NetCDF; name it {target.with_suffix('.nc')}")
+    if not target.parent.is_dir():
+        raise ResultError(f"{target}: no folder {target.parent}; make it first")
+    if target.exists() and not target.is_file():
+        raise ResultError(f"{target}: is there, and is not a file; choose another name")
+    return target
 
 
 def load(path: str | Path) -> Trajectory:

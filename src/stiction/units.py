@@ -7,6 +7,7 @@ does not say whether it is in degrees or radians.
 
 from __future__ import annotations
 
+import re
 from functools import cache, partial
 from math import isfinite
 from typing import Annotated, Any, NamedTuple
@@ -21,6 +22,10 @@ class Kind(NamedTuple):
     name: str
     unit: str
     example: str
+
+
+# one number, then a unit that begins with a letter: nothing to calculate, no decimal comma
+QUANTITY = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+|nan|inf)([eE][+-]?\d+)?(\s*[^\W\d][^\s,]*)?\s*")
 
 
 @cache
@@ -62,12 +67,18 @@ def to_si(value: object, kind: Kind) -> float:
 def _parse(text: str, kind: Kind) -> float:
     import pint
 
+    if not QUANTITY.fullmatch(text):
+        comma = " (the decimal sign is a point)" if "," in text else ""
+        raise _fault(
+            f"{text!r} is not one number and its unit{comma}; write for example {kind.example!r}"
+        )
     try:
         quantity = _registry().Quantity(text)
         magnitude = float(quantity.magnitude)
     except Exception as error:  # pint raises whatever its tokenizer meets
         raise _fault(
-            f"cannot read {text!r} as a number with a unit; write for example {kind.example!r}"
+            f"cannot read the unit of {text!r} (capitals matter); "
+            f"write for example {kind.example!r}"
         ) from error
     if quantity.unitless and kind.unit:
         raise _fault(f"{text!r} has no unit; write for example {kind.example!r}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from difflib import get_close_matches
 from functools import cache
-from inspect import signature
+from inspect import Parameter, Signature, signature
 from typing import Any, TypeVar, cast, get_type_hints
 
 from pydantic import BaseModel, ConfigDict, ValidationError, create_model
@@ -20,6 +20,20 @@ class Described(BaseModel):
     """A frozen piece of a description; a bad one raises `DescriptionError` with every fault."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_: Any) -> None:
+        """Show names and defaults as the signature, not how each is read."""
+        parameters = [
+            Parameter(
+                name,
+                Parameter.KEYWORD_ONLY,
+                default=Parameter.empty if field.is_required() else field.default,
+            )
+            for name, field in cls.model_fields.items()
+        ]
+        required = sorted(parameters, key=lambda p: p.default is not Parameter.empty)
+        cls.__signature__ = Signature(required)
 
     def __init__(self, **values: Any) -> None:
         """Validate, or raise every fault at once."""

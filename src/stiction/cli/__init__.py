@@ -22,6 +22,7 @@ app = cyclopts.App(
         "`stiction plot my.nc --output my.png`."
     ),
     help_format="markdown",
+    suppress_keyboard_interrupt=False,
 )
 COMMANDS = ("paper", "init", "run", "plot")
 for _name in COMMANDS:  # light modules: what is heavy they import when they are called
@@ -39,6 +40,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
             errors.print(f"  {line}", markup=False, highlight=False)
         sys.exit(2)
     except KeyboardInterrupt:
-        errors.print("interrupted; nothing was written")
+        errors.print("interrupted; what is written is whole, the rest was not begun")
         sys.exit(130)
     sys.exit(code if isinstance(code, int) else 0)

@@ -18,6 +18,10 @@ def init(path: Path = Path("slider.toml"), /, *, force: bool = False) -> None:
     force
         Write over a file that is there.
     """
+    if path.is_dir():
+        raise StictionError(f"{path} is a folder; name a file in it")
+    if not path.parent.is_dir():
+        raise StictionError(f"{path}: no folder {path.parent}; make it first")
     if path.exists() and not force:
         raise StictionError(f"{path} is there already; choose another name, or add --force")
     text = files("stiction.cli").joinpath("template.toml").read_text(encoding="utf-8")

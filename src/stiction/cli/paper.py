@@ -22,7 +22,7 @@ def paper(*, out: Path = Path("paper-output"), figure: Literal[3, 4, 5] | None =
     from stiction.cli.progress import progress
     from stiction.paper.reproduce import reproduce
 
-    with progress("simulating and drawing (the first time, compiling)") as report:
+    with progress("simulating and drawing") as report:
         written, table = reproduce(out, figure, report)
     for path in written:
         print(f"wrote {path}")

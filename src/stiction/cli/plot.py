@@ -25,5 +25,5 @@ def plot(result: Path, /, *, output: Annotated[Path, Parameter(alias="-o")]) -> 
 
     if output.suffix.lower() not in FORMATS:
         known = ", ".join(FORMATS)
-        raise ResultError(f"{output}: cannot draw {output.suffix or 'no suffix'!r}; use {known}")
+        raise ResultError(f"{output}: has no suffix that can be drawn; use {known}")
     print(f"wrote {write(overview(load(result)), output)}")

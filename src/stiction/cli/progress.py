@@ -15,14 +15,18 @@ PATIENCE = 1.0  # seconds of silence before a bar appears
 @contextmanager
 def progress(title: str) -> Iterator[Callable[[float], None]]:
     """Show a bar on standard error, once a second has passed; yield what takes the fraction."""
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield lambda fraction: None
+        return
     bar = Progress(
         TextColumn("{task.description}"),
-        BarColumn(),
+        BarColumn(bar_width=20),
         TextColumn("{task.percentage:>3.0f} %"),
         TimeElapsedColumn(),
         TextColumn("left"),
         TimeRemainingColumn(),
-        console=Console(stderr=True),
+        console=console,
         transient=True,
     )
     task = bar.add_task(title, total=1.0)

@@ -26,9 +26,11 @@ def run(config: Path, /, *, output: Annotated[Path, Parameter(alias="-o")]) -> i
     from stiction.cli.progress import progress
     from stiction.description import Description
     from stiction.simulation import run as simulate
+    from stiction.trajectory import writable
 
     description = Description.from_toml(config)
-    with progress(f"simulating {config.name} (the first time, compiling)") as report:
+    writable(output)
+    with progress("simulating") as report:
         result = simulate(description, progress=report)
         result.save(output)
     console = Console(soft_wrap=True, highlight=False)
@@ -36,9 +38,14 @@ def run(config: Path, /, *, output: Annotated[Path, Parameter(alias="-o")]) -> i
     if not result.status.ok:
         reached = float(result.data.time[-1])
         console.print(f"[red]ended early[/red] at t = {reached:.6g} s: {result.status.value}")
-    console.print(
-        f"{output}: {result.data.sizes['time']} samples, {statistics.stick_count} stick intervals, "
-        f"{stuck:.6g} s stuck; {statistics.steps} steps"
-    )
-    console.print(f"next: stiction plot {output} --output {output.with_suffix('.png')}")
+    peak = float(abs(result.data["spring_x"]).max())
+    for line in (
+        f"{output}: {result.data.sizes['time']} samples, stick intervals: "
+        f"{statistics.stick_count}, {stuck:.6g} s in all; {statistics.steps} steps",
+        f"largest k_x u_x: {peak:.4g} N, {peak / result.slider.normal_load:.4g} of the normal load",
+        f"next: stiction plot {output} --output {output.with_suffix('.png')}",
+    ):
+        console.print(line, markup=False)
+    if statistics.steps == 0:
+        console.print("it never slipped: friction could hold all the time; run it longer")
     return 0 if result.status.ok else 1

@@ -26,8 +26,8 @@ class Table:
 
     @property
     def agrees(self) -> bool:
-        """Whether every number does."""
-        return all(number.agrees for number in self.numbers)
+        """Whether no number is wrong."""
+        return all(number.verdict != "WRONG" for number in self.numbers)
 
     @property
     def rows(self) -> list[tuple[str, ...]]:
@@ -37,11 +37,11 @@ class Table:
                 n.where,
                 n.what,
                 f"{n.stated:.11g}",
-                f"{n.computed:.11g}",
+                f"{n.computed:.9g}",
                 f"{n.deviation:+.1e}",
                 f"{n.tolerance:.1e}",
                 "" if n.unit == "1" else n.unit,
-                "agrees" if n.agrees else "WRONG",
+                n.verdict,
             )
             for n in self.numbers
         ]
@@ -58,9 +58,24 @@ class Table:
     @property
     def summary(self) -> str:
         """One line: how many numbers agree, and which do not."""
-        wrong = [n.what.strip() for n in self.numbers if not n.agrees]
-        count = f"{len(self.numbers) - len(wrong)} of {len(self.numbers)} numbers agree"
-        return f"{count}; wrong: {', '.join(wrong)}" if wrong else count
+        wrong = [n.what.strip() for n in self.numbers if n.verdict == "WRONG"]
+        parts = []
+        for whose, part in (
+            ("of the paper's numbers", [n for n in self.numbers if n.where != "reference"]),
+            (
+                "reference values of this project",
+                [n for n in self.numbers if n.where == "reference"],
+            ),
+        ):
+            checked = [n for n in part if not n.finding]
+            if checked:
+                parts.append(f"{sum(n.agrees for n in checked)} of {len(checked)} {whose} agree")
+        findings = sum(n.verdict == "finding" for n in self.numbers)
+        if findings:
+            parts.append(f"{findings} findings beyond the paper, see README")
+        if wrong:
+            parts.append(f"wrong: {', '.join(wrong)}")
+        return "; ".join(parts)
 
     @property
     def markdown(self) -> str:
@@ -74,7 +89,7 @@ class Table:
         entries = [
             asdict(n)
             | {"computed": float(n.computed), "deviation": float(n.deviation)}
-            | {"agrees": bool(n.agrees)}
+            | {"verdict": n.verdict}
             for n in self.numbers
         ]
         texts = {".txt": self.text, ".md": self.markdown, ".json": json.dumps(entries, indent=2)}

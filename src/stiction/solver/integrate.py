@@ -13,6 +13,7 @@ from stiction.slider import Slider
 from stiction.solver import loop, regularised
 from stiction.solver.compiled import specialised
 from stiction.solver.frame import friction
+from stiction.solver.interrupt import uninterrupted
 from stiction.solver.problem import Problem, problem
 from stiction.solver.sampling import COLUMNS
 from stiction.solver.state import (
@@ -96,24 +97,26 @@ def integrate(
     smooth = specialised(regularised.advance, *kinds)
     samples, sticks, k, used = np.empty((len(times), COLUMNS)), np.empty((256, 2)), 0, 0
     code = RUNNING
-    while code == RUNNING:
-        budget = min(BUDGET, max_steps - used)
-        if budget <= 0:
-            code = TOO_MANY_STEPS
-        elif delta is None:
-            code, state, k, turns = exact(
-                system, state, end, held, budget, times, samples, k, sticks
-            )
-            used += turns
-            if state.counts.sticks == len(sticks):
-                sticks = np.concatenate([sticks, np.empty_like(sticks)])
-        else:
-            code, state, k, turns = smooth(
-                system, delta, state, end, held, budget, times, samples, k
-            )
-            used += turns
-        if progress is not None:
-            progress((state.motion.t - initial.time) / settings.duration)
+    with uninterrupted() as release:
+        while code == RUNNING:
+            release()
+            budget = min(BUDGET, max_steps - used)
+            if budget <= 0:
+                code = TOO_MANY_STEPS
+            elif delta is None:
+                code, state, k, turns = exact(
+                    system, state, end, held, budget, times, samples, k, sticks
+                )
+                used += turns
+                if state.counts.sticks == len(sticks):
+                    sticks = np.concatenate([sticks, np.empty_like(sticks)])
+            else:
+                code, state, k, turns = smooth(
+                    system, delta, state, end, held, budget, times, samples, k
+                )
+                used += turns
+            if progress is not None:
+                progress((state.motion.t - initial.time) / settings.duration)
     times, samples = times[:k], samples[:k]
     if code != COMPLETED:  # keep where it stopped, whatever the sample rate
         times = np.append(times, state.motion.t)
