@@ -35,13 +35,14 @@ def overview(run: Trajectory) -> Figure:
         fig = new_figure(PAGE, 6.2)
         left, right = fig.subfigures(1, 2, squeeze=False, width_ratios=[1, 1.55])[0]
         panels = left.subplot_mosaic(
-            [["system"], ["words"], ["law"]], height_ratios=[2.3, 2.0, 1.4]
+            [["system"], ["words"], ["law"]], height_ratios=[2.1, 2.3, 1.3]
         )
         system, words, law = (panels[name] for name in ("system", "words", "law"))
         draw_schematic(system, run.slider)
         _write(words, run)
-        draw_law(law, run.slider, float(run.data["slip_speed"].max()))
-        law.set_title(law_in_words(run.slider))
+        drive = abs(run.slider.motion.rate(0.0)[0])  # what slips when nothing else does
+        draw_law(law, run.slider, max(drive, float(run.data["slip_speed"].max())))
+        law.set_title(f"Friction law: {law_in_words(run.slider)}")
         series = right.subplots(6, 1, sharex=True, height_ratios=[1.4, 1, 1, 1, 1.2, 0.6])
         _draw_series(series, run)
         right.align_ylabels(series)
