@@ -1,8 +1,16 @@
 """Runs that many tests look at, computed once."""
 
+import os
+
 import pytest
+from hypothesis import settings
 
 import stiction as st
+
+# what lands must not depend on chance; developers explore further with each run
+settings.register_profile("ci", derandomize=True, deadline=None)
+if os.environ.get("CI"):
+    settings.load_profile("ci")
 
 
 @pytest.fixture(scope="session")
