@@ -93,8 +93,7 @@ def integrate(
     held = accuracy(slider, settings.rtol)
     delta = settings.regularisation
     kinds = (type(system.law), type(system.drive), type(system.load))
-    exact = specialised(loop.advance, *kinds)
-    smooth = specialised(regularised.advance, *kinds)
+    advance = specialised(loop.advance if delta is None else regularised.advance, *kinds)
     samples, sticks, k, used = np.empty((len(times), COLUMNS)), np.empty((256, 2)), 0, 0
     code = RUNNING
     with uninterrupted() as release:
@@ -103,18 +102,18 @@ def integrate(
             budget = min(BUDGET, max_steps - used)
             if budget <= 0:
                 code = TOO_MANY_STEPS
-            elif delta is None:
-                code, state, k, turns = exact(
+                break
+            if delta is None:
+                code, state, k, turns = advance(
                     system, state, end, held, budget, times, samples, k, sticks
                 )
-                used += turns
-                if state.counts.sticks == len(sticks):
-                    sticks = np.concatenate([sticks, np.empty_like(sticks)])
             else:
-                code, state, k, turns = smooth(
+                code, state, k, turns = advance(
                     system, delta, state, end, held, budget, times, samples, k
                 )
-                used += turns
+            used += turns
+            if state.counts.sticks == len(sticks):
+                sticks = np.concatenate([sticks, np.empty_like(sticks)])
             if progress is not None:
                 progress((state.motion.t - initial.time) / settings.duration)
     times, samples = times[:k], samples[:k]

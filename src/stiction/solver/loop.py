@@ -12,7 +12,7 @@ from stiction.solver.frame import Frame, Outset, elongation, frame_of, outset, t
 from stiction.solver.landing import land, pursuit
 from stiction.solver.newton import products
 from stiction.solver.problem import Problem, in_principal_axes, next_break, rate, travel
-from stiction.solver.radau import A, ease
+from stiction.solver.radau import A, ease, step_factor
 from stiction.solver.sampling import sample_slip, sample_stick
 from stiction.solver.state import (
     COMPLETED,
@@ -98,7 +98,7 @@ def slip(
     u_x, u_y = elongation(problem, frame, h, slid_1, slid_2)
     e_x, e_y = turned(frame, w[2])
     at_ease = ease(error)
-    factor = min(GROWTH, max(0.2, 0.9 * at_ease))
+    factor = step_factor(error, GROWTH)
     h_takeoff = memory.h_takeoff
     if r == 0.0:
         h_takeoff = h * factor
