@@ -5,8 +5,7 @@ error falls in proportion to the tolerance, the change is larger than the error 
 nine times or more for a factor of ten; so the two must agree within the sum of both changes.
 """
 
-from math import cos, hypot, inf, pi, sin
-from typing import NamedTuple
+from math import hypot, inf, pi
 
 import numpy as np
 import pytest
@@ -16,7 +15,6 @@ from scipy.optimize import brentq
 import stiction as st
 from stiction.solver.integrate import tolerance
 from stiction.solver.landing import landing_slip, landing_time
-from stiction.solver.problem import problem
 from stiction.solver.radau import (
     DEFECT_WEIGHT,
     DERIVATIVE,
@@ -30,6 +28,7 @@ from stiction.solver.radau import (
 )
 from stiction.solver.sampling import quintic
 from stiction.solver.stick import stick_duration
+from stiction.solver.stretch import stretches
 from stiction.solver.twin import twin
 
 EPS = np.finfo(float).eps
@@ -126,19 +125,9 @@ def test_the_twin_starts_and_ends_where_it_is_told():
     assert run.u_x == pytest.approx([1e-6, 1e-6 + 1e-6 * c], rel=1e-12)
 
 
-class Shaken(NamedTuple):
-    amplitude: float
-
-    def travel(drive, t, dt):
-        return drive.amplitude * (sin(t + dt) - sin(t)), 0.0
-
-    def rate(drive, t):
-        return drive.amplitude * cos(t), 0.0
-
-
 def test_the_twin_refuses_a_drive_that_is_not_steady():
     with pytest.raises(ValueError, match="steady drive"):
-        twin(PAPER.replace(drive=Shaken(1e-3)), 1.0)
+        twin(PAPER.replace(drive=st.DriveProgram(along=st.Modulation(1e-3, 1.0))), 1.0)
 
 
 # --- the regularised law ------------------------------------------------------------------------
@@ -250,6 +239,12 @@ def held(slider, u, tau):
     return hypot(*(k * (u + drive * tau) + c * drive)) - slider.F_0
 
 
+def held_for(slider, u_x, u_y):
+    """What the compiled solver says about a stick from t = 0 on."""
+    stretch = next(stretches(slider, 0.0, 1.0))
+    return stick_duration(stretch.problem, 0.0, u_x, u_y, stretch.end)
+
+
 @pytest.mark.parametrize("c_y", [0.0, 1e4])
 @pytest.mark.parametrize("share", [-0.999, -0.5, 0.0, 0.5, 0.999])
 @pytest.mark.parametrize("angle", [0.0, 1.0, -1.5])
@@ -257,7 +252,7 @@ def test_stick_duration_is_the_root(angle, share, c_y):
     slider = PAPER.replace(c_x=50.0, c_y=c_y)
     k = np.array([slider.k_x, slider.k_y])
     u = share * slider.F_0 / k * [np.cos(angle), np.sin(angle)]
-    duration = stick_duration(problem(slider), 0.0, *u)
+    duration = held_for(slider, *u)
     if held(slider, u, 0.0) > 0.0:
         assert duration == 0.0
         return
@@ -271,14 +266,14 @@ def test_stick_duration_is_the_root(angle, share, c_y):
 def test_stick_duration_at_the_edge():
     """Friction used up: held if the drive unloads the spring, released if it loads it."""
     limit = PAPER.F_0 / PAPER.k_x
-    assert stick_duration(problem(PAPER), 0.0, limit, 0.0) == 0.0
-    assert stick_duration(problem(PAPER), 0.0, 1.01 * limit, 0.0) == 0.0
+    assert held_for(PAPER, limit, 0.0) == 0.0
+    assert held_for(PAPER, 1.01 * limit, 0.0) == 0.0
     V_x, V_y = 1e-3 * np.array(PAPER.direction)
     back = 2 * limit * V_x * PAPER.k_x**2 / ((V_x * PAPER.k_x) ** 2 + (V_y * PAPER.k_y) ** 2)
-    assert stick_duration(problem(PAPER), 0.0, -limit, 0.0) == pytest.approx(back, rel=1e-12)
+    assert held_for(PAPER, -limit, 0.0) == pytest.approx(back, rel=1e-12)
     still = PAPER.replace(drive=st.ConstantVelocity(0.0))
-    assert stick_duration(problem(still), 0.0, 0.5 * limit, 0.0) == inf
-    assert stick_duration(problem(still), 0.0, 1.5 * limit, 0.0) == 0.0
+    assert held_for(still, 0.5 * limit, 0.0) == inf
+    assert held_for(still, 1.5 * limit, 0.0) == 0.0
 
 
 def test_radau_coefficients():

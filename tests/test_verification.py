@@ -5,7 +5,7 @@ friction. The digits hold for rtol = 1e-10: the error of a run is about 100 rtol
 through here, far below half a digit.
 """
 
-from math import atan, cos, inf, pi, sin, sqrt, tan
+from math import atan, pi, sqrt, tan
 from typing import NamedTuple
 
 import numpy as np
@@ -30,24 +30,9 @@ def oscillator(friction, drive, normal_load=1.0):
 # --- forced vibration with Coulomb friction: Den Hartog, Trans. ASME APM-53-9 (1931) ------------
 
 
-class Harmonic(NamedTuple):
+def swinging(amplitude, omega):
     """A drive that swings along X: d = amplitude cos(omega t)."""
-
-    amplitude: float
-    omega: float
-
-    def travel(drive, t, dt):
-        omega = drive.omega
-        return drive.amplitude * (cos(omega * (t + dt)) - cos(omega * t)), 0.0
-
-    def rate(drive, t):
-        return -drive.amplitude * drive.omega * sin(drive.omega * t), 0.0
-
-    def rate_change(drive, t):
-        return -drive.amplitude * drive.omega**2 * cos(drive.omega * t), 0.0
-
-    def next_break(drive, t):
-        return inf
+    return st.DriveProgram(along=st.Modulation(-amplitude * omega, omega / (2 * pi)))
 
 
 @pytest.mark.parametrize(
@@ -64,7 +49,7 @@ def test_den_hartog_forced_vibration_without_stops(r, S, wanted):
     x_0 = sqrt(U**2 - (S * W) ** 2)
     assert x_0 == pytest.approx(wanted, abs=5e-8)
 
-    slider = oscillator(st.Coulomb(mu_0=S), Harmonic(1 / (1 - r * r), r))
+    slider = oscillator(st.Coulomb(mu_0=S), swinging(1 / (1 - r * r), r))
     period = 2 * pi / r
     settled = st.simulate(slider, 100 * period, rtol=1e-10).final
     start = st.Initial(

@@ -14,7 +14,19 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from stiction import presets, theory
     from stiction.description import Description, Settings
-    from stiction.drive import ConstantLoad, ConstantVelocity
+    from stiction.drive import (
+        Constant,
+        ConstantVelocity,
+        DriveProgram,
+        Free,
+        Harmonic,
+        Hold,
+        LoadProgram,
+        Modulation,
+        Ramp,
+        Reversal,
+        Step,
+    )
     from stiction.errors import DescriptionError, ResultError, Status, StictionError
     from stiction.friction import Coulomb, ExponentialWeakening
     from stiction.initial import Initial
@@ -26,17 +38,26 @@ __version__ = "0.1.0"
 
 # where each public name lives; imported when first used, so that `import stiction` is light
 _HOME = {
-    "ConstantLoad": "drive",
+    "Constant": "drive",
     "ConstantVelocity": "drive",
     "Coulomb": "friction",
     "Description": "description",
     "DescriptionError": "errors",
+    "DriveProgram": "drive",
     "ExponentialWeakening": "friction",
+    "Free": "drive",
+    "Harmonic": "drive",
+    "Hold": "drive",
     "Initial": "initial",
+    "LoadProgram": "drive",
+    "Modulation": "drive",
+    "Ramp": "drive",
     "ResultError": "errors",
+    "Reversal": "drive",
     "Settings": "description",
     "Slider": "slider",
     "Status": "errors",
+    "Step": "drive",
     "StictionError": "errors",
     "Trajectory": "trajectory",
     "load": "trajectory",
@@ -45,17 +66,26 @@ _HOME = {
 _ROOMS = ("presets", "theory")
 
 __all__ = [
-    "ConstantLoad",
+    "Constant",
     "ConstantVelocity",
     "Coulomb",
     "Description",
     "DescriptionError",
+    "DriveProgram",
     "ExponentialWeakening",
+    "Free",
+    "Harmonic",
+    "Hold",
     "Initial",
+    "LoadProgram",
+    "Modulation",
+    "Ramp",
     "ResultError",
+    "Reversal",
     "Settings",
     "Slider",
     "Status",
+    "Step",
     "StictionError",
     "Trajectory",
     "load",

@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 
 from stiction.friction import LAWS
 from stiction.initial import Initial
-from stiction.slider import SLIDER_TABLES, Slider
+from stiction.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider
 from stiction.tables import Reader, gather, read_toml
 from stiction.units import Duration, Number, Rate, Velocity
 from stiction.validation import Described
@@ -73,7 +73,7 @@ class Description(NamedTuple):
     @classmethod
     def from_dict(cls, raw: Mapping[str, Any]) -> Self:
         """Read a description from nested tables, as in the TOML file."""
-        parts = gather(raw, TABLES, optional=("initial",))
+        parts = gather(raw, TABLES, optional=("initial",), absent=OPTIONAL_TABLES)
         return cls(Slider.from_parts(parts), parts["initial"], parts["run"])
 
     @classmethod
@@ -88,9 +88,10 @@ class Description(NamedTuple):
         own = f"{kind.__module__}:{kind.__qualname__}"  # a user's law, by its name
         name = next((name for name, known in LAWS.items() if known is kind), own)
         return {
-            "slider": self.slider.model_dump(mode="json", exclude={"friction", "drive"}),
+            "slider": self.slider.model_dump(mode="json", exclude={"friction", "drive", "load"}),
             "friction": {"law": name, **law._asdict()},
-            "drive": self.slider.motion._asdict(),
+            "drive": table(self.slider.motion),
+            **({} if self.slider.load is None else {"load": table(self.slider.load)}),
             "initial": self.initial.model_dump(exclude_unset=True),
             "run": self.run.model_dump(exclude_none=True),
         }
@@ -98,6 +99,12 @@ class Description(NamedTuple):
     def to_json(self) -> str:
         """Return the description as one JSON string."""
         return json.dumps(self.to_dict())
+
+
+def table(value: Any) -> dict[str, Any]:
+    """Return a drive or a load as a table that can be read back."""
+    made: dict[str, Any] = value.to_table() if hasattr(value, "to_table") else value._asdict()
+    return made
 
 
 TABLES: dict[str, Reader] = {

@@ -61,6 +61,7 @@ class Status(Enum):
         "for magnitudes that cannot belong together"
     )
     TOO_MANY_STEPS = "the run used up its max_steps; raise max_steps or shorten the duration"
+    CONTACT_LOST = "the normal load fell to zero and the contact was lost; keep it above zero"
 
     @property
     def ok(self) -> bool:

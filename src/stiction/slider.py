@@ -5,12 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import cos, pi, sin
 from pathlib import Path
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator
 
-from stiction.drive import ConstantLoad, ConstantVelocity, Drive, Load, read_drive
-from stiction.friction import FrictionLaw, read_law
+from stiction.drive import (
+    ConstantVelocity,
+    Drive,
+    DriveProgram,
+    LoadProgram,
+    read_drive,
+    read_load,
+)
+from stiction.friction import Law, has_state, read_law
 from stiction.tables import Reader, gather, read_toml
 from stiction.units import Angle, Damping, Force, Mass, Stiffness
 from stiction.validation import Described
@@ -26,15 +33,25 @@ def _within_a_right_angle(phi: float) -> float:
 
 
 def _is_law(value: Any) -> Any:
-    if not all(callable(getattr(value, name, None)) for name in ("coefficient", "slope")):
+    wanted = ("force", "change", "settled") if has_state(value) else ("coefficient", "slope")
+    if not all(callable(getattr(value, name, None)) for name in wanted):
         raise ValueError(f"{value!r} is not a friction law; write for example st.Coulomb(mu_0=0.2)")
     return value
 
 
 def _is_drive(value: Any) -> Any:
-    if not all(callable(getattr(value, name, None)) for name in ("travel", "rate")):
+    if not isinstance(value, ConstantVelocity | DriveProgram):
         raise ValueError(
             f"{value!r} is not a drive; write for example st.ConstantVelocity('1 mm/s')"
+        )
+    return value
+
+
+def _is_load(value: Any) -> Any:
+    if value is not None and not isinstance(value, LoadProgram):
+        raise ValueError(
+            f"{value!r} is not a program of the load; write for example "
+            "st.LoadProgram(program=[st.Ramp('20 N', '1 s')])"
         )
     return value
 
@@ -49,6 +66,7 @@ class Apparatus(Described):
     normal_load: Force
     c_x: Damping = 0.0
     c_y: Damping = 0.0
+    driven: Literal["plate", "spring"] = "plate"
 
 
 class Slider(Apparatus):
@@ -67,13 +85,21 @@ class Slider(Apparatus):
     phi : str
         Misalignment angle between x and X, within 90 degrees of zero.
     normal_load : float or str
-        W, N.
+        W, N; what a program of the load starts from.
     friction : FrictionLaw
         For example `ExponentialWeakening` or `Coulomb`.
-    drive : Drive
-        For example `ConstantVelocity`.
+    drive : ConstantVelocity or DriveProgram
+        The drive velocity in time.
+    load : LoadProgram, optional
+        The normal load in time, where it is not constant.
     c_x, c_y : float or str, optional
         Damping constants of the spring along x and y, N s/m; none in the paper.
+    driven : {"plate", "spring"}, optional
+        What the drive moves: the plate under a mass whose spring is held (Fig. 1, and Eq. (1)
+        to the letter), or the far end of the spring over a plate at rest (Fig. 2). At a steady
+        drive they are the same. Where the drive accelerates, a driven plate adds the inertia
+        m dv_d/dt to what the friction must hold, and where its velocity jumps, the slip
+        velocity jumps with it; with a driven spring end neither is so.
 
     Raises
     ------
@@ -105,11 +131,12 @@ class Slider(Apparatus):
 
     friction: Annotated[Any, AfterValidator(_is_law)]
     drive: Annotated[Any, AfterValidator(_is_drive)] = ConstantVelocity(0.0)
+    load: Annotated[Any, AfterValidator(_is_load)] = None
 
     @property
-    def law(self) -> FrictionLaw:
+    def law(self) -> Law:
         """The friction law, typed."""
-        law: FrictionLaw = self.friction
+        law: Law = self.friction
         return law
 
     @property
@@ -119,11 +146,6 @@ class Slider(Apparatus):
         return drive
 
     @property
-    def load(self) -> Load:
-        """The normal load in time."""
-        return ConstantLoad(self.normal_load)
-
-    @property
     def direction(self) -> tuple[float, float]:
         """Unit vector of X in the axes (x, y): (cos phi, sin phi), exact at a right angle."""
         c, s = cos(self.phi), sin(self.phi)
@@ -131,8 +153,10 @@ class Slider(Apparatus):
 
     @property
     def F_0(self) -> float:
-        """Friction force at vanishing slip, mu_0 W, in N."""
-        return self.law.coefficient(0.0) * self.load.at(0.0)
+        """Friction force at vanishing slip, mu_0 W, in N; at the slip speed of the drive for a
+        law with internal state, which may have none at rest."""
+        speed = abs(self.motion.rate(0.0)[0]) if has_state(self.law) else 0.0
+        return self.law.coefficient(speed) * self.normal_load
 
     def replace(self, **changes: Any) -> Self:
         """Return the same slider with some parameters changed, e.g. ``phi="3 deg"``."""
@@ -145,7 +169,11 @@ class Slider(Apparatus):
         """Read the slider of a description file; `Description` reads the whole of it."""
         raw = read_toml(path)
         return cls.from_parts(
-            gather({name: raw[name] for name in raw if name in SLIDER_TABLES}, SLIDER_TABLES)
+            gather(
+                {name: raw[name] for name in raw if name in SLIDER_TABLES},
+                SLIDER_TABLES,
+                absent=OPTIONAL_TABLES,
+            )
         )
 
     @classmethod
@@ -153,7 +181,10 @@ class Slider(Apparatus):
         """Put together what the readers in `SLIDER_TABLES` returned."""
         apparatus: Apparatus = parts["slider"]
         return cls(
-            **apparatus.model_dump(mode="json"), friction=parts["friction"], drive=parts["drive"]
+            **apparatus.model_dump(mode="json"),
+            friction=parts["friction"],
+            drive=parts["drive"],
+            load=parts.get("load"),
         )
 
 
@@ -161,4 +192,6 @@ SLIDER_TABLES: dict[str, Reader] = {
     "slider": lambda table: Apparatus(**table),
     "friction": read_law,
     "drive": read_drive,
+    "load": read_load,
 }
+OPTIONAL_TABLES = ("load",)

@@ -36,9 +36,15 @@ def read_toml(path: str | Path) -> dict[str, Any]:
 
 
 def gather(
-    raw: Mapping[str, Any], readers: Mapping[str, Reader], optional: Collection[str] = ()
+    raw: Mapping[str, Any],
+    readers: Mapping[str, Reader],
+    optional: Collection[str] = (),
+    absent: Collection[str] = (),
 ) -> dict[str, Any]:
     """Read every table with its reader.
+
+    A table that is not there is an error, or read as an empty one if it is `optional`, or
+    left out of what is returned if it may be `absent`.
 
     Raises
     ------
@@ -48,6 +54,8 @@ def gather(
     found = [Fault(name, unknown("table", name, readers)) for name in raw if name not in readers]
     parts: dict[str, Any] = {}
     for name, read in readers.items():
+        if name in absent and name not in raw:
+            continue
         table = raw.get(name, {} if name in optional else None)
         if table is None:
             found.append(Fault(name, f"missing; write a table [{name}]"))

@@ -24,6 +24,9 @@ class Kind(NamedTuple):
     example: str
 
 
+VELOCITY = Kind("a velocity", "m/s", "1 mm/s")
+FORCE = Kind("a force", "N", "10 N")
+
 # one number, then a unit that begins with a letter: nothing to calculate, no decimal comma
 QUANTITY = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+|nan|inf)([eE][+-]?\d+)?(\s*[^\W\d][^\s,]*)?\s*")
 

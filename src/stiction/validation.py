@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from difflib import get_close_matches
 from functools import cache
 from inspect import Parameter, Signature, signature
 from typing import Any, TypeVar, cast, get_type_hints
 
 from pydantic import BaseModel, ConfigDict, ValidationError, create_model
-from pydantic_core import ErrorDetails
+from pydantic_core import ErrorDetails, PydanticCustomError
 
 from stiction.errors import DescriptionError, Fault
 
@@ -40,6 +40,11 @@ class Described(BaseModel):
         collect(type(self).__name__, super().__init__, type(self).model_fields, values)
 
 
+def faulty(found: Sequence[Fault]) -> PydanticCustomError:
+    """Return the error for faults found inside one field, each with its path below it."""
+    return PydanticCustomError("faults", "several faults", {"found": list(found)})
+
+
 def collect(
     path: str, build: Callable[..., T], known: Iterable[str], values: Mapping[str, Any]
 ) -> T:
@@ -52,10 +57,16 @@ def collect(
 
 def faults(error: ValidationError, path: str, known: Iterable[str]) -> list[Fault]:
     """Return each fault of a pydantic error below `path`; `known` are the keys allowed there."""
-    return [
-        Fault(".".join([path, *map(str, detail["loc"])]), _message(detail, tuple(known)))
-        for detail in error.errors()
-    ]
+    found = []
+    for detail in error.errors():
+        at = ".".join([path, *map(str, detail["loc"])])
+        if detail["type"] == "faults":
+            found += [
+                Fault(f"{at}.{inner.path}", inner.message) for inner in detail["ctx"]["found"]
+            ]
+        else:
+            found.append(Fault(at, _message(detail, tuple(known))))
+    return found
 
 
 def _message(detail: ErrorDetails, known: tuple[str, ...]) -> str:
@@ -90,6 +101,10 @@ def unknown(what: str, name: str, known: Iterable[str]) -> str:
     return f"unknown {what} {name!r}; {remedy}"
 
 
+def _no_faults(made: object) -> Iterable[tuple[str, str]]:
+    return ()
+
+
 @cache
 def fields(kind: Any) -> type[Described]:
     """Return the model that validates the parameters of a NamedTuple `kind`."""
@@ -107,7 +122,8 @@ def validated(kind: type[T]) -> type[T]:
     """Class decorator: a NamedTuple whose parameters are read, with units, when it is made.
 
     The compiled solver takes the tuple as it is: floats in SI. The parameters are
-    declared once, as the tuple's annotated fields.
+    declared once, as the tuple's annotated fields; what must hold between them is checked
+    by a method ``faults``, which yields a field and a message for each fault.
     """
     plain: Any = kind.__new__
     parameters = signature(plain)
@@ -119,6 +135,10 @@ def validated(kind: type[T]) -> type[T]:
             raise TypeError(f"{kind.__name__} takes {', '.join(names)}")
         model = fields(cast(Any, kind))(**given)
         made: T = plain(cls, **{name: getattr(model, name) for name in names})
+        check: Callable[[T], Iterable[tuple[str, str]]] = getattr(kind, "faults", _no_faults)
+        found = [Fault(f"{kind.__name__}.{name}", message) for name, message in check(made)]
+        if found:
+            raise DescriptionError(found)
         return made
 
     new.__doc__ = plain.__doc__

@@ -11,19 +11,30 @@ from typing import Any
 
 from stiction.friction.coulomb import Coulomb
 from stiction.friction.exponential_weakening import ExponentialWeakening
-from stiction.friction.law import FrictionLaw
+from stiction.friction.law import FrictionLaw, Internal, Law, StateLaw, has_state, states
 from stiction.tables import choose
 
-LAWS: dict[str, type[FrictionLaw]] = {
+LAWS: dict[str, type[Any]] = {
     "coulomb": Coulomb,
     "exponential-weakening": ExponentialWeakening,
 }
 
 
-def read_law(table: dict[str, Any]) -> FrictionLaw:
+def read_law(table: dict[str, Any]) -> Law:
     """Read a description's table [friction]."""
-    law: FrictionLaw = choose(table, "law", LAWS)
+    law: Law = choose(table, "law", LAWS)
     return law
 
 
-__all__ = ["LAWS", "Coulomb", "ExponentialWeakening", "FrictionLaw", "read_law"]
+__all__ = [
+    "LAWS",
+    "Coulomb",
+    "ExponentialWeakening",
+    "FrictionLaw",
+    "Internal",
+    "Law",
+    "StateLaw",
+    "has_state",
+    "read_law",
+    "states",
+]

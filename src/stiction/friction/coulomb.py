@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
+from stiction.friction.law import static_fault
 from stiction.units import Coefficient
 from stiction.validation import validated
 
@@ -16,9 +18,21 @@ class Coulomb(NamedTuple):
     ----------
     mu_0 : float
         Friction coefficient.
+    mu_static : float, optional
+        Separate coefficient of static friction, not below mu_0; none when left out.
     """
 
     mu_0: Coefficient
+    mu_static: Coefficient = 0.0
+
+    @classmethod
+    def like(kind, static: float, kinetic: float, speed: float) -> Coulomb:
+        """Return constant friction with a separate static coefficient."""
+        return kind(min(static, kinetic), static)
+
+    def faults(law) -> Iterator[tuple[str, str]]:
+        """Yield what does not fit together."""
+        return static_fault(law)
 
     def coefficient(law, v: float) -> float:
         """Return mu_0."""

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import exp
 from typing import NamedTuple
 
+from stiction.friction.law import static_fault
 from stiction.units import Coefficient, PositiveSpeed
 from stiction.validation import validated
 
@@ -23,11 +25,23 @@ class ExponentialWeakening(NamedTuple):
         Friction coefficient at large slip speed.
     v_f : float or str
         Slip speed over which the coefficient changes, m/s.
+    mu_static : float, optional
+        Separate coefficient of static friction, not below mu_0; none when left out.
     """
 
     mu_0: Coefficient
     mu_inf: Coefficient
     v_f: PositiveSpeed
+    mu_static: Coefficient = 0.0
+
+    @classmethod
+    def like(kind, static: float, kinetic: float, speed: float) -> ExponentialWeakening:
+        """Return the law with these coefficients and this speed."""
+        return kind(static, kinetic, speed)
+
+    def faults(law) -> Iterator[tuple[str, str]]:
+        """Yield what does not fit together."""
+        return static_fault(law)
 
     def coefficient(law, v: float) -> float:
         """Return the friction coefficient at slip speed `v` (m/s)."""

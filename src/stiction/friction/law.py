@@ -1,15 +1,23 @@
-"""What the solver asks of a friction law."""
+"""What the solver asks of a friction law, with and without internal state.
+
+Laws are NamedTuples with methods in plain Python, which the solver compiles: they may use
+floats, tuples, `math` and the law's own fields. Their first argument is the law itself,
+named ``law``; a function of the user's own that they call must be compiled (`numba.njit`).
+"""
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from collections.abc import Iterator
+from typing import Any, NamedTuple, Protocol, Self, TypeGuard
+
+Vector = tuple[float, float]
 
 
 class FrictionLaw(Protocol):
-    """A set-valued friction law: at zero slip it holds up to ``coefficient(0)`` times the load.
+    """A set-valued law: at zero slip friction is whatever holds, up to a limit.
 
-    Both methods are compiled: they may use floats, `math` and the law's own fields.
-    Their first argument is the law itself, named ``law``.
+    The limit is ``coefficient(0)`` times the normal load; where the law has a field
+    ``mu_static``, it is that coefficient if it is the larger one.
     """
 
     @property
@@ -22,3 +30,85 @@ class FrictionLaw(Protocol):
 
     def slope(law, v: float) -> float:
         """Return the derivative of the coefficient with respect to `v`, in s/m."""
+
+    @classmethod
+    def like(kind, static: float, kinetic: float, speed: float) -> Self:
+        """Return a law of this kind that is comparable with another.
+
+        `static` and `kinetic` are friction coefficients at rest and in fast slip, `speed` (m/s)
+        is over which the one becomes the other. Optional: only comparisons ask for it.
+        """
+
+
+class Internal(NamedTuple):
+    """An internal state of a law: its name in results, its unit, and what it is."""
+
+    name: str
+    unit: str
+    meaning: str
+
+
+class StateLaw(Protocol):
+    """A law with internal state: friction is a smooth function of slip, load and state.
+
+    Vectors are (x, y) in the slider's principal axes; `state` is a tuple of floats, one for
+    each of ``states()``.
+
+    A law whose friction varies over many decades of slip speed may say, by a method
+    ``grain(law, state)``, below which slip speed (m/s) it is proportional to it; the solver
+    then works with the logarithm of the slip speed above.
+    """
+
+    @property
+    def _fields(self) -> tuple[str, ...]: ...
+
+    def _asdict(self) -> dict[str, Any]: ...
+
+    @staticmethod
+    def states() -> tuple[Internal, ...]:
+        """Return what the internal states are."""
+
+    def coefficient(law, v: float) -> float:
+        """Return the friction coefficient of steady sliding at slip speed `v` (m/s)."""
+
+    def settled(law, speed: float) -> tuple[float, ...]:
+        """Return the state to start from where nothing else is said, given the drive's speed."""
+
+    def force(law, slip: Vector, load: float, state: tuple[float, ...]) -> Vector:
+        """Return the friction force (N) at slip velocity `slip` (m/s) and normal load (N)."""
+
+    @classmethod
+    def like(kind, static: float, kinetic: float, speed: float) -> Self:
+        """Return a comparable law of this kind; see `FrictionLaw.like`."""
+
+    def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
+        """Return the rate of change of each state, per second."""
+
+
+Law = FrictionLaw | StateLaw
+
+
+def has_state(law: Any) -> TypeGuard[StateLaw]:
+    """Return whether a law has internal state."""
+    return bool(states(law))
+
+
+def states(law: Any) -> tuple[Internal, ...]:
+    """Return what the internal states of a law are, none for a set-valued law."""
+    return tuple(Internal(*each) for each in getattr(law, "states", tuple)())
+
+
+def static_coefficient(law: Any) -> float:
+    """Return the largest friction coefficient at zero slip."""
+    return max(float(getattr(law, "mu_static", 0.0)), float(law.coefficient(0.0)))
+
+
+def static_fault(law: FrictionLaw) -> Iterator[tuple[str, str]]:
+    """Yield what is wrong with a law's separate static coefficient: its field and a message."""
+    static, kinetic = float(getattr(law, "mu_static", 0.0)), law.coefficient(0.0)
+    if 0.0 < static < kinetic:
+        yield (
+            "mu_static",
+            f"must not be below the coefficient at vanishing slip speed, {kinetic:g}, "
+            f"is {static:g}; leave it out to have no separate static coefficient",
+        )

@@ -115,7 +115,7 @@ def _fingerprint() -> str:
     calls; with the fingerprint in the path, any edit leads to a fresh directory.
     """
     package = Path(__file__).parent.parent
-    files = [package / "drive.py", *(package / "friction").glob("*.py")]
+    files = [*(package / "drive").glob("*.py"), *(package / "friction").glob("*.py")]
     files += [file for file in (package / "solver").glob("*.py") if file.stem != "twin"]
     digest = hashlib.sha256()
     for file in sorted(files):

@@ -2,7 +2,7 @@
 
 e is the slip direction at the step's start (at take-off: the direction of the force that
 held). In these axes the slip velocity is s = p (1, w), and with a = (K u + C du/dt)/m +
-dv_d/dt and f = F(|s|)/m, Eqs. (4) and (5) read
+dv_d/dt (the last only where the plate is driven) and f = F(|s|)/m, Eqs. (4) and (5) read
 
     p'   = a_1 - f/sqrt(1 + w^2)
     p w' = a_2 - w a_1
@@ -23,6 +23,7 @@ from stiction.solver.problem import (
     in_principal_axes,
     rate,
     rate_change,
+    rate_curve,
     slope,
     travel,
 )
@@ -115,19 +116,21 @@ def pull(problem: Problem, frame: Frame, dt: float) -> tuple[float, float, float
     """Return the acceleration that the drive alone gives after `dt`, and its rate of change.
 
     The elongation there would be the one at the start plus the drive's travel; what slip
-    takes away from it is added by the caller. The rate leaves out the drive's jerk.
+    takes away from it is added by the caller.
     """
     t = frame.t
     d_1, d_2 = in_frame(frame, travel(problem.drive, t, dt))
     v_1, v_2 = in_frame(frame, rate(problem.drive, t + dt))
     g_1, g_2 = in_frame(frame, rate_change(problem.drive, t + dt))
+    j_1, j_2 = in_frame(frame, rate_curve(problem.drive, t + dt))
+    inertia = problem.system.inertia
     k_11, k_12, k_22 = frame.k_11, frame.k_12, frame.k_22
     c_11, c_12, c_22 = frame.c_11, frame.c_12, frame.c_22
     return (
-        frame.spring_1 + k_11 * d_1 + k_12 * d_2 + c_11 * v_1 + c_12 * v_2 + g_1,
-        frame.spring_2 + k_12 * d_1 + k_22 * d_2 + c_12 * v_1 + c_22 * v_2 + g_2,
-        k_11 * v_1 + k_12 * v_2 + c_11 * g_1 + c_12 * g_2,
-        k_12 * v_1 + k_22 * v_2 + c_12 * g_1 + c_22 * g_2,
+        frame.spring_1 + k_11 * d_1 + k_12 * d_2 + c_11 * v_1 + c_12 * v_2 + inertia * g_1,
+        frame.spring_2 + k_12 * d_1 + k_22 * d_2 + c_12 * v_1 + c_22 * v_2 + inertia * g_2,
+        k_11 * v_1 + k_12 * v_2 + c_11 * g_1 + c_12 * g_2 + inertia * j_1,
+        k_12 * v_1 + k_22 * v_2 + c_12 * g_1 + c_22 * g_2 + inertia * j_2,
     )
 
 

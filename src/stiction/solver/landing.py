@@ -20,7 +20,7 @@ import numpy as np
 
 from stiction.solver.compiled import inlined
 from stiction.solver.frame import Frame, Outset, elongation
-from stiction.solver.problem import Problem
+from stiction.solver.problem import Problem, at, constant, drift
 from stiction.solver.sampling import fill
 from stiction.solver.state import Accuracy, Motion, State, cooled
 
@@ -94,7 +94,9 @@ def slip_before_landing(
 
 
 @inlined
-def pursuit(frame: Frame, start: Outset, accuracy: Accuracy) -> tuple[float, float, float]:
+def pursuit(
+    problem: Problem, frame: Frame, start: Outset, accuracy: Accuracy
+) -> tuple[float, float, float]:
     """Return the time (s) to landing and the slip until then (m), in closed form.
 
     Infinite unless spring and friction stay constant until then, to a tenth of the tolerance,
@@ -108,6 +110,8 @@ def pursuit(frame: Frame, start: Outset, accuracy: Accuracy) -> tuple[float, flo
     T = landing_time(r, a_1, square, f)
     jerk = abs(da_1) + abs(da_2) + (frame.k_11 + frame.k_22) * r
     relaxation = abs(gradient) + frame.c_11 + frame.c_22
+    if not constant(problem.load):
+        jerk += abs(drift(problem.load, frame.t)) * f / at(problem.load, frame.t)
     change = T * (T * jerk + relaxation * r)
     if change > 0.1 * accuracy.tolerance * accuracy.speed and 1e-13 * (abs(frame.t) + 1e-2) < T:
         return inf, 0.0, 0.0

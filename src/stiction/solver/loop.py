@@ -11,7 +11,7 @@ from stiction.solver.compiled import compiled, inlined
 from stiction.solver.frame import Frame, Outset, elongation, frame_of, outset, turned
 from stiction.solver.landing import land, pursuit
 from stiction.solver.newton import products
-from stiction.solver.problem import Problem, in_principal_axes, next_break, rate, travel
+from stiction.solver.problem import Problem, in_principal_axes, rate, travel
 from stiction.solver.radau import A, ease, step_factor
 from stiction.solver.sampling import sample_slip, sample_stick
 from stiction.solver.state import (
@@ -46,7 +46,7 @@ def stick(
     """Hold zero slip as long as friction can, then turn the slip direction to take-off."""
     motion, memory, counts = state
     t, u_x, u_y = motion.t, motion.u_x, motion.u_y
-    duration = stick_duration(problem, t, u_x, u_y)
+    duration = stick_duration(problem, t, u_x, u_y, t_stop)
     end = t_stop if t + duration >= t_stop else t + duration
     if end > t:
         k = sample_stick(problem, t, u_x, u_y, end, times, samples, k)
@@ -164,22 +164,21 @@ def advance(
             return NON_FINITE, state, k, turn
         if state.counts.sticks >= len(sticks):
             return RUNNING, state, k, turn
-        t_stop = min(t_end, next_break(problem.drive, t))
         if motion.r < 1e-13 * accuracy.tolerance * accuracy.speed:  # at rest for every purpose
             motion = Motion(t, motion.u_x, motion.u_y, 0.0, motion.e_x, motion.e_y)
             state = State(motion, state.memory, state.counts)
-            state, k = stick(problem, state, t_stop, times, samples, k, sticks)
+            state, k = stick(problem, state, t_end, times, samples, k, sticks)
             motion = state.motion
-            if motion.t >= t_stop:
+            if motion.t >= t_end:
                 continue
         frame = frame_of(problem, motion)
         start = outset(problem, frame)
         if motion.r > 0.0:
-            closed = pursuit(frame, start, accuracy)
-            if t + closed[0] < t_stop:
+            closed = pursuit(problem, frame, start, accuracy)
+            if t + closed[0] < t_end:
                 state, k = land(problem, frame, start, state, closed, times, samples, k)
                 continue
-        done, state, k = slip(problem, frame, start, state, t_stop, accuracy, times, samples, k)
+        done, state, k = slip(problem, frame, start, state, t_end, accuracy, times, samples, k)
         if not done:
             return STEP_UNDERFLOW, state, k, turn
     code = COMPLETED if state.motion.t >= t_end else RUNNING

@@ -10,16 +10,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from numba.extending import overload
+from numba.extending import overload, register_jitable
 
-from stiction.drive import Drive, Load
-from stiction.friction import FrictionLaw
-from stiction.slider import Slider
+from stiction.drive.signal import FUNCTIONS
+from stiction.friction import FrictionLaw, StateLaw
+from stiction.friction.law import Vector, static_coefficient
 from stiction.solver.compiled import inlined
 
 
 class System(NamedTuple):
-    """Mass (kg), stiffnesses (N/m), dampings (N s/m) along x and y; unit vector of X; 1/mass."""
+    """Mass (kg), stiffnesses (N/m), dampings (N s/m) along x and y; unit vector of X; 1/mass;
+    1 where an accelerated drive moves the plate, 0 where it moves the spring's end."""
 
     mass: float
     k_x: float
@@ -29,22 +30,21 @@ class System(NamedTuple):
     cos_phi: float
     sin_phi: float
     per_mass: float
+    inertia: float
 
 
 class Problem(NamedTuple):
-    """Everything that determines the motion."""
+    """Everything that determines the motion in a stretch of time.
+
+    `drive` and `load` are stretches (see `stiction.drive.signal`). `bend` bounds how fast a
+    stick's margin |a|^2 - f^2 can curve (m^2/s^6); see `stiction.solver.stick`.
+    """
 
     system: System
-    law: FrictionLaw
-    drive: Drive
-    load: Load
-
-
-def problem(slider: Slider) -> Problem:
-    """Return what the compiled solver needs of a slider."""
-    s = slider
-    system = System(s.mass, s.k_x, s.k_y, s.c_x, s.c_y, *s.direction, 1.0 / s.mass)
-    return Problem(system, s.law, s.motion, s.load)
+    law: Any
+    drive: Any
+    load: Any
+    bend: float
 
 
 def coefficient(law: FrictionLaw, v: float) -> float:
@@ -57,29 +57,72 @@ def slope(law: FrictionLaw, v: float) -> float:
     return law.slope(v)
 
 
-def travel(drive: Drive, t: float, dt: float) -> tuple[float, float]:
+def static(law: FrictionLaw) -> float:
+    """Return the largest friction coefficient at zero slip."""
+    return static_coefficient(law)
+
+
+def force(law: StateLaw, slip: Vector, load: float, state: tuple[float, ...]) -> Vector:
+    """Return the friction force (N) of a law with internal state."""
+    return law.force(slip, load, state)
+
+
+def change(law: StateLaw, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
+    """Return the rate of change of a law's internal states."""
+    return law.change(slip, load, state)
+
+
+def grain(law: StateLaw, state: tuple[float, ...]) -> float:
+    """Return the slip speed below which friction is proportional to it."""
+    own: Callable[..., float] | None = getattr(law, "grain", None)
+    return EVERYWHERE if own is None else own(state)
+
+
+def travel(drive: Any, t: float, dt: float) -> Vector:
     """Return the displacement (X, Y) of the drive from `t` to `t + dt`."""
-    return drive.travel(t, dt)
+    moved: Vector = drive.travel(t, dt)
+    return moved
 
 
-def rate(drive: Drive, t: float) -> tuple[float, float]:
+def rate(drive: Any, t: float) -> Vector:
     """Return the velocity (X, Y) of the drive."""
-    return drive.rate(t)
+    v: Vector = drive.rate(t)
+    return v
 
 
-def rate_change(drive: Drive, t: float) -> tuple[float, float]:
+def rate_change(drive: Any, t: float) -> Vector:
     """Return the acceleration (X, Y) of the drive."""
-    return drive.rate_change(t)
+    a: Vector = drive.rate_change(t)
+    return a
 
 
-def next_break(drive: Drive, t: float) -> float:
-    """Return when the drive's velocity or its derivative next jumps."""
-    return drive.next_break(t)
+def rate_curve(drive: Any, t: float) -> Vector:
+    """Return the rate of change of the drive's acceleration."""
+    jerk: Vector = drive.rate_curve(t)
+    return jerk
 
 
-def at(load: Load, t: float) -> float:
+def at(load: Any, t: float) -> float:
     """Return the normal load."""
-    return load.at(t)
+    return float(load.at(t))
+
+
+def drift(load: Any, t: float) -> float:
+    """Return the rate of change of the normal load."""
+    return float(load.drift(t))
+
+
+def steady(drive: Any) -> bool:
+    """Return whether the drive's velocity is constant: known when compiled."""
+    return bool(drive.steady())
+
+
+def constant(load: Any) -> bool:
+    """Return whether the load is constant: known when compiled."""
+    return bool(load.constant())
+
+
+EVERYWHERE = 1e6  # m/s: friction is smooth at any slip speed
 
 
 def _by_type(function: Callable[..., Any]) -> None:
@@ -92,8 +135,35 @@ def _by_type(function: Callable[..., Any]) -> None:
     overload(function, strict=False)(method)
 
 
-for _function in (coefficient, slope, travel, rate, rate_change, next_break, at):
+for _function in (
+    coefficient,
+    slope,
+    force,
+    change,
+    travel,
+    rate,
+    rate_change,
+    rate_curve,
+    at,
+    drift,
+    steady,
+    constant,
+):
     _by_type(_function)
+for _piece in FUNCTIONS:
+    register_jitable(_piece)
+
+
+@overload(static, strict=False)
+def _static(law: Any) -> Any:
+    if "mu_static" in law.instance_class._fields:
+        return lambda law: max(law.mu_static, coefficient(law, 0.0))
+    return lambda law: coefficient(law, 0.0)
+
+
+@overload(grain, strict=False)
+def _grain(law: Any, state: Any) -> Any:
+    return getattr(law.instance_class, "grain", lambda law, state: EVERYWHERE)
 
 
 @inlined

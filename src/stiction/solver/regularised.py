@@ -14,7 +14,7 @@ import numpy as np
 from stiction.solver.blocks import Triple, dot
 from stiction.solver.compiled import compiled, inlined
 from stiction.solver.frame import friction
-from stiction.solver.problem import Problem, in_principal_axes, next_break, travel
+from stiction.solver.problem import Problem, in_principal_axes, travel
 from stiction.solver.radau import (
     DEFECT_WEIGHT,
     DERIVATIVE,
@@ -164,29 +164,28 @@ def advance(
             return COMPLETED, state, k, turn
         if not (isfinite(start.u_x) and isfinite(start.u_y) and isfinite(start.r)):
             return NON_FINITE, state, k, turn
-        t_stop = min(t_end, next_break(problem.drive, start.t))
         done, h, x, y, error, rejected, iterations = step(
-            problem, delta, start, t_stop, memory, accuracy
+            problem, delta, start, t_end, memory, accuracy
         )
         counts = counted(counts, rejected, iterations)
         if not done:
             return STEP_UNDERFLOW, State(start, memory, counts), k, turn
         k = sample(problem, delta, start, h, x, y, times, samples, k)
         x0, y0 = start.r * start.e_x, start.r * start.e_y
-        end = t_stop if start.t + h >= t_stop else start.t + h
+        end = t_end if start.t + h >= t_end else start.t + h
         d_x, d_y = in_principal_axes(problem, travel(problem.drive, start.t, h))
         r = sqrt(x[2] * x[2] + y[2] * y[2])
         e_x, e_y = (x[2] / r, y[2] / r) if r > 0.0 else (1.0, 0.0)
         motion = Motion(
             end, start.u_x + d_x - h * dot(A[2], x), start.u_y + d_y - h * dot(A[2], y), r, e_x, e_y
         )
-        following = memory.h if end == t_stop else h * step_factor(error, 2.0)
+        following = memory.h if end == t_end else h * step_factor(error, 2.0)
         memory = Memory(
             following,
             following,
             h,
             1.0,
-            end < t_stop,
+            end < t_end,
             (x0, x[0], x[1], x[2]),
             (y0, y[0], y[1], y[2]),
         )

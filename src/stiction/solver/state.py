@@ -8,7 +8,7 @@ from typing import NamedTuple
 from stiction.solver.compiled import inlined
 from stiction.solver.problem import System
 
-RUNNING, COMPLETED, STEP_UNDERFLOW, NON_FINITE, TOO_MANY_STEPS = -1, 0, 1, 2, 3
+RUNNING, COMPLETED, STEP_UNDERFLOW, NON_FINITE, TOO_MANY_STEPS, CONTACT_LOST = -1, 0, 1, 2, 3, 4
 
 
 class Accuracy(NamedTuple):

@@ -8,53 +8,98 @@ from stiction.solver.compiled import inlined
 from stiction.solver.problem import (
     Problem,
     at,
-    coefficient,
+    constant,
+    drift,
     in_principal_axes,
     rate,
     rate_change,
+    rate_curve,
+    static,
+    steady,
+    travel,
 )
+
+USED_UP = 1e-14  # of f^2: the margin |a|^2 - f^2 is zero within rounding
+LOOKS = 100_000  # at the margin in one stick; each is as long as its curvature allows
 
 
 @inlined
 def holding(problem: Problem, t: float, u_x: float, u_y: float) -> tuple[float, float]:
     """Return the friction force over mass (x, y) that zero slip takes, in m/s^2.
 
-    Eq. (1) with du/dt = v_d: (K u + C v_d)/m + dv_d/dt.
+    Eq. (1) with du/dt = v_d: (K u + C v_d)/m + dv_d/dt, the last only where the plate is driven.
     """
     system = problem.system
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, t))
     g_x, g_y = in_principal_axes(problem, rate_change(problem.drive, t))
     return (
-        (system.k_x * u_x + system.c_x * v_x) * system.per_mass + g_x,
-        (system.k_y * u_y + system.c_y * v_y) * system.per_mass + g_y,
+        (system.k_x * u_x + system.c_x * v_x) * system.per_mass + system.inertia * g_x,
+        (system.k_y * u_y + system.c_y * v_y) * system.per_mass + system.inertia * g_y,
     )
 
 
 @inlined
-def limit(problem: Problem, t: float) -> float:
-    """Return the largest friction force over mass at zero slip, in m/s^2."""
-    return coefficient(problem.law, 0.0) * at(problem.load, t) * problem.system.per_mass
+def holding_change(problem: Problem, t: float) -> tuple[float, float]:
+    """Return the rate of change of what `holding` returns, in m/s^3."""
+    system = problem.system
+    v_x, v_y = in_principal_axes(problem, rate(problem.drive, t))
+    g_x, g_y = in_principal_axes(problem, rate_change(problem.drive, t))
+    j_x, j_y = in_principal_axes(problem, rate_curve(problem.drive, t))
+    return (
+        (system.k_x * v_x + system.c_x * g_x) * system.per_mass + system.inertia * j_x,
+        (system.k_y * v_y + system.c_y * g_y) * system.per_mass + system.inertia * j_y,
+    )
 
 
 @inlined
-def stick_duration(problem: Problem, t: float, u_x: float, u_y: float) -> float:
-    """Return how long zero slip can be held from time `t` on, for a steady drive and load.
+def margin(problem: Problem, t: float, u_x: float, u_y: float) -> tuple[float, float, float]:
+    """Return |a|^2 - f^2 and half its rate of change at zero slip, and f^2.
 
-    The root of |K (u + v_d tau) + C v_d| = mu_0 W, a quadratic in tau; zero if the
-    friction cannot hold even now, infinite if it always can.
+    a is the friction over mass that zero slip takes, f the most that friction can hold.
     """
-    system = problem.system
-    v_x, v_y = in_principal_axes(problem, rate(problem.drive, t))
     a_x, a_y = holding(problem, t, u_x, u_y)
-    j_x, j_y = system.k_x * v_x * system.per_mass, system.k_y * v_y * system.per_mass
-    f = limit(problem, t)
-    quadratic = j_x * j_x + j_y * j_y
-    linear = a_x * j_x + a_y * j_y
-    constant = a_x * a_x + a_y * a_y - f * f
-    if constant > 1e-14 * f * f or (constant >= 0.0 and linear > 0.0):
+    j_x, j_y = holding_change(problem, t)
+    per_weight = static(problem.law) * problem.system.per_mass
+    f = per_weight * at(problem.load, t)
+    change = a_x * j_x + a_y * j_y - f * per_weight * drift(problem.load, t)
+    return a_x * a_x + a_y * a_y - f * f, change, f * f
+
+
+@inlined
+def stick_duration(problem: Problem, t: float, u_x: float, u_y: float, t_stop: float) -> float:
+    """Return how long zero slip can be held from time `t` on.
+
+    Zero if friction cannot hold even now, infinite if it can until `t_stop`. In closed form
+    for a steady drive and load; otherwise in steps, each as long as the bound of the margin's
+    curvature guarantees that it is not used up before, which end at its first zero.
+    """
+    excess, change, square = margin(problem, t, u_x, u_y)
+    if excess > USED_UP * square or (excess >= 0.0 and change > 0.0):
         return 0.0
+    if steady(problem.drive) and constant(problem.load):
+        j_x, j_y = holding_change(problem, t)
+        return used_up(excess, change, j_x * j_x + j_y * j_y)
+    gone = 0.0
+    for _ in range(LOOKS):
+        if excess > -USED_UP * square and change > 0.0:
+            break
+        # excess + 2 change x + bend x^2/2 < 0 before this
+        x = used_up(min(excess, 0.0), change, 0.5 * problem.bend)
+        if t + gone + x >= t_stop:
+            return inf
+        if t + gone + x == t + gone:
+            break
+        gone += x
+        d_x, d_y = in_principal_axes(problem, travel(problem.drive, t, gone))
+        excess, change, square = margin(problem, t + gone, u_x + d_x, u_y + d_y)
+    return gone
+
+
+@inlined
+def used_up(constant: float, linear: float, quadratic: float) -> float:
+    """Return the positive root of constant + 2 linear x + quadratic x^2, constant <= 0."""
     if quadratic == 0.0:
-        return inf
+        return -0.5 * constant / linear if linear > 0.0 else inf
     root = sqrt(max(0.0, linear * linear - quadratic * constant))
     if linear > 0.0:
         return max(0.0, -constant / (linear + root))

@@ -21,7 +21,7 @@ from numpy.polynomial import Chebyshev
 from scipy.integrate import solve_ivp  # type: ignore[attr-defined]
 from scipy.optimize import brentq
 
-from stiction.drive import ConstantLoad, ConstantVelocity
+from stiction.drive import ConstantVelocity
 from stiction.initial import Initial
 from stiction.slider import Slider
 
@@ -123,10 +123,10 @@ def twin(
 
 def equations_of(slider: Slider) -> Equations:
     """Return the equations of motion of a slider."""
-    if not isinstance(slider.drive, ConstantVelocity) or not isinstance(slider.load, ConstantLoad):
+    if not isinstance(slider.drive, ConstantVelocity) or slider.load is not None:
         raise ValueError(f"the twin knows a steady drive and load only, not {slider.drive!r}")
     drive = slider.drive.velocity * np.array(slider.direction)
-    force, law = slider.load.force / slider.mass, slider.law
+    force, law = slider.normal_load / slider.mass, slider.law
     stiffness = np.array([slider.k_x, slider.k_y]) / slider.mass
     rate = float(np.sqrt(stiffness.max()))
     speeds = [*np.abs(drive), law.coefficient(0.0) * force / rate]

@@ -1,0 +1,221 @@
+"""The pieces that a program of drive velocity or of normal load is made of.
+
+Each says what the value does for a time, given the program's base value and the value that
+the piece before it ended with; a jump between two pieces happens at once. A new piece is a
+class here and a line in `DRIVE_PIECES` or `LOAD_PIECES`.
+"""
+
+from __future__ import annotations
+
+from math import pi
+from typing import Annotated, Any, NamedTuple, Protocol
+
+from pydantic import AfterValidator
+
+from stiction.units import Duration, Rate, reader
+from stiction.validation import validated
+
+
+def _level(value: Any) -> Any:
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        raise ValueError(f"{value!r} is not a number or a string with its unit")
+    return value
+
+
+# a velocity or a force: which one is known to the program that the piece stands in
+Level = Annotated[Any, AfterValidator(_level)]
+Phase = Annotated[float, reader("an angle", "rad", "90 deg")]
+
+
+class Shape(NamedTuple):
+    """value + slope t + amplitude sin(omega t + phase), t from the piece's start."""
+
+    value: float
+    slope: float = 0.0
+    amplitude: float = 0.0
+    omega: float = 0.0
+    phase: float = 0.0
+
+
+class Piece(Protocol):
+    """What a program asks of a piece."""
+
+    @property
+    def duration(self) -> float | None:
+        """How long it lasts, s; for ever if None."""
+
+    def _asdict(self) -> dict[str, Any]: ...
+
+    def _replace(self, **changes: Any) -> Any: ...
+
+    def shape(piece, base: float, present: float, still: float) -> Shape:
+        """Return what the value does.
+
+        `base` is the program's own value, `present` the one that the piece before ended
+        with, `still` that of a hold. Levels are in SI by then.
+        """
+
+
+@validated
+class Constant(NamedTuple):
+    """A constant value, taken at once.
+
+    Parameters
+    ----------
+    value : float or str, optional
+        Velocity or force; the program's base value when left out.
+    duration : float or str, optional
+        s; to the end when left out, which only the last piece may.
+    """
+
+    value: Level | None = None
+    duration: Duration | None = None
+
+    def shape(piece, base: float, present: float, still: float) -> Shape:
+        """Return the value."""
+        return Shape(base if piece.value is None else piece.value)
+
+
+@validated
+class Step(NamedTuple):
+    """A jump by an amount, then constant.
+
+    Parameters
+    ----------
+    by : float or str
+        Change of velocity or of force.
+    duration : float or str, optional
+        s; to the end when left out, which only the last piece may.
+    """
+
+    by: Level
+    duration: Duration | None = None
+
+    def shape(piece, base: float, present: float, still: float) -> Shape:
+        """Return the present value and the jump."""
+        return Shape(present + piece.by)
+
+
+@validated
+class Ramp(NamedTuple):
+    """A straight line in time from the present value to another.
+
+    Parameters
+    ----------
+    to : float or str
+        Velocity or force at the end.
+    duration : float or str
+        s.
+    """
+
+    to: Level
+    duration: Duration
+
+    def shape(piece, base: float, present: float, still: float) -> Shape:
+        """Return the line."""
+        return Shape(present, (piece.to - present) / piece.duration)
+
+
+@validated
+class Hold(NamedTuple):
+    """The drive stops at once (slide-hold-slide); a load stays as it is.
+
+    Parameters
+    ----------
+    duration : float or str, optional
+        s; to the end when left out, which only the last piece may.
+    """
+
+    duration: Duration | None = None
+
+    def shape(piece, base: float, present: float, still: float) -> Shape:
+        """Return the value of a hold."""
+        return Shape(still)
+
+
+@validated
+class Free(NamedTuple):
+    """The drive stops for good: the springs relax until the end of the run."""
+
+    duration: None = None
+
+    def shape(piece, base: float, present: float, still: float) -> Shape:
+        """Return zero."""
+        return Shape(0.0)
+
+
+@validated
+class Reversal(NamedTuple):
+    """The present velocity, turned round at once.
+
+    Parameters
+    ----------
+    duration : float or str, optional
+        s; to the end when left out, which only the last piece may.
+    """
+
+    duration: Duration | None = None
+
+    def shape(piece, base: float, present: float, still: float) -> Shape:
+        """Return minus the present value."""
+        return Shape(-present)
+
+
+@validated
+class Harmonic(NamedTuple):
+    """A harmonic about the present value: amplitude sin(2 pi frequency t + phase).
+
+    Parameters
+    ----------
+    amplitude : float or str
+        Of the velocity or of the force.
+    frequency : float or str
+        Hz.
+    phase : str, optional
+        Angle at the start of the piece, with its unit; none when left out.
+    duration : float or str, optional
+        s; to the end when left out, which only the last piece may.
+    """
+
+    amplitude: Level
+    frequency: Rate
+    phase: Phase = 0.0
+    duration: Duration | None = None
+
+    def shape(piece, base: float, present: float, still: float) -> Shape:
+        """Return the harmonic."""
+        return Shape(present, 0.0, piece.amplitude, 2 * pi * piece.frequency, piece.phase)
+
+
+@validated
+class Modulation(NamedTuple):
+    """A harmonic on top of a whole program: amplitude sin(2 pi frequency t + phase).
+
+    Parameters
+    ----------
+    amplitude : float or str
+        Of the velocity or of the force.
+    frequency : float or str
+        Hz.
+    phase : str, optional
+        Angle at t = 0, with its unit; none when left out.
+    """
+
+    amplitude: Level
+    frequency: Rate
+    phase: Phase = 0.0
+
+
+DRIVE_PIECES: dict[str, type[Any]] = {
+    "constant": Constant,
+    "step": Step,
+    "ramp": Ramp,
+    "hold": Hold,
+    "reversal": Reversal,
+    "harmonic": Harmonic,
+    "free": Free,
+}
+LOAD_PIECES: dict[str, type[Any]] = {
+    name: DRIVE_PIECES[name] for name in ("constant", "step", "ramp", "hold", "harmonic")
+}
+LEVELS = ("value", "by", "to", "amplitude")

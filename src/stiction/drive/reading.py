@@ -1,0 +1,95 @@
+"""Reading the pieces of a program: tables or objects in, objects in SI out, every fault named."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+from pydantic import BeforeValidator
+from pydantic_core import PydanticCustomError
+
+from stiction.drive.pieces import LEVELS, Modulation
+from stiction.errors import DescriptionError, Fault
+from stiction.tables import choose
+from stiction.units import Kind, to_si
+from stiction.validation import faulty
+
+
+class Reading(NamedTuple):
+    """Which pieces a program may have, and what quantity their levels are."""
+
+    known: Mapping[str, type[Any]]
+    kind: Kind
+
+
+def as_pieces(reading: Reading) -> BeforeValidator:
+    """Return the validator that reads a program."""
+
+    def read(value: Any) -> tuple[Any, ...]:
+        if not isinstance(value, Sequence) or isinstance(value, str):
+            raise _fault(f"{value!r} is not a list of pieces")
+        made, found = [], []
+        for i, each in enumerate(value):
+            try:
+                piece = _in_si(_piece(each, reading.known), reading.kind)
+                if piece.duration is None and i < len(value) - 1:
+                    message = "missing; only the last piece may go on for ever"
+                    raise DescriptionError([Fault("piece.duration", message)])
+                made.append(piece)
+            except DescriptionError as error:
+                found += [
+                    Fault(".".join([str(i + 1), *fault.path.split(".")[1:]]), fault.message)
+                    for fault in error.faults
+                ]
+        if found:
+            raise faulty(found)
+        return tuple(made)
+
+    return BeforeValidator(read)
+
+
+def as_modulation(kind: Kind) -> BeforeValidator:
+    """Return the validator that reads a modulation."""
+
+    def read(value: Any) -> Modulation | None:
+        if value is None:
+            return None
+        try:
+            made = Modulation(**value) if isinstance(value, Mapping) else value
+            if not isinstance(made, Modulation):
+                raise _fault(f"{value!r} is not a modulation; it has an amplitude and a frequency")
+            done: Modulation = _in_si(made, kind)
+        except DescriptionError as error:
+            raise faulty(
+                [Fault(".".join(f.path.split(".")[1:]), f.message) for f in error.faults]
+            ) from None
+        return done
+
+    return BeforeValidator(read)
+
+
+def _piece(value: Any, known: Mapping[str, type[Any]]) -> Any:
+    if isinstance(value, Mapping):
+        return choose(dict(value), "piece", known)
+    if type(value) not in known.values():
+        raise DescriptionError([Fault("piece", f"{value!r} is none of {', '.join(known)}")])
+    return value
+
+
+def _in_si(piece: Any, kind: Kind) -> Any:
+    """Return the piece with its levels, which are all of one quantity, in SI."""
+    levels, found = {}, []
+    for name in LEVELS:
+        value = getattr(piece, name, None)
+        if value is not None:
+            try:
+                levels[name] = to_si(value, kind)
+            except PydanticCustomError as error:
+                found.append(Fault(f"piece.{name}", error.message()))
+    if found:
+        raise DescriptionError(found)
+    return piece._replace(**levels)
+
+
+def _fault(message: str) -> PydanticCustomError:
+    return PydanticCustomError("unit", message.replace("{", "(").replace("}", ")"))

@@ -1,0 +1,66 @@
+"""A constant drive velocity and a constant normal load: stretches that never end."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from stiction.units import Force, Velocity
+from stiction.validation import validated
+
+
+@validated
+class ConstantVelocity(NamedTuple):
+    """A drive along X with a constant velocity, from t = 0 on.
+
+    Parameters
+    ----------
+    velocity : float or str
+        V, in m/s.
+    """
+
+    velocity: Velocity
+
+    def travel(drive, t: float, dt: float) -> tuple[float, float]:
+        """Return V dt along X."""
+        return drive.velocity * dt, 0.0
+
+    def rate(drive, t: float) -> tuple[float, float]:
+        """Return V along X."""
+        return drive.velocity, 0.0
+
+    def rate_change(drive, t: float) -> tuple[float, float]:
+        """Return zero."""
+        return 0.0, 0.0
+
+    def rate_curve(drive, t: float) -> tuple[float, float]:
+        """Return zero."""
+        return 0.0, 0.0
+
+    def steady(drive) -> bool:
+        """Return that the velocity is constant."""
+        return True
+
+
+@validated
+class ConstantLoad(NamedTuple):
+    """A constant normal load.
+
+    Parameters
+    ----------
+    force : float or str
+        W, in N.
+    """
+
+    force: Force
+
+    def at(load, t: float) -> float:
+        """Return W."""
+        return load.force
+
+    def drift(load, t: float) -> float:
+        """Return zero."""
+        return 0.0
+
+    def constant(load) -> bool:
+        """Return that the load is constant."""
+        return True

@@ -1,0 +1,123 @@
+"""From a slider to the stretches of time that the compiled solver integrates one by one.
+
+Inside a stretch drive and load are smooth; between two, either may jump or bend. The
+solver ends exactly there, so that nothing in time is ever stepped over.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import hypot, inf
+from typing import Any, NamedTuple
+
+from stiction.drive import Course, Loading, drive_stretches, load_stretches
+from stiction.drive.signal import signal_at, signal_bounds, signal_change
+from stiction.friction import has_state
+from stiction.friction.law import static_coefficient
+from stiction.slider import Slider
+from stiction.solver.problem import Problem, System
+
+
+class Stretch(NamedTuple):
+    """What the solver integrates until `end` (s); `lost` if the normal load vanishes there."""
+
+    end: float
+    problem: Problem
+    lost: bool
+
+
+def stretches(slider: Slider, start: float, end: float) -> Iterator[Stretch]:
+    """Yield the stretches between two times (s), the last one shorter if contact is lost."""
+    drives = drive_stretches(slider.motion)
+    loads = load_stretches(slider.normal_load, slider.load)
+    law = getattr(slider.law, "prepared", lambda: slider.law)()
+    t = start
+    while t < end:
+        until, drive = next((e, d) for e, d in drives if e > t)
+        until_load, load = next((e, w) for e, w in loads if e > t)
+        stop = min(end, until, until_load)
+        lost = vanishes(load, t, stop)
+        problem = Problem(system_of(slider), law, drive, load, bend(slider, drive, load, t, stop))
+        yield Stretch(min(stop, lost), problem, lost <= stop)
+        if lost <= stop:
+            return
+        t = stop
+
+
+def system_of(slider: Slider) -> System:
+    """Return the numbers of a slider."""
+    s = slider
+    inertia = 1.0 if s.driven == "plate" else 0.0
+    return System(s.mass, s.k_x, s.k_y, s.c_x, s.c_y, *s.direction, 1.0 / s.mass, inertia)
+
+
+def speeds(slider: Slider, drive: Any, start: float, end: float) -> tuple[float, float]:
+    """Return bounds of the drive velocity along x and y in a stretch (m/s)."""
+    return _in_axes(slider, drive_bounds(drive, start, end)[0])
+
+
+Bounds = tuple[tuple[float, float], ...]
+
+
+def drive_bounds(drive: Any, start: float, end: float) -> Bounds:
+    """Return bounds (X, Y) of the drive's velocity and of its first three derivatives."""
+    if not isinstance(drive, Course):
+        X, Y = drive.rate(start)
+        return (abs(X), abs(Y)), (0.0, 0.0), (0.0, 0.0), (0.0, 0.0)
+    along, across = (signal_bounds(s, start, end) for s in drive)
+    return tuple(zip(along, across, strict=True))
+
+
+def load_bounds(load: Any, start: float, end: float) -> tuple[float, float, float]:
+    """Return bounds of the normal load (N) and of its first two derivatives."""
+    if not isinstance(load, Loading):
+        return load.at(start), 0.0, 0.0
+    return signal_bounds(load.force, start, end)[:3]
+
+
+def bend(slider: Slider, drive: Any, load: Any, start: float, end: float) -> float:
+    """Return a bound of the second derivative of |a|^2 - f^2 while the slip is zero.
+
+    a is the friction over mass that zero slip takes, f what friction can hold; |a| <= f.
+    d^2/dt^2 = 2 |a'|^2 + 2 a.a'' - 2 f'^2 - 2 f f''.
+    """
+    law = slider.law
+    if has_state(law):
+        return 0.0
+    s, inertia = slider, 1.0 if slider.driven == "plate" else 0.0
+    v, dv, ddv, dddv = (_in_axes(s, pair) for pair in drive_bounds(drive, start, end))
+    k, c = (s.k_x / s.mass, s.k_y / s.mass), (s.c_x / s.mass, s.c_y / s.mass)
+    first = hypot(*(k[i] * v[i] + c[i] * dv[i] + inertia * ddv[i] for i in (0, 1)))
+    second = hypot(*(k[i] * dv[i] + c[i] * ddv[i] + inertia * dddv[i] for i in (0, 1)))
+    mu = static_coefficient(law) / s.mass
+    f, _, ddf = (mu * bound for bound in load_bounds(load, start, end))
+    return 2.0 * (first * first + f * second + f * ddf)
+
+
+def vanishes(load: Any, start: float, end: float) -> float:
+    """Return when the normal load falls to zero, infinity if it does not before `end` (s).
+
+    As in a stick, a step is as long as the bounds of the load's derivatives allow.
+    """
+    if not isinstance(load, Loading):
+        return inf
+    force = load.force
+    curve = signal_bounds(force, start, end)[2]
+    t = start
+    while t < end:
+        now, change = signal_at(force, t), signal_change(force, t)
+        if now <= 0.0:
+            return t
+        # now + change dt - curve dt^2/2 > 0 before this
+        root = (change * change + 2.0 * curve * now) ** 0.5
+        dt = 2.0 * now / (root - change) if root > change else inf
+        following = t + dt
+        if following == t:
+            return t
+        t = following
+    return inf
+
+
+def _in_axes(slider: Slider, vector: tuple[float, float]) -> tuple[float, float]:
+    c, s = (abs(x) for x in slider.direction)
+    return vector[0] * c + vector[1] * s, vector[0] * s + vector[1] * c
