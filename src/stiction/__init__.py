@@ -28,7 +28,7 @@ if TYPE_CHECKING:
         Step,
     )
     from stiction.errors import DescriptionError, ResultError, Status, StictionError
-    from stiction.friction import Coulomb, ExponentialWeakening
+    from stiction.friction import Anisotropic, Coulomb, ExponentialWeakening
     from stiction.initial import Initial
     from stiction.simulation import simulate
     from stiction.slider import Slider
@@ -38,6 +38,7 @@ __version__ = "0.1.0"
 
 # where each public name lives; imported when first used, so that `import stiction` is light
 _HOME = {
+    "Anisotropic": "friction",
     "Constant": "drive",
     "ConstantVelocity": "drive",
     "Coulomb": "friction",
@@ -66,6 +67,7 @@ _HOME = {
 _ROOMS = ("presets", "theory")
 
 __all__ = [
+    "Anisotropic",
     "Constant",
     "ConstantVelocity",
     "Coulomb",

@@ -9,7 +9,7 @@ from typing import Annotated, Any, NamedTuple, Self
 
 from pydantic import Field, model_validator
 
-from stiction.friction import LAWS
+from stiction.friction import LAWS, Anisotropic
 from stiction.initial import Initial
 from stiction.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider
 from stiction.tables import Reader, gather, read_toml
@@ -83,13 +83,17 @@ class Description(NamedTuple):
 
     def to_dict(self) -> dict[str, dict[str, Any]]:
         """Return nested tables of SI numbers, as `from_dict` reads them."""
-        law = self.slider.law
+        law: Any = self.slider.law
+        surface = {}
+        if isinstance(law, Anisotropic):
+            surface = {"anisotropy": {"ratio": law.ratio, "angle": f"{law.angle!r} rad"}}
+            law = law.law
         kind = type(law)
         own = f"{kind.__module__}:{kind.__qualname__}"  # a user's law, by its name
         name = next((name for name, known in LAWS.items() if known is kind), own)
         return {
             "slider": self.slider.model_dump(mode="json", exclude={"friction", "drive", "load"}),
-            "friction": {"law": name, **law._asdict()},
+            "friction": {"law": name, **law._asdict(), **surface},
             "drive": table(self.slider.motion),
             **({} if self.slider.load is None else {"load": table(self.slider.load)}),
             "initial": self.initial.model_dump(exclude_unset=True),

@@ -7,8 +7,10 @@ is one file here and one line in `LAWS`.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, cast
 
+from stiction.errors import DescriptionError, Fault
+from stiction.friction.anisotropic import Anisotropic
 from stiction.friction.coulomb import Coulomb
 from stiction.friction.exponential_weakening import ExponentialWeakening
 from stiction.friction.law import FrictionLaw, Internal, Law, StateLaw, has_state, states
@@ -21,13 +23,29 @@ LAWS: dict[str, type[Any]] = {
 
 
 def read_law(table: dict[str, Any]) -> Law:
-    """Read a description's table [friction]."""
+    """Read a description's table [friction], with its table [friction.anisotropy] if any."""
+    surface = table.pop("anisotropy", None)
     law: Law = choose(table, "law", LAWS)
-    return law
+    return law if surface is None else read_anisotropy(law, surface)
+
+
+def read_anisotropy(law: Law, table: Any) -> Law:
+    """Read the table [friction.anisotropy]."""
+    if not isinstance(table, dict) or "law" in table:
+        message = f"must be a table with ratio and angle, is {table!r}"
+        raise DescriptionError([Fault("friction.anisotropy", message)])
+    try:
+        made: Any = Anisotropic(law, **table)
+        return cast(Law, made)
+    except DescriptionError as error:
+        raise DescriptionError(
+            [Fault(f"friction.anisotropy.{f.path.split('.')[-1]}", f.message) for f in error.faults]
+        ) from None
 
 
 __all__ = [
     "LAWS",
+    "Anisotropic",
     "Coulomb",
     "ExponentialWeakening",
     "FrictionLaw",

@@ -28,13 +28,14 @@ from stiction.solver.problem import (
     travel,
 )
 from stiction.solver.state import Motion
+from stiction.solver.surface import Tensor, flow, turned_into
 
 
 class Frame(NamedTuple):
     """The axes of a step: direction e, the laboratory's X in them, tensors over mass.
 
-    Also the step's start: time, elongation (u_x, u_y), slip speed r, and the spring's
-    acceleration along and across e.
+    Also the surface's tensor N (see `surface`), and the step's start: time, elongation
+    (u_x, u_y), slip speed r, and the spring's acceleration along and across e.
     """
 
     e_x: float
@@ -47,6 +48,7 @@ class Frame(NamedTuple):
     c_11: float
     c_12: float
     c_22: float
+    surface: Tensor
     t: float
     u_x: float
     u_y: float
@@ -57,7 +59,7 @@ class Frame(NamedTuple):
 
 class Outset(NamedTuple):
     """What acts at a step's start: acceleration a along and across e, and its rate of change
-    with the drive alone; friction over mass and its slope."""
+    with the drive alone; friction over mass against e, its slope, and what turns the slip."""
 
     a_1: float
     a_2: float
@@ -65,6 +67,7 @@ class Outset(NamedTuple):
     da_2: float
     f: float
     gradient: float
+    turn: float
 
 
 @inlined
@@ -86,6 +89,7 @@ def frame_of(problem: Problem, motion: Motion) -> Frame:
         c_x * xx + c_y * yy,
         (c_y - c_x) * xy,
         c_y * xx + c_x * yy,
+        turned_into(problem, e_x, e_y),
         motion.t,
         u_x,
         u_y,
@@ -101,7 +105,16 @@ def outset(problem: Problem, frame: Frame) -> Outset:
     """Return what acts at the start of a step."""
     b_1, b_2, db_1, db_2 = pull(problem, frame, 0.0)
     f, gradient = friction(problem, frame.t, frame.r)
-    return Outset(b_1 - frame.c_11 * frame.r, b_2 - frame.c_12 * frame.r, db_1, db_2, f, gradient)
+    along = flow(problem, frame.surface, 0.0)
+    return Outset(
+        b_1 - frame.c_11 * frame.r,
+        b_2 - frame.c_12 * frame.r,
+        db_1,
+        db_2,
+        f * along.n_1,
+        gradient * along.n_1,
+        f * along.tau,
+    )
 
 
 @inlined

@@ -33,6 +33,7 @@ from stiction.solver.state import (
 )
 from stiction.solver.stick import holding
 from stiction.solver.stretch import Stretch, load_bounds, speeds, stretches, system_of
+from stiction.solver.surface import friction_along
 
 BUDGET = 100_000  # turns of the loop between two looks at the clock: some 30 ms
 
@@ -131,8 +132,9 @@ def integrate(
     k, counts = out.filled, Counts(*state.counts)
     times, samples = times[:k], out.samples[:k]
     if code != COMPLETED:  # keep where it stopped, whatever the sample rate
-        times = np.append(times, state.motion.t)
-        samples = np.vstack([samples, last_row(stretch.problem, state.motion)])
+        earlier = times < state.motion.t
+        times = np.append(times[earlier], state.motion.t)
+        samples = np.vstack([samples[earlier], last_row(stretch.problem, state.motion)])
     sticks = joined(out.sticks[: counts.sticks])
     return Solution(code, times, samples, sticks, counts._replace(sticks=len(sticks)))
 
@@ -206,4 +208,5 @@ def last_row(problem: Problem, motion: Motion) -> list[float]:
         a_x, a_y = holding(problem, motion.t, motion.u_x, motion.u_y)
         return [motion.u_x, motion.u_y, *slip, m * a_x, m * a_y, 1.0]
     f = m * friction(problem, motion.t, motion.r)[0]
-    return [motion.u_x, motion.u_y, *slip, f * motion.e_x, f * motion.e_y, 0.0]
+    f_x, f_y = friction_along(problem, motion.e_x, motion.e_y)
+    return [motion.u_x, motion.u_y, *slip, f * f_x, f * f_y, 0.0]

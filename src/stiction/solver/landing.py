@@ -20,7 +20,7 @@ import numpy as np
 
 from stiction.solver.compiled import inlined
 from stiction.solver.frame import Frame, Outset, elongation
-from stiction.solver.problem import Problem, at, constant, drift
+from stiction.solver.problem import Problem, at, constant, drift, isotropic
 from stiction.solver.sampling import fill
 from stiction.solver.state import Accuracy, Motion, State, cooled
 
@@ -103,9 +103,9 @@ def pursuit(
     or it is over before time resolves it.
     """
     r = frame.r
-    a_1, a_2, da_1, da_2, f, gradient = start
+    a_1, a_2, da_1, da_2, f, gradient, _ = start
     square = a_1 * a_1 + a_2 * a_2
-    if not square < f * f:
+    if not square < f * f or not isotropic(problem.surface):
         return inf, 0.0, 0.0
     T = landing_time(r, a_1, square, f)
     jerk = abs(da_1) + abs(da_2) + (frame.k_11 + frame.k_22) * r
@@ -140,7 +140,7 @@ def land(
         d_1, d_2 = landing_slip(speed, a_1 * n_1 + a_2 * n_2, a_2 * n_1 - a_1 * n_2, start.f)
         z_1, z_2 = slid_1 - (d_1 * n_1 - d_2 * n_2), slid_2 - (d_1 * n_2 + d_2 * n_1)
         u_x, u_y = elongation(problem, frame, times[k] - t, z_1, z_2)
-        k = fill(frame, u_x, u_y, speed, n_1, n_2, force, samples, k)
+        k = fill(problem, frame, u_x, u_y, speed, n_1, n_2, force, samples, k)
     u_x, u_y = elongation(problem, frame, T, slid_1, slid_2)
     landed = Motion(t + T, u_x, u_y, 0.0, frame.e_x, frame.e_y)
     return State(landed, cooled(memory, memory.h_takeoff), counts), k

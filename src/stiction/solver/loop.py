@@ -11,7 +11,7 @@ from stiction.solver.compiled import compiled, inlined
 from stiction.solver.frame import Frame, Outset, elongation, frame_of, outset, turned
 from stiction.solver.landing import land, pursuit
 from stiction.solver.newton import products
-from stiction.solver.problem import Problem, in_principal_axes, rate, travel
+from stiction.solver.problem import Problem, at, coefficient, in_principal_axes, rate, travel
 from stiction.solver.radau import A, ease, step_factor
 from stiction.solver.sampling import sample_slip, sample_stick
 from stiction.solver.state import (
@@ -29,6 +29,7 @@ from stiction.solver.state import (
 )
 from stiction.solver.step import step
 from stiction.solver.stick import holding, stick_duration
+from stiction.solver.surface import takeoff
 
 GROWTH = 2.0
 
@@ -62,6 +63,8 @@ def stick(
             counts.stuck + (end - t),
         )
     a_x, a_y = holding(problem, end, u_x, u_y)
+    limit = coefficient(problem.law, 0.0) * at(problem.load, end) * problem.system.per_mass
+    a_x, a_y = takeoff(problem, (a_x, a_y), limit)
     a = sqrt(a_x * a_x + a_y * a_y)
     if a == 0.0:  # nothing pulls yet, as at the start without friction: slip follows da/dt
         v_x, v_y = in_principal_axes(problem, rate(problem.drive, end))

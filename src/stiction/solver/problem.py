@@ -33,6 +33,30 @@ class System(NamedTuple):
     inertia: float
 
 
+class Isotropic(NamedTuple):
+    """A surface without a direction of its own: the tensor N is 1."""
+
+    xx: float = 1.0
+    xy: float = 0.0
+    yy: float = 1.0
+
+    def isotropic(surface) -> bool:
+        """Return that friction is along the slip: known when compiled."""
+        return True
+
+
+class Elliptic(NamedTuple):
+    """A surface with an ellipse of friction: the tensor N = M^2 in the slider's axes."""
+
+    xx: float
+    xy: float
+    yy: float
+
+    def isotropic(surface) -> bool:
+        """Return that friction is not along the slip: known when compiled."""
+        return False
+
+
 class Problem(NamedTuple):
     """Everything that determines the motion in a stretch of time.
 
@@ -42,6 +66,7 @@ class Problem(NamedTuple):
 
     system: System
     law: Any
+    surface: Isotropic | Elliptic
     drive: Any
     load: Any
     bend: float
@@ -122,6 +147,11 @@ def constant(load: Any) -> bool:
     return bool(load.constant())
 
 
+def isotropic(surface: Isotropic | Elliptic) -> bool:
+    """Return whether friction is along the slip: known when compiled."""
+    return surface.isotropic()
+
+
 EVERYWHERE = 1e6  # m/s: friction is smooth at any slip speed
 
 
@@ -148,6 +178,7 @@ for _function in (
     drift,
     steady,
     constant,
+    isotropic,
 ):
     _by_type(_function)
 for _piece in FUNCTIONS:

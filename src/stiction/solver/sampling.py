@@ -21,6 +21,7 @@ from stiction.solver.problem import Problem, in_principal_axes, travel
 from stiction.solver.radau import A, cubic
 from stiction.solver.slip import stage
 from stiction.solver.stick import holding
+from stiction.solver.surface import friction_along
 
 COLUMNS = 7
 
@@ -79,9 +80,10 @@ def sample_slip(
     """Fill the samples of an accepted slip step; return the next index."""
     q = (p[0] * w[0], p[1] * w[1], p[2] * w[2])
     t, r = frame.t, frame.r
-    first_1, first_2 = start.a_1 - start.f, start.a_2
+    first_1, first_2 = start.a_1 - start.f, start.a_2 - start.turn
     end = stage(problem, frame, h, 2, p, w, q)
-    last_1, last_2 = end.a_1 - end.f * end.g, end.a_2 - end.f * end.g * w[2]
+    n = end.flow
+    last_1, last_2 = end.a_1 - end.f * n.n_1, end.a_2 - end.f * (n.tau + w[2] * n.n_1)
     slid_1, slid_2 = h * dot(A[2], p), h * dot(A[2], q)
     while k < len(times) and times[k] <= t + h:
         dt = times[k] - t
@@ -93,12 +95,13 @@ def sample_slip(
         turn = cubic((0.0, w[0], w[1], w[2]), x)
         g = 1.0 / sqrt(1.0 + turn * turn)
         force = friction(problem, times[k], speed)[0] * problem.system.mass
-        k = fill(frame, u_x, u_y, speed, g, turn * g, force, samples, k)
+        k = fill(problem, frame, u_x, u_y, speed, g, turn * g, force, samples, k)
     return k
 
 
 @inlined
 def fill(
+    problem: Problem,
     frame: Frame,
     u_x: float,
     u_y: float,
@@ -116,7 +119,8 @@ def fill(
     samples[k, 1] = u_y
     samples[k, 2] = speed * n_x
     samples[k, 3] = speed * n_y
-    samples[k, 4] = force * n_x
-    samples[k, 5] = force * n_y
+    f_x, f_y = friction_along(problem, n_x, n_y)
+    samples[k, 4] = force * f_x
+    samples[k, 5] = force * f_y
     samples[k, 6] = 0.0
     return k + 1

@@ -14,6 +14,7 @@ from stiction.solver.compiled import inlined
 from stiction.solver.frame import Frame, friction, pull
 from stiction.solver.problem import Problem
 from stiction.solver.radau import A, C, D
+from stiction.solver.surface import Flow, flow
 
 
 class Stage(NamedTuple):
@@ -27,7 +28,8 @@ class Stage(NamedTuple):
     da_2: float
     f: float
     gradient: float
-    g: float
+    stretch: float  # slip speed over p
+    flow: Flow
 
 
 @inlined
@@ -50,13 +52,13 @@ def stage(
     a_2 = b_2 - h * (frame.k_12 * slid_1 + frame.k_22 * slid_2)
     a_1 -= frame.c_11 * p_i + frame.c_12 * q_i
     a_2 -= frame.c_12 * p_i + frame.c_22 * q_i
-    square = 1.0 + w_i * w_i
-    g = 1.0 / sqrt(square)
-    f, gradient = friction(problem, frame.t + C[i] * h, p_i * square * g)
+    stretch = sqrt(1.0 + w_i * w_i)
+    n = flow(problem, frame.surface, w_i)
+    f, gradient = friction(problem, frame.t + C[i] * h, p_i * stretch)
     dp = dot(D[i], (p[0] - frame.r, p[1] - frame.r, p[2] - frame.r))
-    residual_p = dp - h * (a_1 - f * g)
-    residual_w = p_i * dot(D[i], w) - h * (a_2 - w_i * a_1)
-    return Stage(residual_p, residual_w, a_1, a_2, da_1, da_2, f, gradient, g)
+    residual_p = dp - h * (a_1 - f * n.n_1)
+    residual_w = p_i * dot(D[i], w) - h * (a_2 - w_i * a_1 - f * n.tau)
+    return Stage(residual_p, residual_w, a_1, a_2, da_1, da_2, f, gradient, stretch, n)
 
 
 @inlined
@@ -66,7 +68,7 @@ def jacobian_rows(
     """Return the derivatives of stage i's residuals: (p by p), (p by w), (w by p), (w by w)."""
     k_11, k_12, k_22 = frame.k_11, frame.k_12, frame.k_22
     c_11, c_12, c_22 = frame.c_11, frame.c_12, frame.c_22
-    p_i, w_i, a, d, g = p[i], w[i], A[i], D[i], at_i.g
+    p_i, w_i, a, d, n = p[i], w[i], A[i], D[i], at_i.flow
     square = h * h
     turned_1, turned_2 = k_12 - w_i * k_11, k_22 - w_i * k_12
     pp = (
@@ -86,11 +88,11 @@ def jacobian_rows(
         p_i * d[2] + square * a[2] * turned_2 * p[2],
     )
     # terms of the stage's own unknowns: friction, damping, and the products p w', w a_1
-    force = at_i.gradient * p_i * w_i * g * g - at_i.f * g * g * g * w_i
-    own_pp = h * (at_i.gradient + c_11 + c_12 * w_i)
-    own_pw = h * (force + c_12 * p_i)
-    own_wp = dot(d, w) + h * (c_12 + c_22 * w_i - w_i * (c_11 + c_12 * w_i))
-    own_ww = h * (at_i.a_1 + c_22 * p_i - w_i * c_12 * p_i)
+    by_p, by_w = at_i.gradient * at_i.stretch, at_i.gradient * p_i * w_i / at_i.stretch
+    own_pp = h * (by_p * n.n_1 + c_11 + c_12 * w_i)
+    own_pw = h * (by_w * n.n_1 + at_i.f * n.dn_1 + c_12 * p_i)
+    own_wp = dot(d, w) + h * (c_12 + c_22 * w_i - w_i * (c_11 + c_12 * w_i) + by_p * n.tau)
+    own_ww = h * (at_i.a_1 + c_22 * p_i - w_i * c_12 * p_i + by_w * n.tau + at_i.f * n.dtau)
     return added(pp, i, own_pp), added(pw, i, own_pw), added(wp, i, own_wp), added(ww, i, own_ww)
 
 
@@ -122,6 +124,6 @@ def factors(
 @inlined
 def by_step_size(h: float, w: float, s: Stage, pp: Triple, wp: Triple) -> tuple[Triple, Triple]:
     """Return the rows with the derivative by the step size as their last entry."""
-    dp = s.f * s.g - s.a_1 - h * s.da_1
-    dw = w * s.a_1 - s.a_2 - h * (s.da_2 - w * s.da_1)
+    dp = s.f * s.flow.n_1 - s.a_1 - h * s.da_1
+    dw = w * s.a_1 - s.a_2 + s.f * s.flow.tau - h * (s.da_2 - w * s.da_1)
     return (pp[0], pp[1], dp), (wp[0], wp[1], dw)

@@ -20,6 +20,7 @@ from stiction.solver.radau import (
     step_factor,
 )
 from stiction.solver.state import Accuracy, Memory
+from stiction.solver.surface import flow
 
 # a step that has not succeeded after so many tries will not; 0.4^100 is beyond any float
 ATTEMPTS = 100
@@ -51,11 +52,15 @@ def predicted(frame: Frame, start: Outset, h: float, memory: Memory) -> tuple[Tr
         return p, (cubic(w, c[0]) - turn, cubic(w, c[1]) - turn, cubic(w, c[2]) - turn)
     r = frame.r
     c = (C[0] * h, C[1] * h, C[2] * h)
-    if r == 0.0:  # take-off: |s| grows with t^2, and turns with the force that held
-        a = 0.5 * start.da_1
-        x = start.da_2 / start.a_1 if start.a_1 > 0.0 else 0.0
-        return (a * c[0] * c[0], a * c[1] * c[1], a * c[2] * c[2]), (x * c[0], x * c[1], x * c[2])
     change = start.a_1 - start.f
+    if r == 0.0:  # take-off: |s| grows with t, or t^2, and turns with the force that held
+        a, excess = 0.5 * start.da_1, max(change, 0.0)
+        x = start.da_2 / (start.a_1 + excess) if start.a_1 > 0.0 else 0.0
+        return (
+            (excess + a * c[0]) * c[0],
+            (excess + a * c[1]) * c[1],
+            (excess + a * c[2]) * c[2],
+        ), (x * c[0], x * c[1], x * c[2])
     p = (
         max(r + change * c[0], r * (1 - C[0])),
         max(r + change * c[1], r * (1 - C[1])),
@@ -87,9 +92,10 @@ def local_error(
     f = friction(problem, frame.t + dt, p_in * stretch)[0]
     if p_in < 0.0:
         return inf
-    error_p = dp - h * (a_1 - f / stretch)
-    stiffness = p_in + DEFECT_WEIGHT * h * abs(a_1)
-    error_w = (p_in * dw - h * (a_2 - w_in * a_1)) / (stiffness + 1e-300)
+    n = flow(problem, frame.surface, w_in)
+    error_p = dp - h * (a_1 - f * n.n_1)
+    stiffness = p_in + DEFECT_WEIGHT * h * abs(a_1 + f * n.dtau)
+    error_w = (p_in * dw - h * (a_2 - w_in * a_1 - f * n.tau)) / (stiffness + 1e-300)
     error_q = w_in * error_p + p_in * error_w
     e_x, e_y, size = frame.e_x, frame.e_y, p_in * stretch
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, frame.t + dt))

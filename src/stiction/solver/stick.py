@@ -18,6 +18,7 @@ from stiction.solver.problem import (
     steady,
     travel,
 )
+from stiction.solver.surface import held_product
 
 USED_UP = 1e-14  # of f^2: the margin |a|^2 - f^2 is zero within rounding
 LOOKS = 100_000  # at the margin in one stick; each is as long as its curvature allows
@@ -55,14 +56,14 @@ def holding_change(problem: Problem, t: float) -> tuple[float, float]:
 def margin(problem: Problem, t: float, u_x: float, u_y: float) -> tuple[float, float, float]:
     """Return |a|^2 - f^2 and half its rate of change at zero slip, and f^2.
 
-    a is the friction over mass that zero slip takes, f the most that friction can hold.
+    a is the friction over mass that zero slip takes, f the most that friction can hold; on an
+    elliptic surface |a|^2 is a.N^-1 a.
     """
-    a_x, a_y = holding(problem, t, u_x, u_y)
-    j_x, j_y = holding_change(problem, t)
+    a, j = holding(problem, t, u_x, u_y), holding_change(problem, t)
     per_weight = static(problem.law) * problem.system.per_mass
     f = per_weight * at(problem.load, t)
-    change = a_x * j_x + a_y * j_y - f * per_weight * drift(problem.load, t)
-    return a_x * a_x + a_y * a_y - f * f, change, f * f
+    change = held_product(problem, a, j) - f * per_weight * drift(problem.load, t)
+    return held_product(problem, a, a) - f * f, change, f * f
 
 
 @inlined
@@ -77,8 +78,8 @@ def stick_duration(problem: Problem, t: float, u_x: float, u_y: float, t_stop: f
     if excess > USED_UP * square or (excess >= 0.0 and change > 0.0):
         return 0.0
     if steady(problem.drive) and constant(problem.load):
-        j_x, j_y = holding_change(problem, t)
-        return used_up(excess, change, j_x * j_x + j_y * j_y)
+        j = holding_change(problem, t)
+        return used_up(excess, change, held_product(problem, j, j))
     gone = 0.0
     for _ in range(LOOKS):
         if excess > -USED_UP * square and change > 0.0:

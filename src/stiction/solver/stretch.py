@@ -7,15 +7,15 @@ solver ends exactly there, so that nothing in time is ever stepped over.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import hypot, inf
+from math import cos, hypot, inf, sin
 from typing import Any, NamedTuple
 
 from stiction.drive import Course, Loading, drive_stretches, load_stretches
 from stiction.drive.signal import signal_at, signal_bounds, signal_change
-from stiction.friction import has_state
+from stiction.friction import Anisotropic, has_state
 from stiction.friction.law import static_coefficient
 from stiction.slider import Slider
-from stiction.solver.problem import Problem, System
+from stiction.solver.problem import Elliptic, Isotropic, Problem, System
 
 
 class Stretch(NamedTuple):
@@ -30,14 +30,16 @@ def stretches(slider: Slider, start: float, end: float) -> Iterator[Stretch]:
     """Yield the stretches between two times (s), the last one shorter if contact is lost."""
     drives = drive_stretches(slider.motion)
     loads = load_stretches(slider.normal_load, slider.load)
-    law = getattr(slider.law, "prepared", lambda: slider.law)()
+    law, surface = friction_of(slider)
     t = start
     while t < end:
         until, drive = next((e, d) for e, d in drives if e > t)
         until_load, load = next((e, w) for e, w in loads if e > t)
         stop = min(end, until, until_load)
         lost = vanishes(load, t, stop)
-        problem = Problem(system_of(slider), law, drive, load, bend(slider, drive, load, t, stop))
+        problem = Problem(
+            system_of(slider), law, surface, drive, load, bend(slider, drive, load, t, stop)
+        )
         yield Stretch(min(stop, lost), problem, lost <= stop)
         if lost <= stop:
             return
@@ -49,6 +51,18 @@ def system_of(slider: Slider) -> System:
     s = slider
     inertia = 1.0 if s.driven == "plate" else 0.0
     return System(s.mass, s.k_x, s.k_y, s.c_x, s.c_y, *s.direction, 1.0 / s.mass, inertia)
+
+
+def friction_of(slider: Slider) -> tuple[Any, Isotropic | Elliptic]:
+    """Return the law as the compiled solver takes it, and the surface."""
+    law: Any = slider.law
+    surface: Isotropic | Elliptic = Isotropic()
+    if isinstance(law, Anisotropic):
+        c, s = cos(slider.phi + law.angle), sin(slider.phi + law.angle)
+        square = law.ratio**2
+        surface = Elliptic(c * c + square * s * s, (1 - square) * c * s, s * s + square * c * c)
+        law = law.law
+    return getattr(law, "prepared", lambda: law)(), surface
 
 
 def speeds(slider: Slider, drive: Any, start: float, end: float) -> tuple[float, float]:
@@ -79,9 +93,9 @@ def bend(slider: Slider, drive: Any, load: Any, start: float, end: float) -> flo
     """Return a bound of the second derivative of |a|^2 - f^2 while the slip is zero.
 
     a is the friction over mass that zero slip takes, f what friction can hold; |a| <= f.
-    d^2/dt^2 = 2 |a'|^2 + 2 a.a'' - 2 f'^2 - 2 f f''.
+    d^2/dt^2 = 2 |a'|^2 + 2 a.a'' - 2 f'^2 - 2 f f''. On an elliptic surface |a| is |M^-1 a|.
     """
-    law = slider.law
+    law: Any = slider.law
     if has_state(law):
         return 0.0
     s, inertia = slider, 1.0 if slider.driven == "plate" else 0.0
@@ -91,6 +105,8 @@ def bend(slider: Slider, drive: Any, load: Any, start: float, end: float) -> flo
     second = hypot(*(k[i] * dv[i] + c[i] * ddv[i] + inertia * dddv[i] for i in (0, 1)))
     mu = static_coefficient(law) / s.mass
     f, _, ddf = (mu * bound for bound in load_bounds(load, start, end))
+    weakest = min(1.0, law.ratio) if isinstance(law, Anisotropic) else 1.0
+    first, second = first / weakest, second / weakest
     return 2.0 * (first * first + f * second + f * ddf)
 
 

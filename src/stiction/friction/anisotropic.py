@@ -1,0 +1,66 @@
+"""A surface that rubs more in one direction than in another."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, NamedTuple
+
+from pydantic import AfterValidator, Field
+
+from stiction.friction.law import FrictionLaw, has_state
+from stiction.units import Angle, reader
+from stiction.validation import validated
+
+
+def _is_set_valued(law: Any) -> Any:
+    if has_state(law) or isinstance(law, Anisotropic) or not hasattr(law, "slope"):
+        raise ValueError(f"{law!r} cannot be made anisotropic; only a set-valued law can")
+    return law
+
+
+Ratio = Annotated[float, reader("a number", "", "1.5"), Field(gt=0)]
+
+
+@validated
+class Anisotropic(NamedTuple):
+    """A set-valued law on a surface whose friction limit is an ellipse in the plane.
+
+    The friction force lies in (F_1/mu)^2 + (F_2/(ratio mu))^2 <= W^2, 1 and 2 along and across
+    the surface's own axis; slip is along the outward normal where it lies on the ellipse (the
+    associated flow rule), so that with s the slip velocity, M = diag(1, ratio) and mu the
+    law's coefficient at the speed |s|,
+
+        F = mu(|s|) W M^2 s/|M s|.
+
+    The force is not opposite to the slip; it dissipates mu W |M s|.
+
+    References: R. Michalowski & Z. Mroz, Arch. Mech. 30, 259 (1978); A. Zmitrowicz, Int. J.
+    Solids Struct. 43, 4407 (2006), doi:10.1016/j.ijsolstr.2005.06.008.
+
+    Parameters
+    ----------
+    law : FrictionLaw
+        Friction along the surface's axis.
+    ratio : float
+        Coefficient across the axis over that along it; worn or ground metal 0.7 to 1.5.
+    angle : str
+        From the drive direction X to the surface's axis, towards Y, with its unit.
+    """
+
+    law: Annotated[Any, AfterValidator(_is_set_valued)]
+    ratio: Ratio
+    angle: Angle = 0.0
+
+    @property
+    def mu_static(law) -> float:
+        """The law's separate static coefficient; zero if there is none."""
+        return float(getattr(law.law, "mu_static", 0.0))
+
+    def coefficient(law, v: float) -> float:
+        """Return the friction coefficient along the axis at slip speed `v` (m/s)."""
+        inner: FrictionLaw = law.law
+        return inner.coefficient(v)
+
+    def slope(law, v: float) -> float:
+        """Return its derivative with respect to `v`, in s/m."""
+        inner: FrictionLaw = law.law
+        return inner.slope(v)
