@@ -14,6 +14,7 @@ from stiction.drive import (
     Drive,
     DriveProgram,
     LoadProgram,
+    load_at,
     read_drive,
     read_load,
 )
@@ -157,6 +158,10 @@ class Slider(Apparatus):
         law with internal state, which may have none at rest."""
         speed = abs(self.motion.rate(0.0)[0]) if has_state(self.law) else 0.0
         return self.law.coefficient(speed) * self.normal_load
+
+    def weight(self, t: Any) -> Any:
+        """Return the normal load at time `t` (float or array, s), in N; W until it changes."""
+        return load_at(self.normal_load, self.load, t)
 
     def replace(self, **changes: Any) -> Self:
         """Return the same slider with some parameters changed, e.g. ``phi="3 deg"``."""

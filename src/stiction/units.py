@@ -99,6 +99,15 @@ def _fault(message: str) -> PydanticCustomError:
     return PydanticCustomError("unit", message.replace("{", "(").replace("}", ")"))
 
 
+def unit_of(hint: Any) -> str:
+    """Return the SI unit of a field annotated with one of the types below, '' for others."""
+    for item in getattr(hint, "__metadata__", ()):
+        kind = getattr(getattr(item, "func", None), "keywords", {}).get("kind")
+        if kind is not None:
+            return str(kind.unit)
+    return ""
+
+
 def reader(name: str, unit: str, example: str) -> BeforeValidator:
     """Return the validator that reads a quantity with the given SI unit."""
     return BeforeValidator(partial(to_si, kind=Kind(name, unit, example)))

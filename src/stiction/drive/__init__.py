@@ -21,7 +21,7 @@ from stiction.drive.pieces import (
     Reversal,
     Step,
 )
-from stiction.drive.program import DriveProgram, LoadProgram
+from stiction.drive.program import DriveProgram, LoadProgram, pick
 from stiction.drive.signal import Course, Loading
 from stiction.drive.steady import ConstantLoad, ConstantVelocity
 
@@ -49,6 +49,11 @@ def load_stretches(normal_load: float, program: LoadProgram | None) -> Stretches
     if program is None:
         return ((inf, ConstantLoad(normal_load)),)
     return program.stretches(normal_load)
+
+
+def load_at(normal_load: float, program: LoadProgram | None, t: Any) -> Any:
+    """Return the normal load at `t` (float or array, s), in N; before the jump where it jumps."""
+    return pick(load_stretches(normal_load, program), t, lambda load, at: (load.at(at),))[0]
 
 
 def read_drive(table: dict[str, Any]) -> Drive:
@@ -81,6 +86,7 @@ __all__ = [
     "Step",
     "drive_stretches",
     "jump",
+    "load_at",
     "load_stretches",
     "read_drive",
     "read_load",

@@ -55,7 +55,8 @@ class DriveProgram(Described):
 
     def rate(self, t: Times) -> tuple[Any, Any]:
         """Return the velocity (X, Y) at `t`, in m/s; before the jump where it jumps."""
-        return _pick(self.stretches, t, lambda course, at: course.rate(at))
+        X, Y = pick(self.stretches, t, lambda course, at: course.rate(at))
+        return X, Y
 
     def travel(self, t: float, dt: Times) -> tuple[Any, Any]:
         """Return the displacement (X, Y) from time `t` on for `dt`, in m."""
@@ -151,15 +152,18 @@ def _flat(signal: Signal) -> bool:
     return signal.slope == signal.amplitude == signal.amplitude_2 == 0.0
 
 
-def _pick(stretches: Sequence[tuple[float, Any]], t: Times, value: Any) -> tuple[Any, Any]:
-    """Return a vector in time from the stretch that holds each time, its end included."""
+def pick(stretches: Sequence[tuple[float, Any]], t: Times, value: Any) -> tuple[Any, ...]:
+    """Return values in time from the stretch that holds each time, its end included."""
     times = np.asarray(t, dtype=np.float64)
     which = np.searchsorted([end for end, _ in stretches], times, side="left")
-    X, Y = np.empty(times.shape), np.empty(times.shape)
+    columns: list[Any] = []
     for i in np.unique(which):
         inside = which == i
-        X[inside], Y[inside] = value(stretches[i][1], times[inside])
-    return X[()], Y[()]
+        for n, column in enumerate(value(stretches[i][1], times[inside])):
+            if n == len(columns):
+                columns.append(np.empty(times.shape))
+            columns[n][inside] = column
+    return tuple(column[()] for column in columns)
 
 
 def table_of(program: Described, known: Mapping[str, type[Any]]) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from stiction.units import Force, Velocity
 from stiction.validation import validated
@@ -20,11 +20,11 @@ class ConstantVelocity(NamedTuple):
 
     velocity: Velocity
 
-    def travel(drive, t: float, dt: float) -> tuple[float, float]:
+    def travel(drive, t: float, dt: Any) -> tuple[Any, Any]:
         """Return V dt along X."""
         return drive.velocity * dt, 0.0
 
-    def rate(drive, t: float) -> tuple[float, float]:
+    def rate(drive, t: Any) -> tuple[Any, Any]:
         """Return V along X."""
         return drive.velocity, 0.0
 

@@ -6,6 +6,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from stiction.friction import has_state
+from stiction.friction.law import static_coefficient
 from stiction.plotting.style import PURPLE
 from stiction.plotting.time_series import prefixed
 from stiction.slider import Slider
@@ -14,7 +16,8 @@ from stiction.slider import Slider
 def draw_law(ax: Axes, slider: Slider, fastest: float) -> Line2D:
     """Draw the friction coefficient over slip speed.
 
-    At zero slip friction takes any value up to the coefficient: the vertical line.
+    At zero slip friction takes any value up to the static coefficient: the vertical line. For a
+    law with internal state the coefficient is that of steady sliding, over the logarithm.
 
     Parameters
     ----------
@@ -26,12 +29,20 @@ def draw_law(ax: Axes, slider: Slider, fastest: float) -> Line2D:
         Largest slip speed, m/s; 1 m/s if it is zero or not finite.
     """
     top = fastest if 0 < fastest < np.inf else 1.0
-    speeds = np.linspace(0.0, top, 201)
-    mu = [0.0, *(slider.law.coefficient(float(speed)) for speed in speeds)]
+    law, rests = slider.law, not has_state(slider.law)
+    speeds = np.linspace(0.0, top, 201) if rests else np.geomspace(1e-6 * top, top, 201)
+    mu = [law.coefficient(float(speed)) for speed in speeds]
     factor, prefix = prefixed(speeds)
-    (line,) = ax.plot(np.r_[0.0, speeds] * factor, mu, color=PURPLE, linewidth=1.2)
-    ax.set_xlim(-0.03 * top * factor, top * factor)
-    ax.set_ylim(0.0, 1.2 * max(mu) or 1.0)
+    speeds *= factor
+    if rests:
+        largest = max(static_coefficient(law), mu[0])
+        (line,) = ax.plot(np.r_[0.0, 0.0, speeds], [0.0, largest, *mu], color=PURPLE, linewidth=1.2)
+        ax.set_xlim(-0.03 * top * factor, top * factor)
+    else:
+        (line,) = ax.semilogx(speeds, mu, color=PURPLE, linewidth=1.2)
+        ax.set_xlim(speeds[0], speeds[-1])
+        largest = max(mu)
+    ax.set_ylim(0.0, 1.2 * max(largest, *mu) or 1.0)
     ax.set_xlabel(rf"$v_\mathrm{{slip}}$ ({prefix}m/s)")
-    ax.set_ylabel(r"$\mu$ (1)")
+    ax.set_ylabel(r"$\mu$ (1)" if rests else r"$\mu$, steady (1)")
     return line

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 
 from stiction.plotting import time_series
 from stiction.plotting.law import draw_law
 from stiction.plotting.schematic import draw_schematic
 from stiction.plotting.style import BLACK, BLUE, ORANGE, PAGE, RED, new_figure, style
-from stiction.plotting.words import law_in_words, outcome_in_words, scales_in_words, system_in_words
+from stiction.plotting.words import (
+    base_velocity,
+    law_in_words,
+    outcome_in_words,
+    scales_in_words,
+    system_in_words,
+)
 from stiction.trajectory import Trajectory
+
+LINE, GAP = 10.5, 3.0  # of what is written, pt
+DRAWING, LAW = 2.1, 1.7  # heights of the system's drawing and of the law, in
 
 
 def overview(run: Trajectory) -> Figure:
@@ -31,26 +38,40 @@ def overview(run: Trajectory) -> Figure:
     Figure
         As wide as a page.
     """
+    words = _words(run)
+    written = sum(GAP + LINE * (1 + len(lines)) for _, lines, _ in words) / 72 + 0.3
     with style():
-        fig = new_figure(PAGE, 6.2)
+        fig = new_figure(PAGE, max(6.2, DRAWING + written + LAW + 0.1))
         left, right = fig.subfigures(1, 2, squeeze=False, width_ratios=[1, 1.55])[0]
         panels = left.subplot_mosaic(
-            [["system"], ["words"], ["law"]], height_ratios=[2.1, 2.3, 1.3]
+            [["system"], ["words"], ["law"]], height_ratios=[DRAWING, written, LAW]
         )
-        system, words, law = (panels[name] for name in ("system", "words", "law"))
-        draw_schematic(system, run.slider)
-        _write(words, run)
-        drive = abs(run.slider.motion.rate(0.0)[0])  # what slips when nothing else does
-        draw_law(law, run.slider, max(drive, float(run.data["slip_speed"].max())))
-        law.set_title(f"Friction law: {law_in_words(run.slider)}")
-        series = right.subplots(6, 1, sharex=True, height_ratios=[1.4, 1, 1, 1, 1.2, 0.6])
-        _draw_series(series, run)
-        right.align_ylabels(series)
+        draw_schematic(panels["system"], run.slider)
+        _write(panels["words"], words)
+        drive = abs(base_velocity(run.slider))  # what slips when nothing else does
+        draw_law(panels["law"], run.slider, max(drive, float(run.data["slip_speed"].max())))
+        _draw_series(right, run)
     return fig
 
 
-def _draw_series(series: Sequence[Axes], run: Trajectory) -> None:
-    forces, friction, direction, position, speed, stuck = series
+def _words(run: Trajectory) -> list[tuple[str, list[str], str]]:
+    """Return what is written: headings, lines below them, and their colour."""
+    return [
+        ("System", system_in_words(run.slider), BLACK),
+        ("Friction", law_in_words(run.slider), BLACK),
+        ("Scales", scales_in_words(run.slider), BLACK),
+        ("Run", outcome_in_words(run), BLUE if run.status.ok else RED),
+    ]
+
+
+def _draw_series(figure: SubFigure, run: Trajectory) -> None:
+    """Draw what was done to the system, where it changes, and what the system did."""
+    imposed = time_series.imposed(run)
+    heights = [0.85] * len(imposed) + [1.4, 1, 1, 1, 1.2, 0.6]
+    series = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights)
+    for ax, (values, symbol, unit) in zip(series, imposed, strict=False):
+        time_series.draw_values(ax, run, values, symbol, unit)
+    forces, friction, direction, position, speed, stuck = series[len(imposed) :]
     factor, prefix = time_series.prefixed(
         abs(run.data["spring_x"].values) + abs(run.data["spring_y"].values)
     )
@@ -71,17 +92,13 @@ def _draw_series(series: Sequence[Axes], run: Trajectory) -> None:
     stuck.set_xlabel("time $t$ (s)")
     if times[-1] > times[0]:
         stuck.set_xlim(times[0], times[-1])
+    figure.align_ylabels(series)
 
 
-def _write(ax: Axes, run: Trajectory) -> None:
-    """Write the system, what follows from it, and how the run ended."""
+def _write(ax: Axes, words: list[tuple[str, list[str], str]]) -> None:
     ax.set_axis_off()
     offset = 0.0
-    for heading, lines, color in (
-        ("System", system_in_words(run.slider), BLACK),
-        ("Scales", scales_in_words(run.slider), BLACK),
-        ("Run", outcome_in_words(run), BLUE if run.status.ok else RED),
-    ):
+    for heading, lines, color in words:
         for line in (heading, *lines):
             text = ax.annotate(
                 line,
@@ -95,5 +112,5 @@ def _write(ax: Axes, run: Trajectory) -> None:
                 fontsize=7.5,
             )
             text.set_in_layout(False)
-            offset += 10.5
-        offset += 3.0
+            offset += LINE
+        offset += GAP

@@ -58,10 +58,30 @@ def draw_quantity(
     ax: Axes, run: Trajectory, variable: str, symbol: str, color: str = BLACK
 ) -> Line2D:
     """Draw a variable of the run over time, in the multiple of its unit that suits its size."""
-    values = run.data[variable].values
-    factor, prefix = prefixed(values)
-    ax.set_ylabel(f"{symbol} ({prefix}{run.data[variable].attrs['units']})")
-    return draw_line(ax, run.data["time"].values, values * factor, color)
+    data = run.data[variable]
+    return draw_values(ax, run, data.values, symbol, data.attrs["units"], color)
+
+
+def draw_values(
+    ax: Axes, run: Trajectory, values: ArrayLike, symbol: str, unit: str, color: str = BLACK
+) -> Line2D:
+    """Draw values of one unit over the run's time, in the multiple that suits their size."""
+    array = np.asarray(values, dtype=np.float64)
+    factor, prefix = prefixed(array)
+    ax.set_ylabel(f"{symbol} ({prefix}{unit})")
+    return draw_line(ax, run.data["time"].values, array * factor, color)
+
+
+def imposed(run: Trajectory) -> list[tuple[Floats, str, str]]:
+    """Return what a protocol imposes and is not constant: values over time, symbol, unit.
+
+    Drive velocity along X and across it, and normal load.
+    """
+    slider, times = run.slider, run.data["time"].values
+    X, Y = (np.broadcast_to(v, times.shape) for v in slider.motion.rate(times))
+    load = np.broadcast_to(slider.weight(times), times.shape)
+    found = ((X, "$V$", "m/s"), (Y, "$V_Y$", "m/s"), (load, "$W$", "N"))
+    return [(v, symbol, unit) for v, symbol, unit in found if np.ptp(v) > 0]
 
 
 def prefixed(values: ArrayLike) -> tuple[float, str]:

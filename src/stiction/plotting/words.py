@@ -2,17 +2,32 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
 from math import degrees, pi, sin
 from textwrap import wrap
+from typing import Any, get_type_hints
 
 from stiction import theory
-from stiction.friction import LAWS
+from stiction.drive import ConstantVelocity, Modulation
+from stiction.friction import LAWS, Anisotropic
 from stiction.plotting.style import quantity
 from stiction.slider import Slider
 from stiction.trajectory import Trajectory
+from stiction.units import unit_of
 
-SYMBOLS = {"mu_0": r"$\mu_0$", "mu_inf": r"$\mu_\infty$", "mu_static": r"$\mu_s$", "v_f": "$v_f$"}
-UNITS = {"v_f": "m/s"}
+LETTERS = {"mu": r"\mu", "sigma": r"\sigma", "omega": r"\omega", "theta": r"\theta"}
+SUBSCRIPTS = {"inf": r"\infty", "star": "*", "static": r"\mathrm{s}"}
+WIDTH = 40  # characters of a line
+
+
+def symbol(name: str) -> str:
+    """Return a parameter's name as it is printed: ``mu_0`` with its subscript."""
+    letter, _, subscript = name.partition("_")
+    if len(letter) > 1 and letter not in LETTERS:
+        return name
+    below = SUBSCRIPTS.get(subscript, subscript)
+    return f"${LETTERS.get(letter, letter)}" + (f"_{{{below}}}$" if below else "$")
 
 
 def system_in_words(slider: Slider) -> list[str]:
@@ -21,23 +36,75 @@ def system_in_words(slider: Slider) -> list[str]:
     lines = [
         f"$m$ = {quantity(slider.mass, 'kg')}, $W$ = {quantity(slider.normal_load, 'N')}",
         f"$k_x$ = {quantity(slider.k_x, 'N/m')}, $k_y$ = {quantity(slider.k_y, 'N/m')}",
-        rf"$\varphi$ = {misalignment}, $V$ = {quantity(slider.motion.rate(0.0)[0], 'm/s')}",
+        rf"$\varphi$ = {misalignment}, $V$ = {quantity(base_velocity(slider), 'm/s')}",
     ]
     if slider.c_x > 0 or slider.c_y > 0:
         c_x, c_y = (quantity(c, "N s/m") for c in (slider.c_x, slider.c_y))
         lines.insert(2, f"$c_x$ = {c_x}, $c_y$ = {c_y}")
+    return lines + protocol_in_words(slider)
+
+
+def base_velocity(slider: Slider) -> float:
+    """Return the drive velocity that a constant drive has, or a program starts from, in m/s."""
+    return slider.motion.velocity
+
+
+def protocol_in_words(slider: Slider) -> list[str]:
+    """Return what drive and load do in time, nothing if they are constant."""
+    lines: list[str] = []
+    drive, load = slider.motion, slider.load
+    if not isinstance(drive, ConstantVelocity):
+        lines += program_in_words(f"{slider.driven} driven", drive.program, drive.repeat)
+        for way, harmonic in (("along", drive.along), ("across", drive.across)):
+            if harmonic is not None:
+                lines.append(f"{way}: ±{harmonic_in_words(harmonic, 'm/s')}")
+    if load is not None:
+        lines += program_in_words("load", load.program, load.repeat)
+        if load.modulation is not None:
+            lines.append(f"load: ±{harmonic_in_words(load.modulation, 'N')}")
     return lines
 
 
-def law_in_words(slider: Slider) -> str:
-    """Return the friction law: its name, and its parameters in a second line."""
-    law = slider.law
-    known = (name for name, kind in LAWS.items() if isinstance(law, kind))
-    numbers = (
-        f"{SYMBOLS.get(name, name)} = {quantity(value, UNITS.get(name, ''))}"
-        for name, value in law._asdict().items()
-    )
-    return f"{next(known, type(law).__name__)}:\n{', '.join(numbers)}"
+def program_in_words(what: str, program: Sequence[Any], repeat: int) -> list[str]:
+    """Return the pieces of a program by name."""
+    if not program:
+        return []
+    names = ", ".join(type(piece).__name__.lower() for piece in program)
+    times = f" ({repeat} times)" if repeat > 1 else ""
+    return wrap(f"{what}: {names}{times}", WIDTH, max_lines=3, placeholder=" …")
+
+
+def harmonic_in_words(harmonic: Modulation, unit: str) -> str:
+    """Return amplitude and frequency of a modulation."""
+    return f"{quantity(harmonic.amplitude, unit)} at {quantity(harmonic.frequency, 'Hz')}"
+
+
+def law_in_words(slider: Slider) -> list[str]:
+    """Return the friction law: its name, and its parameters in the lines that follow."""
+    law: Any = slider.law
+    inner = law.law if isinstance(law, Anisotropic) else law
+    known = (name for name, kind in LAWS.items() if isinstance(inner, kind))
+    lines = [f"{next(known, type(inner).__name__)}:", *parameters_in_words(inner)]
+    if law is not inner:
+        lines.append(f"across/along {law.ratio:.4g}, axis at {degrees(law.angle):.4g}°")
+    return lines
+
+
+def parameters_in_words(law: Any) -> list[str]:
+    """Return a law's parameters with their units, in lines."""
+    hints = get_type_hints(type(law), include_extras=True)
+    words, lines = [], [""]
+    for name, value in law._asdict().items():
+        if isinstance(value, tuple):
+            words.append(f"{len(value)} values of {symbol(name)}")
+        elif not (name == "mu_static" and value == 0.0):  # zero: there is none
+            words.append(f"{symbol(name)} = {quantity(value, unit_of(hints[name]))}")
+    for i, word in enumerate(words):
+        word += "," if i < len(words) - 1 else ""
+        if len(re.sub(r"[${}_\\]", "", lines[-1] + word)) > WIDTH:
+            lines.append("")
+        lines[-1] += f"{' ' if lines[-1] else ''}{word}"
+    return lines
 
 
 def scales_in_words(slider: Slider) -> list[str]:
@@ -49,7 +116,7 @@ def scales_in_words(slider: Slider) -> list[str]:
         rf"$F_0 = \mu_0 W$ = {quantity(slider.F_0, 'N')}",
         rf"$\omega_x/2\pi$ = {quantity(f_x, 'Hz')}, $\omega_y/2\pi$ = {quantity(f_y, 'Hz')}",
     ]
-    V, phi = abs(slider.motion.rate(0.0)[0]), abs(slider.phi)
+    V, phi = abs(base_velocity(slider)), abs(slider.phi)
     if V > 0 and sin(phi) > 0:
         A = float(theory.damping_number(slider.F_0, V, phi, slider.mass, slider.k_x))
         lines.append(rf"$A$ = {A:.4g}, $\zeta(\theta=\varphi)$ = {A * sin(phi) ** 3:.2g}")
