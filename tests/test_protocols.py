@@ -104,6 +104,15 @@ def test_a_load_that_all_but_releases_a_stick(excess):
         assert len(run.sticks) > 1
 
 
+def test_a_long_hold_under_vibration_is_one_stick():
+    """Far more looks at the margin than the solver takes at once."""
+    drive = st.DriveProgram(across=st.Modulation(0.5, 100.0))
+    slider = block(drive=drive, driven="spring", k_y=500.0)  # 0.8 of what friction holds
+    run = st.simulate(slider, 100.0, initial=st.Initial(v_x=0.0, v_y=0.0))
+    assert run.sticks.tolist() == [[0.0, 100.0]]
+    assert run.statistics.stick_count == 1
+
+
 def test_static_friction_above_kinetic_is_the_classical_stick_slip():
     """u'' + u = F_k in slip from u = F_s: s = V (1 - cos t) + (F_s - F_k) sin t, until zero."""
     V, F_s, F_k = 0.1, 1.0, 0.6

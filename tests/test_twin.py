@@ -242,7 +242,7 @@ def held(slider, u, tau):
 def held_for(slider, u_x, u_y):
     """What the compiled solver says about a stick from t = 0 on."""
     stretch = next(stretches(slider, 0.0, 1.0))
-    return stick_duration(stretch.problem, 0.0, u_x, u_y, stretch.end)
+    return stick_duration(stretch.problem, 0.0, u_x, u_y, stretch.end)[0]
 
 
 @pytest.mark.parametrize("c_y", [0.0, 1e4])

@@ -43,11 +43,15 @@ def stick(
     samples: np.ndarray,
     k: int,
     sticks: np.ndarray,
-) -> tuple[State, int]:
-    """Hold zero slip as long as friction can, then turn the slip direction to take-off."""
+) -> tuple[bool, State, int]:
+    """Hold zero slip as long as friction can, then turn the slip direction to take-off.
+
+    Returns whether it takes off, the state, and the next row of the samples.
+    """
     motion, memory, counts = state
     t, u_x, u_y = motion.t, motion.u_x, motion.u_y
-    duration = stick_duration(problem, t, u_x, u_y, t_stop)
+    duration, ends = stick_duration(problem, t, u_x, u_y, t_stop)
+    ends = ends and t + duration < t_stop
     end = t_stop if t + duration >= t_stop else t + duration
     if end > t:
         k = sample_stick(problem, t, u_x, u_y, end, times, samples, k)
@@ -72,7 +76,7 @@ def stick(
         a = sqrt(a_x * a_x + a_y * a_y)
     e_x, e_y = (a_x / a, a_y / a) if a > 0.0 else (motion.e_x, motion.e_y)
     motion = Motion(end, u_x, u_y, 0.0, e_x, e_y)
-    return State(motion, cooled(memory, memory.h_takeoff), counts), k
+    return ends, State(motion, cooled(memory, memory.h_takeoff), counts), k
 
 
 @inlined
@@ -170,9 +174,9 @@ def advance(
         if motion.r < 1e-13 * accuracy.tolerance * accuracy.speed:  # at rest for every purpose
             motion = Motion(t, motion.u_x, motion.u_y, 0.0, motion.e_x, motion.e_y)
             state = State(motion, state.memory, state.counts)
-            state, k = stick(problem, state, t_end, times, samples, k, sticks)
+            ends, state, k = stick(problem, state, t_end, times, samples, k, sticks)
             motion = state.motion
-            if motion.t >= t_end:
+            if not ends:
                 continue
         frame = frame_of(problem, motion)
         start = outset(problem, frame)

@@ -21,7 +21,7 @@ from stiction.solver.problem import (
 from stiction.solver.surface import held_product
 
 USED_UP = 1e-14  # of f^2: the margin |a|^2 - f^2 is zero within rounding
-LOOKS = 100_000  # at the margin in one stick; each is as long as its curvature allows
+LOOKS = 10_000  # at the margin before the loop has a turn; each as far apart as it allows
 
 
 @inlined
@@ -67,8 +67,10 @@ def margin(problem: Problem, t: float, u_x: float, u_y: float) -> tuple[float, f
 
 
 @inlined
-def stick_duration(problem: Problem, t: float, u_x: float, u_y: float, t_stop: float) -> float:
-    """Return how long zero slip can be held from time `t` on.
+def stick_duration(
+    problem: Problem, t: float, u_x: float, u_y: float, t_stop: float
+) -> tuple[float, bool]:
+    """Return how long zero slip can be held from time `t` on, and whether it ends then.
 
     Zero if friction cannot hold even now, infinite if it can until `t_stop`. In closed form
     for a steady drive and load; otherwise in steps, each as long as the bound of the margin's
@@ -76,24 +78,24 @@ def stick_duration(problem: Problem, t: float, u_x: float, u_y: float, t_stop: f
     """
     excess, change, square = margin(problem, t, u_x, u_y)
     if excess > USED_UP * square or (excess >= 0.0 and change > 0.0):
-        return 0.0
+        return 0.0, True
     if steady(problem.drive) and constant(problem.load):
         j = holding_change(problem, t)
-        return used_up(excess, change, held_product(problem, j, j))
+        return used_up(excess, change, held_product(problem, j, j)), True
     gone = 0.0
     for _ in range(LOOKS):
         if excess > -USED_UP * square and change > 0.0:
-            break
+            return gone, True
         # excess + 2 change x + bend x^2/2 < 0 before this
         x = used_up(min(excess, 0.0), change, 0.5 * problem.bend)
         if t + gone + x >= t_stop:
-            return inf
+            return inf, True
         if t + gone + x == t + gone:
-            break
+            return gone, True
         gone += x
         d_x, d_y = in_principal_axes(problem, travel(problem.drive, t, gone))
         excess, change, square = margin(problem, t + gone, u_x + d_x, u_y + d_y)
-    return gone
+    return gone, False
 
 
 @inlined
