@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from stiction import presets, theory
+    from stiction.comparison import compare
     from stiction.description import Description, Settings
     from stiction.drive import (
         Constant,
@@ -60,6 +61,7 @@ _HOME = {
     "Step": "drive",
     "StictionError": "errors",
     "Trajectory": "trajectory",
+    "compare": "comparison",
     "load": "trajectory",
     "simulate": "simulation",
 }
@@ -88,6 +90,7 @@ __all__ = [
     "Step",
     "StictionError",
     "Trajectory",
+    "compare",
     "load",
     "presets",
     "simulate",
