@@ -6,7 +6,7 @@ from math import degrees, pi, sin
 from textwrap import wrap
 
 from stiction import theory
-from stiction.friction import LAWS
+from stiction.friction import LAWS, Law
 from stiction.plotting.style import quantity
 from stiction.slider import Slider
 from stiction.trajectory import Trajectory
@@ -33,11 +33,17 @@ def law_in_words(slider: Slider) -> str:
     """Return the friction law: its name, and its parameters in a second line."""
     law = slider.law
     known = (name for name, kind in LAWS.items() if isinstance(law, kind))
-    numbers = (
+    return f"{next(known, type(law).__name__)}:\n{parameters_in_words(law)}"
+
+
+def parameters_in_words(law: Law) -> str:
+    """Return the parameters of a friction law in one line, without those left out as zero."""
+    left_out = {name for name, value in getattr(law, "_field_defaults", {}).items() if value == 0}
+    return ", ".join(
         f"{SYMBOLS.get(name, name)} = {quantity(value, UNITS.get(name, ''))}"
         for name, value in law._asdict().items()
+        if value != 0 or name not in left_out
     )
-    return f"{next(known, type(law).__name__)}:\n{', '.join(numbers)}"
 
 
 def scales_in_words(slider: Slider) -> list[str]:
