@@ -110,9 +110,9 @@ def outcome(run: Trajectory) -> Outcome:
         run.status,
         statistics.stick_count,
         statistics.time_stuck,
-        float(np.nanmax(np.abs(run.data["spring_x"].values))) / run.slider.normal_load,
-        float(speed.max()),
-        0.0 if rests else float(loading.min()),
+        float(np.fmax.reduce(np.abs(run.data["spring_x"].values))) / run.slider.normal_load,
+        float(np.fmax.reduce(speed)),  # what is not a number at the end of a run is passed over
+        0.0 if rests else float(np.fmin.reduce(loading)),
         float(np.median([part.mean() for part in parts])),
         statistics.steps,
     )

@@ -86,7 +86,7 @@ def draw_rests(ax: Axes, curves: Sequence[Curve], bins: int = 300) -> None:
 
 
 def draw_held(ax: Axes, curves: Sequence[Curve], bins: int = 120) -> None:
-    """Draw at which spring forces each run is at zero slip: the share of the samples there."""
+    """Draw at which spring forces each run is at zero slip: the share of the time there."""
     forces = [curve.run.data["spring_x"].values for curve in curves]
     factor, prefix = common(forces)
     finite = np.concatenate([force[np.isfinite(force)] for force in forces]) * factor
@@ -94,10 +94,12 @@ def draw_held(ax: Axes, curves: Sequence[Curve], bins: int = 120) -> None:
     pad = 0.04 * (high - low) or 1.0
     edges = np.linspace(low - pad, high + pad, bins + 1)
     for row, (curve, force) in enumerate(zip(curves, forces, strict=True)):
-        stuck = curve.run.data["sticking"].values.astype(float)  # not to overflow
-        total, _ = np.histogram(force * factor, edges)
-        held, _ = np.histogram(force * factor, edges, weights=stuck)
-        fill_row(ax, row, held / np.maximum(total, 1), edges, curve)
+        times = curve.run.data["time"].values
+        stuck = np.diff(stuck_until(times, curve.run.sticks))  # however short: all are counted
+        total, _ = np.histogram(force[:-1] * factor, edges, weights=np.diff(times))
+        held, _ = np.histogram(force[:-1] * factor, edges, weights=stuck)
+        share = np.divide(held, total, out=np.zeros(bins), where=total > 0)
+        fill_row(ax, row, share, edges, curve)
     finish_rows(ax, len(curves))
     ax.set_xlabel(f"$k_x u_x$ ({prefix}N)")
     ax.set_xlim(edges[0], edges[-1])
