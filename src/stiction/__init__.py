@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from stiction import presets, theory
+    from stiction.comparison import compare
     from stiction.description import Description, Settings
     from stiction.drive import (
         Constant,
@@ -61,6 +62,7 @@ _HOME = {
     "Step": "drive",
     "StictionError": "errors",
     "Trajectory": "trajectory",
+    "compare": "comparison",
     "load": "trajectory",
     "simulate": "simulation",
 }
@@ -90,6 +92,7 @@ __all__ = [
     "Step",
     "StictionError",
     "Trajectory",
+    "compare",
     "load",
     "presets",
     "simulate",

@@ -29,6 +29,22 @@ def read_law(table: dict[str, Any]) -> Law:
     return law if surface is None else read_anisotropy(law, surface)
 
 
+def name_of(law: Any) -> str:
+    """Return a law's registered name, or that of a user's own class."""
+    if isinstance(law, Anisotropic):
+        return f"anisotropic {name_of(law.law)}"
+    known = (name for name, kind in LAWS.items() if type(law) is kind)
+    return next(known, type(law).__name__)
+
+
+def parameters(law: Any) -> dict[str, Any]:
+    """Return a law's parameters, those of an anisotropic one with the law's that it holds."""
+    values: dict[str, Any] = law._asdict()
+    if isinstance(law, Anisotropic):
+        return parameters(values.pop("law")) | values
+    return values
+
+
 def read_anisotropy(law: Law, table: Any) -> Law:
     """Read the table [friction.anisotropy]."""
     if not isinstance(table, dict) or "law" in table:
@@ -53,6 +69,8 @@ __all__ = [
     "Law",
     "StateLaw",
     "has_state",
+    "name_of",
+    "parameters",
     "read_law",
     "states",
 ]

@@ -38,12 +38,8 @@ def write(fig: Figure, path: str | Path) -> Path:
     ResultError
         If the format is not known, or the file cannot be written there.
     """
-    target = Path(path)
+    target = drawable(path)
     suffix = target.suffix.lower()
-    if suffix not in FORMATS:
-        raise ResultError(f"{target}: unknown format {suffix!r}; use {', '.join(FORMATS)}")
-    if not target.parent.is_dir():
-        raise ResultError(f"{target}: no folder {target.parent}; make it first")
     part = None
     try:
         handle, name = tempfile.mkstemp(dir=target.parent, suffix=".part")
@@ -60,4 +56,23 @@ def write(fig: Figure, path: str | Path) -> Path:
     finally:
         if part is not None:
             part.unlink(missing_ok=True)
+    return target
+
+
+def drawable(path: str | Path) -> Path:
+    """Return the path of a figure, if one can be written there.
+
+    Raises
+    ------
+    ResultError
+        If the format is not known, there is no folder, or something else than a file is there.
+    """
+    target = Path(path)
+    suffix = target.suffix.lower()
+    if suffix not in FORMATS:
+        raise ResultError(f"{target}: unknown format {suffix!r}; use {', '.join(FORMATS)}")
+    if not target.parent.is_dir():
+        raise ResultError(f"{target}: no folder {target.parent}; make it first")
+    if target.exists() and not target.is_file():
+        raise ResultError(f"{target}: is there, and is not a file; choose another name")
     return target

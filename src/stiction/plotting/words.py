@@ -10,7 +10,7 @@ from typing import Any, get_type_hints
 
 from stiction import theory
 from stiction.drive import ConstantVelocity, Modulation
-from stiction.friction import LAWS, Anisotropic
+from stiction.friction import Anisotropic, name_of
 from stiction.plotting.style import quantity
 from stiction.slider import Slider
 from stiction.trajectory import Trajectory
@@ -81,30 +81,42 @@ def harmonic_in_words(harmonic: Modulation, unit: str) -> str:
 
 def law_in_words(slider: Slider) -> list[str]:
     """Return the friction law: its name, and its parameters in the lines that follow."""
-    law: Any = slider.law
-    inner = law.law if isinstance(law, Anisotropic) else law
-    known = (name for name, kind in LAWS.items() if isinstance(inner, kind))
-    lines = [f"{next(known, type(inner).__name__)}:", *parameters_in_words(inner)]
-    if law is not inner:
-        lines.append(f"across/along {law.ratio:.4g}, axis at {degrees(law.angle):.4g}°")
-    return lines
+    return [f"{name_of(slider.law)}:", *wrapped(parameters_in_words(slider.law), WIDTH)]
 
 
 def parameters_in_words(law: Any) -> list[str]:
-    """Return a law's parameters with their units, in lines."""
+    """Return a law's parameters with their units, without those left out as zero."""
+    if isinstance(law, Anisotropic):
+        grain = f"across/along {law.ratio:.4g}", f"axis at {degrees(law.angle):.4g}°"
+        return [*parameters_in_words(law.law), *grain]
     hints = get_type_hints(type(law), include_extras=True)
-    words, lines = [], [""]
+    left_out = {name for name, value in law._field_defaults.items() if value == 0}
+    words = []
     for name, value in law._asdict().items():
         if isinstance(value, tuple):
             words.append(f"{len(value)} values of {symbol(name)}")
-        elif not (name == "mu_static" and value == 0.0):  # zero: there is none
+        elif value != 0 or name not in left_out:
             words.append(f"{symbol(name)} = {quantity(value, unit_of(hints[name]))}")
-    for i, word in enumerate(words):
-        word += "," if i < len(words) - 1 else ""
-        if len(re.sub(r"[${}_\\]", "", lines[-1] + word)) > WIDTH:
-            lines.append("")
-        lines[-1] += f"{' ' if lines[-1] else ''}{word}"
+    return words
+
+
+def wrapped(words: Sequence[str], width: int) -> list[str]:
+    """Return words, separated by commas, in lines of about `width` characters."""
+    lines = [""]
+    for word in words:
+        longer = f"{lines[-1]}, {word}" if lines[-1] else word
+        if len(shown(longer)) > width and lines[-1]:
+            lines[-1] += ","
+            lines.append(word)
+        else:
+            lines[-1] = longer
     return lines
+
+
+def shown(text: str) -> str:
+    r"""Return about the characters that a text with symbols such as $\mu_0$ is drawn with."""
+    text = re.sub(r"\\(infty|mu|sigma|omega|theta)", "o", text)
+    return re.sub(r"\\mathrm|[${}_\\]", "", text)
 
 
 def scales_in_words(slider: Slider) -> list[str]:

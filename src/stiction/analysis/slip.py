@@ -1,0 +1,118 @@
+"""How fast it slips: averages over short times, and what a whole run comes to."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+
+from stiction.analysis.creep import first_slip_time
+from stiction.errors import Status
+from stiction.trajectory import Trajectory
+
+Floats = NDArray[np.float64]
+
+
+FINE = 8  # bins in each time that is averaged over
+
+
+class Slip(NamedTuple):
+    """Slip speed (m/s) averaged over a short time, arrays of shape (n,).
+
+    Parameters
+    ----------
+    time, force : ndarray
+        Time (s) and spring force k_x u_x (N).
+    mean, high : ndarray
+        Mean and largest slip speed.
+    rest : ndarray
+        Share of the samples at zero slip, 0 to 1.
+    """
+
+    time: Floats
+    force: Floats
+    mean: Floats
+    high: Floats
+    rest: Floats
+
+
+def averaged_slip(run: Trajectory, parts: int) -> Slip:
+    """Average a run over a `parts`-th of its time, with weights that fall off to both sides.
+
+    Samples that are farther apart than that are kept as they are.
+    """
+    size = run.data.sizes["time"]
+    starts = np.unique(np.linspace(0, size, FINE * parts, endpoint=False).astype(np.intp))
+    counts = np.diff(starts, append=size)
+    half = len(starts) // parts
+    window = np.hanning(2 * half + 1) if half > 1 else np.ones(1)
+    weight = np.convolve(counts, window, "same")[: len(starts)]
+
+    def mean(name: str) -> Floats:
+        values = run.data[name].values.astype(np.float64)
+        total = np.convolve(np.add.reduceat(values, starts), window, "same")
+        result: Floats = total[: len(starts)] / weight
+        return result
+
+    high = np.maximum.reduceat(run.data["slip_speed"].values, starts)
+    if half > 1:
+        high = sliding_window_view(np.pad(high, half), 2 * half + 1).max(axis=1)
+    time, force = np.add.reduceat(run.data["time"].values, starts) / counts, mean("spring_x")
+    return Slip(time, force, mean("slip_speed"), high, mean("sticking"))
+
+
+class Outcome(NamedTuple):
+    """What a run comes to.
+
+    Parameters
+    ----------
+    status : Status
+        How it ended.
+    sticks : int
+        Stick intervals.
+    time_stuck : float
+        Their sum, s.
+    peak : float
+        Largest magnitude of k_x u_x, in normal loads.
+    fastest : float
+        Largest slip speed of the samples, m/s.
+    slowest : float
+        Smallest slip speed of the samples while the spring is first loaded, m/s; zero where the
+        mass rests in that time, however shortly.
+    creep : float
+        Median of that time's slip speed, m/s, of means over a hundredth of it each: zero only
+        where the mass rests for half of it.
+    steps : int
+        Slip steps of the solver.
+    """
+
+    status: Status
+    sticks: int
+    time_stuck: float
+    peak: float
+    fastest: float
+    slowest: float
+    creep: float
+    steps: int
+
+
+def outcome(run: Trajectory) -> Outcome:
+    """Return what a run comes to; the more samples it has, the closer the speeds."""
+    speed, times = run.data["slip_speed"].values, run.data["time"].values
+    end = first_slip_time(run)
+    loading = speed[: np.searchsorted(times, end) + 1]
+    parts = np.array_split(loading, min(100, len(loading)))
+    rests = bool((run.sticks[:, 0] < end).any())
+    statistics = run.statistics
+    return Outcome(
+        run.status,
+        statistics.stick_count,
+        statistics.time_stuck,
+        float(np.fmax.reduce(np.abs(run.data["spring_x"].values))) / run.slider.normal_load,
+        float(np.fmax.reduce(speed)),  # what is not a number at the end of a run is passed over
+        0.0 if rests else float(np.fmin.reduce(loading)),
+        float(np.median([part.mean() for part in parts])),
+        statistics.steps,
+    )

@@ -1,0 +1,92 @@
+"""What laws share when they are compared: friction at rest, in fast slip, and in between."""
+
+from __future__ import annotations
+
+from math import exp
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from stiction.errors import DescriptionError, Fault
+from stiction.friction.law import Law, has_state, static_coefficient
+
+CHANGED = 1.0 - exp(-1.0)
+ABRUPT = 1e-3  # of the fastest slip: what has changed at once, changes over this speed
+
+
+class Traits(NamedTuple):
+    """Friction coefficients at rest and in fast slip, and the speed that lies between.
+
+    Parameters
+    ----------
+    static, kinetic : float
+        Coefficient at rest; that within reach of slip which differs most from it.
+    speed : float
+        Slip speed at which 1 - 1/e of the change is done, m/s.
+    """
+
+    static: float
+    kinetic: float
+    speed: float
+
+
+def traits(law: Law, drive: float, fastest: float) -> Traits:
+    """Return what another law must have in common with `law` to be comparable with it.
+
+    The coefficient is looked at up to the fastest slip that the apparatus can reach: what the
+    law does beyond plays no part. One that weakens and then strengthens counts as the minimum
+    between. A law with internal state may have no coefficient at rest; that of steady sliding
+    at a thousandth of the drive's speed stands for it.
+
+    Parameters
+    ----------
+    law : Law
+        Any friction law.
+    drive : float
+        Speed of the drive, m/s.
+    fastest : float
+        Largest slip speed that counts, m/s.
+
+    Raises
+    ------
+    DescriptionError
+        If the coefficient is not finite there.
+    """
+    slowest = ABRUPT * (drive or fastest) if has_state(law) else 1e-9 * fastest
+    speeds = np.geomspace(slowest, fastest, 2001)
+    mu = np.array([law.coefficient(float(speed)) for speed in speeds])
+    static = float(mu[0]) if has_state(law) else static_coefficient(law)
+    if not np.isfinite([*mu, static]).all():
+        rule = f"its coefficient is not finite between {slowest:.3g} and {fastest:.3g} m/s"
+        raise DescriptionError([Fault("law", f"{rule}; mend {type(law).__name__}")])
+    kinetic = float(mu[np.abs(mu - static).argmax()])
+    if abs(kinetic - static) <= 1e-9 * static:
+        return Traits(static, static, drive or fastest)
+    done = (mu - static) / (kinetic - static)
+    first = int((done >= CHANGED).argmax())
+    if first == 0:
+        return Traits(static, kinetic, ABRUPT * fastest)
+    around = slice(first - 1, first + 1)
+    return Traits(static, kinetic, float(np.interp(CHANGED, done[around], speeds[around])))
+
+
+def like(kind: Any, shared: Traits) -> Law:
+    """Return the law of this `kind` that has the traits.
+
+    Raises
+    ------
+    DescriptionError
+        If there is none, with what to write instead.
+    """
+    required = [name for name in kind._fields if name not in kind._field_defaults]
+    remedy = f"write a table with its parameters: {', '.join(required)}"
+    if not hasattr(kind, "like"):
+        message = f"takes no parameters from another law; {remedy}"
+        raise DescriptionError([Fault("law", message)])
+    try:
+        made: Law = kind.like(*(float(f"{value:.4g}") for value in shared))  # as it is written
+    except (ArithmeticError, ValueError) as error:
+        wanted = f"{shared.static:.4g} at rest, {shared.kinetic:.4g} in fast slip"
+        message = f"cannot be given friction coefficients {wanted} ({error}); {remedy}"
+        raise DescriptionError([Fault("law", message)]) from None
+    return made

@@ -1,0 +1,101 @@
+"""Friction laws in the forms in which they are asked for, for one apparatus."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from math import sqrt
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from stiction.description import Description
+from stiction.errors import DescriptionError, Fault
+from stiction.friction import LAWS, Law, has_state, read_law
+from stiction.friction.law import static_coefficient
+from stiction.friction.likeness import Traits, like, traits
+from stiction.tables import read_toml
+from stiction.validation import unknown
+
+EXAMPLE = """'{law = "coulomb", mu_0 = 0.15}'"""
+
+
+def exchanged(description: Description, law: Law) -> Description:
+    """Return the same description with another friction law."""
+    return description._replace(slider=description.slider.replace(friction=law))
+
+
+def read_laws(description: Description, laws: Sequence[Any]) -> list[Law]:
+    """Return the laws that are meant; `stiction.compare` tells the forms."""
+    made: list[Law] = []
+    found: list[Fault] = []
+    for count, value in enumerate(laws, 1):
+        try:
+            made.append(exchanged(description, read(description, value)).slider.law)
+        except DescriptionError as error:
+            where = f"law {value}" if value and isinstance(value, str | Path) else f"law {count}"
+            found += [Fault(where, ": ".join(within(fault, str(value)))) for fault in error.faults]
+    if found:
+        raise DescriptionError(found)
+    return made
+
+
+def within(fault: Fault, text: str) -> Iterator[str]:
+    """Yield where inside a law a fault is, unless it is the law or its file as a whole."""
+    key = ".".join(fault.path.split(".")[1:])
+    if key not in ("", "law", "friction") and fault.path != text:
+        yield key
+    yield fault.message
+
+
+def read(description: Description, value: Any) -> Law:
+    """Return the law that one entry of the list means."""
+    if isinstance(value, Mapping):
+        return read_law(dict(value))
+    if not isinstance(value, str | Path):
+        law: Law = value  # the slider says so if it is not one
+        return law
+    text = str(value).strip()
+    if text.startswith("{"):
+        return read_law(inline(text))
+    if text.endswith(".toml"):
+        return read_law(friction_table(text))
+    if ":" in text:
+        return read_law({"law": text})
+    if text in LAWS:
+        return like(LAWS[text], shared_traits(description))
+    other = f"(or a table {EXAMPLE}, a .toml file, file.py:Class)"
+    raise DescriptionError([Fault("law", f"{unknown('law', text, LAWS)} {other}")])
+
+
+def inline(text: str) -> dict[str, Any]:
+    """Return the inline TOML table that a text holds."""
+    try:
+        table: dict[str, Any] = tomllib.loads(f"law = {text}")["law"]
+    except tomllib.TOMLDecodeError as error:
+        message = f"is not a TOML table: {error}; write for example {EXAMPLE}"
+        raise DescriptionError([Fault("law", message)]) from None
+    return table
+
+
+def friction_table(path: str) -> dict[str, Any]:
+    """Return the table [friction] of a file."""
+    table = read_toml(path).get("friction")
+    if not isinstance(table, dict):
+        raise DescriptionError([Fault(path, "has no table [friction]; write one in it")])
+    return table
+
+
+def shared_traits(description: Description) -> Traits:
+    """Return the traits of the description's own law, at the speeds of the apparatus.
+
+    The fastest slip is that of the drive and of the mass that flies off its loaded spring.
+    """
+    slider, start = description.slider, description.initial.time
+    times = np.linspace(start, start + description.run.duration, 513)
+    drive = max(float(np.hypot(*slider.motion.rate(float(time)))) for time in times)
+    law = slider.law
+    mu = law.coefficient(drive or 1e-6) if has_state(law) else static_coefficient(law)
+    free = mu * slider.normal_load / sqrt(slider.mass * min(slider.k_x, slider.k_y))
+    return traits(law, drive, drive + free or 1.0)

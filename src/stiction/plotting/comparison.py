@@ -1,0 +1,112 @@
+"""Several runs of one apparatus on one page."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from textwrap import wrap
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from stiction.friction import name_of
+from stiction.plotting.curves import Curve, curves_of, draw_over_time
+from stiction.plotting.slip_speeds import (
+    draw_held,
+    draw_portrait,
+    draw_rests,
+    draw_speeds,
+    set_speed_limits,
+)
+from stiction.plotting.style import GREY, PAGE, new_figure, style
+from stiction.plotting.words import parameters_in_words, system_in_words, wrapped
+from stiction.trajectory import Trajectory
+
+WIDTH = 44  # characters of a legend's line
+LINE = 8.4 / 72  # in
+NOTE = (
+    "Broad line: the described law.",
+    "Slip speed: mean (line), up to the maximum (band);",
+    "rows below: share of time at zero slip.",
+)
+
+
+def comparison(runs: Mapping[str, Trajectory]) -> Figure:
+    """Draw runs of one apparatus together: force, position, slip speed, phase portrait.
+
+    Slip speed is on a logarithmic axis: a line for the mean over a 500th of the time, a pale
+    band up to the maximum, which stands out where slip comes in bursts. Zero slip has no place
+    on that axis: below it, each run has a row that is filled as high as the share of time in
+    which the mass rests.
+
+    Parameters
+    ----------
+    runs : mapping of str to Trajectory
+        By what each is called, e.g. from `stiction.compare`.
+
+    Returns
+    -------
+    Figure
+        As wide as a page.
+    """
+    with style():
+        curves = curves_of(runs)
+        legend = [legend_text(curve) for curve in curves]
+        lines = sum(text.count("\n") + 1.6 for text in legend) + 8
+        top, strip = max(2.3, lines * LINE), 0.08 + 0.1 * len(curves)
+        fig = new_figure(PAGE, top + 2.5 + strip)
+        ax = fig.subplot_mosaic(
+            [["force", "words"], ["X", "words"], ["speed", "portrait"], ["rest", "held"]],
+            width_ratios=[1.6, 1],
+            height_ratios=[top / 2, top / 2, 2.2, strip],
+        )
+        draw_over_time(ax["force"], curves, "spring_x", "$k_x u_x$")
+        draw_over_time(ax["X"], curves, "X", "$X$")
+        draw_speeds(ax["speed"], curves)
+        draw_portrait(ax["portrait"], curves)
+        draw_rests(ax["rest"], curves)
+        draw_held(ax["held"], curves)
+        for name in ("speed", "portrait"):
+            set_speed_limits(ax[name], curves)
+        for name in ("force", "X", "speed"):
+            ax[name].set_xlim(ax["rest"].get_xlim())
+            ax[name].tick_params(labelbottom=False)
+        ax["portrait"].set_xlim(ax["held"].get_xlim())
+        ax["portrait"].tick_params(labelbottom=False, labelleft=False)
+        write_legend(ax["words"], curves, legend)
+        fig.align_ylabels([ax[name] for name in ("force", "X", "speed", "rest")])
+    return fig
+
+
+def legend_text(curve: Curve) -> str:
+    """Return what the legend says of a run: its name, its law's parameters, an early end."""
+    law = curve.run.slider.law
+    name = name_of(law)
+    bare = curve.label.startswith(f"{name}, ")  # what follows are parameters, written below
+    heading = [name] if bare else wrap(curve.label, WIDTH)
+    lines = [*heading, *wrapped(parameters_in_words(law), WIDTH)]
+    if not curve.run.status.ok:
+        end = float(curve.run.data["time"][-1])
+        reason = curve.run.status.name.lower().replace("_", " ")
+        lines.append(f"× ended early at {end:.4g} s: {reason}")
+    return "\n".join(lines)
+
+
+def write_legend(ax: Axes, curves: list[Curve], texts: list[str]) -> None:
+    """Write what each line is, what the band is, and the system that all runs share."""
+    ax.set_axis_off()
+    handles = [Line2D([], [], **curve.look) for curve in curves]
+    legend = ax.legend(
+        handles,
+        texts,
+        loc="upper left",
+        bbox_to_anchor=(0.0, 1.0),
+        borderaxespad=0.0,
+        labelspacing=0.6,
+        handlelength=2.6,
+        fontsize=6.5,
+    )
+    legend.set_in_layout(False)
+    system = "\n".join([*system_in_words(curves[0].run.slider), "", *NOTE])
+    note = ax.text(0.0, 0.0, system, transform=ax.transAxes, fontsize=6.5, color=GREY, va="bottom")
+    note.set_in_layout(False)
