@@ -28,7 +28,13 @@ if TYPE_CHECKING:
         Step,
     )
     from stiction.errors import DescriptionError, ResultError, Status, StictionError
-    from stiction.friction import Coulomb, ExponentialWeakening
+    from stiction.friction import (
+        Coulomb,
+        ExponentialWeakening,
+        HyperbolicWeakening,
+        Stribeck,
+        Table,
+    )
     from stiction.initial import Initial
     from stiction.simulation import simulate
     from stiction.slider import Slider
@@ -48,6 +54,7 @@ _HOME = {
     "Free": "drive",
     "Harmonic": "drive",
     "Hold": "drive",
+    "HyperbolicWeakening": "friction",
     "Initial": "initial",
     "LoadProgram": "drive",
     "Modulation": "drive",
@@ -59,6 +66,8 @@ _HOME = {
     "Status": "errors",
     "Step": "drive",
     "StictionError": "errors",
+    "Stribeck": "friction",
+    "Table": "friction",
     "Trajectory": "trajectory",
     "load": "trajectory",
     "simulate": "simulation",
@@ -76,6 +85,7 @@ __all__ = [
     "Free",
     "Harmonic",
     "Hold",
+    "HyperbolicWeakening",
     "Initial",
     "LoadProgram",
     "Modulation",
@@ -87,6 +97,8 @@ __all__ = [
     "Status",
     "Step",
     "StictionError",
+    "Stribeck",
+    "Table",
     "Trajectory",
     "load",
     "presets",

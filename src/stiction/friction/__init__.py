@@ -11,12 +11,18 @@ from typing import Any
 
 from stiction.friction.coulomb import Coulomb
 from stiction.friction.exponential_weakening import ExponentialWeakening
+from stiction.friction.hyperbolic_weakening import HyperbolicWeakening
 from stiction.friction.law import FrictionLaw, Internal, Law, StateLaw, has_state, states
+from stiction.friction.stribeck import Stribeck
+from stiction.friction.table import Table
 from stiction.tables import choose
 
 LAWS: dict[str, type[Any]] = {
     "coulomb": Coulomb,
     "exponential-weakening": ExponentialWeakening,
+    "hyperbolic-weakening": HyperbolicWeakening,
+    "stribeck": Stribeck,
+    "table": Table,
 }
 
 
@@ -31,9 +37,12 @@ __all__ = [
     "Coulomb",
     "ExponentialWeakening",
     "FrictionLaw",
+    "HyperbolicWeakening",
     "Internal",
     "Law",
     "StateLaw",
+    "Stribeck",
+    "Table",
     "has_state",
     "read_law",
     "states",

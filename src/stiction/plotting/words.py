@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import degrees, pi, sin
 from textwrap import wrap
 
@@ -11,8 +12,17 @@ from stiction.plotting.style import quantity
 from stiction.slider import Slider
 from stiction.trajectory import Trajectory
 
-SYMBOLS = {"mu_0": r"$\mu_0$", "mu_inf": r"$\mu_\infty$", "mu_static": r"$\mu_s$", "v_f": "$v_f$"}
-UNITS = {"v_f": "m/s"}
+SYMBOLS = {
+    "mu_0": r"$\mu_0$",
+    "mu_inf": r"$\mu_\infty$",
+    "mu_s": r"$\mu_s$",
+    "mu_c": r"$\mu_c$",
+    "mu_static": r"$\mu_\mathrm{static}$",
+    "v_f": "$v_f$",
+    "v_s": "$v_s$",
+    "v_h": "$v_h$",
+}
+UNITS = {"v_f": "m/s", "v_s": "m/s", "v_h": "m/s", "c": "s/m"}
 
 
 def system_in_words(slider: Slider) -> list[str]:
@@ -34,10 +44,15 @@ def law_in_words(slider: Slider) -> str:
     law = slider.law
     known = (name for name, kind in LAWS.items() if isinstance(law, kind))
     numbers = (
-        f"{SYMBOLS.get(name, name)} = {quantity(value, UNITS.get(name, ''))}"
+        f"{SYMBOLS.get(name, name)} = {_value(value, UNITS.get(name, ''))}"
         for name, value in law._asdict().items()
     )
     return f"{next(known, type(law).__name__)}:\n{', '.join(numbers)}"
+
+
+def _value(value: float | Sequence[float], unit: str) -> str:
+    """Return a number with its unit; of a list, how long it is."""
+    return f"{len(value)} values" if isinstance(value, Sequence) else quantity(value, unit)
 
 
 def scales_in_words(slider: Slider) -> list[str]:
