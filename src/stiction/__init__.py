@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from stiction.initial import Initial
     from stiction.simulation import simulate
     from stiction.slider import Slider
+    from stiction.testing import check_law
     from stiction.trajectory import Trajectory, load
 
 __version__ = "0.1.0"
@@ -69,6 +70,7 @@ _HOME = {
     "Stribeck": "friction",
     "Table": "friction",
     "Trajectory": "trajectory",
+    "check_law": "testing",
     "load": "trajectory",
     "simulate": "simulation",
 }
@@ -100,6 +102,7 @@ __all__ = [
     "Stribeck",
     "Table",
     "Trajectory",
+    "check_law",
     "load",
     "presets",
     "simulate",

@@ -16,6 +16,8 @@ import numba
 from numba.core import config
 from platformdirs import user_cache_path
 
+from stiction.friction.source import TextLoader
+
 F = TypeVar("F", bound=Callable[..., Any])
 
 # sums may be contracted to fused multiply-adds and divisions by a common divisor shared;
@@ -52,12 +54,17 @@ def specialised(function: Any, *kinds: type) -> Any:
         return function
     try:
         digest = hashlib.sha256(b"".join(_source(module) for module in sorted(own)))
+        # types are kept by the names of their modules, which another process must know
+        digest.update(" ".join(sorted(own)).encode())
     except OSError:
         return _jit(function.py_func, inline=False, keep=False)
     return _kept(function.py_func, f"own-{digest.hexdigest()[:16]}")
 
 
 def _source(module: str) -> bytes:
+    loader = getattr(sys.modules.get(module), "__loader__", None)
+    if isinstance(loader, TextLoader):  # the file may have changed since
+        return loader.text.text.encode()
     file = getattr(sys.modules.get(module), "__file__", None)
     if file is None or module == "__main__":  # its types are new ones in each process
         raise OSError(f"{module} has no file to name them by")
