@@ -178,6 +178,11 @@ class Short(Bristle):
         return (slip[0],)
 
 
+class Unsettled(Bristle):
+    def settled(law, speed):
+        return (1.0 / speed, 0.0)
+
+
 STATE_CHECKS = ("finite", "dissipative", "compiled", "kept")  # what needs no solver
 
 
@@ -192,6 +197,7 @@ def test_a_law_with_state_keeps_the_contract():
         (Pushing, "dissipative", "friction drives"),
         (Contradictory, "dissipative", "but coefficient says 0.202"),
         (Short, "finite", "has 1 components, must have 2"),
+        (Unsettled, "finite", "settled(0) raises ZeroDivisionError"),
     ],
 )
 def test_the_contract_finds_a_broken_law_with_state(kind, check, words):

@@ -297,6 +297,25 @@ def test_a_law_in_a_script_is_kept_without_its_runs(tmp_path):
     assert "replace" not in text
 
 
+def test_a_file_edited_after_its_import_is_not_taken_for_what_ran(tmp_path, monkeypatch):
+    """Neither kept with the result, nor as the name of machine code."""
+    from stiction.friction.source import text_of
+    from stiction.solver.compiled import _source
+
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "edited_law.py"
+    path.write_text(LAW)
+    import edited_law
+
+    assert text_of(edited_law.Mine) == ("edited_law.py", LAW)
+    assert _source(edited_law.Mine) == f"edited_law\n{LAW}"
+    path.write_text(LAW.replace("-law.mu_0", "-2 * law.mu_0"))
+    assert text_of(edited_law.Mine) is None
+    with pytest.raises(OSError, match="as it was run"):
+        _source(edited_law.Mine)
+
+
 def test_a_law_in_a_prompt_has_no_text(tmp_path):
     python(SCRIPT.replace("print(st.Description", "#"), tmp_path)
     with pytest.raises(st.DescriptionError, match="'__main__:Mine' was not kept"):

@@ -45,8 +45,9 @@ def kept(*folders: Path) -> Find:
         file, kind = split(name)
         if text is None:
             raise fault(
-                f"the text of {name!r} was not kept, it stood in a prompt; write the law in a "
-                "file and name it; the arrays can be read with xarray.open_dataset"
+                f"the text of {name!r} was not kept: it stood in a prompt, or its file was edited "
+                "after it was imported; write the law in a file, and describe or import it anew; "
+                "the arrays can be read with xarray.open_dataset"
             )
         for candidate in loaded(file, kind, text):
             return candidate

@@ -9,6 +9,7 @@ import linecache
 import re
 import sys
 import tokenize
+from collections.abc import Iterator
 from importlib.abc import InspectLoader
 from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
@@ -107,7 +108,10 @@ def member(module: ModuleType, name: str) -> Any:
 
 
 def text_of(kind: type) -> Text | None:
-    """Return the text that defines a law; of a script or a notebook, the parts that it needs."""
+    """Return the text that defines a law; of a script or a notebook, the parts that it needs.
+
+    None if it cannot be had, or if the file has changed since it was imported.
+    """
     module = sys.modules.get(kind.__module__)
     if module is None or "<locals>" in kind.__qualname__:
         return None
@@ -118,19 +122,37 @@ def text_of(kind: type) -> Text | None:
         return _from_script(kind)
     try:
         file = inspect.getsourcefile(module) or ""
-        return Text(Path(file).name, _ended(inspect.getsource(module)))
-    except (OSError, TypeError):
+        text = _ended(inspect.getsource(module))
+        return Text(Path(file).name, text) if _defines(text, kind, file) else None
+    except (OSError, TypeError, SyntaxError):
         return None
+
+
+def _defines(text: str, kind: type, file: str) -> bool:
+    """Return whether a text has the methods of a class as they are, line for line."""
+    there: set[CodeType] = set()
+    codes = [compile(text, file, "exec", dont_inherit=True)]
+    while codes:
+        inner = [each for each in codes.pop().co_consts if isinstance(each, CodeType)]
+        there.update(inner)
+        codes += inner
+    return all(code in there for code in _codes(kind) if code.co_filename == file)
+
+
+def _codes(kind: type) -> Iterator[CodeType]:
+    """Yield the code of a class's methods."""
+    for value in vars(kind).values():
+        code = getattr(getattr(value, "__func__", value), "__code__", None)
+        if code is not None:
+            yield code
 
 
 def _from_script(kind: type) -> Text | None:
     """Return what a law in a script, a notebook or a prompt is made of, if that can be had."""
-    codes = (getattr(value, "__code__", None) for value in vars(kind).values())
-    files = [code.co_filename for code in codes if code and not code.co_filename.startswith("<str")]
-    for file in files:
+    for file in (code.co_filename for code in _codes(kind)):
         found = excerpt("".join(linecache.getlines(file)), kind.__qualname__.split(".")[0])
         if found:
-            name = Path(file).name if file.endswith(".py") else "notebook.py"
+            name = Path(file).name if Path(file).is_file() else "notebook.py"
             return Text(name, _ended(found))
     return None
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import degrees, pi, sin
 from textwrap import wrap
+from typing import Any
 
 from stiction import theory
 from stiction.friction import LAWS
@@ -40,12 +41,14 @@ def system_in_words(slider: Slider) -> list[str]:
 
 
 def law_in_words(slider: Slider) -> str:
-    """Return the friction law: its name, and its parameters in a second line."""
-    law = slider.law
+    """Return the friction law: its name, and in a second line what it leaves not at a default."""
+    law: Any = slider.law
+    defaults = law._field_defaults
     known = (name for name, kind in LAWS.items() if isinstance(law, kind))
     numbers = (
         f"{SYMBOLS.get(name, name)} = {_value(value, UNITS.get(name, ''))}"
         for name, value in law._asdict().items()
+        if value != defaults.get(name)
     )
     return f"{next(known, type(law).__name__)}:\n{', '.join(numbers)}"
 

@@ -13,7 +13,9 @@ from stiction.testing.common import ROUNDING, attempt, first, said, unfit
 LOADS = (1.0, 100.0)  # N
 DIRECTIONS = (0.0, 2.5)  # rad
 STEADY = (1e-6, 1e-4, 1e-2, 1.0)  # m/s, where steady sliding is computed
+SLOWEST = 1e-9  # m/s; the state that zero slip is looked at with
 FORGOTTEN = 1.0  # m of slip, after which any friction has settled
+OFF = 1.37
 SETTLED = 1e-4  # relative: how well friction after that slip is the steady one
 
 
@@ -41,6 +43,7 @@ def finite(law: Any, speeds: Sequence[float]) -> Iterator[str]:
     n = len(states(law))
     values = ((v, unfit(*attempt(law.coefficient, v))) for v in speeds if v > 0.0)
     yield from first(f"coefficient({v:g}) {fault}" for v, fault in values if fault)
+    yield from first(_settled_faults(law, speeds))
     for name, length in (("force", 2), ("change", n)):
         found = []
         for point in points(speeds):
@@ -49,17 +52,32 @@ def finite(law: Any, speeds: Sequence[float]) -> Iterator[str]:
         yield from first(found)
 
 
+def _settled_faults(law: Any, speeds: Sequence[float]) -> Iterator[str]:
+    """Yield where there is no state to start from; a drive may be at rest."""
+    n = len(states(law))
+    for v in speeds:
+        try:
+            state = tuple(map(float, law.settled(v)))
+        except Exception as error:
+            yield f"settled({v:g}) raises {said(error)}; it must be a state to start from"
+            continue
+        if len(state) != n or not all(map(isfinite, state)):
+            yield f"settled({v:g}) is {state}; it must be {n} finite numbers, as states() names"
+
+
 def _vector_fault(law: Any, function: Callable[..., Any], point: Point, length: int) -> str:
     try:
-        state = law.settled(hypot(*point.slip))
-        value = tuple(map(float, function(*point, state)))
+        value = tuple(map(float, function(*point, _settled(law, point))))
     except Exception as error:
         return f"raises {said(error)}"
-    if len(state) != len(states(law)):
-        return f"meets {len(state)} values from settled, but states() names {len(states(law))}"
     if len(value) != length:
         return f"has {len(value)} components, must have {length}"
     return "" if all(map(isfinite, value)) else f"is {value}; it must be finite"
+
+
+def _settled(law: Any, point: Point) -> tuple[float, ...]:
+    state: tuple[float, ...] = law.settled(max(hypot(*point.slip), SLOWEST))
+    return state
 
 
 def dissipative(law: Any, speeds: Sequence[float]) -> Iterator[str]:
@@ -105,15 +123,17 @@ def compiled(law: Any, speeds: Sequence[float]) -> Iterator[str]:
 
     from stiction.solver import problem, refusal
 
+    prepared = getattr(law, "prepared", lambda: law)()
     for function in (problem.force, problem.change):
         name = function.__name__
         fast = numba.njit(error_model="numpy")(_calling(function))
         found = []
         for point in points(speeds):
-            state = law.settled(hypot(*point.slip))
+            # apart from steady sliding, where a change of zero would be all rounding
+            state = tuple(OFF * each for each in _settled(law, point))
             one = getattr(law, name)(*point, state)
             try:
-                other = fast(law, *point, state)
+                other = fast(prepared, *point, state)
             except Exception:
                 yield from (why for why in refusal.reasons(law) if why.startswith(name))
                 break
