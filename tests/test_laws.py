@@ -34,6 +34,75 @@ def test_every_registered_law_is_checked():
     assert {type(law) for law in LAWS_TO_CHECK} == set(LAWS.values())
 
 
+# --- what each law says --------------------------------------------------------------------------
+
+
+def test_a_table_goes_through_its_points_and_stays():
+    law = st.Table(**MEASURED)
+    for v, mu in zip(law.v, law.mu, strict=True):
+        assert law.coefficient(v) == pytest.approx(mu, rel=1e-15)
+    assert law.coefficient(1e3) == law.coefficient(0.1) == 0.18
+    assert law.slope(1e3) == law.slope(0.1) == 0.0
+    between = [law.coefficient(0.005 + 0.00015 * i) for i in range(101)]
+    assert between == sorted(between, reverse=True)  # monotone, no overshoot
+    late = st.Table(v=[0.001, 0.01], mu=[0.2, 0.1], mu_static=0.3)
+    assert late.coefficient(0.0) == late.coefficient(0.001) == 0.2
+    assert late.slope(0.0005) == 0.0
+
+
+def test_stribeck_with_exponent_one_is_exponential_weakening(slider):
+    exponential = st.ExponentialWeakening(mu_0=0.2, mu_inf=0.15, v_f=0.01)
+    stribeck = st.Stribeck(mu_s=0.2, mu_c=0.15, v_s=0.01, d=1)
+    one, other = (
+        st.simulate(slider.replace(friction=law), 0.05) for law in (exponential, stribeck)
+    )
+    # pow(x, 1) is x to the last bit; sums may be contracted otherwise, which stick-slip amplifies
+    assert other.sticks == pytest.approx(one.sticks, rel=1e-9)
+
+
+def test_a_dense_table_of_a_law_is_that_law(slider):
+    """PCHIP through points h apart is off by some h^2 of the curvature where it bends most."""
+    exponential = st.ExponentialWeakening(mu_0=0.2, mu_inf=0.15, v_f=0.01)
+    speeds = [i * 2e-5 for i in range(5001)]
+    table = st.Table(v=speeds, mu=[exponential.coefficient(v) for v in speeds])
+    one, other = (st.simulate(slider.replace(friction=law), 0.05) for law in (exponential, table))
+    assert other.sticks[0] == pytest.approx(one.sticks[0], rel=1e-12)
+    assert other.sticks[:10] == pytest.approx(one.sticks[:10], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("kind", "parameters", "path", "words"),
+    [
+        ("Table", {"v": [0, 1], "mu": [0.2]}, "mu", "a value for each v: 1 and 2"),
+        ("Table", {"v": [0], "mu": [0.2]}, "v", "for a constant use 'coulomb'"),
+        ("Table", {"v": [0, 2, 1], "mu": [0.2] * 3}, "v", "1 m/s follows 2 m/s; sort the points"),
+        ("Table", {"v": "1 m/s", "mu": [0.2]}, "v", "write them in brackets"),
+        ("Table", {"v": [0, "1 mm"], "mu": [0.2] * 2}, "v.1", "not a unit of a velocity"),
+        ("Table", {"v": [0, 1], "mu": [0.2, -1]}, "mu.1", "must not be below 0, is -1"),
+        ("Stribeck", {"mu_s": 0.2, "mu_c": 0.1, "v_s": 1, "d": 0.5}, "d", "between 1 and 100"),
+        ("Stribeck", {"mu_s": 0.2, "mu_c": 0.1, "v_s": 1, "c": -1}, "c", "not be below 0"),
+        ("HyperbolicWeakening", {"mu_0": 0.2, "v_h": 0}, "v_h", "greater than 0"),
+        (
+            "HyperbolicWeakening",
+            {"mu_0": 0.2, "v_h": 1, "mu_static": 0.1},
+            "mu_static",
+            "must not be below the coefficient at vanishing slip speed, 0.2, is 0.1",
+        ),
+    ],
+)
+def test_a_law_refuses_what_makes_no_sense(kind, parameters, path, words):
+    with pytest.raises(st.DescriptionError) as error:
+        getattr(st, kind)(**parameters)
+    (fault,) = error.value.faults
+    assert fault.path == f"{kind}.{path}"
+    assert words in fault.message
+
+
+def test_hyperbolic_weakening_cannot_be_like_what_strengthens():
+    with pytest.raises(st.DescriptionError, match="compare it at a kinetic coefficient below"):
+        st.HyperbolicWeakening.like(0.15, 0.2, 0.01)
+
+
 # --- the contract itself ------------------------------------------------------------------------
 
 
