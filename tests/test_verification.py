@@ -6,7 +6,6 @@ through here, far below half a digit.
 """
 
 from math import atan, pi, sqrt, tan
-from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -93,22 +92,9 @@ def test_free_vibration_loses_the_same_at_every_turn():
 # --- stick-slip of a block on a belt: Leine et al., Nonlinear Dynamics 16 (1998) ----------------
 
 
-class Hyperbolic(NamedTuple):
-    """A user's own law: F = F_s/(1 + d |v|)."""
-
-    F_s: float
-    d: float
-
-    def coefficient(law, v):
-        return law.F_s / (1.0 + law.d * v)
-
-    def slope(law, v):
-        return -law.F_s * law.d / (1.0 + law.d * v) ** 2
-
-
 def test_leine_block_on_a_belt():
     """k = m = F_s = 1, d = 3, belt speed 0.2."""
-    slider = oscillator(Hyperbolic(1.0, 3.0), st.ConstantVelocity(0.2))
+    slider = oscillator(st.HyperbolicWeakening(mu_0=1.0, v_h=1 / 3), st.ConstantVelocity(0.2))
     run = st.simulate(slider, 60.0, sample_rate=1e3, rtol=1e-10)
     starts, ends = run.sticks[1:-1].T  # whole ones, after a first cycle
     assert len(starts) == 4

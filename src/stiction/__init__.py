@@ -29,10 +29,18 @@ if TYPE_CHECKING:
         Step,
     )
     from stiction.errors import DescriptionError, ResultError, Status, StictionError
-    from stiction.friction import Anisotropic, Coulomb, ExponentialWeakening
+    from stiction.friction import (
+        Anisotropic,
+        Coulomb,
+        ExponentialWeakening,
+        HyperbolicWeakening,
+        Stribeck,
+        Table,
+    )
     from stiction.initial import Initial
     from stiction.simulation import simulate
     from stiction.slider import Slider
+    from stiction.testing import check_law
     from stiction.trajectory import Trajectory, load
 
 __version__ = "0.1.0"
@@ -50,6 +58,7 @@ _HOME = {
     "Free": "drive",
     "Harmonic": "drive",
     "Hold": "drive",
+    "HyperbolicWeakening": "friction",
     "Initial": "initial",
     "LoadProgram": "drive",
     "Modulation": "drive",
@@ -61,8 +70,11 @@ _HOME = {
     "Status": "errors",
     "Step": "drive",
     "StictionError": "errors",
+    "Stribeck": "friction",
+    "Table": "friction",
     "Trajectory": "trajectory",
     "compare": "comparison",
+    "check_law": "testing",
     "load": "trajectory",
     "simulate": "simulation",
 }
@@ -80,6 +92,7 @@ __all__ = [
     "Free",
     "Harmonic",
     "Hold",
+    "HyperbolicWeakening",
     "Initial",
     "LoadProgram",
     "Modulation",
@@ -91,7 +104,10 @@ __all__ = [
     "Status",
     "Step",
     "StictionError",
+    "Stribeck",
+    "Table",
     "Trajectory",
+    "check_law",
     "compare",
     "load",
     "presets",

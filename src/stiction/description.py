@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, Self
 
 from pydantic import Field, model_validator
 
-from stiction.friction import LAWS, Anisotropic
+from stiction.friction import law_table, read_law
+from stiction.friction.own import Find, kept, named, trusted
 from stiction.initial import Initial
 from stiction.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider
 from stiction.tables import Reader, gather, read_toml
@@ -68,32 +70,35 @@ class Description(NamedTuple):
         DescriptionError
             Naming every fault with its path, or why the file cannot be read.
         """
-        return cls.from_dict(read_toml(path))
+        return cls.from_dict(read_toml(path), find=named(Path(path).parent, Path()))
 
     @classmethod
-    def from_dict(cls, raw: Mapping[str, Any]) -> Self:
-        """Read a description from nested tables, as in the TOML file."""
-        parts = gather(raw, TABLES, optional=("initial",), absent=OPTIONAL_TABLES)
+    def from_dict(cls, raw: Mapping[str, Any], *, find: Find | None = None) -> Self:
+        """Read a description from nested tables, as in the TOML file.
+
+        `find` says where the file of a law of the user's own is looked for, see
+        `stiction.friction.own`; in the working folder when left out.
+        """
+        tables: dict[str, Reader] = {**TABLES, "friction": partial(read_law, find=find)}
+        parts = gather(raw, tables, optional=("initial",), absent=OPTIONAL_TABLES)
         return cls(Slider.from_parts(parts), parts["initial"], parts["run"])
 
     @classmethod
-    def from_json(cls, text: str) -> Self:
-        """Read back what `to_json` wrote."""
-        return cls.from_dict(json.loads(text))
+    def from_json(cls, text: str, *folders: Path, trust: bool = False) -> Self:
+        """Read back what `to_json` wrote.
+
+        The file of a law of the user's own is looked for in `folders` and in the working one,
+        and must say what it said when it was run; with `trust`, what the JSON text holds of it
+        is run otherwise.
+        """
+        find = (trusted if trust else kept)(*folders, Path())
+        return cls.from_dict(json.loads(text), find=find)
 
     def to_dict(self) -> dict[str, dict[str, Any]]:
         """Return nested tables of SI numbers, as `from_dict` reads them."""
-        law: Any = self.slider.law
-        surface = {}
-        if isinstance(law, Anisotropic):
-            surface = {"anisotropy": {"ratio": law.ratio, "angle": f"{law.angle!r} rad"}}
-            law = law.law
-        kind = type(law)
-        own = f"{kind.__module__}:{kind.__qualname__}"  # a user's law, by its name
-        name = next((name for name, known in LAWS.items() if known is kind), own)
         return {
             "slider": self.slider.model_dump(mode="json", exclude={"friction", "drive", "load"}),
-            "friction": {"law": name, **law._asdict(), **surface},
+            "friction": law_table(self.slider.law),
             "drive": table(self.slider.motion),
             **({} if self.slider.load is None else {"load": table(self.slider.load)}),
             "initial": self.initial.model_dump(exclude_unset=True),

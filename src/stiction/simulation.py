@@ -7,6 +7,7 @@ from importlib.metadata import version
 from typing import Any
 
 import numpy as np
+from numba.core.errors import NumbaError
 
 from stiction.description import Description, Settings
 from stiction.errors import DescriptionError, Fault, Status
@@ -14,6 +15,7 @@ from stiction.initial import Initial
 from stiction.labels import dataset
 from stiction.slider import Slider
 from stiction.solver.integrate import integrate
+from stiction.solver.refusal import reasons
 from stiction.trajectory import Statistics, Trajectory
 
 
@@ -101,7 +103,13 @@ def run(
         message = f"is too short to be seen from t = {initial.time:g} s; start earlier"
         raise DescriptionError([Fault("run.duration", message)])
     times = sample_times(initial.time, settings.duration, settings.sample_rate)
-    solution = integrate(description, times, max_steps, progress)
+    try:
+        solution = integrate(description, times, max_steps, progress)
+    except NumbaError:
+        found = [Fault("friction", reason) for reason in reasons(description.slider.law)]
+        if not found:
+            raise
+        raise DescriptionError(found) from None
     status = list(Status)[solution.code]
     statistics = Statistics(*solution.counts)
     exact = settings.regularisation is None

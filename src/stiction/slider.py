@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from math import cos, pi, sin
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -19,6 +20,7 @@ from stiction.drive import (
     read_load,
 )
 from stiction.friction import Law, has_state, read_law
+from stiction.friction.own import named
 from stiction.tables import Reader, gather, read_toml
 from stiction.units import Angle, Damping, Force, Mass, Stiffness
 from stiction.validation import Described
@@ -172,11 +174,11 @@ class Slider(Apparatus):
     @classmethod
     def from_toml(cls, path: str | Path) -> Slider:
         """Read the slider of a description file; `Description` reads the whole of it."""
-        raw = read_toml(path)
+        raw, find = read_toml(path), named(Path(path).parent, Path())
         return cls.from_parts(
             gather(
                 {name: raw[name] for name in raw if name in SLIDER_TABLES},
-                SLIDER_TABLES,
+                {**SLIDER_TABLES, "friction": partial(read_law, find=find)},
                 absent=OPTIONAL_TABLES,
             )
         )

@@ -135,8 +135,17 @@ def writable(path: str | Path) -> Path:
     return target
 
 
-def load(path: str | Path) -> Trajectory:
+def load(path: str | Path, *, trust: bool = False) -> Trajectory:
     """Read back a result file.
+
+    Parameters
+    ----------
+    path : str or Path
+        Written by ``run.save`` or ``stiction run``.
+    trust : bool, optional
+        Whether the text of a friction law that stands in the file may be run. It is needed
+        only for a law of one's own whose file is neither beside the result nor in the working
+        folder, or has changed: a result by itself never has anything run.
 
     Raises
     ------
@@ -156,7 +165,9 @@ def load(path: str | Path) -> Trajectory:
         what = ", ".join(missing) or "its description"
         raise ResultError(f"{path}: not a result of 'stiction run'; it lacks {what}")
     try:
-        description = Description.from_json(data.attrs["description"])
+        description = Description.from_json(
+            data.attrs["description"], Path(path).parent, trust=trust
+        )
         statistics = Statistics(
             **{name: data.attrs[name].item() for name in Statistics.__dataclass_fields__}
         )

@@ -12,7 +12,7 @@ from functools import cache, partial
 from math import isfinite
 from typing import Annotated, Any, NamedTuple
 
-from pydantic import BeforeValidator, Field, PlainSerializer
+from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
 from pydantic_core import PydanticCustomError
 
 
@@ -113,6 +113,23 @@ def reader(name: str, unit: str, example: str) -> BeforeValidator:
     return BeforeValidator(partial(to_si, kind=Kind(name, unit, example)))
 
 
+def _listed(value: object) -> object:
+    """Return an array as a list; refuse what is one value."""
+    value = value.tolist() if hasattr(value, "tolist") else value
+    if not isinstance(value, list | tuple):
+        raise _fault(f"{value!r} is not a list of values; write them in brackets: [..., ...]")
+    return value
+
+
+def _not_below_one(value: float) -> float:
+    if not 1.0 <= value <= 100.0:
+        raise ValueError(
+            f"must lie between 1 and 100, is {value:g}; below 1 friction would change infinitely "
+            "fast as slip vanishes"
+        )
+    return value
+
+
 def _radians(value: float) -> str:
     return f"{value!r} rad"
 
@@ -120,6 +137,7 @@ def _radians(value: float) -> str:
 Angle = Annotated[float, reader("an angle", "rad", "1 deg"), PlainSerializer(_radians)]
 Coefficient = Annotated[float, reader("a number", "", "0.20"), Field(ge=0)]
 Number = Annotated[float, reader("a number", "", "1e-6")]
+Exponent = Annotated[float, reader("a number", "", "2"), AfterValidator(_not_below_one)]
 Mass = Annotated[float, reader("a mass", "kg", "0.25 kg"), Field(gt=0)]
 Stiffness = Annotated[float, reader("a stiffness", "N/m", "1 kN/m"), Field(gt=0)]
 Damping = Annotated[float, reader("a damping constant", "N*s/m", "0.5 N*s/m"), Field(ge=0)]
@@ -128,6 +146,9 @@ Length = Annotated[float, reader("a length", "m", "0.1 mm")]
 Velocity = Annotated[float, reader("a velocity", "m/s", "1 mm/s")]
 Speed = Annotated[float, reader("a velocity", "m/s", "1 mm/s"), Field(ge=0)]
 PositiveSpeed = Annotated[float, reader("a velocity", "m/s", "10 mm/s"), Field(gt=0)]
+PerSpeed = Annotated[float, reader("friction per slip speed", "s/m", "0.5 s/m"), Field(ge=0)]
+Speeds = Annotated[tuple[Speed, ...], BeforeValidator(_listed)]
+Coefficients = Annotated[tuple[Coefficient, ...], BeforeValidator(_listed)]
 Time = Annotated[float, reader("a time", "s", "5 s")]
 Duration = Annotated[float, reader("a time", "s", "5 s"), Field(gt=0)]
 Rate = Annotated[float, reader("a frequency", "Hz", "10 kHz"), Field(gt=0)]

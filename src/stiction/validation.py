@@ -6,14 +6,16 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from difflib import get_close_matches
 from functools import cache
 from inspect import Parameter, Signature, signature
-from typing import Any, TypeVar, cast, get_type_hints
+from numbers import Real
+from typing import Annotated, Any, TypeVar, cast, get_type_hints
 
-from pydantic import BaseModel, ConfigDict, ValidationError, create_model
+from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, create_model
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from stiction.errors import DescriptionError, Fault
 
 T = TypeVar("T")
+READS = "reads_parameters"  # marks the constructors that `validated` makes
 
 
 class Described(BaseModel):
@@ -108,14 +110,53 @@ def _no_faults(made: object) -> Iterable[tuple[str, str]]:
 @cache
 def fields(kind: Any) -> type[Described]:
     """Return the model that validates the parameters of a NamedTuple `kind`."""
-    hints = get_type_hints(kind, include_extras=True)
+    hints = {
+        name: Plain if hint is float else hint
+        for name, hint in get_type_hints(kind, include_extras=True).items()
+    }
     defaults = kind._field_defaults
     model: type[Described] = create_model(  # type: ignore[call-overload]
         kind.__name__,
         __base__=Described,
-        **{name: (hints[name], defaults.get(name, ...)) for name in kind._fields},
+        **{name: (hints.get(name, Plain), defaults.get(name, ...)) for name in kind._fields},
     )
     return model
+
+
+def made(kind: type[T], values: Mapping[str, Any]) -> T:
+    """Make a NamedTuple from a table of parameters, checked whether or not it is `validated`.
+
+    A field annotated as a plain float takes a number, in SI; one with a type of
+    `stiction.units` reads units.
+    """
+    if hasattr(kind.__new__, READS):
+        return kind(**values)
+    model = fields(cast(Any, kind))(**values)
+    return _checked(kind(**{name: getattr(model, name) for name in type(model).model_fields}))
+
+
+def _checked(value: T) -> T:
+    check: Callable[[T], Iterable[tuple[str, str]]] = getattr(type(value), "faults", _no_faults)
+    name = type(value).__name__
+    found = [Fault(f"{name}.{field}", message) for field, message in check(value)]
+    if found:
+        raise DescriptionError(found)
+    return value
+
+
+def _number(value: object) -> object:
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise PydanticCustomError(
+            "unit",
+            f"{value!r} is not a number; it is a plain float: write a number in SI, or annotate "
+            "it with a type of stiction.units, e.g. PositiveSpeed".replace("{", "(").replace(
+                "}", ")"
+            ),
+        )
+    return float(value)
+
+
+Plain = Annotated[float, BeforeValidator(_number)]
 
 
 def validated(kind: type[T]) -> type[T]:
@@ -134,13 +175,10 @@ def validated(kind: type[T]) -> type[T]:
         if len(args) > len(names):
             raise TypeError(f"{kind.__name__} takes {', '.join(names)}")
         model = fields(cast(Any, kind))(**given)
-        made: T = plain(cls, **{name: getattr(model, name) for name in names})
-        check: Callable[[T], Iterable[tuple[str, str]]] = getattr(kind, "faults", _no_faults)
-        found = [Fault(f"{kind.__name__}.{name}", message) for name, message in check(made)]
-        if found:
-            raise DescriptionError(found)
-        return made
+        value: T = plain(cls, **{name: getattr(model, name) for name in names})
+        return _checked(value)
 
     new.__doc__ = plain.__doc__
+    setattr(new, READS, True)
     kind.__new__ = staticmethod(new)  # type: ignore[method-assign,assignment]
     return kind

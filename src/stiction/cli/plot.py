@@ -8,7 +8,9 @@ from typing import Annotated
 from cyclopts import Parameter
 
 
-def plot(result: Path, /, *, output: Annotated[Path, Parameter(alias="-o")]) -> None:
+def plot(
+    result: Path, /, *, output: Annotated[Path, Parameter(alias="-o")], trust: bool = False
+) -> None:
     """Draw the overview of a result: the system, forces, direction, position, slip speed.
 
     Parameters
@@ -17,6 +19,8 @@ def plot(result: Path, /, *, output: Annotated[Path, Parameter(alias="-o")]) -> 
         A file written by `stiction run`.
     output
         The figure to write: .png, .pdf or .svg.
+    trust
+        Run the friction law of one's own that the result holds, where its file is not found.
     """
     from stiction.errors import ResultError
     from stiction.plotting.overview import overview
@@ -26,4 +30,4 @@ def plot(result: Path, /, *, output: Annotated[Path, Parameter(alias="-o")]) -> 
     if output.suffix.lower() not in FORMATS:
         known = ", ".join(FORMATS)
         raise ResultError(f"{output}: has no suffix that can be drawn; use {known}")
-    print(f"wrote {write(overview(load(result)), output)}")
+    print(f"wrote {write(overview(load(result, trust=trust)), output)}")

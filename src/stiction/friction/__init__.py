@@ -7,26 +7,49 @@ is one file here and one line in `LAWS`.
 
 from __future__ import annotations
 
-from typing import Any, cast
+from pathlib import Path
+from typing import Any
 
-from stiction.errors import DescriptionError, Fault
-from stiction.friction.anisotropic import Anisotropic
+from stiction.friction.anisotropic import Anisotropic, anisotropy_table, read_anisotropy
 from stiction.friction.coulomb import Coulomb
 from stiction.friction.exponential_weakening import ExponentialWeakening
+from stiction.friction.hyperbolic_weakening import HyperbolicWeakening
 from stiction.friction.law import FrictionLaw, Internal, Law, StateLaw, has_state, states
+from stiction.friction.own import Find, named, own_table, read_own
+from stiction.friction.stribeck import Stribeck
+from stiction.friction.table import Table
 from stiction.tables import choose
 
 LAWS: dict[str, type[Any]] = {
     "coulomb": Coulomb,
     "exponential-weakening": ExponentialWeakening,
+    "hyperbolic-weakening": HyperbolicWeakening,
+    "stribeck": Stribeck,
+    "table": Table,
 }
 
 
-def read_law(table: dict[str, Any]) -> Law:
-    """Read a description's table [friction], with its table [friction.anisotropy] if any."""
-    surface = table.pop("anisotropy", None)
-    law: Law = choose(table, "law", LAWS)
+def read_law(table: dict[str, Any], find: Find | None = None) -> Law:
+    """Read a description's table [friction], with its table [friction.anisotropy] if any.
+
+    `find` finds a law of the user's own.
+    """
+    name, surface = table.get("law"), table.pop("anisotropy", None)
+    own = isinstance(name, str) and ":" in name
+    law: Law = read_own(table, find or named(Path())) if own else choose(table, "law", LAWS)
     return law if surface is None else read_anisotropy(law, surface)
+
+
+def law_table(law: Any) -> dict[str, Any]:
+    """Return a law as a table [friction] that can be read back, of numbers and lists."""
+    if isinstance(law, Anisotropic):
+        return {**law_table(law.law), "anisotropy": anisotropy_table(law)}
+    name = next((name for name, kind in LAWS.items() if kind is type(law)), None)
+    values = {  # numbers of NumPy as Python's, which JSON knows
+        key: value.tolist() if hasattr(value, "tolist") else value
+        for key, value in law._asdict().items()
+    }
+    return {**(own_table(law) if name is None else {"law": name}), **values}
 
 
 def name_of(law: Any) -> str:
@@ -45,30 +68,20 @@ def parameters(law: Any) -> dict[str, Any]:
     return values
 
 
-def read_anisotropy(law: Law, table: Any) -> Law:
-    """Read the table [friction.anisotropy]."""
-    if not isinstance(table, dict) or "law" in table:
-        message = f"must be a table with ratio and angle, is {table!r}"
-        raise DescriptionError([Fault("friction.anisotropy", message)])
-    try:
-        made: Any = Anisotropic(law, **table)
-        return cast(Law, made)
-    except DescriptionError as error:
-        raise DescriptionError(
-            [Fault(f"friction.anisotropy.{f.path.split('.')[-1]}", f.message) for f in error.faults]
-        ) from None
-
-
 __all__ = [
     "LAWS",
     "Anisotropic",
     "Coulomb",
     "ExponentialWeakening",
     "FrictionLaw",
+    "HyperbolicWeakening",
     "Internal",
     "Law",
     "StateLaw",
+    "Stribeck",
+    "Table",
     "has_state",
+    "law_table",
     "name_of",
     "parameters",
     "read_law",

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any, NamedTuple, cast
 
 from pydantic import AfterValidator, Field
 
-from stiction.friction.law import FrictionLaw, has_state
+from stiction.errors import DescriptionError, Fault
+from stiction.friction.law import FrictionLaw, Law, has_state
 from stiction.units import Angle, reader
 from stiction.validation import validated
 
@@ -64,3 +65,22 @@ class Anisotropic(NamedTuple):
         """Return its derivative with respect to `v`, in s/m."""
         inner: FrictionLaw = law.law
         return inner.slope(v)
+
+
+def read_anisotropy(law: Law, table: Any) -> Law:
+    """Read the table [friction.anisotropy]."""
+    if not isinstance(table, dict) or "law" in table:
+        message = f"must be a table with ratio and angle, is {table!r}"
+        raise DescriptionError([Fault("friction.anisotropy", message)])
+    try:
+        made: Any = Anisotropic(law, **table)
+        return cast(Law, made)
+    except DescriptionError as error:
+        raise DescriptionError(
+            [Fault(f"friction.anisotropy.{f.path.split('.')[-1]}", f.message) for f in error.faults]
+        ) from None
+
+
+def anisotropy_table(law: Anisotropic) -> dict[str, Any]:
+    """Return the table [friction.anisotropy] of a law."""
+    return {"ratio": law.ratio, "angle": f"{law.angle!r} rad"}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import os
-import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -15,6 +14,8 @@ from typing import Any, TypeVar, cast
 import numba
 from numba.core import config
 from platformdirs import user_cache_path
+
+from stiction.friction.source import text_of
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -47,21 +48,22 @@ def specialised(function: Any, *kinds: type) -> Any:
     law never meets it. What stands in a prompt or in the script itself is compiled anew in
     each process.
     """
-    own = {kind.__module__ for kind in kinds if not kind.__module__.startswith("stiction.")}
+    own = [kind for kind in kinds if not kind.__module__.startswith("stiction.")]
     if not own:
         return function
     try:
-        digest = hashlib.sha256(b"".join(_source(module) for module in sorted(own)))
+        digest = hashlib.sha256("".join(sorted(map(_source, own))).encode())
     except OSError:
         return _jit(function.py_func, inline=False, keep=False)
     return _kept(function.py_func, f"own-{digest.hexdigest()[:16]}")
 
 
-def _source(module: str) -> bytes:
-    file = getattr(sys.modules.get(module), "__file__", None)
-    if file is None or module == "__main__":  # its types are new ones in each process
-        raise OSError(f"{module} has no file to name them by")
-    return Path(file).read_bytes()
+def _source(kind: type) -> str:
+    """Return what to name a type's cache after: its text, and its module, by which it is kept."""
+    text = None if kind.__module__ == "__main__" else text_of(kind)
+    if text is None:  # in a script its types are new ones in each process
+        raise OSError(f"{kind.__module__} has no file, as it was run, to name them by")
+    return f"{kind.__module__}\n{text.text}"
 
 
 def _kept(function: F, name: str) -> F:

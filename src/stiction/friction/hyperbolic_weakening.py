@@ -1,0 +1,61 @@
+"""Hyperbolic weakening with slip speed, the textbook law of stick-slip on a belt."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from stiction.errors import DescriptionError, Fault
+from stiction.friction.law import static_fault
+from stiction.units import Coefficient, PositiveSpeed
+from stiction.validation import validated
+
+
+@validated
+class HyperbolicWeakening(NamedTuple):
+    """F = mu_0/(1 + v/v_h) W.
+
+    Leine, van Campen, de Kraker & van den Steen, Nonlinear Dynamics 16 (1998), 41, write it
+    F_s/(1 + delta v), delta = 1/v_h, with delta = 3 s/m. Friction falls towards zero: the law
+    is meant for slip speeds of the order of v_h.
+
+    Parameters
+    ----------
+    mu_0 : float
+        Friction coefficient at vanishing slip speed.
+    v_h : float or str
+        Slip speed at which the coefficient is half of mu_0, m/s.
+    mu_static : float, optional
+        Separate coefficient of static friction, not below mu_0; none when left out.
+    """
+
+    mu_0: Coefficient
+    v_h: PositiveSpeed
+    mu_static: Coefficient = 0.0
+
+    @classmethod
+    def like(kind, static: float, kinetic: float, speed: float) -> HyperbolicWeakening:
+        """Return the law that starts from `static` and falls by the same slope at rest.
+
+        That is (static - kinetic)/speed; this law knows no plateau that it could fall to.
+        """
+        if kinetic >= static:
+            message = (
+                f"cannot strengthen or stay, from {static:g} to {kinetic:g}; compare it at a "
+                "kinetic coefficient below the static one"
+            )
+            raise DescriptionError([Fault("HyperbolicWeakening", message)])
+        return kind(static, speed * static / (static - kinetic))
+
+    def faults(law) -> Iterator[tuple[str, str]]:
+        """Yield what does not fit together."""
+        return static_fault(law)
+
+    def coefficient(law, v: float) -> float:
+        """Return the friction coefficient at slip speed `v` (m/s)."""
+        return law.mu_0 / (1.0 + v / law.v_h)
+
+    def slope(law, v: float) -> float:
+        """Return d(coefficient)/dv at slip speed `v` (m/s), in s/m."""
+        x = 1.0 + v / law.v_h
+        return -law.mu_0 / (law.v_h * x * x)

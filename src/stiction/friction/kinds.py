@@ -1,0 +1,64 @@
+"""What makes a class of the user's own a friction law, and how to say that it is none."""
+
+from __future__ import annotations
+
+import inspect
+from math import isfinite
+from types import ModuleType
+from typing import Any
+
+from stiction.errors import DescriptionError, Fault
+from stiction.friction.law import has_state
+from stiction.friction.source import member
+from stiction.validation import unknown
+
+SET_VALUED = ("coefficient", "slope")
+WITH_STATE = ("states", "coefficient", "settled", "force", "change")
+WRITE = (
+    "write class {name}(NamedTuple) with its parameters as fields and the methods "
+    "coefficient(law, v) and slope(law, v); for a law with internal state: states(), "
+    "coefficient(law, v), settled(law, speed), force and change(law, slip, load, state)"
+)
+RESERVED = {"law", "source"}  # keys of [friction] that are no parameters
+PROBED = (0.0, 1e-3)  # m/s
+
+
+def fault(message: str, key: str = "law") -> DescriptionError:
+    """Return the error for a fault in the table [friction]."""
+    return DescriptionError([Fault(f"friction.{key}", message)])
+
+
+def law_in(module: ModuleType, kind: str, name: str) -> type[Any]:
+    """Return the law that a module calls `kind`; `name` is how the user calls it."""
+    found = member(module, kind)
+    if found is None:
+        classes = [n for n, value in vars(module).items() if _is_its_own(value, module)]
+        raise fault(f"{name!r}: {unknown('class', kind, classes or ['none'])}")
+    write = WRITE.format(name=kind.rpartition(".")[2])
+    if not (inspect.isclass(found) and issubclass(found, tuple) and hasattr(found, "_fields")):
+        raise fault(f"{name!r} is not a NamedTuple; {write}")
+    wanted = WITH_STATE if hasattr(found, "states") else SET_VALUED
+    lacking = [method for method in wanted if not callable(getattr(found, method, None))]
+    if lacking:
+        raise fault(f"{name!r} is not a friction law, it lacks {', '.join(lacking)}; {write}")
+    for field in sorted(RESERVED.intersection(found._fields)):
+        raise fault(f"{name!r} has a parameter {field!r}, a key of its own here; rename it")
+    return found
+
+
+def tried(law: Any, name: str) -> Any:
+    """Return the law, if its methods give numbers: a slip of the pen is told at once."""
+    probes = [("coefficient", v) for v in PROBED] + [("slope", v) for v in PROBED]
+    for method, v in [("coefficient", PROBED[1])] if has_state(law) else probes:
+        try:
+            value = float(getattr(law, method)(v))
+        except Exception as error:  # whatever the user's law raises
+            what = f"raises {type(error).__name__}: {error}".splitlines()[0]
+            raise fault(f"{method}(law, {v:g}) of {name!r} {what}; correct it there") from None
+        if not isfinite(value):
+            raise fault(f"{method}(law, {v:g}) of {name!r} is {value}; it must be finite")
+    return law
+
+
+def _is_its_own(value: Any, module: ModuleType) -> bool:
+    return inspect.isclass(value) and value.__module__ == module.__name__

@@ -1,0 +1,91 @@
+"""What any friction law must keep, as a base class of tests and as one function.
+
+A test of a law of one's own is two lines, for pytest to find::
+
+    from stiction.testing import LawContract
+
+    class TestMine(LawContract):
+        law = MyLaw(mu=0.2)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, ClassVar
+
+from stiction.errors import DescriptionError, Fault
+from stiction.friction import has_state
+from stiction.testing.common import COMMON, SPEEDS
+from stiction.testing.set_valued import SET_VALUED
+from stiction.testing.with_state import WITH_STATE
+
+Check = Callable[[Any, Sequence[float]], Iterator[str]]
+
+
+def checks_of(law: Any) -> dict[str, Check]:
+    """Return by name what is checked of a law; each check yields what is wrong, in words."""
+    return {**(WITH_STATE if has_state(law) else SET_VALUED), **COMMON}
+
+
+def check_law(law: Any, speeds: Sequence[float] = SPEEDS) -> None:
+    """Check that the solver can trust a friction law.
+
+    Its values must be finite, its friction dissipative, its slope the derivative of its
+    coefficient, what is compiled the same as in Python; it must pickle, go through a description
+    and back, and carry the paper's system through a short run.
+
+    Parameters
+    ----------
+    law : FrictionLaw or StateLaw
+        With its parameters, e.g. ``MyLaw(mu=0.2)``.
+    speeds : sequence of float, optional
+        Slip speeds at which it is looked at, m/s; 1 nm/s to 10 m/s by default.
+
+    Raises
+    ------
+    DescriptionError
+        With everything that is wrong at once.
+    """
+    kind = type(law).__name__
+    found = [
+        Fault(f"{kind}.{name}", message)
+        for name, check in checks_of(law).items()
+        for message in check(law, speeds)
+    ]
+    if found:
+        raise DescriptionError(found)
+
+
+class LawContract:
+    """Tests of one law: derive a class, set `law`; a test for each check comes by itself.
+
+    Attributes
+    ----------
+    law : FrictionLaw or StateLaw
+        With its parameters.
+    speeds : sequence of float
+        Slip speeds at which it is looked at, m/s.
+    """
+
+    law: ClassVar[Any]
+    speeds: ClassVar[Sequence[float]] = SPEEDS
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        """Give the class its tests."""
+        super().__init_subclass__(**kwargs)
+        for name, check in checks_of(cls.law).items() if hasattr(cls, "law") else ():
+            if f"test_{name}" not in vars(cls):
+                setattr(cls, f"test_{name}", _test(name, check))
+
+
+def _test(name: str, check: Check) -> Callable[[LawContract], None]:
+    def test(self: LawContract) -> None:
+        found = list(check(self.law, self.speeds))
+        assert not found, "\n".join(found)
+
+    test.__name__ = f"test_{name}"
+    test.__doc__ = check.__doc__
+    return test
+
+
+__all__ = ["SPEEDS", "LawContract", "check_law", "checks_of"]

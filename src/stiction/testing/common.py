@@ -1,0 +1,96 @@
+"""Checks of any law: that it can be kept, described and simulated; and what checks share."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from math import isfinite, nan
+from typing import Any
+
+from stiction import presets
+from stiction.description import Description, Settings
+from stiction.errors import StictionError
+from stiction.initial import Initial
+from stiction.slider import Slider
+
+SPEEDS: tuple[float, ...] = (0.0, *(10.0 ** (i / 4) for i in range(-36, 5)))
+ROUNDING = 1e-12  # exp and pow of two libraries agree to some units of the last digit
+
+
+def first(found: Iterable[str]) -> Iterator[str]:
+    """Yield the first fault, and how many more there are of its kind."""
+    every = list(found)
+    more = f" (and {len(every) - 1} more like it)" if len(every) > 1 else ""
+    yield from (f"{each}{more}" for each in every[:1])
+
+
+def attempt(function: Callable[..., Any], *arguments: Any) -> tuple[float, str]:
+    """Return a function's value and no fault, or NaN and what it raises."""
+    try:
+        return float(function(*arguments)), ""
+    except Exception as error:  # whatever a user's law raises
+        return nan, f"raises {said(error)}; it must return a number here"
+
+
+def unfit(value: float, fault: str) -> str:
+    """Return what is wrong with a value: what was raised, or that it is not finite."""
+    if fault or isfinite(value):
+        return fault
+    return f"is {value}; it must be finite: look for a division by zero or an overflow"
+
+
+def said(error: Exception) -> str:
+    """Return an error in one line."""
+    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+    return f"{type(error).__name__}: {lines[0]}" if lines else type(error).__name__
+
+
+def kept(law: Any, speeds: Sequence[float]) -> Iterator[str]:
+    """It pickles, copies, compares and hashes."""
+    ways: dict[str, Callable[[], Any]] = {
+        "pickling it": lambda: pickle.loads(pickle.dumps(law)),
+        "copying it": lambda: copy.deepcopy(law),
+        "making it from its fields": lambda: type(law)(*law),
+    }
+    for way, again in ways.items():
+        try:
+            if not bool(again() == law) or hash(again()) != hash(law):
+                yield f"{way} gives another law; let it be a NamedTuple of numbers"
+        except Exception as error:
+            yield (
+                f"{way} fails, {said(error)}; let it be a NamedTuple of numbers, defined at the "
+                "top level of a file"
+            )
+
+
+def described(law: Any, speeds: Sequence[float]) -> Iterator[str]:
+    """It goes through a description to JSON and back."""
+    try:
+        before = Description(_preset(law), Initial(), Settings(duration=1.0))
+        after = Description.from_json(before.to_json())
+    except (StictionError, TypeError, ValueError) as error:
+        yield f"cannot be written to JSON and read back, {said(error)}"
+        return
+    if after != before or type(after.slider.law) is not type(law):
+        yield f"read back from JSON it is {after.slider.law!r}, not {law!r}; use floats only"
+
+
+def simulated(law: Any, speeds: Sequence[float]) -> Iterator[str]:
+    """It carries the paper's system through 20 ms: first stick, release, stick-slip."""
+    from stiction.simulation import simulate
+
+    try:
+        run = simulate(_preset(law), duration=0.02)
+    except Exception as error:
+        yield f"the paper's system cannot be simulated with it, {said(error)}"
+        return
+    if not run.status.ok:
+        yield f"the paper's system ended early at {float(run.final.time):g} s: {run.status.value}"
+
+
+def _preset(law: Any) -> Slider:
+    return presets.nakano_popov_2020().replace(friction=law)
+
+
+COMMON = {"kept": kept, "described": described, "simulated": simulated}

@@ -1,0 +1,114 @@
+"""Checks of a set-valued law: its coefficient and slope."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from math import inf
+from typing import Any
+
+from stiction.friction.law import static_coefficient
+from stiction.testing.common import ROUNDING, attempt, first, unfit
+
+EPS = 2.2e-16
+REACHES = tuple(10.0 ** (-i / 2) for i in range(1, 13))  # of a difference, relative
+
+
+def finite(law: Any, speeds: Sequence[float]) -> Iterator[str]:
+    """Coefficient and slope are finite."""
+    for name in ("coefficient", "slope"):
+        values = ((v, unfit(*attempt(getattr(law, name), v))) for v in speeds)
+        yield from first(f"{name}({v:g}) {fault}" for v, fault in values if fault)
+
+
+def dissipative(law: Any, speeds: Sequence[float]) -> Iterator[str]:
+    """Friction never drives: the coefficient is not negative, nor can friction hold nothing."""
+    values = ((v, attempt(law.coefficient, v)[0]) for v in speeds)
+    yield from first(
+        f"coefficient({v:g}) must not be negative, is {mu:g}: friction would push the mass on"
+        for v, mu in values
+        if mu < 0.0
+    )
+
+
+def slope(law: Any, speeds: Sequence[float]) -> Iterator[str]:
+    """The slope is the derivative of the coefficient."""
+    found = []
+    for v in speeds:
+        given, fault = attempt(law.slope, v)
+        wanted, error = derivative(lambda at: attempt(law.coefficient, at)[0], v)
+        if not fault and abs(given - wanted) > error + 1e-9 * abs(given):
+            found.append(
+                f"slope({v:g}) is {given:g} s/m, but the coefficient changes by {wanted:g} s/m, "
+                f"within {error:.1g}; let it return d(coefficient)/dv"
+            )
+    yield from first(found)
+
+
+def derivative(function: Callable[[float], float], v: float) -> tuple[float, float]:
+    """Return the derivative by differences, and a bound of its error.
+
+    The error is that of truncation, which halving the reach shows, and of rounding. Of several
+    reaches the most exact counts. Central, from v = 0 on to the right.
+    """
+    best = (0.0, inf)
+    for reach in REACHES:
+        h = reach * v or 1e-2 * reach * reach
+        coarse, fine = _difference(function, v, h), _difference(function, v, 0.5 * h)
+        rounding = 16.0 * EPS * (abs(function(v)) + abs(v * fine)) / h
+        error = (2.0 if v > 0.0 else 4.0) * abs(fine - coarse) + rounding
+        if error < best[1]:
+            best = fine, error
+    return best
+
+
+def _difference(function: Callable[[float], float], v: float, h: float) -> float:
+    if v == 0.0:
+        return (4.0 * function(h) - 3.0 * function(0.0) - function(2.0 * h)) / (2.0 * h)
+    return (function(v + h) - function(v - h)) / ((v + h) - (v - h))
+
+
+def compiled(law: Any, speeds: Sequence[float]) -> Iterator[str]:
+    """What is compiled gives what Python gives."""
+    import numba
+
+    from stiction.solver import problem, refusal
+
+    prepared = getattr(law, "prepared", lambda: law)()
+    for function in (problem.coefficient, problem.slope):
+        name = function.__name__
+        fast = numba.njit(error_model="numpy")(_calling(function))
+        python = [attempt(getattr(law, name), v)[0] for v in speeds]
+        try:
+            machine = [float(fast(prepared, v)) for v in speeds]
+        except Exception:
+            yield from (why for why in refusal.reasons(law) if why.startswith(name))
+            continue
+        scale = max(map(abs, python))
+        yield from first(
+            f"{name}({v:g}) is {one!r} in Python and {other!r} compiled"
+            for v, one, other in zip(speeds, python, machine, strict=True)
+            if abs(one - other) > ROUNDING * scale
+        )
+
+
+def _calling(function: Callable[..., float]) -> Callable[..., float]:
+    return lambda law, v: function(law, v)
+
+
+def comparable(law: Any, speeds: Sequence[float]) -> Iterator[str]:
+    """Where it can be made like another law, that one has the static coefficient asked for."""
+    if not hasattr(law, "like"):
+        return
+    made = type(law).like(0.2, 0.15, 0.01)
+    static = static_coefficient(made)
+    if abs(static - 0.2) > 1e-12:
+        yield f"like(0.2, 0.15, 0.01) has the static coefficient {static:g}, not 0.2"
+
+
+SET_VALUED = {
+    "finite": finite,
+    "dissipative": dissipative,
+    "slope": slope,
+    "compiled": compiled,
+    "comparable": comparable,
+}

@@ -1,0 +1,150 @@
+"""Checks of a law with internal state: its force, how its state changes, and steady sliding."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from math import cos, hypot, isfinite, sin
+from typing import Any, NamedTuple
+
+from stiction.friction import states
+from stiction.friction.law import Vector
+from stiction.testing.common import ROUNDING, attempt, first, said, unfit
+
+LOADS = (1.0, 100.0)  # N
+DIRECTIONS = (0.0, 2.5)  # rad
+STEADY = (1e-6, 1e-4, 1e-2, 1.0)  # m/s, where steady sliding is computed
+SLOWEST = 1e-9  # m/s; the state that zero slip is looked at with
+FORGOTTEN = 1.0  # m of slip, after which any friction has settled
+OFF = 1.37
+SETTLED = 1e-4  # relative: how well friction after that slip is the steady one
+
+
+class Point(NamedTuple):
+    """Where a law is looked at: slip velocity (m/s) and normal load (N)."""
+
+    slip: Vector
+    load: float
+
+    def __str__(self) -> str:
+        """Return the point as in a message."""
+        return f"at slip ({self.slip[0]:g}, {self.slip[1]:g}) m/s and load {self.load:g} N"
+
+
+def points(speeds: Sequence[float]) -> Iterator[Point]:
+    """Yield every speed in every direction under every load."""
+    for v in speeds:
+        for angle in DIRECTIONS:
+            for load in LOADS:
+                yield Point((v * cos(angle), v * sin(angle)), load)
+
+
+def finite(law: Any, speeds: Sequence[float]) -> Iterator[str]:
+    """Force, change of state and steady coefficient are finite, of the right length."""
+    n = len(states(law))
+    values = ((v, unfit(*attempt(law.coefficient, v))) for v in speeds if v > 0.0)
+    yield from first(f"coefficient({v:g}) {fault}" for v, fault in values if fault)
+    yield from first(_settled_faults(law, speeds))
+    for name, length in (("force", 2), ("change", n)):
+        found = []
+        for point in points(speeds):
+            fault = _vector_fault(law, getattr(law, name), point, length)
+            found += [f"{name} {point} {fault}"] if fault else []
+        yield from first(found)
+
+
+def _settled_faults(law: Any, speeds: Sequence[float]) -> Iterator[str]:
+    """Yield where there is no state to start from; a drive may be at rest."""
+    n = len(states(law))
+    for v in speeds:
+        try:
+            state = tuple(map(float, law.settled(v)))
+        except Exception as error:
+            yield f"settled({v:g}) raises {said(error)}; it must be a state to start from"
+            continue
+        if len(state) != n or not all(map(isfinite, state)):
+            yield f"settled({v:g}) is {state}; it must be {n} finite numbers, as states() names"
+
+
+def _vector_fault(law: Any, function: Callable[..., Any], point: Point, length: int) -> str:
+    try:
+        value = tuple(map(float, function(*point, _settled(law, point))))
+    except Exception as error:
+        return f"raises {said(error)}"
+    if len(value) != length:
+        return f"has {len(value)} components, must have {length}"
+    return "" if all(map(isfinite, value)) else f"is {value}; it must be finite"
+
+
+def _settled(law: Any, point: Point) -> tuple[float, ...]:
+    state: tuple[float, ...] = law.settled(max(hypot(*point.slip), SLOWEST))
+    return state
+
+
+def dissipative(law: Any, speeds: Sequence[float]) -> Iterator[str]:
+    """In steady sliding friction takes energy, as much as the steady coefficient says."""
+    found = []
+    for point in points([v for v in STEADY if min(speeds) <= v <= max(speeds)]):
+        v = hypot(*point.slip)
+        try:
+            f = law.force(*point, steady_state(law, point))
+        except Exception as error:
+            found.append(f"{point} it comes to no steady sliding, {said(error)}")
+            continue
+        along = (f[0] * point.slip[0] + f[1] * point.slip[1]) / (v * point.load)
+        wanted = attempt(law.coefficient, v)[0]
+        if along < 0.0:
+            found.append(f"{point} friction drives: its component along the slip is {along:g} W")
+        elif not abs(along - wanted) <= SETTLED * abs(wanted):
+            found.append(f"{point} steady friction is {along:g} W, but coefficient says {wanted:g}")
+    yield from first(found)
+
+
+def steady_state(law: Any, point: Point) -> tuple[float, ...]:
+    """Return the state that is reached after a metre of steady slip."""
+    from scipy.integrate import solve_ivp  # type: ignore[attr-defined]
+
+    v = hypot(*point.slip)
+    done = solve_ivp(
+        lambda _, state: law.change(*point, tuple(map(float, state))),
+        (0.0, FORGOTTEN / v),
+        law.settled(v),
+        method="Radau",
+        rtol=1e-7,
+        atol=1e-14,
+    )
+    if not done.success:
+        raise ArithmeticError(done.message)
+    return tuple(map(float, done.y[:, -1]))
+
+
+def compiled(law: Any, speeds: Sequence[float]) -> Iterator[str]:
+    """What is compiled gives what Python gives."""
+    import numba
+
+    from stiction.solver import problem, refusal
+
+    prepared = getattr(law, "prepared", lambda: law)()
+    for function in (problem.force, problem.change):
+        name = function.__name__
+        fast = numba.njit(error_model="numpy")(_calling(function))
+        found = []
+        for point in points(speeds):
+            # apart from steady sliding, where a change of zero would be all rounding
+            state = tuple(OFF * each for each in _settled(law, point))
+            one = getattr(law, name)(*point, state)
+            try:
+                other = fast(prepared, *point, state)
+            except Exception:
+                yield from (why for why in refusal.reasons(law) if why.startswith(name))
+                break
+            scale = hypot(*one)
+            if not all(abs(a - b) <= ROUNDING * scale for a, b in zip(one, other, strict=True)):
+                found.append(f"{name} {point} is {one} in Python and {other} compiled")
+        yield from first(found)
+
+
+def _calling(function: Callable[..., Any]) -> Callable[..., Any]:
+    return lambda law, slip, load, state: function(law, slip, load, state)
+
+
+WITH_STATE = {"finite": finite, "dissipative": dissipative, "compiled": compiled}
