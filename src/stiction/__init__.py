@@ -28,7 +28,15 @@ if TYPE_CHECKING:
         Step,
     )
     from stiction.errors import DescriptionError, ResultError, Status, StictionError
-    from stiction.friction import Coulomb, ExponentialWeakening
+    from stiction.friction import (
+        Coulomb,
+        ExponentialWeakening,
+        LuGre,
+        RateStateAgeing,
+        RateStateAgeing2,
+        RateStateSlip,
+        RateStateSlip2,
+    )
     from stiction.initial import Initial
     from stiction.simulation import simulate
     from stiction.slider import Slider
@@ -50,8 +58,13 @@ _HOME = {
     "Hold": "drive",
     "Initial": "initial",
     "LoadProgram": "drive",
+    "LuGre": "friction",
     "Modulation": "drive",
     "Ramp": "drive",
+    "RateStateAgeing": "friction",
+    "RateStateAgeing2": "friction",
+    "RateStateSlip": "friction",
+    "RateStateSlip2": "friction",
     "ResultError": "errors",
     "Reversal": "drive",
     "Settings": "description",
@@ -78,8 +91,13 @@ __all__ = [
     "Hold",
     "Initial",
     "LoadProgram",
+    "LuGre",
     "Modulation",
     "Ramp",
+    "RateStateAgeing",
+    "RateStateAgeing2",
+    "RateStateSlip",
+    "RateStateSlip2",
     "ResultError",
     "Reversal",
     "Settings",
