@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from math import hypot
 from typing import Self
 
 from pydantic import Field, model_validator
 
+from stiction.errors import DescriptionError, Fault
+from stiction.friction import has_state, states
 from stiction.slider import Slider
 from stiction.units import Length, Number, Time, Velocity
-from stiction.validation import Described
+from stiction.validation import Described, unknown
 
 
 class Initial(Described):
@@ -22,6 +25,9 @@ class Initial(Described):
         Spring elongations, m.
     v_x, v_y : float or str, optional
         Elongation rates, m/s; both or none, and then in place of epsilon.
+    states : mapping, optional
+        Internal states of the friction law by name, in SI, all of them; where the law's own
+        ``settled`` has them unless told.
     time : float or str, optional
         The time at which the run starts, s; the drive moves from t = 0 on.
     """
@@ -31,6 +37,7 @@ class Initial(Described):
     u_y: Length = 0.0
     v_x: Velocity | None = None
     v_y: Velocity | None = None
+    states: dict[str, Number] | None = None
     time: Time = Field(default=0.0, ge=0)
 
     @model_validator(mode="after")
@@ -40,6 +47,38 @@ class Initial(Described):
         if self.v_x is not None and "epsilon" in self.model_fields_set:
             raise ValueError("epsilon and v_x, v_y say the same thing twice; give one of them")
         return self
+
+    def internal(self, slider: Slider) -> tuple[float, ...]:
+        """Return the internal states of the slider's law at the start.
+
+        Raises
+        ------
+        DescriptionError
+            If other states are given than the law has.
+        """
+        law = slider.law
+        names = [state.name for state in states(law)]
+        given = self.states
+        if given is not None:
+            found = [
+                Fault(f"initial.states.{name}", unknown("internal state", name, names))
+                if names
+                else Fault(f"initial.states.{name}", "the friction law has no internal state")
+                for name in given
+                if name not in names
+            ]
+            found += [
+                Fault(f"initial.states.{name}", "missing; give every internal state, or none")
+                for name in names
+                if name not in given
+            ]
+            if found:
+                raise DescriptionError(found)
+            return tuple(given[name] for name in names)
+        if not has_state(law):
+            return ()
+        X, Y = slider.motion.rate(self.time)
+        return tuple(float(value) for value in law.settled(float(hypot(X, Y))))
 
     def slip(self, slider: Slider) -> tuple[float, float]:
         """Return the slip velocity (x, y) at the start, in m/s."""

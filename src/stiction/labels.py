@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stiction.description import Description
+from stiction.friction import states
 from stiction.slider import Slider
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ def dataset(
     times : ndarray
         (n,), s.
     samples : ndarray
-        (n, 7); the columns of `stiction.solver.sampling`.
+        (n, 7 + internal states); the columns of `stiction.solver.sampling`, then the states.
     sticks : ndarray
         (m, 2), s.
     attributes : dict
@@ -62,7 +63,8 @@ def dataset(
 
     slider = description.slider
     c, s = slider.direction
-    u_x, u_y, slip_x, slip_y, f_x, f_y, sticking = np.ascontiguousarray(samples.T)
+    columns = np.ascontiguousarray(samples.T)
+    u_x, u_y, slip_x, slip_y, f_x, f_y, sticking = columns[:7]
     travel_X, travel_Y = _travel(slider, times)
     rate_X, rate_Y = _rate(slider, times)
     v_x = rate_X * c - rate_Y * s - slip_x
@@ -98,6 +100,9 @@ def dataset(
         )
         for name, value in values.items()
     }
+    for state, value in zip(states(slider.law), columns[7:], strict=True):
+        known = {"units": state.unit, "long_name": state.meaning}
+        variables[state.name] = ("time", value, known)
     time = ("time", times, {"units": "s", "long_name": "time"})
     attributes = {"description": description.to_json(), **attributes}
     return xr.Dataset(variables, {"time": time}, attributes)

@@ -11,6 +11,7 @@ from numba.core.errors import NumbaError
 
 from stiction.description import Description, Settings
 from stiction.errors import DescriptionError, Fault, Status
+from stiction.friction import has_state
 from stiction.initial import Initial
 from stiction.labels import dataset
 from stiction.slider import Slider
@@ -30,7 +31,10 @@ def simulate(
     max_steps: int = 100_000_000,
     progress: Callable[[float], None] | None = None,
 ) -> Trajectory:
-    """Simulate a slider with set-valued friction, exactly up to `rtol`.
+    """Simulate a slider, with set-valued friction at zero slip, exactly up to `rtol`.
+
+    Laws with internal state have a friction force at zero slip as well and need no such rule;
+    they never stick in the strict sense.
 
     Parameters
     ----------
@@ -51,7 +55,8 @@ def simulate(
         The state to start from; by default the paper's.
     regularisation : float or str, optional
         delta (m/s, 1e-11 at least): replace the set-valued law by F s/sqrt(|s|^2 + delta^2).
-        For comparison; choose it far below the creep velocity V sin^2 phi.
+        For comparison; choose it far below the creep velocity V sin^2 phi. Not for laws with
+        internal state, which are smooth by themselves.
     max_steps : int, optional
         Give up after so many steps.
     progress : callable, optional
@@ -99,6 +104,9 @@ def run(
     _, initial, settings = description
     if max_steps < 1:
         raise DescriptionError([Fault("max_steps", f"must be 1 at least, is {max_steps}")])
+    if settings.regularisation is not None and has_state(description.slider.law):
+        message = "the law is smooth at zero slip by itself; leave regularisation out"
+        raise DescriptionError([Fault("run.regularisation", message)])
     if initial.time + settings.duration == initial.time:
         message = f"is too short to be seen from t = {initial.time:g} s; start earlier"
         raise DescriptionError([Fault("run.duration", message)])
@@ -112,16 +120,22 @@ def run(
         raise DescriptionError(found) from None
     status = list(Status)[solution.code]
     statistics = Statistics(*solution.counts)
-    exact = settings.regularisation is None
     attributes = {
         "stiction_version": version("stiction"),
-        "solver": "set-valued friction, Radau IIA 5" if exact else "regularised, Radau IIA 5",
+        "solver": f"{kind(description)}, Radau IIA 5",
         "status": status.name,
         "status_message": status.value,
         **vars(statistics),
     }
     data = dataset(description, solution.times, solution.samples, solution.sticks, attributes)
     return Trajectory(description, data, status, statistics)
+
+
+def kind(description: Description) -> str:
+    """Return what is solved, in words."""
+    if has_state(description.slider.law):
+        return "friction with internal state"
+    return "set-valued friction" if description.run.regularisation is None else "regularised"
 
 
 def sample_times(start: float, duration: float, rate: float | None) -> np.ndarray:

@@ -13,6 +13,7 @@ import numpy as np
 
 from stiction.description import Description
 from stiction.errors import DescriptionError, ResultError, Status
+from stiction.friction import states
 from stiction.initial import Initial
 from stiction.labels import VARIABLES
 from stiction.slider import Slider
@@ -91,7 +92,11 @@ class Trajectory:
         """Return the state at the sample nearest to `time` (s), to start another run from."""
         at = self.data.sel(time=time, method="nearest")
         names = ("u_x", "u_y", "v_x", "v_y", "time")
-        return Initial(**{name: float(at[name]) for name in names})
+        internal = {each.name: float(at[each.name]) for each in states(self.slider.law)}
+        return Initial(
+            **{name: float(at[name]) for name in names},
+            **({"states": internal} if internal else {}),
+        )
 
     def save(self, path: str | Path) -> Path:
         """Write the result as NetCDF, whole or not at all; return the path.

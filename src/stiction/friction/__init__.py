@@ -2,7 +2,8 @@
 
 A law is a NamedTuple of floats with two methods, ``coefficient(law, v)`` and
 ``slope(law, v)``, in plain Python with `math`; the solver compiles them. A new law
-is one file here and one line in `LAWS`.
+is one file here and one line in `LAWS`; functions that its methods call go into `FUNCTIONS`.
+A law whose friction depends on more than the slip velocity has internal states, see `StateLaw`.
 """
 
 from __future__ import annotations
@@ -15,10 +16,19 @@ from stiction.friction.coulomb import Coulomb
 from stiction.friction.exponential_weakening import ExponentialWeakening
 from stiction.friction.hyperbolic_weakening import HyperbolicWeakening
 from stiction.friction.law import FrictionLaw, Internal, Law, StateLaw, has_state, states
+from stiction.friction.lugre import LuGre, bending
 from stiction.friction.own import Find, named, own_table, read_own
+from stiction.friction.rate_and_state import FUNCTIONS as _RATE_AND_STATE
+from stiction.friction.rate_and_state_ageing import RateStateAgeing
+from stiction.friction.rate_and_state_ageing_2 import RateStateAgeing2
+from stiction.friction.rate_and_state_slip import RateStateSlip
+from stiction.friction.rate_and_state_slip_2 import RateStateSlip2
 from stiction.friction.stribeck import Stribeck
 from stiction.friction.table import Table
 from stiction.tables import choose
+
+# plain functions that laws call, to be compiled with them
+FUNCTIONS = (*_RATE_AND_STATE, bending)
 
 LAWS: dict[str, type[Any]] = {
     "coulomb": Coulomb,
@@ -26,6 +36,11 @@ LAWS: dict[str, type[Any]] = {
     "hyperbolic-weakening": HyperbolicWeakening,
     "stribeck": Stribeck,
     "table": Table,
+    "lugre": LuGre,
+    "rate-and-state-ageing": RateStateAgeing,
+    "rate-and-state-ageing-2": RateStateAgeing2,
+    "rate-and-state-slip": RateStateSlip,
+    "rate-and-state-slip-2": RateStateSlip2,
 }
 
 
@@ -69,6 +84,7 @@ def parameters(law: Any) -> dict[str, Any]:
 
 
 __all__ = [
+    "FUNCTIONS",
     "LAWS",
     "Anisotropic",
     "Coulomb",
@@ -77,6 +93,11 @@ __all__ = [
     "HyperbolicWeakening",
     "Internal",
     "Law",
+    "LuGre",
+    "RateStateAgeing",
+    "RateStateAgeing2",
+    "RateStateSlip",
+    "RateStateSlip2",
     "StateLaw",
     "Stribeck",
     "Table",

@@ -6,6 +6,6 @@ equations stay regular at zero slip, and is integrated by collocation (`slip`, `
 Take-off is then an ordinary first step from p = 0, and landing a last step whose length
 is solved for, together with its stages, from p = 0 at its end. Where a landing is not
 smooth, the classical pursuit curve ends it in closed form (`landing`). `loop` puts the
-pieces together; `regularised` integrates the smoothed law instead; `twin` is all of it
-again, to be read.
+pieces together; `twin` is all of it again, to be read. Laws with internal state, and
+set-valued laws made smooth, never stick and are integrated by `smooth`.
 """

@@ -39,6 +39,19 @@ def inlined(function: F) -> F:
     return _jit(function, inline=True, keep=False)
 
 
+def piece(function: F) -> F:
+    """Compile a piece of the loop that is large, or called from several places, by itself."""
+    made: Any = numba.njit(
+        nogil=True,
+        error_model="numpy",
+        fastmath=FAST,
+        _nrt=False,
+        no_cpython_wrapper=True,
+        no_cfunc_wrapper=True,
+    )(function)
+    return cast(F, made)
+
+
 @cache
 def specialised(function: Any, *kinds: type) -> Any:
     """Return the compiled `function` to call with arguments of these types.
@@ -118,7 +131,7 @@ def _fingerprint() -> str:
     """
     package = Path(__file__).parent.parent
     files = [*(package / "drive").glob("*.py"), *(package / "friction").glob("*.py")]
-    files += [file for file in (package / "solver").glob("*.py") if file.stem != "twin"]
+    files += [file for file in (package / "solver").rglob("*.py") if file.stem != "twin"]
     digest = hashlib.sha256()
     for file in sorted(files):
         digest.update(file.read_bytes())

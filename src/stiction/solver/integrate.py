@@ -1,11 +1,10 @@
-"""From a description to samples and stick intervals, by the exact or the regularised solver."""
+"""From a description to samples and stick intervals, by the solver that its law needs."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import sqrt
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -13,12 +12,11 @@ from stiction.description import Description
 from stiction.drive import jump
 from stiction.friction import has_state
 from stiction.slider import Slider
-from stiction.solver import loop, regularised
-from stiction.solver.compiled import specialised
-from stiction.solver.frame import friction
+from stiction.solver.exact import Exact
 from stiction.solver.interrupt import uninterrupted
+from stiction.solver.output import Output
 from stiction.solver.problem import Problem
-from stiction.solver.sampling import COLUMNS
+from stiction.solver.smooth.method import Smooth
 from stiction.solver.state import (
     COMPLETED,
     CONTACT_LOST,
@@ -26,14 +24,8 @@ from stiction.solver.state import (
     TOO_MANY_STEPS,
     Accuracy,
     Counts,
-    Motion,
-    State,
-    cooled,
-    start,
 )
-from stiction.solver.stick import holding
-from stiction.solver.stretch import Stretch, load_bounds, speeds, stretches, system_of
-from stiction.solver.surface import friction_along
+from stiction.solver.stretch import Stretch, load_bounds, speeds, stretches
 
 BUDGET = 100_000  # turns of the loop between two looks at the clock: some 30 ms
 
@@ -41,8 +33,8 @@ BUDGET = 100_000  # turns of the loop between two looks at the clock: some 30 ms
 class Solution(NamedTuple):
     """How the integration ended (an index into `Status`), what it found and what it took.
 
-    `times` (n,) are those reached, `samples` (n, 7) as in `stiction.solver.sampling`,
-    `sticks` (m, 2) in s.
+    `times` (n,) are those reached, `samples` (n, 7 or more) as in `stiction.solver.sampling`
+    with the internal states after them, `sticks` (m, 2) in s.
     """
 
     code: int
@@ -88,18 +80,36 @@ def accuracy(slider: Slider, stretch: Stretch, start: float, rtol: float) -> Acc
     return Accuracy(local, newton, speed, free_x, free_y)
 
 
-@dataclass
-class Output:
-    """What is filled in on the way: samples at `times`, stick intervals, steps used."""
-
-    times: np.ndarray
-    samples: np.ndarray
-    sticks: np.ndarray
-    filled: int = 0
-    used: int = 0
-
-
 Report = Callable[[float], None]
+
+
+class Method(Protocol):
+    """What `integrate` asks of a solver; `columns` is the length of a sample's row.
+
+    What a run's state is, is the solver's own business, but for ``motion.t`` and ``counts``.
+    """
+
+    columns: int
+
+    def begin(self, description: Description) -> Any:
+        """Return the state from which a run starts."""
+
+    def entered(self, state: Any, x: float, y: float) -> Any:
+        """Return the state at the start of a stretch, where the slip velocity jumps by (x, y)."""
+
+    def advance(
+        self, problem: Problem, state: Any, end: float, held: Accuracy, budget: int, out: Output
+    ) -> tuple[int, Any]:
+        """Advance until `end` (s) or until the budget is used up; return a code and the state."""
+
+    def last_row(self, problem: Problem, state: Any) -> list[float]:
+        """Return the sample of a state between two steps."""
+
+
+def method_of(description: Description) -> Method:
+    """Return the solver for a description."""
+    law, delta = description.slider.law, description.run.regularisation
+    return Exact() if delta is None and not has_state(law) else Smooth(law, delta)
 
 
 def integrate(
@@ -108,8 +118,9 @@ def integrate(
     """Integrate a description, filling in the samples at `times` (ascending, s)."""
     slider, initial, settings = description
     t, end = initial.time, initial.time + settings.duration
-    state = start(system_of(slider), t, (initial.u_x, initial.u_y), initial.slip(slider))
-    out = Output(times, np.empty((len(times), COLUMNS)), np.empty((256, 2)))
+    method = method_of(description)
+    state = method.begin(description)
+    out = Output(times, np.empty((len(times), method.columns)), np.empty((256, 2)))
     code, stretch = COMPLETED, None
 
     def report(t: float) -> None:
@@ -118,11 +129,17 @@ def integrate(
 
     with uninterrupted() as release:
         for stretch in stretches(slider, t, end):
-            state = entered(state, slider, t)
+            state = method.entered(state, *slip_jump(slider, t))
             held = accuracy(slider, stretch, t, settings.rtol)
-            code, state = through(
-                stretch, settings.regularisation, state, held, max_steps, out, release, report
-            )
+            code = RUNNING
+            while code == RUNNING:
+                release()
+                budget = min(BUDGET, max_steps - out.used)
+                if budget <= 0:
+                    code = TOO_MANY_STEPS
+                    break
+                code, state = method.advance(stretch.problem, state, stretch.end, held, budget, out)
+                report(state.motion.t)
             t = stretch.end
             if code == COMPLETED and stretch.lost:
                 code = CONTACT_LOST
@@ -134,62 +151,20 @@ def integrate(
     if code != COMPLETED:  # keep where it stopped, whatever the sample rate
         earlier = times < state.motion.t
         times = np.append(times[earlier], state.motion.t)
-        samples = np.vstack([samples[earlier], last_row(stretch.problem, state.motion)])
+        samples = np.vstack([samples[earlier], method.last_row(stretch.problem, state)])
     sticks = joined(out.sticks[: counts.sticks])
     return Solution(code, times, samples, sticks, counts._replace(sticks=len(sticks)))
 
 
-def entered(state: State, slider: Slider, t: float) -> State:
-    """Return the state at the start of a stretch: after the jump of the drive, if it jumps.
+def slip_jump(slider: Slider, t: float) -> tuple[float, float]:
+    """Return by how much the slip velocity (x, y) jumps with the drive's at time `t`, in m/s.
 
     The mass keeps its velocity. That over a plate which is driven jumps with the plate's;
-    over a plate at rest it does not. The memory of earlier steps is of no use after a bend.
+    over a plate at rest it does not.
     """
-    memory = cooled(state.memory, min(state.memory.h, state.memory.h_takeoff))
-    m = state.motion
     X, Y = jump(slider.motion, t) if slider.driven == "plate" else (0.0, 0.0)
-    if X == Y == 0.0:
-        return State(m, memory, state.counts)
     c, s = slider.direction
-    slip_x, slip_y = m.r * m.e_x + X * c - Y * s, m.r * m.e_y + X * s + Y * c
-    r = sqrt(slip_x * slip_x + slip_y * slip_y)
-    e = (slip_x / r, slip_y / r) if r > 0.0 else (m.e_x, m.e_y)
-    return State(Motion(m.t, m.u_x, m.u_y, r, *e), memory, state.counts)
-
-
-def through(
-    stretch: Stretch,
-    delta: float | None,
-    state: State,
-    held: Accuracy,
-    max_steps: int,
-    out: Output,
-    release: Callable[[], None],
-    report: Report,
-) -> tuple[int, State]:
-    """Integrate through a stretch; return how that ended, and the state."""
-    system, end = stretch.problem, stretch.end
-    kinds: tuple[Any, ...] = (type(system.law), type(system.drive), type(system.load))
-    advance = specialised(loop.advance if delta is None else regularised.advance, *kinds)
-    code = RUNNING
-    while code == RUNNING:
-        release()
-        budget = min(BUDGET, max_steps - out.used)
-        if budget <= 0:
-            return TOO_MANY_STEPS, state
-        if delta is None:
-            code, state, out.filled, turns = advance(
-                system, state, end, held, budget, out.times, out.samples, out.filled, out.sticks
-            )
-        else:
-            code, state, out.filled, turns = advance(
-                system, delta, state, end, held, budget, out.times, out.samples, out.filled
-            )
-        out.used += turns
-        if state.counts.sticks == len(out.sticks):
-            out.sticks = np.concatenate([out.sticks, np.empty_like(out.sticks)])
-        report(state.motion.t)
-    return code, state
+    return X * c - Y * s, X * s + Y * c
 
 
 def joined(sticks: np.ndarray) -> np.ndarray:
@@ -198,15 +173,3 @@ def joined(sticks: np.ndarray) -> np.ndarray:
         return sticks.copy()
     apart = sticks[1:, 0] > sticks[:-1, 1]
     return np.column_stack([sticks[np.r_[True, apart], 0], sticks[np.r_[apart, True], 1]])
-
-
-def last_row(problem: Problem, motion: Motion) -> list[float]:
-    """Return the sample of a state between two steps."""
-    m = problem.system.mass
-    slip = [motion.r * motion.e_x, motion.r * motion.e_y]
-    if motion.r == 0.0:
-        a_x, a_y = holding(problem, motion.t, motion.u_x, motion.u_y)
-        return [motion.u_x, motion.u_y, *slip, m * a_x, m * a_y, 1.0]
-    f = m * friction(problem, motion.t, motion.r)[0]
-    f_x, f_y = friction_along(problem, motion.e_x, motion.e_y)
-    return [motion.u_x, motion.u_y, *slip, f * f_x, f * f_y, 0.0]

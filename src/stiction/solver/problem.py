@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 
 from numba.extending import overload, register_jitable
 
-from stiction.drive.signal import FUNCTIONS
+from stiction.drive.signal import FUNCTIONS as SIGNAL_FUNCTIONS
+from stiction.friction import FUNCTIONS as LAW_FUNCTIONS
 from stiction.friction import FrictionLaw, StateLaw
 from stiction.friction.law import Vector, static_coefficient
 from stiction.solver.compiled import inlined
@@ -181,7 +182,7 @@ for _function in (
     isotropic,
 ):
     _by_type(_function)
-for _piece in FUNCTIONS:
+for _piece in (*SIGNAL_FUNCTIONS, *LAW_FUNCTIONS):
     register_jitable(_piece)
 
 

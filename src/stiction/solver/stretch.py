@@ -65,6 +65,11 @@ def friction_of(slider: Slider) -> tuple[Any, Isotropic | Elliptic]:
     return getattr(law, "prepared", lambda: law)(), surface
 
 
+def first_step(system: System) -> float:
+    """Return the size of the first step to try, s."""
+    return float(0.05 / (max(system.k_x, system.k_y) / system.mass) ** 0.5)
+
+
 def speeds(slider: Slider, drive: Any, start: float, end: float) -> tuple[float, float]:
     """Return bounds of the drive velocity along x and y in a stretch (m/s)."""
     return _in_axes(slider, drive_bounds(drive, start, end)[0])

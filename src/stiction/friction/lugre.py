@@ -1,0 +1,87 @@
+"""The LuGre model: bristles that bend and give way."""
+
+from __future__ import annotations
+
+from math import exp, sqrt
+from typing import NamedTuple, Self
+
+from stiction.friction.law import Internal, Vector
+from stiction.units import Damping, PositiveNumber, PositiveSpeed, Stiffness
+from stiction.validation import validated
+
+
+@validated
+class LuGre(NamedTuple):
+    """The LuGre model (Canudas de Wit et al. 1995, doi:10.1109/9.376053), in two dimensions.
+
+        F = sigma_0 z + sigma_1 z' + sigma_2 s,   z' = s - sigma_0 |s| z/g,
+        g = W [mu_c + (mu_s - mu_c) exp(-(v/v_s)^2)],   v = |s|
+
+    z is the mean deflection of bristles, a vector in the plane as is the slip velocity s
+    (isotropic case of Velenis, Tsiotras, Canudas de Wit & Sorine 2005,
+    doi:10.1080/00423110412331290464). In steady sliding F = g + sigma_2 v along s.
+
+    Parameters
+    ----------
+    mu_c, mu_s : float
+        Coulomb and static friction coefficient.
+    v_s : float or str
+        Stribeck speed, over which the one becomes the other, m/s.
+    sigma_0 : float or str
+        Stiffness of the bristles, N/m; 1e5 in the original paper, for forces of about 1 N.
+    sigma_1 : float or str
+        Their damping constant, N s/m; the root of sigma_0 in the original paper.
+    sigma_2 : float or str, optional
+        Viscous friction, N s/m.
+    """
+
+    mu_c: PositiveNumber
+    mu_s: PositiveNumber
+    v_s: PositiveSpeed
+    sigma_0: Stiffness
+    sigma_1: Damping
+    sigma_2: Damping = 0.0
+
+    @classmethod
+    def like(kind, static: float, kinetic: float, speed: float) -> Self:
+        """Return the law with these coefficients and this speed, and the paper's bristles."""
+        return kind(kinetic, static, speed, 1e5, 1e5**0.5)
+
+    @staticmethod
+    def states() -> tuple[Internal, ...]:
+        """Return the deflection of the bristles."""
+        return (
+            Internal("z_x", "m", "bristle deflection along x"),
+            Internal("z_y", "m", "bristle deflection along y"),
+        )
+
+    def coefficient(law, v: float) -> float:
+        """Return g/W at slip speed `v` (m/s); viscous friction, which no load makes, is beside it."""
+        x = v / law.v_s
+        return law.mu_c + (law.mu_s - law.mu_c) * exp(-x * x)
+
+    def settled(law, speed: float) -> tuple[float, ...]:
+        """Return bristles at rest."""
+        return (0.0, 0.0)
+
+    def force(law, slip: Vector, load: float, state: tuple[float, ...]) -> Vector:
+        """Return the friction force (N)."""
+        (s_x, s_y), (z_x, z_y) = slip, state
+        give = bending(law, s_x, s_y, load)
+        return (
+            law.sigma_0 * z_x + law.sigma_1 * (s_x - give * z_x) + law.sigma_2 * s_x,
+            law.sigma_0 * z_y + law.sigma_1 * (s_y - give * z_y) + law.sigma_2 * s_y,
+        )
+
+    def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
+        """Return the rate of deflection (m/s)."""
+        (s_x, s_y), (z_x, z_y) = slip, state
+        give = bending(law, s_x, s_y, load)
+        return s_x - give * z_x, s_y - give * z_y
+
+
+def bending(law: LuGre, s_x: float, s_y: float, load: float) -> float:
+    """Return sigma_0 |s|/g, the rate at which bristles give way, per second."""
+    square = s_x * s_x + s_y * s_y
+    g = law.mu_c + (law.mu_s - law.mu_c) * exp(-square / (law.v_s * law.v_s))
+    return law.sigma_0 * sqrt(square) / (load * g)

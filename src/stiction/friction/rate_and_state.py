@@ -1,0 +1,98 @@
+"""What all rate-and-state laws share: the friction coefficient, and what is comparable.
+
+Friction depends on the slip speed V and on states theta, contact times of the surfaces
+(Dieterich 1979, doi:10.1029/JB084iB05p02161; Ruina 1983, doi:10.1029/JB088iB12p10359):
+
+    mu = mu* + a ln(V/V*) + sum_i b_i ln(V* theta_i/D_i)
+
+with a direct effect a, evolution effects b_i over the slip distances D_i, and mu* the steady
+coefficient at V*. At rest the logarithm has no value. The regularised form, from the rate of
+thermally activated slip in both directions (Rice & Ben-Zion 1996; Lapusta et al. 2000,
+doi:10.1029/2000JB900250), is the same but for slip speeds below 2 V* exp(-psi/a):
+
+    mu = a asinh[(V/2V*) exp(psi/a)],   psi = mu* + sum_i b_i ln(V* theta_i/D_i)
+
+The internal states of the solver are log_theta_i = ln(V* theta_i/D_i).
+"""
+
+from __future__ import annotations
+
+from math import asinh, exp, log, sqrt
+from typing import NamedTuple
+
+SLOWEST = 1e-12  # m/s: there is no steady state at rest; this is steady sliding by 30 um a year
+FIRM = 30.0  # beyond, asinh(exp(x)) is x + ln 2 to the last digit
+
+
+def asinh_of_exp(x: float) -> float:
+    """Return asinh(exp(x)), for any x."""
+    if x > FIRM:
+        return x + log(2.0)
+    return asinh(exp(x))
+
+
+def friction_force(
+    a: float, V_star: float, psi: float, slip: tuple[float, float], load: float
+) -> tuple[float, float]:
+    """Return a W asinh[(V/2V*) exp(psi/a)] along the slip, N."""
+    V = sqrt(slip[0] * slip[0] + slip[1] * slip[1])
+    if V == 0.0:
+        return 0.0, 0.0
+    f = a * asinh_of_exp(log(V / (2.0 * V_star)) + psi / a) * load / V
+    return f * slip[0], f * slip[1]
+
+
+def grain_of(a: float, V_star: float, psi: float) -> float:
+    """Return the slip speed below which friction is proportional to it, m/s."""
+    return 2.0 * V_star * exp(-psi / a)
+
+
+def ageing(log_theta: float, V: float, V_star: float, D: float) -> float:
+    """Return d(log_theta)/dt by the ageing law, theta' = 1 - V theta/D."""
+    return (V_star * exp(-log_theta) - V) / D
+
+
+def slipping(log_theta: float, V: float, V_star: float, D: float) -> float:
+    """Return d(log_theta)/dt by the slip law, theta' = -(V theta/D) ln(V theta/D)."""
+    if V == 0.0:
+        return 0.0
+    return -V / D * (log(V / V_star) + log_theta)
+
+
+def steady(a: float, b: float, mu_star: float, V_star: float, v: float) -> float:
+    """Return the coefficient of steady sliding, where V theta = D, at `v` or `SLOWEST`."""
+    V = max(v, SLOWEST)
+    return a * asinh_of_exp(log(V / (2.0 * V_star)) + (mu_star + b * log(V_star / V)) / a)
+
+
+def settled(V_star: float, speed: float) -> float:
+    """Return log_theta of steady sliding at `speed` (m/s); at V* if that is zero."""
+    return log(V_star / speed) if speed > 0.0 else 0.0
+
+
+class Comparable(NamedTuple):
+    """Parameters comparable with another law's; see `comparable`."""
+
+    a: float
+    b: float
+    D: float
+    mu_star: float
+    V_star: float
+
+
+def comparable(static: float, kinetic: float, speed: float) -> Comparable:
+    """Return parameters that weaken as another law does.
+
+    Rate-and-state friction has no static coefficient: the steady one falls by b - a with each
+    e-fold of slip speed, for ever. The choice: it is `kinetic` at V* = `speed`, and `static` at
+    a ten-thousandth of that; b = 2 a, between what is usual in rock (b/a = 1.5) and what is
+    strongly weakening; D = 10 um, typical of laboratory surfaces. For friction that does not
+    weaken, a is 0.01 and b less.
+    """
+    weakening = (static - kinetic) / log(1e4)
+    a = weakening if weakening > 0.0 else 0.01
+    return Comparable(a, max(a + weakening, 0.0), 1e-5, kinetic, speed)
+
+
+# what the laws' methods call, to be compiled with them
+FUNCTIONS = (asinh_of_exp, friction_force, grain_of, ageing, slipping)

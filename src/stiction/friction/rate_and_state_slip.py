@@ -1,0 +1,77 @@
+"""Rate-and-state friction with the slip law."""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import NamedTuple, Self
+
+from stiction.friction.law import Internal, Vector
+from stiction.friction.rate_and_state import (
+    comparable,
+    friction_force,
+    grain_of,
+    settled,
+    slipping,
+    steady,
+)
+from stiction.units import Coefficient, PositiveLength, PositiveNumber, PositiveSpeed
+from stiction.validation import validated
+
+
+@validated
+class RateStateSlip(NamedTuple):
+    """Rate-and-state friction, slip law (Ruina 1983).
+
+        mu = a asinh[(V/2V*) exp((mu* + b ln(V* theta/D_c))/a)],   theta' = -(V theta/D_c) ln(V theta/D_c)
+
+    See `stiction.friction.rate_and_state` for the symbols and the regularised form.
+    The state evolves by slip alone: without slip nothing heals.
+
+    Parameters
+    ----------
+    a, b : float
+        Direct and evolution effect; in rock 0.005 to 0.02. Steady sliding weakens if b > a.
+    D_c : float or str
+        Slip distance over which the state evolves, m; 1 to 100 um in the laboratory.
+    mu_star : float
+        Coefficient of steady sliding at V_star.
+    V_star : float or str
+        Reference slip speed, m/s; any.
+    """
+
+    a: PositiveNumber
+    b: Coefficient
+    D_c: PositiveLength
+    mu_star: Coefficient
+    V_star: PositiveSpeed
+
+    @classmethod
+    def like(kind, static: float, kinetic: float, speed: float) -> Self:
+        """Return a comparable law; see `stiction.friction.rate_and_state.comparable`."""
+        return kind(*comparable(static, kinetic, speed))
+
+    @staticmethod
+    def states() -> tuple[Internal, ...]:
+        """Return the logarithm of the contact time."""
+        return (Internal("log_theta", "1", "logarithm of the state, ln(V* theta/D_c)"),)
+
+    def coefficient(law, v: float) -> float:
+        """Return the coefficient of steady sliding at `v` (m/s), at 1e-12 m/s if that is less."""
+        return steady(law.a, law.b, law.mu_star, law.V_star, v)
+
+    def settled(law, speed: float) -> tuple[float, ...]:
+        """Return the state of steady sliding at `speed` (m/s), at V_star if that is zero."""
+        return (settled(law.V_star, speed),)
+
+    def force(law, slip: Vector, load: float, state: tuple[float, ...]) -> Vector:
+        """Return the friction force (N)."""
+        return friction_force(law.a, law.V_star, law.mu_star + law.b * state[0], slip, load)
+
+    def grain(law, state: tuple[float, ...]) -> float:
+        """Return the slip speed below which friction is proportional to it (m/s)."""
+        return grain_of(law.a, law.V_star, law.mu_star + law.b * state[0])
+
+    def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
+        """Return d(log_theta)/dt, per second."""
+        V = sqrt(slip[0] * slip[0] + slip[1] * slip[1])
+        return (slipping(state[0], V, law.V_star, law.D_c),)

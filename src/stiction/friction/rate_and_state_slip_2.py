@@ -1,0 +1,91 @@
+"""Rate-and-state friction with two states that follow the slip law."""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import NamedTuple, Self
+
+from stiction.friction.law import Internal, Vector
+from stiction.friction.rate_and_state import (
+    comparable,
+    friction_force,
+    grain_of,
+    settled,
+    slipping,
+    steady,
+)
+from stiction.units import Coefficient, PositiveLength, PositiveNumber, PositiveSpeed
+from stiction.validation import validated
+
+
+@validated
+class RateStateSlip2(NamedTuple):
+    """Rate-and-state friction with two states, slip law (Ruina 1983).
+
+        mu = a asinh[(V/2V*) exp((mu* + b_1 ln(V* theta_1/D_1) + b_2 ln(V* theta_2/D_2))/a)],
+        theta_i' = -(V theta_i/D_i) ln(V theta_i/D_i)
+
+    See `stiction.friction.rate_and_state` for the symbols. Two states are what experiments
+    with steps of the slip speed often take (Ruina 1983; Gu et al. 1984,
+    doi:10.1016/0022-5096(84)90007-3).
+
+    Parameters
+    ----------
+    a, b_1, b_2 : float
+        Direct and evolution effects; steady sliding weakens if b_1 + b_2 > a.
+    D_1, D_2 : float or str
+        Slip distances over which the states evolve, m.
+    mu_star : float
+        Coefficient of steady sliding at V_star.
+    V_star : float or str
+        Reference slip speed, m/s; any.
+    """
+
+    a: PositiveNumber
+    b_1: Coefficient
+    D_1: PositiveLength
+    b_2: Coefficient
+    D_2: PositiveLength
+    mu_star: Coefficient
+    V_star: PositiveSpeed
+
+    @classmethod
+    def like(kind, static: float, kinetic: float, speed: float) -> Self:
+        """Return a comparable law: as with one state, half of b over each of D and 10 D."""
+        a, b, D, mu_star, V_star = comparable(static, kinetic, speed)
+        return kind(a, b / 2, D, b / 2, 10 * D, mu_star, V_star)
+
+    @staticmethod
+    def states() -> tuple[Internal, ...]:
+        """Return the logarithms of both contact times."""
+        return (
+            Internal("log_theta_1", "1", "logarithm of the first state, ln(V* theta_1/D_1)"),
+            Internal("log_theta_2", "1", "logarithm of the second state, ln(V* theta_2/D_2)"),
+        )
+
+    def coefficient(law, v: float) -> float:
+        """Return the coefficient of steady sliding at `v` (m/s), at 1e-12 m/s if that is less."""
+        return steady(law.a, law.b_1 + law.b_2, law.mu_star, law.V_star, v)
+
+    def settled(law, speed: float) -> tuple[float, ...]:
+        """Return the states of steady sliding at `speed` (m/s), at V_star if that is zero."""
+        both = settled(law.V_star, speed)
+        return (both, both)
+
+    def force(law, slip: Vector, load: float, state: tuple[float, ...]) -> Vector:
+        """Return the friction force (N)."""
+        psi = law.mu_star + law.b_1 * state[0] + law.b_2 * state[1]
+        return friction_force(law.a, law.V_star, psi, slip, load)
+
+    def grain(law, state: tuple[float, ...]) -> float:
+        """Return the slip speed below which friction is proportional to it (m/s)."""
+        psi = law.mu_star + law.b_1 * state[0] + law.b_2 * state[1]
+        return grain_of(law.a, law.V_star, psi)
+
+    def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
+        """Return d(log_theta_i)/dt, per second."""
+        V = sqrt(slip[0] * slip[0] + slip[1] * slip[1])
+        return (
+            slipping(state[0], V, law.V_star, law.D_1),
+            slipping(state[1], V, law.V_star, law.D_2),
+        )

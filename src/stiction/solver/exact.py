@@ -1,0 +1,67 @@
+"""The solver for set-valued friction, as `stiction.solver.integrate` runs it."""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import Any
+
+from stiction.description import Description
+from stiction.solver import loop
+from stiction.solver.compiled import specialised
+from stiction.solver.frame import friction
+from stiction.solver.output import Output
+from stiction.solver.problem import Problem
+from stiction.solver.sampling import COLUMNS
+from stiction.solver.state import Accuracy, Motion, State, cooled, start
+from stiction.solver.stick import holding
+from stiction.solver.stretch import system_of
+from stiction.solver.surface import friction_along
+
+
+class Exact:
+    """Sticks are intervals, and what lies between them is integrated in turning axes."""
+
+    columns = COLUMNS
+
+    def begin(self, description: Description) -> State:
+        """Return the state from which a run starts."""
+        slider, initial, _ = description
+        u = (initial.u_x, initial.u_y)
+        return start(system_of(slider), initial.time, u, initial.slip(slider))
+
+    def entered(self, state: State, x: float, y: float) -> State:
+        """Return the state at the start of a stretch, where the slip velocity jumps by (x, y).
+
+        The memory of earlier steps is of no use after a bend.
+        """
+        memory = cooled(state.memory, min(state.memory.h, state.memory.h_takeoff))
+        m = state.motion
+        if x == y == 0.0:
+            return State(m, memory, state.counts)
+        slip_x, slip_y = m.r * m.e_x + x, m.r * m.e_y + y
+        r = sqrt(slip_x * slip_x + slip_y * slip_y)
+        e = (slip_x / r, slip_y / r) if r > 0.0 else (m.e_x, m.e_y)
+        return State(Motion(m.t, m.u_x, m.u_y, r, *e), memory, state.counts)
+
+    def advance(
+        self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
+    ) -> tuple[int, State]:
+        """Advance until `end` (s) or until the budget is used up."""
+        kinds: tuple[Any, ...] = (type(problem.law), type(problem.drive), type(problem.load))
+        code, state, out.filled, turns = specialised(loop.advance, *kinds)(
+            problem, state, end, held, budget, out.times, out.samples, out.filled, out.sticks
+        )
+        out.used += turns
+        out.make_room(state.counts.sticks)
+        return code, state
+
+    def last_row(self, problem: Problem, state: State) -> list[float]:
+        """Return the sample of a state between two steps."""
+        motion, m = state.motion, problem.system.mass
+        slip = [motion.r * motion.e_x, motion.r * motion.e_y]
+        if motion.r == 0.0:
+            a_x, a_y = holding(problem, motion.t, motion.u_x, motion.u_y)
+            return [motion.u_x, motion.u_y, *slip, m * a_x, m * a_y, 1.0]
+        f = m * friction(problem, motion.t, motion.r)[0]
+        f_x, f_y = friction_along(problem, motion.e_x, motion.e_y)
+        return [motion.u_x, motion.u_y, *slip, f * f_x, f * f_y, 0.0]

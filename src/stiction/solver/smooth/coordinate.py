@@ -1,0 +1,83 @@
+"""The slip coordinate q, in which friction is nearly linear: s = eps sinh(|q|) q/|q|.
+
+Rate-and-state friction is proportional to the slip velocity below a speed eps, which may
+be 1e-30 m/s, and to its logarithm above. With eps = 1e6 m/s, q is the slip velocity itself
+in other units.
+"""
+
+from __future__ import annotations
+
+from math import asinh, cosh, exp, log, sinh, sqrt
+
+from stiction.solver.compiled import piece
+
+SMALL = 1e-4  # below, sinh(x)/x = 1 + x^2/6 to the last digit
+LARGEST = 700.0  # sinh of more is no float
+ROUNDS = 30
+
+
+@piece
+def slip_at(eps: float, q_x: float, q_y: float) -> tuple[float, float]:
+    """Return the slip velocity (m/s)."""
+    square = q_x * q_x + q_y * q_y
+    if square < SMALL * SMALL:
+        f = eps * (1.0 + square / 6.0)
+    else:
+        q = sqrt(square)
+        f = eps * sinh(min(q, LARGEST)) / q
+    return f * q_x, f * q_y
+
+
+@piece
+def coordinate(eps: float, s_x: float, s_y: float) -> tuple[float, float]:
+    """Return q at a slip velocity (m/s)."""
+    s = sqrt(s_x * s_x + s_y * s_y)
+    f = asinh(s / eps) / s if s > 0.0 else 0.0
+    return f * s_x, f * s_y
+
+
+@piece
+def slip_slope(eps: float, q_x: float, q_y: float) -> tuple[float, float, float]:
+    """Return ds/dq: xx, xy and yy (m/s)."""
+    square = q_x * q_x + q_y * q_y
+    if square < SMALL * SMALL:
+        f, outer = eps * (1.0 + square / 6.0), eps / 3.0
+    else:
+        q = sqrt(square)
+        f = eps * sinh(min(q, LARGEST)) / q
+        outer = (eps * cosh(min(q, LARGEST)) - f) / square
+    return f + outer * q_x * q_x, outer * q_x * q_y, f + outer * q_y * q_y
+
+
+@piece
+def risen(q: float, rise: float, share: float) -> float:
+    """Return |q| after an update by `rise` > 0 of which `share` is meant for s, not for q.
+
+    What resists in Newton's equations is inertia, exponential in q, and friction, about
+    linear in it. The update would be right if both were linear; this solves
+
+        share (sinh q' - sinh q)/cosh q + (1 - share) (q' - q) = rise
+
+    instead. It is convex, so Newton's method converges from above.
+    """
+    if rise < 0.1:
+        return q + rise
+    most = min(q + rise / max(1.0 - share, 1e-300), LARGEST)
+    if share > 0.0:
+        # sinh q' = sinh q + cosh q rise/share, for large values too
+        x = rise / share
+        there = q + log(1.0 + 2.0 * x) if q > 1.0 else asinh(sinh(q) + cosh(q) * x)
+        most = min(most, there)
+    y = most
+    for _ in range(ROUNDS):
+        up, down = exp(min(y - q, LARGEST)), exp(-y - q)
+        unit = 1.0 + exp(-2.0 * q)
+        # sinh y/cosh q and cosh y/cosh q without overflow
+        sinh_y, cosh_y = (up - down) / unit, (up + down) / unit
+        sinh_q = (1.0 - exp(-2.0 * q)) / unit
+        value = share * (sinh_y - sinh_q) + (1.0 - share) * (y - q) - rise
+        change = value / (share * cosh_y + 1.0 - share)
+        y -= change
+        if abs(change) < 1e-3:
+            break
+    return max(y, q)

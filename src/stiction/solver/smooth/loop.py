@@ -1,0 +1,117 @@
+"""The loop of smooth steps, until the time or the step budget is used up."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+import numpy as np
+
+from stiction.solver.compiled import compiled, piece
+from stiction.solver.problem import Problem, in_principal_axes, travel
+from stiction.solver.radau import step_factor
+from stiction.solver.smooth.coordinate import coordinate
+from stiction.solver.smooth.law import grain_at
+from stiction.solver.smooth.newton import A
+from stiction.solver.smooth.rates import Outset, measure
+from stiction.solver.smooth.sampling import sample
+from stiction.solver.smooth.state import Memory, Motion, State
+from stiction.solver.smooth.step import remember, step
+from stiction.solver.smooth.workspace import START, Workspace, workspace
+from stiction.solver.state import (
+    COMPLETED,
+    NON_FINITE,
+    RUNNING,
+    STEP_UNDERFLOW,
+    Accuracy,
+    counted,
+)
+
+GROWTH = 2.0
+
+
+@piece
+def begin(problem: Problem, motion: Motion, z: np.ndarray, w: Workspace, speed: float) -> Outset:
+    """Write the first row of a step, and return where it starts."""
+    w.values[START, 0] = motion.s_x
+    w.values[START, 1] = motion.s_y
+    for k in range(len(z)):
+        w.values[START, 2 + k] = w.y[START, 2 + k] = z[k]
+    eps = grain_at(problem.law, w.values, START)
+    w.y[START, 0], w.y[START, 1] = coordinate(eps, motion.s_x, motion.s_y)
+    start = Outset(motion.t, motion.u_x, motion.u_y, eps, min(1.0, speed / eps))
+    measure(problem, start, w)
+    return start
+
+
+@piece
+def ended(problem: Problem, start: Outset, h: float, end: float, w: Workspace) -> Motion:
+    """Return the motion at the end of a step."""
+    d_x, d_y = in_principal_axes(problem, travel(problem.drive, start.t, h))
+    slid_x = slid_y = 0.0
+    for j in range(3):
+        slid_x += h * A[2, j] * w.values[j + 1, 0]
+        slid_y += h * A[2, j] * w.values[j + 1, 1]
+    u_x, u_y = start.u_x + (d_x - slid_x), start.u_y + (d_y - slid_y)
+    return Motion(end, u_x, u_y, w.values[3, 0], w.values[3, 1])
+
+
+@piece
+def finite(motion: Motion, z: np.ndarray) -> bool:
+    """Return whether every number is one."""
+    total = motion.u_x + motion.u_y + motion.s_x + motion.s_y
+    for k in range(len(z)):
+        total += z[k]
+    return isfinite(total)
+
+
+@compiled
+def advance(
+    problem: Problem,
+    state: State,
+    t_end: float,
+    accuracy: Accuracy,
+    budget: int,
+    times: np.ndarray,
+    samples: np.ndarray,
+    k: int,
+) -> tuple[int, State, int, int]:
+    """Advance until `t_end` or until the budget is used up; as `stiction.solver.loop.advance`.
+
+    Rows of `samples` are 7 + n long; see `stiction.solver.smooth.sampling`.
+    """
+    motion, internal, memory, counts = state
+    z = internal.copy()
+    past = memory.past.copy()
+    h, h_last, warm = memory.h, memory.h_last, memory.warm
+    w = workspace(len(z))
+    code, turns = RUNNING, 0
+    while turns < budget:
+        if motion.t >= t_end:
+            code = COMPLETED
+            break
+        if not finite(motion, z):
+            code = NON_FINITE
+            break
+        start = begin(problem, motion, z, w, accuracy.speed)
+        w.past[:, :] = past
+        remember(w, start.eps)
+        done, taken, error, rejected, iterations = step(
+            problem, start, t_end, h, h_last, warm, w, accuracy
+        )
+        counts = counted(counts, rejected, iterations)
+        turns += 1
+        if not done:
+            code = STEP_UNDERFLOW
+            break
+        k = sample(problem, start, taken, w, accuracy.newton, times, samples, k)
+        end = t_end if start.t + taken >= t_end else start.t + taken
+        motion = ended(problem, start, taken, end, w)
+        for i in range(len(z)):
+            z[i] = w.values[3, 2 + i]
+        past[:, :] = w.values[:4, :]
+        following = taken * step_factor(error, GROWTH)
+        h = max(h, following) if end == t_end else following
+        h_last, warm = taken, end < t_end
+    if motion.t >= t_end:
+        code = COMPLETED
+    return code, State(motion, z, Memory(h, h_last, warm, past), counts), k, turns

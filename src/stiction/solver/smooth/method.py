@@ -1,0 +1,68 @@
+"""The solver for smooth friction, as `stiction.solver.integrate` runs it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from stiction.description import Description
+from stiction.friction import states
+from stiction.solver.compiled import specialised
+from stiction.solver.output import Output
+from stiction.solver.problem import Problem, at, force
+from stiction.solver.sampling import COLUMNS
+from stiction.solver.smooth import loop
+from stiction.solver.smooth.law import Smoothed
+from stiction.solver.smooth.state import Memory, Motion, State
+from stiction.solver.state import Accuracy, Counts
+from stiction.solver.stretch import first_step, system_of
+
+
+class Smooth:
+    """A law with internal state, or a set-valued one made smooth over `delta` (m/s)."""
+
+    def __init__(self, law: Any, delta: float | None) -> None:
+        """Take the slider's law."""
+        self.states = len(states(law))
+        self.delta = delta
+        self.columns = COLUMNS + self.states
+
+    def begin(self, description: Description) -> State:
+        """Return the state from which a run starts."""
+        slider, initial, _ = description
+        motion = Motion(initial.time, initial.u_x, initial.u_y, *initial.slip(slider))
+        internal = np.array(initial.internal(slider), dtype=np.float64)
+        h = first_step(system_of(slider))
+        memory = Memory(h, h, False, np.zeros((4, 2 + self.states)))
+        return State(motion, internal, memory, Counts(0, 0, 0, 0, 0.0))
+
+    def entered(self, state: State, x: float, y: float) -> State:
+        """Return the state at the start of a stretch, where the slip velocity jumps by (x, y)."""
+        m = state.motion
+        motion = m._replace(s_x=m.s_x + x, s_y=m.s_y + y)
+        return state._replace(motion=motion, memory=state.memory._replace(warm=False))
+
+    def advance(
+        self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
+    ) -> tuple[int, State]:
+        """Advance until `end` (s) or until the budget is used up."""
+        kinds: tuple[Any, ...] = (type(problem.law), type(problem.drive), type(problem.load))
+        code, state, out.filled, turns = specialised(loop.advance, *kinds)(
+            self.smooth(problem), state, end, held, budget, out.times, out.samples, out.filled
+        )
+        out.used += turns
+        return code, state
+
+    def last_row(self, problem: Problem, state: State) -> list[float]:
+        """Return the sample of a state between two steps."""
+        t, u_x, u_y, s_x, s_y = state.motion
+        z = tuple(float(value) for value in state.internal)
+        f = force(self.smooth(problem).law, (s_x, s_y), at(problem.load, t), z)
+        return [u_x, u_y, s_x, s_y, *f, 0.0, *z]
+
+    def smooth(self, problem: Problem) -> Problem:
+        """Return the problem with a law that is smooth at zero slip."""
+        if self.delta is None:
+            return problem
+        return problem._replace(law=Smoothed(problem.law, problem.surface, self.delta))

@@ -1,0 +1,389 @@
+"""Laws with internal state: against SciPy, published digits, and themselves.
+
+SciPy integrates equations written down here once more, in the logarithms of slip speed and state
+where the motion is in one dimension. Its tolerance is a hundred times tighter than what is asked.
+"""
+
+from math import asinh, exp, hypot, log, pi, sqrt
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+import stiction as st
+from stiction.friction import LAWS, has_state, states
+
+PAPER = st.presets.nakano_popov_2020()
+KINDS = [kind for kind in LAWS.values() if states(kind)]
+AGEING = st.RateStateAgeing(a=0.01, b=0.015, D_c=1e-5, mu_star=0.6, V_star=1e-6)
+SLIP = st.RateStateSlip(*AGEING)
+
+
+def largest(values):
+    return np.max(np.abs(values), initial=0.0)
+
+
+def columns(run, *names):
+    return np.array([run.data[name].values for name in names])
+
+
+# --- published digits ---------------------------------------------------------------------------
+
+
+def test_lugre_block_pulled_by_a_spring():
+    """Canudas de Wit's example as published with Exudyn: its digits at t = 25 s."""
+    slider = st.Slider(
+        mass=1.0,
+        k_x=2.0,
+        k_y=2.0,
+        phi="0 deg",
+        normal_load=1.0,
+        friction=st.LuGre(1.0, 1.5, 1e-3, 1e5, 1e5**0.5, 0.4),
+        drive=st.ConstantVelocity(0.1),
+        driven="spring",
+    )
+    at_rest = st.Initial(v_x=0.1, v_y=0.0)
+    run = st.simulate(slider, 25.0, initial=at_rest, rtol=1e-10)
+    end = run.final
+    assert end["X"].item() == pytest.approx(1.9088391992, abs=2e-10)
+    assert end["V_X"].item() == pytest.approx(9.42415459e-6, rel=1e-8)
+    assert end["z_x"].item() == pytest.approx(1.18167955e-5, rel=1e-8)
+
+
+# --- critical stiffness of rate and state -------------------------------------------------------
+
+
+def growth(k, kind):
+    """Growth rate of a small perturbation of steady sliding, all per unit area, 1/s.
+
+    The perturbed equations are of third order, so evenly spaced samples of their solution obey a
+    recurrence of three terms, whose roots are exp(eigenvalue times spacing). What is not linear
+    is smaller by the relative perturbation, 1e-6, or better by its square where it alternates.
+    """
+    V, sigma, law = 1e-2, 5e6, kind(*AGEING)
+    slider = st.Slider(
+        mass=1e3,
+        k_x=k,
+        k_y=k,
+        phi="0 deg",
+        normal_load=sigma,
+        friction=law,
+        drive=st.ConstantVelocity(V),
+    )
+    start = st.Initial(u_x=law.coefficient(V) * sigma / k, v_x=1e-6 * V, v_y=0.0)
+    rate = 2e3
+    run = st.simulate(slider, 0.05, initial=start, sample_rate=rate, rtol=1e-12)
+    assert run.status.ok
+    v = run.data["v_x"].values
+    rows = np.array([v[i : i + 3] for i in range(len(v) - 3)])
+    terms = np.linalg.lstsq(rows, v[3:])[0]
+    roots = np.roots([1.0, *-terms[::-1]])
+    return rate * log(abs(max(roots, key=abs)))
+
+
+@pytest.mark.parametrize("kind", [st.RateStateAgeing, st.RateStateSlip])
+def test_critical_stiffness_with_inertia(kind):
+    """k_c = (b - a) sigma/D_c [1 + m V^2/(a sigma D_c)] = 3.000e9 Pa/m, for both laws."""
+    assert growth(2.9e9, kind) > 0.0 > growth(3.1e9, kind)
+    critical = brentq(growth, 2.9e9, 3.1e9, args=(kind,), xtol=1e4)
+    assert critical == pytest.approx(3.000e9, rel=1e-5)
+
+
+# --- slide, hold, slide -------------------------------------------------------------------------
+
+HOLD = st.DriveProgram(
+    velocity=1e-4, program=[st.Constant(duration=0.5), st.Hold(duration=20.0), st.Constant()]
+)
+TESTED = st.Slider(
+    mass=1.0,
+    k_x=1e4,
+    k_y=1e4,
+    phi="0 deg",
+    normal_load=10.0,
+    friction=AGEING,
+    drive=HOLD,
+    driven="spring",
+)
+
+
+def slide_hold_slide(law, times):
+    """Friction coefficient at `times` by SciPy, in u, ln V and ln(V* theta/D_c)."""
+    k, m, W = TESTED.k_x, TESTED.mass, TESTED.normal_load
+    ageing = isinstance(law, st.RateStateAgeing)
+
+    def friction(w, z):  # asinh(x) for x far above one
+        x = w - log(2 * law.V_star) + (law.mu_star + law.b * z) / law.a
+        return law.a * np.where(x > 20, x + log(2), np.arcsinh(np.exp(np.minimum(x, 20))))
+
+    def change(t, y, drive):
+        u, w, z = y
+        V = exp(w)
+        if ageing:
+            aged = law.V_star / law.D_c * exp(-z) - V / law.D_c
+        else:
+            aged = -V / law.D_c * (w - log(law.V_star) + z)
+        return [drive - V, (k * u - W * float(friction(w, z))) / (m * V), aged]
+
+    V = HOLD.velocity
+    y = [law.coefficient(V) * W / k, log(V), log(law.V_star / V)]
+    found = []
+    for start, end, drive in ((0.0, 0.5, V), (0.5, 20.5, 0.0), (20.5, times[-1], V)):
+        inside = times[(times > start) & (times <= end)]
+        grid = np.unique([*inside, end])
+        solution = solve_ivp(
+            change, (start, end), y, "Radau", grid, args=(drive,), rtol=1e-10, atol=1e-13
+        )
+        assert solution.success
+        y = solution.y[:, -1]
+        found.append(friction(*solution.y[1:, : len(inside)]))
+    return np.concatenate(found)
+
+
+@pytest.mark.parametrize("law", [AGEING, SLIP], ids=["ageing", "slip"])
+def test_healing_in_slide_hold_slide(law):
+    V = HOLD.velocity
+    start = st.Initial(u_x=law.coefficient(V) * 10.0 / 1e4, v_x=0.0, v_y=0.0)
+    run = st.simulate(TESTED.replace(friction=law), 21.0, initial=start, sample_rate=1e3, rtol=1e-8)
+    assert run.status.ok
+    ours = run.data["friction"].values[1:] / 10.0
+    theirs = slide_hold_slide(law, run.data["time"].values[1:])
+    again = run.data["time"].values[1:] > 20.5
+    assert theirs[again].max() > law.coefficient(V) + 0.01  # it has healed
+    assert ours[again].max() == pytest.approx(theirs[again].max(), rel=1e-6)
+    assert ours == pytest.approx(theirs, rel=1e-6)
+
+
+# --- two dimensions -----------------------------------------------------------------------------
+
+
+def lugre(law, s, load, z):
+    """Canudas de Wit et al. 1995, with vectors."""
+    r = hypot(*s)
+    g = load * (law.mu_c + (law.mu_s - law.mu_c) * exp(-((r / law.v_s) ** 2)))
+    dz = s - law.sigma_0 * r / g * z
+    return law.sigma_0 * z + law.sigma_1 * dz + law.sigma_2 * s, dz
+
+
+def rate_and_state(law, s, load, z):
+    """The regularised coefficient along the slip, with the ageing or the slip law."""
+    r = hypot(*s)
+    mu = law.a * asinh(r / (2 * law.V_star) * exp((law.mu_star + law.b * z[0]) / law.a))
+    x = r / law.V_star * exp(z[0])  # V theta/D_c
+    dz = (1 - x) / x if isinstance(law, st.RateStateAgeing) else -log(x)
+    return mu * load * s / r, np.array([r / law.D_c * dz])
+
+
+def integrated(slider, law, times, equations, y0, rtol):
+    """u, slip and internal states at `times`, by SciPy."""
+    drive = slider.drive.velocity * np.array(slider.direction)
+    stiffness = np.array([slider.k_x, slider.k_y])
+
+    def change(t, y):
+        u, s, z = y[:2], y[2:4], y[4:]
+        f, dz = equations(law, s, slider.normal_load, z)
+        return [*(drive - s), *((stiffness * u - f) / slider.mass), *dz]
+
+    solution = solve_ivp(
+        change, (0.0, times[-1]), y0, "Radau", times, rtol=rtol, atol=1e-3 * rtol * np.abs(y0)
+    )
+    assert solution.success
+    return solution.y
+
+
+CASES = {
+    "lugre": (st.LuGre(0.15, 0.2, 1e-2, 1e5, 300.0, 0.4), lugre),
+    "ageing": (st.RateStateAgeing(0.01, 0.012, 1e-5, 0.2, 1e-3), rate_and_state),
+    "slip": (st.RateStateSlip(0.01, 0.012, 1e-5, 0.2, 1e-3), rate_and_state),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_papers_apparatus_agrees_with_scipy(name):
+    """From sliding aslant at V with a spring half drawn: it slows down, turns, and swings."""
+    law, equations = CASES[name]
+    slider = PAPER.replace(friction=law, phi="5 deg")
+    z = [1e-5, 2e-6] if name == "lugre" else [0.3]
+    start = st.Initial(
+        u_x=1e-3,
+        u_y=1e-8,
+        v_x=2e-4,
+        v_y=-3e-4,
+        states=dict(zip((s.name for s in states(law)), z, strict=True)),
+    )
+    runs = [
+        st.simulate(slider, 0.01, initial=start, sample_rate=5e3, rtol=rtol)
+        for rtol in (1e-9, 1e-8)
+    ]
+    names = ("u_x", "u_y", "slip_x", "slip_y", *(s.name for s in states(law)))
+    ours, loose = (columns(run, *names) for run in runs)
+    y0 = np.array([1e-3, 1e-8, *start.slip(slider), *z])
+    times = runs[0].data["time"].values
+    theirs, rough = (integrated(slider, law, times, equations, y0, r) for r in (1e-10, 1e-8))
+    for k in range(len(names)):
+        changes = largest(ours[k] - loose[k]) + largest(theirs[k] - rough[k])
+        assert changes <= 1e-5 * largest(ours[k]), "neither has converged"
+        assert largest(ours[k] - theirs[k]) <= changes + 1e-12 * largest(ours[k])
+
+
+# --- every law ----------------------------------------------------------------------------------
+
+FAST = PAPER.replace(drive=st.ConstantVelocity("5 mm/s"), phi="3 deg")
+
+
+def alike(kind):
+    """The system above with a comparable law of this kind."""
+    return FAST.replace(friction=kind.like(0.2, 0.15, 0.01))
+
+
+def internal(run):
+    return [s.name for s in states(run.slider.law)]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_error_falls_with_the_tolerance(kind):
+    """In proportion to rtol, for u_x and for the state, over stick-slip; see `simulate`."""
+    best = st.simulate(alike(kind), 0.5, sample_rate=1e3, rtol=1e-11)
+    names = ["u_x", *internal(best)]
+    for rtol in (1e-6, 1e-8):
+        run = st.simulate(alike(kind), 0.5, sample_rate=1e3, rtol=rtol)
+        assert run.status.ok
+        for name in names:
+            scale = largest(best.data[name].values)
+            error = largest(run.data[name].values - best.data[name].values)
+            assert error <= 30 * rtol * max(scale, 1e-9), name
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_sampling_does_not_influence(kind):
+    coarse = st.simulate(alike(kind), 0.5, sample_rate=100)
+    fine = st.simulate(alike(kind), 0.5, sample_rate=10e3)
+    names = ("u_x", "u_y", "slip_x", "slip_y", *internal(fine))
+    assert np.array_equal(columns(coarse, *names), columns(fine, *names)[:, ::100])
+    assert coarse.statistics == fine.statistics
+
+
+@pytest.mark.parametrize("kind", [st.LuGre, st.RateStateAgeing])
+def test_a_restart_goes_on(kind, tmp_path):
+    """From a saved and loaded sample: as exact as any run, within the tolerance."""
+    slider = alike(kind)
+    whole = st.simulate(slider, 0.5, sample_rate=1e3, rtol=1e-9)
+    first = st.simulate(slider, 0.3, sample_rate=1e3, rtol=1e-9)
+    loaded = st.load(first.save(tmp_path / "first.nc"))
+    for name in internal(first):
+        assert np.array_equal(loaded.data[name], first.data[name])
+        assert loaded.data[name].attrs["long_name"]
+        assert loaded.data[name].attrs["units"] == first.data[name].attrs["units"]
+    start = loaded.state(0.3)
+    assert set(start.states) == set(internal(first))
+    second = st.simulate(slider, 0.2, initial=start, sample_rate=1e3, rtol=1e-9)
+    for name in ("u_x", *internal(first)):
+        a, b = whole.data[name].values[300:], second.data[name].values
+        assert largest(a - b) <= 1e-7 * max(largest(a), 1e-9)
+    assert st.Description.from_json(second.description.to_json()) == second.description
+
+
+def test_a_long_hold_creeps_down_to_nothing():
+    """Slip decays over decades: d(ln V)/dt < 0 throughout, and V is right on a log axis.
+
+    Without motion friction is a psi-dependent asinh of V, so that V follows from u and z alone.
+    """
+    run = st.simulate(
+        TESTED.replace(drive=st.ConstantVelocity(0.0)),
+        1e4,
+        sample_rate=1.0,
+        initial=st.Initial(u_x=0.5e-3, v_x=0.0, v_y=0.0, states={"log_theta": 0.0}),
+    )
+    V, z, u = columns(run, "slip_x", "log_theta", "u_x")[:, 1:]
+    assert np.all(V > 0.0)
+    assert np.all(V < 1e-9)
+    law = AGEING
+    grip = 2 * law.V_star * np.exp(-(law.mu_star + law.b * z) / law.a)
+    wanted = grip * np.sinh(TESTED.k_x * u / (law.a * TESTED.normal_load))
+    assert pytest.approx(wanted, rel=1e-5) == V
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_driven_plate_may_jump(kind):
+    """The slip velocity jumps with the plate's; the states and the elongation do not."""
+    jumping = st.DriveProgram(velocity=5e-3, program=[st.Constant(duration=0.1), st.Step(2e-3)])
+    slider = alike(kind).replace(drive=jumping, phi="0 deg")
+    run = st.simulate(slider, 0.2, sample_rate=1e6, rtol=1e-8)
+    assert run.status.ok
+    before, after = run.data.isel(time=100_000), run.data.isel(time=100_001)
+    assert before["time"].item() == pytest.approx(0.1, abs=1e-12)
+    # friction changes the slip by F/m times 1 us in between, 10 um/s
+    dropped = before["slip_x"].item() - after["slip_x"].item()
+    assert dropped == pytest.approx(3e-3, abs=2e-5)
+
+
+# --- descriptions -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_a_law_says_of_itself(kind):
+    law = kind.like(0.2, 0.15, 0.01)
+    assert has_state(law)
+    # the Stribeck speed of LuGre is where its coefficient is e^-1 above mu_c
+    assert law.coefficient(1e-6) == pytest.approx(0.2, abs=1e-3)
+    assert law.coefficient(1e-1) <= 0.15
+    sliding = law.settled(1e-3)
+    if kind is not st.LuGre:  # its steady state depends on the load
+        assert law.change((1e-3, 0.0), 1.0, sliding) == pytest.approx(
+            [0.0] * len(sliding), abs=1e-12
+        )
+        f = law.force((1e-3, 0.0), 10.0, sliding)
+        assert f == pytest.approx((10.0 * law.coefficient(1e-3), 0.0))
+    assert law.force((0.0, 0.0), 10.0, (0.0,) * len(sliding)) == (0.0, 0.0)
+
+
+def test_states_that_do_not_fit_are_refused():
+    slider = alike(st.RateStateAgeing)
+    with pytest.raises(st.DescriptionError, match=r"initial.states.theta: .*did you mean"):
+        st.simulate(slider, 1.0, initial=st.Initial(states={"theta": 1.0}))
+    with pytest.raises(st.DescriptionError, match=r"initial.states.log_theta_2: missing"):
+        two = alike(st.RateStateAgeing2)
+        st.simulate(two, 1.0, initial=st.Initial(states={"log_theta_1": 1.0}))
+    with pytest.raises(st.DescriptionError, match="no internal state"):
+        st.simulate(PAPER, 1.0, initial=st.Initial(states={"log_theta": 1.0}))
+    with pytest.raises(st.DescriptionError, match=r"run.regularisation: .*smooth"):
+        st.simulate(slider, 1.0, regularisation=1e-8)
+
+
+class Relaxing(NamedTuple):
+    """A user's own law: a friction coefficient that follows its steady value over a distance."""
+
+    mu: float
+    distance: float
+    viscous: float
+
+    @staticmethod
+    def states():
+        return (("memory", "1", "friction coefficient remembered"),)
+
+    def coefficient(law, v):
+        return law.mu
+
+    def settled(law, speed):
+        return (law.mu,)
+
+    def force(law, slip, load, state):
+        r = sqrt(slip[0] * slip[0] + slip[1] * slip[1] + 1e-12)
+        f = state[0] * load / r + law.viscous
+        return f * slip[0], f * slip[1]
+
+    def change(law, slip, load, state):
+        r = sqrt(slip[0] * slip[0] + slip[1] * slip[1])
+        return (r / law.distance * (law.mu - state[0]),)
+
+
+def test_a_users_law_needs_no_derivatives():
+    law = Relaxing(0.2, 1e-4, 0.5)
+    start = st.Initial(states={"memory": 0.3})
+    run = st.simulate(PAPER.replace(friction=law, phi="20 deg"), 2.0, initial=start, rtol=1e-8)
+    assert run.status.ok
+    # settled: friction 0.2 W and viscous along X, held by the spring
+    assert run.final["memory"].item() == pytest.approx(0.2, abs=1e-4)
+    pull = run.final["spring_x"] * np.cos(pi / 9) - run.final["spring_y"] * -np.sin(pi / 9)
+    assert pull.item() == pytest.approx(2.0 + 5e-4, rel=1e-2)
