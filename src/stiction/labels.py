@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from stiction.description import Description
 from stiction.friction import states
-from stiction.slider import Slider
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -65,8 +63,8 @@ def dataset(
     c, s = slider.direction
     columns = np.ascontiguousarray(samples.T)
     u_x, u_y, slip_x, slip_y, f_x, f_y, sticking = columns[:7]
-    travel_X, travel_Y = _travel(slider, times)
-    rate_X, rate_Y = _rate(slider, times)
+    travel_X, travel_Y = slider.motion.travel(0.0, times)
+    rate_X, rate_Y = slider.motion.rate(times)
     v_x = rate_X * c - rate_Y * s - slip_x
     v_y = rate_X * s + rate_Y * c - slip_y
     friction = np.hypot(f_x, f_y)
@@ -106,21 +104,3 @@ def dataset(
     time = ("time", times, {"units": "s", "long_name": "time"})
     attributes = {"description": description.to_json(), **attributes}
     return xr.Dataset(variables, {"time": time}, attributes)
-
-
-def _travel(slider: Slider, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the displacement of the drive from t = 0, laboratory axes, in m."""
-    return _over(times, lambda t: slider.motion.travel(0.0, t))
-
-
-def _rate(slider: Slider, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    return _over(times, slider.motion.rate)
-
-
-def _over(times: np.ndarray, vector: Callable[[Any], Any]) -> tuple[np.ndarray, np.ndarray]:
-    """Evaluate a drive's vector at all times at once, or one by one if it uses `math`."""
-    try:
-        X, Y = vector(times)
-    except TypeError:
-        X, Y = np.array([vector(t) for t in times]).T
-    return np.broadcast_to(X, times.shape), np.broadcast_to(Y, times.shape)
