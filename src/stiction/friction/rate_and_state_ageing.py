@@ -22,7 +22,8 @@ from stiction.validation import validated
 class RateStateAgeing(NamedTuple):
     """Rate-and-state friction, ageing law (Dieterich 1979).
 
-        mu = a asinh[(V/2V*) exp((mu* + b ln(V* theta/D_c))/a)],   theta' = 1 - V theta/D_c
+        mu = a asinh[(V/2V*) exp((mu* + b ln(V* theta/D_c))/a)],
+        theta' = 1 - V theta/D_c
 
     See `stiction.friction.rate_and_state` for the symbols and the regularised form.
     The contacts age: in hold the state grows with time (healing).

@@ -22,7 +22,8 @@ from stiction.validation import validated
 class RateStateSlip(NamedTuple):
     """Rate-and-state friction, slip law (Ruina 1983).
 
-        mu = a asinh[(V/2V*) exp((mu* + b ln(V* theta/D_c))/a)],   theta' = -(V theta/D_c) ln(V theta/D_c)
+        mu = a asinh[(V/2V*) exp((mu* + b ln(V* theta/D_c))/a)],
+        theta' = -(V theta/D_c) ln(V theta/D_c)
 
     See `stiction.friction.rate_and_state` for the symbols and the regularised form.
     The state evolves by slip alone: without slip nothing heals.

@@ -58,9 +58,9 @@ def flow(
 def _states(n: int) -> Callable[..., Any]:
     """Return a compiled function that makes a tuple of the n states in a row."""
     if n == 0:
-        return register_jitable(lambda values, i: ())  # type: ignore[no-any-return]
+        return register_jitable(lambda values, i: ())
     before, last = _states(n - 1), n + 1
-    return register_jitable(  # type: ignore[no-any-return]
+    return register_jitable(
         lambda values, i: before(values, i) + (values[i, last],)  # noqa: RUF005
     )
 
