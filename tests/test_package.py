@@ -85,7 +85,7 @@ def test_cache_is_named_after_the_sources(tmp_path, monkeypatch):
 
     before = compiled._fingerprint()
     copy = tmp_path / "stiction"
-    for folder in ("solver", "friction", "drive"):
+    for folder in ("solver", "solver/smooth", "friction", "drive"):
         (copy / folder).mkdir(parents=True)
         for file in (Path(st.__file__).parent / folder).glob("*.py"):
             (copy / folder / file.name).write_bytes(file.read_bytes())

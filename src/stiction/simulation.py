@@ -107,6 +107,7 @@ def run(
     if settings.regularisation is not None and has_state(description.slider.law):
         message = "the law is smooth at zero slip by itself; leave regularisation out"
         raise DescriptionError([Fault("run.regularisation", message)])
+    initial.internal(description.slider)  # or say what is wrong with it
     if initial.time + settings.duration == initial.time:
         message = f"is too short to be seen from t = {initial.time:g} s; start earlier"
         raise DescriptionError([Fault("run.duration", message)])

@@ -7,7 +7,7 @@ import tempfile
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -92,11 +92,9 @@ class Trajectory:
         """Return the state at the sample nearest to `time` (s), to start another run from."""
         at = self.data.sel(time=time, method="nearest")
         names = ("u_x", "u_y", "v_x", "v_y", "time")
+        values: dict[str, Any] = {name: float(at[name]) for name in names}
         internal = {each.name: float(at[each.name]) for each in states(self.slider.law)}
-        return Initial(
-            **{name: float(at[name]) for name in names},
-            **({"states": internal} if internal else {}),
-        )
+        return Initial(**values, states=internal) if internal else Initial(**values)
 
     def save(self, path: str | Path) -> Path:
         """Write the result as NetCDF, whole or not at all; return the path.

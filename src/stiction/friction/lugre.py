@@ -56,7 +56,7 @@ class LuGre(NamedTuple):
         )
 
     def coefficient(law, v: float) -> float:
-        """Return g/W at slip speed `v` (m/s); viscous friction, which no load makes, is beside it."""
+        """Return g/W at slip speed `v` (m/s); viscous friction is not in proportion to the load."""
         x = v / law.v_s
         return law.mu_c + (law.mu_s - law.mu_c) * exp(-x * x)
 

@@ -17,10 +17,12 @@ The internal states of the solver are log_theta_i = ln(V* theta_i/D_i).
 
 from __future__ import annotations
 
-from math import asinh, exp, log, sqrt
+from collections.abc import Iterator
+from math import asinh, exp, hypot, log
 from typing import NamedTuple
 
 SLOWEST = 1e-12  # m/s: there is no steady state at rest; this is steady sliding by 30 um a year
+MOST_FOLDS = 680.0  # of slip speed by e between the smallest float and V*
 FIRM = 30.0  # beyond, asinh(exp(x)) is x + ln 2 to the last digit
 
 
@@ -35,7 +37,7 @@ def friction_force(
     a: float, V_star: float, psi: float, slip: tuple[float, float], load: float
 ) -> tuple[float, float]:
     """Return a W asinh[(V/2V*) exp(psi/a)] along the slip, N."""
-    V = sqrt(slip[0] * slip[0] + slip[1] * slip[1])
+    V = hypot(slip[0], slip[1])  # may be so small that its square is no float
     if V == 0.0:
         return 0.0, 0.0
     f = a * asinh_of_exp(log(V / (2.0 * V_star)) + psi / a) * load / V
@@ -57,6 +59,21 @@ def slipping(log_theta: float, V: float, V_star: float, D: float) -> float:
     if V == 0.0:
         return 0.0
     return -V / D * (log(V / V_star) + log_theta)
+
+
+def faults(a: float, b: float, mu_star: float) -> Iterator[tuple[str, str]]:
+    """Yield what is wrong with a direct effect: at rest, friction must be a number of floats.
+
+    The slip speed below which friction is proportional to it, 2 V* exp(-psi/a), must be one; 30 b
+    is for contacts that have aged for a hundred days.
+    """
+    least = (mu_star + 30.0 * b) / MOST_FOLDS
+    if a < least:
+        yield (
+            "a",
+            f"must be {least:.3g} at least with this mu_star and b, is {a:g}: below, friction at "
+            "rest is as good as set-valued; use Coulomb or ExponentialWeakening",
+        )
 
 
 def steady(a: float, b: float, mu_star: float, V_star: float, v: float) -> float:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from math import sqrt
+from collections.abc import Iterator
+from math import hypot
 from typing import NamedTuple, Self
 
 from stiction.friction.law import Internal, Vector
 from stiction.friction.rate_and_state import (
     ageing,
     comparable,
+    faults,
     friction_force,
     grain_of,
     settled,
@@ -22,7 +24,8 @@ from stiction.validation import validated
 class RateStateAgeing(NamedTuple):
     """Rate-and-state friction, ageing law (Dieterich 1979).
 
-        mu = a asinh[(V/2V*) exp((mu* + b ln(V* theta/D_c))/a)],   theta' = 1 - V theta/D_c
+        mu = a asinh[(V/2V*) exp((mu* + b ln(V* theta/D_c))/a)],
+        theta' = 1 - V theta/D_c
 
     See `stiction.friction.rate_and_state` for the symbols and the regularised form.
     The contacts age: in hold the state grows with time (healing).
@@ -50,6 +53,10 @@ class RateStateAgeing(NamedTuple):
         """Return a comparable law; see `stiction.friction.rate_and_state.comparable`."""
         return kind(*comparable(static, kinetic, speed))
 
+    def faults(law) -> Iterator[tuple[str, str]]:
+        """Yield what does not fit together."""
+        return faults(law.a, law.b, law.mu_star)
+
     @staticmethod
     def states() -> tuple[Internal, ...]:
         """Return the logarithm of the contact time."""
@@ -73,5 +80,5 @@ class RateStateAgeing(NamedTuple):
 
     def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
         """Return d(log_theta)/dt, per second."""
-        V = sqrt(slip[0] * slip[0] + slip[1] * slip[1])
+        V = hypot(slip[0], slip[1])
         return (ageing(state[0], V, law.V_star, law.D_c),)

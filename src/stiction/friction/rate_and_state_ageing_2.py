@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from math import sqrt
+from collections.abc import Iterator
+from math import hypot
 from typing import NamedTuple, Self
 
 from stiction.friction.law import Internal, Vector
 from stiction.friction.rate_and_state import (
     ageing,
     comparable,
+    faults,
     friction_force,
     grain_of,
     settled,
@@ -55,6 +57,10 @@ class RateStateAgeing2(NamedTuple):
         a, b, D, mu_star, V_star = comparable(static, kinetic, speed)
         return kind(a, b / 2, D, b / 2, 10 * D, mu_star, V_star)
 
+    def faults(law) -> Iterator[tuple[str, str]]:
+        """Yield what does not fit together."""
+        return faults(law.a, law.b_1 + law.b_2, law.mu_star)
+
     @staticmethod
     def states() -> tuple[Internal, ...]:
         """Return the logarithms of both contact times."""
@@ -84,7 +90,7 @@ class RateStateAgeing2(NamedTuple):
 
     def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
         """Return d(log_theta_i)/dt, per second."""
-        V = sqrt(slip[0] * slip[0] + slip[1] * slip[1])
+        V = hypot(slip[0], slip[1])
         return (
             ageing(state[0], V, law.V_star, law.D_1),
             ageing(state[1], V, law.V_star, law.D_2),

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from math import sqrt
+from collections.abc import Iterator
+from math import hypot
 from typing import NamedTuple, Self
 
 from stiction.friction.law import Internal, Vector
 from stiction.friction.rate_and_state import (
     comparable,
+    faults,
     friction_force,
     grain_of,
     settled,
@@ -22,7 +24,8 @@ from stiction.validation import validated
 class RateStateSlip(NamedTuple):
     """Rate-and-state friction, slip law (Ruina 1983).
 
-        mu = a asinh[(V/2V*) exp((mu* + b ln(V* theta/D_c))/a)],   theta' = -(V theta/D_c) ln(V theta/D_c)
+        mu = a asinh[(V/2V*) exp((mu* + b ln(V* theta/D_c))/a)],
+        theta' = -(V theta/D_c) ln(V theta/D_c)
 
     See `stiction.friction.rate_and_state` for the symbols and the regularised form.
     The state evolves by slip alone: without slip nothing heals.
@@ -50,6 +53,10 @@ class RateStateSlip(NamedTuple):
         """Return a comparable law; see `stiction.friction.rate_and_state.comparable`."""
         return kind(*comparable(static, kinetic, speed))
 
+    def faults(law) -> Iterator[tuple[str, str]]:
+        """Yield what does not fit together."""
+        return faults(law.a, law.b, law.mu_star)
+
     @staticmethod
     def states() -> tuple[Internal, ...]:
         """Return the logarithm of the contact time."""
@@ -73,5 +80,5 @@ class RateStateSlip(NamedTuple):
 
     def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
         """Return d(log_theta)/dt, per second."""
-        V = sqrt(slip[0] * slip[0] + slip[1] * slip[1])
+        V = hypot(slip[0], slip[1])
         return (slipping(state[0], V, law.V_star, law.D_c),)

@@ -40,14 +40,19 @@ def inlined(function: F) -> F:
 
 
 def piece(function: F) -> F:
-    """Compile a piece of the loop that is large, or called from several places, by itself."""
-    made: Any = numba.njit(
+    """Compile a piece of the loop that is called from several places or is large, by itself.
+
+    Only compiled code can call it, and it allocates nothing: without the code for either, arrays
+    that are passed on are not counted, and it compiles in a third of the time.
+    """
+    njit: Any = numba.njit
+    made = njit(
         nogil=True,
         error_model="numpy",
         fastmath=FAST,
-        _nrt=False,
         no_cpython_wrapper=True,
         no_cfunc_wrapper=True,
+        _nrt=False,
     )(function)
     return cast(F, made)
 
@@ -89,7 +94,11 @@ def _kept(function: F, name: str) -> F:
 
 def _jit(function: F, inline: bool, keep: bool) -> F:
     made: Any = numba.njit(
-        cache=keep, nogil=True, error_model="numpy", fastmath=FAST, forceinline=inline
+        cache=keep,
+        nogil=True,
+        error_model="numpy",
+        fastmath=FAST,
+        forceinline=inline,
     )(function)
     return cast(F, made)
 

@@ -7,7 +7,7 @@ in other units.
 
 from __future__ import annotations
 
-from math import asinh, cosh, exp, log, sinh, sqrt
+from math import asinh, cosh, exp, hypot, log, sinh, sqrt
 
 from stiction.solver.compiled import piece
 
@@ -31,7 +31,7 @@ def slip_at(eps: float, q_x: float, q_y: float) -> tuple[float, float]:
 @piece
 def coordinate(eps: float, s_x: float, s_y: float) -> tuple[float, float]:
     """Return q at a slip velocity (m/s)."""
-    s = sqrt(s_x * s_x + s_y * s_y)
+    s = hypot(s_x, s_y)  # whose square may be no float
     f = asinh(s / eps) / s if s > 0.0 else 0.0
     return f * s_x, f * s_y
 

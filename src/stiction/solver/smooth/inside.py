@@ -97,8 +97,8 @@ def balance(
                 rate = w.flow[i, k]
             w.right[k] = w.values[i, k] - p + weight * (dp - h * rate)
             sign = g if k < 2 else -g
-            for l in range(n):
-                w.matrix[k, l] = sign * w.jacobian[i, k, l] + (1.0 if k == l and k > 1 else 0.0)
+            for j in range(n):
+                w.matrix[k, j] = sign * w.jacobian[i, k, j] + (1.0 if k == j and k > 1 else 0.0)
         w.matrix[0, 0] += x * xx
         w.matrix[0, 1] += x * xy
         w.matrix[1, 0] += y * xy

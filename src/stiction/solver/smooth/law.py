@@ -58,15 +58,17 @@ def flow(
     values : ndarray
         Rows of slip velocity (x, y) and internal states; row `i` has the states.
     """
-    raise NotImplementedError("compiled code only")
+    z = tuple(values[i, 2:])
+    to[i, :2] = np.array(force(law, slip, load, z)) * per_mass
+    to[i, 2:] = change(law, slip, load, z) if z else ()
 
 
 def _states(n: int) -> Callable[..., Any]:
     """Return a compiled function that makes a tuple of the n states in a row."""
     if n == 0:
-        return register_jitable(lambda values, i: ())  # type: ignore[no-any-return]
+        return register_jitable(lambda values, i: ())
     before, last = _states(n - 1), n + 1
-    return register_jitable(  # type: ignore[no-any-return]
+    return register_jitable(
         lambda values, i: before(values, i) + (values[i, last],)  # noqa: RUF005
     )
 
@@ -97,7 +99,7 @@ def _flow(
 
 def grain_at(law: Any, values: np.ndarray, i: int) -> float:
     """Return the slip speed below which friction is proportional to it, at a row's states."""
-    raise NotImplementedError("compiled code only")
+    return max(grain(law, tuple(values[i, 2:])), FINEST)
 
 
 @overload(grain_at, strict=False)

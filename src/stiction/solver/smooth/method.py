@@ -18,6 +18,10 @@ from stiction.solver.smooth.state import Memory, Motion, State
 from stiction.solver.state import Accuracy, Counts
 from stiction.solver.stretch import first_step, system_of
 
+# of the slip speed below which that of set-valued friction is not resolved: states remember slower
+# slip. LuGre's published case comes out 600 times better for 14 % more steps.
+FINER = 0.03
+
 
 class Smooth:
     """A law with internal state, or a set-valued one made smooth over `delta` (m/s)."""
@@ -49,7 +53,14 @@ class Smooth:
         """Advance until `end` (s) or until the budget is used up."""
         kinds: tuple[Any, ...] = (type(problem.law), type(problem.drive), type(problem.load))
         code, state, out.filled, turns = specialised(loop.advance, *kinds)(
-            self.smooth(problem), state, end, held, budget, out.times, out.samples, out.filled
+            self.smooth(problem),
+            state,
+            end,
+            self.resolved(held),
+            budget,
+            out.times,
+            out.samples,
+            out.filled,
         )
         out.used += turns
         return code, state
@@ -60,6 +71,10 @@ class Smooth:
         z = tuple(float(value) for value in state.internal)
         f = force(self.smooth(problem).law, (s_x, s_y), at(problem.load, t), z)
         return [u_x, u_y, s_x, s_y, *f, 0.0, *z]
+
+    def resolved(self, held: Accuracy) -> Accuracy:
+        """Return what each step is held to."""
+        return held._replace(speed=FINER * held.speed) if self.states else held
 
     def smooth(self, problem: Problem) -> Problem:
         """Return the problem with a law that is smooth at zero slip."""

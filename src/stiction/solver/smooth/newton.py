@@ -50,8 +50,7 @@ def assemble(problem: Problem, start: Outset, h: float, w: Workspace) -> bool:
         for i in range(3):
             row, column = i * n, j * n
             for k in range(n):
-                for l in range(n):
-                    w.matrix[row + k, column + l] = 0.0
+                w.matrix[row + k, column : column + n] = 0.0
             x = D[i, j] + h * h * s.k_x * s.per_mass * A[i, j]
             y = D[i, j] + h * h * s.k_y * s.per_mass * A[i, j]
             if i == j:
@@ -65,8 +64,8 @@ def assemble(problem: Problem, start: Outset, h: float, w: Workspace) -> bool:
                 w.matrix[row + k, column + k] = D[i, j]
         for k in range(n):
             sign = h if k < 2 else -h
-            for l in range(n):
-                w.matrix[j * n + k, j * n + l] += sign * w.jacobian[j + 1, k, l]
+            for by in range(n):
+                w.matrix[j * n + k, j * n + by] += sign * w.jacobian[j + 1, k, by]
     return factorise(w.matrix, w.order, w.scale, 3 * n)
 
 

@@ -6,7 +6,7 @@ trials. Columns are slip x, y and the internal states z.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from stiction.solver.compiled import inlined
 
 ROWS = 6
 # stages: 1, 2, 3; numbers of numpy, or numba would compile for each of them anew
-START, INSIDE, TRIAL = np.int64(0), np.int64(4), np.int64(5)
+START, INSIDE, TRIAL = (cast(int, np.int64(row)) for row in (0, 4, 5))
 
 
 class Workspace(NamedTuple):
