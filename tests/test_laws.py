@@ -22,6 +22,11 @@ LAWS_TO_CHECK = [
     st.Stribeck(mu_s=0.2, mu_c=0.15, v_s=0.01, d=1.5, mu_static=0.22),
     st.Table(**MEASURED),
     st.Table(v=[0.001, 0.01], mu=[0.2, 0.1], mu_static=0.3),
+    st.LuGre(mu_c=0.15, mu_s=0.2, v_s=0.01, sigma_0=1e5, sigma_1=300.0),
+    st.RateStateAgeing(a=0.01, b=0.015, D_c=1e-5, mu_star=0.2, V_star=1e-3),
+    st.RateStateSlip(a=0.01, b=0.015, D_c=1e-5, mu_star=0.2, V_star=1e-3),
+    st.RateStateAgeing2(0.01, 0.01, 1e-5, 0.005, 1e-4, mu_star=0.2, V_star=1e-3),
+    st.RateStateSlip2(0.01, 0.01, 1e-5, 0.005, 1e-4, mu_star=0.2, V_star=1e-3),
 ]
 
 

@@ -96,7 +96,8 @@ def parameters_in_words(law: Any) -> list[str]:
         if isinstance(value, tuple):
             words.append(f"{len(value)} values of {symbol(name)}")
         elif value != 0 or name not in left_out:
-            words.append(f"{symbol(name)} = {quantity(value, unit_of(hints[name]).replace("*", " "))}")
+            unit = unit_of(hints[name]).replace("*", " ")
+            words.append(f"{symbol(name)} = {quantity(value, unit)}")
     return words
 
 
