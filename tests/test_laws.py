@@ -82,9 +82,9 @@ def test_a_dense_table_of_a_law_is_that_law(slider):
         ("Table", {"v": [0], "mu": [0.2]}, "v", "for a constant use 'coulomb'"),
         ("Table", {"v": [0, 2, 1], "mu": [0.2] * 3}, "v", "1 m/s follows 2 m/s; sort the points"),
         ("Table", {"v": "1 m/s", "mu": [0.2]}, "v", "write them in brackets"),
-        ("Table", {"v": [0, "1 mm"], "mu": [0.2] * 2}, "v.1", "not a unit of a velocity"),
-        ("Table", {"v": [0, 1], "mu": [0.2, -1]}, "mu.1", "must not be below 0, is -1"),
-        ("Stribeck", {"mu_s": 0.2, "mu_c": 0.1, "v_s": 1, "d": 0.5}, "d", "between 1 and 100"),
+        ("Table", {"v": [0, "1 mm"], "mu": [0.2] * 2}, "v.2", "not a unit of a velocity"),
+        ("Table", {"v": [0, 1], "mu": [0.2, -1]}, "mu.2", "must not be below 0, is -1"),
+        ("Stribeck", {"mu_s": 0.2, "mu_c": 0.1, "v_s": 1, "d": 0.5}, "d", "between 1 and 10"),
         ("Stribeck", {"mu_s": 0.2, "mu_c": 0.1, "v_s": 1, "c": -1}, "c", "not be below 0"),
         ("HyperbolicWeakening", {"mu_0": 0.2, "v_h": 0}, "v_h", "greater than 0"),
         (
@@ -186,7 +186,7 @@ class Dear(Creeping):
 @pytest.mark.parametrize(
     ("kind", "check", "words"),
     [
-        (WrongSlope, "slope", "is -0.02002 s/m, but the coefficient changes by -0.02 s/m"),
+        (WrongSlope, "slope", r"is -0.02002 s/m, but the coefficient changes by -0.02\d* s/m"),
         (WrongSlopeAtRest, "slope", r"slope\(0\) is 0 s/m"),
         (NotANumber, "finite", r"coefficient\(0\) is nan"),
         (Raising, "finite", r"coefficient\(0\) raises ZeroDivisionError"),

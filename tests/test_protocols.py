@@ -312,6 +312,21 @@ def test_a_drive_s_travel_is_the_integral_of_its_rate():
     assert Y.tolist() == [float(drive.rate(t)[1]) for t in times]
 
 
+def test_ten_thousand_pieces_cost_no_more_each():
+    """Travel and rate at any time, without a walk through all that went before."""
+    drive = st.DriveProgram(
+        velocity=1e-3, program=[st.Constant(duration=1e-3), st.Reversal(1e-3)], repeat=10_000
+    )
+    times = np.linspace(0.0, 20.0, 200_001)
+    travelled, _ = drive.travel(0.0, times)
+    wave = 1e-3 * (1e-3 - np.abs(times % 2e-3 - 1e-3))
+    # the breaks are sums of so many durations: 20,000 roundings of 20 s, at 1 mm/s
+    assert travelled == pytest.approx(wave, abs=2e4 * 2.2e-16 * 20.0 * 1e-3)
+    assert float(drive.rate(19.9995)[0]) == -1e-3
+    with pytest.raises(st.DescriptionError, match="for ever"):
+        st.DriveProgram(velocity=1.0, program=[st.Hold()], repeat=2)
+
+
 def test_pieces_follow_on_from_each_other():
     base = 2.0
     drive = st.DriveProgram(

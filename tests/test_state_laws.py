@@ -366,6 +366,46 @@ def test_states_that_do_not_fit_are_refused():
         st.simulate(slider, 1.0, regularisation=1e-8)
 
 
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-9])
+def test_a_vibration_after_a_long_hold_is_not_stepped_over(rtol):
+    """Whole periods fit into one step, whose stages and inside lie at equal phases.
+
+    The same vibration without the hold before it, whose steps start short, is the reference: what
+    a hold of that length does to the state is given to it.
+    """
+    drive = st.DriveProgram(program=[st.Hold(1e3), st.Harmonic(1.5e-2, 10.0, "90 deg", 10.0)])
+    slider = st.Slider(
+        mass=1.0,
+        k_x=1e4,
+        k_y=1e4,
+        phi="0 deg",
+        normal_load=10.0,
+        friction=AGEING,
+        drive=drive,
+        driven="spring",
+    )
+    start = st.Initial(u_x=5.3e-4, v_x=0.0, v_y=0.0, states={"log_theta": 0.0})
+    whole = st.simulate(slider, 1010.0, initial=start, rtol=rtol)
+    held = st.simulate(slider, 1e3, initial=start, rtol=1e-10)
+    shaken = slider.replace(drive=st.DriveProgram(program=[st.Harmonic(1.5e-2, 10.0, "90 deg")]))
+    kept = held.state(1e3).model_dump(exclude_unset=True)
+    # over the spring's end nothing slips at once: the elongation rate jumps with the drive
+    after = st.Initial(**(kept | {"time": 0.0, "v_x": 1.5e-2, "v_y": 0.0}))
+    alone = st.simulate(shaken, 10.0, initial=after, rtol=1e-10)
+    wanted = alone.final["u_x"].item()
+    assert abs(wanted - 5.3e-4) > 2e-4  # it is shaken loose
+    assert whole.final["u_x"].item() == pytest.approx(wanted, rel=10 * rtol)
+
+
+def test_a_plate_starts_again_after_a_very_long_hold():
+    """Steps in a landing may be far below what time resolves at 1e7 s."""
+    drive = st.DriveProgram(
+        velocity=1e-3, program=[st.Constant(duration=1.0), st.Hold(1e7), st.Constant()]
+    )
+    law = st.RateStateSlip.like(0.2, 0.15, 0.01)
+    assert st.simulate(PAPER.replace(friction=law, drive=drive), 1e7 + 2).status.ok
+
+
 class Relaxing(NamedTuple):
     """A user's own law: a friction coefficient that follows its steady value over a distance."""
 

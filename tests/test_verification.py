@@ -89,6 +89,26 @@ def test_free_vibration_loses_the_same_at_every_turn():
     assert run.final["u_x"].item() == pytest.approx(0.682179, abs=5e-7)
 
 
+# --- friction that drops in a narrow range of slip speed ----------------------------------------
+
+
+@pytest.mark.parametrize("d", [2.0, 10.0])
+def test_rtol_controls_a_drop_that_does_not_begin_at_rest(d):
+    """Stribeck's slope is zero at rest, its drop far below the drive's speed."""
+    slider = st.presets.nakano_popov_2020().replace(
+        k_y="100 kN/m",
+        phi="0 deg",
+        c_x=2.0,
+        drive=st.ConstantVelocity(5e-3),
+        friction=st.Stribeck(mu_s=0.2, mu_c=0.15, v_s=1e-6, d=d),
+    )
+    exact = st.simulate(slider, 1.0, rtol=1e-12).final["u_x"].item()
+    for rtol in (1e-6, 1e-8):
+        # many sticks and slips: ten times the tolerance
+        found = st.simulate(slider, 1.0, rtol=rtol).final["u_x"].item()
+        assert found == pytest.approx(exact, rel=10 * rtol)
+
+
 # --- stick-slip of a block on a belt: Leine et al., Nonlinear Dynamics 16 (1998) ----------------
 
 

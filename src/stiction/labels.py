@@ -29,6 +29,9 @@ VARIABLES = {
     "X": ("m", "position along the drive direction"),
     "Y": ("m", "position across the drive direction"),
     "V_X": ("m/s", "velocity along the drive direction"),
+    "drive_X": ("m/s", "drive velocity along X"),
+    "drive_Y": ("m/s", "drive velocity across X"),
+    "normal_load": ("N", "normal load"),
     "sticking": ("1", "whether the slip is zero"),
     "stick_start": ("s", "start of a stick interval"),
     "stick_end": ("s", "end of a stick interval"),
@@ -69,7 +72,7 @@ def dataset(
     v_y = rate_X * s + rate_Y * c - slip_y
     friction = np.hypot(f_x, f_y)
     theta = np.degrees(np.arctan2(f_y, f_x))
-    theta[friction == 0.0] = np.nan  # no force, no direction
+    theta[friction <= 1e-14 * np.max(friction, initial=0.0)] = np.nan  # no force, no direction
     values = {
         "u_x": u_x,
         "u_y": u_y,
@@ -86,6 +89,9 @@ def dataset(
         "X": travel_X - u_x * c - u_y * s,
         "Y": travel_Y + u_x * s - u_y * c,
         "V_X": slip_x * c + slip_y * s,
+        "drive_X": np.broadcast_to(rate_X, times.shape).copy(),
+        "drive_Y": np.broadcast_to(rate_Y, times.shape).copy(),
+        "normal_load": np.broadcast_to(slider.weight(times), times.shape).copy(),
         "sticking": sticking.astype(np.int8),
         "stick_start": sticks[:, 0].copy(),
         "stick_end": sticks[:, 1].copy(),

@@ -15,6 +15,7 @@ from stiction.errors import DescriptionError, Fault
 from stiction.friction import LAWS, Law, has_state, read_law
 from stiction.friction.law import static_coefficient
 from stiction.friction.likeness import Traits, like, traits
+from stiction.initial import Initial
 from stiction.tables import read_toml
 from stiction.validation import unknown
 
@@ -22,8 +23,15 @@ EXAMPLE = """'{law = "coulomb", mu_0 = 0.15}'"""
 
 
 def exchanged(description: Description, law: Law) -> Description:
-    """Return the same description with another friction law."""
-    return description._replace(slider=description.slider.replace(friction=law))
+    """Return the same description with another friction law.
+
+    Internal states at the start belong to the law that they were given for.
+    """
+    initial = description.initial
+    if initial.states is not None and type(law) is not type(description.slider.law):
+        initial = Initial(**initial.model_dump(exclude={"states"}, exclude_unset=True))
+    slider = description.slider.replace(friction=law)
+    return description._replace(slider=slider, initial=initial)
 
 
 def read_laws(description: Description, laws: Sequence[Any]) -> list[Law]:

@@ -19,7 +19,9 @@ from stiction.drive import (
     read_drive,
     read_load,
 )
+from stiction.errors import DescriptionError
 from stiction.friction import Law, has_state, read_law
+from stiction.friction.kinds import is_law
 from stiction.friction.own import named
 from stiction.tables import Reader, gather, read_toml
 from stiction.units import Angle, Damping, Force, Mass, Stiffness
@@ -36,9 +38,12 @@ def _within_a_right_angle(phi: float) -> float:
 
 
 def _is_law(value: Any) -> Any:
-    wanted = ("force", "change", "settled") if has_state(value) else ("coefficient", "slope")
-    if not all(callable(getattr(value, name, None)) for name in wanted):
+    if isinstance(value, type) or not isinstance(value, tuple):
         raise ValueError(f"{value!r} is not a friction law; write for example st.Coulomb(mu_0=0.2)")
+    try:
+        is_law(type(value), type(value).__name__)
+    except DescriptionError as error:
+        raise ValueError(error.faults[0].message) from None
     return value
 
 

@@ -88,9 +88,19 @@ class Trajectory:
         """The last sample."""
         return self.data.isel(time=-1)
 
-    def state(self, time: float) -> Initial:
-        """Return the state at the sample nearest to `time` (s), to start another run from."""
-        at = self.data.sel(time=time, method="nearest")
+    def state(self, time: float | str) -> Initial:
+        """Return the state at the sample nearest to `time` (s), to start another run from.
+
+        Raises
+        ------
+        ResultError
+            If the run was not there at that time.
+        """
+        wanted = Initial(time=time).time
+        first, last = (float(self.data["time"][i]) for i in (0, -1))
+        if not first <= wanted <= last:
+            raise ResultError(f"the run goes from {first:g} s to {last:g} s, not to {wanted:g} s")
+        at = self.data.sel(time=wanted, method="nearest")
         names = ("u_x", "u_y", "v_x", "v_y", "time")
         values: dict[str, Any] = {name: float(at[name]) for name in names}
         internal = {each.name: float(at[each.name]) for each in states(self.slider.law)}

@@ -85,6 +85,8 @@ def _parse(text: str, kind: Kind) -> float:
         ) from error
     if quantity.unitless and kind.unit:
         raise _fault(f"{text!r} has no unit; write for example {kind.example!r}")
+    if not kind.unit and not quantity.unitless:
+        raise _fault(f"{text!r} must be a number without a unit; write for example {kind.example}")
     try:
         return float(quantity.to(kind.unit).magnitude) if kind.unit else magnitude
     except pint.DimensionalityError as error:
@@ -122,9 +124,9 @@ def _listed(value: object) -> object:
 
 
 def _not_below_one(value: float) -> float:
-    if not 1.0 <= value <= 100.0:
+    if not 1.0 <= value <= 10.0:
         raise ValueError(
-            f"must lie between 1 and 100, is {value:g}; below 1 friction would change infinitely "
+            f"must lie between 1 and 10, is {value:g}; below 1 friction would change infinitely "
             "fast as slip vanishes"
         )
     return value

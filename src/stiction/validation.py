@@ -61,7 +61,9 @@ def faults(error: ValidationError, path: str, known: Iterable[str]) -> list[Faul
     """Return each fault of a pydantic error below `path`; `known` are the keys allowed there."""
     found = []
     for detail in error.errors():
-        at = ".".join([path, *map(str, detail["loc"])])
+        # lists are counted from 1, as their readers count them
+        keys = (str(key + 1) if isinstance(key, int) else key for key in detail["loc"])
+        at = ".".join([path, *keys])
         if detail["type"] == "faults":
             found += [
                 Fault(f"{at}.{inner.path}", inner.message) for inner in detail["ctx"]["found"]

@@ -39,13 +39,18 @@ def run(config: Path, /, *, output: Annotated[Path, Parameter(alias="-o")]) -> i
         reached = float(result.data.time[-1])
         console.print(f"[red]ended early[/red] at t = {reached:.6g} s: {result.status.value}")
     peak = float(abs(result.data["spring_x"]).max())
+    few = result.data.sizes["time"] <= 2
+    sampled = " at start and end (no sample_rate)" if few else ""
     for line in (
         f"{output}: {result.data.sizes['time']} samples, stick intervals: "
         f"{statistics.stick_count}, {stuck:.6g} s in all; {statistics.steps} steps",
-        f"largest k_x u_x: {peak:.4g} N, {peak / result.slider.normal_load:.4g} of the normal load",
+        f"largest k_x u_x{sampled}: {peak:.4g} N, {peak / result.slider.normal_load:.4g} of the "
+        "normal load",
         f"next: stiction plot {output} --output {output.with_suffix('.png')}",
     ):
         console.print(line, markup=False)
     if statistics.steps == 0:
-        console.print("it never slipped: friction could hold all the time; run it longer")
+        still = not result.data["drive_X"].any() and not result.data["drive_Y"].any()
+        remedy = "the drive is at rest; give it a velocity" if still else "run it longer"
+        console.print(f"it never slipped: friction could hold all the time; {remedy}")
     return 0 if result.status.ok else 1

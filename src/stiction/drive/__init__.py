@@ -7,7 +7,7 @@ other. What an accelerated drive does depends on which body it drives, see `Slid
 
 from __future__ import annotations
 
-from itertools import pairwise
+from bisect import bisect_left, bisect_right
 from math import inf
 from typing import Any
 
@@ -37,11 +37,20 @@ def drive_stretches(drive: Drive) -> Stretches:
 def jump(drive: Drive, t: float) -> tuple[float, float]:
     """Return by how much a drive's velocity (X, Y) jumps at time `t`, in m/s."""
     stretches = drive_stretches(drive)
-    for (end, before), (_, after) in pairwise(stretches):
-        if end == t:
-            (X, Y), (X_before, Y_before) = after.rate(t), before.rate(t)
-            return X - X_before, Y - Y_before
-    return 0.0, 0.0
+    before = bisect_left(stretches, t, key=_end)
+    if stretches[before][0] != t:
+        return 0.0, 0.0
+    (X, Y), (X_before, Y_before) = (stretches[i][1].rate(t) for i in (before + 1, before))
+    return X - X_before, Y - Y_before
+
+
+def ahead(stretches: Stretches, t: float) -> tuple[float, Any]:
+    """Return the stretch that goes on after time `t`."""
+    return stretches[bisect_right(stretches, t, key=_end)]
+
+
+def _end(stretch: tuple[float, Any]) -> float:
+    return stretch[0]
 
 
 def load_stretches(normal_load: float, program: LoadProgram | None) -> Stretches:
@@ -53,7 +62,7 @@ def load_stretches(normal_load: float, program: LoadProgram | None) -> Stretches
 
 def load_at(normal_load: float, program: LoadProgram | None, t: Any) -> Any:
     """Return the normal load at `t` (float or array, s), in N; before the jump where it jumps."""
-    return pick(load_stretches(normal_load, program), t, lambda load, at: (load.at(at),))[0]
+    return pick(load_stretches(normal_load, program), t, lambda load, at, _: (load.at(at),))[0]
 
 
 def read_drive(table: dict[str, Any]) -> Drive:
@@ -84,6 +93,7 @@ __all__ = [
     "Ramp",
     "Reversal",
     "Step",
+    "ahead",
     "drive_stretches",
     "jump",
     "load_at",

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from math import inf, pi
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from stiction.drive.pieces import DRIVE_PIECES, LOAD_PIECES
 from stiction.drive.reading import Reading, as_modulation, as_pieces
@@ -44,6 +44,11 @@ class DriveProgram(Described):
     along: Annotated[Any, as_modulation(VELOCITY)] = None
     across: Annotated[Any, as_modulation(VELOCITY)] = None
 
+    @model_validator(mode="after")
+    def _can_be_repeated(self) -> Self:
+        must_end(self.program, self.repeat)
+        return self
+
     @cached_property
     def stretches(self) -> tuple[tuple[float, Any], ...]:
         """The smooth stretches: when each ends (s), and what the solver takes for it."""
@@ -55,7 +60,7 @@ class DriveProgram(Described):
 
     def rate(self, t: Times) -> tuple[Any, Any]:
         """Return the velocity (X, Y) at `t`, in m/s; before the jump where it jumps."""
-        X, Y = pick(self.stretches, t, lambda course, at: course.rate(at))
+        X, Y = pick(self.stretches, t, lambda course, at, _: course.rate(at))
         return X, Y
 
     def travel(self, t: float, dt: Times) -> tuple[Any, Any]:
@@ -64,12 +69,25 @@ class DriveProgram(Described):
         return there[0] - here[0], there[1] - here[1]
 
     def _distance(self, t: Times) -> tuple[Any, Any]:
-        X = Y = start = 0.0
-        t = np.asarray(t, dtype=np.float64)
-        for end, course in self.stretches:
-            part = course.travel(start, np.clip(t, start, end) - start)
-            X, Y, start = X + part[0], Y + part[1], end
-        return X, Y
+        """Return the displacement (X, Y) since t = 0, in m."""
+        starts, X, Y = self._milestones
+        times = np.asarray(t, dtype=np.float64)
+        which = np.searchsorted(starts[1:], times, side="left")
+        part = pick(
+            self.stretches, times, lambda course, at, start: course.travel(start, at - start)
+        )
+        return X[which] + part[0], Y[which] + part[1]
+
+    @cached_property
+    def _milestones(self) -> tuple[Any, Any, Any]:
+        """When each stretch starts (s), and how far the drive has come by then (X, Y; m)."""
+        rows = [(0.0, 0.0, 0.0)]
+        for end, course in self.stretches[:-1]:
+            start, X, Y = rows[-1]
+            part = course.travel(start, end - start)
+            rows.append((end, X + float(part[0]), Y + float(part[1])))
+        starts, X, Y = np.array(rows).T
+        return starts, X, Y
 
     def to_table(self) -> dict[str, Any]:
         """Return the table [drive] of a description."""
@@ -94,6 +112,11 @@ class LoadProgram(Described):
     repeat: Repeat = 1
     modulation: Annotated[Any, as_modulation(FORCE)] = None
 
+    @model_validator(mode="after")
+    def _can_be_repeated(self) -> Self:
+        must_end(self.program, self.repeat)
+        return self
+
     def stretches(self, base: float) -> tuple[tuple[float, Any], ...]:
         """Return the smooth stretches for a base load (N): end (s) and what the solver takes."""
         return tuple(
@@ -104,6 +127,16 @@ class LoadProgram(Described):
     def to_table(self) -> dict[str, Any]:
         """Return the table [load] of a description."""
         return table_of(self, LOAD_PIECES)
+
+
+def must_end(program: Sequence[Any], repeat: int) -> None:
+    """Refuse a program that goes on for ever but is to be repeated."""
+    if repeat > 1 and program and program[-1].duration is None:
+        name = type(program[-1]).__name__.lower()
+        raise ValueError(
+            f"the last piece, {name}, goes on for ever and is never repeated; "
+            "give it a duration, or leave repeat out"
+        )
 
 
 def signals(
@@ -140,12 +173,13 @@ def waved(signal: Signal, modulation: Any) -> Signal:
 def _course(along: Signal, across: Signal) -> Any:
     """Return the plainest type that describes a stretch: it is the fastest to compute."""
     if _flat(along) and _flat(across) and across.value == 0.0:
-        return ConstantVelocity(along.value)
+        return ConstantVelocity._make([along.value])  # as it is: it has been read
     return Course(along, across)
 
 
 def _loading(force: Signal) -> Any:
-    return ConstantLoad(force.value) if _flat(force) and force.value > 0.0 else Loading(force)
+    constant = _flat(force) and force.value > 0.0
+    return ConstantLoad._make([force.value]) if constant else Loading(force)
 
 
 def _flat(signal: Signal) -> bool:
@@ -153,17 +187,28 @@ def _flat(signal: Signal) -> bool:
 
 
 def pick(stretches: Sequence[tuple[float, Any]], t: Times, value: Any) -> tuple[Any, ...]:
-    """Return values in time from the stretch that holds each time, its end included."""
+    """Return values in time from the stretch that holds each time, its end included.
+
+    ``value(stretch, times, start)`` is asked for them, `start` being when the stretch begins.
+    """
     times = np.asarray(t, dtype=np.float64)
-    which = np.searchsorted([end for end, _ in stretches], times, side="left")
+    ends = np.array([end for end, _ in stretches])
+    which = np.searchsorted(ends, times.ravel(), side="left")
+    order = np.argsort(which, kind="stable")
     columns: list[Any] = []
-    for i in np.unique(which):
-        inside = which == i
-        for n, column in enumerate(value(stretches[i][1], times[inside])):
+    for i, inside in zip(*_grouped(which[order], order), strict=True):
+        start = ends[i - 1] if i > 0 else 0.0
+        for n, column in enumerate(value(stretches[i][1], times.ravel()[inside], start)):
             if n == len(columns):
-                columns.append(np.empty(times.shape))
+                columns.append(np.empty(times.size))
             columns[n][inside] = column
-    return tuple(column[()] for column in columns)
+    return tuple(column.reshape(times.shape)[()] for column in columns)
+
+
+def _grouped(which: Any, order: Any) -> tuple[Any, list[Any]]:
+    """Return the values of a sorted array, and of `order` the part that belongs to each."""
+    kinds, first = np.unique(which, return_index=True)
+    return kinds, np.split(order, first[1:])
 
 
 def table_of(program: Described, known: Mapping[str, type[Any]]) -> dict[str, Any]:

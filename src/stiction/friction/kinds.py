@@ -34,16 +34,23 @@ def law_in(module: ModuleType, kind: str, name: str) -> type[Any]:
     if found is None:
         classes = [n for n, value in vars(module).items() if _is_its_own(value, module)]
         raise fault(f"{name!r}: {unknown('class', kind, classes or ['none'])}")
-    write = WRITE.format(name=kind.rpartition(".")[2])
+    law = is_law(found, name)
+    for field in sorted(RESERVED.intersection(law._fields)):
+        raise fault(f"{name!r} has a parameter {field!r}, a key of its own here; rename it")
+    return law
+
+
+def is_law(found: Any, name: str) -> type[Any]:
+    """Return a class, if it is a friction law; `name` is how the user calls it."""
+    write = WRITE.format(name=name.rpartition(":")[2].rpartition(".")[2])
     if not (inspect.isclass(found) and issubclass(found, tuple) and hasattr(found, "_fields")):
         raise fault(f"{name!r} is not a NamedTuple; {write}")
     wanted = WITH_STATE if hasattr(found, "states") else SET_VALUED
     lacking = [method for method in wanted if not callable(getattr(found, method, None))]
     if lacking:
         raise fault(f"{name!r} is not a friction law, it lacks {', '.join(lacking)}; {write}")
-    for field in sorted(RESERVED.intersection(found._fields)):
-        raise fault(f"{name!r} has a parameter {field!r}, a key of its own here; rename it")
-    return found
+    law: type[Any] = found
+    return law
 
 
 def tried(law: Any, name: str) -> Any:

@@ -31,7 +31,7 @@ class Stribeck(NamedTuple):
     v_s : float or str
         Stribeck velocity, m/s; 0.1 mm/s to 0.1 m/s.
     d : float, optional
-        Exponent, 1 to 100: 2 is usual (Gaussian), 1 the exponential law. Below 1 the slope at
+        Exponent, 1 to 10: 2 is usual (Gaussian), 1 the exponential law. Below 1 the slope at
         vanishing slip speed would be infinite.
     c : float or str, optional
         Viscous friction per normal load, s/m; none when left out.

@@ -77,11 +77,9 @@ def imposed(run: Trajectory) -> list[tuple[Floats, str, str]]:
 
     Drive velocity along X and across it, and normal load.
     """
-    slider, times = run.slider, run.data["time"].values
-    X, Y = (np.broadcast_to(v, times.shape) for v in slider.motion.rate(times))
-    load = np.broadcast_to(slider.weight(times), times.shape)
-    found = ((X, "$V$", "m/s"), (Y, "$V_Y$", "m/s"), (load, "$W$", "N"))
-    return [(v, symbol, unit) for v, symbol, unit in found if np.ptp(v) > 0]
+    names = (("drive_X", "$V$"), ("drive_Y", "$V_Y$"), ("normal_load", "$W$"))
+    found = [(run.data[name], symbol) for name, symbol in names]
+    return [(d.values, symbol, d.attrs["units"]) for d, symbol in found if np.ptp(d.values) > 0]
 
 
 def prefixed(values: ArrayLike) -> tuple[float, str]:

@@ -17,7 +17,7 @@ from stiction.trajectory import Trajectory
 from stiction.units import unit_of
 
 LETTERS = {"mu": r"\mu", "sigma": r"\sigma", "omega": r"\omega", "theta": r"\theta"}
-SUBSCRIPTS = {"inf": r"\infty", "star": "*", "static": r"\mathrm{s}"}
+SUBSCRIPTS = {"inf": r"\infty", "star": "*", "static": r"\mathrm{static}"}
 WIDTH = 40  # characters of a line
 
 

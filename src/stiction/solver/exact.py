@@ -26,6 +26,7 @@ class Exact:
     def begin(self, description: Description) -> State:
         """Return the state from which a run starts."""
         slider, initial, _ = description
+        initial.internal(slider)  # none may be given
         u = (initial.u_x, initial.u_y)
         return start(system_of(slider), initial.time, u, initial.slip(slider))
 

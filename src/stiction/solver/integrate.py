@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from math import sqrt
+from collections.abc import Callable, Hashable
+from functools import lru_cache
+from math import inf, pi, sqrt
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -25,7 +26,7 @@ from stiction.solver.state import (
     Accuracy,
     Counts,
 )
-from stiction.solver.stretch import Stretch, load_bounds, speeds, stretches
+from stiction.solver.stretch import Stretch, fastest_swing, load_bounds, speeds, stretches
 
 BUDGET = 100_000  # turns of the loop between two looks at the clock: some 30 ms
 
@@ -61,23 +62,35 @@ def accuracy(slider: Slider, stretch: Stretch, start: float, rtol: float) -> Acc
     Its speed: V sin(phi) is what the transverse motion slips at; without it, V; without a
     drive, a millionth of what friction can do to the mass on its spring, and never more than
     that whole. Friction that weakens at the rate g = -F'(0)/m per second makes slip grow out
-    of its first k V/(m g^2), which must then be resolved; k is the stiffness that acts.
+    of its first k V/(m g^2), which must then be resolved; k is the stiffness that acts, and g
+    the steepest up to some V.
     """
     along, across = speeds(slider, stretch.problem.drive, start, stretch.end)
     law: Any = slider.law
     load = load_bounds(stretch.problem.load, start, stretch.end)[0]
     mu = slider.F_0 / slider.normal_load
-    free_x, free_y = (mu * load / sqrt(slider.mass * k) for k in (slider.k_x, slider.k_y))
+    surface = stretch.problem.surface
+    free_x = mu * load * sqrt(surface.xx / (slider.mass * slider.k_x))
+    free_y = mu * load * sqrt(surface.yy / (slider.mass * slider.k_y))
     free = min(free_x, free_y)
     speed, k = (across, slider.k_y) if across > 0.0 else (along or 1e-6 * free, slider.k_x)
     if free > 0.0:
         speed = min(speed, free)
-    weakening = 0.0 if has_state(law) else max(0.0, -law.slope(0.0)) * load
+    weakening = 0.0 if has_state(law) else steepest_weakening(law, speed) * load
     speed = max(speed / (1.0 + weakening**2 / (k * slider.mass)), 1e-15)
     local = tolerance(rtol)
     # Newton's error must not show in a step's end, which is better than its inside
     newton = min(0.2, 100.0 * sqrt(local)) * local
-    return Accuracy(local, newton, speed, free_x, free_y)
+    rate = fastest_swing(stretch.problem)
+    return Accuracy(local, newton, speed, free_x, free_y, 0.5 * pi / rate if rate > 0.0 else inf)
+
+
+@lru_cache(maxsize=256)
+def steepest_weakening(law: Hashable, speed: float) -> float:
+    """Return the largest -slope of a set-valued law between rest and ten times `speed`, in s/m."""
+    known: Any = law
+    speeds = [0.0, *(speed * 10.0 ** (i / 40 - 9) for i in range(401))]
+    return max(0.0, *(-float(known.slope(v)) for v in speeds))
 
 
 Report = Callable[[float], None]

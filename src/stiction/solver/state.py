@@ -18,7 +18,8 @@ class Accuracy(NamedTuple):
     newton : relative size of Newton corrections that do no longer matter;
     speed : slip speed below which these are absolute, m/s; free_x, free_y : what friction alone
     can do to the elongation rates, mu_0 W/sqrt(m k), m/s: a vigorous slip may be relative to
-    itself, but not so that the springs' own motion is lost.
+    itself, but not so that the springs' own motion is lost; longest : step size that still sees
+    what drive and load do, s.
     """
 
     tolerance: float
@@ -26,6 +27,7 @@ class Accuracy(NamedTuple):
     speed: float
     free_x: float
     free_y: float
+    longest: float
 
 
 class Motion(NamedTuple):

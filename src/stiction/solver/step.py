@@ -24,6 +24,8 @@ from stiction.solver.surface import flow
 
 # a step that has not succeeded after so many tries will not; 0.4^100 is beyond any float
 ATTEMPTS = 100
+# of the time, far below what it resolves: a boundary layer is thin, and motion goes on in it
+RESOLUTION = 1e-30
 
 
 @inlined
@@ -140,7 +142,7 @@ def step(
         Step size (s), stages, and error over tolerance.
     rejected, iterations : int
     """
-    t, h = frame.t, memory.h
+    t, h = frame.t, min(memory.h, accuracy.longest)
     until = inf if frame.r == 0.0 else time_to_landing(frame, start)
     if 0.6 * until < h < 1.4 * until:
         h = 0.6 * until  # two even steps rather than a long and a short one
@@ -148,15 +150,13 @@ def step(
     if landing:
         h = until
     may_land = frame.r > 0.0
-    # far below what time resolves: a boundary layer is thin, and the motion does go on in it
-    resolution = 1e-30 * abs(t)
     rejected = iterations = 0
     warm = False
     p = w = (0.0, 0.0, 0.0)
     for _ in range(ATTEMPTS):
         if t + h >= t_stop:
             h, landing = t_stop - t, False
-        elif not h > resolution:
+        elif not h > RESOLUTION * abs(t):
             break
         if not warm:
             p, w = predicted(frame, start, h, memory)

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from math import cos, hypot, inf, sin
 from typing import Any, NamedTuple
 
-from stiction.drive import Course, Loading, drive_stretches, load_stretches
-from stiction.drive.signal import signal_at, signal_bounds, signal_change
+from stiction.drive import Course, Loading, ahead, drive_stretches, load_stretches
+from stiction.drive.signal import Signal, signal_at, signal_bounds, signal_change
 from stiction.friction import Anisotropic, has_state
 from stiction.friction.law import static_coefficient
 from stiction.slider import Slider
@@ -31,15 +31,14 @@ def stretches(slider: Slider, start: float, end: float) -> Iterator[Stretch]:
     drives = drive_stretches(slider.motion)
     loads = load_stretches(slider.normal_load, slider.load)
     law, surface = friction_of(slider)
-    t = start
+    system, t = system_of(slider), start
     while t < end:
-        until, drive = next((e, d) for e, d in drives if e > t)
-        until_load, load = next((e, w) for e, w in loads if e > t)
+        until, drive = ahead(drives, t)
+        until_load, load = ahead(loads, t)
         stop = min(end, until, until_load)
         lost = vanishes(load, t, stop)
-        problem = Problem(
-            system_of(slider), law, surface, drive, load, bend(slider, drive, load, t, stop)
-        )
+        curve = bend(slider, drive, load, t, stop)
+        problem = Problem(system, law, surface, drive, load, curve)
         yield Stretch(min(stop, lost), problem, lost <= stop)
         if lost <= stop:
             return
@@ -92,6 +91,14 @@ def load_bounds(load: Any, start: float, end: float) -> tuple[float, float, floa
     if not isinstance(load, Loading):
         return load.at(start), 0.0, 0.0
     return signal_bounds(load.force, start, end)[:3]
+
+
+def fastest_swing(problem: Problem) -> float:
+    """Return the largest angular frequency (rad/s) in drive and load, 0 if neither swings."""
+    signals = [s for part in (problem.drive, problem.load) for s in part if isinstance(s, Signal)]
+    harmonics = [(s.amplitude, s.omega) for s in signals]
+    harmonics += [(s.amplitude_2, s.omega_2) for s in signals]
+    return max((abs(omega) for amplitude, omega in harmonics if amplitude != 0.0), default=0.0)
 
 
 def bend(slider: Slider, drive: Any, load: Any, start: float, end: float) -> float:

@@ -15,6 +15,7 @@ from typing import Any, ClassVar
 
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import has_state
+from stiction.friction.kinds import is_law
 from stiction.testing.common import COMMON, SPEEDS
 from stiction.testing.set_valued import SET_VALUED
 from stiction.testing.with_state import WITH_STATE
@@ -46,6 +47,9 @@ def check_law(law: Any, speeds: Sequence[float] = SPEEDS) -> None:
     DescriptionError
         With everything that is wrong at once.
     """
+    if isinstance(law, type):
+        raise DescriptionError([Fault(law.__name__, f"is a class; write {law.__name__}(...)")])
+    is_law(type(law), type(law).__name__)
     kind = type(law).__name__
     found = [
         Fault(f"{kind}.{name}", message)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
 from math import inf
 from typing import Any
+from warnings import catch_warnings, simplefilter
 
 from stiction.friction.law import static_coefficient
 from stiction.testing.common import ROUNDING, attempt, first, unfit
@@ -38,8 +40,26 @@ def slope(law: Any, speeds: Sequence[float]) -> Iterator[str]:
         wanted, error = derivative(lambda at: attempt(law.coefficient, at)[0], v)
         if not fault and abs(given - wanted) > error + 1e-9 * abs(given):
             found.append(
-                f"slope({v:g}) is {given:g} s/m, but the coefficient changes by {wanted:g} s/m, "
-                f"within {error:.1g}; let it return d(coefficient)/dv"
+                f"slope({v:g}) is {given:.10g} s/m, but the coefficient changes by {wanted:.10g} "
+                f"s/m, within {error:.1g}; let it return d(coefficient)/dv"
+            )
+    yield from first(found)
+
+
+def continuous(law: Any, speeds: Sequence[float]) -> Iterator[str]:
+    """The coefficient has no jump: from speed to speed it changes by the integral of its slope."""
+    from scipy.integrate import quad
+
+    found = []
+    for low, high in pairwise(sorted(speeds)):
+        change = attempt(law.coefficient, high)[0] - attempt(law.coefficient, low)[0]
+        with catch_warnings():
+            simplefilter("ignore")  # that it is hard to integrate shows in the error
+            total, error = quad(lambda v: attempt(law.slope, v)[0], low, high, limit=200)
+        if abs(change - total) > 10.0 * error + 1e-6 * abs(attempt(law.coefficient, high)[0]):
+            found.append(
+                f"coefficient changes by {change:.6g} from {low:g} to {high:g} m/s, but the "
+                f"integral of slope there is {total:.6g}: it jumps; smooth the jump over a speed"
             )
     yield from first(found)
 
@@ -109,6 +129,7 @@ SET_VALUED = {
     "finite": finite,
     "dissipative": dissipative,
     "slope": slope,
+    "continuous": continuous,
     "compiled": compiled,
     "comparable": comparable,
 }

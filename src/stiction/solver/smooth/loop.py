@@ -82,7 +82,7 @@ def advance(
     motion, internal, memory, counts = state
     z = internal.copy()
     past = memory.past.copy()
-    h, h_last, warm = memory.h, memory.h_last, memory.warm
+    h, h_last, warm = min(memory.h, accuracy.longest), memory.h_last, memory.warm
     w = workspace(len(z))
     code, turns = RUNNING, 0
     while turns < budget:
@@ -110,7 +110,7 @@ def advance(
             z[i] = w.values[3, 2 + i]
         past[:, :] = w.values[:4, :]
         following = taken * step_factor(error, GROWTH)
-        h = max(h, following) if end == t_end else following
+        h = min(max(h, following) if end == t_end else following, accuracy.longest)
         h_last, warm = taken, end < t_end
     if motion.t >= t_end:
         code = COMPLETED

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,7 @@ class Smooth:
 
     def __init__(self, law: Any, delta: float | None) -> None:
         """Take the slider's law."""
+        self.first_step = 0.0
         self.states = len(states(law))
         self.delta = delta
         self.columns = COLUMNS + self.states
@@ -37,7 +39,7 @@ class Smooth:
         slider, initial, _ = description
         motion = Motion(initial.time, initial.u_x, initial.u_y, *initial.slip(slider))
         internal = np.array(initial.internal(slider), dtype=np.float64)
-        h = first_step(system_of(slider))
+        h = self.first_step = first_step(system_of(slider))
         memory = Memory(h, h, False, np.zeros((4, 2 + self.states)))
         return State(motion, internal, memory, Counts(0, 0, 0, 0, 0.0))
 
@@ -45,7 +47,9 @@ class Smooth:
         """Return the state at the start of a stretch, where the slip velocity jumps by (x, y)."""
         m = state.motion
         motion = m._replace(s_x=m.s_x + x, s_y=m.s_y + y)
-        return state._replace(motion=motion, memory=state.memory._replace(warm=False))
+        # in a hold steps become as long as the whole of what follows
+        memory = state.memory._replace(warm=False, h=min(state.memory.h, self.first_step))
+        return state._replace(motion=motion, memory=memory)
 
     def advance(
         self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
@@ -73,8 +77,15 @@ class Smooth:
         return [u_x, u_y, s_x, s_y, *f, 0.0, *z]
 
     def resolved(self, held: Accuracy) -> Accuracy:
-        """Return what each step is held to."""
-        return held._replace(speed=FINER * held.speed) if self.states else held
+        """Return what each step is held to.
+
+        Under vibration what creeps is far slower than what the drive does: then the slip speed
+        that friction by itself could give counts, as without a drive.
+        """
+        speed = FINER * held.speed if self.states else held.speed
+        if isfinite(held.longest):
+            speed = min(speed, 1e-6 * min(held.free_x, held.free_y))
+        return held._replace(speed=speed)
 
     def smooth(self, problem: Problem) -> Problem:
         """Return the problem with a law that is smooth at zero slip."""

@@ -11,7 +11,7 @@ from stiction.solver.smooth.newton import solve
 from stiction.solver.smooth.rates import Outset
 from stiction.solver.smooth.workspace import START, Workspace
 from stiction.solver.state import Accuracy
-from stiction.solver.step import ATTEMPTS
+from stiction.solver.step import ATTEMPTS, RESOLUTION
 
 
 @piece
@@ -49,7 +49,7 @@ def step(
     for _ in range(ATTEMPTS):
         if start.t + h >= t_stop:
             h = t_stop - start.t
-        elif not h > 4e-16 * abs(start.t):
+        elif not h > RESOLUTION * abs(start.t):
             break
         predict(w, h / h_last, warm)
         converged, count = solve(problem, start, h, w, accuracy)
