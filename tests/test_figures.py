@@ -29,7 +29,7 @@ from stiction.plotting.save import save, write
 from stiction.plotting.schematic import draw_schematic
 from stiction.plotting.shapes import Points
 from stiction.plotting.style import BLUE, PURPLE, new_figure, quantity, style
-from stiction.plotting.time_series import envelope, prefixed, stuck_until
+from stiction.plotting.time_series import cut_open, envelope, prefixed, stuck_until
 
 
 def drawn(fig: Figure) -> Figure:
@@ -300,3 +300,12 @@ def test_saving_in_vain_says_why(tmp_path: Path) -> None:
         write(Figure(), tmp_path / "missing" / "a.png")
     with pytest.raises(st.ResultError, match=r"unknown format '\.bmp'"):
         write(Figure(), tmp_path / "a.bmp")
+
+
+def test_angles_are_cut_where_none_lie():
+    back_and_forth = np.array([-175.0, 5.0, 178.0, -8.0, np.nan])
+    opened = cut_open(back_and_forth)
+    assert np.nanmax(np.abs(np.mod(opened - back_and_forth + 180, 360) - 180)) < 1e-9
+    assert np.nanmax(opened) - np.nanmin(opened) == pytest.approx(193.0)  # no jump from -175 to 178
+    forward = np.array([-90.0, 0.0, 89.0])
+    assert cut_open(forward).tolist() == forward.tolist()

@@ -80,6 +80,7 @@ def _draw_series(figure: SubFigure, run: Trajectory) -> None:
         values = run.data[f"spring_{axis}"].values * factor
         line = time_series.draw_line(forces, times, values, color)
         line.set_label(f"$k_{axis} u_{axis}$")
+        line.set_zorder(2.2 if axis == "x" else 2.0)  # what swings across would hide it
     forces.set_ylabel(f"spring force ({prefix}N)")
     forces.legend(loc="lower right", ncols=2, bbox_to_anchor=(1.0, 0.97), borderaxespad=0.0)
     time_series.draw_friction(friction, run)

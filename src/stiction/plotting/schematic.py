@@ -121,7 +121,7 @@ def _draw_slip(ax: Axes, lab: Placement, phi: float, theta: float, backward: boo
     ahead = lab([corner, corner + polar(1.5, theta)])
     behind = lab([polar(-BLOCK / max(cos(theta), sin(theta)), theta), polar(-BACK, theta)])
     beside = (
-        corner + polar(1.0, theta) + polar(0.4, theta + (pi / 2 if theta < pi / 4 else -pi / 2))
+        corner + polar(1.0, theta) + polar(0.7, theta + (pi / 2 if theta < pi / 4 else -pi / 2))
     )
     names = [(GREEN, r"$v_\mathrm{slip}$"), (PURPLE, "$F$")]
     for ends, place, (color, text) in zip(

@@ -105,7 +105,23 @@ def draw_direction(ax: Axes, run: Trajectory) -> Line2D:
     """Draw the angle psi (deg) of the friction force to the drive direction over time."""
     ax.yaxis.set_major_locator(MaxNLocator(nbins=4, steps=[1, 1.5, 3, 4.5, 9, 10]))
     ax.set_ylabel(r"$\psi$ (deg)")
-    return draw_line(ax, run.data["time"].values, run.data["psi"].values, PURPLE)
+    return draw_line(ax, run.data["time"].values, cut_open(run.data["psi"].values), PURPLE)
+
+
+def cut_open(angles: ArrayLike) -> Floats:
+    """Return angles (deg) on the turn that begins where none, or the fewest, of them lie.
+
+    Sliding back and forth has angles about 0 and 180 degrees: cut there, a line over time would
+    jump from edge to edge. Cut at 180 degrees where that does as well.
+    """
+    values = np.asarray(angles, dtype=np.float64)
+    edges = np.arange(-180.0, 181.0, 10.0)
+    count, _ = np.histogram(np.mod(values[np.isfinite(values)] + 180.0, 360.0) - 180.0, edges)
+    beside = count + np.roll(count, 1)  # of each edge
+    start = edges[0] if beside[0] == 0 else edges[int(np.argmin(beside))]
+    start -= 360.0 if start > 0.0 else 0.0  # the turn that lies nearest to zero
+    opened: Floats = np.mod(values - start, 360.0) + start
+    return opened
 
 
 def draw_position(ax: Axes, run: Trajectory) -> Line2D:
