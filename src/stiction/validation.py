@@ -166,17 +166,17 @@ def validated(kind: type[T]) -> type[T]:
 
     The compiled solver takes the tuple as it is: floats in SI. The parameters are
     declared once, as the tuple's annotated fields; what must hold between them is checked
-    by a method ``faults``, which yields a field and a message for each fault.
+    by a method ``faults``, which yields a field and a message for each fault. A class derived
+    from it is read likewise.
     """
     plain: Any = kind.__new__
-    parameters = signature(plain)
+    names = tuple(signature(plain).parameters)[1:]
 
     def new(cls: type[T], *args: Any, **values: Any) -> T:
-        names = tuple(parameters.parameters)[1:]
         given = dict(zip(names, args, strict=False)) | values
         if len(args) > len(names):
-            raise TypeError(f"{kind.__name__} takes {', '.join(names)}")
-        model = fields(cast(Any, kind))(**given)
+            raise TypeError(f"{cls.__name__} takes {', '.join(names)}")
+        model = fields(cast(Any, cls))(**given)
         value: T = plain(cls, **{name: getattr(model, name) for name in names})
         return _checked(value)
 

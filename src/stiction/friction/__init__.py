@@ -19,10 +19,8 @@ from stiction.friction.law import FrictionLaw, Internal, Law, StateLaw, has_stat
 from stiction.friction.lugre import LuGre, bending
 from stiction.friction.own import Find, named, own_table, read_own
 from stiction.friction.rate_and_state import FUNCTIONS as _RATE_AND_STATE
-from stiction.friction.rate_and_state_ageing import RateStateAgeing
-from stiction.friction.rate_and_state_ageing_2 import RateStateAgeing2
-from stiction.friction.rate_and_state_slip import RateStateSlip
-from stiction.friction.rate_and_state_slip_2 import RateStateSlip2
+from stiction.friction.rate_and_state_one import RateStateAgeing, RateStateSlip
+from stiction.friction.rate_and_state_two import RateStateAgeing2, RateStateSlip2
 from stiction.friction.stribeck import Stribeck
 from stiction.friction.table import Table
 from stiction.tables import choose

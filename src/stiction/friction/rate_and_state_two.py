@@ -1,4 +1,4 @@
-"""Rate-and-state friction with two states that follow the slip law."""
+"""Rate-and-state friction with two states: ageing law and slip law."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import NamedTuple, Self
 
 from stiction.friction.law import Internal, Vector
 from stiction.friction.rate_and_state import (
+    ageing,
     comparable,
     faults,
     friction_force,
@@ -21,27 +22,8 @@ from stiction.validation import validated
 
 
 @validated
-class RateStateSlip2(NamedTuple):
-    """Rate-and-state friction with two states, slip law (Ruina 1983).
-
-        mu = a asinh[(V/2V*) exp((mu* + b_1 ln(V* theta_1/D_1) + b_2 ln(V* theta_2/D_2))/a)],
-        theta_i' = -(V theta_i/D_i) ln(V theta_i/D_i)
-
-    See `stiction.friction.rate_and_state` for the symbols. Two states are what experiments
-    with steps of the slip speed often take (Ruina 1983; Gu et al. 1984,
-    doi:10.1016/0022-5096(84)90007-3).
-
-    Parameters
-    ----------
-    a, b_1, b_2 : float
-        Direct and evolution effects; steady sliding weakens if b_1 + b_2 > a.
-    D_1, D_2 : float or str
-        Slip distances over which the states evolve, m.
-    mu_star : float
-        Coefficient of steady sliding at V_star.
-    V_star : float or str
-        Reference slip speed, m/s; any.
-    """
+class TwoStates(NamedTuple):
+    """What both laws share; see `stiction.friction.rate_and_state` for the symbols."""
 
     a: PositiveNumber
     b_1: Coefficient
@@ -87,6 +69,64 @@ class RateStateSlip2(NamedTuple):
         """Return the slip speed below which friction is proportional to it (m/s)."""
         psi = law.mu_star + law.b_1 * state[0] + law.b_2 * state[1]
         return grain_of(law.a, law.V_star, psi)
+
+
+class RateStateAgeing2(TwoStates):
+    """Rate-and-state friction with two states, ageing law (Dieterich 1979).
+
+        mu = a asinh[(V/2V*) exp((mu* + b_1 ln(V* theta_1/D_1) + b_2 ln(V* theta_2/D_2))/a)],
+        theta_i' = 1 - V theta_i/D_i
+
+    See `stiction.friction.rate_and_state` for the symbols. Two states are what experiments
+    with steps of the slip speed often take (Ruina 1983; Gu et al. 1984,
+    doi:10.1016/0022-5096(84)90007-3).
+
+    Parameters
+    ----------
+    a, b_1, b_2 : float
+        Direct and evolution effects; steady sliding weakens if b_1 + b_2 > a.
+    D_1, D_2 : float or str
+        Slip distances over which the states evolve, m.
+    mu_star : float
+        Coefficient of steady sliding at V_star.
+    V_star : float or str
+        Reference slip speed, m/s; any.
+    """
+
+    __slots__ = ()
+
+    def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
+        """Return d(log_theta_i)/dt, per second."""
+        V = hypot(slip[0], slip[1])
+        return (
+            ageing(state[0], V, law.V_star, law.D_1),
+            ageing(state[1], V, law.V_star, law.D_2),
+        )
+
+
+class RateStateSlip2(TwoStates):
+    """Rate-and-state friction with two states, slip law (Ruina 1983).
+
+        mu = a asinh[(V/2V*) exp((mu* + b_1 ln(V* theta_1/D_1) + b_2 ln(V* theta_2/D_2))/a)],
+        theta_i' = -(V theta_i/D_i) ln(V theta_i/D_i)
+
+    See `stiction.friction.rate_and_state` for the symbols. Two states are what experiments
+    with steps of the slip speed often take (Ruina 1983; Gu et al. 1984,
+    doi:10.1016/0022-5096(84)90007-3).
+
+    Parameters
+    ----------
+    a, b_1, b_2 : float
+        Direct and evolution effects; steady sliding weakens if b_1 + b_2 > a.
+    D_1, D_2 : float or str
+        Slip distances over which the states evolve, m.
+    mu_star : float
+        Coefficient of steady sliding at V_star.
+    V_star : float or str
+        Reference slip speed, m/s; any.
+    """
+
+    __slots__ = ()
 
     def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
         """Return d(log_theta_i)/dt, per second."""

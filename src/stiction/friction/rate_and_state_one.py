@@ -1,4 +1,4 @@
-"""Rate-and-state friction with the slip law."""
+"""Rate-and-state friction with one state: ageing law and slip law."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import NamedTuple, Self
 
 from stiction.friction.law import Internal, Vector
 from stiction.friction.rate_and_state import (
+    ageing,
     comparable,
     faults,
     friction_force,
@@ -21,26 +22,8 @@ from stiction.validation import validated
 
 
 @validated
-class RateStateSlip(NamedTuple):
-    """Rate-and-state friction, slip law (Ruina 1983).
-
-        mu = a asinh[(V/2V*) exp((mu* + b ln(V* theta/D_c))/a)],
-        theta' = -(V theta/D_c) ln(V theta/D_c)
-
-    See `stiction.friction.rate_and_state` for the symbols and the regularised form.
-    The state evolves by slip alone: without slip nothing heals.
-
-    Parameters
-    ----------
-    a, b : float
-        Direct and evolution effect; in rock 0.005 to 0.02. Steady sliding weakens if b > a.
-    D_c : float or str
-        Slip distance over which the state evolves, m; 1 to 100 um in the laboratory.
-    mu_star : float
-        Coefficient of steady sliding at V_star.
-    V_star : float or str
-        Reference slip speed, m/s; any.
-    """
+class OneState(NamedTuple):
+    """What both laws share; see `stiction.friction.rate_and_state` for the symbols."""
 
     a: PositiveNumber
     b: Coefficient
@@ -77,6 +60,59 @@ class RateStateSlip(NamedTuple):
     def grain(law, state: tuple[float, ...]) -> float:
         """Return the slip speed below which friction is proportional to it (m/s)."""
         return grain_of(law.a, law.V_star, law.mu_star + law.b * state[0])
+
+
+class RateStateAgeing(OneState):
+    """Rate-and-state friction, ageing law (Dieterich 1979).
+
+        mu = a asinh[(V/2V*) exp((mu* + b ln(V* theta/D_c))/a)],
+        theta' = 1 - V theta/D_c
+
+    See `stiction.friction.rate_and_state` for the symbols and the regularised form.
+    The contacts age: in hold the state grows with time (healing).
+
+    Parameters
+    ----------
+    a, b : float
+        Direct and evolution effect; in rock 0.005 to 0.02. Steady sliding weakens if b > a.
+    D_c : float or str
+        Slip distance over which the state evolves, m; 1 to 100 um in the laboratory.
+    mu_star : float
+        Coefficient of steady sliding at V_star.
+    V_star : float or str
+        Reference slip speed, m/s; any.
+    """
+
+    __slots__ = ()
+
+    def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
+        """Return d(log_theta)/dt, per second."""
+        V = hypot(slip[0], slip[1])
+        return (ageing(state[0], V, law.V_star, law.D_c),)
+
+
+class RateStateSlip(OneState):
+    """Rate-and-state friction, slip law (Ruina 1983).
+
+        mu = a asinh[(V/2V*) exp((mu* + b ln(V* theta/D_c))/a)],
+        theta' = -(V theta/D_c) ln(V theta/D_c)
+
+    See `stiction.friction.rate_and_state` for the symbols and the regularised form.
+    The state evolves by slip alone: without slip nothing heals.
+
+    Parameters
+    ----------
+    a, b : float
+        Direct and evolution effect; in rock 0.005 to 0.02. Steady sliding weakens if b > a.
+    D_c : float or str
+        Slip distance over which the state evolves, m; 1 to 100 um in the laboratory.
+    mu_star : float
+        Coefficient of steady sliding at V_star.
+    V_star : float or str
+        Reference slip speed, m/s; any.
+    """
+
+    __slots__ = ()
 
     def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
         """Return d(log_theta)/dt, per second."""
