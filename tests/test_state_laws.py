@@ -433,6 +433,19 @@ class Relaxing(NamedTuple):
         return (r / law.distance * (law.mu - state[0]),)
 
 
+class Clashing(Relaxing):
+    """An internal state that is called as something else in results."""
+
+    @staticmethod
+    def states():
+        return (("u_x", "1", "friction coefficient remembered"),)
+
+
+def test_internal_states_have_names_of_their_own():
+    with pytest.raises(st.DescriptionError, match="u_x"):
+        st.simulate(PAPER.replace(friction=Clashing(0.2, 1e-4, 0.5)), 0.01)
+
+
 def test_a_users_law_needs_no_derivatives():
     law = Relaxing(0.2, 1e-4, 0.5)
     start = st.Initial(states={"memory": 0.3})

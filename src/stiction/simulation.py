@@ -11,9 +11,9 @@ from numba.core.errors import NumbaError
 
 from stiction.description import Description, Settings
 from stiction.errors import DescriptionError, Fault, Status
-from stiction.friction import has_state
+from stiction.friction import has_state, states
 from stiction.initial import Initial
-from stiction.labels import dataset
+from stiction.labels import VARIABLES, dataset
 from stiction.slider import Slider
 from stiction.solver.integrate import integrate
 from stiction.solver.refusal import reasons
@@ -108,6 +108,10 @@ def run(
         message = "the law is smooth at zero slip by itself; leave regularisation out"
         raise DescriptionError([Fault("run.regularisation", message)])
     initial.internal(description.slider)  # or say what is wrong with it
+    clashing = [state.name for state in states(description.slider.law) if state.name in VARIABLES]
+    if clashing:
+        message = f"has internal states {', '.join(clashing)}, which results name otherwise; rename"
+        raise DescriptionError([Fault("friction.law", message)])
     if initial.time + settings.duration == initial.time:
         message = f"is too short to be seen from t = {initial.time:g} s; start earlier"
         raise DescriptionError([Fault("run.duration", message)])

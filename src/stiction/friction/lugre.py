@@ -19,7 +19,8 @@ class LuGre(NamedTuple):
 
     z is the mean deflection of bristles, a vector in the plane as is the slip velocity s
     (isotropic case of Velenis, Tsiotras, Canudas de Wit & Sorine 2005,
-    doi:10.1080/00423110412331290464). In steady sliding F = g + sigma_2 v along s.
+    doi:10.1080/00423110412331290464); its components are the internal states ``z_x``, ``z_y`` in
+    results. In steady sliding F = g + sigma_2 v along s.
 
     Parameters
     ----------

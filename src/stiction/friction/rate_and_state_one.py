@@ -68,7 +68,8 @@ class RateStateAgeing(OneState):
         mu = a asinh[(V/2V*) exp((mu* + b ln(V* theta/D_c))/a)],
         theta' = 1 - V theta/D_c
 
-    See `stiction.friction.rate_and_state` for the symbols and the regularised form.
+    See `stiction.friction.rate_and_state` for the symbols and the regularised form. The internal
+    state in results and in ``Initial(states=...)`` is ``log_theta`` = ln(V* theta/D_c).
     The contacts age: in hold the state grows with time (healing).
 
     Parameters
@@ -97,7 +98,8 @@ class RateStateSlip(OneState):
         mu = a asinh[(V/2V*) exp((mu* + b ln(V* theta/D_c))/a)],
         theta' = -(V theta/D_c) ln(V theta/D_c)
 
-    See `stiction.friction.rate_and_state` for the symbols and the regularised form.
+    See `stiction.friction.rate_and_state` for the symbols and the regularised form. The internal
+    state in results and in ``Initial(states=...)`` is ``log_theta`` = ln(V* theta/D_c).
     The state evolves by slip alone: without slip nothing heals.
 
     Parameters
