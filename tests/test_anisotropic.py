@@ -157,3 +157,14 @@ def test_flow_and_its_derivatives(ratio, angle, w):
     low, high = (flow.py_func(problem, own, w + d) for d in (-step, step))
     assert got.dn_1 == pytest.approx((high.n_1 - low.n_1) / (2 * step), abs=1e-7)
     assert got.dtau == pytest.approx((high.tau - low.tau) / (2 * step), abs=1e-7)
+
+
+def test_our_own_smoothed_ellipse_tends_to_it(slider):
+    s = soft(slider, friction=st.Anisotropic(WEAKENING, 1.5, "30 deg"))
+    exact = st.simulate(s, 0.4, sample_rate=1e3, rtol=1e-9).data["spring_y"].values
+    errors = []
+    for delta in (1e-8, 1e-9, 1e-10):
+        run = st.simulate(s, 0.4, sample_rate=1e3, rtol=1e-9, regularisation=delta)
+        errors.append(np.abs(run.data["spring_y"].values - exact).max())
+    assert errors[1] < 10**-0.7 * errors[0]
+    assert errors[2] < 10**-0.7 * errors[1]

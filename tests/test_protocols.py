@@ -127,6 +127,43 @@ def test_static_friction_above_kinetic_is_the_classical_stick_slip():
     assert (ends - starts)[1:3] == pytest.approx(stick, rel=1e-8)
 
 
+def test_a_slip_that_just_reaches_zero_sticks():
+    """At the end of a long step the slip passes zero by less than the step's error, and comes back.
+
+    With a separate static coefficient it must stick there instead.
+    """
+    slider = st.Slider(
+        mass=8.94792999996374,
+        k_x=452.68104590594845,
+        k_y=3743.147980642082,
+        phi="0.7748910787320815 rad",
+        normal_load=12.983110609547198,
+        c_y=5.0,
+        driven="spring",
+        friction=st.Coulomb(0.39522531523021254, 0.4149865809917232),
+        drive=st.DriveProgram(
+            velocity=0.0063489482656108555,
+            program=[
+                st.Ramp(-0.0022111294105426373, 1.4723077426369873),
+                st.Step(0.0063489482656108555, 0.9804034052159277),
+            ],
+        ),
+        load=st.LoadProgram(
+            program=[
+                st.Ramp(23.19395605788644, 2.179074711819254),
+                st.Step(-0.09835262495723726, 0.3215822848899921),
+            ],
+            modulation=st.Modulation(1.4278724090988686, 0.868316320619524),
+        ),
+    )
+    exact = st.simulate(slider, 5.0, rtol=1e-10)
+    for rtol in (1e-5, 1e-6, 1e-7):
+        run = st.simulate(slider, 5.0, rtol=rtol)
+        assert len(run.sticks) == len(exact.sticks) == 8
+        # a slip grows for 0.6 s, 2 radians, from the error with which it starts
+        assert run.sticks == pytest.approx(exact.sticks, abs=100 * rtol)
+
+
 # --- jumps ---------------------------------------------------------------------------------------
 
 

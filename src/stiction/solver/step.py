@@ -26,6 +26,7 @@ from stiction.solver.surface import flow
 ATTEMPTS = 100
 # of the time, far below what it resolves: a boundary layer is thin, and motion goes on in it
 RESOLUTION = 1e-30
+LOOKED_AT = 12  # parts of a step between which the slip is looked at, where it has a minimum
 
 
 @inlined
@@ -114,11 +115,18 @@ def local_error(
 
 
 @inlined
-def dips(r: float, p: Triple, w: Triple) -> bool:
-    """Return whether the slip passes below zero inside the step and comes back."""
+def dips(r: float, p: Triple, margin: float) -> bool:
+    """Return whether the slip passes below a margin (m/s) inside the step and comes back.
+
+    A slip that is as small as its error may have been zero.
+    """
     if p[0] < 0.0 or p[1] < 0.0:
         return True
-    return p[2] > p[1] and p[1] < r and cubic((r, p[0], p[1], p[2]), 0.5 * (1.0 + C[1])) < 0.0
+    if p[0] < r and (p[2] > min(p[0], p[1]) or p[2] < 0.1 * r):  # a minimum may be inside
+        for i in range(1, LOOKED_AT):
+            if cubic((r, p[0], p[1], p[2]), i / LOOKED_AT) < margin:
+                return True
+    return False
 
 
 @inlined
@@ -173,11 +181,13 @@ def step(
             p, landing, warm = (0.5 * frame.r, 0.2 * frame.r, 0.0), True, True
             continue
         factor = 0.3
-        if converged and p[2] >= 0.0 and not dips(frame.r, p, w):
-            error = local_error(problem, frame, h, p, w, accuracy) / accuracy.tolerance
-            if error <= 1.0:
+        if converged and p[2] >= 0.0 and not dips(frame.r, p, 0.0):
+            relative = local_error(problem, frame, h, p, w, accuracy)
+            error = relative / accuracy.tolerance
+            if error > 1.0:
+                factor = step_factor(error, 1.0)
+            elif landing or not dips(frame.r, p, relative * (accuracy.speed + frame.r)):
                 return True, landing, h, p, w, error, rejected, iterations
-            factor = step_factor(error, 1.0)
         rejected += 1
         if landing:  # once is enough: too long a landing is approached by shorter steps
             may_land = False
