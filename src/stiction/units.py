@@ -55,15 +55,15 @@ def to_si(value: object, kind: Kind) -> float:
     """
     angle = kind.unit == "rad"
     if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise _fault(f"{value!r} is not {kind.name}; write for example {kind.example!r}")
+        raise fault(f"{value!r} is not {kind.name}; write for example {kind.example!r}")
     if isinstance(value, str):
         number = _parse(value, kind)
     elif angle:
-        raise _fault(f"degree or radian? write '{value} deg' or '{value} rad'")
+        raise fault(f"degree or radian? write '{value} deg' or '{value} rad'")
     else:
         number = float(value)
     if not isfinite(number):
-        raise _fault(f"{value!r} is not finite; write for example {kind.example!r}")
+        raise fault(f"{value!r} is not finite; write for example {kind.example!r}")
     return number
 
 
@@ -72,31 +72,32 @@ def _parse(text: str, kind: Kind) -> float:
 
     if not QUANTITY.fullmatch(text):
         comma = " (the decimal sign is a point)" if "," in text else ""
-        raise _fault(
+        raise fault(
             f"{text!r} is not one number and its unit{comma}; write for example {kind.example!r}"
         )
     try:
         quantity = _registry().Quantity(text)
         magnitude = float(quantity.magnitude)
     except Exception as error:  # pint raises whatever its tokenizer meets
-        raise _fault(
+        raise fault(
             f"cannot read the unit of {text!r} (capitals matter); "
             f"write for example {kind.example!r}"
         ) from error
     if quantity.unitless and kind.unit:
-        raise _fault(f"{text!r} has no unit; write for example {kind.example!r}")
+        raise fault(f"{text!r} has no unit; write for example {kind.example!r}")
     if not kind.unit and not quantity.unitless:
-        raise _fault(f"{text!r} must be a number without a unit; write for example {kind.example}")
+        raise fault(f"{text!r} must be a number without a unit; write for example {kind.example}")
     try:
         return float(quantity.to(kind.unit).magnitude) if kind.unit else magnitude
     except pint.DimensionalityError as error:
-        raise _fault(
+        raise fault(
             f"{text!r} is in {quantity.units:~P}, not a unit of {kind.name}; "
             f"write for example {kind.example!r}"
         ) from error
 
 
-def _fault(message: str) -> PydanticCustomError:
+def fault(message: str) -> PydanticCustomError:
+    """Return the error for a value that cannot be read."""
     # braces would be read as fields of a template
     return PydanticCustomError("unit", message.replace("{", "(").replace("}", ")"))
 
@@ -119,7 +120,7 @@ def _listed(value: object) -> object:
     """Return an array as a list; refuse what is one value."""
     value = value.tolist() if hasattr(value, "tolist") else value
     if not isinstance(value, list | tuple):
-        raise _fault(f"{value!r} is not a list of values; write them in brackets: [..., ...]")
+        raise fault(f"{value!r} is not a list of values; write them in brackets: [..., ...]")
     return value
 
 

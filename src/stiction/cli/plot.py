@@ -22,12 +22,9 @@ def plot(
     trust
         Run the friction law of one's own that the result holds, where its file is not found.
     """
-    from stiction.errors import ResultError
     from stiction.plotting.overview import overview
-    from stiction.plotting.save import FORMATS, write
+    from stiction.plotting.save import drawable, write
     from stiction.trajectory import load
 
-    if output.suffix.lower() not in FORMATS:
-        known = ", ".join(FORMATS)
-        raise ResultError(f"{output}: has no suffix that can be drawn; use {known}")
+    drawable(output)
     print(f"wrote {write(overview(load(result, trust=trust)), output)}")

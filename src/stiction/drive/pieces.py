@@ -1,14 +1,15 @@
 """The pieces that a program of drive velocity or of normal load is made of.
 
-Each says what the value does for a time, given the program's base value and the value that
-the piece before it ended with; a jump between two pieces happens at once. A new piece is a
-class here and a line in `DRIVE_PIECES` or `LOAD_PIECES`.
+Each says by ``shape(base, present, still)`` what the value does for its ``duration`` (s; for
+ever if None), given the program's base value, the value that the piece before it ended with,
+and that of a hold, in SI; a jump between two pieces happens at once. A new piece is a class
+here and a line in `DRIVE_PIECES` or `LOAD_PIECES`.
 """
 
 from __future__ import annotations
 
 from math import pi
-from typing import Annotated, Any, NamedTuple, Protocol
+from typing import Annotated, Any, NamedTuple
 
 from pydantic import AfterValidator
 
@@ -35,25 +36,6 @@ class Shape(NamedTuple):
     amplitude: float = 0.0
     omega: float = 0.0
     phase: float = 0.0
-
-
-class Piece(Protocol):
-    """What a program asks of a piece."""
-
-    @property
-    def duration(self) -> float | None:
-        """How long it lasts, s; for ever if None."""
-
-    def _asdict(self) -> dict[str, Any]: ...
-
-    def _replace(self, **changes: Any) -> Any: ...
-
-    def shape(piece, base: float, present: float, still: float) -> Shape:
-        """Return what the value does.
-
-        `base` is the program's own value, `present` the one that the piece before ended
-        with, `still` that of a hold. Levels are in SI by then.
-        """
 
 
 @validated

@@ -11,7 +11,7 @@ from pydantic_core import PydanticCustomError
 from stiction.drive.pieces import LEVELS, Modulation
 from stiction.errors import DescriptionError, Fault
 from stiction.tables import choose
-from stiction.units import Kind, to_si
+from stiction.units import Kind, fault, to_si
 from stiction.validation import faulty
 
 
@@ -27,7 +27,7 @@ def as_pieces(reading: Reading) -> BeforeValidator:
 
     def read(value: Any) -> tuple[Any, ...]:
         if not isinstance(value, Sequence) or isinstance(value, str):
-            raise _fault(f"{value!r} is not a list of pieces")
+            raise fault(f"{value!r} is not a list of pieces")
         made, found = [], []
         for i, each in enumerate(value):
             try:
@@ -57,7 +57,7 @@ def as_modulation(kind: Kind) -> BeforeValidator:
         try:
             made = Modulation(**value) if isinstance(value, Mapping) else value
             if not isinstance(made, Modulation):
-                raise _fault(f"{value!r} is not a modulation; it has an amplitude and a frequency")
+                raise fault(f"{value!r} is not a modulation; it has an amplitude and a frequency")
             done: Modulation = _in_si(made, kind)
         except DescriptionError as error:
             raise faulty(
@@ -89,7 +89,3 @@ def _in_si(piece: Any, kind: Kind) -> Any:
     if found:
         raise DescriptionError(found)
     return piece._replace(**levels)
-
-
-def _fault(message: str) -> PydanticCustomError:
-    return PydanticCustomError("unit", message.replace("{", "(").replace("}", ")"))

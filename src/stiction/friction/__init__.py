@@ -57,7 +57,7 @@ def law_table(law: Any) -> dict[str, Any]:
     """Return a law as a table [friction] that can be read back, of numbers and lists."""
     if isinstance(law, Anisotropic):
         return {**law_table(law.law), "anisotropy": anisotropy_table(law)}
-    name = next((name for name, kind in LAWS.items() if kind is type(law)), None)
+    name = registered_name(law)
     values = {  # numbers of NumPy as Python's, which JSON knows
         key: value.tolist() if hasattr(value, "tolist") else value
         for key, value in law._asdict().items()
@@ -69,8 +69,12 @@ def name_of(law: Any) -> str:
     """Return a law's registered name, or that of a user's own class."""
     if isinstance(law, Anisotropic):
         return f"anisotropic {name_of(law.law)}"
-    known = (name for name, kind in LAWS.items() if type(law) is kind)
-    return next(known, type(law).__name__)
+    return registered_name(law) or type(law).__name__
+
+
+def registered_name(law: Any) -> str | None:
+    """Return the name in `LAWS`, None for a law of the user's own."""
+    return next((name for name, kind in LAWS.items() if kind is type(law)), None)
 
 
 def parameters(law: Any) -> dict[str, Any]:

@@ -3,29 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import pi, sqrt
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from stiction.analysis.slip import Slip, averaged_slip
 from stiction.plotting.curves import Curve, common, mark_early_end
 from stiction.plotting.style import GREY
 from stiction.plotting.time_series import stuck_until
-from stiction.trajectory import Trajectory
 
-PARTS = 500  # of the time: finer than a printed line shows
 DEEPEST = 1e-24  # of the largest slip speed: what is below is rounding
 ROW = 0.8  # height of a filled row
-
-
-def averaged(run: Trajectory) -> Slip:
-    """Average slip over a 500th of the time, or less if a rapid slip needs it to be seen."""
-    times, slider = run.data["time"].values, run.slider
-    rapid = pi * sqrt(slider.mass / min(slider.k_x, slider.k_y))
-    parts = np.clip(5 * (times[-1] - times[0]) / rapid, PARTS, 20 * PARTS)
-    return averaged_slip(run, int(parts))
 
 
 def draw_speeds(ax: Axes, curves: Sequence[Curve]) -> None:
@@ -36,7 +24,7 @@ def draw_speeds(ax: Axes, curves: Sequence[Curve]) -> None:
     ax.set_yscale("log", nonpositive="mask")
     ax.set_ylabel(r"$v_\mathrm{slip}$ (m/s)")
     for curve in curves:
-        slip = averaged(curve.run)
+        slip = curve.slip
         mean = np.where(slip.mean > 0, slip.mean, np.nan)
         ax.fill_between(slip.time, mean, slip.high, color=curve.color, alpha=0.18, linewidth=0)
         ax.plot(slip.time, mean, **curve.look)
@@ -48,7 +36,7 @@ def draw_portrait(ax: Axes, curves: Sequence[Curve]) -> None:
     ax.set_yscale("log", nonpositive="mask")
     factor, _ = common(curve.run.data["spring_x"].values for curve in curves)
     for curve in curves:
-        slip = averaged(curve.run)
+        slip = curve.slip
         mean = np.where(slip.mean > 0, slip.mean, np.nan)
         ax.plot(slip.force * factor, mean, **curve.look)
         mark_early_end(ax, curve, slip.force[-1] * factor, mean[-1])
@@ -56,7 +44,7 @@ def draw_portrait(ax: Axes, curves: Sequence[Curve]) -> None:
 
 def set_speed_limits(ax: Axes, curves: Sequence[Curve]) -> None:
     """Fit the axis of slip speed to the lines, not to the moments of a landing."""
-    spans = [averaged(curve.run) for curve in curves]
+    spans = [curve.slip for curve in curves]
     moving = [slip.mean[(slip.mean > 0) & (slip.rest < 0.5)] for slip in spans]
     means = np.concatenate([each[np.isfinite(each)] for each in moving])
     highs = np.concatenate([slip.high[np.isfinite(slip.high)] for slip in spans])

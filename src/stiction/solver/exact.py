@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from math import sqrt
-from typing import Any
 
 from stiction.description import Description
 from stiction.solver import loop
 from stiction.solver.compiled import specialised
 from stiction.solver.frame import friction
 from stiction.solver.output import Output
-from stiction.solver.problem import Problem
+from stiction.solver.problem import Problem, kinds_of
 from stiction.solver.sampling import COLUMNS
 from stiction.solver.state import Accuracy, Motion, State, cooled, start
 from stiction.solver.stick import holding
@@ -48,8 +47,7 @@ class Exact:
         self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
     ) -> tuple[int, State]:
         """Advance until `end` (s) or until the budget is used up."""
-        kinds: tuple[Any, ...] = (type(problem.law), type(problem.drive), type(problem.load))
-        code, state, out.filled, turns = specialised(loop.advance, *kinds)(
+        code, state, out.filled, turns = specialised(loop.advance, *kinds_of(problem))(
             problem, state, end, held, budget, out.times, out.samples, out.filled, out.sticks
         )
         out.used += turns

@@ -73,6 +73,11 @@ class Problem(NamedTuple):
     bend: float
 
 
+def kinds_of(problem: Problem) -> tuple[Any, ...]:
+    """Return the types for which the compiled code is specialised."""
+    return type(problem.law), type(problem.drive), type(problem.load)
+
+
 def coefficient(law: FrictionLaw, v: float) -> float:
     """Return the friction coefficient at slip speed `v`."""
     return law.coefficient(v)

@@ -76,11 +76,16 @@ class State(NamedTuple):
     counts: Counts
 
 
+def first_step(system: System) -> float:
+    """Return the size of the first step to try, s."""
+    return 0.05 / sqrt(max(system.k_x, system.k_y) / system.mass)
+
+
 def start(system: System, t: float, u: tuple[float, float], slip: tuple[float, float]) -> State:
     """Return the state from which a run starts."""
     r = sqrt(slip[0] ** 2 + slip[1] ** 2)
     e = (slip[0] / r, slip[1] / r) if r > 0.0 else (1.0, 0.0)
-    h = 0.05 / sqrt(max(system.k_x, system.k_y) / system.mass)
+    h = first_step(system)
     nothing = (0.0, 0.0, 0.0, 0.0)
     memory = Memory(h, h, h, 1.0, False, nothing, nothing)
     return State(Motion(t, u[0], u[1], r, e[0], e[1]), memory, Counts(0, 0, 0, 0, 0.0))

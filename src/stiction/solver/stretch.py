@@ -37,7 +37,7 @@ def stretches(slider: Slider, start: float, end: float) -> Iterator[Stretch]:
         until_load, load = ahead(loads, t)
         stop = min(end, until, until_load)
         lost = vanishes(load, t, stop)
-        curve = bend(slider, drive, load, t, stop)
+        curve = bend(slider, system.inertia, drive, load, t, stop)
         problem = Problem(system, law, surface, drive, load, curve)
         yield Stretch(min(stop, lost), problem, lost <= stop)
         if lost <= stop:
@@ -62,11 +62,6 @@ def friction_of(slider: Slider) -> tuple[Any, Isotropic | Elliptic]:
         surface = Elliptic(c * c + square * s * s, (1 - square) * c * s, s * s + square * c * c)
         law = law.law
     return getattr(law, "prepared", lambda: law)(), surface
-
-
-def first_step(system: System) -> float:
-    """Return the size of the first step to try, s."""
-    return float(0.05 / (max(system.k_x, system.k_y) / system.mass) ** 0.5)
 
 
 def speeds(slider: Slider, drive: Any, start: float, end: float) -> tuple[float, float]:
@@ -101,7 +96,7 @@ def fastest_swing(problem: Problem) -> float:
     return max((abs(omega) for amplitude, omega in harmonics if amplitude != 0.0), default=0.0)
 
 
-def bend(slider: Slider, drive: Any, load: Any, start: float, end: float) -> float:
+def bend(slider: Slider, inertia: float, drive: Any, load: Any, start: float, end: float) -> float:
     """Return a bound of the second derivative of |a|^2 - f^2 while the slip is zero.
 
     a is the friction over mass that zero slip takes, f what friction can hold; |a| <= f.
@@ -110,7 +105,7 @@ def bend(slider: Slider, drive: Any, load: Any, start: float, end: float) -> flo
     law: Any = slider.law
     if has_state(law):
         return 0.0
-    s, inertia = slider, 1.0 if slider.driven == "plate" else 0.0
+    s = slider
     v, dv, ddv, dddv = (_in_axes(s, pair) for pair in drive_bounds(drive, start, end))
     k, c = (s.k_x / s.mass, s.k_y / s.mass), (s.c_x / s.mass, s.c_y / s.mass)
     first = hypot(*(k[i] * v[i] + c[i] * dv[i] + inertia * ddv[i] for i in (0, 1)))

@@ -11,13 +11,13 @@ from stiction.description import Description
 from stiction.friction import states
 from stiction.solver.compiled import specialised
 from stiction.solver.output import Output
-from stiction.solver.problem import Problem, at, force
+from stiction.solver.problem import Problem, at, force, kinds_of
 from stiction.solver.sampling import COLUMNS
 from stiction.solver.smooth import loop
 from stiction.solver.smooth.law import Smoothed
 from stiction.solver.smooth.state import Memory, Motion, State
-from stiction.solver.state import Accuracy, Counts
-from stiction.solver.stretch import first_step, system_of
+from stiction.solver.state import Accuracy, Counts, first_step
+from stiction.solver.stretch import system_of
 
 # of the slip speed below which that of set-valued friction is not resolved: states remember slower
 # slip. LuGre's published case comes out 600 times better for 14 % more steps.
@@ -55,8 +55,7 @@ class Smooth:
         self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
     ) -> tuple[int, State]:
         """Advance until `end` (s) or until the budget is used up."""
-        kinds: tuple[Any, ...] = (type(problem.law), type(problem.drive), type(problem.load))
-        code, state, out.filled, turns = specialised(loop.advance, *kinds)(
+        code, state, out.filled, turns = specialised(loop.advance, *kinds_of(problem))(
             self.smooth(problem),
             state,
             end,
