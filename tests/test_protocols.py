@@ -11,7 +11,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as hyp
 from scipy.integrate import quad
 from scipy.optimize import brentq
-from scipy.special import ellipk
 
 import stiction as st
 from stiction.drive.signal import Signal, signal_at, signal_bounds, signal_change, signal_sum
@@ -249,31 +248,6 @@ def test_a_load_that_is_gone_at_once(slider):
     run = st.simulate(slider.replace(load=load), 1.0, sample_rate=1e3)
     assert run.status is st.Status.CONTACT_LOST
     assert float(run.data["time"][-1]) == pytest.approx(0.1, rel=1e-12)
-
-
-# --- active control: transverse oscillation of a rigid slider -----------------------------------
-
-
-@pytest.mark.parametrize(("r", "wanted"), [(1.0, 0.83463), (2.0, 0.64264), (10.0, 0.23442)])
-def test_transverse_oscillation_lowers_friction(r, wanted):
-    """Mean friction along X over mu_0 W is (2/pi) K(-r^2), for a slider that follows the drive.
-
-    Simulated, not in the rigid limit: springs so stiff that the mass lags by 1e-6 of the
-    travel, critically damped; the mean over a period of what the spring feels.
-    """
-    assert 2 / pi * ellipk(-r * r) == pytest.approx(wanted, abs=5e-6)
-    k = 1e6 * (2 * pi) ** 2
-    slider = block(
-        k_x=k,
-        k_y=k,
-        c_x=2 * sqrt(k),
-        c_y=2 * sqrt(k),
-        friction=st.Coulomb(0.3),
-        drive=st.DriveProgram(velocity=1.0, across=st.Modulation(r, 1.0)),
-    )
-    run = st.simulate(slider, 3.0, sample_rate=2000.0, rtol=1e-8)
-    last = run.data.isel(time=slice(-2000, None))  # a whole period: the damper's part is nought
-    assert float(last["spring_x"].mean()) / 0.3 == pytest.approx(wanted, abs=5e-6)
 
 
 # --- against the smoothed law, which knows neither stick nor stretches --------------------------

@@ -1,4 +1,4 @@
-"""Laws with internal state: against SciPy, published digits, and themselves.
+"""Laws with internal state: against SciPy, and themselves.
 
 SciPy integrates equations written down here once more, in the logarithms of slip speed and state
 where the motion is in one dimension. Its tolerance is a hundred times tighter than what is asked.
@@ -10,11 +10,9 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
 
 import stiction as st
 from stiction.friction import LAWS, has_state, states
-from stiction.solver.integrate import tolerance
 
 PAPER = st.presets.nakano_popov_2020()
 KINDS = [kind for kind in LAWS.values() if states(kind)]
@@ -28,71 +26,6 @@ def largest(values):
 
 def columns(run, *names):
     return np.array([run.data[name].values for name in names])
-
-
-# --- published digits ---------------------------------------------------------------------------
-
-
-def test_lugre_block_pulled_by_a_spring():
-    """Canudas de Wit's example as published with Exudyn: its digits at t = 25 s."""
-    slider = st.Slider(
-        mass=1.0,
-        k_x=2.0,
-        k_y=2.0,
-        phi="0 deg",
-        normal_load=1.0,
-        friction=st.LuGre(1.0, 1.5, 1e-3, 1e5, 1e5**0.5, 0.4),
-        drive=st.ConstantVelocity(0.1),
-        driven="spring",
-    )
-    at_rest = st.Initial(v_x=0.1, v_y=0.0)
-    run = st.simulate(slider, 25.0, initial=at_rest, rtol=1e-13)
-    assert run.status.ok
-    end = run.final
-    assert end["X"].item() == pytest.approx(1.9088391992, abs=5e-11)
-    # below 3 % of V an error of the slip is absolute
-    slip = 0.03 * 0.1 * tolerance(1e-13)
-    assert end["V_X"].item() == pytest.approx(9.42415459e-6, abs=5e-15 + slip)
-    assert end["z_x"].item() == pytest.approx(1.18167955e-5, abs=5e-14)
-
-
-# --- critical stiffness of rate and state -------------------------------------------------------
-
-
-def growth(k, kind):
-    """Growth rate of a small perturbation of steady sliding, all per unit area, 1/s.
-
-    The perturbed equations are of third order, so evenly spaced samples of their solution obey a
-    recurrence of three terms, whose roots are exp(eigenvalue times spacing). The perturbation is
-    small enough for its square, 1e-8, not to matter, and large beside the error of a step, 3e-10 V.
-    """
-    V, sigma, law = 1e-2, 5e6, kind(*AGEING)
-    slider = st.Slider(
-        mass=1e3,
-        k_x=k,
-        k_y=k,
-        phi="0 deg",
-        normal_load=sigma,
-        friction=law,
-        drive=st.ConstantVelocity(V),
-    )
-    start = st.Initial(u_x=law.coefficient(V) * sigma / k, v_x=1e-4 * V, v_y=0.0)
-    rate = 2e3
-    run = st.simulate(slider, 0.05, initial=start, sample_rate=rate, rtol=1e-12)
-    assert run.status.ok
-    v = run.data["v_x"].values
-    rows = np.array([v[i : i + 3] for i in range(len(v) - 3)])
-    terms = np.linalg.lstsq(rows, v[3:])[0]
-    roots = np.roots([1.0, *-terms[::-1]])
-    return rate * log(abs(max(roots, key=abs)))
-
-
-@pytest.mark.parametrize("kind", [st.RateStateAgeing, st.RateStateSlip])
-def test_critical_stiffness_with_inertia(kind):
-    """k_c = (b - a) sigma/D_c [1 + m V^2/(a sigma D_c)] = 3.000e9 Pa/m, for both laws."""
-    assert growth(2.9e9, kind) > 0.0 > growth(3.1e9, kind)
-    critical = brentq(growth, 2.9e9, 3.1e9, args=(kind,), xtol=1e4)
-    assert critical == pytest.approx(3.000e9, rel=1e-5)
 
 
 # --- slide, hold, slide -------------------------------------------------------------------------

@@ -31,49 +31,11 @@ def turning_rate(theta, phi):
 # --- known values -------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("t", "degrees", "velocity", "half_a_digit"),
-    [
-        (0.5, 75.5575, 4.7987e-6, 5e-11),
-        (1.0, 60.1590, 1.03147e-5, 5e-11),
-        (1.5, 41.9244, 1.97360e-5, 5e-11),
-    ],
-)
-def test_creep_at_the_papers_parameters(t, degrees, velocity, half_a_digit):
-    theta = theory.creep_force_angle(t, V, PHI, L_X)
-    assert math.degrees(theta) == pytest.approx(degrees, abs=5e-5)
-    assert theory.creep_velocity(t, V, PHI, L_X) == pytest.approx(velocity, abs=half_a_digit)
-
-
-def test_both_readings_of_equation_8_at_one_second():
-    corrected = theory.creep_velocity_approximation(1.0, V, PHI, L_X)
-    printed = theory.creep_velocity_as_printed(1.0, V, PHI, L_X)
-    assert corrected == pytest.approx(1.0381e-5, abs=5e-10)
-    assert printed == pytest.approx(5.34e-6, abs=5e-9)
-
-
-def test_damping_at_the_papers_parameters():
-    A = theory.damping_number(F_0, V, PHI, M, K_X)
-    assert pytest.approx(3623.9, abs=0.05) == A
-    assert theory.damping_ratio(A, PHI) == pytest.approx(1.9e-2, abs=5e-4)
-    assert theory.damping_ratio(A, np.pi / 2) == A
-    assert math.degrees(theory.critical_angle(A)) == pytest.approx(3.733, abs=5e-4)
-
-
-def test_misalignment_that_keeps_the_system_overdamped():
-    phi = np.radians([7.2235, 7.2245])  # 7.224 deg, half a digit to either side
-    below, above = theory.damping_ratio(theory.damping_number(F_0, V, phi, M, K_X), phi)
-    assert below < 1 < above
+def test_a_wide_misalignment_keeps_the_system_overdamped():
     ten = math.radians(10.0)
     A = theory.damping_number(F_0, V, ten, M, K_X)
     assert np.all(theory.damping_ratio(A, np.linspace(ten, np.pi / 2)) > 1)
-
-
-def test_transverse_motion_at_the_papers_parameters():
-    omega_y = theory.natural_frequency(K_Y, M)
-    assert omega_y / (2 * np.pi) == pytest.approx(1.0e3, abs=50)
-    assert theory.transverse_deflection(F_0, K_Y) == 2e-7
-    assert theory.transverse_amplitude_bound(V, PHI, omega_y) == pytest.approx(3e-9, abs=5e-10)
+    assert theory.damping_ratio(A, np.pi / 2) == A
 
 
 def test_friction_and_slip_length():

@@ -1,0 +1,63 @@
+"""A case with a known solution, and what several of them need."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import log
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+import stiction as st
+from stiction.paper.numbers import Number
+
+Floats = NDArray[np.float64]
+
+
+class Case(NamedTuple):
+    """A case with a known solution.
+
+    Attributes
+    ----------
+    name : str
+        What moves.
+    numbers : callable
+        Takes the relative tolerance of the runs; returns what is known of the solution beside what
+        is computed, in the same order at any tolerance.
+    rtol : float
+        A tolerance at which every number agrees: that to which the tests hold it.
+    """
+
+    name: str
+    numbers: Callable[[float], list[Number]]
+    rtol: float = 1e-10
+
+
+def block(**changes) -> st.Slider:
+    """Return a slider that moves along x only, m = k = W = 1, with some parameters changed."""
+    values = {"mass": 1.0, "k_x": 1.0, "k_y": 1.0, "phi": "0 deg", "normal_load": 1.0}
+    return st.Slider(**(values | changes))
+
+
+def crest(values: Floats) -> float:
+    """Return the largest of evenly spaced samples, by the parabola through it and its neighbours.
+
+    It is off by the fourth order of the spacing; the sample itself by the second.
+    """
+    i = int(np.argmax(values))
+    if not 0 < i < len(values) - 1:
+        return float(values[i])
+    before, top, after = values[i - 1 : i + 2]
+    return float(top + (after - before) ** 2 / (8.0 * (2.0 * top - before - after)))
+
+
+def growth(values: Floats, rate: float, order: int) -> float:
+    """Return the growth rate (1/s) of what obeys a linear equation of some order.
+
+    Evenly spaced samples of its solution, `rate` per second, obey a recurrence of so many terms,
+    whose roots are exp(eigenvalue/rate).
+    """
+    rows = np.lib.stride_tricks.sliding_window_view(values[:-1], order)
+    terms = np.linalg.lstsq(rows, values[order:])[0]
+    return rate * log(np.abs(np.roots([1.0, *-terms[::-1]])).max())

@@ -1,0 +1,42 @@
+"""Fig. 3's system, with the paper's friction and with constant friction."""
+
+from __future__ import annotations
+
+from math import cos
+
+import stiction as st
+from stiction import theory
+from stiction.paper.numbers import Number, reference
+
+from .case import Case, crest
+
+SAMPLE_RATE = 100e3  # so that extremes and their times are those of the solution
+
+
+def figure3(rtol: float) -> list[Number]:
+    """The reference values that two independent methods agree on, over 5 s."""
+    slider = st.presets.nakano_popov_2020()
+    run = st.simulate(slider, 5.0, sample_rate=SAMPLE_RATE, rtol=rtol)
+    s, V = slider, slider.motion.rate(0.0)[0]
+    held = float(theory.first_stick_duration(s.F_0, V, s.phi, s.k_x, s.k_y))
+    first = Number(
+        "closed form", "end of the first stick", 1e3 * held, 1e3 * run.sticks[0, 1], 1e-9, "ms"
+    )
+    return [first, *reference(run)]
+
+
+def constant(rtol: float) -> list[Number]:
+    """The same with mu = mu_0 at any speed: one stick, one slip, no oscillation."""
+    slider = st.presets.nakano_popov_2020().replace(friction=st.Coulomb(mu_0=0.2))
+    run = st.simulate(slider, 20.0, sample_rate=10e3, rtol=rtol)
+    end = float(run.final["spring_x"])
+    fastest = 1e3 * crest(run.data["V_X"].values)
+    return [
+        Number("reference", "k_x u_x tends to", 1.9997, end, 5e-5, "N"),
+        Number("closed form", "  mu_0 W cos phi", slider.F_0 * cos(slider.phi), end, 1e-9, "N"),
+        Number("reference", "largest X'", 1.6124, fastest, 5e-5, "mm/s"),
+        Number("reference", "sticks", 1, len(run.sticks), 0),
+    ]
+
+
+CASES = (Case("Fig. 3", figure3), Case("Fig. 3, constant friction", constant))
