@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from functools import cache
 from math import cos
 
 import stiction as st
 from stiction import theory
 from stiction.paper.numbers import Number, reference
+from stiction.solver.twin import twin
 
 from .case import Case, crest
 
 SAMPLE_RATE = 100e3  # so that extremes and their times are those of the solution
+TWIN = 18.5e-3  # s; eight sticks, which take the twin some seconds
 
 
 def figure3(rtol: float) -> list[Number]:
@@ -39,4 +42,27 @@ def constant(rtol: float) -> list[Number]:
     ]
 
 
-CASES = (Case("Fig. 3", figure3), Case("Fig. 3, constant friction", constant))
+@cache
+def by_twin() -> tuple[float, float, int]:
+    """Return both spring forces (N) at `TWIN` and the sticks until then, by the readable twin."""
+    slider = st.presets.nakano_popov_2020()
+    found = twin(slider, TWIN, rtol=1e-11)
+    return slider.k_x * found.u_x[-1], slider.k_y * found.u_y[-1], len(found.sticks)
+
+
+def beside_twin(rtol: float) -> list[Number]:
+    """The first sticks and slips by plain Python, which shares no code with the solver."""
+    run = st.simulate(st.presets.nakano_popov_2020(), TWIN, rtol=rtol)
+    x, y, sticks = by_twin()
+    return [
+        Number("twin", "k_x u_x(18.5 ms)", x, float(run.final["spring_x"]), 1e-8, "N"),
+        Number("twin", "k_y u_y(18.5 ms)", y, float(run.final["spring_y"]), 1e-8, "N"),
+        Number("twin", "sticks", sticks, len(run.sticks), 0),
+    ]
+
+
+CASES = (
+    Case("Fig. 3", figure3),
+    Case("Fig. 3, beginning", beside_twin),
+    Case("Fig. 3, constant friction", constant),
+)
