@@ -1,87 +1,138 @@
-"""``python -m benchmarks.against REVISION``: is the paper's run slower than it was?
+"""``python -m benchmarks.against [REVISION]``: is this tree slower than a revision of it?
 
-Both versions run in processes of their own, in turn, so that a noisy machine treats them
-alike; the statement is the ratio of their times. Exit status 1 if it exceeds the limit.
+Both are built and timed here and now, by the same cases, in turn, so that a noisy machine treats
+them alike; the statement is the ratio of paired times with its interval. A case is timed until the
+interval lies on one side of the limit, or the rounds are used up: then the median decides. Exit
+status 1 if a case is slower than the limit allows, 2 if there is nothing to compare.
 """
 
 from __future__ import annotations
 
 import argparse
-import os
-import subprocess
 import sys
-import tempfile
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
-from statistics import median
 
-ROOT = Path(__file__).parent.parent
-WORKER = """
-import sys, time
-import stiction as st
-slider = st.presets.nakano_popov_2020()
-st.simulate(slider, 1e-3)
-for _ in sys.stdin:
-    start = time.perf_counter()
-    st.simulate(slider, 5.0)
-    print(time.perf_counter() - start, flush=True)
-"""
+from rich.console import Console
+from rich.progress import Progress
+from rich.table import Table
+
+from .regression.trees import ROOT, Absent, Worker, at_work, changed, known, laid_out
+from .regression.verdict import CONFIDENCE, Ratio, ratio, slower
+from .regression.workload import CASES
+
+ROUNDS = 10  # between two looks at the interval
 
 
 def main() -> int:
     """Time this tree against a revision of it, and say how they compare."""
+    options = _options()
+    console = Console()
+    if not known(options.revision):
+        console.print(f"git knows no revision {options.revision!r}; name a branch, tag or commit")
+        return 2
+    if not changed(options.revision):
+        console.print(
+            f"src is what it is in {options.revision}: nothing to compare. Name another revision,"
+            " for example HEAD~1 or origin/main."
+        )
+        return 2
+    with laid_out(options.revision) as then, Progress(console=console) as progress:
+        found, notes = _compare(progress, (ROOT / "src", then), options)
+    return _report(console, found, notes, options)
+
+
+def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.against", description=__doc__)
     parser.add_argument("revision", nargs="?", default="main", help="git revision (default main)")
-    parser.add_argument("--rounds", type=int, default=60, help="runs of each (default 60)")
     parser.add_argument("--limit", type=float, default=1.10, help="ratio allowed (default 1.10)")
-    options = parser.parse_args()
-    with checked_out(options.revision) as then:
-        now, before = alternately((ROOT / "src", then / "src"), options.rounds)
-    ratio = median(a / b for a, b in zip(now, before, strict=True))
-    print(f"Fig. 3 over 5 s, {options.rounds} runs of each in turn, median (fastest):")
-    for name, times in (("this tree", now), (options.revision, before)):
-        print(f"  {name}: {1e3 * median(times):.2f} ms ({1e3 * min(times):.2f} ms)")
-    print(f"  ratio, median over pairs: {ratio:.3f} (limit {options.limit})")
-    return 0 if ratio <= options.limit else 1
+    parser.add_argument("--rounds", type=int, default=80, help="most rounds a case (default 80)")
+    return parser.parse_args()
 
 
-@contextmanager
-def checked_out(revision: str) -> Iterator[Path]:
-    """Check a revision out beside this tree, for as long as it is needed."""
-    with tempfile.TemporaryDirectory() as folder:
-        tree = Path(folder) / "tree"
-        subprocess.run(
-            ["git", "worktree", "add", "--quiet", "--detach", tree, revision], cwd=ROOT, check=True
-        )
-        try:
-            yield tree
-        finally:
-            subprocess.run(["git", "worktree", "remove", "--force", tree], cwd=ROOT, check=True)
+Times = tuple[list[float], list[float]]
 
 
-def alternately(sources: Sequence[Path], rounds: int) -> list[list[float]]:
-    """Return the times (s) of runs from each source folder, taken in turn."""
-    workers = [
-        subprocess.Popen(
-            [sys.executable, "-c", WORKER],
-            env=os.environ | {"PYTHONPATH": str(source)},
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-        )
-        for source in sources
-    ]
-    times: list[list[float]] = [[] for _ in workers]
-    for _ in range(rounds + 1):
-        for worker, own in zip(workers, times, strict=True):
-            assert worker.stdin is not None
-            assert worker.stdout is not None
-            print(file=worker.stdin, flush=True)
-            own.append(float(worker.stdout.readline()))
+def _compare(
+    progress: Progress, sources: Sequence[Path], options: argparse.Namespace
+) -> tuple[dict[str, Times], list[str]]:
+    """Return the times of each case in both trees, and why cases were left out."""
+    found: dict[str, Times] = {}
+    notes = []
+    with at_work(*sources) as workers:
+        building = progress.add_task("build", total=len(CASES))
+        for case in CASES:
+            try:
+                _both_at_once(workers, case)
+                found[case] = ([], [])
+            except Absent as reason:
+                notes.append(f"{case}: left out, one of the two has not what it takes: {reason}")
+            progress.advance(building)
+        for case, times in found.items():
+            task = progress.add_task(case, total=options.rounds)
+            while len(times[0]) < options.rounds:
+                _in_turn(workers, case, times)
+                progress.advance(task, ROUNDS)
+                if slower(ratio(*times), options.limit) is not None:
+                    break
+            progress.update(task, completed=options.rounds)
+    return found, notes
+
+
+def _both_at_once(workers: Sequence[Worker], case: str) -> None:
+    """Run a case in both trees, which compiles what is not compiled yet."""
     for worker in workers:
-        worker.communicate()
-    return [own[1:] for own in times]  # the first one warms up
+        worker.ask(case)
+    absent = []
+    for worker in workers:
+        try:
+            worker.answer()
+        except Absent as reason:
+            absent.append(reason)
+    if absent:
+        raise absent[0]
+
+
+def _in_turn(workers: Sequence[Worker], case: str, times: Times) -> None:
+    """Time a case in one tree after the other, each first in half of the rounds."""
+    for i in range(ROUNDS):
+        for k in (0, 1) if i % 2 == 0 else (1, 0):
+            workers[k].ask(case)
+            times[k].append(workers[k].answer())
+
+
+def _report(
+    console: Console, found: dict[str, Times], notes: Sequence[str], options: argparse.Namespace
+) -> int:
+    """Print what was found and return the exit status."""
+    headings = ("case", "this tree (ms)", f"{options.revision} (ms)", "ratio", "interval", "rounds")
+    table = Table(*headings, title=f"fastest times; ratio of pairs, {CONFIDENCE:.0%} interval")
+    too_slow = []
+    for case, (now, before) in found.items():
+        r = ratio(now, before)
+        verdict = slower(r, options.limit)
+        if r.median > options.limit if verdict is None else verdict:
+            too_slow.append((case, r))
+        fastest = (f"{1e3 * min(times):.2f}" for times in (now, before))
+        interval = f"{r.low:.3f} to {r.high:.3f}"
+        table.add_row(case, *fastest, f"{r.median:.3f}", interval, str(len(now)))
+    console.print(table)
+    for note in notes:
+        console.print(note, highlight=False)
+    if not found:
+        console.print("no case could be timed in both trees")
+        return 2
+    for case, r in too_slow:
+        console.print(
+            f"SLOWER: {case} takes {_words(r)}, limit {options.limit:g}", style="bold red"
+        )
+    if not too_slow:
+        console.print(f"no case is slower than {options.limit:g} times {options.revision}")
+    return 1 if too_slow else 0
+
+
+def _words(r: Ratio) -> str:
+    return f"{r.median:.3f} times as long ({r.low:.3f} to {r.high:.3f})"
 
 
 if __name__ == "__main__":
