@@ -1,4 +1,4 @@
-"""What paired times say: how much longer one takes than the other, and how sure that is."""
+"""What ratios of times say: how much longer one tree takes than the other, and how sure that is."""
 
 from __future__ import annotations
 
@@ -7,36 +7,43 @@ from math import comb
 from statistics import median
 from typing import NamedTuple
 
-CONFIDENCE = 0.99  # of the interval: some ten cases are looked at several times each
+CONFIDENCE = 0.95  # of the interval: six ratios at least, the extremes of which it then spans
 
 
 class Ratio(NamedTuple):
-    """Median of the ratios of paired times, and the interval that its true value lies in."""
+    """Median of several ratios of times, and the interval that their true median lies in.
+
+    The interval is that of the sign test: it supposes nothing about the noise but that it hits both
+    trees alike. It has no ends as long as there are too few ratios for one.
+    """
 
     median: float
     low: float
     high: float
 
 
-def ratio(now: Sequence[float], before: Sequence[float], confidence: float = CONFIDENCE) -> Ratio:
-    """Return how much longer `now` takes than `before`, pair by pair.
+def ratio(ratios: Sequence[float], confidence: float = CONFIDENCE) -> Ratio:
+    """Return the median of ratios, each from processes of its own, and its interval."""
+    ordered = sorted(ratios)
+    k = left_out(len(ordered), confidence)
+    if k is None:
+        return Ratio(median(ordered), 0.0, float("inf"))
+    return Ratio(median(ordered), ordered[k], ordered[-1 - k])
 
-    The interval is that of the sign test: between two of the sorted ratios, as far in as the
-    binomial distribution allows. It supposes nothing about the noise but that it hits both alike;
-    with too few pairs for that confidence it is that between the extremes.
+
+def left_out(n: int, confidence: float) -> int | None:
+    """Return how many of n values lie outside the interval at each end; None if n is too small.
+
+    The true median is below the (k+1)-th smallest with the probability of at most k heads among n
+    coins.
     """
-    ratios = sorted(a / b for a, b in zip(now, before, strict=True))
-    k = _rank(len(ratios), confidence)
-    return Ratio(median(ratios), ratios[k], ratios[-1 - k])
-
-
-def _rank(n: int, confidence: float) -> int:
-    """Return how many values may be left out at each end: P(fewer heads of n) <= half the rest."""
-    outside, k = 1, 0  # heads of no coin, in 2^n ways
-    while 2 * outside <= (1.0 - confidence) * 2**n:
-        k += 1
-        outside += comb(n, k)
-    return max(0, k - 1)
+    found, ways = None, 0
+    for k in range(n):
+        ways += comb(n, k)
+        if 2 * ways > (1.0 - confidence) * 2**n:
+            break
+        found = k
+    return found
 
 
 def slower(found: Ratio, limit: float) -> bool | None:
