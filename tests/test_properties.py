@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st_
 
 import stiction as st
+from stiction.solver.integrate import tolerance
 
 
 def log(low: float, high: float) -> st_.SearchStrategy[float]:
@@ -148,9 +149,11 @@ def test_restart_continues_the_trajectory(slider, k):
         want = whole.data[name].values[k:]
         got = rest.data[name].values
         n = min(len(want), len(got))
-        # a state from dense output is as accurate as the local tolerance, 8e-8 here; a slip
-        # in progress amplifies that
-        assert got[:n] == pytest.approx(want[:n], rel=1e-4, abs=1e-4 * np.abs(want).max())
+        # a state from dense output is as accurate as the local tolerance, 5e-8 here; a slip
+        # in progress amplifies that, and one that all but vanishes is known to V times that
+        floor = tolerance(1e-9) * slider.motion.rate(0.0)[0] if name == "slip_speed" else 0.0
+        scale = max(1e-4 * np.abs(want).max(), floor)
+        assert got[:n] == pytest.approx(want[:n], rel=1e-4, abs=scale)
 
 
 @given(

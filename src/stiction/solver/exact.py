@@ -34,7 +34,7 @@ class Exact:
 
         The memory of earlier steps is of no use after a bend.
         """
-        memory = cooled(state.memory, min(state.memory.h, state.memory.h_takeoff))
+        memory = cooled(state.memory, min(state.memory.h, state.memory.plan[0]))
         m = state.motion
         if x == y == 0.0:
             return State(m, memory, state.counts)

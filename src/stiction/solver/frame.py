@@ -25,6 +25,7 @@ from stiction.solver.problem import (
     rate_change,
     rate_curve,
     slope,
+    steady,
     travel,
 )
 from stiction.solver.state import Motion
@@ -35,7 +36,8 @@ class Frame(NamedTuple):
     """The axes of a step: direction e, the laboratory's X in them, tensors over mass.
 
     Also the surface's tensor N (see `surface`), and the step's start: time, elongation
-    (u_x, u_y), slip speed r, and the spring's acceleration along and across e.
+    (u_x, u_y), slip speed r, and the spring's acceleration along and across e; for a steady
+    drive also what the drive adds to it, and how fast.
     """
 
     e_x: float
@@ -55,6 +57,10 @@ class Frame(NamedTuple):
     r: float
     spring_1: float
     spring_2: float
+    drive_1: float
+    drive_2: float
+    change_1: float
+    change_2: float
 
 
 class Outset(NamedTuple):
@@ -78,6 +84,9 @@ def frame_of(problem: Problem, motion: Motion) -> Frame:
     k_x, k_y = s.k_x * s.per_mass, s.k_y * s.per_mass
     c_x, c_y = s.c_x * s.per_mass, s.c_y * s.per_mass
     xx, xy, yy = e_x * e_x, e_x * e_y, e_y * e_y
+    v_x = v_y = 0.0
+    if steady(problem.drive):
+        v_x, v_y = in_principal_axes(problem, rate(problem.drive, motion.t))
     return Frame(
         e_x,
         e_y,
@@ -97,6 +106,10 @@ def frame_of(problem: Problem, motion: Motion) -> Frame:
         # from the forces: rotating u would let rounding of u_x into the stiff direction
         k_x * u_x * e_x + k_y * u_y * e_y,
         k_y * u_y * e_x - k_x * u_x * e_y,
+        c_x * v_x * e_x + c_y * v_y * e_y,
+        c_y * v_y * e_x - c_x * v_x * e_y,
+        k_x * v_x * e_x + k_y * v_y * e_y,
+        k_y * v_y * e_x - k_x * v_x * e_y,
     )
 
 
@@ -131,6 +144,14 @@ def pull(problem: Problem, frame: Frame, dt: float) -> tuple[float, float, float
     The elongation there would be the one at the start plus the drive's travel; what slip
     takes away from it is added by the caller.
     """
+    if steady(problem.drive):
+        x, y = frame.change_1, frame.change_2
+        return (
+            frame.spring_1 + frame.drive_1 + x * dt,
+            frame.spring_2 + frame.drive_2 + y * dt,
+            x,
+            y,
+        )
     t = frame.t
     d_1, d_2 = in_frame(frame, travel(problem.drive, t, dt))
     v_1, v_2 = in_frame(frame, rate(problem.drive, t + dt))

@@ -53,7 +53,7 @@ def tolerance(rtol: float) -> float:
     then proportional to rtol. The factor is measured on Fig. 3 over 5 s, where the relative
     error of u_x comes out at a third of rtol.
     """
-    return 1.26 * float(rtol**0.8)
+    return 0.8 * float(rtol**0.8)
 
 
 def accuracy(slider: Slider, stretch: Stretch, start: float, rtol: float) -> Accuracy:
@@ -82,7 +82,8 @@ def accuracy(slider: Slider, stretch: Stretch, start: float, rtol: float) -> Acc
     # Newton's error must not show in a step's end, which is better than its inside
     newton = min(0.2, 100.0 * sqrt(local)) * local
     rate = fastest_swing(stretch.problem)
-    return Accuracy(local, newton, speed, free_x, free_y, 0.5 * pi / rate if rate > 0.0 else inf)
+    longest = 0.5 * pi / rate if rate > 0.0 else inf
+    return Accuracy(local, newton, speed, free_x, free_y, longest, along or across or inf)
 
 
 @lru_cache(maxsize=256)

@@ -22,7 +22,7 @@ from stiction.solver.compiled import inlined
 from stiction.solver.frame import Frame, Outset, elongation
 from stiction.solver.problem import Problem, at, constant, drift, isotropic
 from stiction.solver.sampling import fill
-from stiction.solver.state import Accuracy, Motion, State, cooled
+from stiction.solver.state import Accuracy, Motion, State, at_takeoff
 
 
 @inlined
@@ -143,4 +143,4 @@ def land(
         k = fill(problem, frame, u_x, u_y, speed, n_1, n_2, force, samples, k)
     u_x, u_y = elongation(problem, frame, T, slid_1, slid_2)
     landed = Motion(t + T, u_x, u_y, 0.0, frame.e_x, frame.e_y)
-    return State(landed, cooled(memory, memory.h_takeoff), counts), k
+    return State(landed, at_takeoff(memory), counts), k

@@ -17,6 +17,7 @@ from stiction.solver.sampling import sample_slip, sample_stick
 from stiction.solver.state import (
     COMPLETED,
     NON_FINITE,
+    PLANNED,
     RUNNING,
     STEP_UNDERFLOW,
     Accuracy,
@@ -24,8 +25,9 @@ from stiction.solver.state import (
     Memory,
     Motion,
     State,
-    cooled,
+    at_takeoff,
     counted,
+    planned,
 )
 from stiction.solver.step import step
 from stiction.solver.stick import holding, stick_duration
@@ -76,7 +78,7 @@ def stick(
         a = sqrt(a_x * a_x + a_y * a_y)
     e_x, e_y = (a_x / a, a_y / a) if a > 0.0 else (motion.e_x, motion.e_y)
     motion = Motion(end, u_x, u_y, 0.0, e_x, e_y)
-    return ends, State(motion, cooled(memory, memory.h_takeoff), counts), k
+    return ends, State(motion, at_takeoff(memory), counts), k
 
 
 @inlined
@@ -94,28 +96,29 @@ def slip(
     """Take one step of slip and plan the next."""
     motion, memory, counts = state
     t, r = motion.t, motion.r
-    done, landing, h, p, w, error, rejected, iterations = step(
+    done, landing, swing, h, p, w, error, rejected, iterations = step(
         problem, frame, start, t_stop, memory, accuracy
     )
     counts = counted(counts, rejected, iterations)
     if not done:
         return False, State(motion, memory, counts), k
-    k = sample_slip(problem, frame, start, h, p, w, times, samples, k)
-    slid_1, slid_2 = h * dot(A[2], p), h * dot(A[2], products(p, w))
+    k = sample_slip(problem, frame, start, swing, h, p, w, times, samples, k)
+    slid_1, slid_2 = h * (dot(A[2], p) + swing.slid[2]), h * dot(A[2], products(p, w))
     u_x, u_y = elongation(problem, frame, h, slid_1, slid_2)
     e_x, e_y = turned(frame, w[2])
     at_ease = ease(error)
     factor = step_factor(error, GROWTH)
-    h_takeoff = memory.h_takeoff
-    if r == 0.0:
-        h_takeoff = h * factor
-    elif memory.warm:  # Gustafsson's predictive control: errors that grow will grow on
+    end = t_stop if t + h >= t_stop else t + h
+    plan = memory.plan
+    if memory.place < PLANNED and end < t_stop:
+        plan = planned(plan, memory.place, h * step_factor(error, 4.0))
+    if r > 0.0 and memory.warm:  # Gustafsson's predictive control: errors that grow will grow on
         trend = 0.9 * h / memory.h_last * at_ease * at_ease / memory.ease
         factor = min(factor, max(0.2, trend))
-    end = t_stop if t + h >= t_stop else t + h
     memory = Memory(
         h * factor if h > 0.1 * memory.h or end < t_stop else memory.h,
-        h_takeoff,
+        plan,
+        memory.place + 1,
         h,
         min(at_ease, 3.0),
         not landing,

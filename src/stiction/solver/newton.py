@@ -8,6 +8,7 @@ from stiction.solver.frame import Frame
 from stiction.solver.problem import Problem
 from stiction.solver.slip import factors, stage
 from stiction.solver.state import Accuracy
+from stiction.solver.swing import Oscillator, Swing, swing
 
 ITERATIONS = 10
 
@@ -16,18 +17,20 @@ ITERATIONS = 10
 def solve(
     problem: Problem,
     frame: Frame,
+    o: Oscillator,
+    s: Swing,
     h: float,
     landing: bool,
     p: Triple,
     w: Triple,
     accuracy: Accuracy,
-) -> tuple[bool, Triple, Triple, float, int]:
+) -> tuple[bool, Swing, Triple, Triple, float, int]:
     """Solve the collocation equations of one step.
 
     Parameters
     ----------
-    problem, frame, h
-        The system, the step's axes and its size (s).
+    problem, frame, o, s, h
+        The system, the step's axes, the oscillation along the slip, and the step's size (s).
     landing : bool
         Whether the step ends at zero slip; its size is then found, from `h` on.
     p, w : triple of float
@@ -44,10 +47,10 @@ def solve(
     The first Jacobian is exact and kept while it contracts. One exact iteration squares
     the (relative) error, hence the test on the first correction's square.
     """
-    s0 = stage(problem, frame, h, 0, p, w, products(p, w))
-    s1 = stage(problem, frame, h, 1, p, w, products(p, w))
-    s2 = stage(problem, frame, h, 2, p, w, products(p, w))
-    m = factors(frame, h, landing, p, w, s0, s1, s2)
+    s0 = stage(problem, frame, s, h, 0, p, w, products(p, w))
+    s1 = stage(problem, frame, s, h, 1, p, w, products(p, w))
+    s2 = stage(problem, frame, s, h, 2, p, w, products(p, w))
+    m = factors(frame, s, h, landing, p, w, s0, s1, s2)
     speed = accuracy.speed
     enough = accuracy.newton
     last = 1.0
@@ -60,6 +63,7 @@ def solve(
         w = (w[0] - dw[0], w[1] - dw[1], w[2] - dw[2])
         if landing:
             h -= dp[2]
+            s = swing(o, h, landing)
             p = (p[0] - dp[0], p[1] - dp[1], 0.0)
             size = abs(dp[2]) / (abs(h) + 1e-300)
         else:
@@ -68,19 +72,19 @@ def solve(
         size = max(size, abs(dp[0]) / (speed + abs(p[0])), abs(dp[1]) / (speed + abs(p[1])))
         size = max(size, abs(dw[0]), abs(dw[1]), abs(dw[2]))
         if not size < 1e10 or h <= 0.0:
-            return False, p, w, h, iteration
+            return False, s, p, w, h, iteration
         rate = size if iteration == 1 else size / last
         if size < enough or size * rate < enough:
-            return True, p, w, h, iteration
+            return True, s, p, w, h, iteration
         if iteration > 3 and rate > 1.0:
-            return False, p, w, h, iteration
-        s0 = stage(problem, frame, h, 0, p, w, products(p, w))
-        s1 = stage(problem, frame, h, 1, p, w, products(p, w))
-        s2 = stage(problem, frame, h, 2, p, w, products(p, w))
+            return False, s, p, w, h, iteration
+        s0 = stage(problem, frame, s, h, 0, p, w, products(p, w))
+        s1 = stage(problem, frame, s, h, 1, p, w, products(p, w))
+        s2 = stage(problem, frame, s, h, 2, p, w, products(p, w))
         if rate > 0.1:
-            m = factors(frame, h, landing, p, w, s0, s1, s2)
+            m = factors(frame, s, h, landing, p, w, s0, s1, s2)
         last = size
-    return False, p, w, h, ITERATIONS
+    return False, s, p, w, h, ITERATIONS
 
 
 @inlined

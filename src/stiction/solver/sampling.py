@@ -22,6 +22,7 @@ from stiction.solver.radau import A, cubic
 from stiction.solver.slip import stage
 from stiction.solver.stick import holding
 from stiction.solver.surface import friction_along
+from stiction.solver.swing import Oscillator, Swing, after, oscillator, swings
 
 COLUMNS = 7
 
@@ -70,6 +71,7 @@ def sample_slip(
     problem: Problem,
     frame: Frame,
     start: Outset,
+    swing: Swing,
     h: float,
     p: Triple,
     w: Triple,
@@ -78,17 +80,25 @@ def sample_slip(
     k: int,
 ) -> int:
     """Fill the samples of an accepted slip step; return the next index."""
-    q = (p[0] * w[0], p[1] * w[1], p[2] * w[2])
     t, r = frame.t, frame.r
+    if k >= len(times) or times[k] > t + h:
+        return k
+    q = (p[0] * w[0], p[1] * w[1], p[2] * w[2])
     first_1, first_2 = start.a_1 - start.f, start.a_2 - start.turn
-    end = stage(problem, frame, h, 2, p, w, q)
+    end = stage(problem, frame, swing, h, 2, p, w, q)
     n = end.flow
     last_1, last_2 = end.a_1 - end.f * n.n_1, end.a_2 - end.f * (n.tau + w[2] * n.n_1)
-    slid_1, slid_2 = h * dot(A[2], p), h * dot(A[2], q)
+    slid_1, slid_2 = h * (dot(A[2], p) + swing.slid[2]), h * dot(A[2], q)
+    o, r_H, v_H, last_H, acc_H, slid_H = laid_over(frame, start, h)
     while k < len(times) and times[k] <= t + h:
         dt = times[k] - t
         x = dt / h
-        z_1, s_1 = quintic(h, x, r, first_1, slid_1, p[2], last_1)
+        z_1, s_1 = quintic(
+            h, x, r - r_H, first_1 - v_H, slid_1 - slid_H, p[2] - last_H, last_1 - acc_H
+        )
+        if r_H != 0.0 or last_H != 0.0:
+            p_H, _, d_H = after(o, dt)
+            z_1, s_1 = z_1 + d_H, s_1 + p_H
         z_2, s_2 = quintic(h, x, 0.0, first_2, slid_2, q[2], last_2)
         u_x, u_y = elongation(problem, frame, dt, z_1, z_2)
         speed = sqrt(s_1 * s_1 + s_2 * s_2)
@@ -97,6 +107,18 @@ def sample_slip(
         force = friction(problem, times[k], speed)[0] * problem.system.mass
         k = fill(problem, frame, u_x, u_y, speed, g, turn * g, force, samples, k)
     return k
+
+
+@inlined
+def laid_over(
+    frame: Frame, start: Outset, h: float
+) -> tuple[Oscillator, float, float, float, float, float]:
+    """Return what a step was laid over: p and p' at its start and end, and the distance."""
+    o = oscillator(frame, start)
+    if not swings(o, h):
+        return o, 0.0, 0.0, 0.0, 0.0, 0.0
+    p, v, slid = after(o, h)
+    return o, frame.r, o.v, p, v, slid
 
 
 @inlined

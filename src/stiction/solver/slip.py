@@ -15,6 +15,7 @@ from stiction.solver.frame import Frame, friction, pull
 from stiction.solver.problem import Problem
 from stiction.solver.radau import A, C, D
 from stiction.solver.surface import Flow, flow
+from stiction.solver.swing import Swing
 
 
 class Stage(NamedTuple):
@@ -36,6 +37,7 @@ class Stage(NamedTuple):
 def stage(
     problem: Problem,
     frame: Frame,
+    swing: Swing,
     h: float,
     i: int,
     p: Triple,
@@ -43,10 +45,11 @@ def stage(
     q: Triple,
 ) -> Stage:
     """Evaluate stage `i`; q = p w."""
-    slid_1, slid_2 = dot(A[i], p), dot(A[i], q)
+    cubic_1, slid_2 = dot(A[i], p), dot(A[i], q)
+    slid_1, by_h = cubic_1 + swing.slid[i], cubic_1 + swing.slid_by_h[i]
     b_1, b_2, db_1, db_2 = pull(problem, frame, C[i] * h)
-    da_1 = C[i] * db_1 - frame.k_11 * slid_1 - frame.k_12 * slid_2
-    da_2 = C[i] * db_2 - frame.k_12 * slid_1 - frame.k_22 * slid_2
+    da_1 = C[i] * db_1 - frame.k_11 * by_h - frame.k_12 * slid_2
+    da_2 = C[i] * db_2 - frame.k_12 * by_h - frame.k_22 * slid_2
     p_i, w_i, q_i = p[i], w[i], q[i]
     a_1 = b_1 - h * (frame.k_11 * slid_1 + frame.k_12 * slid_2)
     a_2 = b_2 - h * (frame.k_12 * slid_1 + frame.k_22 * slid_2)
@@ -56,7 +59,7 @@ def stage(
     n = flow(problem, frame.surface, w_i)
     f, gradient = friction(problem, frame.t + C[i] * h, p_i * stretch)
     dp = dot(D[i], (p[0] - frame.r, p[1] - frame.r, p[2] - frame.r))
-    residual_p = dp - h * (a_1 - f * n.n_1)
+    residual_p = dp - h * (a_1 - f * n.n_1) + swing.rest[i]
     residual_w = p_i * dot(D[i], w) - h * (a_2 - w_i * a_1 - f * n.tau)
     return Stage(residual_p, residual_w, a_1, a_2, da_1, da_2, f, gradient, stretch, n)
 
@@ -108,22 +111,32 @@ def added(row: Triple, i: int, x: float) -> Triple:
 
 @inlined
 def factors(
-    frame: Frame, h: float, landing: bool, p: Triple, w: Triple, s0: Stage, s1: Stage, s2: Stage
+    frame: Frame,
+    swing: Swing,
+    h: float,
+    landing: bool,
+    p: Triple,
+    w: Triple,
+    s0: Stage,
+    s1: Stage,
+    s2: Stage,
 ) -> Factors:
     """Return the eliminated Jacobian at the given stages."""
     pp0, pw0, wp0, ww0 = jacobian_rows(frame, h, 0, p, w, s0)
     pp1, pw1, wp1, ww1 = jacobian_rows(frame, h, 1, p, w, s1)
     pp2, pw2, wp2, ww2 = jacobian_rows(frame, h, 2, p, w, s2)
     if landing:  # the last unknown is the step size
-        pp0, wp0 = by_step_size(h, w[0], s0, pp0, wp0)
-        pp1, wp1 = by_step_size(h, w[1], s1, pp1, wp1)
-        pp2, wp2 = by_step_size(h, w[2], s2, pp2, wp2)
+        pp0, wp0 = by_step_size(h, w[0], s0, swing.rest_by_h[0], pp0, wp0)
+        pp1, wp1 = by_step_size(h, w[1], s1, swing.rest_by_h[1], pp1, wp1)
+        pp2, wp2 = by_step_size(h, w[2], s2, swing.rest_by_h[2], pp2, wp2)
     return eliminated((pp0, pp1, pp2), (pw0, pw1, pw2), (wp0, wp1, wp2), (ww0, ww1, ww2))
 
 
 @inlined
-def by_step_size(h: float, w: float, s: Stage, pp: Triple, wp: Triple) -> tuple[Triple, Triple]:
+def by_step_size(
+    h: float, w: float, s: Stage, rest: float, pp: Triple, wp: Triple
+) -> tuple[Triple, Triple]:
     """Return the rows with the derivative by the step size as their last entry."""
-    dp = s.f * s.flow.n_1 - s.a_1 - h * s.da_1
+    dp = s.f * s.flow.n_1 - s.a_1 - h * s.da_1 + rest
     dw = w * s.a_1 - s.a_2 + s.f * s.flow.tau - h * (s.da_2 - w * s.da_1)
     return (pp[0], pp[1], dp), (wp[0], wp[1], dw)

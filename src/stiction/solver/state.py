@@ -19,7 +19,7 @@ class Accuracy(NamedTuple):
     speed : slip speed below which these are absolute, m/s; free_x, free_y : what friction alone
     can do to the elongation rates, mu_0 W/sqrt(m k), m/s: a vigorous slip may be relative to
     itself, but not so that the springs' own motion is lost; longest : step size that still sees
-    what drive and load do, s.
+    what drive and load do, s; drive : its speed, m/s, up to which a slip is held to itself.
     """
 
     tolerance: float
@@ -28,6 +28,7 @@ class Accuracy(NamedTuple):
     free_x: float
     free_y: float
     longest: float
+    drive: float
 
 
 class Motion(NamedTuple):
@@ -41,16 +42,22 @@ class Motion(NamedTuple):
     e_y: float
 
 
+Plan = tuple[float, float, float, float, float, float, float, float]
+PLANNED = 8
+
+
 class Memory(NamedTuple):
     """What the last steps teach the next one.
 
-    h : size to try next, s; h_takeoff : the same for the first step after a stick;
+    h : size to try next, s; plan : the same for the first steps after a stick, from the last
+    time, since one cycle is much like the next; place : how many of these have been taken;
     h_last : size of the last step; ease : its error over tolerance, to the power -1/4;
     warm : whether `p` and `w`, values of its cubics at 0 and the stages, predict the next.
     """
 
     h: float
-    h_takeoff: float
+    plan: Plan
+    place: int
     h_last: float
     ease: float
     warm: bool
@@ -87,14 +94,45 @@ def start(system: System, t: float, u: tuple[float, float], slip: tuple[float, f
     e = (slip[0] / r, slip[1] / r) if r > 0.0 else (1.0, 0.0)
     h = first_step(system)
     nothing = (0.0, 0.0, 0.0, 0.0)
-    memory = Memory(h, h, h, 1.0, False, nothing, nothing)
+    plan = (h, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    memory = Memory(h, plan, 0, h, 1.0, False, nothing, nothing)
     return State(Motion(t, u[0], u[1], r, e[0], e[1]), memory, Counts(0, 0, 0, 0, 0.0))
 
 
 @inlined
 def cooled(memory: Memory, h: float) -> Memory:
     """Return a memory whose cubics predict nothing: the motion has a kink here."""
-    return Memory(h, memory.h_takeoff, memory.h_last, memory.ease, False, memory.p, memory.w)
+    return Memory(h, memory.plan, PLANNED, memory.h_last, memory.ease, False, memory.p, memory.w)
+
+
+@inlined
+def at_takeoff(memory: Memory) -> Memory:
+    """Return the memory at the end of a stick."""
+    h = memory.plan[0]
+    return Memory(h, memory.plan, 0, memory.h_last, memory.ease, False, memory.p, memory.w)
+
+
+@inlined
+def planned(plan: Plan, place: int, h: float) -> Plan:
+    """Return the plan with the size `h` at one of its places."""
+    return (
+        h if place == 0 else plan[0],
+        h if place == 1 else plan[1],
+        h if place == 2 else plan[2],
+        h if place == 3 else plan[3],
+        h if place == 4 else plan[4],
+        h if place == 5 else plan[5],
+        h if place == 6 else plan[6],
+        h if place == 7 else plan[7],
+    )
+
+
+@inlined
+def size_to_try(memory: Memory) -> float:
+    """Return the size of the next step: the plan's, if the last step does not speak against it."""
+    if 0 < memory.place < PLANNED and memory.plan[memory.place] > 0.0:
+        return min(max(memory.plan[memory.place], 0.4 * memory.h), 1.5 * memory.h)
+    return memory.h
 
 
 @inlined

@@ -1,0 +1,82 @@
+"""How far the collocation polynomial of a step is off inside it."""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+
+from stiction.solver.blocks import Triple, dot
+from stiction.solver.compiled import inlined
+from stiction.solver.frame import Frame, friction, pull
+from stiction.solver.newton import products
+from stiction.solver.problem import Problem, in_principal_axes, rate
+from stiction.solver.radau import DEFECT_WEIGHT, DERIVATIVE, INTEGRAL, INTERIOR, VALUE, cubic
+from stiction.solver.state import Accuracy
+from stiction.solver.surface import flow
+from stiction.solver.swing import Swing
+
+LOOKED_AT = 12  # parts of a step between which the slip is looked at, where it has a minimum
+
+
+@inlined
+def local_error(
+    problem: Problem,
+    frame: Frame,
+    s: Swing,
+    h: float,
+    p: Triple,
+    w: Triple,
+    accuracy: Accuracy,
+) -> float:
+    """Return the largest relative error of the collocation cubic inside the step.
+
+    Its defect at an interior point, times the step size; that of w is divided by how stiffly
+    w follows the force. Held against the slip speed, but against no more than the drive's: a
+    rapid slip is over in few steps, and its error shifts all that follows; for w accordingly;
+    and in each principal axis against what the elongation rate there can be.
+    """
+    r, dt = frame.r, INTERIOR * h
+    p_in = VALUE[0] * r + VALUE[1] * p[0] + VALUE[2] * p[1] + VALUE[3] * p[2] + s.p_in
+    w_in = VALUE[1] * w[0] + VALUE[2] * w[1] + VALUE[3] * w[2]
+    dp = DERIVATIVE[0] * r + DERIVATIVE[1] * p[0] + DERIVATIVE[2] * p[1] + DERIVATIVE[3] * p[2]
+    dw = DERIVATIVE[1] * w[0] + DERIVATIVE[2] * w[1] + DERIVATIVE[3] * w[2]
+    slid_1, slid_2 = h * (dot(INTEGRAL, p) + s.slid_in), h * dot(INTEGRAL, products(p, w))
+    b_1, b_2, _, _ = pull(problem, frame, dt)
+    a_1 = b_1 - frame.k_11 * slid_1 - frame.k_12 * slid_2 - (frame.c_11 + frame.c_12 * w_in) * p_in
+    a_2 = b_2 - frame.k_12 * slid_1 - frame.k_22 * slid_2 - (frame.c_12 + frame.c_22 * w_in) * p_in
+    stretch = sqrt(1.0 + w_in * w_in)
+    f = friction(problem, frame.t + dt, p_in * stretch)[0]
+    if p_in < 0.0:
+        return inf
+    n = flow(problem, frame.surface, w_in)
+    error_p = dp - h * (a_1 - f * n.n_1) + s.rest_in
+    stiffness = p_in + DEFECT_WEIGHT * h * abs(a_1 + f * n.dtau)
+    error_w = (p_in * dw - h * (a_2 - w_in * a_1 - f * n.tau)) / (stiffness + 1e-300)
+    error_q = w_in * error_p + p_in * error_w
+    e_x, e_y, size = frame.e_x, frame.e_y, p_in * stretch
+    v_x, v_y = in_principal_axes(problem, rate(problem.drive, frame.t + dt))
+    v_x, v_y = v_x - p_in * (e_x - w_in * e_y), v_y - p_in * (e_y + w_in * e_x)
+    speed = accuracy.speed
+    held = min(size, accuracy.drive)
+    scale_x = speed + min(held, abs(v_x) + accuracy.free_x)
+    scale_y = speed + min(held, abs(v_y) + accuracy.free_y)
+    return DEFECT_WEIGHT * max(
+        abs(error_p) / (speed + held),
+        abs(error_w) * (speed + size) / (speed + held),
+        abs(error_p * e_x - error_q * e_y) / scale_x,
+        abs(error_p * e_y + error_q * e_x) / scale_y,
+    )
+
+
+@inlined
+def dips(r: float, p: Triple, margin: float) -> bool:
+    """Return whether the slip passes below a margin (m/s) inside the step and comes back.
+
+    A slip that is as small as its error may have been zero.
+    """
+    if p[0] < 0.0 or p[1] < 0.0:
+        return True
+    if p[0] < r and (p[2] > min(p[0], p[1]) or p[2] < 0.1 * r):  # a minimum may be inside
+        for i in range(1, LOOKED_AT):
+            if cubic((r, p[0], p[1], p[2]), i / LOOKED_AT) < margin:
+                return True
+    return False

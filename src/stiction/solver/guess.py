@@ -1,0 +1,120 @@
+"""What a step of slip starts from: when the slip may end, and first guesses of its stages."""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+
+from stiction.solver.blocks import Triple, inverse, times
+from stiction.solver.compiled import inlined
+from stiction.solver.frame import Frame, Outset
+from stiction.solver.newton import products
+from stiction.solver.radau import A, C, D, cubic
+from stiction.solver.slip import added
+from stiction.solver.state import Memory
+from stiction.solver.swing import Oscillator, Swing, after, swings
+
+
+@inlined
+def time_to_landing(frame: Frame, start: Outset, o: Oscillator, h: float) -> float:
+    """Return when the slip speed would vanish, in s; closely if that is within reach of `h`."""
+    t = landing_of_parabola(frame, start)
+    return swung_to_rest(o, t) if t < 2.5 * h else t
+
+
+@inlined
+def landing_of_parabola(frame: Frame, start: Outset) -> float:
+    """Return when the slip speed would vanish, from its first two derivatives, in s."""
+    r = frame.r
+    change = start.a_1 - start.f
+    curvature = start.da_1 - frame.k_11 * r
+    square = change * change - 2 * r * curvature
+    if square <= 0.0:
+        return inf
+    root = sqrt(square)
+    if change < 0.0:
+        return 2 * r / (root - change)
+    return (change + root) / -curvature if curvature < 0.0 else inf
+
+
+@inlined
+def swung_to_rest(o: Oscillator, t: float) -> float:
+    """Return a better time to landing than `t`, by a step of Newton's method."""
+    if swings(o, t):
+        p, v, _ = after(o, t)
+        if v < 0.0:
+            return max(t - p / v, 0.5 * t)
+    return t
+
+
+@inlined
+def predicted(
+    frame: Frame, start: Outset, o: Oscillator, s: Swing, h: float, memory: Memory
+) -> tuple[Triple, Triple]:
+    """Return a first guess of the stages (p, w)."""
+    if swings(o, h):
+        return swung(frame, start, s, h)
+    if memory.warm:
+        x = h / memory.h_last
+        c = (1.0 + C[0] * x, 1.0 + C[1] * x, 1.0 + C[2] * x)
+        p = (cubic(memory.p, c[0]), cubic(memory.p, c[1]), cubic(memory.p, c[2]))
+        w, turn = memory.w, memory.w[3]
+        return p, (cubic(w, c[0]) - turn, cubic(w, c[1]) - turn, cubic(w, c[2]) - turn)
+    r = frame.r
+    c = (C[0] * h, C[1] * h, C[2] * h)
+    change = start.a_1 - start.f
+    if r == 0.0:  # take-off: |s| grows with t, or t^2, and turns with the force that held
+        a, excess = 0.5 * start.da_1, max(change, 0.0)
+        x = start.da_2 / (start.a_1 + excess) if start.a_1 > 0.0 else 0.0
+        return (
+            (excess + a * c[0]) * c[0],
+            (excess + a * c[1]) * c[1],
+            (excess + a * c[2]) * c[2],
+        ), (x * c[0], x * c[1], x * c[2])
+    p = (
+        max(r + change * c[0], r * (1 - C[0])),
+        max(r + change * c[1], r * (1 - C[1])),
+        max(r + change * c[2], 0.1 * r),
+    )
+    return p, (0.0, 0.0, 0.0)
+
+
+@inlined
+def swung(frame: Frame, start: Outset, s: Swing, h: float) -> tuple[Triple, Triple]:
+    """Return a first guess of the stages from the oscillation along the slip.
+
+    The turn w follows from its own equation, linear for given p; what it does to p is added.
+    """
+    p, k_12, k_22 = s.p, frame.k_12, frame.k_22
+    slid, pull = times(A, p), start.a_2 - start.turn
+    m = (
+        turn_row(start, s, 0, h, p, k_22),
+        turn_row(start, s, 1, h, p, k_22),
+        turn_row(start, s, 2, h, p, k_22),
+    )
+    right = (
+        h * (pull + h * (C[0] * start.da_2 - k_12 * (slid[0] + s.slid[0]))),
+        h * (pull + h * (C[1] * start.da_2 - k_12 * (slid[1] + s.slid[1]))),
+        h * (pull + h * (C[2] * start.da_2 - k_12 * (slid[2] + s.slid[2]))),
+    )
+    w = times(inverse(m), right)
+    across = times(A, products(p, w))
+    x, f = h * k_12, 0.5 * start.f
+    push = (
+        f * w[0] * w[0] - x * across[0],
+        f * w[1] * w[1] - x * across[1],
+        f * w[2] * w[2] - x * across[2],
+    )
+    more = times(A, push)
+    return (p[0] + h * more[0], p[1] + h * more[1], p[2] + h * more[2]), w
+
+
+@inlined
+def turn_row(start: Outset, s: Swing, i: int, h: float, p: Triple, k_22: float) -> Triple:
+    """Return the row of stage i in the equations of the turn."""
+    x = h * h * k_22
+    row = (
+        p[i] * D[i][0] + x * A[i][0] * p[0],
+        p[i] * D[i][1] + x * A[i][1] * p[1],
+        p[i] * D[i][2] + x * A[i][2] * p[2],
+    )
+    return added(row, i, h * start.f + s.dp[i])

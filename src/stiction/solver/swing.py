@@ -1,0 +1,163 @@
+"""The oscillation along the slip in closed form, over which a step lays its cubic.
+
+While friction keeps its direction, the slip p along it obeys a linear equation,
+
+    p'' + 2 beta p' + k (p - P) = 0,   k = k_11, 2 beta = c_11 + F'/m, P = (K v_d)_1/k,
+
+and its solution with the right p(0), p'(0) also has the right p''(0). A step that
+approximates only what is left, p less this, by its collocation polynomial can be a large
+part of the oscillation's period: friction turns little in it (mixed collocation, e.g.
+Coleman & Duxbury 2000, doi:10.1016/S0377-0427(99)00340-4).
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import NamedTuple
+
+from stiction.solver.blocks import Triple, dot
+from stiction.solver.compiled import inlined
+from stiction.solver.frame import Frame, Outset
+from stiction.solver.radau import DERIVATIVE, INTEGRAL, INTERIOR, VALUE, A, C, D
+from stiction.solver.state import Accuracy
+
+FIFTH, APART = 0.2, sqrt(6.0) / 10.0  # the stages are 2/5 -+ sqrt(6)/10 and 1
+LEAST, MOST = 1e-3, 6.25  # of k h^2: below, a cubic does as well; above, nothing swings
+STRONGEST = 0.5  # of |beta| h
+
+
+class Oscillator(NamedTuple):
+    """Its k (1/s^2) and beta (1/s), level P and, at the start, p - P (m/s) and p' (m/s^2)."""
+
+    k: float
+    per_k: float
+    beta: float
+    level: float
+    x: float
+    v: float
+
+
+class Swing(NamedTuple):
+    """What the oscillation adds to the equations of a step; see `slip`.
+
+    p : at the stages; what it leaves of its cubic in h p' (`rest`) and in the distance over h
+    (`slid`), and by how much these change with the step size; the same at the interior point.
+    """
+
+    p: Triple
+    dp: Triple
+    rest: Triple
+    slid: Triple
+    rest_by_h: Triple
+    slid_by_h: Triple
+    p_in: float
+    rest_in: float
+    slid_in: float
+
+
+@inlined
+def oscillator(frame: Frame, start: Outset) -> Oscillator:
+    """Return the oscillator that follows the slip from the step's start."""
+    per_k = 1.0 / frame.k_11
+    level = start.da_1 * per_k
+    beta = 0.5 * (frame.c_11 + start.gradient)
+    return Oscillator(frame.k_11, per_k, beta, level, frame.r - level, start.a_1 - start.f)
+
+
+@inlined
+def swings(o: Oscillator, h: float) -> bool:
+    """Return whether a step of size `h` is laid over the oscillation."""
+    square = o.k * h * h
+    return LEAST < square < MOST and abs(o.beta) * h < STRONGEST
+
+
+@inlined
+def within_reach(o: Oscillator, h: float, accuracy: Accuracy) -> float:
+    """Return the step size `h`, cut where it is more of a swing than a step can be laid over."""
+    if o.k * h * h < 0.99 * MOST:
+        return h
+    size = accuracy.tolerance * (accuracy.speed + o.level + o.x)
+    if o.x * o.x + o.v * o.v * o.per_k < size * size:  # nothing swings
+        return h
+    return sqrt(0.99 * MOST * o.per_k)
+
+
+@inlined
+def propagator(o: Oscillator, t: float) -> tuple[float, float]:
+    """Return exp(-beta t) (cos, sin/omega)(omega t), omega^2 = k - beta^2, for short t."""
+    y, b = (o.k - o.beta * o.beta) * t * t, -o.beta * t
+    cos = 1 - y / 2 * (1 - y / 12 * (1 - y / 30 * (1 - y / 56 * (1 - y / 90 * (1 - y / 132)))))
+    sin = 1 - y / 6 * (1 - y / 20 * (1 - y / 42 * (1 - y / 72 * (1 - y / 110 * (1 - y / 156)))))
+    decay = 1 + b / 4 * (1 + b / 5 * (1 + b / 6 * (1 + b / 7)))
+    decay = 1 + b * (1 + b / 2 * (1 + b / 3 * decay))
+    return decay * cos, decay * sin * t
+
+
+@inlined
+def then(o: Oscillator, a: tuple[float, float], b: tuple[float, float]) -> tuple[float, float]:
+    """Return the propagator of two times one after the other."""
+    square = o.k - o.beta * o.beta
+    return a[0] * b[0] - square * a[1] * b[1], a[1] * b[0] + a[0] * b[1]
+
+
+@inlined
+def moved(o: Oscillator, u: tuple[float, float], t: float) -> tuple[float, float, float]:
+    """Return p, p' and the distance slipped after `t`, whose propagator is `u`."""
+    x = o.x * u[0] + (o.v + o.beta * o.x) * u[1]
+    v = o.v * u[0] - (o.beta * o.v + o.k * o.x) * u[1]
+    return o.level + x, v, o.level * t + (o.v - v + 2.0 * o.beta * (o.x - x)) * o.per_k
+
+
+@inlined
+def after(o: Oscillator, t: float) -> tuple[float, float, float]:
+    """Return p, p' and the distance slipped after `t`."""
+    u = propagator(o, 0.25 * t)
+    u = then(o, u, u)
+    return moved(o, then(o, u, u), t)
+
+
+@inlined
+def swing(o: Oscillator, h: float, landing: bool) -> Swing:
+    """Return what the oscillation adds to the equations of a step of size `h`."""
+    if not swings(o, h):
+        nothing = (0.0, 0.0, 0.0)
+        return Swing(nothing, nothing, nothing, nothing, nothing, nothing, 0.0, 0.0, 0.0)
+    fifth = propagator(o, FIFTH * h)
+    two = then(o, fifth, fifth)
+    p0, v0, z0 = moved(o, then(o, two, propagator(o, -APART * h)), C[0] * h)
+    p1, v1, z1 = moved(o, then(o, two, propagator(o, APART * h)), C[1] * h)
+    p2, v2, z2 = moved(o, then(o, then(o, two, two), fifth), h)
+    p_in, v_in, z_in = moved(o, two, INTERIOR * h)
+    p, dp, per_h, r = (p0, p1, p2), (h * v0, h * v1, h * v2), 1.0 / h, o.level + o.x
+    above = (p0 - r, p1 - r, p2 - r)
+    sums = (dot(A[0], p), dot(A[1], p), dot(A[2], p))
+    rest_by_h = slid_by_h = (0.0, 0.0, 0.0)
+    if landing:
+        by_h = (C[0] * dp[0], C[1] * dp[1], C[2] * dp[2])
+        square, twice = o.k * h * h, 2.0 * o.beta * h
+        bend = (  # h^2 p''
+            -twice * dp[0] - square * (p0 - o.level),
+            -twice * dp[1] - square * (p1 - o.level),
+            -twice * dp[2] - square * (p2 - o.level),
+        )
+        rest_by_h = (
+            (dp[0] + C[0] * bend[0] - dot(D[0], by_h)) * per_h,
+            (dp[1] + C[1] * bend[1] - dot(D[1], by_h)) * per_h,
+            (dp[2] + C[2] * bend[2] - dot(D[2], by_h)) * per_h,
+        )
+        slid_by_h = (
+            C[0] * p0 - sums[0] - dot(A[0], by_h),
+            C[1] * p1 - sums[1] - dot(A[1], by_h),
+            C[2] * p2 - sums[2] - dot(A[2], by_h),
+        )
+    return Swing(
+        p,
+        dp,
+        (dp[0] - dot(D[0], above), dp[1] - dot(D[1], above), dp[2] - dot(D[2], above)),
+        (z0 * per_h - sums[0], z1 * per_h - sums[1], z2 * per_h - sums[2]),
+        rest_by_h,
+        slid_by_h,
+        p_in - VALUE[0] * r - dot((VALUE[1], VALUE[2], VALUE[3]), p),
+        h * v_in - DERIVATIVE[0] * r - dot((DERIVATIVE[1], DERIVATIVE[2], DERIVATIVE[3]), p),
+        z_in * per_h - dot(INTEGRAL, p),
+    )

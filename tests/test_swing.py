@@ -1,0 +1,82 @@
+"""The oscillation over which a step of slip is laid."""
+
+from math import cos, pi, sqrt
+
+import numba
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+import stiction as st
+from stiction.solver.radau import A, C, D
+from stiction.solver.swing import MOST, Oscillator, after, swing
+
+OSCILLATORS = [
+    Oscillator(4e7, 1 / 4e7, -50.0, 1.7e-5, -1e-5, 0.02),  # friction that weakens
+    Oscillator(4e7, 1 / 4e7, 1e3, 1.7e-5, 3e-5, -0.1),  # damped
+    Oscillator(1.0, 1.0, 1.5 * 0.1, 0.0, 1.0, 0.0),
+]
+
+
+@numba.njit
+def _after(o, t):
+    return after(o, t)
+
+
+@numba.njit
+def _swing(o, h):
+    return swing(o, h, True)
+
+
+@pytest.mark.parametrize("o", OSCILLATORS)
+@pytest.mark.parametrize("part", [0.1, 0.5, 1.0])
+def test_it_solves_its_equation(o, part):
+    """Of p - P, p' and the distance, by the exponential of the matrix."""
+    t = part * min(sqrt(0.99 * MOST / o.k), 0.4 / abs(o.beta))
+    generator = np.array([[0, 1, 0, 0], [-o.k, -2 * o.beta, 0, 0], [1, 0, 0, 1], [0, 0, 0, 0]])
+    x, v, slid, _ = expm(t * generator) @ [o.x, o.v, 0.0, o.level]
+    scale = abs(o.x) + abs(o.v) / sqrt(o.k) + abs(o.level)
+    got = np.array(_after(o, t)) / [scale, scale * sqrt(o.k), scale * t]
+    want = np.array([o.level + x, v, slid]) / [scale, scale * sqrt(o.k), scale * t]
+    assert got == pytest.approx(want, abs=1e-12)
+
+
+@pytest.mark.parametrize("o", OSCILLATORS)
+def test_what_it_adds_to_the_equations_is_what_its_cubic_leaves(o):
+    h = 0.5 * min(sqrt(MOST / o.k), 0.4 / abs(o.beta))
+    p, v, slid = np.array([_after(o, c * h) for c in C]).T
+    s = _swing(o, h)
+    scale = np.abs(p).max() + h * np.abs(v).max()
+    assert s.p == pytest.approx(p, abs=1e-13 * scale)
+    assert s.rest == pytest.approx(h * v - np.array(D) @ (p - o.level - o.x), abs=1e-12 * scale)
+    assert s.slid == pytest.approx(slid / h - np.array(A) @ p, abs=1e-12 * scale)
+    less, more = _swing(o, h * (1 - 1e-5)), _swing(o, h * (1 + 1e-5))
+    by_h = (np.array(more.rest) - np.array(less.rest)) / (2e-5 * h)
+    # by differences: rounding of 1e-12 over 1e-5
+    assert s.rest_by_h == pytest.approx(
+        by_h, abs=1e-6 * scale / h
+    )
+    by_h = ((1 + 1e-5) * np.array(more.slid) - (1 - 1e-5) * np.array(less.slid)) / 2e-5
+    assert s.slid_by_h == pytest.approx(by_h, abs=1e-6 * scale)
+
+
+def test_constant_friction_along_an_axis_is_exact_at_any_tolerance():
+    """Nothing turns, so that a step has nothing to approximate; see any textbook for u_x."""
+    omega, V, F = 10.0, 0.1, 3.0
+    slider = st.Slider(
+        mass=1.0,
+        k_x=omega**2,
+        k_y=omega**2,
+        phi="0 deg",
+        normal_load=10.0,
+        friction=st.Coulomb(F / 10.0),
+        drive=st.ConstantVelocity(V),
+    )
+    pulled = st.Initial(
+        u_x=0.08, v_x=0.0, v_y=0.0
+    )
+    turn = 0.5 * 2 * pi / omega
+    end = st.simulate(slider, turn, initial=pulled, rtol=1e-2).final
+    # u'' = -omega^2 u + F/m as long as the slip V - u' is positive
+    want = F / omega**2 + (0.08 - F / omega**2) * cos(omega * turn)
+    assert end["u_x"].item() == pytest.approx(want, rel=1e-12)
