@@ -1,5 +1,6 @@
 """Descriptions: what is read, what is refused, and how that is said."""
 
+import copy
 import pickle
 from math import pi
 
@@ -156,3 +157,10 @@ def test_round_trip_and_pickle(tmp_path):
 def test_a_slider_is_frozen(slider):
     with pytest.raises(Exception, match="frozen"):
         slider.mass = 1.0
+
+
+@pytest.mark.parametrize(
+    "value", [st.Anisotropic(st.Coulomb(0.2), 2.0, "10 deg"), st.ConstantVelocity("1 mm/s")]
+)
+def test_what_was_read_with_units_is_copied_as_it_is(value):
+    assert pickle.loads(pickle.dumps(value)) == copy.deepcopy(value) == value

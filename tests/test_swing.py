@@ -53,9 +53,7 @@ def test_what_it_adds_to_the_equations_is_what_its_cubic_leaves(o):
     less, more = _swing(o, h * (1 - 1e-5)), _swing(o, h * (1 + 1e-5))
     by_h = (np.array(more.rest) - np.array(less.rest)) / (2e-5 * h)
     # by differences: rounding of 1e-12 over 1e-5
-    assert s.rest_by_h == pytest.approx(
-        by_h, abs=1e-6 * scale / h
-    )
+    assert s.rest_by_h == pytest.approx(by_h, abs=1e-6 * scale / h)
     by_h = ((1 + 1e-5) * np.array(more.slid) - (1 - 1e-5) * np.array(less.slid)) / 2e-5
     assert s.slid_by_h == pytest.approx(by_h, abs=1e-6 * scale)
 
@@ -72,9 +70,7 @@ def test_constant_friction_along_an_axis_is_exact_at_any_tolerance():
         friction=st.Coulomb(F / 10.0),
         drive=st.ConstantVelocity(V),
     )
-    pulled = st.Initial(
-        u_x=0.08, v_x=0.0, v_y=0.0
-    )
+    pulled = st.Initial(u_x=0.08, v_x=0.0, v_y=0.0)
     turn = 0.5 * 2 * pi / omega
     end = st.simulate(slider, turn, initial=pulled, rtol=1e-2).final
     # u'' = -omega^2 u + F/m as long as the slip V - u' is positive

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache, partial
 from importlib.metadata import version
 from typing import Any
 
@@ -126,14 +127,15 @@ def run(
     status = list(Status)[solution.code]
     statistics = Statistics(*solution.counts)
     attributes = {
-        "stiction_version": version("stiction"),
+        "stiction_version": _version(),
         "solver": f"{kind(description)}, Radau IIA 5",
         "status": status.name,
         "status_message": status.value,
         **vars(statistics),
     }
-    data = dataset(description, solution.times, solution.samples, solution.sticks, attributes)
-    return Trajectory(description, data, status, statistics)
+    arrived = solution.times, solution.samples, solution.sticks
+    arrays = partial(dataset, description, *arrived, attributes)
+    return Trajectory(description, arrays, status, statistics)
 
 
 def kind(description: Description) -> str:
@@ -141,6 +143,11 @@ def kind(description: Description) -> str:
     if has_state(description.slider.law):
         return "friction with internal state"
     return "set-valued friction" if description.run.regularisation is None else "regularised"
+
+
+@cache
+def _version() -> str:
+    return version("stiction")
 
 
 def sample_times(start: float, duration: float, rate: float | None) -> np.ndarray:

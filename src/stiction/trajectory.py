@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -53,9 +54,8 @@ class Trajectory:
     ----------
     description : Description
         What was run.
-    data : xarray.Dataset
-        Variables over ``time`` with units (see `stiction.labels`), and every stick interval,
-        whatever the sample rate, over ``stick``.
+    arrays : callable
+        Returns `data`, which is made when it is first asked for.
     status : Status
         How the run ended.
     statistics : Statistics
@@ -63,7 +63,7 @@ class Trajectory:
     """
 
     description: Description
-    data: xr.Dataset
+    arrays: Callable[[], xr.Dataset]
     status: Status
     statistics: Statistics
 
@@ -72,6 +72,14 @@ class Trajectory:
         n, end = self.data.sizes["time"], float(self.data["time"][-1])
         sticks = self.statistics.stick_count
         return f"<Trajectory to {end:g} s, {n} samples, {sticks} sticks, {self.status.name}>"
+
+    @cached_property
+    def data(self) -> xr.Dataset:
+        """Variables over ``time`` with units (see `stiction.labels`).
+
+        Also every stick interval, whatever the sample rate, over ``stick``.
+        """
+        return self.arrays()
 
     @property
     def slider(self) -> Slider:
@@ -187,7 +195,11 @@ def load(path: str | Path, *, trust: bool = False) -> Trajectory:
         status = Status[data.attrs["status"]]
     except (DescriptionError, KeyError, ValueError, AttributeError) as error:
         raise ResultError(f"{path}: its attributes cannot be read: {error}") from None
-    return Trajectory(description, data, status, statistics)
+    return Trajectory(description, partial(_as_read, data), status, statistics)
+
+
+def _as_read(data: xr.Dataset) -> xr.Dataset:
+    return data
 
 
 def _umask() -> int:

@@ -183,4 +183,10 @@ def validated(kind: type[T]) -> type[T]:
     new.__doc__ = plain.__doc__
     setattr(new, READS, True)
     kind.__new__ = staticmethod(new)  # type: ignore[method-assign,assignment]
+    setattr(kind, "__reduce__", _reduced)  # noqa: B010
     return kind
+
+
+def _reduced(value: Any) -> tuple[Any, ...]:
+    """Return how to unpickle or copy what has been read already: as it is."""
+    return type(value)._make, (tuple(value),)
