@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from time import perf_counter
-
-from .contestant import Contestant
 
 
 def round_robin(
-    contestants: Sequence[Contestant],
+    measures: Sequence[Callable[[], float]],
     *,
     repeats: int,
     budget: float,
@@ -19,8 +16,8 @@ def round_robin(
 
     Parameters
     ----------
-    contestants : sequence of Contestant
-        Compiled already.
+    measures : sequence of callable
+        Each runs a contestant, compiled already, and returns the seconds that took.
     repeats : int
         Number of rounds.
     budget : float
@@ -33,12 +30,10 @@ def round_robin(
     list of list of float
         Wall times in s for each contestant, in its order.
     """
-    times: list[list[float]] = [[] for _ in contestants]
+    times: list[list[float]] = [[] for _ in measures]
     for _ in range(repeats):
-        for contestant, own in zip(contestants, times, strict=True):
+        for measure, own in zip(measures, times, strict=True):
             if sum(own) < budget:
-                start = perf_counter()
-                contestant.measure()
-                own.append(perf_counter() - start)
+                own.append(measure())
             after_each()
     return times
