@@ -39,6 +39,7 @@ class Library:
     """
 
     def __init__(self, module: str, name: str, interpreter: str | None = None, limit: float = 60.0):
+        """Start the process."""
         self.module, self.name, self.limit = module, name, limit
         self.interpreter = interpreter or sys.executable
         self.process: subprocess.Popen[bytes] | None = None

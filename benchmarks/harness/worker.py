@@ -31,6 +31,9 @@ def main() -> None:
     except ImportError as problem:
         say({"missing": str(problem)})
         return
+    except Exception as problem:  # say, no C compiler
+        say({"failed": f"{type(problem).__name__}: {problem}"})
+        return
     say({"rows": [[row.solver, row.settings] for row in contestants]})
     for line in sys.stdin:
         request = json.loads(line)

@@ -6,8 +6,8 @@ from math import atan2, cos, hypot, sin, sqrt
 
 import numpy as np
 
-from ..case import K_X, K_Y, MASS, MU_0, MU_INF, PHI, V_F, W, drive, initial_state
 from ...harness.contestant import Contestant, Failed, rows
+from ..case import K_X, K_Y, MASS, MU_0, MU_INF, PHI, V_F, W, drive, initial_state
 
 REGULARISED = (
     {"delta": 1e-6, "tol": 1e-6},
@@ -53,6 +53,7 @@ class Regularised:
     """The regularised law; integrators are built once for each tolerance."""
 
     def __init__(self):
+        """Import heyoka."""
         import heyoka
 
         self.hy, self.built = heyoka, {}
@@ -78,6 +79,7 @@ class EventDriven:
     """
 
     def __init__(self):
+        """Import heyoka."""
         import heyoka
 
         self.hy, self.built = heyoka, {}

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numba
 import numpy as np
 
-from ..case import PHI, drive, initial_state
 from ...harness.contestant import Contestant, Failed, rows
+from ..case import PHI, drive, initial_state
 from ..equations import rates
 
 # Ever sharper, the fastest found for what they reach, by trying hundreds with the answer known.

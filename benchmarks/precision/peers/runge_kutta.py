@@ -5,8 +5,8 @@ from __future__ import annotations
 import numba
 import numpy as np
 
-from ..case import PHI, drive, initial_state
 from ...harness.contestant import Contestant, rows
+from ..case import PHI, drive, initial_state
 from ..equations import rates
 
 STEPS = ({"dt": 1e-5}, {"dt": 1e-6}, {"dt": 1e-7})  # s

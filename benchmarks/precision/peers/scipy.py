@@ -8,8 +8,8 @@ from functools import partial
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from ..case import PHI, drive, initial_state
 from ...harness.contestant import Contestant, Failed, rows
+from ..case import PHI, drive, initial_state
 from ..equations import derivative_of, jacobian_of
 
 LSODA = (

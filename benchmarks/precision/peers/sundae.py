@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..case import PHI, drive, initial_state
 from ...harness.contestant import Contestant, Failed, rows
+from ..case import PHI, drive, initial_state
 from ..equations import derivative, jacobian
 
 CVODE = (
