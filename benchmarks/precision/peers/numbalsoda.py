@@ -33,7 +33,17 @@ MOST_STEPS = 5_000_000  # ten times what the sharpest needs; beyond this it is l
 
 def contestants() -> list[Contestant]:
     """Return the rows of both methods."""
-    from numbalsoda import dop853, lsoda, lsoda_sig
+    from numbalsoda import dop853, lsoda
+
+    return [
+        *rows("LSODA (numbalsoda)", solver(lsoda), LSODA),
+        *rows("DOP853 (numbalsoda)", solver(dop853), DOP853),
+    ]
+
+
+def solver(method):
+    """Return the function that solves by a method with the signature of numbalsoda's."""
+    from numbalsoda import lsoda_sig
 
     @numba.cfunc(lsoda_sig)
     def right_hand_side(t, state, out, p):
@@ -41,24 +51,18 @@ def contestants() -> list[Contestant]:
             state[0], state[1], state[2], state[3], p[0], p[1], p[2]
         )
 
-    def solver(method):
-        def solve(times, *, delta, rtol, atol, phi=PHI):
-            states, success = method(
-                right_hand_side.address,
-                initial_state(phi),
-                times,
-                np.array([*drive(phi), delta]),
-                rtol=rtol,
-                atol=atol,
-                mxstep=MOST_STEPS,
-            )
-            if not success:  # the rest of `states` is then uninitialised memory
-                raise Failed("gave up")
-            return states[:, :2]
+    def solve(times, *, delta, rtol, atol, phi=PHI):
+        states, success = method(
+            right_hand_side.address,
+            initial_state(phi),
+            times,
+            np.array([*drive(phi), delta]),
+            rtol,
+            atol,
+            MOST_STEPS,
+        )
+        if not success:  # the rest of `states` is then uninitialised memory
+            raise Failed("gave up")
+        return states[:, :2]
 
-        return solve
-
-    return [
-        *rows("LSODA (numbalsoda)", solver(lsoda), LSODA),
-        *rows("DOP853 (numbalsoda)", solver(dop853), DOP853),
-    ]
+    return solve

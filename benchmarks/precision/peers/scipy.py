@@ -21,7 +21,6 @@ LSODA = (
 RADAU = (
     {"delta": 3e-6, "rtol": 1e-4, "atol": 1e-8},
     {"delta": 1e-6, "rtol": 1e-3, "atol": 1e-8},
-    {"delta": 1e-7, "rtol": 1e-4, "atol": 1e-9},
 )
 BDF = (
     {"delta": 3e-6, "rtol": 1e-4, "atol": 1e-8},

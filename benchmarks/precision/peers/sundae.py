@@ -13,7 +13,6 @@ CVODE = (
     {"delta": 1e-6, "rtol": 1e-4, "atol": 1e-8},
     {"delta": 1e-6, "rtol": 1e-6, "atol": 1e-8},
     {"delta": 1e-7, "rtol": 1e-6, "atol": 1e-9},
-    {"delta": 1e-8, "rtol": 1e-6, "atol": 1e-10},
 )
 MOST_STEPS = 5_000_000
 
