@@ -100,7 +100,8 @@ class Library:
         assert self.process is not None
         assert self.process.stdin is not None
         request = {"row": row, "duration": duration, "points": points, "into": into}
-        self.process.stdin.write(json.dumps(request).encode() + b"\n")
+        with contextlib.suppress(BrokenPipeError):  # it has ended: the answer will say so
+            self.process.stdin.write(json.dumps(request).encode() + b"\n")
         answer = self._answer(limit)
         if "failed" in answer:
             raise Failed(answer["failed"])
@@ -117,7 +118,7 @@ class Library:
         if line:
             return dict(json.loads(line))
         code = self.process.wait()
-        self.process = None
+        self.end()
         name = signal.Signals(-code).name if code < 0 else f"exit status {code}"
         return {"failed": f"crashed ({name})"}
 

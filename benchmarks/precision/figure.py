@@ -10,8 +10,12 @@ from matplotlib.figure import Figure
 
 from ..harness.row import OURS, Row
 
-# Okabe & Ito's colours, told apart by the colour-blind; markers tell them apart in black and white
-COLOURS = ("#E69F00", "#56B4E9", "#009E73", "#0072B2", "#CC79A7", "#D55E00", "#999999")
+# Okabe & Ito's colours, told apart by the colour-blind, and a wine red of Tol's: one a library.
+# Markers tell the methods apart, also in black and white.
+COLOURS = (
+    *("#E69F00", "#56B4E9", "#0072B2", "#009E73", "#D55E00"),
+    *("#CC79A7", "#999999", "#882255"),
+)
 MARKERS = ("s", "^", "v", "D", "P", "X", "<", ">", "p", "h", "*", "d", "8")
 PANELS = ("$k_x u_x$", "$k_y u_y$")
 
@@ -21,8 +25,10 @@ def figure(rows: Sequence[Row]) -> Figure:
     drawing = Figure(figsize=(10.0, 5.4), layout="constrained")
     panels = drawing.subplots(1, 2, sharey=True)
     solvers = dict.fromkeys(row.solver for row in rows if row.errors is not None)
-    styles = zip(cycle(COLOURS), cycle(MARKERS), strict=False)
-    looks = {solver: next(styles) for solver in solvers if not solver.startswith(OURS)}
+    peers = [solver for solver in solvers if not solver.startswith(OURS)]
+    colours = dict(zip(dict.fromkeys(map(library, peers)), cycle(COLOURS), strict=False))
+    markers = dict(zip(peers, cycle(MARKERS), strict=False))
+    looks = {solver: (colours[library(solver)], markers[solver]) for solver in peers}
     for panel, (axes, force) in enumerate(zip(panels, PANELS, strict=True)):
         for solver in solvers:
             points = [
@@ -37,6 +43,11 @@ def figure(rows: Sequence[Row]) -> Figure:
         *panels[0].get_legend_handles_labels(), loc="outside right upper", frameon=False, fontsize=9
     )
     return drawing
+
+
+def library(solver: str) -> str:
+    """Return what a solver belongs to: in brackets after its name, or before the comma in it."""
+    return solver.partition("(")[2].strip(")") or solver.partition(",")[0]
 
 
 def front(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
@@ -66,7 +77,8 @@ def draw(axes: Axes, solver: str, points, look: tuple[str, str] | None) -> None:
 
 def finish(axes: Axes, force: str) -> None:
     """Name the axes; more accurate is to the right."""
-    axes.set(xscale="log", yscale="log", xlabel=f"largest error of {force} (N)")
+    axes.set(xscale="log", yscale="log")
+    axes.set_xlabel(f"largest error of {force} (N); better to the right")
     axes.invert_xaxis()
     axes.grid(True, which="major", color="0.88", linewidth=0.8)
     axes.set_axisbelow(True)
