@@ -69,12 +69,26 @@ def test_a_contest_survives_what_refuses_crashes_hangs_or_is_not_there(fake):
         times=np.linspace(0.0, 5.0, 11),
         repeats=3,
         budget=1.0,
+        seconds=60.0,
     )
     absent.end()
     assert [row.errors for row in rows] == [(5.0, 10.0), None, None, None, (5.0, 10.0), None, None]
     assert [len(row.times) for row in rows] == [3, 0, 0, 0, 3, 0, 0]
     said = ["", "would not", "SIGABRT", "within 1 s", "", "no_such_module", "/no/such/python"]
     assert all(words in row.note for words, row in zip(said, rows, strict=True))
+
+
+def test_a_contest_leaves_out_what_it_has_no_time_for(fake):
+    rows = contest(
+        [fake],
+        lambda found: Errors(0.0, 0.0),
+        Progress(disable=True),
+        times=np.linspace(0.0, 5.0, 11),
+        repeats=3,
+        budget=1.0,
+        seconds=0.0,
+    )
+    assert all(row.errors is None and row.note.startswith("left out") for row in rows)
 
 
 def test_rounds_are_taken_in_turn_and_the_slow_sit_out():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from math import inf, isfinite
+from time import perf_counter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,7 @@ from .library import Library
 from .rounds import round_robin
 from .row import Errors, Row
 
+FIRST = 0.7  # of the time: for errors; the rest is for rounds
 SLOW = 1.5  # s; a run that takes longer is timed once, together with its samples
 
 
@@ -25,6 +27,7 @@ def contest(
     times: NDArray[np.float64],
     repeats: int,
     budget: float,
+    seconds: float,
 ) -> list[Row]:
     """Return the rows of all libraries, with errors and times or with what went wrong.
 
@@ -42,7 +45,11 @@ def contest(
         Number of rounds.
     budget : float
         A row whose runs have taken this many seconds in all sits out the later rounds.
+    seconds : float
+        What all of it may take: rows are left out, and rounds, when the time is up.
     """
+    begin = perf_counter()
+    ready = begin + FIRST * seconds
     rows: list[Row] = []
     measures: dict[int, Callable[[], float]] = {}  # of those that are to be timed, by row
     for library in libraries:
@@ -54,7 +61,10 @@ def contest(
             own = []
         progress.update(task, total=max(1, len(own)), completed=0 if own else 1)
         for number, (solver, settings) in enumerate(own):
-            row = first(library, number, Row(solver, settings), times, compare)
+            row = Row(solver, settings, note="left out: the time was up")
+            if perf_counter() < ready:
+                library.limit = min(library.limit, ready - perf_counter())
+                row = first(library, number, Row(solver, settings), times, compare)
             if row.times and row.seconds < SLOW:
                 measures[len(rows)] = timer(library, number, times[-1])
             rows.append(row)
@@ -64,6 +74,7 @@ def contest(
         list(measures.values()),
         repeats=repeats,
         budget=budget,
+        until=begin + seconds,
         after_each=lambda: progress.advance(task),
     )
     for number, seconds in zip(measures, timed, strict=True):

@@ -113,7 +113,7 @@ class Library:
         assert self.process.stdout is not None
         if not select.select([self.process.stdout], [], [], limit)[0]:
             self.end()
-            return {"failed": f"no result within {limit:g} s"}
+            return {"failed": f"no result within {limit:.0f} s"}
         line = self.process.stdout.readline()
         if line:
             return dict(json.loads(line))
