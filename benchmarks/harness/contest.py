@@ -16,6 +16,7 @@ from .rounds import round_robin
 from .row import Errors, Row
 
 FIRST = 0.7  # of the time: for errors; the rest is for rounds
+LEAST = 5.0  # s; that a run may take, if it is begun
 SLOW = 1.5  # s; a run that takes longer is timed once, together with its samples
 
 
@@ -59,11 +60,14 @@ def contest(
         except Failed as reason:
             rows.append(Row(library.name, "", note=str(reason)))
             own = []
+        # an equal share of what is left, so that a slow library takes nothing from the next
+        share = (ready - perf_counter()) / (len(libraries) - libraries.index(library))
+        until = perf_counter() + share
         progress.update(task, total=max(1, len(own)), completed=0 if own else 1)
         for number, (solver, settings) in enumerate(own):
             row = Row(solver, settings, note="left out: the time was up")
-            if perf_counter() < ready:
-                library.limit = min(library.limit, ready - perf_counter())
+            if perf_counter() < until:
+                library.limit = min(library.limit, max(LEAST, until - perf_counter()))
                 row = first(library, number, Row(solver, settings), times, compare)
             if row.times and row.seconds < SLOW:
                 measures[len(rows)] = timer(library, number, times[-1])
@@ -77,8 +81,8 @@ def contest(
         until=begin + seconds,
         after_each=lambda: progress.advance(task),
     )
-    for number, seconds in zip(measures, timed, strict=True):
-        if finite := [value for value in seconds if isfinite(value)]:
+    for number, own_times in zip(measures, timed, strict=True):
+        if finite := [value for value in own_times if isfinite(value)]:
             rows[number] = rows[number]._replace(times=finite)
     return rows
 

@@ -6,7 +6,7 @@ from ...harness.contestant import Contestant, rows
 from ...precision.peers.ours import solve
 from ..many import in_threads
 
-RTOL = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
+RTOL = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)
 
 
 def contestants() -> list[Contestant]:
