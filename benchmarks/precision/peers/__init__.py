@@ -17,14 +17,15 @@ class Peer(NamedTuple):
     interpreter: str | None = None  # where it is not the one that runs
 
 
+# those that take long come last: each may use what the ones before it leave of the time
 PEERS = (
     Peer("ours", "stiction"),
     Peer("numbalsoda", "numbalsoda"),
     Peer("scipy", "SciPy"),
     Peer("sundae", "CVODE (scikit-sundae)"),
-    Peer("diffrax", "diffrax"),
-    Peer("heyoka", "heyoka"),
     Peer("jitcode", "JiTCODE"),
     Peer("siconos", "Siconos", "/usr/bin/python3"),  # Debian's
     Peer("runge_kutta", "RK4, fixed step"),
+    Peer("heyoka", "heyoka"),
+    Peer("diffrax", "diffrax"),
 )

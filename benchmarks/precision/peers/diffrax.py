@@ -25,8 +25,8 @@ def contestants() -> list[Contestant]:
     import diffrax
 
     return [
-        *rows("Kvaerno3 (diffrax)", solver(diffrax.Kvaerno3()), KVAERNO3),
         *rows("Kvaerno5 (diffrax)", solver(diffrax.Kvaerno5()), KVAERNO5),
+        *rows("Kvaerno3 (diffrax)", solver(diffrax.Kvaerno3()), KVAERNO3),
     ]
 
 
