@@ -49,21 +49,28 @@ def contest(
     seconds : float
         What all of it may take: rows are left out, and rounds, when the time is up.
     """
-    begin = perf_counter()
-    ready = begin + FIRST * seconds
+    task = progress.add_task("imports", total=len(libraries))
+    started: list[list[tuple[str, str]]] = []
+    absent: list[Row] = []
+    for library in libraries:
+        try:
+            started.append(library.rows())
+        except Failed as reason:
+            started.append([])
+            absent.append(Row(library.name, "", note=str(reason)))
+        progress.advance(task)
     rows: list[Row] = []
     measures: dict[int, Callable[[], float]] = {}  # of those that are to be timed, by row
-    for library in libraries:
-        task = progress.add_task(f"accuracy: {library.name}", total=None)
-        try:
-            own = library.rows()
-        except Failed as reason:
-            rows.append(Row(library.name, "", note=str(reason)))
-            own = []
-        # an equal share of what is left, so that a slow library takes nothing from the next
-        share = (ready - perf_counter()) / (len(libraries) - libraries.index(library))
+    begin = perf_counter()
+    ready = begin + FIRST * seconds
+    for i, (library, own) in enumerate(zip(libraries, started, strict=True)):
+        if not own:
+            continue
+        task = progress.add_task(f"accuracy: {library.name}", total=len(own))
+        # The first is what all are compared with. The others have equal shares of what is left,
+        # so that a slow library takes nothing from the next.
+        share = (ready - perf_counter()) / (len(libraries) - i if i else 1)
         until = perf_counter() + share
-        progress.update(task, total=max(1, len(own)), completed=0 if own else 1)
         for number, (solver, settings) in enumerate(own):
             row = Row(solver, settings, note="left out: the time was up")
             if perf_counter() < until:
@@ -84,7 +91,7 @@ def contest(
     for number, own_times in zip(measures, timed, strict=True):
         if finite := [value for value in own_times if isfinite(value)]:
             rows[number] = rows[number]._replace(times=finite)
-    return rows
+    return [*rows, *absent]
 
 
 def first(

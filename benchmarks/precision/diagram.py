@@ -56,7 +56,7 @@ def run(progress: Progress, quick: bool) -> Section:
             times=GRID,
             repeats=3 if quick else 9,
             budget=1.0 if quick else 1.5,
-            seconds=60.0 if quick else 190.0,
+            seconds=90.0 if quick else 190.0,
         )
     return Section(
         "Work-precision diagram",
