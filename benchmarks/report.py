@@ -1,108 +1,101 @@
-"""The table of a benchmark run: on the terminal, as Markdown, as JSON."""
+"""What the benchmark found: on the terminal, as Markdown, as JSON, as figures."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping
+from math import isfinite
 from pathlib import Path
+from typing import Any
 
 from rich import box
+from rich import table as rich_table
 from rich.console import Console
-from rich.table import Table
 
-from .accuracy import beside_published
-from .ours import REFERENCE_RTOL
-from .result import Row, environment, matched
+from .machine import machine
+from .section import Cell, Section, Table
 
-HEADINGS = (
-    "solver",
-    "settings",
-    "median (ms)",
-    "min (ms)",
-    "runs",
-    "k_x u_x (N)",
-    "k_y u_y (N)",
-    "u_x(5 s)",
-    "times as long as stiction",
-)
-WIDTH = 160  # characters; the table needs them, however narrow the terminal
-NOTES = (
-    "Times are of whole calls without output samples, unless the row says otherwise.",
-    "`k_x u_x` and `k_y u_y`: largest error on a 1 ms grid over 5 s, from a run with the same"
-    " settings sampled there; `u_x(5 s)`: relative error at the end.",
-    "Last column: the median beside that of the fastest row of stiction that is at least as"
-    " accurate in both forces, which is named.",
-)
+WIDTH = 190  # characters; the tables need them, however narrow the terminal
+DPI = 160
 
 
-def cells(row: Row, rows: Sequence[Row]) -> tuple[str, ...]:
-    """Return a row as text, one cell a heading."""
-    if not row.times or row.accuracy is None:
-        return (row.solver, row.settings, row.note.partition(":")[0], *[""] * 6)
-    ours = matched(row, rows)
-    return (
-        row.solver,
-        row.settings,
-        f"{1e3 * row.median:.1f}",
-        f"{1e3 * min(row.times):.1f}",
-        str(len(row.times)),
-        *(f"{error:.1e}" for error in row.accuracy),
-        f"{row.median / ours.median:.1f} ({ours.settings})" if ours else "",
-    )
+def text(cell: Cell) -> str:
+    """Return a cell as printed."""
+    if cell is None:
+        return ""
+    if not isinstance(cell, float):
+        return str(cell)
+    if cell != 0.0 and not 1e-3 < abs(cell) < 1e5:
+        return f"{cell:.1e}"
+    return f"{cell:.0f}" if abs(cell) >= 1e3 else f"{cell:.3g}"
 
 
-def sentences(rows: Sequence[Row], reference) -> list[str]:
-    """Return what the table does not say: its terms, the reference's standing, the failures."""
-    u_x, u_y = beside_published(reference)
-    standing = (
-        f"The reference is stiction at rtol={REFERENCE_RTOL:g}; beside the published values it"
-        f" deviates by {u_x:.1e} of u_x(5 s) and {u_y:.1e} of u_y(5 s)."
-    )
-    failures = [
-        f"{row.solver} ({row.settings}) {row.note}" for row in rows if row.note.startswith("failed")
-    ]
-    return [*NOTES, standing, *failures]
-
-
-def show(console: Console, rows: Sequence[Row], reference) -> None:
-    """Print the table and what belongs to it."""
-    table = Table(*HEADINGS, box=box.SIMPLE)
-    for row in rows:
-        table.add_row(*cells(row, rows))
+def show(console: Console, section: Section) -> None:
+    """Print a section."""
     console.width = max(console.width, WIDTH)
-    console.print(table)
-    for sentence in sentences(rows, reference):
-        console.print(f"- {sentence}", highlight=False)
+    console.rule(section.title)
+    for table in section.tables:
+        printed = rich_table.Table(*table.headings, title=table.title, box=box.SIMPLE)
+        for row in table.rows:
+            printed.add_row(*map(text, row))
+        console.print(printed)
+    for note in section.notes:
+        console.print(f"- {note}", highlight=False, markup=False)
 
 
-def markdown(rows: Sequence[Row], reference) -> str:
-    """Return the table and what belongs to it as Markdown."""
-    lines = [HEADINGS, ("---",) * len(HEADINGS), *(cells(row, rows) for row in rows)]
-    table = "\n".join(f"| {' | '.join(line)} |" for line in lines)
-    points = "\n".join(f"- {sentence}" for sentence in sentences(rows, reference))
-    where = ", ".join(f"{name} {value}" for name, value in environment().items())
-    return f"{table}\n\n{points}\n- {where}\n"
+def markdown(sections: Mapping[str, Section], seconds: float) -> str:
+    """Return all sections as Markdown."""
+    where = ", ".join(f"{name} {value}" for name, value in machine().items())
+    pieces = ["# Benchmark", f"{where}. All of it took {seconds:.0f} s."]
+    for section in sections.values():
+        pieces.append(f"## {section.title}")
+        pieces += [f"![{name}]({name}.png)" for name in section.figures]
+        pieces += [f"### {table.title}\n\n{grid(table)}" for table in section.tables]
+        pieces.append("\n".join(f"- {note}" for note in section.notes))
+    return "\n\n".join(piece for piece in pieces if piece) + "\n"
 
 
-def save(directory: Path, rows: Sequence[Row], reference) -> None:
-    """Write ``benchmark.md`` and ``benchmark.json`` into `directory`, making it if need be."""
+def grid(table: Table) -> str:
+    """Return a table as Markdown."""
+    lines = [table.headings, ("---",) * len(table.headings), *(map(text, r) for r in table.rows)]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def content(sections: Mapping[str, Section], seconds: float) -> dict[str, Any]:
+    """Return all sections for JSON; numbers stay numbers, those that are none become null."""
+    return {
+        "machine": machine(),
+        "seconds": seconds,
+        "sections": {
+            name: {
+                "title": section.title,
+                "tables": [
+                    {
+                        "title": table.title,
+                        "headings": table.headings,
+                        "rows": [[plain(cell) for cell in row] for row in table.rows],
+                    }
+                    for table in section.tables
+                ],
+                "notes": list(section.notes),
+                "figures": [f"{stem}.png" for stem in section.figures],
+            }
+            for name, section in sections.items()
+        },
+    }
+
+
+def plain(cell: Cell) -> Cell:
+    """Return a cell as JSON can hold it."""
+    return None if isinstance(cell, float) and not isfinite(cell) else cell
+
+
+def save(directory: Path, sections: Mapping[str, Section], seconds: float) -> None:
+    """Write results.md, results.json and the figures into `directory`, making it if need be."""
     directory.mkdir(parents=True, exist_ok=True)
-    (directory / "benchmark.md").write_text(markdown(rows, reference), encoding="utf-8")
-    content = {
-        "environment": environment(),
-        "reference_beside_published": dict(
-            zip(("u_x", "u_y"), beside_published(reference), strict=True)
-        ),
-        "rows": [_entry(row, rows) for row in rows],
-    }
-    text = json.dumps(content, indent=2)
-    (directory / "benchmark.json").write_text(text + "\n", encoding="utf-8")
-
-
-def _entry(row: Row, rows: Sequence[Row]) -> dict[str, object]:
-    ours = matched(row, rows)
-    return row._asdict() | {
-        "accuracy": row.accuracy._asdict() if row.accuracy else None,
-        "matched": ours.settings if ours else None,
-        "times_as_long": row.median / ours.median if ours else None,
-    }
+    (directory / "results.md").write_text(markdown(sections, seconds), encoding="utf-8")
+    found = json.dumps(content(sections, seconds), indent=1, allow_nan=False)
+    (directory / "results.json").write_text(found + "\n", encoding="utf-8")
+    for section in sections.values():
+        for stem, figure in section.figures.items():
+            figure.savefig(directory / f"{stem}.png", dpi=DPI)

@@ -3,28 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from math import inf
 from time import perf_counter
-
-from .contestant import Contestant
 
 
 def round_robin(
-    contestants: Sequence[Contestant],
+    measures: Sequence[Callable[[], float]],
     *,
     repeats: int,
     budget: float,
+    until: float = inf,
     after_each: Callable[[], object] = lambda: None,
 ) -> list[list[float]]:
     """Time every contestant once a round, so that a noisy machine treats all alike.
 
     Parameters
     ----------
-    contestants : sequence of Contestant
-        Compiled already.
+    measures : sequence of callable
+        Each runs a contestant, compiled already, and returns the seconds that took.
     repeats : int
         Number of rounds.
     budget : float
         A contestant whose runs have taken this many seconds in all sits out the later rounds.
+    until : float
+        When to stop, on the clock of `perf_counter`.
     after_each : callable
         Called after each run and each run sat out, `repeats` times a contestant.
 
@@ -33,12 +35,10 @@ def round_robin(
     list of list of float
         Wall times in s for each contestant, in its order.
     """
-    times: list[list[float]] = [[] for _ in contestants]
+    times: list[list[float]] = [[] for _ in measures]
     for _ in range(repeats):
-        for contestant, own in zip(contestants, times, strict=True):
-            if sum(own) < budget:
-                start = perf_counter()
-                contestant.measure()
-                own.append(perf_counter() - start)
+        for measure, own in zip(measures, times, strict=True):
+            if sum(own) < budget and perf_counter() < until:
+                own.append(measure())
             after_each()
     return times

@@ -1,0 +1,1 @@
+"""Many runs at once: the paper's case at many misalignments, on all cores."""

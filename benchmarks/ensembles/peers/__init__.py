@@ -1,0 +1,1 @@
+"""Ways to integrate the ensemble: one library a file, each with ``contestants()``."""

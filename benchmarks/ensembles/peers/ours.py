@@ -1,0 +1,14 @@
+"""Our own solver in threads: compiled code runs without Python's lock."""
+
+from __future__ import annotations
+
+from ...harness.contestant import Contestant, rows
+from ...precision.peers.ours import solve
+from ..many import in_threads
+
+RTOL = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)
+
+
+def contestants() -> list[Contestant]:
+    """Return our rows."""
+    return rows("stiction, threads", in_threads(solve), [{"rtol": rtol} for rtol in RTOL])

@@ -1,0 +1,1 @@
+"""Work against precision: time against error on the paper's case."""

@@ -1,0 +1,41 @@
+"""Our own solver, through the interface that everyone uses."""
+
+from __future__ import annotations
+
+from functools import cache
+from math import degrees
+
+import numpy as np
+
+from ...harness.contestant import Contestant, Failed, rows
+from ..case import PHI
+
+SOLVER = "stiction"
+RTOL = (
+    *(1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-8),
+    *(1e-9, 1e-10, 1e-11, 1e-12),
+)
+
+
+def contestants() -> list[Contestant]:
+    """Return our rows."""
+    return [*rows(SOLVER, solve, [{"rtol": rtol} for rtol in RTOL])]
+
+
+@cache
+def slider(phi):
+    """Return the system; as the peers' constants, it is described once."""
+    import stiction as st
+
+    return st.presets.nakano_popov_2020().replace(phi=f"{degrees(phi)!r} deg")
+
+
+def solve(times, phi=PHI, **settings):
+    """Run at the settings, which are those of `stiction.simulate`; samples only if wanted."""
+    import stiction as st
+
+    rate = round(1.0 / (times[1] - times[0])) if len(times) > 2 else None
+    run = st.simulate(slider(phi), duration=float(times[-1]), sample_rate=rate, **settings)
+    if not run.status.ok:
+        raise Failed(str(run.status.value))
+    return np.stack([run.data["u_x"].values, run.data["u_y"].values], axis=1)
