@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from importlib.metadata import version
 from typing import Any
 
@@ -28,6 +29,7 @@ def simulate(
     rtol: float = 1e-6,
     initial: Initial | None = None,
     regularisation: float | str | None = None,
+    multiscale: bool = False,
     max_steps: int = 100_000_000,
     progress: Callable[[float], None] | None = None,
 ) -> Trajectory:
@@ -87,6 +89,7 @@ def simulate(
         "sample_rate": sample_rate,
         "rtol": rtol,
         "regularisation": regularisation,
+        "multiscale": multiscale,
     }
     settings = Settings(**{name: value for name, value in given.items() if value is not None})
     return run(
@@ -126,7 +129,7 @@ def run(
     status = list(Status)[solution.code]
     statistics = Statistics(*solution.counts)
     attributes = {
-        "stiction_version": version("stiction"),
+        "stiction_version": own_version(),
         "solver": f"{kind(description)}, Radau IIA 5",
         "status": status.name,
         "status_message": status.value,
@@ -136,11 +139,19 @@ def run(
     return Trajectory(description, data, status, statistics)
 
 
+@cache
+def own_version() -> str:
+    """Return the version; looking it up takes as long as a hundred cycles of stick and slip."""
+    return version("stiction")
+
+
 def kind(description: Description) -> str:
     """Return what is solved, in words."""
     if has_state(description.slider.law):
         return "friction with internal state"
-    return "set-valued friction" if description.run.regularisation is None else "regularised"
+    if description.run.regularisation is not None:
+        return "regularised"
+    return f"set-valued friction{', multiscale' if description.run.multiscale else ''}"
 
 
 def sample_times(start: float, duration: float, rate: float | None) -> np.ndarray:
