@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, StrictBool, model_validator
 
 from stiction.friction import law_table, read_law
 from stiction.friction.own import Find, kept, named, trusted
@@ -36,12 +36,15 @@ class Settings(Described):
     regularisation : float or str, optional
         delta of the regularised law s/sqrt(|s|^2 + delta^2), m/s, 1e-11 at least; exact when
         left out.
+    multiscale : bool, optional
+        Whether to take many cycles of stick and slip at once; see `stiction.simulate`.
     """
 
     duration: Duration
     sample_rate: Rate | None = None
     rtol: Number = Field(default=1e-6, ge=1e-13, le=1e-2)
     regularisation: Smoothing | None = None
+    multiscale: StrictBool = False
 
     @model_validator(mode="after")
     def _can_be_kept(self) -> Self:

@@ -29,6 +29,7 @@ def simulate(
     rtol: float = 1e-6,
     initial: Initial | None = None,
     regularisation: float | str | None = None,
+    multiscale: bool = False,
     max_steps: int = 100_000_000,
     progress: Callable[[float], None] | None = None,
 ) -> Trajectory:
@@ -88,6 +89,7 @@ def simulate(
         "sample_rate": sample_rate,
         "rtol": rtol,
         "regularisation": regularisation,
+        "multiscale": multiscale,
     }
     settings = Settings(**{name: value for name, value in given.items() if value is not None})
     return run(
@@ -142,11 +144,14 @@ def kind(description: Description) -> str:
     """Return what is solved, in words."""
     if has_state(description.slider.law):
         return "friction with internal state"
-    return "set-valued friction" if description.run.regularisation is None else "regularised"
+    if description.run.regularisation is not None:
+        return "regularised"
+    return f"set-valued friction{', multiscale' if description.run.multiscale else ''}"
 
 
 @cache
 def _version() -> str:
+    """Return the version; looking it up takes as long as a hundred cycles of stick and slip."""
     return version("stiction")
 
 

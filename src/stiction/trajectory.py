@@ -37,6 +37,8 @@ class Statistics:
         Stick intervals.
     time_stuck : float
         Their sum, s.
+    mapped : int
+        How many of them `multiscale` found, without steps.
     """
 
     steps: int
@@ -44,6 +46,7 @@ class Statistics:
     iterations: int
     stick_count: int
     time_stuck: float
+    mapped: int = 0
 
 
 @dataclass(frozen=True, repr=False)
@@ -190,7 +193,11 @@ def load(path: str | Path, *, trust: bool = False) -> Trajectory:
             data.attrs["description"], Path(path).parent, trust=trust
         )
         statistics = Statistics(
-            **{name: data.attrs[name].item() for name in Statistics.__dataclass_fields__}
+            **{
+                name: data.attrs[name].item()
+                for name in Statistics.__dataclass_fields__
+                if name != "mapped" or name in data.attrs  # not in results of version 0.2
+            }
         )
         status = Status[data.attrs["status"]]
     except (DescriptionError, KeyError, ValueError, AttributeError) as error:

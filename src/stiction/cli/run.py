@@ -39,11 +39,12 @@ def run(config: Path, /, *, output: Annotated[Path, Parameter(alias="-o")]) -> i
         reached = float(result.data.time[-1])
         console.print(f"[red]ended early[/red] at t = {reached:.6g} s: {result.status.value}")
     peak = float(abs(result.data["spring_x"]).max())
+    mapped = f", {statistics.mapped} intervals without any" if statistics.mapped else ""
     few = result.data.sizes["time"] <= 2
     sampled = " at start and end (no sample_rate)" if few else ""
     for line in (
         f"{output}: {result.data.sizes['time']} samples, stick intervals: "
-        f"{statistics.stick_count}, {stuck:.6g} s in all; {statistics.steps} steps",
+        f"{statistics.stick_count}, {stuck:.6g} s in all; {statistics.steps} steps{mapped}",
         f"largest k_x u_x{sampled}: {peak:.4g} N, {peak / result.slider.normal_load:.4g} of the "
         "normal load",
         f"next: stiction plot {output} --output {output.with_suffix('.png')}",

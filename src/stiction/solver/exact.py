@@ -9,12 +9,16 @@ from stiction.solver import loop
 from stiction.solver.compiled import specialised
 from stiction.solver.frame import friction
 from stiction.solver.output import Output
-from stiction.solver.problem import Problem, kinds_of
+from stiction.solver.problem import Problem, constant, kinds_of, steady
+from stiction.solver.returns import unknown
 from stiction.solver.sampling import COLUMNS
 from stiction.solver.state import Accuracy, Motion, State, cooled, start
 from stiction.solver.stick import holding
 from stiction.solver.stretch import system_of
+from stiction.solver.strides import stride
 from stiction.solver.surface import friction_along
+
+FINER = 0.3  # tolerance of the steps that the return map rests on, over that of others
 
 
 class Exact:
@@ -64,3 +68,38 @@ class Exact:
         f = m * friction(problem, motion.t, motion.r)[0]
         f_x, f_y = friction_along(problem, motion.e_x, motion.e_y)
         return [motion.u_x, motion.u_y, *slip, f * f_x, f * f_y, 0.0]
+
+
+class Multiscale(Exact):
+    """The same, many cycles at once where the return map is smooth."""
+
+    def __init__(self, rtol: float) -> None:
+        """Take the tolerance."""
+        self.rtol = rtol
+        self.problem: Problem | None = None
+        self.known = unknown(rtol)
+
+    def advance(
+        self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
+    ) -> tuple[int, State]:
+        """Advance until `end` (s) or until the budget is used up."""
+        if not (steady(problem.drive) and constant(problem.load)):
+            return super().advance(problem, state, end, held, budget, out)
+        if problem != self.problem:
+            self.problem, self.known = problem, unknown(self.rtol)
+        fine = held._replace(tolerance=FINER * held.tolerance, newton=FINER * held.newton)
+        code, state, out.filled, turns = specialised(stride, *kinds_of(problem))(
+            problem,
+            state,
+            end,
+            fine,
+            budget,
+            out.times,
+            out.samples,
+            out.filled,
+            out.sticks,
+            self.known,
+        )
+        out.used += turns
+        out.make_room(state.counts.sticks)
+        return code, state

@@ -13,7 +13,7 @@ from stiction.description import Description
 from stiction.drive import jump
 from stiction.friction import has_state
 from stiction.slider import Slider
-from stiction.solver.exact import Exact
+from stiction.solver.exact import Exact, Multiscale
 from stiction.solver.interrupt import uninterrupted
 from stiction.solver.output import Output
 from stiction.solver.problem import Problem
@@ -123,7 +123,9 @@ class Method(Protocol):
 def method_of(description: Description) -> Method:
     """Return the solver for a description."""
     law, delta = description.slider.law, description.run.regularisation
-    return Exact() if delta is None and not has_state(law) else Smooth(law, delta)
+    if delta is not None or has_state(law):
+        return Smooth(law, delta)
+    return Multiscale(description.run.rtol) if description.run.multiscale else Exact()
 
 
 def integrate(
@@ -134,7 +136,7 @@ def integrate(
     t, end = initial.time, initial.time + settings.duration
     method = method_of(description)
     state = method.begin(description)
-    out = Output(times, np.empty((len(times), method.columns)), np.empty((256, 2)))
+    out = Output(times, np.empty((len(times), method.columns)), np.empty((4096, 2)))
     code, stretch = COMPLETED, None
 
     def report(t: float) -> None:

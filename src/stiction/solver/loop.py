@@ -67,6 +67,7 @@ def stick(
             counts.iterations,
             counts.sticks + 1,
             counts.stuck + (end - t),
+            counts.mapped,
         )
     a_x, a_y = holding(problem, end, u_x, u_y)
     limit = coefficient(problem.law, 0.0) * at(problem.load, end) * problem.system.per_mass
@@ -141,7 +142,7 @@ def advance(
     k: int,
     sticks: np.ndarray,
 ) -> tuple[int, State, int, int]:
-    """Advance until `t_end`, or until the budget of steps or the room in `sticks` is used up.
+    """Advance until `t_end`, until the budget of steps is used up, or until a stick finds no room.
 
     Parameters
     ----------
@@ -172,9 +173,9 @@ def advance(
             return COMPLETED, state, k, turn
         if not (isfinite(motion.u_x) and isfinite(motion.u_y) and isfinite(motion.r)):
             return NON_FINITE, state, k, turn
-        if state.counts.sticks >= len(sticks):
-            return RUNNING, state, k, turn
         if motion.r < 1e-13 * accuracy.tolerance * accuracy.speed:  # at rest for every purpose
+            if state.counts.sticks >= len(sticks):
+                return RUNNING, state, k, turn
             motion = Motion(t, motion.u_x, motion.u_y, 0.0, motion.e_x, motion.e_y)
             state = State(motion, state.memory, state.counts)
             ends, state, k = stick(problem, state, t_end, times, samples, k, sticks)

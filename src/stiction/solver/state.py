@@ -66,13 +66,20 @@ class Memory(NamedTuple):
 
 
 class Counts(NamedTuple):
-    """Steps accepted and rejected, Newton iterations, stick intervals and their sum (s)."""
+    """Steps accepted and rejected, Newton iterations, stick intervals and their sum (s).
+
+    mapped : stick intervals that a return map found (see `returns`), all others steps did.
+    """
 
     steps: int
     rejected: int
     iterations: int
     sticks: int
     stuck: float
+    mapped: int
+
+
+NOTHING = Counts(0, 0, 0, 0, 0.0, 0)
 
 
 class State(NamedTuple):
@@ -96,7 +103,7 @@ def start(system: System, t: float, u: tuple[float, float], slip: tuple[float, f
     nothing = (0.0, 0.0, 0.0, 0.0)
     plan = (h, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     memory = Memory(h, plan, 0, h, 1.0, False, nothing, nothing)
-    return State(Motion(t, u[0], u[1], r, e[0], e[1]), memory, Counts(0, 0, 0, 0, 0.0))
+    return State(Motion(t, u[0], u[1], r, e[0], e[1]), memory, NOTHING)
 
 
 @inlined
@@ -144,4 +151,5 @@ def counted(counts: Counts, rejected: int, iterations: int) -> Counts:
         counts.iterations + iterations,
         counts.sticks,
         counts.stuck,
+        counts.mapped,
     )

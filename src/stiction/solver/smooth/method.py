@@ -16,7 +16,7 @@ from stiction.solver.sampling import COLUMNS
 from stiction.solver.smooth import loop
 from stiction.solver.smooth.law import Smoothed
 from stiction.solver.smooth.state import Memory, Motion, State
-from stiction.solver.state import Accuracy, Counts, first_step
+from stiction.solver.state import NOTHING, Accuracy, first_step
 from stiction.solver.stretch import system_of
 
 # of the slip speed below which that of set-valued friction is not resolved: states remember slower
@@ -41,7 +41,7 @@ class Smooth:
         internal = np.array(initial.internal(slider), dtype=np.float64)
         h = self.first_step = first_step(system_of(slider))
         memory = Memory(h, h, False, np.zeros((4, 2 + self.states)))
-        return State(motion, internal, memory, Counts(0, 0, 0, 0, 0.0))
+        return State(motion, internal, memory, NOTHING)
 
     def entered(self, state: State, x: float, y: float) -> State:
         """Return the state at the start of a stretch, where the slip velocity jumps by (x, y)."""

@@ -1,0 +1,231 @@
+"""The loop over strides: cycles by the return map where it is known, by steps elsewhere."""
+
+from __future__ import annotations
+
+from math import inf, nan
+from typing import NamedTuple
+
+import numpy as np
+
+from stiction.solver.compiled import compiled, inlined
+from stiction.solver.loop import advance
+from stiction.solver.problem import Problem, in_principal_axes, rate
+from stiction.solver.returns import (
+    FAR,
+    PATCHES,
+    Cycle,
+    Returns,
+    added,
+    chart,
+    interpolated,
+    place,
+    remember,
+    remembered,
+)
+from stiction.solver.sampling import sample_stick
+from stiction.solver.state import (
+    COMPLETED,
+    NOTHING,
+    RUNNING,
+    Accuracy,
+    Counts,
+    Motion,
+    State,
+    at_takeoff,
+)
+from stiction.solver.stick import stick_duration
+from stiction.solver.takeoff import angle, elongation_held, wrapped
+
+PAYS = 8.0  # cycles that a patch must be good for
+VAIN = 30  # nodes that may be in vain at first, and one more for each so many cycles solved
+VAIN_EACH = 4
+STRIDE_STEPS = 1_000_000_000
+
+
+class Hold(NamedTuple):
+    """A stick that is not yet among those of the run: start, end (s) and angle at its end."""
+
+    start: float
+    end: float
+    theta: float
+
+
+@inlined
+def hold_of(problem: Problem, motion: Motion) -> Hold:
+    """Return the stick that begins at a landing; the angle is not a number if it is none."""
+    t, u_x, u_y = motion.t, motion.u_x, motion.u_y
+    duration, _ = stick_duration(problem, t, u_x, u_y, inf)
+    if not 0.0 < duration < inf:
+        return Hold(t, t + duration, nan)
+    v_x, v_y = in_principal_axes(problem, rate(problem.drive, 0.0))
+    return Hold(t, t + duration, angle(problem, u_x + v_x * duration, u_y + v_y * duration))
+
+
+@inlined
+def landed(problem: Problem, state: State, hold: Hold) -> State:
+    """Return the state at the start of a stick."""
+    motion, memory, counts = state
+    u_x, u_y = elongation_held(problem, hold.theta)
+    v_x, v_y = in_principal_axes(problem, rate(problem.drive, 0.0))
+    back = hold.end - hold.start
+    u_x, u_y = u_x - v_x * back, u_y - v_y * back
+    landing = Motion(hold.start, u_x, u_y, 0.0, motion.e_x, motion.e_y)
+    return State(landing, at_takeoff(memory), counts)
+
+
+@inlined
+def reach(known: Returns, theta: float, turn: float) -> float:
+    """Return over which angles to try a patch.
+
+    Half way to an edge at most, and not over another patch unless that is near.
+    """
+    way = 1.0 if turn > 0.0 else -1.0
+    width = float(known.width[0])
+    for i in range(known.sizes[1]):
+        gap = way * float(known.edges[i] - theta)
+        if gap >= 0.0:
+            width = min(width, 0.5 * gap)
+    for i in range(known.sizes[0]):
+        gap = way * float(known.patches[i, 0] - theta)
+        if gap > 0.3 * width:
+            width = min(width, gap)
+    return way * width
+
+
+@inlined
+def sample_cycle(
+    problem: Problem,
+    state: State,
+    hold: Hold,
+    landing: float,
+    accuracy: Accuracy,
+    times: np.ndarray,
+    samples: np.ndarray,
+    k: int,
+) -> tuple[int, State, int]:
+    """Fill the samples of a stick and the slip until `landing` (s), by steps.
+
+    These find a landing of their own; where it is does not count, since samples do not
+    influence the motion. Samples after it are those of the stick that follows.
+    """
+    start = landed(problem, state, hold)
+    motion, memory, counts = start
+    k = sample_stick(problem, hold.start, motion.u_x, motion.u_y, hold.end, times, samples, k)
+    if k == len(times) or times[k] > landing:
+        return COMPLETED, state, k
+    until = k
+    while until < len(times) and times[until] <= landing:
+        until += 1
+    alone, late, room = State(motion, memory, NOTHING), 2.0 * landing - hold.end, np.empty((1, 2))
+    code, end, k, _ = advance(
+        problem, alone, late, accuracy, STRIDE_STEPS, times[:until], samples, k, room
+    )
+    return code, State(state.motion, state.memory, added(counts, end.counts)), k
+
+
+@inlined
+def pays(known: Returns, hold: Hold, cycle: Cycle, over: float, t_end: float, solved: int) -> bool:
+    """Return whether to try a patch over some angles, with the last cycle as a measure.
+
+    It must be good for enough cycles, there must be room for it, and few nodes in vain so far.
+    """
+    left = (t_end - hold.end) / cycle.time
+    return (
+        min(abs(over), abs(cycle.turn) * left) >= PAYS * abs(cycle.turn)
+        and left >= PAYS
+        and max(known.sizes[0], known.sizes[1]) < PATCHES
+        and known.sizes[3] <= VAIN + solved // VAIN_EACH
+    )
+
+
+@inlined
+def recorded(state: State, hold: Hold, sticks: np.ndarray) -> State:
+    """Return the state with one more stick, which the map has found."""
+    motion, memory, counts = state
+    sticks[counts.sticks, 0] = hold.start
+    sticks[counts.sticks, 1] = hold.end
+    counts = Counts(
+        counts.steps,
+        counts.rejected,
+        counts.iterations,
+        counts.sticks + 1,
+        counts.stuck + (hold.end - hold.start),
+        counts.mapped + 1,
+    )
+    return State(motion, memory, counts)
+
+
+@compiled
+def stride(
+    problem: Problem,
+    state: State,
+    t_end: float,
+    accuracy: Accuracy,
+    budget: int,
+    times: np.ndarray,
+    samples: np.ndarray,
+    k: int,
+    sticks: np.ndarray,
+    known: Returns,
+) -> tuple[int, State, int, int]:
+    """Advance as `stiction.solver.loop.advance` does, by the return map where it is known.
+
+    Parameters
+    ----------
+    problem, state, t_end, accuracy, budget, times, samples, k, sticks
+        As there; drive and load are steady.
+    known : Returns
+        What is known of the map, and is added to.
+
+    Returns
+    -------
+    code, state, k, turns
+        As there.
+    """
+    turns = solved = 0
+    theta = taken_off = nan  # at the last take-off
+    while True:
+        room = sticks[: min(state.counts.sticks + 1, len(sticks))]  # until the next landing
+        code, state, k, used = advance(
+            problem, state, t_end, accuracy, budget - turns, times, samples, k, room
+        )
+        turns += used
+        if code != RUNNING or turns >= budget or state.counts.sticks == len(sticks):
+            return code, state, k, turns
+        solved += 1
+        hold, mapped, row = hold_of(problem, state.motion), state.counts.mapped, -1
+        cycle = Cycle(wrapped(hold.theta - theta), hold.end - taken_off, hold.start - taken_off)
+        if cycle.turn < inf:  # a number: both ends are known
+            remember(known, theta, cycle)
+        while cycle.turn < inf and state.counts.sticks < len(sticks):
+            row, x = place(known, hold.theta, row)
+            if row >= 0:
+                n = int(known.patches[row, 2])
+                found, following = True, interpolated(known.coefficients[row], n, x)
+            else:
+                found, following = remembered(known, hold.theta, cycle)
+            if not found:
+                over = reach(known, hold.theta, cycle.turn)
+                if not pays(known, hold, cycle, over, t_end, solved):
+                    break
+                steps = state.counts.steps
+                state = chart(problem, accuracy, state, known, hold.theta, over, FAR * cycle.time)
+                turns += state.counts.steps - steps
+                continue
+            landing, end = hold.end + following.landing, hold.end + following.time
+            if not hold.end < landing < end < t_end:
+                break
+            if k < len(times) and times[k] <= end:
+                code, state, k = sample_cycle(
+                    problem, state, hold, landing, accuracy, times, samples, k
+                )
+                if code > COMPLETED:
+                    return code, state, k, turns
+            state = recorded(state, hold, sticks)
+            hold = Hold(landing, end, wrapped(hold.theta + following.turn))
+            cycle = following
+        if state.counts.mapped > mapped:
+            state = landed(problem, state, hold)
+        theta, taken_off = hold.theta, hold.end
+        if turns >= budget:
+            return RUNNING, state, k, turns

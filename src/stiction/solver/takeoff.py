@@ -1,0 +1,55 @@
+"""Where sticks end: with a steady drive and load, a closed curve, and one angle says where on it.
+
+There friction holds all it can, |a| = f with a = (K u + C v_d)/m and f = F(0)/m; on an
+elliptic surface a.N^-1 a = f^2 (see `surface`). With N = L L^T, a = f L (cos, sin) of the angle.
+"""
+
+from __future__ import annotations
+
+from math import atan2, cos, pi, sin, sqrt
+
+from stiction.solver.compiled import inlined
+from stiction.solver.problem import Problem, at, in_principal_axes, rate, static
+from stiction.solver.stick import holding, holding_change
+from stiction.solver.surface import held_product
+
+
+@inlined
+def angle(problem: Problem, u_x: float, u_y: float) -> float:
+    """Return the angle of what holds at an elongation, -pi to pi."""
+    n, (a_x, a_y) = problem.surface, holding(problem, 0.0, u_x, u_y)
+    x = a_x / sqrt(n.xx)
+    return atan2((a_y - n.xy / sqrt(n.xx) * x) / sqrt(n.yy - n.xy * n.xy / n.xx), x)
+
+
+@inlined
+def held(problem: Problem, theta: float) -> tuple[float, float]:
+    """Return the most that friction can hold at an angle, over mass (x, y)."""
+    n, f = problem.surface, static(problem.law) * at(problem.load, 0.0) * problem.system.per_mass
+    x, y = f * cos(theta) / sqrt(n.xx), f * sin(theta) * sqrt(n.yy - n.xy * n.xy / n.xx)
+    return n.xx * x, n.xy * x + y
+
+
+@inlined
+def elongation_held(problem: Problem, theta: float) -> tuple[float, float]:
+    """Return the elongation (x, y) at which a stick ends."""
+    s, (a_x, a_y) = problem.system, held(problem, theta)
+    v_x, v_y = in_principal_axes(problem, rate(problem.drive, 0.0))
+    return (s.mass * a_x - s.c_x * v_x) / s.k_x, (s.mass * a_y - s.c_y * v_y) / s.k_y
+
+
+@inlined
+def lead(problem: Problem, theta: float) -> float:
+    """Return how long before its end at an angle a stick can be begun, 0 if none ends there.
+
+    Half of what the straight path of a has of the ellipse.
+    """
+    a, j = held(problem, theta), holding_change(problem, 0.0)
+    rise, square = held_product(problem, a, j), held_product(problem, j, j)
+    return rise / square if rise > 0.0 else 0.0
+
+
+@inlined
+def wrapped(angle: float) -> float:
+    """Return a difference of angles, -pi to pi."""
+    return angle if abs(angle) <= pi else angle - 2.0 * pi * round(angle / (2.0 * pi))

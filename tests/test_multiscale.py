@@ -1,0 +1,239 @@
+"""Many cycles at once: as right as the full solver, in far fewer steps, and honest about it."""
+
+from math import pi
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st_
+
+import stiction as st
+from stiction.solver.problem import Problem
+from stiction.solver.returns import POINTS, interpolated
+from stiction.solver.stretch import stretches
+from stiction.solver.takeoff import angle, elongation_held, lead, wrapped
+
+
+def error(run: st.Trajectory, reference: st.Trajectory, name: str) -> float:
+    """Largest difference on the samples that both have."""
+    return float(abs(run.data[name] - reference.data[name]).max())
+
+
+@pytest.mark.parametrize("rtol", [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7])
+def test_the_paper_s_run_keeps_its_tolerance(slider, sharp_run, rtol):
+    run = st.simulate(slider, 5.0, sample_rate=10e3, rtol=rtol, multiscale=True)
+    full = st.simulate(slider, 5.0, rtol=rtol)
+    assert run.status.ok
+    assert error(run, sharp_run, "spring_x") < 5.0 * rtol  # N; a full run's is below 15 rtol
+    assert run.statistics.mapped > 0.99 * run.statistics.stick_count
+    assert run.statistics.stick_count == len(run.sticks)
+    assert run.statistics.time_stuck == pytest.approx(np.diff(run.sticks).sum(), rel=1e-12)
+    assert full.statistics.mapped == 0
+
+
+def test_ten_times_fewer_steps_at_a_millinewton(slider, sharp_run):
+    kept = {"sample_rate": 1e3}
+    reference = sharp_run.data.isel(time=slice(None, None, 10))
+
+    def cheapest(multiscale: bool) -> int:
+        """The fewest steps of runs that are right, as are all tighter ones."""
+        steps = 0
+        for rtol in (1e-4, 2e-4, 5e-4, 1e-3):
+            run = st.simulate(slider, 5.0, rtol=rtol, multiscale=multiscale, **kept)
+            if abs(run.data["spring_x"].values - reference["spring_x"].values).max() > 1e-3:
+                break
+            steps = st.simulate(slider, 5.0, rtol=rtol, multiscale=multiscale).statistics.steps
+        return steps
+
+    assert 0 < 10 * cheapest(True) < cheapest(False)
+
+
+def test_every_stick_is_there(slider, sharp_run):
+    run = st.simulate(slider, 5.0, rtol=1e-8, multiscale=True)
+    assert len(run.sticks) == len(sharp_run.sticks) == 2959
+    np.testing.assert_allclose(run.sticks, sharp_run.sticks, rtol=0, atol=1e-7)
+
+
+def test_samples_do_not_influence_the_motion(slider):
+    coarse, fine = (
+        st.simulate(slider, 2.2, sample_rate=rate, multiscale=True) for rate in (None, 2e3)
+    )
+    assert np.array_equal(coarse.sticks, fine.sticks)
+    for name in ("u_x", "u_y", "slip_x", "slip_y"):
+        assert float(coarse.final[name]) == float(fine.final[name])
+
+
+def test_a_long_run_costs_little_more(slider):
+    short = st.simulate(slider, 5.0, multiscale=True)
+    long = st.simulate(slider, 100.0, multiscale=True)
+    full = st.simulate(slider, 100.0, rtol=1e-8)
+    assert long.statistics.steps < 2 * short.statistics.steps
+    assert len(long.sticks) == len(full.sticks)
+    np.testing.assert_allclose(long.sticks, full.sticks, rtol=0, atol=2e-5)
+
+
+def test_a_run_goes_on_from_inside_a_cycle(slider):
+    whole = st.simulate(slider, 2.0, sample_rate=1e3, rtol=1e-8, multiscale=True)
+    rest = st.simulate(slider, 0.5, rtol=1e-8, initial=whole.state(1.5), multiscale=True)
+    for name in ("u_x", "u_y"):
+        assert float(rest.final[name]) == pytest.approx(float(whole.final[name]), rel=1e-5)
+
+
+def test_nothing_changes_where_there_is_nothing_to_gain(slider):
+    wavy = slider.replace(
+        drive=st.DriveProgram(velocity="1 mm/s", along=st.Modulation("0.1 mm/s", "5 Hz"))
+    )
+    loaded = slider.replace(load=st.LoadProgram(modulation=st.Modulation("1 N", "5 Hz")))
+    bristles = slider.replace(friction=st.LuGre(0.15, 0.2, 1e-2, 1e5, 300.0, 0.4))
+    for system, smooth in (
+        (wavy, None),
+        (loaded, None),
+        (bristles, None),
+        (slider, 1e-6),
+    ):
+        one, other = (
+            st.simulate(system, 0.3, sample_rate=500, regularisation=smooth, multiscale=multiscale)
+            for multiscale in (False, True)
+        )
+        assert other.statistics.mapped == 0
+        assert one.statistics == other.statistics
+        assert one.data.equals(other.data)
+
+
+def test_a_program_is_mapped_where_it_is_steady(slider):
+    program = [st.Constant("1 mm/s", "1 s"), st.Ramp("2 mm/s", "0.1 s"), st.Constant("2 mm/s")]
+    stepped = slider.replace(drive=st.DriveProgram(velocity="1 mm/s", program=program))
+    one, other = (
+        st.simulate(stepped, 1.4, sample_rate=1e3, rtol=1e-7, multiscale=multiscale)
+        for multiscale in (False, True)
+    )
+    assert len(one.sticks) == len(other.sticks)
+    assert 0.8 * len(other.sticks) < other.statistics.mapped < len(other.sticks)
+    assert error(one, other, "spring_x") < 1e-5
+
+
+def test_a_limit_cycle_of_long_sticks():
+    """Leine's block on a belt: each stick ends where the last one did, and nothing drifts."""
+    block = st.Slider(
+        mass=1.0,
+        k_x=1.0,
+        k_y=1.0,
+        phi="0 deg",
+        normal_load=1.0,
+        friction=st.HyperbolicWeakening(mu_0=1.0, v_h=1 / 3),
+        drive=st.ConstantVelocity(0.2),
+    )
+    one, other = (
+        st.simulate(block, 2000.0, rtol=1e-8, multiscale=multiscale) for multiscale in (False, True)
+    )
+    assert other.statistics.mapped > 0.8 * other.statistics.stick_count
+    assert len(one.sticks) == len(other.sticks)
+    np.testing.assert_allclose(other.sticks, one.sticks, rtol=1e-7)
+
+
+def test_budget_and_progress(slider):
+    seen: list[float] = []
+    run = st.simulate(slider, 50.0, multiscale=True, progress=seen.append)
+    assert run.status.ok
+    assert seen == sorted(seen)
+    assert seen[-1] == 1.0
+    short = st.simulate(slider, 50.0, multiscale=True, max_steps=100)
+    assert short.status is st.Status.TOO_MANY_STEPS
+    assert float(short.data["time"][-1]) < 5.0
+
+
+def test_the_result_says_so(slider, tmp_path):
+    run = st.simulate(slider, 0.2, multiscale=True)
+    again = st.load(run.save(tmp_path / "run.nc"))
+    assert again.statistics == run.statistics
+    assert again.statistics.mapped > 100
+    assert again.description.run.multiscale
+    assert "multiscale" in again.data.attrs["solver"]
+    old = run.data.copy()
+    del old.attrs["mapped"]
+    old.to_netcdf(tmp_path / "old.nc", engine="h5netcdf")
+    assert st.load(tmp_path / "old.nc").statistics.mapped == 0
+
+
+def test_it_is_yes_or_no(slider):
+    with pytest.raises(st.DescriptionError, match="multiscale"):
+        st.simulate(slider, 1.0, multiscale="often")
+
+
+@pytest.mark.parametrize("theta", [-3.0, -1.0, 0.0, 0.3, 1.5, 3.1])
+@pytest.mark.parametrize("driven", ["plate", "spring"])
+def test_sticks_end_on_a_closed_curve(slider, theta, driven):
+    law = st.Anisotropic(st.Coulomb(0.2, 0.25), 0.4, "30 deg")
+    system = slider.replace(friction=law, c_x=2.0, c_y=30.0, driven=driven)
+    problem: Problem = next(stretches(system, 0.0, 1.0)).problem
+    u_x, u_y = elongation_held(problem, theta)
+    assert angle(problem, u_x, u_y) == pytest.approx(theta, abs=1e-12)
+    early = lead(problem, theta)
+    if early > 0.0:  # a run that starts inside ends its stick there
+        c, s = system.direction
+        start = st.Initial(
+            u_x=u_x - 1e-3 * c * early, u_y=u_y - 1e-3 * s * early, v_x=1e-3 * c, v_y=1e-3 * s
+        )
+        run = st.simulate(system, 3 * early, initial=start)
+        assert run.sticks[0] == pytest.approx([0.0, early], rel=1e-9)
+
+
+def test_differences_of_angles_are_small():
+    assert wrapped(3.0) == 3.0
+    assert wrapped(-6.0) == pytest.approx(2 * pi - 6.0)
+    assert wrapped(5.0) == pytest.approx(5.0 - 2 * pi)
+
+
+def test_newton_s_form_through_leja_points():
+    n = 15
+    values = np.exp(POINTS[:n])
+    coefficients = np.zeros((n, 3))
+    for i in range(n):
+        rest = values[i] - interpolated(coefficients, i, POINTS[i]).time
+        coefficients[i, 1] = rest / np.prod(POINTS[i] - POINTS[:i])
+    x = np.linspace(-1, 1, 101)
+    found = [interpolated(coefficients, n, at).time for at in x]
+    assert found == pytest.approx(np.exp(x), rel=1e-13)
+    assert len(np.unique(POINTS)) == len(POINTS)
+
+
+def log(low: float, high: float) -> st_.SearchStrategy[float]:
+    return st_.floats(np.log(low), np.log(high)).map(lambda x: float(np.exp(x)))
+
+
+@st_.composite
+def sliders(draw) -> st.Slider:
+    """Sliders around the paper's whose cycles of stick and slip are many."""
+    mu = draw(st_.floats(0.05, 0.5))
+    mu_static = mu * draw(st_.sampled_from([1.0, 1.05]))
+    law = draw(
+        st_.sampled_from(
+            [st.Coulomb(mu, mu_static), st.ExponentialWeakening(mu, 0.8 * mu, 0.01, mu_static)]
+        )
+    )
+    if draw(st_.booleans()):
+        law = st.Anisotropic(law, draw(log(0.5, 2.0)), f"{draw(st_.floats(-90, 90))} deg")
+    k_y = draw(log(1e5, 1e8))
+    return st.Slider(
+        mass=draw(log(0.1, 1.0)),
+        k_x=draw(log(3e2, 3e3)),
+        k_y=k_y,
+        phi=f"{draw(st_.floats(0.3, 3))} deg",
+        normal_load=draw(log(1, 30)),
+        c_y=draw(st_.sampled_from([0.0, 5.0])),
+        friction=law,
+        drive=st.ConstantVelocity(draw(log(3e-4, 3e-3))),
+    )
+
+
+@given(sliders())
+@settings(max_examples=25, deadline=None)
+def test_as_right_as_the_full_solver(slider):
+    duration = 400 * 2 * pi * np.sqrt(slider.mass / slider.k_y)
+    sharp, full, run = (
+        st.simulate(slider, duration, sample_rate=999 / duration, rtol=rtol, multiscale=multiscale)
+        for rtol, multiscale in ((1e-10, False), (1e-5, False), (1e-5, True))
+    )
+    for name in ("spring_x", "spring_y"):
+        allowed = max(3 * error(full, sharp, name), 1e-5 * slider.F_0)
+        assert error(run, sharp, name) <= allowed
