@@ -53,6 +53,13 @@ VALUE = tuple(float(_lagrange(_NODES, i)(INTERIOR)) for i in range(4))
 DERIVATIVE = tuple(float(_lagrange(_NODES, i).deriv()(INTERIOR)) for i in range(4))
 INTEGRAL = _triple(np.array([_lagrange(C, i).integ()(INTERIOR) for i in range(3)]))
 
+# the integrals of the quadratics through the stages from 0 to c, as coefficients of c, c^2, c^3
+_INTEGRALS: Matrix = (
+    _triple(_lagrange(C, 0).integ().coef[1:]),
+    _triple(_lagrange(C, 1).integ().coef[1:]),
+    _triple(_lagrange(C, 2).integ().coef[1:]),
+)
+
 _W0 = -1 / (C[0] * C[1])
 _W1 = 1 / (C[0] * (C[0] - C[1]) * (C[0] - 1))
 _W2 = 1 / (C[1] * (C[1] - C[0]) * (C[1] - 1))
@@ -65,6 +72,17 @@ def cubic(values: tuple[float, float, float, float], c: float) -> float:
     d1, d2, d3 = c - C[0], c - C[1], c - 1.0
     return _W0 * d1 * d2 * d3 * values[0] + c * (
         _W1 * d2 * d3 * values[1] + _W2 * d1 * d3 * values[2] + _W3 * d1 * d2 * values[3]
+    )
+
+
+@inlined
+def integral(values: Triple, c: float) -> float:
+    """Return the integral from 0 to `c` of the quadratic through `values` at the stages."""
+    i, j, k = _INTEGRALS
+    return c * (
+        values[0] * (i[0] + c * (i[1] + c * i[2]))
+        + values[1] * (j[0] + c * (j[1] + c * j[2]))
+        + values[2] * (k[0] + c * (k[1] + c * k[2]))
     )
 
 
