@@ -39,7 +39,8 @@ from stiction.solver.takeoff import angle, elongation_held, wrapped
 PAYS = 8.0  # cycles that a patch must be good for
 VAIN = 30  # nodes that may be in vain at first, and one more for each so many cycles solved
 VAIN_EACH = 4
-STRIDE_STEPS = 1_000_000_000
+SLIP_STEPS = 1_000_000_000
+SAME = 1e-3  # of a slip: a landing so near to another is the same
 
 
 class Hold(NamedTuple):
@@ -116,11 +117,16 @@ def sample_cycle(
     until = k
     while until < len(times) and times[until] <= landing:
         until += 1
-    alone, late, room = State(motion, memory, NOTHING), 2.0 * landing - hold.end, np.empty((1, 2))
-    code, end, k, _ = advance(
-        problem, alone, late, accuracy, STRIDE_STEPS, times[:until], samples, k, room
-    )
-    return code, State(state.motion, state.memory, added(counts, end.counts)), k
+    slip, room, counts = landing - hold.end, np.empty((1, 2)), state.counts
+    code, alone = RUNNING, State(motion, memory, NOTHING)
+    # it may stick for a moment where the map has it just not
+    while code == RUNNING and k < until and alone.motion.t < landing - SAME * slip:
+        alone = State(alone.motion, alone.memory, NOTHING)
+        code, alone, k, _ = advance(
+            problem, alone, landing + slip, accuracy, SLIP_STEPS, times[:until], samples, k, room
+        )
+        counts = added(counts, alone.counts)
+    return code, State(state.motion, state.memory, counts), k
 
 
 @inlined
@@ -185,7 +191,8 @@ def mapped(
             over = reach(known, hold.theta, cycle.turn)
             if not pays(known, hold, cycle, over, t_end):
                 break
-            state = chart(problem, accuracy, state, known, hold.theta, over, FAR * cycle.time)
+            start, over = hold.theta - cycle.turn, over + cycle.turn  # no gap after another
+            state = chart(problem, accuracy, state, known, start, over, FAR * cycle.time)
             continue
         landing, end = hold.end + following.landing, hold.end + following.time
         if not hold.end < landing < end < t_end:
@@ -234,8 +241,8 @@ def stride(
     """
     turns = 0
     while True:
-        t, r = state.motion.t, state.motion.r
-        if r < 1e-13 * accuracy.tolerance * accuracy.speed and not known.last[1] >= t:
+        rests = state.motion.r < 1e-13 * accuracy.tolerance * accuracy.speed  # as in the loop
+        if rests and not known.last[1] >= state.motion.t:
             steps = state.counts.steps
             code, state, k = mapped(
                 problem, state, t_end, accuracy, times, samples, k, sticks, known
@@ -245,7 +252,7 @@ def stride(
                 return code, state, k, turns
         if turns >= budget or state.counts.sticks == len(sticks):
             return RUNNING, state, k, turns
-        room = sticks[: state.counts.sticks + 1]  # until the next landing
+        room = sticks[: state.counts.sticks + (1 if rests else 0)]  # until the next landing
         code, state, k, used = advance(
             problem, state, t_end, accuracy, budget - turns, times, samples, k, room
         )
