@@ -237,3 +237,12 @@ def test_as_right_as_the_full_solver(slider):
     for name in ("spring_x", "spring_y"):
         allowed = max(3 * error(full, sharp, name), 1e-5 * slider.F_0)
         assert error(run, sharp, name) <= allowed
+
+
+def test_pausing_changes_nothing(slider, monkeypatch):
+    from stiction.solver import integrate
+
+    whole = st.simulate(slider, 2.5, sample_rate=100, multiscale=True)
+    monkeypatch.setattr(integrate, "BUDGET", 7)
+    paused = st.simulate(slider, 2.5, sample_rate=100, multiscale=True)
+    assert paused.data.identical(whole.data)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import sqrt
+from math import nan, sqrt
 
 from stiction.description import Description
 from stiction.solver import loop
@@ -78,6 +78,11 @@ class Multiscale(Exact):
         self.rtol = rtol
         self.problem: Problem | None = None
         self.known = unknown(rtol)
+
+    def entered(self, state: State, x: float, y: float) -> State:
+        """Return the state at the start of a stretch, where the slip velocity jumps by (x, y)."""
+        self.known.last[:] = nan
+        return super().entered(state, x, y)
 
     def advance(
         self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output

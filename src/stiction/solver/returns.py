@@ -16,13 +16,13 @@ slow ones; here each stick wipes those out, and the map is exact.
 
 from __future__ import annotations
 
-from math import inf, sqrt
-from typing import NamedTuple
+from math import inf, nan, sqrt
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.solver.compiled import inlined
-from stiction.solver.loop import advance
+from stiction.solver import loop
+from stiction.solver.compiled import inlined, piece
 from stiction.solver.problem import Problem, in_principal_axes, rate
 from stiction.solver.state import (
     NOTHING,
@@ -45,6 +45,11 @@ CLOSING = 0.03  # relative error of a patch's turn and time, over rtol: they add
 NEAR = 10.0  # over this: what a cycle that is remembered may differ by, and times of landing
 FAR = 4.0  # a node whose cycle takes so many times what those before took is beyond an edge
 NODE_STEPS = 10_000
+FINER = 0.1  # tolerance of a node's steps over that of others: their noise is below what closes
+
+_loop: Any = loop.advance
+# as a part of what calls it, so that a user's own law is kept with that alone
+advance = piece(_loop.py_func)
 
 
 def leja(count: int) -> np.ndarray:
@@ -74,7 +79,8 @@ class Returns(NamedTuple):
     patches : angle where each starts, 2 over what it reaches over, and the number of its nodes;
     coefficients : of their polynomials for turn, time and landing; edges : angles beyond which
     there is no return; past : angle, turn, time and landing of cycles; width : of patches to
-    try; sizes : of patches, edges and past; nodes in vain; closing : relative error.
+    try; sizes : of patches, edges and past, nodes in vain, cycles solved; last : angle and time (s)
+    of the last take-off; closing : relative error.
     """
 
     patches: np.ndarray
@@ -83,6 +89,7 @@ class Returns(NamedTuple):
     past: np.ndarray
     width: np.ndarray
     sizes: np.ndarray
+    last: np.ndarray
     closing: float
 
 
@@ -94,7 +101,8 @@ def unknown(rtol: float) -> Returns:
         np.empty(PATCHES),
         np.empty((PAST, 4)),
         np.array([WIDEST]),
-        np.zeros(4, dtype=np.int64),
+        np.zeros(5, dtype=np.int64),
+        np.array([nan, nan]),
         CLOSING * rtol,
     )
 
@@ -179,6 +187,14 @@ def remembered(known: Returns, theta: float, last: Cycle) -> tuple[bool, Cycle]:
 
 
 @inlined
+def finer(accuracy: Accuracy) -> Accuracy:
+    """Return what the steps of a node's cycle are held to."""
+    tolerance, newton = FINER * accuracy.tolerance, FINER * accuracy.newton
+    _, _, speed, free_x, free_y, longest, drive = accuracy
+    return Accuracy(tolerance, newton, speed, free_x, free_y, longest, drive)
+
+
+@inlined
 def solved(
     problem: Problem, accuracy: Accuracy, memory: Memory, theta: float, longest: float
 ) -> tuple[bool, Cycle, float, Counts]:
@@ -187,14 +203,14 @@ def solved(
     Returns whether it ends within `longest` (s), the cycle, by what angle the stick at its end
     turns, and what it took.
     """
-    early = lead(problem, theta)
+    fine, early = finer(accuracy), lead(problem, theta)
     u_x, u_y = elongation_held(problem, theta)
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, 0.0))
     motion = Motion(0.0, u_x - v_x * early, u_y - v_y * early, 0.0, 1.0, 0.0)
     state = State(motion, at_takeoff(memory), NOTHING)
     stick, never, nowhere = np.empty((1, 2)), np.empty(0), np.empty((0, 0))
     code, state, _, _ = advance(
-        problem, state, early + longest, accuracy, NODE_STEPS, never, nowhere, 0, stick
+        problem, state, early + longest, fine, NODE_STEPS, never, nowhere, 0, stick
     )
     end = state.motion
     duration, _ = stick_duration(problem, end.t, end.u_x, end.u_y, inf)

@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.solver.compiled import compiled, inlined
-from stiction.solver.loop import advance
 from stiction.solver.problem import Problem, in_principal_axes, rate
 from stiction.solver.returns import (
     FAR,
@@ -16,6 +15,7 @@ from stiction.solver.returns import (
     Cycle,
     Returns,
     added,
+    advance,
     chart,
     interpolated,
     place,
@@ -39,7 +39,8 @@ from stiction.solver.takeoff import angle, elongation_held, wrapped
 PAYS = 8.0  # cycles that a patch must be good for
 VAIN = 30  # nodes that may be in vain at first, and one more for each so many cycles solved
 VAIN_EACH = 4
-STRIDE_STEPS = 1_000_000_000
+SLIP_STEPS = 1_000_000_000
+SAME = 1e-3  # of a slip: a landing so near to another is the same
 
 
 class Hold(NamedTuple):
@@ -116,15 +117,20 @@ def sample_cycle(
     until = k
     while until < len(times) and times[until] <= landing:
         until += 1
-    alone, late, room = State(motion, memory, NOTHING), 2.0 * landing - hold.end, np.empty((1, 2))
-    code, end, k, _ = advance(
-        problem, alone, late, accuracy, STRIDE_STEPS, times[:until], samples, k, room
-    )
-    return code, State(state.motion, state.memory, added(counts, end.counts)), k
+    slip, room, counts = landing - hold.end, np.empty((1, 2)), state.counts
+    code, alone = RUNNING, State(motion, memory, NOTHING)
+    # it may stick for a moment where the map has it just not
+    while code == RUNNING and k < until and alone.motion.t < landing - SAME * slip:
+        alone = State(alone.motion, alone.memory, NOTHING)
+        code, alone, k, _ = advance(
+            problem, alone, landing + slip, accuracy, SLIP_STEPS, times[:until], samples, k, room
+        )
+        counts = added(counts, alone.counts)
+    return code, State(state.motion, state.memory, counts), k
 
 
 @inlined
-def pays(known: Returns, hold: Hold, cycle: Cycle, over: float, t_end: float, solved: int) -> bool:
+def pays(known: Returns, hold: Hold, cycle: Cycle, over: float, t_end: float) -> bool:
     """Return whether to try a patch over some angles, with the last cycle as a measure.
 
     It must be good for enough cycles, there must be room for it, and few nodes in vain so far.
@@ -134,7 +140,7 @@ def pays(known: Returns, hold: Hold, cycle: Cycle, over: float, t_end: float, so
         min(abs(over), abs(cycle.turn) * left) >= PAYS * abs(cycle.turn)
         and left >= PAYS
         and max(known.sizes[0], known.sizes[1]) < PATCHES
-        and known.sizes[3] <= VAIN + solved // VAIN_EACH
+        and known.sizes[3] <= VAIN + known.sizes[4] // VAIN_EACH
     )
 
 
@@ -153,6 +159,57 @@ def recorded(state: State, hold: Hold, sticks: np.ndarray) -> State:
         counts.mapped + 1,
     )
     return State(motion, memory, counts)
+
+
+@inlined
+def mapped(
+    problem: Problem,
+    state: State,
+    t_end: float,
+    accuracy: Accuracy,
+    times: np.ndarray,
+    samples: np.ndarray,
+    k: int,
+    sticks: np.ndarray,
+    known: Returns,
+) -> tuple[int, State, int]:
+    """Learn from the cycle that ends with the stick at hand, and follow the map from there."""
+    hold, found_before, row = hold_of(problem, state.motion), state.counts.mapped, -1
+    theta, taken_off = known.last[0], known.last[1]
+    cycle = Cycle(wrapped(hold.theta - theta), hold.end - taken_off, hold.start - taken_off)
+    known.sizes[4] += 1
+    if cycle.turn < inf:  # a number: both ends are known
+        remember(known, theta, cycle)
+    while cycle.turn < inf and state.counts.sticks < len(sticks):
+        row, x = place(known, hold.theta, row)
+        if row >= 0:
+            n = int(known.patches[row, 2])
+            found, following = True, interpolated(known.coefficients[row], n, x)
+        else:
+            found, following = remembered(known, hold.theta, cycle)
+        if not found:
+            over = reach(known, hold.theta, cycle.turn)
+            if not pays(known, hold, cycle, over, t_end):
+                break
+            start, over = hold.theta - cycle.turn, over + cycle.turn  # no gap after another
+            state = chart(problem, accuracy, state, known, start, over, FAR * cycle.time)
+            continue
+        landing, end = hold.end + following.landing, hold.end + following.time
+        if not hold.end < landing < end < t_end:
+            break
+        if k < len(times) and times[k] <= end:
+            code, state, k = sample_cycle(
+                problem, state, hold, landing, accuracy, times, samples, k
+            )
+            if code > COMPLETED:
+                return code, state, k
+        state = recorded(state, hold, sticks)
+        hold = Hold(landing, end, wrapped(hold.theta + following.turn))
+        cycle = following
+    if state.counts.mapped > found_before:
+        state = landed(problem, state, hold)
+    known.last[0], known.last[1] = hold.theta, hold.end
+    return COMPLETED, state, k
 
 
 @compiled
@@ -182,50 +239,23 @@ def stride(
     code, state, k, turns
         As there.
     """
-    turns = solved = 0
-    theta = taken_off = nan  # at the last take-off
+    turns = 0
     while True:
-        room = sticks[: min(state.counts.sticks + 1, len(sticks))]  # until the next landing
+        rests = state.motion.r < 1e-13 * accuracy.tolerance * accuracy.speed  # as in the loop
+        if rests and not known.last[1] >= state.motion.t:
+            steps = state.counts.steps
+            code, state, k = mapped(
+                problem, state, t_end, accuracy, times, samples, k, sticks, known
+            )
+            turns += state.counts.steps - steps
+            if code > COMPLETED:
+                return code, state, k, turns
+        if turns >= budget or state.counts.sticks == len(sticks):
+            return RUNNING, state, k, turns
+        room = sticks[: state.counts.sticks + (1 if rests else 0)]  # until the next landing
         code, state, k, used = advance(
             problem, state, t_end, accuracy, budget - turns, times, samples, k, room
         )
         turns += used
-        if code != RUNNING or turns >= budget or state.counts.sticks == len(sticks):
+        if code != RUNNING:
             return code, state, k, turns
-        solved += 1
-        hold, mapped, row = hold_of(problem, state.motion), state.counts.mapped, -1
-        cycle = Cycle(wrapped(hold.theta - theta), hold.end - taken_off, hold.start - taken_off)
-        if cycle.turn < inf:  # a number: both ends are known
-            remember(known, theta, cycle)
-        while cycle.turn < inf and state.counts.sticks < len(sticks):
-            row, x = place(known, hold.theta, row)
-            if row >= 0:
-                n = int(known.patches[row, 2])
-                found, following = True, interpolated(known.coefficients[row], n, x)
-            else:
-                found, following = remembered(known, hold.theta, cycle)
-            if not found:
-                over = reach(known, hold.theta, cycle.turn)
-                if not pays(known, hold, cycle, over, t_end, solved):
-                    break
-                steps = state.counts.steps
-                state = chart(problem, accuracy, state, known, hold.theta, over, FAR * cycle.time)
-                turns += state.counts.steps - steps
-                continue
-            landing, end = hold.end + following.landing, hold.end + following.time
-            if not hold.end < landing < end < t_end:
-                break
-            if k < len(times) and times[k] <= end:
-                code, state, k = sample_cycle(
-                    problem, state, hold, landing, accuracy, times, samples, k
-                )
-                if code > COMPLETED:
-                    return code, state, k, turns
-            state = recorded(state, hold, sticks)
-            hold = Hold(landing, end, wrapped(hold.theta + following.turn))
-            cycle = following
-        if state.counts.mapped > mapped:
-            state = landed(problem, state, hold)
-        theta, taken_off = hold.theta, hold.end
-        if turns >= budget:
-            return RUNNING, state, k, turns
