@@ -11,7 +11,15 @@ from stiction.solver.compiled import compiled, inlined
 from stiction.solver.frame import Frame, Outset, elongation, frame_of, outset, turned
 from stiction.solver.landing import land, pursuit
 from stiction.solver.newton import products
-from stiction.solver.problem import Problem, at, coefficient, in_principal_axes, rate, travel
+from stiction.solver.problem import (
+    Problem,
+    at,
+    coefficient,
+    in_principal_axes,
+    isotropic,
+    rate,
+    travel,
+)
 from stiction.solver.radau import A, ease, step_factor
 from stiction.solver.sampling import sample_slip, sample_stick
 from stiction.solver.state import (
@@ -28,9 +36,10 @@ from stiction.solver.state import (
     at_takeoff,
     counted,
     planned,
+    size_to_try,
 )
 from stiction.solver.step import step
-from stiction.solver.stick import holding, stick_duration
+from stiction.solver.stick import holding, margin, stick_duration
 from stiction.solver.surface import takeoff
 
 GROWTH = 2.0
@@ -113,7 +122,9 @@ def slip(
     plan = memory.plan
     if memory.place < PLANNED and end < t_stop:
         plan = planned(plan, memory.place, h * step_factor(error, 4.0))
-    if r > 0.0 and memory.warm:  # Gustafsson's predictive control: errors that grow will grow on
+    # Gustafsson's predictive control: errors that grow will grow on; not if the step was cut, as
+    # before a landing, which it would put off for ever
+    if r > 0.0 and memory.warm and h > 0.9 * size_to_try(memory):
         trend = 0.9 * h / memory.h_last * at_ease * at_ease / memory.ease
         factor = min(factor, max(0.2, trend))
     memory = Memory(
@@ -128,6 +139,19 @@ def slip(
     )
     r = 0.0 if landing else p[2] * sqrt(1.0 + w[2] * w[2])
     return True, State(Motion(end, u_x, u_y, r, e_x, e_y), memory, counts), k
+
+
+@inlined
+def at_rest(problem: Problem, motion: Motion, accuracy: Accuracy) -> bool:
+    """Return whether the slip is zero for every purpose.
+
+    On an ellipse no closed form ends a slip, and its direction goes on turning as it vanishes:
+    there a slip that friction is about to end need not be followed so far.
+    """
+    tolerated = accuracy.tolerance * accuracy.speed
+    if isotropic(problem.surface) or motion.r > 1e-3 * tolerated:
+        return motion.r < 1e-13 * tolerated
+    return margin(problem, motion.t, motion.u_x, motion.u_y)[0] < 0.0 or motion.r == 0.0
 
 
 @compiled
@@ -173,7 +197,7 @@ def advance(
             return COMPLETED, state, k, turn
         if not (isfinite(motion.u_x) and isfinite(motion.u_y) and isfinite(motion.r)):
             return NON_FINITE, state, k, turn
-        if motion.r < 1e-13 * accuracy.tolerance * accuracy.speed:  # at rest for every purpose
+        if at_rest(problem, motion, accuracy):
             if state.counts.sticks >= len(sticks):
                 return RUNNING, state, k, turn
             motion = Motion(t, motion.u_x, motion.u_y, 0.0, motion.e_x, motion.e_y)

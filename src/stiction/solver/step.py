@@ -19,6 +19,7 @@ from stiction.solver.swing import Swing, oscillator, swing, within_reach
 ATTEMPTS = 100
 # of the time, far below what it resolves: a boundary layer is thin, and motion goes on in it
 RESOLUTION = 1e-30
+ROUNDING = 1e-15  # of the time: a landing so near to the end of the stretch is at its end
 DIRECT, EVEN = 1.1, 0.55  # of the time to landing: land at once, or in two even steps
 
 
@@ -59,7 +60,7 @@ def step(
     warm = False
     p = w = (0.0, 0.0, 0.0)
     for _ in range(ATTEMPTS):
-        if t + h >= t_stop:
+        if t + h >= t_stop and not warm:
             h, landing = t_stop - t, False
         elif not h > RESOLUTION * abs(t):
             break
@@ -71,7 +72,7 @@ def step(
         tried, warm = h, False
         converged, s, p, w, h, count = solve(problem, frame, o, s, h, landing, p, w, accuracy)
         iterations += count
-        if converged and landing and t + h > t_stop:
+        if converged and landing and t + h > t_stop + ROUNDING * abs(t_stop):
             h, landing, may_land = t_stop - t, False, False
             continue
         if converged and not landing and p[2] < 0.0 and may_land:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.solver.compiled import compiled, inlined
+from stiction.solver.loop import at_rest
 from stiction.solver.problem import Problem, in_principal_axes, rate
 from stiction.solver.returns import (
     FAR,
@@ -241,7 +242,7 @@ def stride(
     """
     turns = 0
     while True:
-        rests = state.motion.r < 1e-13 * accuracy.tolerance * accuracy.speed  # as in the loop
+        rests = at_rest(problem, state.motion, accuracy)
         if rests and not known.last[1] >= state.motion.t:
             steps = state.counts.steps
             code, state, k = mapped(
