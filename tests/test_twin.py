@@ -13,6 +13,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import stiction as st
+from stiction.solver.dense import End, quintic
 from stiction.solver.integrate import tolerance
 from stiction.solver.landing import landing_slip, landing_time
 from stiction.solver.radau import (
@@ -26,7 +27,6 @@ from stiction.solver.radau import (
     D,
     cubic,
 )
-from stiction.solver.sampling import quintic
 from stiction.solver.stick import stick_duration
 from stiction.solver.stretch import stretches
 from stiction.solver.twin import twin
@@ -321,8 +321,8 @@ def test_quintic_is_of_sixth_order():
         worst = np.zeros(2)
         for x in np.linspace(0.0, 1.0, 41):
             t = t0 + x * h
-            last = np.sin(end) - np.sin(t0), np.cos(end), -np.sin(end)
-            y, v = quintic(h, x, np.cos(t0), -np.sin(t0), *last)
+            last = End(np.cos(end), -np.sin(end), np.sin(end) - np.sin(t0))
+            y, v = quintic(h, x, End(np.cos(t0), -np.sin(t0), 0.0), last)
             worst = np.maximum(worst, np.abs([y - np.sin(t) + np.sin(t0), v - np.cos(t)]))
         return worst
 

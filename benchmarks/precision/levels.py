@@ -8,8 +8,10 @@ from typing import NamedTuple
 
 from ..harness.row import Errors, Row, fastest
 from ..section import Cell, Table
+from .peers.ours import MULTISCALE, SOLVER
 
 LSODA = "LSODA (numbalsoda)"
+OURS = (SOLVER, MULTISCALE)
 
 
 class Level(NamedTuple):
@@ -44,15 +46,24 @@ HEADINGS = (
 
 
 def table(rows: Sequence[Row]) -> Table:
-    """Return the levels: LSODA as given and, where another is faster or it fails, the fastest."""
+    """Return the levels: LSODA as given and, where another is faster or it fails, the fastest.
+
+    Beside our solver and beside its multiscale mode.
+    """
     lines: list[tuple[Cell, ...]] = []
     for level in LEVELS:
-        ours = fastest([row for row in rows if row.is_ours], level.bounds)
         best = fastest([row for row in rows if row.solver == LSODA], level.bounds)
         for row in rows:
             given = (row.solver, row.settings) == (LSODA, level.settings)
             if given or row is best:
-                lines.append(line(level, row, ours))
+                lines += [
+                    line(
+                        level,
+                        row,
+                        fastest([own for own in rows if own.solver == solver], level.bounds),
+                    )
+                    for solver in OURS
+                ]
     return Table("Levels: how much faster than LSODA through numbalsoda", HEADINGS, lines)
 
 

@@ -51,14 +51,21 @@ def simulate(
     rtol : float, optional
         Relative tolerance, 1e-13 to 1e-2. The error of the result falls in proportion; for
         the paper's Fig. 3 over 5 s the relative error of u_x is below `rtol`. Each step is
-        kept to 1.26 rtol^0.8 (2e-5 at the default), relative to the slip: a vigorous
-        oscillation may drift by some of that in each period.
+        kept to 0.8 rtol^0.8 (1.3e-5 at the default), relative to the slip, but to no more
+        than the drive's speed: a vigorous oscillation may drift by some of that in each period.
     initial : Initial, optional
         The state to start from; by default the paper's.
     regularisation : float or str, optional
         delta (m/s, 1e-11 at least): replace the set-valued law by F s/sqrt(|s|^2 + delta^2).
         For comparison; choose it far below the creep velocity V sin^2 phi. Not for laws with
         internal state, which are smooth by themselves.
+    multiscale : bool, optional
+        Take many cycles of stick and slip at once, for long runs and maps. With set-valued
+        friction and a steady drive and load, all that follows the end of a stick depends on one
+        angle; few cycles are solved, others interpolated, which is checked by fresh cycles to
+        0.03 rtol, and what does not agree is solved in steps, as is everything else. The error
+        is that of the same run without it, and every stick is recorded. Samples inside a cycle
+        are solved for: it does not pay for a run sampled faster than it sticks.
     max_steps : int, optional
         Give up after so many steps.
     progress : callable, optional

@@ -23,7 +23,7 @@ from stiction.solver.state import Accuracy
 
 FIFTH, APART = 0.2, sqrt(6.0) / 10.0  # the stages are 2/5 -+ sqrt(6)/10 and 1
 LEAST, MOST = 1e-3, 6.25  # of k h^2: below, a cubic does as well; above, nothing swings
-STRONGEST = 0.5  # of |beta| h
+STRONGEST = 0.2  # of |beta|/sqrt(k): damped more strongly, it is over before it is a swing
 
 
 class Oscillator(NamedTuple):
@@ -68,13 +68,19 @@ def oscillator(frame: Frame, start: Outset) -> Oscillator:
 def swings(o: Oscillator, h: float) -> bool:
     """Return whether a step of size `h` is laid over the oscillation."""
     square = o.k * h * h
-    return LEAST < square < MOST and abs(o.beta) * h < STRONGEST
+    return LEAST < square < MOST and weakly_damped(o)
+
+
+@inlined
+def weakly_damped(o: Oscillator) -> bool:
+    """Return whether the oscillation goes on for a while."""
+    return o.beta * o.beta < STRONGEST * STRONGEST * o.k
 
 
 @inlined
 def within_reach(o: Oscillator, h: float, accuracy: Accuracy) -> float:
     """Return the step size `h`, cut where it is more of a swing than a step can be laid over."""
-    if o.k * h * h < 0.99 * MOST:
+    if o.k * h * h < 0.99 * MOST or not weakly_damped(o):
         return h
     size = accuracy.tolerance * (accuracy.speed + o.level + o.x)
     if o.x * o.x + o.v * o.v * o.per_k < size * size:  # nothing swings
@@ -88,7 +94,7 @@ def propagator(o: Oscillator, t: float) -> tuple[float, float]:
     y, b = (o.k - o.beta * o.beta) * t * t, -o.beta * t
     cos = 1 - y / 2 * (1 - y / 12 * (1 - y / 30 * (1 - y / 56 * (1 - y / 90 * (1 - y / 132)))))
     sin = 1 - y / 6 * (1 - y / 20 * (1 - y / 42 * (1 - y / 72 * (1 - y / 110 * (1 - y / 156)))))
-    decay = 1 + b / 4 * (1 + b / 5 * (1 + b / 6 * (1 + b / 7)))
+    decay = 1 + b / 4 * (1 + b / 5 * (1 + b / 6 * (1 + b / 7 * (1 + b / 8))))
     decay = 1 + b * (1 + b / 2 * (1 + b / 3 * decay))
     return decay * cos, decay * sin * t
 
