@@ -60,8 +60,9 @@ def front(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
 
 
 def draw(axes: Axes, solver: str, points, look: tuple[str, str] | None) -> None:
-    """Draw one solver's points; ours without a look of its own, in black."""
+    """Draw one solver's points; ours in black, open where it is not the plain solver."""
     colour, marker = look or ("black", "o")
+    hollow = look is None and solver != OURS
     axes.plot(
         *zip(*points, strict=True),
         marker=marker,
@@ -69,8 +70,9 @@ def draw(axes: Axes, solver: str, points, look: tuple[str, str] | None) -> None:
         label=solver,
         linewidth=1.2 if look else 2.4,
         markersize=6.5 if look else 7.0,
-        markeredgecolor="white",
-        markeredgewidth=0.6,
+        markerfacecolor="white" if hollow else colour,
+        markeredgecolor=colour if hollow else "white",
+        markeredgewidth=1.6 if hollow else 0.6,
         zorder=2 if look else 3,
     )
 
