@@ -13,6 +13,7 @@ from typing import NamedTuple
 from stiction.solver.blocks import Triple, dot, less
 from stiction.solver.compiled import inlined
 from stiction.solver.frame import Frame, Outset
+from stiction.solver.newton import products
 from stiction.solver.problem import Problem
 from stiction.solver.radau import A, cubic, integral
 from stiction.solver.slip import stage
@@ -43,7 +44,7 @@ def ends_of(
     problem: Problem, frame: Frame, start: Outset, swing: Swing, h: float, p: Triple, w: Triple
 ) -> Ends:
     """Return both ends of a step."""
-    q = (p[0] * w[0], p[1] * w[1], p[2] * w[2])
+    q = products(p, w)
     end = stage(problem, frame, swing, h, 2, p, w, q)
     n, o = end.flow, oscillator(frame, start)
     laid = swings(o, h)

@@ -40,8 +40,9 @@ class Oscillator(NamedTuple):
 class Swing(NamedTuple):
     """What the oscillation adds to the equations of a step; see `slip`.
 
-    p : at the stages; what it leaves of its cubic in h p' (`rest`) and in the distance over h
-    (`slid`), and by how much these change with the step size; the same at the interior point.
+    p, dp : p and h p' at the stages; what it leaves of its cubic in h p' (`rest`) and in the
+    distance over h (`slid`), and by how much these change with the step size; the same at the
+    interior point.
     """
 
     p: Triple
