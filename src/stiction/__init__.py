@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from stiction import presets, theory
+    from stiction.analysis.record import Record
     from stiction.comparison import compare
     from stiction.description import Description, Settings
     from stiction.drive import (
@@ -73,6 +74,7 @@ _HOME = {
     "RateStateAgeing2": "friction",
     "RateStateSlip": "friction",
     "RateStateSlip2": "friction",
+    "Record": "analysis.record",
     "ResultError": "errors",
     "Reversal": "drive",
     "Settings": "description",
@@ -112,6 +114,7 @@ __all__ = [
     "RateStateAgeing2",
     "RateStateSlip",
     "RateStateSlip2",
+    "Record",
     "ResultError",
     "Reversal",
     "Settings",

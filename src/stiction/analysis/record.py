@@ -1,0 +1,133 @@
+"""What the analyses read: a force over time, simulated or measured."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BeforeValidator, model_validator
+
+from stiction.trajectory import Trajectory
+from stiction.units import Force, Mass, PositiveSpeed, Stiffness
+from stiction.validation import Described
+
+Floats = NDArray[np.float64]
+
+
+def _samples(values: Any) -> Floats:
+    try:
+        samples = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError("must be numbers, one a sample, in SI") from None
+    if samples.ndim != 1:
+        raise ValueError(f"must have one dimension, has {samples.ndim}; give one number a sample")
+    lost = np.flatnonzero(~np.isfinite(samples))
+    if len(lost):
+        raise ValueError(
+            f"{len(lost)} of {len(samples)} samples are not finite, the first is number "
+            f"{lost[0] + 1}; leave them out of every array: samples need not be equally spaced"
+        )
+    samples.setflags(write=False)
+    return samples
+
+
+Samples = Annotated[Any, BeforeValidator(_samples)]
+
+
+class Record(Described):
+    """A force over time, and what is known of the apparatus that it was recorded on.
+
+    Parameters
+    ----------
+    time : array
+        (n,), s, increasing; it need not be equally spaced.
+    force : array
+        (n,), N: the spring force, positive where the spring pulls the mass along the drive.
+    normal_load : float or str, optional
+        W, N; friction coefficients are not given without it.
+    stiffness : float or str, optional
+        Of the spring along the force, N/m. With `drive_velocity` it says where the mass is.
+    drive_velocity : float or str, optional
+        Along the force, m/s.
+    mass : float or str, optional
+        kg.
+    position, slip_speed : array, optional
+        (n,), m and m/s, along the drive and of the slip, where they are known otherwise.
+
+    Raises
+    ------
+    DescriptionError
+        With every fault at once.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> time = np.arange(0.0, 10.0, 1e-3)
+    >>> record = st.Record(time=time, force=1.0 + 0.2 * (time % 2.0), stiffness="0.2 N/m")
+    >>> f"{record.duration:.3f} s at {record.sample_rate:.0f} Hz"
+    '9.999 s at 1000 Hz'
+    """
+
+    time: Samples
+    force: Samples
+    normal_load: Force | None = None
+    stiffness: Stiffness | None = None
+    drive_velocity: PositiveSpeed | None = None
+    mass: Mass | None = None
+    position: Samples = None
+    slip_speed: Samples = None
+
+    @model_validator(mode="after")
+    def _of_one_length(self) -> Self:
+        for name in ("force", "position", "slip_speed"):
+            values = getattr(self, name)
+            if values is not None and len(values) != len(self.time):
+                raise ValueError(
+                    f"{name} has {len(values)} samples and time {len(self.time)}; "
+                    "give one for each time"
+                )
+        back = np.flatnonzero(np.diff(self.time) <= 0.0)
+        if len(back):
+            raise ValueError(
+                f"time must increase; sample {back[0] + 2}, at {self.time[back[0] + 1]:g} s, "
+                f"follows one at {self.time[back[0]]:g} s"
+            )
+        return self
+
+    def __len__(self) -> int:
+        """Return how many samples there are."""
+        return len(self.time)
+
+    @property
+    def duration(self) -> float:
+        """From the first sample to the last, s."""
+        return float(self.time[-1] - self.time[0]) if len(self) else 0.0
+
+    @property
+    def sample_rate(self) -> float:
+        """Samples per second, where they are equally spaced; their mean otherwise; 0 for none."""
+        return (len(self) - 1) / self.duration if len(self) > 1 else 0.0
+
+
+def record_of(run: Trajectory) -> Record:
+    """Return a run as its load cell records it: k_x u_x, with position and slip speed known.
+
+    The force is turned to be positive where the spring pulls along the drive; samples that are
+    not numbers, with which a failed run can end, are left out.
+    """
+    slider, data = run.slider, run.data
+    along = slider.motion.velocity * slider.direction[0]
+    way = -1.0 if along < 0.0 else 1.0
+    columns = np.stack([data[name].values for name in ("time", "spring_x", "X", "slip_speed")])
+    time, force, X, slip_speed = columns[:, np.isfinite(columns).all(axis=0)]
+    return Record(
+        time=time,
+        force=way * force,
+        normal_load=slider.normal_load,
+        stiffness=slider.k_x,
+        drive_velocity=abs(along) or None,
+        mass=slider.mass,
+        position=way * X,
+        slip_speed=slip_speed,
+    )
