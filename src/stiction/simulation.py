@@ -20,6 +20,8 @@ from stiction.solver.integrate import integrate
 from stiction.solver.refusal import reasons
 from stiction.trajectory import Statistics, Trajectory
 
+PAPERS = Initial()
+
 
 def simulate(
     slider: Slider,
@@ -100,7 +102,7 @@ def simulate(
     }
     settings = Settings(**{name: value for name, value in given.items() if value is not None})
     return run(
-        Description(slider, initial or Initial(), settings), max_steps=max_steps, progress=progress
+        Description(slider, initial or PAPERS, settings), max_steps=max_steps, progress=progress
     )
 
 

@@ -56,7 +56,7 @@ def _end(stretch: tuple[float, Any]) -> float:
 def load_stretches(normal_load: float, program: LoadProgram | None) -> Stretches:
     """Return the smooth stretches of a normal load, as `drive_stretches`."""
     if program is None:
-        return ((inf, ConstantLoad(normal_load)),)
+        return ((inf, ConstantLoad._make((normal_load,))),)  # a slider's, which has been read
     return program.stretches(normal_load)
 
 

@@ -90,7 +90,8 @@ Law = FrictionLaw | StateLaw
 
 def has_state(law: Any) -> TypeGuard[StateLaw]:
     """Return whether a law has internal state."""
-    return bool(states(law))
+    own = getattr(law, "states", None)
+    return own is not None and len(own()) > 0
 
 
 def states(law: Any) -> tuple[Internal, ...]:

@@ -10,7 +10,7 @@ from stiction.solver.compiled import specialised
 from stiction.solver.frame import friction
 from stiction.solver.output import Output
 from stiction.solver.problem import Problem, constant, kinds_of, steady
-from stiction.solver.returns import unknown
+from stiction.solver.returns import Returns, unknown
 from stiction.solver.sampling import COLUMNS
 from stiction.solver.state import Accuracy, Motion, State, cooled, start
 from stiction.solver.stick import holding
@@ -77,11 +77,12 @@ class Multiscale(Exact):
         """Take the tolerance."""
         self.rtol = rtol
         self.problem: Problem | None = None
-        self.known = unknown(rtol)
+        self.known: Returns | None = None
 
     def entered(self, state: State, x: float, y: float) -> State:
         """Return the state at the start of a stretch, where the slip velocity jumps by (x, y)."""
-        self.known.last[:] = nan
+        if self.known is not None:
+            self.known.last[:] = nan
         return super().entered(state, x, y)
 
     def advance(
@@ -90,7 +91,7 @@ class Multiscale(Exact):
         """Advance until `end` (s) or until the budget is used up."""
         if not (steady(problem.drive) and constant(problem.load)):
             return super().advance(problem, state, end, held, budget, out)
-        if problem != self.problem:
+        if self.known is None or problem != self.problem:
             self.problem, self.known = problem, unknown(self.rtol)
         fine = held._replace(tolerance=FINER * held.tolerance, newton=FINER * held.newton)
         code, state, out.filled, turns = specialised(stride, *kinds_of(problem))(
