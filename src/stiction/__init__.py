@@ -46,6 +46,9 @@ if TYPE_CHECKING:
     from stiction.initial import Initial
     from stiction.simulation import simulate
     from stiction.slider import Slider
+    from stiction.study.axes import Grid, Random, Sobol, Values
+    from stiction.study.plan import Study
+    from stiction.study.store import open_study
     from stiction.testing import check_law
     from stiction.trajectory import Trajectory, load
 
@@ -62,6 +65,7 @@ _HOME = {
     "DriveProgram": "drive",
     "ExponentialWeakening": "friction",
     "Free": "drive",
+    "Grid": "study.axes",
     "Harmonic": "drive",
     "Hold": "drive",
     "HyperbolicWeakening": "friction",
@@ -70,6 +74,7 @@ _HOME = {
     "LuGre": "friction",
     "Modulation": "drive",
     "Ramp": "drive",
+    "Random": "study.axes",
     "RateStateAgeing": "friction",
     "RateStateAgeing2": "friction",
     "RateStateSlip": "friction",
@@ -79,15 +84,19 @@ _HOME = {
     "Reversal": "drive",
     "Settings": "description",
     "Slider": "slider",
+    "Sobol": "study.axes",
     "Status": "errors",
     "Step": "drive",
     "StictionError": "errors",
     "Stribeck": "friction",
+    "Study": "study.plan",
     "Table": "friction",
     "Trajectory": "trajectory",
-    "compare": "comparison",
+    "Values": "study.axes",
     "check_law": "testing",
+    "compare": "comparison",
     "load": "trajectory",
+    "open_study": "study.store",
     "simulate": "simulation",
 }
 _ROOMS = ("presets", "theory")
@@ -102,6 +111,7 @@ __all__ = [
     "DriveProgram",
     "ExponentialWeakening",
     "Free",
+    "Grid",
     "Harmonic",
     "Hold",
     "HyperbolicWeakening",
@@ -110,6 +120,7 @@ __all__ = [
     "LuGre",
     "Modulation",
     "Ramp",
+    "Random",
     "RateStateAgeing",
     "RateStateAgeing2",
     "RateStateSlip",
@@ -119,15 +130,19 @@ __all__ = [
     "Reversal",
     "Settings",
     "Slider",
+    "Sobol",
     "Status",
     "Step",
     "StictionError",
     "Stribeck",
+    "Study",
     "Table",
     "Trajectory",
+    "Values",
     "check_law",
     "compare",
     "load",
+    "open_study",
     "presets",
     "simulate",
     "theory",
