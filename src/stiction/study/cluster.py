@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
@@ -41,7 +42,7 @@ class Processes(NamedTuple):
         ):
             warnings.filterwarnings("ignore", "Port .* is already in use")
             cluster = dask.LocalCluster(n_workers=self.workers, threads_per_worker=1)
-            with cluster, dask.Client(cluster) as client:
+            with lost_and_told(), cluster, dask.Client(cluster) as client:
                 yield from handed_out(client, work, tasks)
 
 
@@ -66,7 +67,7 @@ class Scheduler(NamedTuple):
                 f"no dask scheduler answers at {self.address}: {error}; start one with "
                 "'dask scheduler' and workers with 'dask worker ADDRESS'"
             ) from None
-        with client:
+        with lost_and_told(), client:
             yield from handed_out(client, work, tasks)
 
 
@@ -93,11 +94,10 @@ def handed_out(client: Any, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
         for task in islice(waiting, max(AHEAD * threads - flying.count(), 0)):
             flying.add(client.submit(work, task, wanted, pure=False))
 
-    with lost_and_told():
+    hand_out()
+    for future in flying:
+        yield future.result()
         hand_out()
-        for future in flying:
-            yield future.result()
-            hand_out()
 
 
 def wanted() -> bool:
@@ -107,12 +107,15 @@ def wanted() -> bool:
 
 @contextmanager
 def lost_and_told() -> Iterator[None]:
-    """Turn what dask raises when a scheduler or its workers are lost into a message."""
+    """Turn what dask raises, and logs, when a scheduler is lost into a message."""
     from concurrent.futures import CancelledError
 
     from distributed import KilledWorker
     from distributed.comm.core import CommClosedError
 
+    log = logging.getLogger("distributed.client")
+    level = log.level
+    log.setLevel(logging.CRITICAL)
     try:
         yield
     except KilledWorker as error:
@@ -121,3 +124,5 @@ def lost_and_told() -> Iterator[None]:
         ) from None
     except (CancelledError, CommClosedError, TimeoutError) as error:
         raise StictionError(f"dask's scheduler is lost ({error}); {AGAIN}") from None
+    finally:
+        log.setLevel(level)

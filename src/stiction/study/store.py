@@ -135,7 +135,7 @@ def _lay_out(study: Study, group: zarr.Group) -> None:
         format=FORMAT,
         stiction_version=version(),
         description=study.to_json(),
-        coordinates=" ".join(study.coordinates),
+        coordinates=" ".join([*study.coordinates, "message"]),  # as xarray reads it
     )
     for name in study.measures:
         known = MEASURES[name]
