@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from stiction.analysis.cycles import find_cycles
     from stiction.analysis.record import Record, record_of
     from stiction.analysis.regime import Regime, classify
+    from stiction.analysis.spread import summary
     from stiction.comparison import compare
     from stiction.description import Description, Settings
     from stiction.drive import (
@@ -95,6 +96,7 @@ _HOME = {
     "load": "trajectory",
     "record_of": "analysis.record",
     "simulate": "simulation",
+    "summary": "analysis.spread",
 }
 _ROOMS = ("presets", "theory")
 
@@ -140,6 +142,7 @@ __all__ = [
     "presets",
     "record_of",
     "simulate",
+    "summary",
     "theory",
 ]
 

@@ -89,13 +89,17 @@ def _corners_as_sampled(
     It is a corner if it bends more than twice as much as next to it, on either side.
     """
     middle = first + 1
-    bend = np.stack(
-        [
-            -upward * (values[i + 1] - 2.0 * values[i] + values[i - 1])
-            for i in (np.clip(middle + k, 1, len(values) - 2) for k in (-1, 0, 1))
-        ]
+    before, here, after = (
+        -upward * _bend(time, values, np.clip(middle + k, 1, len(values) - 2)) for k in (-1, 0, 1)
     )
-    corner = (last - first == 2) & (bend[1] > 2.0 * np.maximum(bend[0], bend[2]))
+    corner = (last - first == 2) & (here > 2.0 * np.maximum(before, after))
     return Vertices(
         np.where(corner, time[middle], found.time), np.where(corner, values[middle], found.value)
     )
+
+
+def _bend(time: Floats, values: Floats, middle: Indices) -> Floats:
+    """Return the second derivative from three samples."""
+    (t0, t1, t2), (v0, v1, v2) = ([x[middle + k] for k in (-1, 0, 1)] for x in (time, values))
+    bend: Floats = 2.0 * ((v2 - v1) / (t2 - t1) - (v1 - v0) / (t1 - t0)) / (t2 - t0)
+    return bend
