@@ -13,7 +13,10 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from stiction import presets, theory
-    from stiction.analysis.record import Record
+    from stiction.analysis.cycles import find_cycles
+    from stiction.analysis.record import Record, record_of
+    from stiction.analysis.regime import Regime, classify
+    from stiction.analysis.spread import summary
     from stiction.comparison import compare
     from stiction.description import Description, Settings
     from stiction.drive import (
@@ -80,6 +83,7 @@ _HOME = {
     "RateStateSlip": "friction",
     "RateStateSlip2": "friction",
     "Record": "analysis.record",
+    "Regime": "analysis.regime",
     "ResultError": "errors",
     "Reversal": "drive",
     "Settings": "description",
@@ -94,10 +98,14 @@ _HOME = {
     "Trajectory": "trajectory",
     "Values": "study.axes",
     "check_law": "testing",
+    "classify": "analysis.regime",
     "compare": "comparison",
+    "find_cycles": "analysis.cycles",
     "load": "trajectory",
     "open_study": "study.store",
+    "record_of": "analysis.record",
     "simulate": "simulation",
+    "summary": "analysis.spread",
 }
 _ROOMS = ("presets", "theory")
 
@@ -126,6 +134,7 @@ __all__ = [
     "RateStateSlip",
     "RateStateSlip2",
     "Record",
+    "Regime",
     "ResultError",
     "Reversal",
     "Settings",
@@ -140,11 +149,15 @@ __all__ = [
     "Trajectory",
     "Values",
     "check_law",
+    "classify",
     "compare",
+    "find_cycles",
     "load",
     "open_study",
     "presets",
+    "record_of",
     "simulate",
+    "summary",
     "theory",
 ]
 
