@@ -12,7 +12,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from stiction import presets, theory
+    from stiction import presets, stability, theory
     from stiction.analysis.record import Record
     from stiction.comparison import compare
     from stiction.description import Description, Settings
@@ -90,7 +90,7 @@ _HOME = {
     "load": "trajectory",
     "simulate": "simulation",
 }
-_ROOMS = ("presets", "theory")
+_ROOMS = ("presets", "stability", "theory")
 
 __all__ = [
     "Anisotropic",
@@ -130,6 +130,7 @@ __all__ = [
     "load",
     "presets",
     "simulate",
+    "stability",
     "theory",
 ]
 
