@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from stiction import presets, stability, theory
+    from stiction.analysis.onset import find_onset
     from stiction.analysis.record import Record
     from stiction.comparison import compare
     from stiction.description import Description, Settings
@@ -87,6 +88,7 @@ _HOME = {
     "Trajectory": "trajectory",
     "compare": "comparison",
     "check_law": "testing",
+    "find_onset": "analysis.onset",
     "load": "trajectory",
     "simulate": "simulation",
 }
@@ -127,6 +129,7 @@ __all__ = [
     "Trajectory",
     "check_law",
     "compare",
+    "find_onset",
     "load",
     "presets",
     "simulate",
