@@ -9,8 +9,9 @@ from stiction import theory
 from stiction.plotting.modes import modes_figure
 from stiction.plotting.onset import onset_figure
 from stiction.plotting.parameter import parameter_symbol, scale_of
-from stiction.plotting.stability import stability_map
+from stiction.plotting.stability import signed_distance, stability_map
 from stiction.stability import boundary, critical, modes_over
+from stiction.stability.axis import axis
 
 PAPER = st.presets.nakano_popov_2020()
 PLANE = {"x_between": ("0 deg", "25 deg"), "y_between": ("0.1 mm/s", "100 mm/s")}
@@ -74,3 +75,32 @@ def test_parameters_have_symbols_and_units():
     assert scale_of("k_x", "N/m", (1e3, 5e3)).label == "$k_{x}$ (kN/m)"
     assert scale_of("drive.velocity", "m/s", (1e-6, 1.0), logarithmic=True).unit == "mm/s"
     assert scale_of("phi", "rad", (0.0, 1.0)).named(np.radians(8.0)) == r"$\varphi$ = 8°"
+
+
+VELOCITY = {"x": "drive.velocity", "y": "k_y", "x_between": ("0.01 mm/s", "1 m/s"),
+                "y_between": (1e3, 1e8)}  # fmt: skip
+MIRRORED = {"x": "k_y", "y": "phi", "x_between": (1e3, 1e8),
+                 "y_between": ("-89 deg", "89 deg")}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("law", "plane", "branches"),
+    [
+        (st.Anisotropic(PAPER.law, 1.3, "20 deg"), VELOCITY, 2),
+        (st.Stribeck(0.3, 0.15, "10 mm/s"), MIRRORED, 2),
+        (st.RateStateAgeing(0.01, 0.015, 1e-5, 0.6, 1e-6), MIRRORED, 2),
+    ],
+    ids=["anisotropic", "Stribeck", "ageing"],
+)
+def test_no_piece_of_the_boundary_is_missing(law, plane, branches):
+    """The side that a point is on, as the curves have it, is that of its eigenvalues."""
+    slider = PAPER.replace(friction=law, phi="5 deg")
+    curve = boundary(slider, **plane)
+    assert len(np.unique(curve["branch"])) == branches
+    grid = (np.arange(12) + 0.5) / 12
+    across, up = np.meshgrid(grid, grid)
+    signed = signed_distance(curve, across, up)
+    x, y = (axis(slider, plane[way], plane[f"{way}_between"]) for way in "xy")
+    for a, b, side in zip(across.flat, up.flat, signed.flat, strict=True):
+        growth = st.stability.growth_rate(y.on(x.on(slider, a), b))
+        assert (growth > 0) == (side > 0) or abs(side) < 1e-3  # the chord's sag, 0.02^2 a curvature

@@ -91,7 +91,7 @@ def _name_sides(ax: Axes, curve: xr.Dataset) -> None:
     """Tint the unstable side, and write on both what they are, far from the boundary."""
     grid = np.linspace(0.0, 1.0, PIXELS)
     across, up = np.meshgrid(grid, grid)
-    signed = _signed_distance(curve, across, up)
+    signed = signed_distance(curve, across, up)
     if (signed > 0).any():
         ax.contourf(
             across, up, signed, [0.0, np.inf], colors=[UNSTABLE], transform=ax.transAxes, zorder=0
@@ -106,7 +106,7 @@ def _name_sides(ax: Axes, curve: xr.Dataset) -> None:
             )
 
 
-def _signed_distance(curve: xr.Dataset, across: Floats, up: Floats) -> Floats:
+def signed_distance(curve: xr.Dataset, across: Floats, up: Floats) -> Floats:
     """Return the distance to the boundary in fractions of the plane, positive where unstable."""
     ends = []
     for way in ("x", "y"):

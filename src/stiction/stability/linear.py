@@ -163,7 +163,7 @@ def steady_sliding(slider: Slider) -> Linearisation:
     >>> import stiction as st
     >>> slider = st.presets.nakano_popov_2020()
     >>> st.stability.steady_sliding(slider.replace(phi="10 deg"))
-    <Steady sliding, stable: fastest growth -31.39 /s at 9.103 Hz, damping ratio 0.481>
+    <Steady sliding, stable: fastest growth -31.46 /s at 9.015 Hz, damping ratio 0.485>
     """
     slip = drive_velocity(slider)
     state, response = steady_friction(slider, slip)
