@@ -340,6 +340,14 @@ def test_a_closed_boundary_closes():
         assert ends[0] == ends[1] or all(edges)
 
 
+def test_springs_that_differ_have_no_point_in_a_plane_of_both_at_once():
+    found = boundary(PAPER, "k_x, k_y", "drive.velocity", x_between=(1e3, 1e6))
+    assert math.isnan(found.attrs["x_own"])
+    assert found.attrs["y_own"] == V
+    with pytest.raises(st.DescriptionError, match="name two parameters"):
+        boundary(PAPER, "mass", "mass")
+
+
 def test_where_nothing_changes_the_boundary_is_empty():
     found = boundary(
         PAPER.replace(friction=st.Coulomb(mu_0=0.2)), "phi", "mass", x_between=("1 deg", "89 deg")

@@ -28,7 +28,7 @@ def test_the_map_names_both_sides_and_marks_the_slider():
     mu, slope = ([f(v) for v in speeds] for f in (PAPER.law.coefficient, PAPER.law.slope))
     known = theory.critical_misalignment(speeds, mu, slope)
     curve = boundary(PAPER, "phi", "drive.velocity", **PLANE)
-    (ax,) = drawn(stability_map(PAPER, curve, (known, speeds))).axes
+    (ax,) = drawn(stability_map(curve, (known, speeds))).axes
     places = {text.get_text(): text.get_position() for text in ax.texts}
     assert places.keys() == {"stable", "unstable"}
     for name, (x, y) in places.items():  # fractions of the axes: is it so there?
@@ -44,7 +44,7 @@ def test_the_map_names_both_sides_and_marks_the_slider():
 def test_a_plane_without_a_boundary_is_named_as_a_whole():
     slider = PAPER.replace(friction=st.Coulomb(mu_0=0.2))
     curve = boundary(slider, "phi", "mass", x_between=("1 deg", "89 deg"))
-    (ax,) = drawn(stability_map(slider, curve)).axes
+    (ax,) = drawn(stability_map(curve)).axes
     assert [text.get_text() for text in ax.texts] == ["stable"]
 
 
