@@ -12,11 +12,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from stiction import presets, theory
     from stiction.analysis.cycles import find_cycles
     from stiction.analysis.record import Record, record_of
     from stiction.analysis.regime import Regime, classify
     from stiction.analysis.spread import summary
+    from stiction import presets, stability, theory
+    from stiction.analysis.onset import find_onset
     from stiction.comparison import compare
     from stiction.description import Description, Settings
     from stiction.drive import (
@@ -101,13 +102,14 @@ _HOME = {
     "classify": "analysis.regime",
     "compare": "comparison",
     "find_cycles": "analysis.cycles",
+    "find_onset": "analysis.onset",
     "load": "trajectory",
     "open_study": "study.store",
     "record_of": "analysis.record",
     "simulate": "simulation",
     "summary": "analysis.spread",
 }
-_ROOMS = ("presets", "theory")
+_ROOMS = ("presets", "stability", "theory")
 
 __all__ = [
     "Anisotropic",
@@ -152,11 +154,13 @@ __all__ = [
     "classify",
     "compare",
     "find_cycles",
+    "find_onset",
     "load",
     "open_study",
     "presets",
     "record_of",
     "simulate",
+    "stability",
     "summary",
     "theory",
 ]
