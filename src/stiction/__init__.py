@@ -12,12 +12,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from stiction import presets, stability, theory
     from stiction.analysis.cycles import find_cycles
+    from stiction.analysis.onset import find_onset
     from stiction.analysis.record import Record, record_of
     from stiction.analysis.regime import Regime, classify
     from stiction.analysis.spread import summary
-    from stiction import presets, stability, theory
-    from stiction.analysis.onset import find_onset
     from stiction.comparison import compare
     from stiction.description import Description, Settings
     from stiction.drive import (
