@@ -20,6 +20,7 @@ PARTS = {
     "conservation": "conservation",
     "scaling": "scaling",
     "startup": "startup",
+    "studies": "studies",
 }
 
 

@@ -32,29 +32,23 @@ class Measure(NamedTuple):
 
 
 def _mean(values: np.ndarray) -> float:
-    return float(values.mean()) if len(values) else nan
-
-
-def _late(seen: Observed) -> np.ndarray:
-    """Return the force in the last quarter of the run."""
-    return seen.force[3 * len(seen.force) // 4 :]
-
-
-def _largest(seen: Observed) -> float:
-    turning = seen.turns.value
-    return max(float(seen.force.max()), float(turning.max()) if len(turning) else -np.inf)
+    return float(values.sum()) / len(values) if len(values) else nan
 
 
 MEASURES: dict[str, Measure] = {
     "regime": Measure("1", "kind of motion", lambda run: KINDS.index(run.regime), KINDS),
-    "peak_force": Measure("N", "largest spring force along x, k_x u_x", _largest),
+    "peak_force": Measure(
+        "N", "largest spring force along x, k_x u_x", lambda run: run.features.peak
+    ),
     "mean_force": Measure(
-        "N", "mean spring force along x in the last quarter", lambda run: _mean(_late(run))
+        "N",
+        "mean spring force along x in the last quarter",
+        lambda run: run.features.late_mean,
     ),
     "amplitude": Measure(
         "N",
         "half the span of the spring force along x in the last quarter",
-        lambda run: 0.5 * float(np.ptp(_late(run))),
+        lambda run: 0.5 * run.features.late_span,
     ),
     "cycles": Measure("1", "number of complete swings", lambda run: float(len(run.swings.drop))),
     "period": Measure("s", "mean period of the swings", lambda run: _mean(run.swings.period)),
@@ -63,17 +57,17 @@ MEASURES: dict[str, Measure] = {
         "1", "share of a swing in which the force rises", lambda run: _mean(run.swings.rise_share)
     ),
     "peak_velocity": Measure(
-        "m/s", "largest velocity of the mass along X", lambda run: float(run.velocity.max())
+        "m/s", "largest velocity of the mass along X", lambda run: run.features.peak_velocity
     ),
     "first_slip_time": Measure(
         "s",
         "time at which the mass first moves faster than the drive",
-        lambda run: float(run.time[run.first_slip]),
+        lambda run: float(run.time[run.features.slipped]),
     ),
     "creep_distance": Measure(
         "m",
         "distance along X that the mass creeps before its first slip",
-        lambda run: float(run.position[run.first_slip] - run.position[0]),
+        lambda run: run.position(run.features.slipped) - run.position(0),
     ),
     "song": Measure(
         "1", "amplitude of the fast oscillation's rate over the drive's", lambda run: run.song

@@ -5,23 +5,24 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from math import pi, sqrt
+from math import ceil, pi, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stiction.description import Description
+from stiction.drive import ConstantVelocity
 from stiction.simulation import sample_times, solve
 from stiction.solver.integrate import Solution
+from stiction.study.features import Features, features
 from stiction.study.regimes import Swings, kind_of, swings
-from stiction.study.turning import Turns, turns
 
 Floats = NDArray[np.float64]
 
 # A harmonic's peak, found by a parabola through samples this dense, is right to 1e-5 of its
 # amplitude. Samples cost time of their own: at this rate one part in a hundred.
 PER_SLOW_PERIOD = 32
-MOST_SAMPLES = 1_000_000  # of one run
+LEAST_SAMPLES, MOST_SAMPLES = 64, 1_000_000  # of one run
 # The fast oscillation is looked at over its last periods.
 FAST_PERIODS, PER_FAST_PERIOD = 32, 16
 # Smallest reversal of the force that counts, of its span: ten times what the fast oscillation
@@ -31,7 +32,7 @@ REVERSAL = 1e-3
 
 @dataclass(frozen=True)
 class Observed:
-    """A run as the solver returns it: samples over all of it, then dense ones of its end.
+    """A run as the solver returns it: evenly spaced samples, and finer ones of its end.
 
     Parameters
     ----------
@@ -39,23 +40,38 @@ class Observed:
         What was run.
     solution : Solution
         Samples, stick intervals and counts.
-    coarse : ndarray
-        Which samples are evenly spaced over all of the run.
+    fine : int
+        The first of the finer samples.
+    parts : int
+        How many of them take the place of one.
     """
 
     description: Description
     solution: Solution
-    coarse: NDArray[np.bool_]
+    fine: int
+    parts: int
+
+    @property
+    def start(self) -> float:
+        """When the run starts, s."""
+        return float(self.solution.times[0])
+
+    @property
+    def end(self) -> float:
+        """When it ends, s."""
+        return float(self.solution.times[-1])
 
     @cached_property
     def time(self) -> Floats:
         """(n,), s, evenly spaced."""
-        return self.solution.times[self.coarse]
+        return self._even(self.solution.times)
 
-    @cached_property
-    def samples(self) -> Floats:
-        """(n, 7 or more), at `time`; columns as in `stiction.solver.sampling`."""
-        return self.solution.samples[self.coarse]
+    def column(self, i: int) -> Floats:
+        """Return a column of the samples at `time`, as in `stiction.solver.sampling`."""
+        return self._even(self.solution.samples[:, i])
+
+    def _even(self, values: Floats) -> Floats:
+        return np.concatenate([values[: self.fine], values[self.fine :: self.parts]])
 
     @cached_property
     def way(self) -> float:
@@ -66,40 +82,37 @@ class Observed:
     @cached_property
     def force(self) -> Floats:
         """Spring force k_x u_x, positive where it pulls along the drive (N)."""
-        return self.way * self.description.slider.k_x * self.samples[:, 0]
+        return self.way * self.description.slider.k_x * self.column(0)
 
     @cached_property
     def velocity(self) -> Floats:
         """Velocity of the mass along the drive, X', positive where it follows it (m/s)."""
         c, s = self.description.slider.direction
-        return self.way * (c * self.samples[:, 2] + s * self.samples[:, 3])
+        return self.way * c * self.column(2) + self.way * s * self.column(3)
 
-    @cached_property
-    def position(self) -> Floats:
-        """Position of the mass along the drive, X (m), Eq. (6) of Nakano & Popov."""
-        slider = self.description.slider
+    def position(self, i: int) -> float:
+        """Return the position X of the mass along the drive at sample `i` of `time` (m).
+
+        Eq. (6) of Nakano & Popov.
+        """
+        slider, row = self.description.slider, self.solution.samples[i]
         c, s = slider.direction
-        travel = slider.motion.travel(0.0, self.time)[0]
-        position: Floats = self.way * (travel - c * self.samples[:, 0] - s * self.samples[:, 1])
-        return position
+        travel = float(slider.motion.travel(0.0, self.time[i])[0])
+        return self.way * float(travel - c * row[0] - s * row[1])
 
     @cached_property
-    def turns(self) -> Turns:
-        """Where the force turns."""
-        return turns(self.time, self.force, REVERSAL * float(np.ptp(self.force)))
+    def features(self) -> Features:
+        """What the evenly spaced samples show."""
+        motion = self.description.slider.motion
+        constant = isinstance(motion, ConstantVelocity)
+        rate = np.array([motion.velocity]) if constant else motion.rate(self.time)[0]
+        found: Features = features(self.time, self.force, self.velocity, np.abs(rate), REVERSAL)
+        return found
 
     @cached_property
     def swings(self) -> Swings:
         """Complete swings of the force."""
-        return swings(self.turns)
-
-    @cached_property
-    def first_slip(self) -> int:
-        """The first sample at which the mass is faster than the drive; the last if it never is."""
-        drive = np.abs(self.description.slider.motion.rate(self.time)[0])
-        faster = self.velocity > drive
-        found = int(np.argmax(faster))
-        return found if faster[found] else len(faster) - 1
+        return swings(self.features)
 
     @cached_property
     def song(self) -> float:
@@ -108,32 +121,34 @@ class Observed:
         Half the span of the elongation rate along the stiffer axis. It is 1 at most while the
         slip does not reverse (Nakano & Popov, below Eq. (9)).
         """
-        slider, end = self.description.slider, self.solution.samples[~self.coarse]
-        stiff = slider.k_y >= slider.k_x
-        drive = abs(slider.motion.velocity * slider.direction[1 if stiff else 0])
-        span = float(np.ptp(end[:, 3 if stiff else 2])) if len(end) else 0.0
-        return 0.5 * span / drive if drive > 0.0 else 0.0
+        slider, samples = self.description.slider, self.solution.samples
+        axis = 1 if slider.k_y >= slider.k_x else 0
+        drive = abs(slider.motion.velocity * slider.direction[axis])
+        rate = samples[self.fine :, 2 + axis]
+        return 0.5 * float(rate.max() - rate.min()) / drive if drive > 0.0 else 0.0
 
     @cached_property
     def regime(self) -> str:
         """The kind of motion, one of `stiction.study.regimes.KINDS`."""
         slider = self.description.slider
         drive = slider.k_x * abs(slider.motion.velocity * slider.direction[0])
-        return kind_of(self.time, self.force, self.turns, drive, self.song)
+        return kind_of(self.features, self.swings, self.start, self.end, drive, self.song)
 
 
 def observe(description: Description, report: Callable[[float], None] | None) -> Observed:
     """Run a description, sampled as measures need it: as it says, or by its slow period."""
     start, duration = description.initial.time, description.run.duration
     slow, fast = frequencies(description)
-    rate = min(description.run.sample_rate or PER_SLOW_PERIOD * slow, MOST_SAMPLES / duration)
+    wanted = description.run.sample_rate or max(PER_SLOW_PERIOD * slow, LEAST_SAMPLES / duration)
+    rate = min(wanted, MOST_SAMPLES / duration)
     even = sample_times(start, duration, rate)
-    count, step = FAST_PERIODS * PER_FAST_PERIOD, 1.0 / (PER_FAST_PERIOD * fast)
-    dense = start + duration - step * np.arange(count)
-    times = np.concatenate([even, dense[dense > start]])
-    order = np.argsort(times, kind="stable")
-    solution = solve(description, times[order], progress=report)
-    return Observed(description, solution, (order < len(even))[: len(solution.times)])
+    parts = max(ceil(PER_FAST_PERIOD * fast / rate), 1)
+    steps = min(ceil(FAST_PERIODS * rate / fast), len(even) - 1)
+    fine = len(even) - 1 - steps
+    # from the last even samples on, each step is cut in parts
+    dense = even[fine] + np.arange(steps * parts + 1) / (rate * parts)
+    times = np.minimum(np.concatenate([even[:fine], dense]), start + duration)
+    return Observed(description, solve(description, times, progress=report), fine, parts)
 
 
 def seconds_of(description: Description) -> float:

@@ -1,11 +1,12 @@
-"""Which kind of motion a run shows, from its clean samples in a few microseconds.
+"""Which kind of motion a run shows, from the features of its clean samples.
 
 The kinds and their bounds are those of `stiction.analysis.regime`, which finds them in any
-record, noisy or not, and takes a thousand times as long; a test holds the two together.
+record, noisy or not, and takes a hundred times as long; a test holds the two together.
 """
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -13,8 +14,8 @@ from numpy.typing import NDArray
 
 from stiction.analysis import regime
 from stiction.analysis.decay import dies_out
-from stiction.analysis.level import PARTS, QUARTER
-from stiction.study.turning import Turns
+from stiction.analysis.level import QUARTER
+from stiction.study.features import PARTS, Features
 
 Floats = NDArray[np.float64]
 
@@ -54,39 +55,42 @@ class Swings(NamedTuple):
     end: float
 
 
-def swings(found: Turns) -> Swings:
+def swings(found: Features) -> Swings:
     """Return the complete swings between turning points."""
     first = 0 if found.trough else 1
-    time, value = found.time[first:], found.value[first:]
-    count = max((len(time) - 1) // 2, 0)
-    start, peak, trough = (time[i : i + 2 * count : 2] for i in range(3))
+    time, value = found.turn_time[first:], found.turn_value[first:]
+    last = 2 * max((len(time) - 1) // 2, 0)
+    start, peak, trough = (time[i : i + last : 2] for i in range(3))
     period = trough - start
-    drop = value[1 : 1 + 2 * count : 2] - value[2 : 2 + 2 * count : 2]
-    return Swings(drop, period, (peak - start) / period, float(trough[-1]) if count else 0.0)
+    drop = value[1 : 1 + last : 2] - value[2 : 2 + last : 2]
+    return Swings(drop, period, (peak - start) / period, float(trough[-1]) if last else 0.0)
 
 
-def kind_of(time: Floats, force: Floats, found: Turns, drive: float, song: float) -> str:
+def kind_of(
+    found: Features, cycles: Swings, start: float, end: float, drive: float, song: float
+) -> str:
     """Return the kind of motion.
 
     Parameters
     ----------
-    time, force : ndarray
-        (n,), s and N; the force positive where the spring pulls along the drive.
-    found : Turns
-        Where the force turns.
+    found : Features
+        What the samples show.
+    cycles : Swings
+        Of it.
+    start, end : float
+        Of the run, s.
     drive : float
         Rate of the force while the mass sticks: stiffness times drive velocity, N/s.
     song : float
         How strong the fast oscillation is at the end, in units of the drive's velocity along it.
     """
-    if len(time) < PARTS:
-        return regime.UNDETERMINED
-    cycles = swings(found)
     count = len(cycles.drop)
-    dying = dies_out(cycles.drop, cycles.period, float(time[-1]) - cycles.end)
+    # a cheap condition first, which must hold as well
+    dying = count > 0 and bool(cycles.drop[-1] < 0.5 * cycles.drop[0])
+    dying = dying and dies_out(cycles.drop, cycles.period, end - cycles.end)
     if count >= FEWEST and not dying:
-        return shape(float(np.median(cycles.rise_share)))
-    kind = regime.DAMPED if dying else course(time, force, len(found.time), drive)
+        return shape(float(np.sort(cycles.rise_share)[count // 2]))
+    kind = regime.DAMPED if dying else course(found, start, end, drive)
     return SONG if kind in (regime.DAMPED, regime.STEADY) and song > SINGS else kind
 
 
@@ -95,19 +99,18 @@ def shape(rise_share: float) -> str:
     return next(kind for bound, kind in regime.SHAPES if rise_share >= bound)
 
 
-def course(time: Floats, force: Floats, turning: int, drive: float) -> str:
+def course(found: Features, start: float, end: float, drive: float) -> str:
     """Return the kind of a force without cycles, by the rules of `stiction.analysis.regime`."""
-    edges = np.linspace(0, len(time), PARTS + 1).astype(np.intp)[:-1]
-    sizes = np.diff(edges, append=len(time))
-    f, t = np.add.reduceat(force, edges) / sizes, np.add.reduceat(time, edges) / sizes
-    steps, change, span = np.abs(np.diff(f)).sum(), float(f[-1] - f[0]), float(np.ptp(f))
-    early = float((f[QUARTER] - f[0]) / (t[QUARTER] - t[0]))
-    late = float((f[-1] - f[-1 - QUARTER]) / (t[-1] - t[-1 - QUARTER]))
-    if span > 0.0 and np.ptp(f[-QUARTER:]) <= regime.SETTLED * span:
+    f = found.means.tolist()
+    span, change = max(f) - min(f), f[-1] - f[0]
+    quarter = QUARTER * (end - start) / PARTS
+    early, late = (f[QUARTER] - f[0]) / quarter, (f[-1] - f[-1 - QUARTER]) / quarter
+    if span > 0.0 and max(f[-QUARTER:]) - min(f[-QUARTER:]) <= regime.SETTLED * span:
         return regime.DAMPED
-    if turning:
+    if len(found.turn_time):
         return regime.UNDETERMINED
-    rising = change > 0.0 and change >= regime.ONE_WAY * steps
+    ups_and_downs = sum(abs(b - a) for a, b in pairwise(f))
+    rising = change > 0.0 and change >= regime.ONE_WAY * ups_and_downs
     if not rising or 0.0 < max(abs(early), abs(late)) < regime.SLOW * drive:
         return regime.STEADY
     loading = late / drive if drive else late / early

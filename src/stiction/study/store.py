@@ -15,6 +15,7 @@ from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
+from uuid import uuid4
 
 import numpy as np
 
@@ -74,10 +75,29 @@ class Store(NamedTuple):
         """Write a block, its status last."""
         with told(store.path):
             for name, values in block.measures.items():
-                store._array(name)[region] = values
+                store._write(name, region, values, np.nan)
             if block.message.any():
                 store._array("message")[region] = block.message
-            store._array("status")[region] = block.status
+            store._write("status", region, block.status, PENDING)
+
+    def _write(store, name: str, region: Region, values: np.ndarray, fill: float) -> None:
+        """Write a whole chunk, as the specification of zarr has it: bytes in a file of their own.
+
+        Through zarr it takes the processor eight times as long, as long as a sixth of a run.
+        """
+        block = store.layout.block
+        chunk = np.full(block, fill, values.dtype.newbyteorder("<"))  # whole at the edges, too
+        chunk[tuple(slice(0, n) for n in values.shape)] = values
+        places = (str(part.start // b) for part, b in zip(region, block, strict=True))
+        file = store.path.joinpath(name, "c", *places)
+        file.parent.mkdir(parents=True, exist_ok=True)
+        part = file.with_name(f".{uuid4().hex}.part")
+        try:
+            part.write_bytes(chunk.tobytes())
+            part.replace(file)
+        except OSError:
+            part.unlink(missing_ok=True)
+            raise
 
     def _array(store, name: str) -> Any:
         return store.group[name]

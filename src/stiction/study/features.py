@@ -1,0 +1,129 @@
+"""What the samples of a run show, found in one pass of compiled code, without Python's lock.
+
+For what a solver returns, which has no noise. `stiction.analysis` finds the same in any record.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from stiction.solver.compiled import compiled
+
+PARTS = 32  # equal parts of the time, over which the force is averaged
+
+
+class Features(NamedTuple):
+    """What the samples of a run show.
+
+    Parameters
+    ----------
+    peak : float
+        Largest force, N.
+    late_mean, late_span : float
+        Mean force in the last quarter, and the span from its lowest to its highest there, N.
+    peak_velocity : float
+        Largest velocity of the mass along the drive, m/s.
+    slipped : int
+        The first sample at which the mass is faster than the drive; the last if it never is.
+    means : ndarray
+        (32,), force averaged over equal parts of the time, N.
+    turn_time, turn_value : ndarray
+        (n,), where the force turns (s, N), peaks and troughs in turn.
+    trough : bool
+        Whether the first of them is a trough.
+    """
+
+    peak: float
+    late_mean: float
+    late_span: float
+    peak_velocity: float
+    slipped: int
+    means: np.ndarray
+    turn_time: np.ndarray
+    turn_value: np.ndarray
+    trough: bool
+
+
+@compiled
+def features(
+    time: np.ndarray,
+    force: np.ndarray,
+    velocity: np.ndarray,
+    drive: np.ndarray,
+    reversal: float,
+) -> Features:
+    """Return what evenly spaced samples show.
+
+    Parameters
+    ----------
+    time, force, velocity : ndarray
+        (n,), s, N, m/s; positive along the drive.
+    drive : ndarray
+        (n,) or (1,), speed of the drive along X, m/s.
+    reversal : float
+        Smallest reversal of the force that counts, of its span.
+    """
+    n = len(time)
+    low, high, fastest, slipped = force[0], force[0], velocity[0], n - 1
+    for i in range(n - 1, -1, -1):
+        low, high = min(low, force[i]), max(high, force[i])
+        fastest = max(fastest, velocity[i])
+        if velocity[i] > drive[min(i, len(drive) - 1)]:
+            slipped = i
+    late, late_low, late_high, total = 3 * n // 4, np.inf, -np.inf, 0.0
+    for i in range(late, n):
+        late_low, late_high = min(late_low, force[i]), max(late_high, force[i])
+        total += force[i]
+    means = np.zeros(PARTS)
+    for part in range(PARTS):
+        begin, end = part * n // PARTS, max((part + 1) * n // PARTS, part * n // PARTS + 1)
+        for i in range(begin, end):
+            means[part] += force[min(i, n - 1)] / (end - begin)
+    index = zigzag(force, reversal * (high - low))
+    turn_time, turn_value = np.empty(len(index)), np.empty(len(index))
+    for k, i in enumerate(index):
+        turn_time[k], turn_value[k] = vertex(time, force, i)
+        high = max(high, turn_value[k])
+    trough = len(index) > 0 and force[index[0]] < force[0]
+    late_mean, late_span = total / (n - late), late_high - late_low
+    return Features(
+        high, late_mean, late_span, fastest, slipped, means, turn_time, turn_value, trough
+    )
+
+
+@compiled
+def vertex(time: np.ndarray, values: np.ndarray, i: int) -> tuple[float, float]:
+    """Return where the parabola through a sample and its neighbours turns, and its value there."""
+    bend = values[i - 1] - 2.0 * values[i] + values[i + 1]
+    slope = 0.5 * (values[i + 1] - values[i - 1])
+    shift = -slope / bend if bend != 0.0 else 0.0
+    return time[i] + shift * (time[i + 1] - time[i]), values[i] + 0.5 * slope * shift
+
+
+@compiled
+def zigzag(values: np.ndarray, height: float) -> np.ndarray:
+    """Return the samples, in turn highest and lowest, between legs higher than `height`.
+
+    The two ends are none of them.
+    """
+    found = np.empty(len(values), np.int64)
+    n, way, last, high, low = 0, 0, 0, 0, 0  # way: 1 rising, -1 falling, 0 not known yet
+    for i in range(1, len(values)):
+        if way == 0:
+            high = i if values[i] > values[high] else high
+            low = i if values[i] < values[low] else low
+            if values[high] - values[low] > height:
+                way = 1 if high > low else -1
+                last = max(high, low)
+                if min(high, low) > 0:
+                    found[n] = min(high, low)
+                    n += 1
+        elif way * (values[i] - values[last]) > 0.0:
+            last = i
+        elif way * (values[last] - values[i]) > height:
+            found[n] = last
+            n += 1
+            way, last = -way, i
+    return found[:n]
