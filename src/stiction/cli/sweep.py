@@ -10,13 +10,15 @@ from cyclopts import Parameter
 
 if TYPE_CHECKING:
     from stiction.study.engines import Engine
+    from stiction.study.plan import Study
 
 
 def sweep(
-    config: Path,
+    config: Path | None = None,
     /,
     *,
     output: Annotated[Path, Parameter(alias="-o")],
+    preset: str | None = None,
     threads: int | None = None,
     workers: int | None = None,
     scheduler: str | None = None,
@@ -42,6 +44,9 @@ def sweep(
         count = 20
         spacing = "log"
 
+    There are ready ones: `stiction sweep --preset yaw-angle -o yaw.zarr`, then `stiction map
+    yaw.zarr`.
+
     Stopped at any moment and started again with the same command, it does what is missing. Read
     the store with xarray.open_zarr.
 
@@ -54,6 +59,9 @@ def sweep(
         The study, in TOML.
     output
         The store to write or to go on with, a folder: study.zarr.
+    preset
+        A ready study in place of CONFIG: yaw-angle (phi x V: misalignment stabilises),
+        anisotropy (k_y x phi), damping-diagram (A x theta, Fig. 5 with simulations on it).
     threads
         How many runs at a time in this process; as many as there are cores when left out.
     workers
@@ -67,9 +75,8 @@ def sweep(
         Write progress and outcome to standard output as JSON, a line each, at most one a second.
     """
     from stiction.cli.tally import shown
-    from stiction.study.plan import Study
 
-    study, means = Study.from_toml(config), engine(threads, workers, scheduler)
+    study, means = described(config, preset), engine(threads, workers, scheduler)
     try:
         with shown(quiet, json_lines) as (report, conclude):
             result = study.run(output, engine=means, progress=report)
@@ -78,6 +85,18 @@ def sweep(
         return 130
     conclude(output, result)
     return 1 if result.failed else 0
+
+
+def described(config: Path | None, preset: str | None) -> Study:
+    """Return the study that is asked for."""
+    from stiction.errors import StictionError
+    from stiction.study import presets
+    from stiction.study.plan import Study
+
+    if (config is None) == (preset is None):
+        known = ", ".join(presets.PRESETS)
+        raise StictionError(f"give a study's file or --preset NAME, one of both; known: {known}")
+    return Study.from_toml(config) if config is not None else presets.preset(str(preset))
 
 
 def engine(threads: int | None, workers: int | None, scheduler: str | None) -> Engine:

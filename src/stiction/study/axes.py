@@ -45,7 +45,47 @@ class Positional(Described):
         super().__init__(**dict(zip(type(self).model_fields, given, strict=False)), **values)
 
 
-class Grid(Positional):
+class Values(Positional):
+    """Values one by one.
+
+    Parameters
+    ----------
+    values : sequence
+        Each a number or a string with its unit.
+    along : str, optional
+        The dimension that the values lie along; the parameter's own when left out. Axes along
+        one dimension go through their values together.
+    """
+
+    values: Quantities
+    along: str | None = None
+
+    __init__ = Positional.__init__  # said again for type checkers, here and below
+
+    @property
+    def count(self) -> int:
+        """How many values."""
+        return len(self.values)
+
+
+class Range(Positional):
+    """Values between two: what `Grid`, `Random` and `Sobol` have in common."""
+
+    start: Quantity
+    stop: Quantity
+    count: Count
+    spacing: Spacing = "linear"
+    along: str | None = None
+
+    def places(self, place: int, seed: int) -> Floats:
+        """Return how far between `start` and `stop` each value lies, 0 to 1.
+
+        `place` is that of the axis among all; with the `seed` it decides what is random.
+        """
+        raise NotImplementedError
+
+
+class Grid(Range):
     """Values at equal distances, or at equal ratios.
 
     Parameters
@@ -57,42 +97,17 @@ class Grid(Positional):
     spacing : {"linear", "log"}, optional
         Equal distances or equal ratios.
     along : str, optional
-        The dimension that the values lie along; the parameter's own when left out. Axes along
-        one dimension go through their values together.
+        As of `Values`.
     """
 
-    start: Quantity
-    stop: Quantity
-    count: Count
-    spacing: Spacing = "linear"
-    along: str | None = None
+    __init__ = Positional.__init__
 
     def places(self, place: int, seed: int) -> Floats:
-        """Return how far between `start` and `stop` each value lies, 0 to 1."""
+        """Return equal distances."""
         return np.linspace(0.0, 1.0, self.count)
 
 
-class Values(Positional):
-    """Values one by one.
-
-    Parameters
-    ----------
-    values : sequence
-        Each a number or a string with its unit.
-    along : str, optional
-        As of `Grid`.
-    """
-
-    values: Quantities
-    along: str | None = None
-
-    @property
-    def count(self) -> int:
-        """How many values."""
-        return len(self.values)
-
-
-class Random(Positional):
+class Random(Range):
     """Values drawn at random, evenly between two or between their logarithms.
 
     Parameters
@@ -103,18 +118,16 @@ class Random(Positional):
         All random axes lie along ``sample`` unless told, so that each run draws all of them.
     """
 
-    start: Quantity
-    stop: Quantity
-    count: Count
-    spacing: Spacing = "linear"
     along: str | None = "sample"
 
+    __init__ = Positional.__init__
+
     def places(self, place: int, seed: int) -> Floats:
-        """Return where each value lies; a longer axis begins with the same values."""
+        """Return random numbers; a longer axis begins with the same."""
         return np.random.Generator(np.random.Philox([seed, place])).random(self.count)
 
 
-class Sobol(Positional):
+class Sobol(Range):
     """Values of a Sobol sequence with a random digital shift, which fill a space evenly.
 
     Parameters
@@ -129,14 +142,12 @@ class Sobol(Positional):
     Sobol, USSR Comput. Math. Math. Phys. 7, 86 (1967); Matousek, J. Complexity 14, 527 (1998).
     """
 
-    start: Quantity
-    stop: Quantity
-    count: Count
-    spacing: Spacing = "linear"
     along: str | None = "sample"
 
+    __init__ = Positional.__init__
+
     def places(self, place: int, seed: int) -> Floats:
-        """Return where each value lies: the coordinate `place` of the sequence."""
+        """Return the coordinate number `place` of the sequence."""
         from scipy.stats.qmc import Sobol as Sequence  # slow to import
 
         # each coordinate is by itself, however many there are; shifted by the seed
@@ -148,7 +159,7 @@ class Sobol(Positional):
         return cast(Floats, ((points * 2.0**53).astype(np.int64) ^ shift) / 2.0**53)
 
 
-Axis = Grid | Values | Random | Sobol
+Axis = Values | Range
 SAMPLINGS: dict[str, type[Any]] = {"grid": Grid, "random": Random, "sobol": Sobol}
 WRITTEN = {"start": "from", "stop": "to"}
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from pydantic_core import PydanticCustomError
 
 from stiction.description import Description
 from stiction.errors import DescriptionError, Fault
-from stiction.study.axes import Axis, Floats, Values
+from stiction.study.axes import Axis, Floats, Range
 from stiction.study.parameters import number, unit
 
 
@@ -33,7 +33,7 @@ def coordinates(base: Description, axes: Mapping[str, Axis], seed: int) -> dict[
 
 def values(axis: Axis, its: str, place: int, seed: int) -> Floats:
     """Return the values of an axis in a unit; `place` is its place among the axes."""
-    if isinstance(axis, Values):
+    if not isinstance(axis, Range):
         return np.array([number(value, its) for value in axis.values])
     start, stop = number(axis.start, its), number(axis.stop, its)
     share = axis.places(place, seed)
@@ -59,19 +59,28 @@ def coordinate_faults(base: Description, axes: Mapping[str, Axis], seed: int) ->
         except DescriptionError as error:
             yield from (Fault(path, fault.message) for fault in error.faults)
             continue
-        ends = () if isinstance(axis, Values) else (("from", axis.start), ("to", axis.stop))
-        listed = enumerate(axis.values, 1) if isinstance(axis, Values) else ends
-        wrong = [*_unreadable(path, listed, its)]
+        wrong = [*_unreadable(path, axis, its)]
         yield from wrong
         if not wrong:
+            shortened = {"count": 1} if isinstance(axis, Range) else {}
             try:
-                values(axis.model_copy(update={"count": 1} if ends else {}), its, place, seed)
+                values(
+                    axis.model_copy(update={"count": 1} if isinstance(axis, Range) else {}),
+                    its,
+                    place,
+                    seed,
+                )
             except ValueError as error:
                 yield Fault(path, str(error))
 
 
-def _unreadable(path: str, listed: object, its: str) -> Iterator[Fault]:
-    for name, value in listed:  # type: ignore[attr-defined]
+def _unreadable(path: str, axis: Axis, its: str) -> Iterator[Fault]:
+    written: Mapping[Any, Any]
+    if isinstance(axis, Range):
+        written = {"from": axis.start, "to": axis.stop}
+    else:
+        written = dict(enumerate(axis.values, 1))
+    for name, value in written.items():
         try:
             number(value, its)
         except PydanticCustomError as error:

@@ -12,6 +12,7 @@ import numpy as np
 from stiction.solver.compiled import compiled
 
 PARTS = 32  # equal parts of the time, over which the force is averaged
+FASTER = 1.01  # than the drive is a slip: rounding in steady sliding is none
 
 
 class Features(NamedTuple):
@@ -26,7 +27,7 @@ class Features(NamedTuple):
     peak_velocity : float
         Largest velocity of the mass along the drive, m/s.
     slipped : int
-        The first sample at which the mass is faster than the drive; the last if it never is.
+        The first sample at which the mass is faster than the drive; -1 if it never is.
     means : ndarray
         (32,), force averaged over equal parts of the time, N.
     turn_time, turn_value : ndarray
@@ -66,11 +67,11 @@ def features(
         Smallest reversal of the force that counts, of its span.
     """
     n = len(time)
-    low, high, fastest, slipped = force[0], force[0], velocity[0], n - 1
+    low, high, fastest, slipped = force[0], force[0], velocity[0], -1
     for i in range(n - 1, -1, -1):
         low, high = min(low, force[i]), max(high, force[i])
         fastest = max(fastest, velocity[i])
-        if velocity[i] > drive[min(i, len(drive) - 1)]:
+        if velocity[i] > FASTER * drive[min(i, len(drive) - 1)]:
             slipped = i
     late, late_low, late_high, total = 3 * n // 4, np.inf, -np.inf, 0.0
     for i in range(late, n):

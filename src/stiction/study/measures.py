@@ -30,6 +30,16 @@ class Measure(NamedTuple):
     of: Callable[[Observed], float]
     flags: tuple[str, ...] = ()
 
+    @property
+    def dtype(measure) -> type[np.generic]:
+        """How it is kept."""
+        return np.int8 if measure.flags else np.float64
+
+    @property
+    def unknown(measure) -> float:
+        """What stands where there is none."""
+        return -1 if measure.flags else nan
+
 
 def _mean(values: np.ndarray) -> float:
     return float(values.sum()) / len(values) if len(values) else nan
@@ -61,13 +71,13 @@ MEASURES: dict[str, Measure] = {
     ),
     "first_slip_time": Measure(
         "s",
-        "time at which the mass first moves faster than the drive",
-        lambda run: float(run.time[run.features.slipped]),
+        "time at which the mass first moves faster than the drive, by one part in a hundred",
+        lambda run: run.first_slip[0],
     ),
     "creep_distance": Measure(
         "m",
         "distance along X that the mass creeps before its first slip",
-        lambda run: run.position(run.features.slipped) - run.position(0),
+        lambda run: run.first_slip[1],
     ),
     "song": Measure(
         "1", "amplitude of the fast oscillation's rate over the drive's", lambda run: run.song

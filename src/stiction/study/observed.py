@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from math import ceil, pi, sqrt
+from math import ceil, nan, pi, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +19,8 @@ from stiction.study.regimes import Swings, kind_of, swings
 
 Floats = NDArray[np.float64]
 
-# A harmonic's peak, found by a parabola through samples this dense, is right to 1e-5 of its
-# amplitude. Samples cost time of their own: at this rate one part in a hundred.
+# A peak found by a parabola through samples this dense is right to 1e-5 of the amplitude for a
+# harmonic, to 1e-4 for the paper's. Samples cost time of their own: here one part in a hundred.
 PER_SLOW_PERIOD = 32
 LEAST_SAMPLES, MOST_SAMPLES = 64, 1_000_000  # of one run
 # The fast oscillation is looked at over its last periods.
@@ -95,10 +95,10 @@ class Observed:
 
         Eq. (6) of Nakano & Popov.
         """
-        slider, row = self.description.slider, self.solution.samples[i]
+        slider, u = self.description.slider, (self.column(0)[i], self.column(1)[i])
         c, s = slider.direction
         travel = float(slider.motion.travel(0.0, self.time[i])[0])
-        return self.way * float(travel - c * row[0] - s * row[1])
+        return self.way * float(travel - c * u[0] - s * u[1])
 
     @cached_property
     def features(self) -> Features:
@@ -108,6 +108,14 @@ class Observed:
         rate = np.array([motion.velocity]) if constant else motion.rate(self.time)[0]
         found: Features = features(self.time, self.force, self.velocity, np.abs(rate), REVERSAL)
         return found
+
+    @cached_property
+    def first_slip(self) -> tuple[float, float]:
+        """When the mass is first faster than the drive (s), and how far it came until then (m)."""
+        at = self.features.slipped
+        if at < 0:
+            return nan, nan
+        return float(self.time[at]), self.position(at) - self.position(0)
 
     @cached_property
     def swings(self) -> Swings:

@@ -10,7 +10,7 @@ import os
 import shutil
 import tempfile
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     import zarr
 
 FORMAT = 1  # of the store
+UNKNOWN = "unknown"  # what -1 means where a number stands for a kind
 PENDING = -1
 # how a run can end: as every run, or refused before it began, or by an error of the program
 ENDS = (*(status.name.lower() for status in errors.Status), "refused", "error")
@@ -75,7 +76,7 @@ class Store(NamedTuple):
         """Write a block, its status last."""
         with told(store.path):
             for name, values in block.measures.items():
-                store._write(name, region, values, np.nan)
+                store._write(name, region, values, MEASURES[name].unknown)
             if block.message.any():
                 store._array("message")[region] = block.message
             store._write("status", region, block.status, PENDING)
@@ -160,14 +161,12 @@ def _lay_out(study: Study, group: zarr.Group) -> None:
     for name in study.measures:
         known = MEASURES[name]
         labels: Any = {"units": known.unit, "long_name": known.long_name}
+        if known.flags:
+            labels = {"long_name": known.long_name, **flagged(UNKNOWN, known.flags)}
         group.create_array(
-            name, dtype=np.float64, fill_value=np.nan, attributes=labels, **dims, **grid
+            name, dtype=known.dtype, fill_value=known.unknown, attributes=labels, **dims, **grid
         )
-    flags: Any = {
-        "long_name": "how the run ended",
-        "flag_values": [PENDING, *range(len(ENDS))],
-        "flag_meanings": " ".join(["pending", *ENDS]),
-    }
+    flags: Any = {"long_name": "how the run ended", **flagged("pending", ENDS)}
     group.create_array(
         "status", dtype=np.int8, fill_value=PENDING, attributes=flags, **dims, **grid
     )
@@ -182,6 +181,12 @@ def _lay_out(study: Study, group: zarr.Group) -> None:
             dimension_names=(dim,), compressors=None,
         )  # fmt: skip
         array[:] = values
+
+
+def flagged(before: str, meanings: Sequence[str]) -> dict[str, Any]:
+    """Return the CF attributes of a variable whose values -1, 0, 1, ... have meanings."""
+    words = [meaning.replace(" ", "_") for meaning in (before, *meanings)]
+    return {"flag_values": [*range(-1, len(meanings))], "flag_meanings": " ".join(words)}
 
 
 def opened(study: Study, path: str | Path) -> Store:

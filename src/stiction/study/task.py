@@ -40,7 +40,8 @@ def done(study: Study, store: Store, task: int, unwanted: Callable[[], bool]) ->
     size = size_of(region)
     status = np.full(size, COMPLETED, np.int8)
     message = np.full(size, "", object)
-    measures = {name: np.full(size, np.nan) for name in study.measures}
+    kept = {name: MEASURES[name] for name in study.measures}
+    measures = {name: np.full(size, each.unknown, each.dtype) for name, each in kept.items()}
     try:
         for place, index in zip(np.ndindex(size), places(region), strict=True):
             status[place], message[place], values = outcome(study, index, unwanted)

@@ -1,0 +1,171 @@
+"""Maps of a study: kinds of motion and measures over the plane of two parameters, and slices."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib import patheffects
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
+from matplotlib.colors import ListedColormap, LogNorm, Normalize
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from numpy.typing import NDArray
+
+from stiction.plotting.parameter import PLAIN, Scale
+from stiction.plotting.style import BLACK, BLUE, GREEN
+
+Floats = NDArray[np.float64]
+CASING = [patheffects.withStroke(linewidth=3.0, foreground="white")]
+DECADES = 30.0  # a measure that spans more than such a factor is drawn in decades
+DEEPEST = 1e6  # of the largest value: what is less is nothing
+
+# light for what is calm, dark and warm for what is violent, told apart without colour as well
+COLORS = {
+    "stick-slip": "#C44E00",
+    "between stick-slip and harmonic vibration": "#EE9A4D",
+    "harmonic vibration": "#FBDDA6",
+    "damped approach": "#CFE3F1",
+    "steady sliding": "#8FC1E3",
+    "song": "#A3558F",
+    "stuck": "#8A8A8A",
+    "undetermined": "#FFFFFF",
+}
+SHORT = {"between stick-slip and harmonic vibration": "between these"}
+
+
+class Side(NamedTuple):
+    """One side of a map: its scale, the values along it (as drawn), and whether in decades."""
+
+    scale: Scale
+    values: Floats
+    log: bool
+
+    @property
+    def edges(side) -> Floats:
+        """Borders of the cells around the values."""
+        at = np.log(side.values) if side.log else side.values
+        if len(at) == 1:
+            half = np.array([-0.5, 0.5]) * (1.0 if side.log or at[0] == 0.0 else abs(at[0]))
+            found = at[0] + half
+        else:
+            middle = 0.5 * (at[1:] + at[:-1])
+            first, last = 1.5 * at[0] - 0.5 * at[1], 1.5 * at[-1] - 0.5 * at[-2]
+            found = np.concatenate([[first], middle, [last]])
+        return np.asarray(np.exp(found) if side.log else found)
+
+
+def draw_regimes(ax: Axes, x: Side, y: Side, kinds: NDArray[np.object_]) -> list[Patch]:
+    """Draw which kind of motion each run shows; return a patch a kind for the legend.
+
+    Parameters
+    ----------
+    ax : Axes
+        Drawn on.
+    x, y : Side
+        n and m values.
+    kinds : ndarray
+        (n, m), names as in `COLORS`; others (a run that failed) are hatched.
+    """
+    names = list(COLORS)
+    codes = np.full(kinds.shape, np.nan)
+    for code, name in enumerate(names):
+        codes[kinds == name] = code
+    shades = ListedColormap(list(COLORS.values()))
+    ax.set_facecolor("white")
+    failed = np.isnan(codes)
+    if failed.any():
+        ax.patch.set(hatch="xxxx", edgecolor="#777777")
+    ax.pcolormesh(
+        x.edges, y.edges, np.ma.masked_invalid(codes.T), cmap=shades,
+        norm=Normalize(-0.5, len(names) - 0.5), rasterized=True,
+    )  # fmt: skip
+    _framed(ax, x, y)
+    present = [name for code, name in enumerate(names) if (codes == code).any()]
+    patches = [
+        Patch(facecolor=COLORS[name], edgecolor=BLACK, linewidth=0.4, label=SHORT.get(name, name))
+        for name in present
+    ]
+    if failed.any():
+        patches.append(Patch(facecolor="white", edgecolor="#777777", hatch="xxxx", label="failed"))
+    return patches
+
+
+def draw_measure(ax: Axes, x: Side, y: Side, values: Floats) -> QuadMesh:
+    """Draw a measure as a heat map, in decades where it spans many; return what is coloured.
+
+    Parameters are those of `draw_regimes`; where there is no value it is hatched.
+    """
+    found = values[np.isfinite(values)]
+    positive = len(found) > 0 and found.min() > 0.0
+    log = positive and found.max() > DECADES * found.min()
+    if len(found) < values.size:
+        ax.patch.set(hatch="////", edgecolor="#BBBBBB")
+    mesh = ax.pcolormesh(
+        x.edges, y.edges, np.ma.masked_invalid(values.T), cmap="cividis",
+        norm=LogNorm(max(found.min(), found.max() / DEEPEST), found.max()) if log else None,
+        rasterized=True,
+    )  # fmt: skip
+    _framed(ax, x, y)
+    return mesh
+
+
+def draw_theory(ax: Axes, x: Side, y: Side, fields: Mapping[str, Floats]) -> list[Line2D]:
+    """Draw where each field of a theory is zero; return a line each that has such a place.
+
+    Parameters
+    ----------
+    ax : Axes
+        With a map on it.
+    x, y : Side
+        n and m values, as fine as the lines are to be.
+    fields : mapping of str to ndarray
+        (n, m) by the line's name.
+    """
+    lines = []
+    looks: tuple[tuple[str, Any], ...] = ((BLACK, "-"), (GREEN, (0, (4, 1.5))))
+    for (name, field), (color, dash) in zip(fields.items(), looks, strict=False):
+        found = np.ma.masked_invalid(field.T)
+        if found.count() and found.min() < 0.0 < found.max():
+            lined = ax.contour(
+                x.values, y.values, found, [0.0], colors=[color], linewidths=1.6, linestyles=[dash]
+            )
+            lined.set(path_effects=CASING)
+            lines.append(Line2D([], [], color=color, linewidth=1.6, linestyle=dash, label=name))
+    return lines
+
+
+def draw_slice(ax: Axes, x: Side, values: Floats, label: str) -> None:
+    """Draw a measure over one parameter, a point a run."""
+    ax.plot(x.values, values, "-", color=BLUE, linewidth=0.8)
+    ax.plot(x.values, values, "o", color=BLUE, markersize=2.5)
+    _named(ax, x, "x")
+    ax.set_ylabel(label)
+
+
+def draw_points(ax: Axes, x: Floats, y: Floats, kinds: Sequence[str]) -> list[Line2D]:
+    """Draw a point for each run, coloured by its kind of motion; return a marker a kind."""
+    made = []
+    for name, color in COLORS.items():
+        here = np.array([kind == name for kind in kinds])
+        if here.any():
+            look = {"marker": "o", "linestyle": "none", "markeredgecolor": BLACK}
+            size = {"markersize": 3.2, "markeredgewidth": 0.3, "color": color}
+            label = SHORT.get(name, name)
+            made += ax.plot(x[here], y[here], **look, **size, label=label, zorder=4)  # type: ignore[arg-type]
+    return made
+
+
+def _framed(ax: Axes, x: Side, y: Side) -> None:
+    for side, way in ((x, "x"), (y, "y")):
+        _named(ax, side, way)
+        ax.set(**{f"{way}lim": (side.edges.min(), side.edges.max())})
+    ax.tick_params(which="both", direction="out", top=False, right=False)
+
+
+def _named(ax: Axes, side: Side, way: str) -> None:
+    ax.set(**{f"{way}scale": "log" if side.log else "linear", f"{way}label": side.scale.label})
+    if side.log and side.values.max() < 1e3 * side.values.min():
+        getattr(ax, f"{way}axis").set_major_formatter(PLAIN)

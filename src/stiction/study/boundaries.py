@@ -1,0 +1,104 @@
+"""What theory says over the plane of two dimensions of a study."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import nan, sin
+from typing import NamedTuple
+
+import numpy as np
+
+from stiction import stability
+from stiction import theory as closed_forms
+from stiction.drive import ConstantVelocity
+from stiction.errors import StictionError
+from stiction.slider import Slider
+from stiction.study.axes import Floats
+from stiction.study.parameters import varied
+from stiction.study.plan import Study
+
+FINE = 60  # points each way, at least as many as there are runs
+
+PHI_C = r"steady sliding loses stability ($\varphi_c$)"
+ZETA = r"$\zeta(\theta = \varphi) = 1$"
+
+
+class Plane(NamedTuple):
+    """Fields over a plane: values along its two sides, as in the store, and the fields (n, m)."""
+
+    x: Floats
+    y: Floats
+    fields: Mapping[str, Floats]
+
+
+def plane(study: Study, x: str, y: str, at: Mapping[str, int]) -> Plane:
+    """Return growth rate of steady sliding and logarithm of the damping ratio over two dimensions.
+
+    Each is zero on its boundary: the linear stability of steady sliding, for any law; and
+    zeta = A sin^3(phi) = 1, at the force angle at which slip begins (Nakano & Popov, Eq. (10)).
+    NaN where a theory has nothing to say, as where the drive is a program.
+
+    Parameters
+    ----------
+    study : Study
+        Of which.
+    x, y : str
+        Dimensions.
+    at : mapping of str to int
+        The place along each other dimension.
+    """
+    sides = {dim: along(study, dim) for dim in (x, y)}
+    size = tuple(len(next(iter(sides[dim].values()))) for dim in (x, y))
+    fields = {PHI_C: np.full(size, nan), ZETA: np.full(size, nan)}
+    held = {
+        path: (float(each.values[at[each.dim]]), each.unit)
+        for path, each in study.coordinates.items()
+        if each.dim in at
+    }
+    for place in np.ndindex(size):
+        changes = dict(held)
+        for dim, i in zip((x, y), place, strict=True):
+            changes |= {
+                path: (float(values[i]), study.coordinates[path].unit)
+                for path, values in sides[dim].items()
+            }
+        try:
+            slider = varied(study.base, changes).slider
+            fields[PHI_C][place] = stability.growth_rate(slider)
+            fields[ZETA][place] = np.log(damping_ratio(slider))
+        except StictionError:
+            continue
+    first, second = (own.get(dim, next(iter(own.values()))) for dim, own in sides.items())
+    return Plane(first, second, fields)
+
+
+def along(study: Study, dim: str) -> dict[str, Floats]:
+    """Return the values of each axis along a dimension, filled up with values in between."""
+    axes = {path: each.values for path, each in study.coordinates.items() if each.dim == dim}
+    count = len(next(iter(axes.values())))
+    parts = -(-FINE // max(count - 1, 1)) if count > 1 else 1
+    places = np.linspace(0.0, count - 1, (count - 1) * parts + 1)
+    return {path: between(values, places) for path, values in axes.items()}
+
+
+def between(values: Floats, places: Floats) -> Floats:
+    """Return values in between, by their logarithms where there are only positive ones."""
+    known = np.arange(len(values))
+    if (values > 0.0).all():
+        return np.asarray(np.exp(np.interp(places, known, np.log(values))))
+    return np.asarray(np.interp(places, known, values))
+
+
+def damping_ratio(slider: Slider) -> float:
+    """Return zeta of Eq. (10) at theta = phi; NaN without a steady drive, or misalignment."""
+    motion, phi = slider.motion, abs(slider.phi)
+    if not isinstance(motion, ConstantVelocity) or motion.velocity == 0.0 or sin(phi) == 0.0:
+        return nan
+    A = damping_number(slider)
+    return float(closed_forms.damping_ratio(A, phi))
+
+
+def damping_number(slider: Slider) -> float:
+    """Return A of Eq. (10)."""
+    V, phi = abs(slider.motion.velocity), abs(slider.phi)
+    return float(closed_forms.damping_number(slider.F_0, V, phi, slider.mass, slider.k_x))

@@ -1,0 +1,147 @@
+"""The map of a study: what to draw over which parameters, and the theory over it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stiction.errors import DescriptionError, Fault
+from stiction.plotting.damping import draw_damping_map
+from stiction.plotting.maps import (
+    Side,
+    draw_measure,
+    draw_points,
+    draw_regimes,
+    draw_slice,
+    draw_theory,
+)
+from stiction.plotting.parameter import Scale, in_unit, parameter_symbol
+from stiction.plotting.style import COLUMN, PAGE, new_figure, style
+from stiction.study.boundaries import Plane, damping_number, plane
+from stiction.study.layout import Index
+from stiction.study.view import REGIME, View, chosen, kinds, label, viewed
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+DAMPING = ("phi", "drive.velocity")  # coordinates that place a run in the damping diagram
+
+
+def map_figure(
+    path: str | Path, measures: Sequence[str] = (), cut: Mapping[str, str | float] | None = None
+) -> Figure:
+    """Draw a study: a map over two dimensions, a curve over one, points for samples.
+
+    Parameters
+    ----------
+    path : str or Path
+        Its store, finished or not.
+    measures : sequence of str, optional
+        What to draw, a panel each; the regime, if it was kept, when left out.
+    cut : mapping, optional
+        For a dimension the value at which it is cut (a number, or text with its unit); the
+        nearest that was run is taken.
+
+    Returns
+    -------
+    Figure
+        As wide as a column, or as a page for several panels.
+
+    Raises
+    ------
+    ResultError
+        If it is no study's store.
+    DescriptionError
+        If it has no such measure or dimension, or more than two are left.
+    """
+    view = viewed(path, cut or {})
+    wanted = chosen(view, measures)
+    draw = {1: _curves, 2: _maps}[len(view.data["status"].dims)]
+    names = [name for name, each in view.study.coordinates.items() if each.dim not in view.at]
+    if len(view.data["status"].dims) == 1 and len({*names} - {"run.duration"}) > 1:
+        draw = _points
+    with style():
+        return draw(view, wanted)
+
+
+def side(view: View, dim: str, values: np.ndarray | None = None) -> Side:
+    """Return a side of a map, of the study's own values or of others in the same unit."""
+    known = view.study.coordinates
+    path = dim if dim in known else next(p for p, each in known.items() if each.dim == dim)
+    own, unit = known[path].values, known[path].unit
+    log = len(own) > 2 and bool((own > 0.0).all()) and even(np.log(own)) < even(own)
+    factor, shown = (1.0, "deg") if unit == "deg" else in_unit(np.median(np.abs(own)), unit)
+    scale = Scale(parameter_symbol(path), factor, shown)
+    return Side(scale, scale.drawn(own if values is None else values), log)
+
+
+def even(values: np.ndarray) -> float:
+    """Return how unevenly values are spaced: 0 for equal distances."""
+    steps = np.diff(values)
+    return float(np.std(steps) / np.abs(np.mean(steps))) if np.mean(steps) else np.inf
+
+
+def _maps(view: View, measures: Sequence[str]) -> Figure:
+    x_dim, y_dim = view.data["status"].dims
+    theory = plane(view.study, str(x_dim), str(y_dim), view.at)
+    columns = min(len(measures), 2)
+    rows = -(-len(measures) // columns)
+    fig = new_figure(COLUMN if columns == 1 else PAGE, 2.9 * rows + 0.4)
+    panels = fig.subplots(rows, columns, squeeze=False).ravel()
+    handles: list[Any] = []
+    for ax, name in zip(panels, measures, strict=False):
+        handles += _map(fig, ax, view, name, theory)
+    for ax in panels[len(measures) :]:
+        ax.set_axis_off()
+    unique = {handle.get_label(): handle for handle in handles}
+    if unique:
+        fig.legend(handles=[*unique.values()], loc="outside upper center", ncols=2 * columns)
+    return fig
+
+
+def _map(fig: Figure, ax: Axes, view: View, name: str, theory: Plane) -> list[Any]:
+    """Draw one map with the theory over it; return what the legend tells."""
+    x, y = (side(view, str(dim)) for dim in view.data[name].dims)
+    handles: list[Any] = []
+    if name == REGIME:
+        handles += draw_regimes(ax, x, y, kinds(view.data))
+    else:
+        mesh = draw_measure(ax, x, y, view.data[name].values)
+        fig.colorbar(mesh, ax=ax, label=label(view.data, name), pad=0.02)
+    x_dim, y_dim = (str(dim) for dim in view.data[name].dims)
+    fine = side(view, x_dim, theory.x), side(view, y_dim, theory.y)
+    return handles + draw_theory(ax, *fine, theory.fields)
+
+
+def _curves(view: View, measures: Sequence[str]) -> Figure:
+    (dim,) = view.data["status"].dims
+    fig = new_figure(COLUMN, 0.6 + 1.7 * len(measures))
+    panels = fig.subplots(len(measures), 1, sharex=True, squeeze=False)[:, 0]
+    for ax, name in zip(panels, measures, strict=True):
+        draw_slice(ax, side(view, str(dim)), view.data[name].values, label(view.data, name))
+        if ax is not panels[-1]:
+            ax.set_xlabel("")
+    return fig
+
+
+def _points(view: View, measures: Sequence[str]) -> Figure:
+    """Draw samples in the damping diagram, if their place there is known."""
+    (dim,) = view.data["status"].dims
+    known = view.study.coordinates
+    if not set(DAMPING) <= known.keys() or REGIME not in view.data:
+        lacking = f"needs samples of {' and '.join(DAMPING)}, and the measure 'regime'"
+        raise DescriptionError([Fault(str(dim), f"{lacking}; draw it from xarray.open_zarr")])
+    indices: list[Index] = [(i,) for i in range(view.data.sizes[dim])]
+    A = np.array([damping_number(view.study.description(index).slider) for index in indices])
+    phi = known["phi"].values
+    fig = new_figure(COLUMN, 3.4)
+    ax = fig.subplots()
+    draw_damping_map(ax, (A.min() / 2, A.max() * 2), (phi.min() / 1.5, 90.0))
+    handles = draw_points(ax, A, phi, list(kinds(view.data)))
+    ax.set_ylabel(r"force angle $\theta$; points: $\varphi$ (deg)")
+    fig.legend(handles=handles, loc="outside upper center", ncols=2)
+    return fig

@@ -1,0 +1,106 @@
+"""Studies to run by name: ``stiction sweep --preset yaw-angle``.
+
+All start from the system of Fig. 3 of Nakano & Popov (2020), see
+`stiction.presets.nakano_popov_2020`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import pi
+
+import numpy as np
+
+from stiction.description import Description, Settings
+from stiction.errors import DescriptionError, Fault
+from stiction.initial import Initial
+from stiction.presets import nakano_popov_2020
+from stiction.slider import Slider
+from stiction.study.axes import Axis, Floats, Grid, Values
+from stiction.study.plan import Study
+from stiction.theory import natural_frequency
+from stiction.validation import unknown
+
+MEASURES = ("regime", "peak_force", "amplitude", "period", "creep_distance", "time_stuck")
+TRAVEL = 4.0  # slip lengths that the drive moves at least: the spring is loaded, then some cycles
+PERIODS = 40.0  # and slow periods at least, for what grows or dies out to do so
+
+
+def yaw_angle() -> Study:
+    """Return phi x V: misalignment stabilises, up to a speed that depends on it.
+
+    The yaw angle of Kado, Tadokoro & Nakano, cited as [22] and [23] by Nakano & Popov.
+    """
+    slider, V = nakano_popov_2020(), np.geomspace(1e-4, 1e-1, 31)
+    return study(
+        slider,
+        {
+            "phi": Grid("0.25 deg", "15 deg", 60),
+            "drive.velocity": Grid("0.1 mm/s", "100 mm/s", len(V), "log"),
+            "run.duration": Values(durations(slider, V), "drive.velocity"),
+        },
+    )
+
+
+def anisotropy() -> Study:
+    """Return k_y x phi with k_x = 1 kN/m: from an isotropic spring to one that is rigid across."""
+    slider = nakano_popov_2020()
+    return study(
+        slider,
+        {
+            "k_y": Grid("1 kN/m", "10 MN/m", 33, "log"),
+            "phi": Grid("0.5 deg", "20 deg", 40),
+            "run.duration": Values(durations(slider, np.full(33, 1e-3)), "k_y"),
+        },
+    )
+
+
+def damping_diagram() -> Study:
+    """Return A x theta, the plane of Fig. 5, where theta comes down to phi at last.
+
+    A depends on V and phi, so that its values are those of both along one dimension.
+    """
+    slider = nakano_popov_2020()
+    A, phi = (each.ravel() for each in np.meshgrid(np.geomspace(1, 1e4, 25), PHI))
+    V = slider.F_0 / (2.0 * A * np.sin(np.radians(phi)) * np.sqrt(slider.mass * slider.k_x))
+    return study(
+        slider,
+        {
+            "phi": Values([f"{each!r} deg" for each in phi.tolist()], "sample"),
+            "drive.velocity": Values(V, "sample"),
+            "run.duration": Values(durations(slider, V), "sample"),
+        },
+    )
+
+
+PHI = np.geomspace(0.5, 45.0, 25)  # deg
+PRESETS: dict[str, Callable[[], Study]] = {
+    "yaw-angle": yaw_angle,
+    "anisotropy": anisotropy,
+    "damping-diagram": damping_diagram,
+}
+
+
+def preset(name: str) -> Study:
+    """Return a study by its name.
+
+    Raises
+    ------
+    DescriptionError
+        If there is none of this name.
+    """
+    if name not in PRESETS:
+        raise DescriptionError([Fault("preset", unknown("preset", name, PRESETS))])
+    return PRESETS[name]()
+
+
+def study(slider: Slider, axes: dict[str, Axis]) -> Study:
+    """Return a study that keeps what the maps show; its axes say how long each run is."""
+    base = Description(slider, Initial(), Settings(duration="5 s"))
+    return Study(base=base, axes=axes, measures=MEASURES)
+
+
+def durations(slider: Slider, V: Floats) -> Floats:
+    """Return for each drive velocity (m/s) a time (s) in which the motion shows itself."""
+    slow = 2.0 * pi / natural_frequency(slider.k_x, slider.mass)
+    return TRAVEL * slider.F_0 / slider.k_x / V + PERIODS * slow

@@ -1,0 +1,93 @@
+"""What is seen of a study: its store, cut down to one or two dimensions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from pydantic_core import PydanticCustomError
+
+from stiction.errors import DescriptionError, Fault
+from stiction.study.parameters import number
+from stiction.study.plan import Study
+from stiction.study.regimes import KINDS
+from stiction.study.store import open_study
+from stiction.validation import unknown
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+REGIME = "regime"
+RUNS = ("status", "message")  # variables that are no measures
+
+
+class View(NamedTuple):
+    """What is seen of a study.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    data : Dataset
+        Its store, of which dimensions that are cut are gone.
+    at : mapping of str to int
+        The place along each of these.
+    """
+
+    study: Study
+    data: xr.Dataset
+    at: Mapping[str, int]
+
+
+def viewed(path: str | Path, cut: Mapping[str, str | float]) -> View:
+    """Return what is left of a study when some of its dimensions are cut."""
+    data = open_study(path)
+    study = Study.from_json(data.attrs["description"], Path(path).parent, trust=False)
+    dims, at, found = study.layout.dims, {}, []
+    for dim, value in cut.items():
+        if dim not in study.coordinates or dim not in dims:
+            found.append(Fault(dim, unknown("dimension", dim, dims)))
+            continue
+        known = study.coordinates[dim]
+        try:
+            wanted = number(value, known.unit)
+            at[dim] = int(np.argmin(np.abs(known.values - wanted)))
+        except PydanticCustomError as error:
+            found.append(Fault(dim, error.message()))
+    left = [dim for dim in dims if dim not in at]
+    if not found and not 1 <= len(left) <= 2:
+        remedy = "cut it at a value: --at 'NAME=VALUE'" if left else "leave one or two"
+        found.append(Fault(", ".join(dims), f"{len(left)} dimensions are left; {remedy}"))
+    if found:
+        raise DescriptionError(found)
+    return View(study, data.isel(at).load(), at)
+
+
+def chosen(view: View, measures: Sequence[str]) -> list[str]:
+    """Return what to draw."""
+    kept = [str(name) for name in view.data.data_vars if name not in RUNS]
+    strange = [name for name in measures if name not in kept]
+    if strange:
+        raise DescriptionError([Fault(name, unknown("measure", name, kept)) for name in strange])
+    if not kept:
+        raise DescriptionError([Fault("measures", "the study kept none; there is nothing to draw")])
+    if measures:
+        return list(measures)
+    numbers = [name for name in view.study.measures if name != REGIME]
+    two = len(view.data["status"].dims) == 2 or not numbers
+    return [REGIME] if REGIME in kept and two else numbers[:1] or [REGIME]
+
+
+def kinds(data: xr.Dataset) -> np.ndarray:
+    """Return the kind of motion of each run in words; empty where it failed or is missing."""
+    names = np.array([*KINDS, ""], dtype=object)
+    found: np.ndarray = names[data[REGIME].values.astype(int)]  # -1 is the last
+    return found
+
+
+def label(data: xr.Dataset, name: str) -> str:
+    """Return a measure's name and unit."""
+    unit = data[name].attrs.get("units", "1")
+    return f"{name.replace('_', ' ')} ({unit})"

@@ -1,0 +1,124 @@
+"""What a study keeps of each run, against the same found otherwise."""
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.study.features import features, zigzag
+from stiction.study.measures import MEASURES
+from stiction.study.observed import observe
+from stiction.study.regimes import KINDS, SONG
+
+PAPER = st.presets.nakano_popov_2020()
+
+
+def seen(slider, duration, **settings):
+    """Return a run as a study sees it."""
+    run = st.Settings(duration=duration, **settings)
+    return observe(st.Description(slider, st.Initial(), run), None)
+
+
+@pytest.fixture(scope="module")
+def paper():
+    return seen(PAPER, "5 s")
+
+
+def value(name, run):
+    return MEASURES[name].of(run)
+
+
+def test_the_paper_s_cycle(paper, paper_run):
+    """Against 10 kHz samples of the same solver: a parabola leans where a peak does, by 1e-4."""
+    data = paper_run.data
+    peak = float(data["spring_x"].max())
+    assert value("peak_force", paper) == pytest.approx(peak, rel=1e-4)
+    assert value("peak_velocity", paper) == pytest.approx(float(data["V_X"].max()), rel=5e-3)
+    cycles = st.find_cycles(st.record_of(paper_run))
+    assert value("cycles", paper) == cycles.sizes["cycle"]
+    assert value("period", paper) == pytest.approx(float(cycles["period"].mean()), rel=1e-4)
+    assert value("force_drop", paper) == pytest.approx(float(cycles["drop"].mean()), rel=1e-4)
+    assert value("rise_share", paper) == pytest.approx(float(cycles["rise_share"].mean()), rel=1e-3)
+    assert value("time_stuck", paper) == paper_run.statistics.time_stuck
+    assert value("stick_count", paper) == paper_run.statistics.stick_count
+    late = data["spring_x"].sel(time=slice(3.75, None))
+    assert value("mean_force", paper) == pytest.approx(float(late.mean()), rel=1e-3)
+    assert value("amplitude", paper) == pytest.approx(0.5 * float(np.ptp(late.values)), rel=1e-3)
+
+
+def test_creep_before_the_first_slip(paper, paper_run):
+    """The drive is outrun between two samples of a study, while the mass moves at its speed."""
+    data = paper_run.data
+    faster = data["V_X"].values > 1.01e-3
+    first = int(np.argmax(faster))
+    step = float(paper.time[1] - paper.time[0])
+    assert value("first_slip_time", paper) == pytest.approx(float(data["time"][first]), abs=step)
+    crept = float(data["X"][first] - data["X"][0])
+    # X' grows on to a few V within a step
+    assert value("creep_distance", paper) == pytest.approx(crept, abs=5 * 1e-3 * step)
+    calm = seen(PAPER.replace(phi="30 deg"), "5 s")
+    assert np.isnan(value("creep_distance", calm))
+
+
+@pytest.mark.parametrize("multiscale", [False, True])
+def test_the_mode_of_the_solver_does_not_matter(paper, multiscale):
+    """To 1e-6, the tolerance, of the largest value."""
+    other = seen(PAPER, "5 s", multiscale=multiscale)
+    for name in ("regime", "peak_force", "period", "creep_distance"):
+        assert value(name, other) == pytest.approx(value(name, paper), rel=1e-5)
+
+
+@pytest.mark.parametrize("V", [3e-4, 1e-3, 3e-3, 1e-2, 3e-2])
+@pytest.mark.parametrize("phi", [0.5, 3.0, 7.0, 8.2, 9.0, 20.0])
+def test_regimes_are_those_of_records(phi, V):
+    """Noise-free rules and those for any record agree where both see enough cycles."""
+    slider = PAPER.replace(phi=f"{phi} deg", drive=st.ConstantVelocity(V))
+    run = seen(slider, 8e-3 / V + 4.0)
+    record = st.Record(
+        time=run.time,
+        force=run.force,
+        normal_load=slider.normal_load,
+        stiffness=slider.k_x,
+        drive_velocity=V * slider.direction[0],
+        mass=slider.mass,
+    )
+    found = st.classify(record)
+    bounds = np.abs(value("rise_share", run) - np.array([0.75, 0.6, 0.4]))
+    near = bool((bounds < 0.01).any())  # of the bound between two kinds of cycles
+    assert run.regime == found.kind or near, f"{run.regime} against {found}"
+    assert run.regime in KINDS
+
+
+def test_a_song_goes_on_when_the_slow_motion_has_settled():
+    """Drawn nearly along the stiff axis, the fast oscillation is the one that weakening drives."""
+    slider = PAPER.replace(phi="80 deg")
+    run = seen(slider, "5 s")
+    assert run.regime == SONG
+    late = st.simulate(slider, "5 s", sample_rate="100 kHz").data.sel(time=slice(4.97, None))
+    rate = 0.5 * float(np.ptp(late["v_y"].values)) / (1e-3 * np.sin(np.radians(80.0)))
+    assert run.song == pytest.approx(rate, rel=0.05)  # 16 samples a period
+    assert seen(PAPER.replace(phi="30 deg"), "5 s").song == pytest.approx(0.0, abs=1e-3)
+
+
+def test_turning_points_of_a_known_signal():
+    """A sine's extrema are found to within the error of a parabola, (omega dt)^4/..., 1e-5."""
+    t = np.arange(0.0, 1.0, 1.0 / 320.0)
+    signal = np.sin(2.0 * np.pi * 10.0 * t + 0.3) + 1e-4 * np.sin(2.0 * np.pi * 100.0 * t)
+    found = features(t, signal, np.zeros(len(t)), np.ones(1), 0.01)
+    exact = (np.pi / 2 - 0.3 + np.pi * np.arange(20)) / (2.0 * np.pi * 10.0)
+    np.testing.assert_allclose(found.turn_time, exact, atol=1e-4)
+    np.testing.assert_allclose(np.abs(found.turn_value), 1.0, atol=3e-4)
+    assert not found.trough
+    assert found.peak == pytest.approx(1.0, abs=3e-4)
+    assert found.slipped == -1
+
+
+@pytest.mark.parametrize("values", [[], [1.0], [1.0, 1.0], [1.0, 2.0, 3.0], [3.0, 1.0]])
+def test_what_does_not_turn_has_no_turning_points(values):
+    assert len(zigzag(np.array(values), 0.1)) == 0
+
+
+@pytest.mark.parametrize("name", MEASURES)
+def test_every_measure_of_a_run_that_hardly_began(name):
+    run = seen(PAPER, "1 us")
+    assert np.isscalar(value(name, run))
+    assert run.regime in ("stuck", "undetermined")
