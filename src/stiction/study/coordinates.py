@@ -62,14 +62,9 @@ def coordinate_faults(base: Description, axes: Mapping[str, Axis], seed: int) ->
         wrong = [*_unreadable(path, axis, its)]
         yield from wrong
         if not wrong:
-            shortened = {"count": 1} if isinstance(axis, Range) else {}
+            short = {"count": 1} if isinstance(axis, Range) else {}
             try:
-                values(
-                    axis.model_copy(update={"count": 1} if isinstance(axis, Range) else {}),
-                    its,
-                    place,
-                    seed,
-                )
+                values(axis.model_copy(update=short), its, place, seed)
             except ValueError as error:
                 yield Fault(path, str(error))
 

@@ -61,7 +61,7 @@ MEASURES: dict[str, Measure] = {
         lambda run: 0.5 * run.features.late_span,
     ),
     "cycles": Measure("1", "number of complete swings", lambda run: float(len(run.swings.drop))),
-    "period": Measure("s", "mean period of the swings", lambda run: _mean(run.swings.period)),
+    "period": Measure("s", "mean time from peak to peak", lambda run: _mean(run.peak_to_peak)),
     "force_drop": Measure("N", "mean force drop of the swings", lambda run: _mean(run.swings.drop)),
     "rise_share": Measure(
         "1", "share of a swing in which the force rises", lambda run: _mean(run.swings.rise_share)

@@ -122,6 +122,12 @@ class Observed:
         """Complete swings of the force."""
         return swings(self.features)
 
+    @property
+    def peak_to_peak(self) -> Floats:
+        """Times from one peak of the force to the next, s; troughs are sharper than samples."""
+        found = self.features
+        return np.diff(found.turn_time[1 if found.trough else 0 :: 2])
+
     @cached_property
     def song(self) -> float:
         """Amplitude of the fast oscillation's rate at the end, over the drive's velocity along it.
