@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from stiction import presets, theory
-    from stiction.analysis.record import Record
+    from stiction.analysis.cycles import find_cycles
+    from stiction.analysis.record import Record, record_of
     from stiction.comparison import compare
     from stiction.description import Description, Settings
     from stiction.drive import (
@@ -85,9 +86,11 @@ _HOME = {
     "Stribeck": "friction",
     "Table": "friction",
     "Trajectory": "trajectory",
-    "compare": "comparison",
     "check_law": "testing",
+    "compare": "comparison",
+    "find_cycles": "analysis.cycles",
     "load": "trajectory",
+    "record_of": "analysis.record",
     "simulate": "simulation",
 }
 _ROOMS = ("presets", "theory")
@@ -127,8 +130,10 @@ __all__ = [
     "Trajectory",
     "check_law",
     "compare",
+    "find_cycles",
     "load",
     "presets",
+    "record_of",
     "simulate",
     "theory",
 ]
