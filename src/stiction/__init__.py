@@ -12,7 +12,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from stiction import presets, theory
+    from stiction import presets, stability, theory
     from stiction.analysis.cycles import find_cycles
     from stiction.analysis.record import Record, record_of
     from stiction.comparison import compare
@@ -93,7 +93,7 @@ _HOME = {
     "record_of": "analysis.record",
     "simulate": "simulation",
 }
-_ROOMS = ("presets", "theory")
+_ROOMS = ("presets", "stability", "theory")
 
 __all__ = [
     "Anisotropic",
@@ -135,6 +135,7 @@ __all__ = [
     "presets",
     "record_of",
     "simulate",
+    "stability",
     "theory",
 ]
 

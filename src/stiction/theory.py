@@ -233,6 +233,50 @@ def first_stick_duration(
     return F_0 / (V * np.hypot(k_x * np.cos(phi), k_y * np.sin(phi)))
 
 
+def critical_misalignment(
+    V: ArrayLike, mu: ArrayLike, slope: ArrayLike, *, c_x: ArrayLike = 0.0, W: ArrayLike = 1.0
+) -> Floats:
+    """Misalignment beyond which steady sliding is stable, for k_y -> infinity (rad).
+
+    Not in the paper. Linearised at s = v_d, friction F(v) = mu(v) W damps the motion along x with
+    c_x + F'(V) cos^2(phi) + F(V)/V sin^2(phi), which is zero at
+
+        tan^2(phi_c) = -(c_x + F'(V))/(c_x + F(V)/V).
+
+    Zero where steady sliding is stable at any misalignment. The finite k_y of Fig. 3 shifts it by
+    0.0007 deg, see `stiction.stability`.
+
+    Parameters
+    ----------
+    V : drive velocity (m/s).
+    mu, slope : friction coefficient and its derivative (s/m) at the slip speed V.
+    c_x : damping constant of the spring along x (N s/m).
+    W : normal load (N); it matters only beside c_x.
+    """
+    V, mu, slope, c_x, W = _floats(V, mu, slope, c_x, W)
+    weakening = np.maximum(-(c_x + W * slope), 0.0)
+    return np.arctan(np.sqrt(weakening / (c_x + W * mu / V)))
+
+
+def critical_stiffness(
+    a: ArrayLike, b: ArrayLike, D_c: ArrayLike, W: ArrayLike, V: ArrayLike, m: ArrayLike
+) -> Floats:
+    """Stiffness below which steady sliding with rate-and-state friction is unstable (N/m).
+
+        k_c = (b - a) W/D_c [1 + m V^2/(a W D_c)]
+
+    for motion along the spring: Rice & Ruina, J. Appl. Mech. 50 (1983), 343. It holds for ageing
+    and slip law; per unit area W is the normal stress, m the mass per area, and k_c in Pa/m.
+
+    Parameters
+    ----------
+    a, b, D_c : direct effect, evolution effect, slip distance (m).
+    W, V, m : normal load (N), drive velocity (m/s), mass (kg).
+    """
+    a, b, D_c, W, V, m = _floats(a, b, D_c, W, V, m)
+    return (b - a) * W / D_c * (1.0 + m * V**2 / (a * W * D_c))
+
+
 def _floats(*values: ArrayLike) -> tuple[Floats, ...]:
     return tuple(np.asarray(value, dtype=np.float64) for value in values)
 

@@ -1,0 +1,20 @@
+"""Linearised steady sliding, for any friction law: modes, critical values, boundaries.
+
+>>> import stiction as st
+>>> slider = st.presets.nakano_popov_2020()
+>>> round(st.stability.growth_rate(slider), 2)  # at 1 degree of misalignment, 1/s
+152.35
+"""
+
+from stiction.stability.curve import boundary
+from stiction.stability.linear import Linearisation, growth_rate, steady_sliding
+from stiction.stability.roots import Critical, critical
+
+__all__ = [
+    "Critical",
+    "Linearisation",
+    "boundary",
+    "critical",
+    "growth_rate",
+    "steady_sliding",
+]

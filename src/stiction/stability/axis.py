@@ -1,0 +1,86 @@
+"""A parameter that is varied: its range, read with units, and its scale, linear or logarithmic."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import exp, log
+from typing import NamedTuple
+
+from stiction.errors import DescriptionError, Fault
+from stiction.parameter import changed, placed, read, unit
+from stiction.slider import Slider
+
+DECADES = 3.0  # either way from a parameter's own value, where no range is given
+WIDE = 10.0  # ratio of the ends beyond which the scale is logarithmic
+
+
+class Axis(NamedTuple):
+    """A parameter by its path, its SI unit, and the range (SI) that 0 to 1 stand for."""
+
+    path: str
+    unit: str
+    low: float
+    high: float
+
+    @property
+    def logarithmic(self) -> bool:
+        """Whether equal steps are equal ratios."""
+        return self.low * self.high > 0.0 and self.high / self.low > WIDE
+
+    def value(self, fraction: float) -> float:
+        """Return the value (SI) at a fraction of the range; at its ends, the very ends."""
+        if fraction in (0.0, 1.0):
+            return self.high if fraction else self.low
+        if self.logarithmic:
+            return self.low * exp(fraction * log(self.high / self.low))
+        return self.low + fraction * (self.high - self.low)
+
+    def fraction(self, value: float) -> float:
+        """Return where in the range a value (SI) lies; 0 to 1 inside."""
+        if self.logarithmic:
+            ratio = value / self.low
+            return log(ratio) / log(self.high / self.low) if ratio > 0.0 else -1.0
+        return (value - self.low) / (self.high - self.low)
+
+    def on(self, slider: Slider, fraction: float) -> Slider:
+        """Return the slider with the parameter at a fraction of the range."""
+        return placed(slider, self.path, self.value(fraction))
+
+
+def axis(slider: Slider, path: str, between: Sequence[float | str] | None = None) -> Axis:
+    """Return the axis of a parameter.
+
+    Parameters
+    ----------
+    slider : Slider
+        The system.
+    path : str
+        The parameter, see `stiction.parameter`.
+    between : pair of float or str, optional
+        Its range; when left out, 0 to 90 degrees for an angle, else three decades either way
+        from its present value.
+
+    Raises
+    ------
+    DescriptionError
+        If the range is none, or not all of it is allowed.
+    """
+    ends = default(slider, path) if between is None else between
+    if isinstance(ends, str) or len(ends) != 2:
+        raise DescriptionError([Fault(path, f"{ends!r} is not a range; give its two ends")])
+    low, high = (read(changed(slider, path, end), path) for end in ends)
+    if not low < high:
+        raise DescriptionError([Fault(path, f"{ends!r} is not a range; give its low end first")])
+    return Axis(path, unit(slider, path), low, high)
+
+
+def default(slider: Slider, path: str) -> tuple[float | str, float | str]:
+    """Return the range of a parameter where none is given."""
+    if unit(slider, path) == "rad":
+        return "0 deg", "90 deg"
+    value = read(slider, path)
+    if value == 0.0:
+        message = "is zero, which gives no range; say which, for example between=(0, 1)"
+        raise DescriptionError([Fault(path, message)])
+    low, high = sorted((value * 10.0**-DECADES, value * 10.0**DECADES))
+    return low, high

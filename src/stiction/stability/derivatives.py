@@ -1,0 +1,127 @@
+"""How friction and a law's internal states answer to a small change of slip and of state."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import cos, hypot, log, sin
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.friction import Anisotropic
+from stiction.slider import Slider
+
+Floats = NDArray[np.float64]
+
+ROUNDING = float(np.finfo(np.float64).eps)
+COLUMNS = 5  # of Richardson's scheme: an error in the tenth power of the step
+RATIO = 4.0  # of one step to the next
+
+
+class Response(NamedTuple):
+    """Friction at a slip velocity, and its derivatives.
+
+    Parameters
+    ----------
+    value : ndarray
+        (2 + n,): friction (x, y; N), then the rates of change of the n internal states.
+    slopes : ndarray
+        (2 + n, 2 + n): their derivatives by the slip velocity (x, y; m/s) and the states.
+    error : ndarray
+        Of `slopes`, an estimate of each.
+    """
+
+    value: Floats
+    slopes: Floats
+    error: Floats
+
+
+def surface(slider: Slider) -> Floats:
+    """Return N = M^2 of `stiction.friction.Anisotropic` in the slider's axes, (2, 2)."""
+    law: Any = slider.law
+    if not isinstance(law, Anisotropic):
+        return np.eye(2)
+    c, s = cos(slider.phi + law.angle), sin(slider.phi + law.angle)
+    axes = np.array([[c, -s], [s, c]])
+    tensor: Floats = axes @ np.diag([1.0, law.ratio**2]) @ axes.T
+    return tensor
+
+
+def set_valued(slider: Slider, slip: Floats) -> Response:
+    """Return the response of a law without internal state, from its own ``slope``.
+
+    With v = |s|, N = M^2 and q = |M s|, F = mu(v) W N s/q has
+
+        dF/ds = W [mu' (N s) s^T/(q v) + mu (N/q - (N s)(N s)^T/q^3)],
+
+    which for an isotropic surface is F'(V) n n^T + (F(V)/V) t t^T, n along the slip and t
+    across it.
+    """
+    law: Any = slider.law
+    v = hypot(*slip)
+    N = surface(slider)
+    push = N @ slip
+    q = float(np.sqrt(slip @ push))
+    mu, slope = law.coefficient(v), law.slope(v)
+    along = np.outer(push, slip) * (slope / (q * v))
+    across = (N - np.outer(push, push) / q**2) * (mu / q)
+    slopes = slider.normal_load * (along + across)
+    size = slider.normal_load * (abs(slope) + mu / q)
+    return Response(slider.normal_load * mu / q * push, slopes, np.full((2, 2), ROUNDING * size))
+
+
+def with_state(slider: Slider, slip: Floats, state: Floats) -> Response:
+    """Return the response of a law with internal state, which gives no derivatives itself."""
+    law: Any = slider.law
+
+    def response(at: Floats) -> Floats:
+        where = (float(at[0]), float(at[1])), slider.normal_load, tuple(map(float, at[2:]))
+        return np.array([*law.force(*where), *law.change(*where)], dtype=np.float64)
+
+    at = np.concatenate([slip, state])
+    speed = hypot(*slip)
+    columns = [derivative(response, at, i, 0.5 * speed, 2.0**-9 * speed) for i in range(2)]
+    for i in range(2, len(at)):
+        # a state is a number of any size: from about one, or its own size if larger, to far below
+        size = abs(float(at[i]))
+        columns.append(derivative(response, at, i, 0.5 * max(size, 1.0), 2.0**-13 * (size or 1e-4)))
+    slopes, error = (np.column_stack(part) for part in zip(*columns, strict=True))
+    return Response(response(at), slopes, error)
+
+
+def derivative(
+    function: Callable[[Floats], Floats], at: Floats, i: int, widest: float, narrowest: float
+) -> tuple[Floats, Floats]:
+    """Return the derivative of a vector function by variable `i`, and an estimate of its error.
+
+    Central differences over ever shorter steps, from `widest` to about `narrowest`, extrapolated
+    to a step of zero; of all extrapolations each component takes the one that changed least from
+    its neighbours (Ridders, Adv. Eng. Software 4 (1982), 75). Steps at which the function has no
+    value are passed over.
+    """
+    unit = np.eye(len(at))[i]
+    steps = widest * RATIO ** -np.arange(np.ceil(log(widest / narrowest, RATIO)) + 1.0)
+    values = [(tried(function, at + h * unit), tried(function, at - h * unit)) for h in steps]
+    ahead, behind = np.array(values).transpose(1, 0, 2)
+    h = steps[:, None]
+    table = (ahead - behind) / (2.0 * h)
+    noise = ROUNDING * (np.abs(ahead) + np.abs(behind)) / h
+    found, errors = [], []
+    for column in range(1, COLUMNS):
+        coarse, fine, noise = table[:-1], table[1:], noise[1:]
+        table = fine + (fine - coarse) / (RATIO ** (2 * column) - 1.0)
+        found.append(table)
+        errors.append(np.maximum(np.abs(table - fine), np.abs(table - coarse)) + noise)
+    every, error = np.concatenate(found), np.concatenate(errors)
+    error = np.where(np.isfinite(error), error, np.inf)
+    best = np.argmin(error, axis=0)[None, :]
+    return np.take_along_axis(every, best, 0)[0], np.take_along_axis(error, best, 0)[0]
+
+
+def tried(function: Callable[[Floats], Floats], at: Floats) -> Floats:
+    """Return the value of a function, not-a-number where a law of the user's own has none."""
+    try:
+        return function(at)
+    except (ArithmeticError, ValueError):
+        return np.full(len(at), np.nan)

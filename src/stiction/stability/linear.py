@@ -1,0 +1,247 @@
+"""Steady sliding, and what becomes of a small disturbance of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import hypot, pi
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.drive import drive_stretches, load_stretches
+from stiction.errors import DescriptionError, Fault, StictionError
+from stiction.friction import has_state, states
+from stiction.initial import Initial
+from stiction.slider import Slider
+from stiction.stability.derivatives import ROUNDING, Floats, Response, set_valued, with_state
+
+Complex = NDArray[np.complex128]
+
+SETTLED = 1e-9  # what unsteady internal states may do to friction, relative to it
+STEADY = "sliding is linearised at a steady drive and load: slider.replace("
+
+
+@dataclass(frozen=True, eq=False)
+class Linearisation:
+    """Steady sliding at the drive's velocity, and the linear equations of a small disturbance.
+
+    In steady sliding the slip velocity is that of the drive, s = v_d, the spring holds friction,
+    K u = F(v_d), and internal states do not change. A disturbance obeys, to first order,
+
+        m u'' + (C + dF/ds) u' + K u = (dF/dz) z,   z' = (dG/dz) z - (dG/ds) u',
+
+    where z' = G(s, z) is how the law's internal states change, if it has any. Sums of
+    exp(lambda t) solve this; each eigenvalue lambda is a mode.
+
+    Attributes
+    ----------
+    slider : Slider
+        The system.
+    names : tuple of str
+        Of the n unknowns: ``u_x, u_y`` (m), ``v_x, v_y`` (m/s), then the internal states.
+    state : ndarray
+        (n,): their values in steady sliding.
+    matrix : ndarray
+        (n, n): the rate of change of a disturbance is `matrix` times it.
+    error : ndarray
+        (n, n): an estimate of the error of each entry of `matrix`; rounding, but for laws with
+        internal state, whose derivatives are found by differences.
+    """
+
+    slider: Slider
+    names: tuple[str, ...]
+    state: Floats
+    matrix: Floats
+    error: Floats
+
+    def __repr__(self) -> str:
+        """Say what becomes of a small disturbance."""
+        f, zeta = self.frequencies[0], self.damping_ratios[0]
+        verdict = "stable" if self.stable else "unstable"
+        rate = f"{self.growth_rate:.4g} /s at {f:.4g} Hz"
+        return f"<Steady sliding, {verdict}: fastest growth {rate}, damping ratio {zeta:.3g}>"
+
+    @cached_property
+    def _modes(self) -> tuple[Complex, Complex, Floats]:
+        """Eigenvalues, mode shapes and errors of the eigenvalues, fastest growth first."""
+        from scipy.linalg import eig
+
+        values, left, right = eig(self.matrix, left=True, right=True)
+        order = np.lexsort((-values.imag, -values.real))
+        values, left, right = values[order], left[:, order], right[:, order]
+        # first order: d lambda = w^H dA v/(w^H v)
+        doubt = self.error + ROUNDING * np.abs(self.matrix)
+        reach = np.einsum("ik,ij,jk->k", np.abs(left), doubt, np.abs(right))
+        reach += ROUNDING * np.abs(values).max()  # of the eigenvalue solver
+        return values, right, reach / np.abs(np.sum(left.conj() * right, axis=0))
+
+    @property
+    def eigenvalues(self) -> Complex:
+        """Eigenvalues lambda, 1/s, (n,), the fastest growing first."""
+        return self._modes[0]
+
+    @property
+    def uncertainty(self) -> Floats:
+        """How large an error of each eigenvalue (1/s) follows from that of the matrix, (n,)."""
+        return self._modes[2]
+
+    @property
+    def shapes(self) -> Complex:
+        """Mode shapes, (n, n): column k belongs to eigenvalue k, rows as in `names`."""
+        return self._modes[1]
+
+    @property
+    def growth_rates(self) -> Floats:
+        """Growth rates, 1/s, (n,); negative where a mode decays."""
+        return self.eigenvalues.real
+
+    @property
+    def frequencies(self) -> Floats:
+        """Frequencies, Hz, (n,), of a conjugate pair both; zero where a mode does not oscillate."""
+        return np.abs(self.eigenvalues.imag) / (2.0 * pi)
+
+    @property
+    def damping_ratios(self) -> Floats:
+        """Damping ratios -Re(lambda)/|lambda|, (n,); negative where a mode grows."""
+        return -self.growth_rates / np.abs(self.eigenvalues)
+
+    @property
+    def growth_rate(self) -> float:
+        """The largest growth rate, 1/s: steady sliding is stable where it is negative."""
+        return float(self.growth_rates[0])
+
+    @property
+    def stable(self) -> bool:
+        """Whether every small disturbance decays, beyond doubt: see `uncertainty`."""
+        return bool(self.growth_rate < -self.uncertainty[0])
+
+    def disturbed(self, size: float = 1e-3, mode: int = 0) -> Initial:
+        """Return steady sliding with a small disturbance, to start a run from.
+
+        Parameters
+        ----------
+        size : float, optional
+            Amplitude of the elongation rate, relative to the drive's speed.
+        mode : int, optional
+            Which mode is disturbed; the fastest growing when left out.
+        """
+        shape = self.shapes[:, mode]
+        speed = hypot(*self.slider.motion.rate(0.0))
+        rates = np.abs(shape[2:4])
+        shape = shape / np.exp(1j * np.angle(shape[2 + int(np.argmax(rates))]))
+        at = self.state + size * speed / hypot(*rates) * shape.real
+        values: dict[str, Any] = dict(zip(self.names, map(float, at), strict=True))
+        internal = {each.name: values.pop(each.name) for each in states(self.slider.law)}
+        return Initial(**values, states=internal) if internal else Initial(**values)
+
+
+def steady_sliding(slider: Slider) -> Linearisation:
+    """Linearise a slider about steady sliding, s = v_d.
+
+    Parameters
+    ----------
+    slider : Slider
+        With a steady drive, not at rest, and a constant load. Any friction law.
+
+    Returns
+    -------
+    Linearisation
+        Steady state, matrix, eigenvalues and modes.
+
+    Raises
+    ------
+    DescriptionError
+        If drive or load are not steady: then there is no steady sliding.
+    StictionError
+        If the law comes to no steady sliding, or is not smooth there.
+
+    References
+    ----------
+    Rice & Ruina, J. Appl. Mech. 50 (1983), 343, for laws with internal state in one dimension.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> slider = st.presets.nakano_popov_2020()
+    >>> st.stability.steady_sliding(slider.replace(phi="10 deg"))
+    <Steady sliding, stable: fastest growth -31.39 /s at 9.103 Hz, damping ratio 0.481>
+    """
+    slip = drive_velocity(slider)
+    state, response = steady_friction(slider, slip)
+    if not np.isfinite(response.error).all():
+        message = f"has no derivatives at {hypot(*slip):g} m/s; see what check_law says of it"
+        raise StictionError(f"friction: {message}")
+    K = np.array([slider.k_x, slider.k_y])
+    names = ("u_x", "u_y", "v_x", "v_y", *(each.name for each in states(slider.law)))
+    at = np.concatenate([response.value[:2] / K, [0.0, 0.0], state])
+    return Linearisation(slider, names, at, *system(slider, response))
+
+
+def growth_rate(slider: Slider) -> float:
+    """Return the largest growth rate (1/s) of a small disturbance of steady sliding.
+
+    Negative where steady sliding is stable; see `steady_sliding`.
+    """
+    return float(np.linalg.eigvals(steady_sliding(slider).matrix).real.max())
+
+
+def system(slider: Slider, response: Response) -> tuple[Floats, Floats]:
+    """Return the matrix of a disturbance u, u', z, and an estimate of its error."""
+    n, m = len(response.value) - 2, slider.mass
+    K, C = np.diag([slider.k_x, slider.k_y]), np.diag([slider.c_x, slider.c_y])
+    answer = response.slopes.copy()
+    answer[:, :2] *= -1.0  # s = v_d - u'
+    answer[:2, :2] -= C
+    answer[:2] /= m
+    matrix, error = np.zeros((4 + n, 4 + n)), np.zeros((4 + n, 4 + n))
+    matrix[:2, 2:4] = np.eye(2)
+    matrix[2:4, :2] = -K / m
+    matrix[2:, 2:] = answer
+    error[2:, 2:] = response.error
+    error[2:4] /= m
+    return matrix, error
+
+
+def drive_velocity(slider: Slider) -> Floats:
+    """Return the slip velocity of steady sliding (x, y; m/s)."""
+    found = []
+    drives, loads = drive_stretches(slider.motion), load_stretches(slider.normal_load, slider.load)
+    X, Y = slider.motion.rate(0.0)
+    if len(drives) > 1 or not drives[0][1].steady():
+        found.append(Fault("drive", f"is not steady; {STEADY}drive=st.ConstantVelocity(...))"))
+    elif X == Y == 0.0:
+        found.append(Fault("drive.velocity", "is zero: nothing slides; give it a velocity"))
+    if len(loads) > 1 or not loads[0][1].constant():
+        found.append(Fault("load", f"is not constant; {STEADY}load=None)"))
+    if found:
+        raise DescriptionError(found)
+    c, s = slider.direction
+    return np.array([X * c - Y * s, X * s + Y * c])
+
+
+def steady_friction(slider: Slider, slip: Floats) -> tuple[Floats, Response]:
+    """Return the internal states of steady sliding, none for a set-valued law, and the response."""
+    law: Any = slider.law
+    if not has_state(law):
+        return np.zeros(0), set_valued(slider, slip)
+    from scipy.optimize import root
+
+    def change(state: Floats) -> Floats:
+        where = (float(slip[0]), float(slip[1])), slider.normal_load, tuple(map(float, state))
+        return np.array(law.change(*where), dtype=np.float64)
+
+    start = law.settled(hypot(*slip))
+    state: Floats = root(change, start, tol=1e-13).x  # type: ignore[no-untyped-call]
+    response = with_state(slider, slip, state)
+    # whatever the solver says of itself: how much would another step of Newton's change friction?
+    F, (F_z, G_z) = response.value, (response.slopes[:2, 2:], response.slopes[2:, 2:])
+    try:
+        left = F_z @ np.linalg.solve(G_z, F[2:])
+    except np.linalg.LinAlgError:
+        left = np.full(2, np.inf)
+    if not hypot(*left) <= SETTLED * hypot(*F[:2]):
+        message = f"its states come to no steady sliding at {hypot(*slip):g} m/s"
+        raise StictionError(f"friction: {message}; see what check_law says of it")
+    return state, response

@@ -1,0 +1,148 @@
+"""Where steady sliding becomes unstable as one parameter changes: every such value in a range."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from stiction.slider import Slider
+from stiction.stability.axis import axis
+from stiction.stability.derivatives import Floats
+from stiction.stability.linear import steady_sliding
+
+POINTS = 65  # at which a range is looked at first
+NEUTRAL = 1e-14  # growth rates beside the largest eigenvalue: below, rounding
+
+
+class Critical(NamedTuple):
+    """Where steady sliding changes between stable and unstable.
+
+    Parameters
+    ----------
+    path, unit : str
+        The parameter, and its SI unit.
+    between : tuple of float
+        The range that was searched, SI.
+    values : ndarray
+        (n,), SI, ascending; none if nothing changes in the range.
+    frequencies : ndarray
+        (n,), Hz: with which the critical mode oscillates at each.
+    stable : tuple of bool
+        (n + 1,): whether it is stable below the first value, between the first and the second,
+        ..., above the last.
+    """
+
+    path: str
+    unit: str
+    between: tuple[float, float]
+    values: Floats
+    frequencies: Floats
+    stable: tuple[bool, ...]
+
+
+def critical(
+    slider: Slider, path: str, between: Sequence[float | str] | None = None, *, points: int = POINTS
+) -> Critical:
+    """Find every value of a parameter at which steady sliding becomes unstable, or stable.
+
+    The growth rate (see `growth_rate`) is computed at points over the range, and at its extrema
+    between them; where its sign changes, its zero is found by Brent's method, to rounding.
+
+    Parameters
+    ----------
+    slider : Slider
+        The system; what it says of the parameter itself does not matter.
+    path : str
+        The parameter, for example ``"phi"``, ``"drive.velocity"``, ``"c_x"``, ``"mass"``,
+        ``"friction.mu_inf"``, or several with one value: ``"c_x, c_y"``.
+    between : pair of float or str, optional
+        The range; when left out, 0 to 90 degrees for an angle, else three decades either way
+        from the parameter's present value.
+    points : int, optional
+        At how many points the range is looked at first.
+
+    Returns
+    -------
+    Critical
+        The values, with the frequency of the critical mode at each.
+
+    Raises
+    ------
+    DescriptionError
+        If there is no such parameter, no such range, or no steady sliding.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> found = st.stability.critical(st.presets.nakano_popov_2020(), "phi")
+    >>> np.degrees(found.values).round(4), found.stable
+    (array([8.656]), (False, True))
+    """
+    along = axis(slider, path, between)
+
+    def growth(fraction: float) -> float:
+        return signed_growth(along.on(slider, fraction))
+
+    crossings, stable = sign_changes(growth, points)
+    leading = [steady_sliding(along.on(slider, at)).frequencies[0] for at in crossings]
+    values = np.array([along.value(at) for at in crossings])
+    return Critical(
+        path, along.unit, (along.low, along.high), values, np.array(leading, dtype=float), stable
+    )
+
+
+def signed_growth(slider: Slider) -> float:
+    """Return the growth rate (1/s), exactly zero where it is nothing but rounding."""
+    values = np.linalg.eigvals(steady_sliding(slider).matrix)
+    growth = float(values.real.max())
+    return growth if abs(growth) > NEUTRAL * float(np.abs(values).max()) else 0.0
+
+
+def sign_changes(
+    function: Callable[[float], float], points: int
+) -> tuple[list[float], tuple[bool, ...]]:
+    """Return where a function on 0 to 1 changes sign, and whether it is negative in between.
+
+    A function that is zero over a whole stretch changes its sign once there, if at all; one that
+    is zero everywhere never, and is not negative.
+    """
+    from scipy.optimize import brentq
+
+    grid = [float(at) for at in np.linspace(0.0, 1.0, points)]
+    known = {at: function(at) for at in grid}
+    for before, at, after in zip(grid, grid[1:], grid[2:], strict=False):
+        known |= dip(function, before, at, after, known)
+    signs = [(at, known[at]) for at in sorted(known) if known[at] != 0.0]
+    found = [
+        float(brentq(function, a, b, xtol=1e-15, rtol=1e-14))  # type: ignore[no-untyped-call]
+        for (a, f_a), (b, f_b) in pairwise(signs)
+        if f_a * f_b < 0.0
+    ]
+    first = bool(signs) and signs[0][1] < 0.0
+    return found, tuple(first ^ bool(i % 2) for i in range(len(found) + 1))
+
+
+def dip(
+    function: Callable[[float], float],
+    before: float,
+    at: float,
+    after: float,
+    known: dict[float, float],
+) -> dict[float, float]:
+    """Return the extremum near `at`, if the function comes nearest to zero there.
+
+    Two changes of sign can hide between neighbouring points.
+    """
+    from scipy.optimize import minimize_scalar
+
+    value = known[at]
+    sign = 1.0 if value > 0.0 else -1.0
+    if value == 0.0 or sign * known[before] < sign * value or sign * known[after] < sign * value:
+        return {}
+    lowest = minimize_scalar(  # type: ignore[no-untyped-call]
+        lambda x: sign * function(x), bounds=(before, after), options={"xatol": 1e-6}
+    )
+    return {float(lowest.x): sign * float(lowest.fun)}
