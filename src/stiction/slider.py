@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cached_property, partial
+from functools import partial
 from math import cos, pi, sin
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -153,7 +153,7 @@ class Slider(Apparatus):
         drive: Drive = self.drive
         return drive
 
-    @cached_property
+    @property
     def direction(self) -> tuple[float, float]:
         """Unit vector of X in the axes (x, y): (cos phi, sin phi), exact at a right angle."""
         c, s = cos(self.phi), sin(self.phi)
