@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from stiction import presets, stability, theory
     from stiction.analysis.cycles import find_cycles
     from stiction.analysis.record import Record, record_of
+    from stiction.analysis.regime import Regime, classify
     from stiction.comparison import compare
     from stiction.description import Description, Settings
     from stiction.drive import (
@@ -76,6 +77,7 @@ _HOME = {
     "RateStateSlip": "friction",
     "RateStateSlip2": "friction",
     "Record": "analysis.record",
+    "Regime": "analysis.regime",
     "ResultError": "errors",
     "Reversal": "drive",
     "Settings": "description",
@@ -87,6 +89,7 @@ _HOME = {
     "Table": "friction",
     "Trajectory": "trajectory",
     "check_law": "testing",
+    "classify": "analysis.regime",
     "compare": "comparison",
     "find_cycles": "analysis.cycles",
     "load": "trajectory",
@@ -118,6 +121,7 @@ __all__ = [
     "RateStateSlip",
     "RateStateSlip2",
     "Record",
+    "Regime",
     "ResultError",
     "Reversal",
     "Settings",
@@ -129,6 +133,7 @@ __all__ = [
     "Table",
     "Trajectory",
     "check_law",
+    "classify",
     "compare",
     "find_cycles",
     "load",

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.analysis.decay import dies_out
 from stiction.analysis.pieces import fitted
 from stiction.analysis.record import Record
 from stiction.analysis.turning_points import turning_points, without_spikes
@@ -45,8 +46,9 @@ def find_cycles(record: Record) -> xr.Dataset:
 
     Nothing is to be tuned: a cycle is what stands apart from all smaller reversals of the force
     (`stiction.analysis.turning_points`), so noise, ripple, single wild samples and slow drift
-    make none. A cycle that the record's beginning or end cuts is left out; so is the first
-    loading of a run that starts unloaded, as no slip comes before it.
+    make none; swings that die out are a transient, and none either. A cycle that the record's
+    beginning or end cuts is left out; so is the first loading of a run that starts unloaded, as
+    no slip comes before it.
 
     Parameters
     ----------
@@ -88,6 +90,35 @@ def find_cycles(record: Record) -> xr.Dataset:
     >>> cycles.sizes["cycle"], cycles["period"].values.round(3).tolist()
     (3, [2.0, 2.0, 2.0])
     """
+    found = swings(record)
+    return found.table.isel(cycle=slice(0)) if found.dying else found.table
+
+
+class Swings(NamedTuple):
+    """Swings of the force, whether they go on or die out.
+
+    Parameters
+    ----------
+    table : Dataset
+        As `find_cycles` returns it.
+    dying : bool
+        Whether they die out: then they are a transient, no cycles.
+    turns : int
+        Peaks and troughs, those of cycles that the record cuts among them.
+    noise, clearness : float
+        How far noise reaches (N), and how clearly the swings stand apart from it; see
+        `stiction.analysis.turning_points`.
+    """
+
+    table: xr.Dataset
+    dying: bool
+    turns: int
+    noise: float
+    clearness: float
+
+
+def swings(record: Record) -> Swings:
+    """Return all swings of the force that stand apart from smaller reversals."""
     import xarray as xr
 
     columns = dict.fromkeys(COLUMNS, np.zeros(0))
@@ -99,13 +130,16 @@ def find_cycles(record: Record) -> xr.Dataset:
         count = (len(points.index) - first - 1) // 2
         corners = Vertices(*(each[first : first + 2 * count + 1] for each in found))
         columns = _measured(record, force, corners)
-    return xr.Dataset(
+    table = xr.Dataset(
         {
             name: ("cycle", columns[name], {"units": unit, "long_name": meaning})
             for name, (unit, meaning) in COLUMNS.items()
         },
         {"cycle": ("cycle", np.arange(1, len(columns["start"]) + 1), {"long_name": "cycle"})},
     )
+    rest = record.time[-1] - columns["trough_time"][-1] if len(columns["trough_time"]) else 0.0
+    dying = dies_out(columns["drop"], columns["period"], rest)
+    return Swings(table, dying, len(points.index), points.noise, points.clearness)
 
 
 def _measured(record: Record, force: Floats, corners: Vertices) -> dict[str, Floats]:
