@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from stiction import presets, stability, theory
     from stiction.analysis.cycles import find_cycles
+    from stiction.analysis.onset import find_onset
     from stiction.analysis.record import Record, record_of
     from stiction.analysis.regime import Regime, classify
     from stiction.comparison import compare
@@ -92,6 +93,7 @@ _HOME = {
     "classify": "analysis.regime",
     "compare": "comparison",
     "find_cycles": "analysis.cycles",
+    "find_onset": "analysis.onset",
     "load": "trajectory",
     "record_of": "analysis.record",
     "simulate": "simulation",
@@ -136,6 +138,7 @@ __all__ = [
     "classify",
     "compare",
     "find_cycles",
+    "find_onset",
     "load",
     "presets",
     "record_of",

@@ -1,0 +1,92 @@
+"""How an oscillation sets in: soft and hard, against linear theory and the averaged equation."""
+
+import math
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.analysis.onset import find_onset
+from stiction.stability import critical
+
+PAPER = st.presets.nakano_popov_2020()
+LAW = st.Stribeck(mu_s=0.3, mu_c=0.15, v_s="20 mm/s")
+W, V_S = 10.0, 0.02
+
+
+def block(speed):
+    """A mass on a belt: motion along one spring, with the damper that is critical."""
+    slider = PAPER.replace(phi="0 deg", k_y=2e3, friction=LAW, drive=st.ConstantVelocity(speed))
+    return slider, -LAW.slope(speed) * W
+
+
+def third_derivative(speed):
+    """F''' of F = W [mu_c + (mu_s - mu_c) exp(-x^2)], x = v/v_s; it changes sign at x^2 = 3/2."""
+    x = speed / V_S
+    return W * (LAW.mu_s - LAW.mu_c) * (12 * x - 8 * x**3) * math.exp(-x * x) / V_S**3
+
+
+def test_the_onset_of_the_paper_is_soft():
+    """Rest at 8.70 deg, oscillation at 8.64 deg, and at the critical angle no amplitude is left.
+
+    The square of the amplitude is curved: a straight line through two points leaves of their
+    distance what it changes by over it, about a tenth.
+    """
+    degrees = np.arange(8.58, 8.74, 0.02)
+    found = find_onset(PAPER, "phi", [f"{each} deg" for each in degrees])
+    assert found.kind == "soft"
+    by_theory = critical(PAPER, "phi", ("8 deg", "9 deg")).values[0]
+    assert math.degrees(found.threshold) == pytest.approx(math.degrees(by_theory), abs=0.002)
+    outcome, growth = found.data["outcome"].values, found.data["growth_rate"].values
+    decided = outcome < 2
+    assert (decided.sum(axis=1) >= len(degrees) - 1).all()  # one may be too close to tell
+    assert ((outcome == (growth > 0)) | ~decided).all()
+
+
+def test_a_soft_onset_has_the_amplitude_of_the_averaged_equation():
+    """Averaged over a period: c + F'(V) + F'''(V) a^2/8 = 0, a the amplitude of the rate.
+
+    What is left out is of the order of a^2 over the squared scale of the law.
+    """
+    speed = 0.6 * V_S
+    slider, c = block(speed)
+    shares = np.array([0.985, 0.99, 0.995, 1.02, 1.05])
+    found = find_onset(slider, "c_x", list(c * shares))
+    assert found.kind == "soft"
+    assert found.threshold == pytest.approx(c, rel=5e-4)
+    rate = found.data["amplitude"].values[:, :2] * math.sqrt(slider.k_x / slider.mass)
+    expected = np.sqrt(8 * c * (1 - shares[:2]) / third_derivative(speed))
+    left_out = float(np.max(expected / V_S) ** 2)
+    assert left_out < 0.03
+    assert rate == pytest.approx(np.array([expected, expected]), rel=left_out)
+
+
+def test_a_hard_onset_has_hysteresis():
+    """Beyond x^2 = 3/2 F''' < 0: steady sliding and stick-slip are both there above c = -F'."""
+    speed = 1.8 * V_S
+    assert third_derivative(speed) < 0
+    slider, c = block(speed)
+    found = find_onset(slider, "c_x", list(c * np.array([0.8, 0.9, 1.1, 1.2, 1.3, 2.0, 2.2])))
+    assert found.kind == "hard"
+    low, high = found.hysteresis
+    assert low == pytest.approx(1.1 * c)  # it cannot rest below c
+    assert high >= 1.3 * c * (1 - 1e-12)
+    up, down = found.data["outcome"].values
+    assert (up == [1, 1, 1, 1, 1, *up[5:]]).all()
+    assert (down == [1, 1, 0, 0, 0, 0, 0]).all()
+    assert up[-1] == 0  # so much damping leaves no oscillation
+
+
+def test_without_weakening_there_is_no_onset():
+    slider = PAPER.replace(friction=st.Coulomb(mu_0=0.2))
+    found = find_onset(slider, "phi", ["5 deg", "10 deg", "20 deg"])
+    assert found.kind == "none"
+    assert np.isnan([found.threshold, *found.hysteresis]).all()
+    assert not found.data["outcome"].values.any()
+
+
+def test_values_must_ascend():
+    with pytest.raises(st.DescriptionError, match="three or more that ascend"):
+        find_onset(PAPER, "phi", ["9 deg", "8 deg", "7 deg"])
+    with pytest.raises(st.DescriptionError, match="between -90 deg and 90 deg"):
+        find_onset(PAPER, "phi", ["9 deg", "80 deg", "100 deg"])
