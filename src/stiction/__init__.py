@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from stiction import presets, theory
+    from stiction.analysis.energy import energy_budget
     from stiction.analysis.record import Record
     from stiction.comparison import compare
     from stiction.description import Description, Settings
@@ -87,6 +88,7 @@ _HOME = {
     "Trajectory": "trajectory",
     "compare": "comparison",
     "check_law": "testing",
+    "energy_budget": "analysis.energy",
     "load": "trajectory",
     "simulate": "simulation",
 }
@@ -127,6 +129,7 @@ __all__ = [
     "Trajectory",
     "check_law",
     "compare",
+    "energy_budget",
     "load",
     "presets",
     "simulate",
