@@ -13,8 +13,14 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from stiction import presets, theory
+    from stiction.analysis.creep_curve import creep_curves, mean_creep
+    from stiction.analysis.creep_fit import fit_divergence, fit_misalignment
     from stiction.analysis.energy import energy_budget
+    from stiction.analysis.measured_line import strongest_line
     from stiction.analysis.record import Record
+    from stiction.analysis.ridge import follow_ridge
+    from stiction.analysis.song import hear_song, song_by_phase
+    from stiction.analysis.spectrum import spectrogram, stream_spectrogram
     from stiction.comparison import compare
     from stiction.description import Description, Settings
     from stiction.drive import (
@@ -86,11 +92,21 @@ _HOME = {
     "Stribeck": "friction",
     "Table": "friction",
     "Trajectory": "trajectory",
-    "compare": "comparison",
     "check_law": "testing",
+    "compare": "comparison",
+    "creep_curves": "analysis.creep_curve",
     "energy_budget": "analysis.energy",
+    "fit_divergence": "analysis.creep_fit",
+    "fit_misalignment": "analysis.creep_fit",
+    "follow_ridge": "analysis.ridge",
+    "hear_song": "analysis.song",
     "load": "trajectory",
+    "mean_creep": "analysis.creep_curve",
     "simulate": "simulation",
+    "song_by_phase": "analysis.song",
+    "spectrogram": "analysis.spectrum",
+    "stream_spectrogram": "analysis.spectrum",
+    "strongest_line": "analysis.measured_line",
 }
 _ROOMS = ("presets", "theory")
 
@@ -129,10 +145,20 @@ __all__ = [
     "Trajectory",
     "check_law",
     "compare",
+    "creep_curves",
     "energy_budget",
+    "fit_divergence",
+    "fit_misalignment",
+    "follow_ridge",
+    "hear_song",
     "load",
+    "mean_creep",
     "presets",
     "simulate",
+    "song_by_phase",
+    "spectrogram",
+    "stream_spectrogram",
+    "strongest_line",
     "theory",
 ]
 
