@@ -15,9 +15,11 @@ if TYPE_CHECKING:
     from stiction import presets, theory
     from stiction.analysis.creep_curve import creep_curves, mean_creep
     from stiction.analysis.creep_fit import fit_divergence, fit_misalignment
+    from stiction.analysis.cycles import find_cycles
     from stiction.analysis.energy import energy_budget
     from stiction.analysis.measured_line import strongest_line
-    from stiction.analysis.record import Record
+    from stiction.analysis.record import Record, record_of
+    from stiction.analysis.regime import Regime, classify
     from stiction.analysis.ridge import follow_ridge
     from stiction.analysis.song import hear_song, song_by_phase
     from stiction.analysis.spectrum import spectrogram, stream_spectrogram
@@ -82,6 +84,7 @@ _HOME = {
     "RateStateSlip": "friction",
     "RateStateSlip2": "friction",
     "Record": "analysis.record",
+    "Regime": "analysis.regime",
     "ResultError": "errors",
     "Reversal": "drive",
     "Settings": "description",
@@ -93,15 +96,18 @@ _HOME = {
     "Table": "friction",
     "Trajectory": "trajectory",
     "check_law": "testing",
+    "classify": "analysis.regime",
     "compare": "comparison",
     "creep_curves": "analysis.creep_curve",
     "energy_budget": "analysis.energy",
+    "find_cycles": "analysis.cycles",
     "fit_divergence": "analysis.creep_fit",
     "fit_misalignment": "analysis.creep_fit",
     "follow_ridge": "analysis.ridge",
     "hear_song": "analysis.song",
     "load": "trajectory",
     "mean_creep": "analysis.creep_curve",
+    "record_of": "analysis.record",
     "simulate": "simulation",
     "song_by_phase": "analysis.song",
     "spectrogram": "analysis.spectrum",
@@ -133,6 +139,7 @@ __all__ = [
     "RateStateSlip",
     "RateStateSlip2",
     "Record",
+    "Regime",
     "ResultError",
     "Reversal",
     "Settings",
@@ -144,9 +151,11 @@ __all__ = [
     "Table",
     "Trajectory",
     "check_law",
+    "classify",
     "compare",
     "creep_curves",
     "energy_budget",
+    "find_cycles",
     "fit_divergence",
     "fit_misalignment",
     "follow_ridge",
@@ -154,6 +163,7 @@ __all__ = [
     "load",
     "mean_creep",
     "presets",
+    "record_of",
     "simulate",
     "song_by_phase",
     "spectrogram",

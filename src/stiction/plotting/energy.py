@@ -61,7 +61,9 @@ def draw_budget(ax: Axes, budget: xr.Dataset) -> None:
         )  # fmt: skip
         up, down = up + np.maximum(values, 0.0), down + np.minimum(values, 0.0)
     work = factor * budget["work"].values
-    ax.hlines(work, place - 0.45, place + 0.45, color=BLACK, linewidth=1.6, label="work of the drive")
+    ax.hlines(
+        work, place - 0.45, place + 0.45, color=BLACK, linewidth=1.6, label="work of the drive"
+    )
     ax.axhline(0.0, color=BLACK, linewidth=0.6)
     ax.set_ylabel(f"energy ({prefix}J)")
 

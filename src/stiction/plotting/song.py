@@ -42,7 +42,9 @@ def draw_amplitudes(ax: Axes, song: xr.Dataset) -> None:
     """Draw velocity and displacement of the oscillation as shares of their bounds."""
     time = song["time"].values
     share = (song["amplitude"] / song["amplitude_bound"]).values
-    ax.plot(time, share, color=BLUE, dashes=(4, 1.5), label=r"of $u_y$, over $V\sin\varphi/\omega_y$")
+    ax.plot(
+        time, share, color=BLUE, dashes=(4, 1.5), label=r"of $u_y$, over $V\sin\varphi/\omega_y$"
+    )
     share = (song["velocity"] / song["velocity_bound"]).values
     ax.plot(time, share, color=BLACK, label=r"of $v_y$, over $V\sin\varphi$")
     ax.axhline(1.0, color=GREY, linewidth=0.6, zorder=1)

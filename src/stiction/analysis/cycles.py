@@ -1,0 +1,215 @@
+"""Stick-slip cycles of a record: a table, a row a cycle."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.analysis.decay import dies_out
+from stiction.analysis.pieces import fitted
+from stiction.analysis.record import Record
+from stiction.analysis.turning_points import turning_points, without_spikes
+from stiction.analysis.vertices import Vertices, vertices
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+
+# name: (unit, long name), as CF attributes
+COLUMNS = {
+    "start": ("s", "time of the trough before loading"),
+    "peak_time": ("s", "time of the largest force"),
+    "trough_time": ("s", "time of the trough after slip"),
+    "start_force": ("N", "force at the trough before loading"),
+    "peak": ("N", "largest force"),
+    "trough": ("N", "force at the trough after slip"),
+    "drop": ("N", "force drop, from peak to trough"),
+    "period": ("s", "time from trough to trough"),
+    "rise_share": ("1", "share of the period in which the force rises"),
+    "mu_static": ("1", "apparent static friction coefficient"),
+    "mu_kinetic": ("1", "apparent kinetic friction coefficient"),
+    "stick_slope": ("N/s", "rate of loading before it bends"),
+    "stiffness": ("N/m", "apparent stiffness, rate of loading over drive velocity"),
+    "creep_distance": ("m", "distance crept while loading, from trough to peak"),
+    "slip_distance": ("m", "distance slipped, from peak to trough"),
+    "peak_slip_speed": ("m/s", "largest slip speed"),
+}
+LOADING = (0.1, 0.5)  # part of the rise that is straight: after the swing, before the creep
+QUARTER = 4  # of a fall, to each side: cubics through so much of half a sine are 0.2 % too flat
+
+
+def find_cycles(record: Record) -> xr.Dataset:
+    """Find the macroscopic cycles of a record, from trough over peak to trough.
+
+    Nothing is to be tuned: a cycle is what stands apart from all smaller reversals of the force
+    (`stiction.analysis.turning_points`), so noise, ripple, single wild samples and slow drift
+    make none; swings that die out are a transient, and none either. A cycle that the record's
+    beginning or end cuts is left out; so is the first loading of a run that starts unloaded, as
+    no slip comes before it.
+
+    Parameters
+    ----------
+    record : Record
+        Measured, or of a run: ``st.record_of(run)``.
+
+    Returns
+    -------
+    Dataset
+        Over ``cycle``, 1, 2, ...; empty if there is none. Each with ``units``:
+
+        ``start, peak_time, trough_time, period`` (s)
+            Trough before loading, peak, trough after slip; from trough to trough.
+        ``start_force, peak, trough, drop`` (N)
+            The force there; from peak to trough.
+        ``rise_share``
+            Of the period: 1 for a perfect sawtooth, 0.5 for a sine.
+        ``mu_static, mu_kinetic``
+            Peak, and mean of peak and trough, over the normal load: a mass that slips against a
+            constant friction swings as far below it as it was above. Apparent ones: whether
+            they are the interface's is another question.
+        ``stick_slope`` (N/s), ``stiffness`` (N/m)
+            Of the straight line through the loading from a tenth to half of its time; what
+            creeps then already makes them too low by its share of the drive velocity.
+        ``creep_distance, slip_distance`` (m)
+            Moved by the mass from start to peak, and from peak to trough; from its position, or
+            from V t minus the change of force over stiffness.
+        ``peak_slip_speed`` (m/s)
+            The slip speed's, or V minus the rate of force over stiffness, smoothed over a
+            quarter of the fall to each side.
+
+        What needs a quantity that the record lacks is not a number.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> time = np.arange(0.0, 10.0, 1e-3)
+    >>> cycles = st.find_cycles(st.Record(time=time, force=0.1 * (time % 2.0)))
+    >>> cycles.sizes["cycle"], cycles["period"].values.round(3).tolist()
+    (3, [2.0, 2.0, 2.0])
+    """
+    found = swings(record)
+    return found.table.isel(cycle=slice(0)) if found.dying else found.table
+
+
+class Swings(NamedTuple):
+    """Swings of the force, whether they go on or die out.
+
+    Parameters
+    ----------
+    table : Dataset
+        As `find_cycles` returns it.
+    dying : bool
+        Whether they die out: then they are a transient, no cycles.
+    turns : int
+        Peaks and troughs, those of cycles that the record cuts among them.
+    noise, clearness : float
+        How far noise reaches (N), and how clearly the swings stand apart from it; see
+        `stiction.analysis.turning_points`.
+    """
+
+    table: xr.Dataset
+    dying: bool
+    turns: int
+    noise: float
+    clearness: float
+
+
+def swings(record: Record) -> Swings:
+    """Return all swings of the force that stand apart from smaller reversals."""
+    import xarray as xr
+
+    columns = dict.fromkeys(COLUMNS, np.zeros(0))
+    points = turning_points(record.force)
+    first = 0 if points.trough[:1].all() else 1
+    if len(points.index) - first >= 3:
+        force = without_spikes(record.force)
+        found = vertices(record.time, points)
+        count = (len(points.index) - first - 1) // 2
+        corners = Vertices(*(each[first : first + 2 * count + 1] for each in found))
+        columns = _measured(record, force, corners)
+    table = xr.Dataset(
+        {
+            name: ("cycle", columns[name], {"units": unit, "long_name": meaning})
+            for name, (unit, meaning) in COLUMNS.items()
+        },
+        {"cycle": ("cycle", np.arange(1, len(columns["start"]) + 1), {"long_name": "cycle"})},
+    )
+    rest = record.time[-1] - columns["trough_time"][-1] if len(columns["trough_time"]) else 0.0
+    dying = dies_out(columns["drop"], columns["period"], rest)
+    return Swings(table, dying, len(points.index), points.noise, points.clearness)
+
+
+def _measured(record: Record, force: Floats, corners: Vertices) -> dict[str, Floats]:
+    """Return each column, from troughs and peaks in turn, a trough first and last."""
+    start, peak_time, trough_time = (corners.time[i:j:2] for i, j in _THREE)
+    start_force, peak, trough = (corners.value[i:j:2] for i, j in _THREE)
+    unknown = np.full(len(start), np.nan)
+    load, velocity = record.normal_load, record.drive_velocity
+    slope = _loading_rate(record.time, force, start, peak_time)
+    return {
+        "start": start,
+        "peak_time": peak_time,
+        "trough_time": trough_time,
+        "start_force": start_force,
+        "peak": peak,
+        "trough": trough,
+        "drop": peak - trough,
+        "period": trough_time - start,
+        "rise_share": (peak_time - start) / (trough_time - start),
+        "mu_static": peak / load if load else unknown,
+        "mu_kinetic": 0.5 * (peak + trough) / load if load else unknown,
+        "stick_slope": slope,
+        "stiffness": slope / velocity if velocity else unknown,
+        "creep_distance": _moved(record, start, peak_time, peak - start_force),
+        "slip_distance": _moved(record, peak_time, trough_time, trough - peak),
+        "peak_slip_speed": _fastest(record, force, peak_time, trough_time),
+    }
+
+
+_THREE = ((0, -1), (1, None), (2, None))  # of troughs and peaks in turn: start, peak, trough
+
+
+def _loading_rate(time: Floats, force: Floats, start: Floats, peak_time: Floats) -> Floats:
+    rise = peak_time - start
+    begin, end = (np.searchsorted(time, start + part * rise) for part in LOADING)
+    begin = np.minimum(begin, len(time) - 2)
+    fit = fitted(time, force, begin, np.maximum(end, begin + 1), 1)
+    slope: Floats = fit.coefficients[:, 1] / fit.half
+    return slope
+
+
+def _moved(record: Record, begin: Floats, end: Floats, gained: Floats) -> Floats:
+    """Return how far the mass moved while the force gained so much."""
+    if record.position is not None:
+        places = np.interp(np.stack([begin, end]), record.time, record.position)
+        return np.asarray(places[1] - places[0])
+    if record.stiffness is None or record.drive_velocity is None:
+        return np.full(len(begin), np.nan)
+    return np.asarray(record.drive_velocity * (end - begin) - gained / record.stiffness)
+
+
+def _fastest(record: Record, force: Floats, peak_time: Floats, trough_time: Floats) -> Floats:
+    """Return the largest slip speed of each fall."""
+    begin = np.searchsorted(record.time, peak_time)
+    end = np.maximum(np.searchsorted(record.time, trough_time), begin + 1)
+    if record.slip_speed is not None:
+        speed = record.slip_speed
+    elif record.stiffness is not None and record.drive_velocity is not None:
+        rate = _smooth_rate(record.time, force, int(np.median(end - begin)))
+        speed = record.drive_velocity - rate / record.stiffness
+    else:
+        return np.full(len(begin), np.nan)
+    ends = np.stack([begin, end], axis=1).ravel()
+    return np.asarray(np.maximum.reduceat(speed, np.minimum(ends, len(speed) - 1))[::2])
+
+
+def _smooth_rate(time: Floats, force: Floats, fall: int) -> Floats:
+    """Return the rate of force (N/s) from cubics through a quarter of a fall each way."""
+    from scipy.signal import savgol_filter  # type: ignore[attr-defined]
+
+    window = min(2 * max(2, fall // QUARTER) + 1, (len(time) - 1) // 2 * 2 + 1)
+    gained, passed = (savgol_filter(each, window, 3, deriv=1) for each in (force, time))
+    return np.asarray(gained / passed)

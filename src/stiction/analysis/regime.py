@@ -1,0 +1,181 @@
+"""Which kind of motion a record shows, how sure that is, and why."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from stiction.analysis.cycles import Swings, swings
+from stiction.analysis.decay import MANY, ORDERED, order
+from stiction.analysis.level import PARTS, course
+from stiction.analysis.record import Record
+from stiction.analysis.turning_points import CLEAR
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+STICK_SLIP = "stick-slip"
+BETWEEN = "between stick-slip and harmonic vibration"
+HARMONIC = "harmonic vibration"
+DAMPED = "damped approach"
+STEADY = "steady sliding"
+STUCK = "stuck"
+UNDETERMINED = "undetermined"
+
+# Bounds of the rise's share of a cycle. A mass that slips swings back in the time it swung out, so
+# of the share r that the force rises, 1 - r is the swing and the rest is stick: none of the rise
+# at r = 1/2 (a sine), a third at r = 3/5, two thirds at r = 3/4. Below 2/5 it falls slowly.
+SHAPES = ((0.75, STICK_SLIP), (0.6, BETWEEN), (0.4, HARMONIC), (0.0, UNDETERMINED))
+# Standard deviation of the periods over their mean. Noise through a narrow filter, which rings,
+# has 0.15, through a wide one, which does not, 0.37 and more.
+REGULAR = 0.25
+NEAR = 0.3  # of its natural period: friction changes the period of a swinging mass, but not more
+ONE_WAY = 0.8  # of all ups and downs is change: a drift or a load, no wandering
+SETTLED = 0.1  # of the force's span is passed in the last quarter; of an even load it is 0.25
+LOADING = 0.5  # of the early rate, or of stiffness times drive velocity: it still sticks
+SLOW = 0.1  # of stiffness times drive velocity: the mass goes at 9/10 of the drive's speed or more
+GROWN = 0.1  # of a force drop: less is not worth a word
+NOISE_SHOWS = 1e-3  # of a force drop; what is less is no noise of a load cell
+
+WORDS = {
+    "cycles": "{:.0f} complete cycles",
+    "rise_share": "the force rises for {:.0%} of a cycle (a sine: 50%, a sawtooth: 100%)",
+    "cycles_alike": "{:.0%} of the cycles have this shape themselves",
+    "period_spread": "periods differ by {:.0%} of their mean",
+    "natural_period": "a period is {:.2g} times the mass's own on its spring",
+    "drop_over_noise": "force drops are {:.3g} times as high as noise reaches",
+    "swings": "{:.0f} swings, each smaller than the last but for noise",
+    "last_over_first": "the last force drop is {:.2g} times the first",
+    "turns": "{:.0f} peaks and troughs make no complete cycle",
+    "change": "the force changes by {:.3g} N from beginning to end",
+    "span": "it spans {:.3g} N, averaged over a 32nd of the time",
+    "scatter": "it scatters by {:.3g} N about that",
+    "late_share": "in the last quarter of the time it spans {:.2%} of this",
+    "one_way": "{:.0%} of all its ups and downs is this change",
+    "rate_kept": "at the end it changes at {:.2g} times the rate of the beginning",
+    "rate_over_drive": "at the end its rate is {:.2g} times stiffness times drive velocity",
+    "samples": "there are {:.0f} samples, too few",
+}
+
+
+class Regime(NamedTuple):
+    """A kind of motion, and why.
+
+    Parameters
+    ----------
+    kind : str
+        "stick-slip", "between stick-slip and harmonic vibration", "harmonic vibration", "damped
+        approach" (a transient that dies out), "steady sliding", "stuck" (it loads and never
+        slips) or "undetermined".
+    confidence : float
+        0 to 1. With cycles: the share of them that have the kind's shape themselves, counted
+        with one more of either, so that three cycles say less than thirty.
+    evidence : dict
+        Numbers that say why; ``str(regime)`` puts them into words.
+    runner_up : str
+        The kind that most of the other cycles have; empty if there are none.
+    """
+
+    kind: str
+    confidence: float
+    evidence: dict[str, float]
+    runner_up: str = ""
+
+    def __str__(self) -> str:
+        """Say it in words."""
+        other = f"; else {self.runner_up}" if self.runner_up else ""
+        reasons = "; ".join(WORDS[name].format(value) for name, value in self.evidence.items())
+        return f"{self.kind} (confidence {self.confidence:.2f}{other}): {reasons}"
+
+
+def classify(record: Record) -> Regime:
+    """Tell which kind of motion a record shows.
+
+    Cycles decide by their shape (`SHAPES`), if there are any; if not, or if they die out, the
+    course of the force does: it loads to the end, settles, or stays about where it is.
+
+    Parameters
+    ----------
+    record : Record
+        Measured, or of a run. With stiffness, drive velocity and mass the rate of loading and
+        the natural period count as well; without, the shape alone.
+    """
+    if len(record) < PARTS:
+        return Regime(UNDETERMINED, 0.0, {"samples": len(record)})
+    found = swings(record)
+    if found.dying:
+        drop = found.table["drop"].values
+        sure = (len(drop) + 1) / (len(drop) + 3)
+        return Regime(DAMPED, sure, {"swings": len(drop), "last_over_first": drop[-1] / drop[0]})
+    if found.table.sizes["cycle"]:
+        return _by_shape(record, found)
+    return _by_course(record, found)
+
+
+def _by_shape(record: Record, found: Swings) -> Regime:
+    table, count = found.table, found.table.sizes["cycle"]
+    shares = table["rise_share"].values
+    kinds = [_shape(share) for share in shares]
+    kind = _shape(float(np.median(shares)))
+    alike = kinds.count(kind)
+    evidence = {
+        "cycles": count,
+        "rise_share": float(np.median(shares)),
+        "cycles_alike": alike / count,
+        "period_spread": float(table["period"].std() / table["period"].mean()),
+    }
+    evidence |= _natural_period(record, table)
+    drop = table["drop"].values
+    if found.noise > NOISE_SHOWS * np.median(drop):
+        evidence["drop_over_noise"] = float(np.median(drop)) / found.noise
+    grown = float(drop[-1] / drop[0])
+    if count >= MANY and abs(order(drop)) >= -ORDERED and abs(grown - 1.0) > GROWN:
+        evidence["last_over_first"] = grown
+    others = sorted(set(kinds) - {kind, UNDETERMINED}, key=kinds.count)
+    confidence = (alike + 1) / (count + 3)
+    if kind == HARMONIC and not _swings_freely(evidence):
+        return Regime(STEADY, confidence, evidence, HARMONIC)
+    return Regime(kind, confidence, evidence, others[-1] if others else "")
+
+
+def _shape(rise_share: float) -> str:
+    return next(kind for bound, kind in SHAPES if rise_share >= bound)
+
+
+def _natural_period(record: Record, table: xr.Dataset) -> dict[str, float]:
+    if record.mass is None or record.stiffness is None:
+        return {}
+    own = 2.0 * pi * sqrt(record.mass / record.stiffness)
+    return {"natural_period": float(table["period"].median()) / own}
+
+
+def _swings_freely(evidence: dict[str, float]) -> bool:
+    """Return whether swings are regular, or as long as the mass's own; else they are noise."""
+    own = abs(evidence.get("natural_period", np.inf) - 1.0) <= NEAR
+    return own or evidence["period_spread"] <= REGULAR
+
+
+def _by_course(record: Record, found: Swings) -> Regime:
+    way = course(record.time, record.force)
+    drive = (record.stiffness or 0.0) * (record.drive_velocity or 0.0)
+    evidence = {"change": way.change, "span": way.span, "scatter": way.scatter}
+    if drive:
+        evidence["rate_over_drive"] = way.late_rate / drive
+    late = way.late_span / way.span if way.span > 0.0 else 1.0
+    if late <= SETTLED:
+        sure = 1.0 - late / (2.0 * SETTLED)
+        return Regime(DAMPED, sure, evidence | {"late_share": late})
+    if found.turns:
+        return Regime(UNDETERMINED, 0.0, evidence | {"turns": found.turns})
+    rising = way.change > 0.0 and way.one_way >= ONE_WAY
+    if not rising or 0.0 < max(abs(way.early_rate), abs(way.late_rate)) < SLOW * drive:
+        # the nearer to cycles it came, the less sure it is that there are none
+        return Regime(STEADY, 1.0 - found.clearness / (2.0 * CLEAR), evidence)
+    kept = way.late_rate / way.early_rate
+    evidence |= {"one_way": way.one_way, "rate_kept": kept}
+    loading = way.late_rate / drive if drive else kept
+    if loading >= LOADING:
+        return Regime(STUCK, way.one_way * min(loading, 1.0), evidence)
+    return Regime(UNDETERMINED, 0.0, evidence)

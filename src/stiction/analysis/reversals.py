@@ -1,0 +1,93 @@
+"""Every reversal of a signal, and what is left once the small ones are taken out.
+
+Between two neighbouring turning points a signal makes a leg. A leg no longer than both its
+neighbours is a reversal within a larger movement: taken out, with its two points, it leaves that
+movement whole. Its height is what topology calls the persistence of the pair and fatigue
+engineers the range of a rainflow cycle. It needs no window and no reference level, so a drift
+slower than the movement itself changes nothing.
+
+References
+----------
+Edelsbrunner, Letscher & Zomorodian, Discrete Comput. Geom. 28, 511 (2002); ASTM E1049-85.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Counts = NDArray[np.int64]
+Indices = NDArray[np.intp]
+
+
+def extrema(values: Counts) -> Indices:
+    """Return where the values turn, in order, and both ends; of equal neighbours, the first."""
+    if len(values) < 2:
+        return np.arange(len(values))
+    distinct = np.flatnonzero(np.diff(values, prepend=values[0] - 1))
+    rising = np.diff(values[distinct]) > 0
+    turns = np.flatnonzero(rising[1:] != rising[:-1]) + 1
+    inner = distinct[turns]
+    last = len(values) - 1
+    return np.concatenate([[0], inner, [last]])
+
+
+def taken_out(values: Counts, below: float = np.inf) -> tuple[Indices, Counts]:
+    """Take out reversals, the smallest of each neighbourhood first.
+
+    All that have smaller neighbours on neither side go at once, so a few passes over ever fewer
+    points do it, whatever the length.
+
+    Parameters
+    ----------
+    values : array
+        (n,).
+    below : float, optional
+        Only reversals smaller than this.
+
+    Returns
+    -------
+    points : ndarray
+        Samples that are left, the two ends of the signal among them.
+    heights : ndarray
+        Of the reversals taken out.
+    """
+    points, heights = extrema(values), [np.zeros(0, np.int64)]
+    while len(points) > 3:
+        legs = np.abs(np.diff(values[points]))
+        inner = legs[1:-1]
+        small = (inner < legs[2:]) & (inner <= legs[:-2]) & (inner < below)
+        found = np.flatnonzero(small) + 1  # never two neighbours: one of them is not the smaller
+        if len(found) == 0:
+            break
+        heights.append(legs[found])
+        points = np.delete(points, np.concatenate([found, found + 1]))
+    return points, np.concatenate(heights)
+
+
+def all_heights(values: Counts) -> Counts:
+    """Return the height of every reversal; what is left at last are legs that grow, then shrink.
+
+    Of these each second one counts, as each cycle has a leg up and a leg down.
+    """
+    points, heights = taken_out(values)
+    left = np.sort(np.abs(np.diff(values[points]))[1:-1])
+    return np.concatenate([heights, left[::2]])
+
+
+def standing_out(values: Counts, height: float, least: float) -> Indices:
+    """Return the turning points between legs of at least `height`.
+
+    The first and the last leg of a record may be cut: of these `least` is enough. Where they
+    begin and end is not known, and their outer ends are left out.
+    """
+    points, _ = taken_out(values, height)
+    legs = np.abs(np.diff(values[points]))
+    large = np.flatnonzero(legs >= height)
+    if len(large) == 0:
+        return points[:0]
+    first, last = large[0], large[-1]
+    # of legs that are too small, the one beside the first large leg is the largest
+    first += 0 if first > 0 and legs[first - 1] >= least else 1
+    last += 1 if last < len(legs) - 1 and legs[last + 1] >= least else 0
+    return points[first : last + 1]
