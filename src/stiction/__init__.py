@@ -13,10 +13,17 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from stiction import presets, stability, theory
+    from stiction.analysis.creep_curve import creep_curves, mean_creep
+    from stiction.analysis.creep_fit import fit_divergence, fit_misalignment
     from stiction.analysis.cycles import find_cycles
+    from stiction.analysis.energy import energy_budget
+    from stiction.analysis.measured_line import strongest_line
     from stiction.analysis.onset import find_onset
     from stiction.analysis.record import Record, record_of
     from stiction.analysis.regime import Regime, classify
+    from stiction.analysis.ridge import follow_ridge
+    from stiction.analysis.song import hear_song, song_by_phase
+    from stiction.analysis.spectrum import spectrogram, stream_spectrogram
     from stiction.comparison import compare
     from stiction.description import Description, Settings
     from stiction.drive import (
@@ -92,11 +99,22 @@ _HOME = {
     "check_law": "testing",
     "classify": "analysis.regime",
     "compare": "comparison",
+    "creep_curves": "analysis.creep_curve",
+    "energy_budget": "analysis.energy",
     "find_cycles": "analysis.cycles",
     "find_onset": "analysis.onset",
+    "fit_divergence": "analysis.creep_fit",
+    "fit_misalignment": "analysis.creep_fit",
+    "follow_ridge": "analysis.ridge",
+    "hear_song": "analysis.song",
     "load": "trajectory",
+    "mean_creep": "analysis.creep_curve",
     "record_of": "analysis.record",
     "simulate": "simulation",
+    "song_by_phase": "analysis.song",
+    "spectrogram": "analysis.spectrum",
+    "stream_spectrogram": "analysis.spectrum",
+    "strongest_line": "analysis.measured_line",
 }
 _ROOMS = ("presets", "stability", "theory")
 
@@ -137,13 +155,24 @@ __all__ = [
     "check_law",
     "classify",
     "compare",
+    "creep_curves",
+    "energy_budget",
     "find_cycles",
     "find_onset",
+    "fit_divergence",
+    "fit_misalignment",
+    "follow_ridge",
+    "hear_song",
     "load",
+    "mean_creep",
     "presets",
     "record_of",
     "simulate",
+    "song_by_phase",
+    "spectrogram",
     "stability",
+    "stream_spectrogram",
+    "strongest_line",
     "theory",
 ]
 

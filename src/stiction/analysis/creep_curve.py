@@ -1,0 +1,237 @@
+"""Creep curves: how fast the mass moves in each stick phase, by the time that is left to slip."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.analysis.creep import first_slip_time
+from stiction.analysis.record import Record, record_of
+from stiction.analysis.trimmed import trimmed_mean
+from stiction.errors import ResultError
+from stiction.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+
+FINEST = 100  # bins in a stick phase, if all were as narrow as the last
+GROWTH = 0.125  # width of a bin as a share of the time to slip, where that is wider
+LAG = 8  # samples, over which noise is looked at; a load cell's is not independent in successive
+AIM = 0.1  # of the drive velocity: error of the mean curve in its narrowest bins
+
+# name: (unit, long name), as CF attributes
+CURVES = {
+    "velocity": ("m/s", "mean velocity along the drive direction"),
+    "velocity_error": ("m/s", "standard error of the velocity, from the noise of the record"),
+    "force": ("N", "mean spring force"),
+    "begin": ("s", "time to slip when the bin begins"),
+    "end": ("s", "time to slip when the bin ends"),
+}
+
+
+class Bins(NamedTuple):
+    """Velocity (m/s), its standard error, mean force (N), begin and end (s to slip) of bins."""
+
+    velocity: Floats
+    error: Floats
+    force: Floats
+    begin: Floats
+    end: Floats
+
+
+def creep_curves(
+    source: Trajectory | Record, cycles: xr.Dataset, width: float | None = None
+) -> xr.Dataset:
+    """Return the velocity X' in every stick phase, averaged over bins of the time left to slip.
+
+    A stick phase lasts from a cycle's start to its peak; a run's first loading is one as well.
+    Bins become wider with the time to slip, as the velocity changes less, and are the same in
+    all phases, so that phases can be averaged: see `mean_creep`.
+
+    In a run, the velocity is the distance covered divided by the time, from one rest to another
+    where there are rests: so it is free of the transverse oscillation. A record's position is
+    known or is V t - F/k; there the velocity is the difference of the trimmed means of the two
+    halves of a bin over half its width, which a few wild samples do not move. With V t - F/k it
+    is off by as much of V as the stiffness and the drive velocity are off together: if creep is
+    negative long before slip, they are, and the ``stiffness`` that `stiction.find_cycles` sees
+    tells by how much.
+
+    Parameters
+    ----------
+    source : Trajectory or Record
+        A run sampled several times each transverse period, or what was measured.
+    cycles : Dataset
+        With ``start`` and ``peak_time`` (s) over ``cycle``, from `stiction.find_cycles`.
+    width : float, optional
+        Of the narrowest bin, s. By default a hundredth of the median stick phase; in a noisy
+        record as much as it takes to know the mean of all phases to a tenth of the drive velocity.
+
+    Returns
+    -------
+    Dataset
+        Over ``phase`` and ``bin``: ``velocity`` (m/s), ``velocity_error`` (m/s; for samples
+        whose noise is independent, not a number in a run), ``force`` (N), ``begin`` and ``end``
+        (s), the time to slip at both ends of the bin; not a number where a phase is shorter.
+        Over ``phase``: ``slip_time`` (s), when it ends.
+
+    Raises
+    ------
+    ResultError
+        If a record says neither where the mass is nor both stiffness and drive velocity.
+    """
+    import xarray as xr
+
+    record = source if isinstance(source, Record) else record_of(source)
+    position = _position(record)
+    phases = np.column_stack([cycles["start"].values, cycles["peak_time"].values])
+    if isinstance(source, Trajectory):
+        phases = np.vstack([[record.time[0], first_slip_time(source)], phases])
+    length = phases[:, 1] - phases[:, 0]
+    least = width or _least_width(record, position, length, isinstance(source, Trajectory))
+    edges = bin_edges(least, float(length.max(initial=0.0)))
+    table = np.full((len(Bins._fields), len(phases), len(edges) - 1), np.nan)
+    for phase, (start, slip) in enumerate(phases):
+        times = slip - edges[edges <= slip - start]
+        if isinstance(source, Trajectory):
+            found = _between_rests(record, position, source.sticks[:, 1], times, slip)
+        else:
+            found = _between_halves(record, position, times, slip)
+        table[:, phase, : len(times) - 1] = found
+    return xr.Dataset(
+        {
+            name: (("phase", "bin"), values, {"units": unit, "long_name": meaning})
+            for (name, (unit, meaning)), values in zip(CURVES.items(), table, strict=True)
+        },
+        {
+            "phase": ("phase", np.arange(1, len(phases) + 1)),
+            "slip_time": ("phase", phases[:, 1], {"units": "s", "long_name": "end of the phase"}),
+        },
+    )
+
+
+def mean_creep(curves: xr.Dataset) -> xr.Dataset:
+    """Return the creep curve of all stick phases together: their trimmed mean, bin by bin.
+
+    Parameters
+    ----------
+    curves : Dataset
+        From `creep_curves`.
+
+    Returns
+    -------
+    Dataset
+        Over ``bin``, without bins that no phase reaches: ``velocity``, ``force``, ``begin``,
+        ``end`` as in `creep_curves`; ``velocity_error`` (m/s), the standard error from the
+        scatter of the phases, of a single phase its own; ``phases``, their number.
+    """
+    import xarray as xr
+
+    seen = np.isfinite(curves["velocity"].values)
+    bins = np.flatnonzero(seen.any(axis=0))
+    table = np.stack([curves[name].values for name in CURVES])
+    columns = [table[:, seen[:, bin], bin] for bin in bins]
+    means = np.array([[trimmed_mean(row) for row in column] for column in columns])
+    middle, error = means.reshape(len(bins), len(CURVES), 2).T
+    count = seen[:, bins].sum(axis=0)
+    velocity_error = np.where(count > 1, error[0], middle[1])
+    values = [middle[0], velocity_error, *middle[2:]]
+    found = xr.Dataset(
+        {
+            name: ("bin", value, curves[name].attrs)
+            for name, value in zip(CURVES, values, strict=True)
+        }
+    )
+    found["velocity_error"].attrs["long_name"] = "standard error of the velocity"
+    return found.assign(phases=("bin", count, {"long_name": "stick phases"}))
+
+
+def bin_edges(least: float, longest: float) -> Floats:
+    """Return edges (s to slip) from 0 to `longest`: `least` apart, then as wide as `GROWTH`."""
+    edges = [0.0]
+    while edges[-1] < longest:
+        edges.append(edges[-1] + max(least, GROWTH * edges[-1]))
+    return np.array(edges[:-1] if len(edges) > 2 else edges)
+
+
+def _least_width(record: Record, position: Floats, length: Floats, exact: bool) -> float:
+    """Return a width (s) of bins that shows as much as the noise of so many phases allows."""
+    fine = float(np.median(length)) / FINEST if len(length) else 1.0
+    if exact or not len(length) or record.drive_velocity is None or len(record) <= 2 * LAG + 1:
+        return fine
+    bent = position[: -2 * LAG] - 2.0 * position[LAG:-LAG] + position[2 * LAG :]
+    noise = trimmed_mean(bent).error * (len(bent) / 6.0) ** 0.5  # standard deviation, if normal
+    samples = record.sample_rate * len(length)  # per second, of all phases
+    wanted = (4.0 * noise / (AIM * record.drive_velocity) / samples**0.5) ** (2.0 / 3.0)
+    return max(fine, float(wanted))
+
+
+def _position(record: Record) -> Floats:
+    if record.position is not None:
+        return np.asarray(record.position)
+    if record.stiffness is None or record.drive_velocity is None:
+        raise ResultError(
+            "creep is a motion, and the record does not say where the mass is; give "
+            "Record(...) its stiffness and drive_velocity, or its position"
+        )
+    return np.asarray(record.drive_velocity * record.time - record.force / record.stiffness)
+
+
+def _between_rests(
+    record: Record, position: Floats, rests: Floats, times: Floats, slip: float
+) -> Bins:
+    """Average between `times` (s, descending), each moved to a rest if one is near.
+
+    Where none is, the oscillation is averaged out of the position at the bin's ends.
+    """
+    if len(times) < 2:
+        return Bins(*np.zeros((5, 0)))
+    edges, reach = times, 0.5 * (times[0] - times[1])
+    at_rest = np.zeros(len(times), bool)
+    if len(rests):
+        after = np.searchsorted(rests, times).clip(0, len(rests) - 1)
+        pair = np.stack([rests[np.maximum(after - 1, 0)], rests[after]])
+        near = pair[np.argmin(np.abs(pair - times), axis=0), np.arange(len(times))]
+        at_rest = np.abs(near - times) < 0.5 * reach
+        edges = np.where(at_rest, near, times)
+    time = record.time
+    ends = np.clip(np.stack([edges - reach, edges + reach]), time[0], time[-1])
+    ends[:, at_rest | (edges > slip - reach)] = np.nan
+    average = np.diff(_integral(time, position, ends), axis=0)[0] / np.diff(ends, axis=0)[0]
+    place = np.where(np.isnan(average), np.interp(edges, time, position), average)
+    passed = np.diff(edges)
+    force = np.diff(_integral(time, np.asarray(record.force), edges)) / passed
+    unknown = np.full(len(passed), np.nan)
+    return Bins(np.diff(place) / passed, unknown, force, slip - edges[1:], slip - edges[:-1])
+
+
+def _integral(time: Floats, values: Floats, at: Floats) -> Floats:
+    """Return the integral (trapezoids) from the first sample to each time `at`."""
+    steps = 0.5 * np.diff(time) * (values[1:] + values[:-1])
+    which = np.searchsorted(time, at, side="right").clip(1, len(time) - 1) - 1
+    part = at - time[which]
+    slope = (values[which + 1] - values[which]) / (time[which + 1] - time[which])
+    whole = np.concatenate([[0.0], np.cumsum(steps)])[which]
+    return np.asarray(whole + part * (values[which] + 0.5 * slope * part))
+
+
+def _between_halves(record: Record, position: Floats, times: Floats, slip: float) -> Bins:
+    """Average between `times` (s, descending) by the trimmed means of both halves of each bin."""
+    count = max(len(times) - 1, 0)
+    velocity, error, force = np.full((3, count), np.nan)
+    at = np.searchsorted(record.time, times)
+    for i in range(count):
+        first, last = at[i + 1], at[i]
+        middle = (first + last) // 2
+        if middle - first < 2:
+            continue
+        early, late = slice(first, middle), slice(middle, last)
+        passed = float(record.time[late].mean() - record.time[early].mean())
+        (place, off), (place_2, off_2) = (trimmed_mean(position[half]) for half in (early, late))
+        velocity[i] = (place_2 - place) / passed
+        error[i] = np.hypot(off, off_2) / passed
+        force[i] = trimmed_mean(record.force[first:last])[0]
+    return Bins(velocity, error, force, slip - times[1:], slip - times[:-1])
