@@ -10,9 +10,9 @@ from hypothesis import strategies as some
 import stiction as st
 from stiction import theory
 from stiction.parameter import placed
-from stiction.stability import boundary, critical, growth_rate, steady_sliding
+from stiction.stability import boundary, critical, growth_rate, modes_over, steady_sliding
 from stiction.stability.derivatives import derivative, set_valued, with_state
-from stiction.stability.linear import drive_velocity
+from stiction.stability.steady import drive_velocity
 
 PAPER = st.presets.nakano_popov_2020()
 V, W = 1e-3, 10.0
@@ -174,26 +174,59 @@ def test_the_ellipse_of_an_anisotropic_surface_turns_friction():
         assert math.hypot(*response.value) == pytest.approx(ratio * PAPER.law.coefficient(V) * W)
 
 
-@pytest.mark.parametrize("name", LAWS)
-def test_the_leading_mode_is_how_a_small_disturbance_rings(name):
-    """Growth and frequency of a simulated disturbance, by a fit of the linear recurrence.
+def rings(slider):
+    """Growth and frequency of a simulated disturbance (1/s), by a fit of the linear recurrence.
 
-    The disturbance is along the mode, so that nothing else is in it. What is left out is of its
-    own size beside it, relative to the speed over which friction changes, V at most: 1e-4.
+    The disturbance is along the mode, so that nothing else is in it.
     """
-    slider = SOFT.replace(friction=LAWS[name])
     linear = steady_sliding(slider)
-    leading = linear.eigenvalues[0]
-    assert leading.imag > 0
+    assert linear.eigenvalues[0].imag > 0
     rate, duration = 32 * linear.frequencies[0], 2 / linear.frequencies[0]
     start = linear.disturbed(1e-4 * min(1.0, math.exp(-linear.growth_rate * duration)))
     run = st.simulate(slider, duration, sample_rate=rate, initial=start, rtol=1e-12)
     v = run.data["v_x"].values
-    middle = np.column_stack([v[1:-1], v[:-2]])
-    (a, b), *_ = np.linalg.lstsq(middle, v[2:], rcond=None)
+    (a, b), *_ = np.linalg.lstsq(np.column_stack([v[1:-1], v[:-2]]), v[2:], rcond=None)
     roots = np.log(np.roots([1.0, -a, -b]).astype(complex)) * rate
-    found = roots[np.argmax(roots.imag)]
-    assert found == pytest.approx(leading, abs=1e-4 * abs(leading))
+    return roots[np.argmax(roots.imag)]
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_the_leading_mode_is_how_a_small_disturbance_rings(name):
+    """What is left out is of the disturbance's own size beside it: 1e-4 of V at the end."""
+    slider = SOFT.replace(friction=LAWS[name])
+    leading = steady_sliding(slider).eigenvalues[0]
+    assert rings(slider) == pytest.approx(leading, abs=1e-4 * abs(leading))
+
+
+def test_a_slow_drive_is_unstable_at_any_misalignment():
+    """Friction F/V across the drive, without bound as V falls, lets the mass move along it alone.
+
+    Then there is one stiffness, along the drive, and one damping, F'(V), which is negative. The
+    closed form for k_y -> infinity has it stable; the simulation has not.
+    """
+    slider = PAPER.replace(phi="8 deg", drive=st.ConstantVelocity("1 nm/s"))
+    c, s = slider.direction
+    stiffness = slider.k_x * c * c + slider.k_y * s * s
+    damping = W * PAPER.law.slope(1e-9) / (2 * PAPER.mass)
+    expected = complex(-damping, math.sqrt(stiffness / PAPER.mass - damping**2))
+    leading = steady_sliding(slider).eigenvalues[0]
+    # how far it gives way sideways: omega times mass over F/V
+    assert leading == pytest.approx(expected, rel=1e-3)
+    slow = slider.replace(drive=st.ConstantVelocity("20 um/s"))
+    leading = steady_sliding(slow).eigenvalues[0]
+    assert leading.real > 0
+    assert rings(slow) == pytest.approx(leading, abs=1e-4 * abs(leading))
+
+
+def test_modes_are_followed_through_a_parameter():
+    slider = PAPER.replace(phi="8 deg")
+    found = modes_over(slider, "drive.velocity", ("0.1 mm/s", "10 mm/s"), points=301)
+    growth, values = found["growth_rate"].values, found["value"].values
+    assert found.attrs["scale"] == "log"
+    middle = steady_sliding(placed(slider, "drive.velocity", values[150]))
+    assert np.sort(growth[150]) == pytest.approx(np.sort(middle.growth_rates))
+    # none jumps to another: a hundredth of a decade changes no rate as much as they differ
+    assert np.abs(np.diff(growth, axis=0)).max() < 0.15 * np.ptp(growth, axis=1).max()
 
 
 # --- symmetry and scaling -----------------------------------------------------------------------

@@ -9,6 +9,7 @@
 from stiction.stability.curve import boundary
 from stiction.stability.linear import Linearisation, growth_rate, steady_sliding
 from stiction.stability.roots import Critical, critical
+from stiction.stability.spectrum import modes_over
 
 __all__ = [
     "Critical",
@@ -16,5 +17,6 @@ __all__ = [
     "boundary",
     "critical",
     "growth_rate",
+    "modes_over",
     "steady_sliding",
 ]

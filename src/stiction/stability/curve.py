@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from itertools import pairwise
-from math import atan2, cos, hypot, pi, sin
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,21 +11,15 @@ from stiction.parameter import read
 from stiction.slider import Slider
 from stiction.stability.axis import Axis, axis
 from stiction.stability.derivatives import Floats
+from stiction.stability.following import Growth, Point, both_ways, directed, near
 from stiction.stability.linear import growth_rate, steady_sliding
 from stiction.stability.roots import sign_changes, signed_growth
 
 if TYPE_CHECKING:
     import xarray as xr
 
-Point = tuple[float, float]  # in fractions of both ranges
-Growth = Callable[[Point], float]
-
-LONGEST, SHORTEST = 0.02, 1e-4  # steps along the curve, in fractions of the ranges
-STRAIGHT = 0.3  # rad: where the curve turns more in a step, a shorter one is tried
-AHEAD = (0.4, 1.0, 1.6, 2.2)  # rad to either side of straight on, in which it is looked for
 LINES = (0.0, 0.25, 0.5, 0.75, 1.0)  # across both ranges, on which curves are looked for
 LOOKS = 33  # points on each
-MOST = 4000  # steps along one curve
 
 
 def boundary(
@@ -108,101 +100,6 @@ def seeds(growth: Growth, x: float | None, y: float | None) -> Iterator[Point]:
         if place is not None:
             for found in sign_changes(lambda b, a=place: growth((a, b)), LOOKS)[0]:  # type: ignore[misc]
                 yield place, found
-
-
-def near(point: Point, branch: Floats) -> bool:
-    """Return whether a point lies on a curve that is known."""
-    a, b = branch[:-1], branch[1:]
-    along = b - a
-    length = np.maximum(np.sum(along**2, axis=1), 1e-30)
-    part = np.clip(np.sum((np.array(point) - a) * along, axis=1) / length, 0.0, 1.0)
-    gap = np.hypot(*(a + part[:, None] * along - point).T)
-    return bool(gap.min(initial=np.inf) < 0.25 * LONGEST)
-
-
-def both_ways(growth: Growth, seed: Point) -> Floats:
-    """Return the curve through a point, (n, 2), from end to end."""
-    angles = np.linspace(-pi, pi, 17)
-    values = [growth(beside(seed, angle, LONGEST)) for angle in angles]
-    ways = [
-        zero(growth, seed, LONGEST, a, b)
-        for (a, f_a), (b, f_b) in pairwise(zip(angles, values, strict=True))
-        if f_a * f_b < 0.0
-    ]
-    if not ways:
-        return np.array([seed])
-    there = list(followed(growth, seed, ways[0]))
-    if (len(there) > 2 and there[-1] == seed) or len(ways) == 1:
-        return np.array([seed, *there])
-    back = list(followed(growth, seed, farthest(ways)))
-    return np.array([*reversed(back), seed, *there])
-
-
-def farthest(ways: Sequence[float]) -> float:
-    """Return the direction that differs most from the first."""
-    return max(ways[1:], key=lambda way: abs(turn(ways[0], way)))
-
-
-def followed(growth: Growth, seed: Point, way: float) -> Iterator[Point]:
-    """Yield the points of a curve from `seed` on, to the edge of the plane or back to `seed`."""
-    here, step, gone = seed, LONGEST, 0.0
-    for _ in range(MOST):
-        found = ahead(growth, here, way, step)
-        shorter = step > SHORTEST
-        if shorter and (found is None or abs(turn(way, found)) > STRAIGHT):
-            step = max(step / 2.0, SHORTEST)
-            continue
-        if found is None:
-            return
-        bent, way = abs(turn(way, found)), found
-        last, here = here, beside(here, way, step)
-        gone += step
-        if not all(0.0 <= each <= 1.0 for each in here):
-            # beyond the edge the growth rate is what it is there: the curve leaves squarely
-            yield min(max(here[0], 0.0), 1.0), min(max(here[1], 0.0), 1.0)
-            return
-        if gone > 2.0 * LONGEST and hypot(seed[0] - last[0], seed[1] - last[1]) < step:
-            yield seed
-            return
-        yield here
-        step = min(LONGEST, 1.5 * step) if bent < STRAIGHT / 3.0 else step
-
-
-def ahead(growth: Growth, here: Point, way: float, step: float) -> float | None:
-    """Return the direction (rad) in which the curve goes on, None if it does not."""
-    for angle in AHEAD if step <= SHORTEST else AHEAD[:1]:
-        values = [growth(beside(here, way + side, step)) for side in (-angle, angle)]
-        if values[0] * values[1] < 0.0:
-            return zero(growth, here, step, way - angle, way + angle)
-    return None
-
-
-def zero(growth: Growth, here: Point, step: float, low: float, high: float) -> float:
-    """Return the direction between two at which the growth rate is zero, a step away."""
-    from scipy.optimize import brentq
-
-    return float(
-        brentq(lambda angle: growth(beside(here, angle, step)), low, high, xtol=1e-11)  # type: ignore[no-untyped-call]
-    )
-
-
-def beside(point: Point, angle: float, step: float) -> Point:
-    """Return the point a step away in a direction."""
-    return point[0] + step * cos(angle), point[1] + step * sin(angle)
-
-
-def turn(before: float, after: float) -> float:
-    """Return the angle from one direction to another, between -pi and pi."""
-    return (after - before + pi) % (2.0 * pi) - pi
-
-
-def directed(growth: Growth, curve: Floats) -> Floats:
-    """Return a curve in the direction in which the growth rate is positive on the left."""
-    middle = len(curve) // 2
-    (x, y), (dx, dy) = curve[middle], curve[middle] - curve[middle - 1]
-    left = atan2(dy, dx) + pi / 2.0
-    sides = [growth(beside((x, y), left + way, 10.0 * SHORTEST)) for way in (0.0, pi)]
-    return curve if sides[0] > sides[1] else curve[::-1]
 
 
 def table(

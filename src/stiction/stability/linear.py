@@ -10,17 +10,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.drive import drive_stretches, load_stretches
-from stiction.errors import DescriptionError, Fault, StictionError
-from stiction.friction import has_state, states
+from stiction.errors import StictionError
+from stiction.friction import states
 from stiction.initial import Initial
 from stiction.slider import Slider
-from stiction.stability.derivatives import ROUNDING, Floats, Response, set_valued, with_state
+from stiction.stability.derivatives import ROUNDING, Floats, Response
+from stiction.stability.steady import drive_velocity, steady_friction
 
 Complex = NDArray[np.complex128]
-
-SETTLED = 1e-9  # what unsteady internal states may do to friction, relative to it
-STEADY = "sliding is linearised at a steady drive and load: slider.replace("
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,46 +199,3 @@ def system(slider: Slider, response: Response) -> tuple[Floats, Floats]:
     error[2:, 2:] = response.error
     error[2:4] /= m
     return matrix, error
-
-
-def drive_velocity(slider: Slider) -> Floats:
-    """Return the slip velocity of steady sliding (x, y; m/s)."""
-    found = []
-    drives, loads = drive_stretches(slider.motion), load_stretches(slider.normal_load, slider.load)
-    X, Y = slider.motion.rate(0.0)
-    if len(drives) > 1 or not drives[0][1].steady():
-        found.append(Fault("drive", f"is not steady; {STEADY}drive=st.ConstantVelocity(...))"))
-    elif X == Y == 0.0:
-        found.append(Fault("drive.velocity", "is zero: nothing slides; give it a velocity"))
-    if len(loads) > 1 or not loads[0][1].constant():
-        found.append(Fault("load", f"is not constant; {STEADY}load=None)"))
-    if found:
-        raise DescriptionError(found)
-    c, s = slider.direction
-    return np.array([X * c - Y * s, X * s + Y * c])
-
-
-def steady_friction(slider: Slider, slip: Floats) -> tuple[Floats, Response]:
-    """Return the internal states of steady sliding, none for a set-valued law, and the response."""
-    law: Any = slider.law
-    if not has_state(law):
-        return np.zeros(0), set_valued(slider, slip)
-    from scipy.optimize import root
-
-    def change(state: Floats) -> Floats:
-        where = (float(slip[0]), float(slip[1])), slider.normal_load, tuple(map(float, state))
-        return np.array(law.change(*where), dtype=np.float64)
-
-    start = law.settled(hypot(*slip))
-    state: Floats = root(change, start, tol=1e-13).x  # type: ignore[no-untyped-call]
-    response = with_state(slider, slip, state)
-    # whatever the solver says of itself: how much would another step of Newton's change friction?
-    F, (F_z, G_z) = response.value, (response.slopes[:2, 2:], response.slopes[2:, 2:])
-    try:
-        left = F_z @ np.linalg.solve(G_z, F[2:])
-    except np.linalg.LinAlgError:
-        left = np.full(2, np.inf)
-    if not hypot(*left) <= SETTLED * hypot(*F[:2]):
-        message = f"its states come to no steady sliding at {hypot(*slip):g} m/s"
-        raise StictionError(f"friction: {message}; see what check_law says of it")
-    return state, response

@@ -1,0 +1,94 @@
+"""The modes of steady sliding over one parameter: growth rates and frequencies."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from stiction.plotting.parameter import PLAIN, Scale, scale_of
+from stiction.plotting.stability import UNSTABLE
+from stiction.plotting.style import BLUE, COLUMN, GREY, ORANGE, new_figure, style
+from stiction.stability import Critical
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def modes_figure(modes: xr.Dataset, critical: Critical | None = None) -> Figure:
+    """Draw growth rates and frequencies of the modes over one parameter.
+
+    Parameters
+    ----------
+    modes : Dataset
+        From `stiction.stability.modes_over`.
+    critical : Critical, optional
+        Critical values of the same parameter: dashed, with their numbers above.
+
+    Returns
+    -------
+    Figure
+        As wide as a column.
+    """
+    values, log = modes["value"], modes.attrs["scale"] == "log"
+    ends = values.values[[0, -1]]
+    scale = scale_of(values.attrs["long_name"], values.attrs["units"], ends, logarithmic=log)
+    marked = scale.drawn(() if critical is None else critical.values)
+    with style():
+        fig = new_figure(COLUMN, 3.6)
+        above, below = fig.subplots(2, 1, sharex=True)
+        draw_growth_rates(above, modes, scale)
+        draw_frequencies(below, modes, scale)
+        for ax in (above, below):
+            ax.set(xscale=modes.attrs["scale"], xlim=scale.drawn(ends))
+            for value in marked:
+                ax.axvline(value, color=GREY, linewidth=0.8, dashes=(4, 2), zorder=1)
+        for value in marked:
+            above.annotate(
+                f"{value:.4g}",
+                (value, 1.0),
+                (0, 2),
+                xycoords=("data", "axes fraction"),
+                textcoords="offset points",
+                ha="center",
+                va="bottom",
+                fontsize=7,
+            )
+        if log:
+            below.xaxis.set_major_formatter(PLAIN)
+        below.set_xlabel(scale.label)
+        fig.legend(*above.get_legend_handles_labels(), loc="outside upper center", ncols=2)
+        fig.align_ylabels([above, below])
+    return fig
+
+
+def draw_growth_rates(ax: Axes, modes: xr.Dataset, scale: Scale) -> None:
+    """Draw growth rates, dashed where a mode does not oscillate; the unstable half is tinted.
+
+    The axis is fitted to the fastest growing mode; some may decay faster than is shown.
+    """
+    growth, oscillates = modes["growth_rate"].values, modes["frequency"].values > 0
+    top = np.abs(growth.max(axis=1)).max()
+    ax.set(ylim=(-2.5 * top, 1.25 * top), ylabel="growth rate (1/s)")
+    ax.axhspan(0.0, 1.25 * top, color=UNSTABLE, linewidth=0, zorder=0)
+    ax.axhline(0.0, color=GREY, linewidth=0.6)
+    at = scale.drawn(modes["value"].values)
+    for rates, rings in zip(growth.T, oscillates.T, strict=True):
+        ax.plot(at, np.where(rings, rates, np.nan), color=BLUE, linewidth=1.2)
+        ax.plot(at, np.where(rings, np.nan, rates), color=ORANGE, linewidth=1.2, dashes=(3, 1.5))
+    ax.plot([], [], color=BLUE, linewidth=1.2, label="oscillates")
+    ax.plot([], [], color=ORANGE, linewidth=1.2, dashes=(3, 1.5), label="does not")
+    ax.text(0.985, 0.97, "unstable", transform=ax.transAxes, ha="right", va="top")
+
+
+def draw_frequencies(ax: Axes, modes: xr.Dataset, scale: Scale) -> None:
+    """Draw the frequencies of the modes that oscillate, unstable ones broad."""
+    at, frequency = scale.drawn(modes["value"].values), modes["frequency"].values
+    ax.set(yscale="log", ylabel="frequency (Hz)")
+    for f, rate in zip(frequency.T, modes["growth_rate"].values.T, strict=True):
+        shown = np.where(f > 0, f, np.nan)
+        ax.plot(at, shown, color=BLUE, linewidth=1.2)
+        ax.plot(at, np.where(rate > 0, shown, np.nan), color=BLUE, linewidth=3.0, alpha=0.5)
+    ax.yaxis.set_major_formatter(PLAIN)

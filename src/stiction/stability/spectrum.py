@@ -1,0 +1,74 @@
+"""Growth rates and frequencies of all modes over one parameter."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from stiction.slider import Slider
+from stiction.stability.axis import axis
+from stiction.stability.linear import Complex, steady_sliding
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def modes_over(
+    slider: Slider, path: str, between: Sequence[float | str] | None = None, *, points: int = 201
+) -> xr.Dataset:
+    """Return growth rates and frequencies of all modes over a parameter.
+
+    Parameters
+    ----------
+    slider : Slider
+        The system.
+    path : str
+        The parameter, see `critical`.
+    between : pair of float or str, optional
+        Its range, see `critical`.
+    points : int, optional
+        How many values of it.
+
+    Returns
+    -------
+    Dataset
+        Over ``value`` (the parameter, SI) and ``mode``: ``growth_rate`` (1/s) and ``frequency``
+        (Hz). A mode is followed from one value to the next by what changes least in all.
+    """
+    import xarray as xr
+
+    along = axis(slider, path, between)
+    fractions = np.linspace(0.0, 1.0, points)
+    rows: list[Complex] = []
+    for fraction in fractions:
+        now = steady_sliding(along.on(slider, float(fraction))).eigenvalues
+        rows.append(matched(rows, now))
+    values = np.array([along.value(float(fraction)) for fraction in fractions])
+    eigenvalues = np.array(rows)
+    dims = ("value", "mode")
+    return xr.Dataset(
+        {
+            "growth_rate": (dims, eigenvalues.real, {"units": "1/s", "long_name": "growth rate"}),
+            "frequency": (
+                dims,
+                np.abs(eigenvalues.imag) / (2.0 * np.pi),
+                {"units": "Hz", "long_name": "frequency"},
+            ),
+        },
+        {"value": ("value", values, {"units": along.unit or "1", "long_name": path})},
+        {"scale": "log" if along.logarithmic else "linear"},
+    )
+
+
+def matched(before: Sequence[Complex], now: Complex) -> Complex:
+    """Return eigenvalues in the order of those before, as these would go on in a straight line."""
+    from scipy.optimize import linear_sum_assignment  # type: ignore[attr-defined]
+
+    if not before:
+        return now
+    expected = before[-1] if len(before) < 2 else 2.0 * before[-1] - before[-2]
+    cost = np.abs(expected[:, None] - now[None, :])
+    order: Complex = now[linear_sum_assignment(cost)[1]]
+    return order

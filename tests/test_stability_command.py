@@ -1,0 +1,49 @@
+"""``stiction stability``, run in this process on real files."""
+
+import pytest
+
+from stiction.cli import main
+
+
+def inside(*arguments):
+    with pytest.raises(SystemExit) as end:
+        main([str(argument) for argument in arguments])
+    return int(end.value.code or 0)
+
+
+@pytest.fixture
+def config(tmp_path):
+    path = tmp_path / "slider.toml"
+    assert inside("init", path) == 0
+    return path
+
+
+def test_modes_and_critical_values_are_printed_and_drawn(config, tmp_path, capsys):
+    capsys.readouterr()
+    ranges = ["--between", "1 deg", "30 deg", "--between", "0.1 mm/s", "100 mm/s"]
+    over = ["--over", "phi", "--over", "drive.velocity"]
+    assert inside("stability", config, *over, *ranges, "-o", tmp_path / "map.png") == 0
+    text = capsys.readouterr().out
+    assert "not stable: not every small disturbance decays" in text
+    assert "152.35" in text  # the fastest growth rate
+    assert "phi, from 1 deg to 30 deg: not stable" in text
+    assert "stable above 8.65603 deg (oscillating at 10.25 Hz)" in text
+    assert "drive.velocity, from 0.0001 m/s to 0.1 m/s: not stable" in text
+    assert "stable above 0.0921886 m/s" in text
+    assert (tmp_path / "map.png").stat().st_size > 10_000
+
+
+def test_one_parameter_is_drawn_as_modes(config, tmp_path):
+    assert inside("stability", config, "--over", "c_x", "--between", "0", "100",
+                  "-o", tmp_path / "modes.svg") == 0  # fmt: skip
+    assert "growth rate" in (tmp_path / "modes.svg").read_text()
+
+
+def test_what_is_wrong_is_said_in_one_line(config, capsys):
+    capsys.readouterr()
+    assert inside("stability", config, "--over", "drive.speed") == 2
+    assert "unknown parameter 'drive.speed'" in capsys.readouterr().err
+    assert inside("stability", config, "--over", "phi", "--between", "0 deg", "3 m") == 2
+    assert "not a unit of an angle" in capsys.readouterr().err
+    assert inside("stability", config, "--between", "0 deg", "3 deg") == 2
+    assert "--between as often or not at all, not 2 and 1 times" in capsys.readouterr().err

@@ -1,0 +1,76 @@
+"""The figures of stability are drawn, and show what they say they show."""
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import stiction as st
+from stiction import theory
+from stiction.plotting.modes import modes_figure
+from stiction.plotting.onset import onset_figure
+from stiction.plotting.parameter import parameter_symbol, scale_of
+from stiction.plotting.stability import stability_map
+from stiction.stability import boundary, critical, modes_over
+
+PAPER = st.presets.nakano_popov_2020()
+PLANE = {"x_between": ("0 deg", "25 deg"), "y_between": ("0.1 mm/s", "100 mm/s")}
+
+
+def drawn(fig: Figure) -> Figure:
+    fig.set_dpi(60)
+    fig.draw_without_rendering()
+    return fig
+
+
+def test_the_map_names_both_sides_and_marks_the_slider():
+    speeds = np.geomspace(1e-4, 0.1, 50)
+    mu, slope = ([f(v) for v in speeds] for f in (PAPER.law.coefficient, PAPER.law.slope))
+    known = theory.critical_misalignment(speeds, mu, slope)
+    curve = boundary(PAPER, "phi", "drive.velocity", **PLANE)
+    (ax,) = drawn(stability_map(PAPER, curve, (known, speeds))).axes
+    places = {text.get_text(): text.get_position() for text in ax.texts}
+    assert places.keys() == {"stable", "unstable"}
+    for name, (x, y) in places.items():  # fractions of the axes: is it so there?
+        slider = PAPER.replace(
+            phi=f"{25 * x} deg", drive=st.ConstantVelocity(f"{0.1 * 1000**y} mm/s")
+        )
+        assert (st.stability.growth_rate(slider) > 0) == (name == "unstable")
+    assert (ax.get_xlabel(), ax.get_ylabel()) == (r"$\varphi$ (deg)", "$V$ (mm/s)")
+    own = next(line for line in ax.lines if line.get_label() == "this slider")
+    assert own.get_xydata() == pytest.approx(np.array([[1.0, 1.0]]))
+
+
+def test_a_plane_without_a_boundary_is_named_as_a_whole():
+    slider = PAPER.replace(friction=st.Coulomb(mu_0=0.2))
+    curve = boundary(slider, "phi", "mass", x_between=("1 deg", "89 deg"))
+    (ax,) = drawn(stability_map(slider, curve)).axes
+    assert [text.get_text() for text in ax.texts] == ["stable"]
+
+
+def test_modes_have_the_critical_value_marked():
+    between = ("1 deg", "30 deg")
+    found = critical(PAPER, "phi", between)
+    above, below = drawn(modes_figure(modes_over(PAPER, "phi", between), found)).axes
+    assert "8.656" in [text.get_text() for text in above.texts]
+    assert (above.get_ylabel(), below.get_ylabel()) == ("growth rate (1/s)", "frequency (Hz)")
+    assert below.get_xlabel() == r"$\varphi$ (deg)"
+
+
+def test_the_onset_shows_both_sweeps_and_the_hysteresis():
+    law = st.Stribeck(mu_s=0.3, mu_c=0.15, v_s="20 mm/s")
+    slider = PAPER.replace(phi="0 deg", k_y=2e3, friction=law, drive=st.ConstantVelocity("36 mm/s"))
+    c = -law.slope(0.036) * slider.normal_load
+    found = st.find_onset(slider, "c_x", [0.8 * c, 1.2 * c, 2.2 * c])
+    assert found.kind == "hard"
+    fig = drawn(onset_figure(found, critical=c))
+    (ax,) = fig.axes
+    labels = {text.get_text() for legend in fig.legends for text in legend.get_texts()}
+    assert labels == {"swept up", "swept down", "hysteresis", "linear: $c_{x}$ = 10.57 N s/m"}
+    assert ax.get_ylabel() == "amplitude along the drive (mm)"
+
+
+def test_parameters_have_symbols_and_units():
+    assert parameter_symbol("k_x, k_y") == "$k_{x}$ = $k_{y}$"
+    assert scale_of("k_x", "N/m", (1e3, 5e3)).label == "$k_{x}$ (kN/m)"
+    assert scale_of("drive.velocity", "m/s", (1e-6, 1.0), logarithmic=True).unit == "mm/s"
+    assert scale_of("phi", "rad", (0.0, 1.0)).named(np.radians(8.0)) == r"$\varphi$ = 8°"
