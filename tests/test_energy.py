@@ -9,6 +9,7 @@ from benchmarks.energy import balance
 
 import stiction as st
 from stiction.analysis.quadrature import GAUSS, KRONROD, NODES, integrals, panels
+from stiction.plotting.energy import PARTS, energy_figure
 
 PROGRAM = st.DriveProgram(
     velocity=1e-3,
@@ -137,3 +138,15 @@ def test_edges_outside_the_run_or_out_of_order_are_refused(slider):
         st.energy_budget(run, [0.0, 0.02])
     with pytest.raises(st.ResultError, match="two times or more that ascend"):
         st.energy_budget(run, [0.01, 0.0])
+
+
+def test_the_figure_says_what_is_drawn(slider):
+    budget = st.energy_budget(st.simulate(slider.replace(c_x=1.0), 0.1), [0.0, 0.05, 0.1])
+    upper, lower = energy_figure(budget).axes
+    assert upper.get_ylabel() == "energy (µJ)"
+    assert lower.get_xlabel() == "interval"
+    _, labels = upper.get_legend_handles_labels()
+    assert {"work of the drive", "friction, $y$", "spring, $x$"} <= set(labels)
+    heights = [bar.get_height() for each in upper.containers for bar in each]
+    parts = [budget[name].values for name in PARTS]
+    assert sum(heights) == pytest.approx(1e6 * np.sum(parts), rel=3e-3)  # small ones are left out

@@ -49,8 +49,8 @@ def creep_curves(
     """Return the velocity X' in every stick phase, averaged over bins of the time left to slip.
 
     A stick phase lasts from a cycle's start to its peak; a run's first loading is one as well.
-    Bins become wider with the time to slip, as the velocity changes less, and are the same in
-    all phases, so that phases can be averaged: see `mean_creep`.
+    Bins become wider with the time to slip, as the velocity changes less, in multiples of the
+    narrowest one, and are the same in all phases, so that phases can be averaged: see `mean_creep`.
 
     In a run, the velocity is the distance covered divided by the time, from one rest to another
     where there are rests: so it is free of the transverse oscillation. A record's position is
@@ -69,6 +69,8 @@ def creep_curves(
     width : float, optional
         Of the narrowest bin, s. By default a hundredth of the median stick phase; in a noisy
         record as much as it takes to know the mean of all phases to a tenth of the drive velocity.
+        Against the hum of the mains give it two of its periods: that of a half of each bin is then
+        averaged away.
 
     Returns
     -------
@@ -150,11 +152,11 @@ def mean_creep(curves: xr.Dataset) -> xr.Dataset:
 
 
 def bin_edges(least: float, longest: float) -> Floats:
-    """Return edges (s to slip) from 0 to `longest`: `least` apart, then as wide as `GROWTH`."""
-    edges = [0.0]
-    while edges[-1] < longest:
-        edges.append(edges[-1] + max(least, GROWTH * edges[-1]))
-    return np.array(edges[:-1] if len(edges) > 2 else edges)
+    """Return edges (s to slip) from 0 to `longest`: `least` apart, then multiples of it."""
+    edges = [0]
+    while edges[-1] * least < longest:
+        edges.append(edges[-1] + max(1, round(GROWTH * edges[-1])))
+    return least * np.array(edges[:-1] if len(edges) > 2 else edges, dtype=np.float64)
 
 
 def _least_width(record: Record, position: Floats, length: Floats, exact: bool) -> float:

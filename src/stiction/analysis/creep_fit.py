@@ -42,8 +42,9 @@ class Divergence(NamedTuple):
     loading_time: float
 
     def velocity(self, to_slip: Floats) -> Floats:
-        """Return the fitted velocity (m/s) at times before slip (s)."""
+        """Return the fitted velocity (m/s) at times before slip (s); NaN after the divergence."""
         tau = 1.0 - (np.asarray(to_slip) + self.lag) / self.loading_time
+        tau = np.where(np.abs(tau) < 1.0, tau, np.nan)
         found: Floats = self.amplitude * tau * ((1.0 - tau) * (1.0 + tau)) ** -self.exponent
         return found
 
@@ -58,7 +59,10 @@ class Misalignment(NamedTuple):
 
 
 def fit_divergence(
-    curve: xr.Dataset, loading_time: float, stretch: tuple[float, float] = (0.05, 0.4)
+    curve: xr.Dataset,
+    loading_time: float,
+    stretch: tuple[float, float] = (0.05, 0.3),
+    lag: float | None = None,
 ) -> Divergence:
     """Fit how the creep velocity diverges towards slip.
 
@@ -83,6 +87,8 @@ def fit_divergence(
         l_x/V, s: the spring's elongation that carries the whole friction over the drive velocity.
     stretch : tuple of float
         Bins are used whose time to slip is this part of `loading_time`, from and to.
+    lag : float, optional
+        By how much the divergence comes later than the slip, s; fitted unless it is given.
 
     Returns
     -------
@@ -103,20 +109,24 @@ def fit_divergence(
 
     def mean(_: Floats, amplitude: float, exponent: float, lag: float) -> Floats:
         early, late = (1.0 - (T + lag) / loading_time for T in (begin, end))
-        powers = [
-            np.maximum((1.0 - tau) * (1.0 + tau), 1e-12) ** (1.0 - exponent)
-            for tau in (early, late)
-        ]
-        area = 0.5 * (powers[0] - powers[1]) / (1.0 - exponent)
+        rest = 1.0 - exponent or 1e-12  # at n = 1 the integral is a logarithm, its limit
+        powers = [np.maximum((1.0 - tau) * (1.0 + tau), 1e-12) ** rest for tau in (early, late)]
+        area = 0.5 * (powers[0] - powers[1]) / rest
         return np.asarray(amplitude * area * loading_time / (begin - end))
 
     tau = 1.0 - 0.5 * (begin + end) / loading_time
     scale = float(np.median(velocity * np.sqrt((1.0 - tau) * (1.0 + tau)) / tau))
-    least = -0.9 * float(end.min())
-    bounds = ((-np.inf, -3.0, least), (np.inf, 0.999, loading_time))
-    found, errors = _fitted(mean, begin, velocity, error, (scale, 0.49, 0.0), bounds)
-    (a, n, lag), (a_error, n_error, lag_error) = found, errors
-    return Divergence(n, n_error, a, a_error, lag, lag_error, loading_time)
+    start, low_n, high_n = (scale, 0.49), (-np.inf, -3.0), (np.inf, 5.0)
+    if lag is None:
+        bounds = ((*low_n, -0.9 * float(end.min())), (*high_n, loading_time))
+        found, errors = _fitted(mean, begin, velocity, error, (*start, 0.0), bounds)
+    else:
+        found, errors = _fitted(
+            lambda at, a, n: mean(at, a, n, lag), begin, velocity, error, start, (low_n, high_n)
+        )
+        found, errors = [*found, lag], [*errors, 0.0]
+    (a, n, late), (a_error, n_error, late_error) = found, errors
+    return Divergence(n, n_error, a, a_error, late, late_error, loading_time)
 
 
 def fit_misalignment(

@@ -15,6 +15,7 @@ Floats = NDArray[np.float64]
 # Amplitudes of noise are Rayleigh-distributed: 1 in 500 windows of 1000 lines has one that is
 # five times their median, exp(-25 ln 2) for each.
 STANDS_OUT = 5.0
+BESIDE = 25  # lines to each side that a line is compared with
 
 
 def follow_ridge(
@@ -43,9 +44,9 @@ def follow_ridge(
     -------
     Dataset
         Over ``time``: ``frequency`` (Hz), not a number where nothing stands out; ``amplitude``
-        (unit of the spectrogram) and ``prominence``, it over the median of all lines between
-        `low` and `high` at that time; a line stands out from 5 on, which noise alone reaches in
-        one of some 10 000 windows.
+        (unit of the spectrogram) and ``prominence``, it over the median of the 51 lines around
+        it at that time; a line stands out from 5 on, which noise alone reaches in one of some
+        10 000 windows.
     """
     import xarray as xr
 
@@ -61,7 +62,10 @@ def follow_ridge(
     lines = band["frequency"].values
     frequency = lines[path] + offset * (lines[1] - lines[0])
     height = np.exp(peak)
-    prominence = height / np.maximum(np.median(band.values, axis=0), np.finfo(float).tiny)
+    near = np.clip(path - BESIDE, 0, max(0, len(lines) - 2 * BESIDE - 1))
+    rows = np.minimum(near + np.arange(2 * BESIDE + 1)[:, None], len(lines) - 1)
+    around = np.median(band.values[rows, np.arange(len(path))], axis=0)
+    prominence = height / np.maximum(around, np.finfo(float).tiny)
     frequency[prominence < STANDS_OUT] = np.nan
     unit = amplitude.attrs.get("units", "")
     return xr.Dataset(

@@ -27,13 +27,18 @@ LOOKS: tuple[tuple[str, Any], ...] = (
 )
 
 
-def creep_theory(V: float, phi: float, l_x: float) -> dict[str, Line]:
-    """Return Eqs. (7) and (8) as functions of the time to slip, which comes at V t = l_x.
+def creep_theory(
+    V: float, phi: float, l_x: float, slip_time: float | None = None
+) -> dict[str, Line]:
+    """Return Eqs. (7) and (8) as functions of the time to slip.
 
     Parameters
     ----------
     V, phi, l_x : float
         Drive velocity (m/s), misalignment (rad), slip length (m), as in `stiction.theory`.
+    slip_time : float, optional
+        When slip comes in a loading that starts at t = 0 with an unloaded spring, s; by default
+        at V t = l_x. Inertia makes it later.
     """
     formulas = {
         "Eq. (7), closed form": theory.creep_velocity,
@@ -41,19 +46,22 @@ def creep_theory(V: float, phi: float, l_x: float) -> dict[str, Line]:
         "Eq. (8), as printed": theory.creep_velocity_as_printed,
     }
 
+    end = l_x / V if slip_time is None else slip_time
+
     def before_slip(formula: Callable[..., Any]) -> Line:
-        return lambda to_slip: formula(l_x / V - to_slip, V, phi, l_x)
+        return lambda to_slip: formula(end - to_slip, V, phi, l_x)
 
     return {label: before_slip(formula) for label, formula in formulas.items()}
 
 
 def draw_phases(ax: Axes, curves: xr.Dataset, V: float) -> None:
     """Draw the creep of every stick phase, as a share of the drive velocity `V` (m/s)."""
+    faint = max(0.05, min(0.5, 4.0 / max(curves.sizes["phase"], 1)))
     for phase in range(curves.sizes["phase"]):
         row = curves.isel(phase=phase)
         middle = 0.5 * (row["begin"] + row["end"]).values
         label = "each stick phase" if phase == 0 else None
-        ax.plot(middle, row["velocity"].values / V, color=GREY, lw=0.4, alpha=0.5, label=label)
+        ax.plot(middle, row["velocity"].values / V, color=BLACK, lw=0.4, alpha=faint, label=label)
 
 
 def draw_mean(ax: Axes, mean: xr.Dataset, V: float) -> None:
@@ -102,10 +110,13 @@ def creep_figure(
         ax.set(xscale="log", xlim=(to_slip[-1] * 1.05, to_slip[0]))
         if (value > 2.0 * error).all():
             ax.set(yscale="log", ylim=(0.5 * value.min() / V, 1.5))
+            place = "lower right"
         else:
+            place = "upper left"
             ax.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
             ax.set_ylim(-0.4, 1.3)
         ax.set_xlabel("time to slip (s)")
         ax.set_ylabel(r"creep velocity $\dot{X}/V$ (1)")
-        ax.legend(loc="upper left")
+        legend = ax.legend(loc=place)
+        legend.get_lines()[0].set_alpha(0.5)
     return fig

@@ -77,7 +77,7 @@ def draw_closure(ax: Axes, budget: xr.Dataset) -> None:
     )
     bound = budget["quadrature"].values / whole
     ax.semilogy(place, bound, "_", color=RED, ms=9, mew=1.2, label="bound of the quadrature")
-    ax.set_ylabel("share of all work (1)")
+    ax.set_ylabel("share of work (1)")
 
 
 def energy_figure(budget: xr.Dataset) -> Figure:
@@ -94,8 +94,8 @@ def energy_figure(budget: xr.Dataset) -> Figure:
         As wide as a column.
     """
     with style():
-        fig = new_figure(COLUMN, 4.0)
-        axes = fig.subplots(2, 1, sharex=True, height_ratios=[2.0, 1.0])
+        fig = new_figure(COLUMN, 4.3)
+        axes = fig.subplots(2, 1, sharex=True, height_ratios=[1.8, 1.0])
         draw_budget(axes[0], budget)
         draw_closure(axes[1], budget)
         for ax, letter in zip(axes, "ab", strict=True):

@@ -81,7 +81,7 @@ def song_figure(run: Trajectory, song: xr.Dataset) -> Figure:
     natural = song.attrs["natural_frequency"]
     with style():
         fig = new_figure(COLUMN, 4.6)
-        axes = fig.subplots(3, 1, sharex=True, height_ratios=[2.0, 1.2, 0.8])
+        axes = fig.subplots(3, 1, sharex=True, height_ratios=[2.0, 1.2, 1.0])
         mesh = draw_spectrogram(axes[0], song_spectrogram(run), highest=HIGHEST * natural)
         draw_ridge(axes[0], song)
         draw_amplitudes(axes[1], song)
@@ -89,7 +89,8 @@ def song_figure(run: Trajectory, song: xr.Dataset) -> Figure:
         for ax, letter in zip(axes, "abc", strict=True):
             panel_letter(ax, letter)
         axes[0].legend(loc="upper right", ncols=3, labelcolor="white", handlelength=1.4)
-        axes[1].legend(loc="upper left")
+        axes[1].set_ylim(0.0, 4.2)
+        axes[1].legend(loc="upper left", ncols=2, columnspacing=1.0)
         axes[-1].set_xlim(float(song["time"][0]), float(song["time"][-1]))
         axes[-1].set_xlabel("time $t$ (s)")
         bar = fig.colorbar(mesh, ax=axes, location="bottom", extend="both", aspect=35, pad=0.01)
