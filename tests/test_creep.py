@@ -9,7 +9,7 @@ import xarray as xr
 
 import stiction as st
 from stiction import theory
-from stiction.analysis.creep_curve import bin_edges
+from stiction.analysis.creep_bins import bin_edges
 from stiction.analysis.trimmed import trimmed_mean
 from stiction.plotting.creep_curve import creep_figure, creep_theory
 
@@ -164,6 +164,22 @@ def test_no_slip_still_creeps(slider):
     curves = st.creep_curves(run, st.find_cycles(st.record_of(run)))
     assert curves.sizes["phase"] == 1
     assert np.isfinite(curves["velocity"]).any()
+
+
+def test_where_there_is_no_stick_phase_there_is_no_curve():
+    record = st.Record(time=[], force=[], stiffness=K, drive_velocity=V)
+    curves = st.creep_curves(record, st.find_cycles(record))
+    mean = st.mean_creep(curves)
+    assert (curves.sizes["phase"], mean.sizes["bin"]) == (0, 0)
+    with pytest.raises(st.ResultError, match="0 bins of the creep curve lie between"):
+        st.fit_misalignment(mean, V, K)
+
+
+def test_a_drive_the_other_way_creeps_alike(slider, curves):
+    back = slider.replace(drive=st.ConstantVelocity(-V))
+    run = st.simulate(back, 5.0, sample_rate=10e3)
+    mirrored = st.creep_curves(run, st.find_cycles(st.record_of(run)))
+    np.testing.assert_array_equal(mirrored["velocity"], curves["velocity"])
 
 
 def test_what_cannot_be_known_is_refused(curves):
