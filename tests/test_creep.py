@@ -1,11 +1,11 @@
 """Creep curves against Eq. (7), from runs and from noisy records."""
 
 from math import radians
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from tests.measured import measured
 
 import stiction as st
 from stiction import theory
@@ -15,7 +15,6 @@ from stiction.plotting.creep_curve import creep_figure, creep_theory
 
 V, K, F_0 = 1e-3, 1e3, 2.0
 L_X = F_0 / K
-PAPER = Path(__file__).parents[2] / "shared" / "data" / "paper-friction"
 
 
 def one_phase(start: float, slip: float) -> xr.Dataset:
@@ -190,13 +189,11 @@ def test_what_cannot_be_known_is_refused(curves):
         st.fit_divergence(st.mean_creep(curves), L_X / V, (3.0, 4.0))
 
 
-@pytest.mark.skipif(not PAPER.is_dir(), reason="the measured records are not part of the project")
 def test_a_measured_record_creeps_before_slip():
-    time, force = np.loadtxt(PAPER / "k168_v42.csv.gz", delimiter=",", skiprows=1).T
-    values = {"time": time, "force": force * 0.0307 * 9.81, "drive_velocity": 42e-6}
-    cycles = st.find_cycles(st.Record(**values, stiffness=168.0))
-    stiffness = float(cycles["stiffness"].median())  # as the early loading has it
-    record = st.Record(**values, stiffness=stiffness)
+    record = measured("k168_v42")
+    cycles = st.find_cycles(record)
+    # as the early loading has it, with which the mass then rests on the average
+    record = record.model_copy(update={"stiffness": float(cycles["stiffness"].median())})
     mean = st.mean_creep(st.creep_curves(record, cycles, 0.04))  # two periods of the mains
     share, error = (mean[name].values / 42e-6 for name in ("velocity", "velocity_error"))
     assert share[0] > 0.5

@@ -2,17 +2,260 @@
 
 from __future__ import annotations
 
+from math import pi
+
 import numpy as np
 import pytest
+from numpy.typing import NDArray
+from tests.measured import bare, measured
 
 import stiction as st
-from stiction.analysis.record import record_of
+from stiction.analysis.reversals import all_heights, standing_out, taken_out
+from stiction.analysis.spread import TIMES
+from stiction.analysis.turning_points import turning_points
+from stiction.plotting.cycles import cycles_figure
+
+Floats = NDArray[np.float64]
 
 
-def test_every_cycle_of_the_paper_is_the_same(paper_run: st.Trajectory) -> None:
-    cycles = st.find_cycles(record_of(paper_run))
+@pytest.fixture(scope="module")
+def reference(slider: st.Slider) -> st.Record:
+    """Fig. 3, sharper and ten times finer than what is compared with it."""
+    return st.record_of(st.simulate(slider, 5.0, sample_rate=100e3, rtol=1e-10))
+
+
+@pytest.fixture(scope="module")
+def paper(paper_run: st.Trajectory) -> st.Record:
+    return st.record_of(paper_run)
+
+
+def saw(time: Floats, period: float = 2.0) -> Floats:
+    return time % period
+
+
+# --- reversals ---
+
+
+def test_reversals_of_a_signal_are_paired_as_rainflow_pairs_them() -> None:
+    # the example of ASTM E1049, Fig. 6: ranges 3, 4, 4, 6, 8, 8, 9 in halves; inner pair 4
+    values = np.array([-2, 1, -3, 5, -1, 3, -4, 4, -2])
+    _, inner = taken_out(values)
+    assert inner.tolist() == [4]  # -1 to 3 lies within 5 to -4, and nothing else does
+    assert sorted(all_heights(values).tolist()) == [4, 4, 8]  # of the rest 4, 8, 9, 8: each second
+
+
+def test_a_random_signal_has_the_reversals_that_a_slow_count_finds() -> None:
+    values = np.random.default_rng(1).integers(0, 1000, 300)
+    for height in (200, 500, 800):
+        assert standing_out(values, height, height).tolist() == walked(values, height)
+
+
+def walked(values: NDArray[np.int64], height: int) -> list[int]:
+    """Turning points by walking along: each is known once the signal has come back by `height`."""
+    found, low, high, way = [], 0, 0, 0
+    for i, value in enumerate(values):
+        high = i if value > values[high] else high
+        low = i if value < values[low] else low
+        if way >= 0 and values[high] - value >= height:
+            found, way, low = [*found, high], -1, i
+        elif way <= 0 and value - values[low] >= height:
+            found, way, high = [*found, low], 1, i
+    return found[1:]  # before the first there is no leg as high
+
+
+@pytest.mark.parametrize("kind", ["white", "walk", "smooth and white"])
+def test_noise_makes_no_cycles(kind: str) -> None:
+    random = np.random.default_rng(4)
+    for size in (300, 3000, 30_000):
+        white = random.normal(size=size)
+        smooth = np.convolve(random.normal(size=size), np.hanning(30), "same")
+        noise = {"white": white, "walk": np.cumsum(white), "smooth and white": smooth + 2 * white}
+        assert len(turning_points(noise[kind]).index) == 0
+
+
+# --- the paper's run ---
+
+
+def test_cycles_of_the_paper(reference: st.Record, paper: st.Record) -> None:
+    cycles, sharp = st.find_cycles(paper), st.find_cycles(reference)
     assert cycles.sizes["cycle"] == 3
-    # reference: rtol = 1e-10, samples at 100 kHz; README and shared notes have the same digits
-    assert cycles["peak"].values == pytest.approx(np.full(3, 1.9925951), rel=1e-4)
-    assert cycles["trough"].values == pytest.approx(np.full(3, 1.1685930), rel=1e-4)
-    assert cycles["period"].values == pytest.approx(np.full(3, 0.9150646), rel=1e-4)
+    after = reference.time > 2.5
+    peak = reference.force[after].max()  # at 100 kHz nothing has to be interpolated
+    trough = reference.force[after].min()
+    assert peak == pytest.approx(1.9926, abs=5e-5)  # known to these digits before
+    assert trough == pytest.approx(1.1686, abs=5e-5)
+    for found in (cycles, sharp):
+        assert found["peak"].values == pytest.approx(np.full(3, peak), rel=1e-6)
+        assert found["trough"].values == pytest.approx(np.full(3, trough), rel=1e-6)
+        assert found["period"].values == pytest.approx(np.full(3, 0.9151), abs=5e-5)
+    assert cycles["period"].values == pytest.approx(sharp["period"].values, abs=1e-6)
+
+
+def test_what_the_mass_does_agrees_with_the_run(paper: st.Record, paper_run: st.Trajectory) -> None:
+    cycles = st.find_cycles(paper)
+    highest = float(paper_run.data["slip_speed"].max())
+    assert cycles["peak_slip_speed"].values == pytest.approx(np.full(3, highest), rel=1e-5)
+    forced = st.find_cycles(paper.model_copy(update={"position": None, "slip_speed": None}))
+    # from the force along x alone: without the transverse motion, of order phi^2 of the distance
+    assert forced["slip_distance"].values == pytest.approx(cycles["slip_distance"], rel=1e-3)
+    assert forced["creep_distance"].values == pytest.approx(cycles["creep_distance"], rel=2e-2)
+    assert forced["peak_slip_speed"].values == pytest.approx(np.full(3, highest), rel=2e-3)
+    # it creeps by 1 to 3 per cent of the drive velocity in the first half of loading
+    assert ((cycles["stiffness"] > 970.0) & (cycles["stiffness"] < 990.0)).all()
+
+
+@pytest.mark.parametrize(("rate", "error"), [(100.0, 6e-3), (1e3, 2e-4), (100e3, 1e-6)])
+def test_sample_rate_matters_only_as_far_as_it_must(
+    slider: st.Slider, reference: st.Record, rate: float, error: float
+) -> None:
+    cycles = st.find_cycles(st.record_of(st.simulate(slider, 5.0, sample_rate=rate)))
+    sharp = st.find_cycles(reference)
+    assert cycles["period"].values == pytest.approx(sharp["period"].values, rel=error)
+    assert cycles["peak"].values == pytest.approx(sharp["peak"].values, rel=error)
+
+
+def test_noise_moves_cycles_no_farther_than_it_reaches(paper: st.Record) -> None:
+    clean = st.find_cycles(paper)
+    sigma = 0.05 * float(clean["drop"].mean())
+    for seed in range(5):
+        noise = sigma * np.random.default_rng(seed).normal(size=len(paper))
+        cycles = st.find_cycles(st.Record(time=paper.time, force=paper.force + noise))
+        assert cycles.sizes["cycle"] == 3
+        for time, true in zip(cycles["peak_time"].values, clean["peak_time"].values, strict=True):
+            there = np.interp(time, paper.time, paper.force)
+            assert there > float(clean["peak"][0]) - sigma  # still within one sigma of the top
+            assert time == pytest.approx(true, abs=0.02 * 0.9151)
+        assert cycles["drop"].values == pytest.approx(clean["drop"].values, rel=0.05)
+
+
+@pytest.mark.parametrize("rate", [1.0, -0.5])
+def test_a_ramp_below_does_not_matter(paper: st.Record, rate: float) -> None:
+    """A baseline that moves by several force drops shifts turns by its own slope, no more."""
+    cycles = st.find_cycles(st.Record(time=paper.time, force=paper.force + rate * paper.time))
+    clean = st.find_cycles(paper)
+    assert cycles["period"].values == pytest.approx(clean["period"].values, rel=1e-4)
+    ramp = rate * (cycles["peak_time"] - cycles["trough_time"])
+    assert (cycles["drop"] - ramp).values == pytest.approx(clean["drop"].values, rel=2e-2)
+
+
+def test_no_cycles_with_constant_friction(slider: st.Slider) -> None:
+    law = st.ExponentialWeakening(mu_0=0.2, mu_inf=0.2, v_f="10 mm/s")
+    run = st.simulate(slider.replace(friction=law), 10.0, sample_rate=10e3)
+    assert st.find_cycles(st.record_of(run)).sizes["cycle"] == 0
+
+
+# --- measured ---
+
+# s: how long loading takes to come out of the noise, 0.35 mN at half of 7.8 mN/s, as it bends
+NOISY = 0.09
+
+
+def test_measured_stick_slip_has_the_same_cycles_in_pieces_and_in_any_unit() -> None:
+    record = bare(measured("k168_v42"))
+    whole = st.find_cycles(record)
+    assert whole.sizes["cycle"] == 71
+    assert (whole["drop"] > 0.002).all()  # seven steps of the converter: as an eye counts them
+    for pieces in (2, 5, 12):
+        for time, force in zip(
+            np.array_split(record.time, pieces), np.array_split(record.force, pieces), strict=True
+        ):
+            part = st.find_cycles(st.Record(time=time, force=force))
+            # the last turn needs to come back above the noise to be seen: 0.1 s of loading
+            inside = (whole["start"] > time[0] + 0.05) & (whole["trough_time"] < time[-1] - 0.1)
+            expected = whole["peak_time"].values[inside.values]
+            assert all(np.abs(part["peak_time"].values - t).min() < NOISY for t in expected)
+            assert part.sizes["cycle"] <= len(expected) + 2
+    scaled = st.find_cycles(st.Record(time=1e-3 * record.time, force=1e3 * record.force))
+    assert scaled["period"].values == pytest.approx(1e-3 * whole["period"].values, rel=1e-9)
+    assert scaled["drop"].values == pytest.approx(1e3 * whole["drop"].values, rel=1e-9)
+    assert scaled["stick_slope"].values == pytest.approx(1e6 * whole["stick_slope"], rel=1e-9)
+
+
+@pytest.mark.parametrize("slope", [2.0, -2.0])
+def test_measured_cycles_withstand_noise_drift_and_thinning(slope: float) -> None:
+    record = measured("k168_v42")
+    whole = st.find_cycles(record)
+    noise = 0.03 * float(whole["drop"].median()) * np.random.default_rng(2).normal(size=len(record))
+    drift = slope * np.ptp(record.force) * (record.time - record.time[0]) / record.duration
+    for changed in (
+        st.Record(time=record.time, force=record.force + noise),
+        st.Record(time=record.time, force=record.force + drift),
+        st.Record(time=record.time[::10], force=record.force[::10]),
+    ):
+        cycles = st.find_cycles(changed)
+        assert cycles.sizes == whole.sizes
+        assert np.abs(cycles["peak_time"].values - whole["peak_time"].values).max() < NOISY
+
+
+def test_no_false_cycles_where_it_slides_under_strong_noise() -> None:
+    assert st.find_cycles(measured("k2254_v42")).sizes["cycle"] == 0
+
+
+# --- edges ---
+
+
+@pytest.mark.parametrize("size", [0, 1, 2, 3, 5, 17])
+def test_a_short_record_has_an_empty_table(size: int) -> None:
+    time = np.arange(size) * 1e-3
+    cycles = st.find_cycles(st.Record(time=time, force=np.sin(time)))
+    assert cycles.sizes["cycle"] == 0
+    assert cycles["drop"].attrs["units"] == "N"
+    assert np.isnan(st.summary(cycles)["mean"]).all()
+
+
+@pytest.mark.parametrize("width", [1, 2, 4])
+def test_a_spike_is_no_cycle(width: int) -> None:
+    time = np.arange(5000) * 1e-3
+    force = 1.0 + 0.01 * np.random.default_rng(3).normal(size=5000)
+    force[700 : 700 + width] += 4.0
+    assert st.find_cycles(st.Record(time=time, force=force)).sizes["cycle"] == 0
+    assert st.find_cycles(st.Record(time=time, force=time)).sizes["cycle"] == 0
+
+
+@pytest.mark.parametrize(("step", "count"), [(1, 2), (200, 9)])
+def test_a_sawtooth_as_it_was_made(step: int, count: int) -> None:
+    """Complete cycles, the cut ones left out; a drop may happen between two samples."""
+    time = np.arange(0, 2000 * count + 2500, step)
+    cycles = st.find_cycles(st.Record(time=1e-3 * time, force=1e-3 * saw(time, 2000)))
+    assert cycles.sizes["cycle"] == count
+    assert cycles["peak"].values == pytest.approx(np.full(count, 2.0 - 1e-3 * step))
+    assert cycles["trough"].values == pytest.approx(np.zeros(count), abs=1e-12)
+    assert cycles["start"].values == pytest.approx(2.0 * np.arange(1, count + 1))
+    assert cycles["stick_slope"].values == pytest.approx(np.ones(count))
+    assert np.isnan(cycles["mu_static"]).all()
+
+
+def test_a_sine_turns_where_it_does() -> None:
+    time = np.sort(np.random.default_rng(5).uniform(0.0, 10.0, 20_000))  # not equally spaced
+    cycles = st.find_cycles(st.Record(time=time, force=5.0 + np.cos(2 * pi * time), normal_load=10))
+    assert cycles["peak_time"].values == pytest.approx(np.arange(1, 10) + 0.0, abs=1e-4)
+    assert cycles["mu_static"].values == pytest.approx(np.full(9, 0.6), rel=1e-4)
+    assert cycles["mu_kinetic"].values == pytest.approx(np.full(9, 0.5), rel=1e-4)
+
+
+def test_summary_is_mean_and_spread(paper: st.Record) -> None:
+    cycles = st.find_cycles(bare(paper))
+    table = st.summary(cycles)
+    drop = table.sel(quantity="drop")
+    assert float(drop["mean"]) == pytest.approx(float(cycles["drop"].mean()))
+    assert float(drop["standard_deviation"]) == pytest.approx(np.std(cycles["drop"], ddof=1))
+    assert (int(drop["number"]), str(drop["unit"].values)) == (3, "N")
+    assert int(table["number"].sel(quantity="mu_static")) == 0
+    assert not set(TIMES) & set(table["quantity"].values)
+
+
+def test_the_figure_marks_every_cycle_and_names_the_regime(paper: st.Record) -> None:
+    time = np.arange(60_000) * 1e-3
+    for record, count, panels in (
+        (paper, 3, 1),
+        (st.Record(time=time, force=saw(time)), 28, 2),
+        (st.Record(time=time, force=np.ones(60_000)), 0, 1),
+    ):
+        fig = cycles_figure(record)
+        fig.set_dpi(60)
+        fig.draw_without_rendering()
+        assert len(fig.axes) == panels
+        marks = [len(np.asarray(line.get_xdata())) for line in fig.axes[0].lines[1:]]
+        assert marks == ([count, count + 1] if count else [])
+        assert st.classify(record).kind in fig.axes[0].get_title(loc="left").lower()
+        assert "N)" in fig.axes[0].get_ylabel()

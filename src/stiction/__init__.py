@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from stiction.analysis.ridge import follow_ridge
     from stiction.analysis.song import hear_song, song_by_phase
     from stiction.analysis.spectrum import spectrogram, stream_spectrogram
+    from stiction.analysis.spread import summary
     from stiction.comparison import compare
     from stiction.description import Description, Settings
     from stiction.drive import (
@@ -114,6 +115,7 @@ _HOME = {
     "spectrogram": "analysis.spectrum",
     "stream_spectrogram": "analysis.spectrum",
     "strongest_line": "analysis.measured_line",
+    "summary": "analysis.spread",
 }
 _ROOMS = ("presets", "theory")
 
@@ -170,6 +172,7 @@ __all__ = [
     "spectrogram",
     "stream_spectrogram",
     "strongest_line",
+    "summary",
     "theory",
 ]
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
 
 # name: (unit, long name), as CF attributes
 COLUMNS = {
@@ -174,11 +175,17 @@ _THREE = ((0, -1), (1, None), (2, None))  # of troughs and peaks in turn: start,
 
 def _loading_rate(time: Floats, force: Floats, start: Floats, peak_time: Floats) -> Floats:
     rise = peak_time - start
-    begin, end = (np.searchsorted(time, start + part * rise) for part in LOADING)
+    begin, end = (_from(time, start + part * rise) for part in LOADING)
     begin = np.minimum(begin, len(time) - 2)
     fit = fitted(time, force, begin, np.maximum(end, begin + 1), 1)
     slope: Floats = fit.coefficients[:, 1] / fit.half
     return slope
+
+
+def _from(time: Floats, begin: Floats) -> Indices:
+    """Return the first sample at or after each time, or nearly at it: rounding decides nothing."""
+    place = np.interp(begin, time, np.arange(len(time)))
+    return np.ceil(place - 1e-3).astype(np.intp)
 
 
 def _moved(record: Record, begin: Floats, end: Floats, gained: Floats) -> Floats:
@@ -193,8 +200,8 @@ def _moved(record: Record, begin: Floats, end: Floats, gained: Floats) -> Floats
 
 def _fastest(record: Record, force: Floats, peak_time: Floats, trough_time: Floats) -> Floats:
     """Return the largest slip speed of each fall."""
-    begin = np.searchsorted(record.time, peak_time)
-    end = np.maximum(np.searchsorted(record.time, trough_time), begin + 1)
+    begin = _from(record.time, peak_time)
+    end = np.maximum(_from(record.time, trough_time), begin + 1)
     if record.slip_speed is not None:
         speed = record.slip_speed
     elif record.stiffness is not None and record.drive_velocity is not None:

@@ -88,7 +88,7 @@ def turning_points(values: Floats) -> TurningPoints:
     for finer in range(level - 1, quiet - 1, -1):
         index = _placed(levels[finer], index, trough)
     unit = float(np.ptp(values)) / FINE
-    means = values.min() + unit / 2**quiet * levels[quiet]
+    means = values.min() + unit / 2**quiet * levels[quiet] if quiet else without_spikes(values)
     return TurningPoints(index, trough, means, 2**quiet, unit * reach[quiet], gap.clearness)
 
 

@@ -14,6 +14,9 @@ Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 
+ROUNDING = 1e-9  # a slope less than this part of the bend is none
+
+
 class Vertices(NamedTuple):
     """Time and value of each turning point, (n,) each."""
 
@@ -41,15 +44,17 @@ def vertices(time: Floats, points: TurningPoints) -> Vertices:
     upward = np.where(points.trough, -1.0, 1.0)  # each point is a top of `upward * values`
     first, last = _within_noise(points, upward)
     fit = fitted(time, values, first, last, 2)
-    _, slope, curvature = fit.coefficients.T
-    with np.errstate(divide="ignore", invalid="ignore"):
-        inside = np.nan_to_num(np.clip(-0.5 * slope / curvature, -1.0, 1.0))
-    tries = np.stack([-np.ones_like(slope), inside, np.ones_like(slope)])
-    heights = np.stack([upward * fit.at(x) for x in tries])
-    best = np.argmax(heights, axis=0)
-    each = np.arange(len(best))
-    found = Vertices(fit.middle + fit.half * tries[best, each], upward * heights[best, each])
+    x = _top(upward * fit.coefficients[:, 1], upward * fit.coefficients[:, 2])
+    found = Vertices(fit.middle + fit.half * x, fit.at(x))
     return _corners_as_sampled(time, values, upward, first, last, found)
+
+
+def _top(slope: Floats, bend: Floats) -> Floats:
+    """Return where slope x + bend x^2 is highest within -1 to 1, and 0 where it is at both ends."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        vertex = np.clip(-0.5 * slope / bend, -1.0, 1.0)
+    tilted = np.abs(slope) > ROUNDING * np.abs(bend)
+    return np.where(bend < 0.0, vertex, np.where(tilted, np.sign(slope), 0.0))
 
 
 def _within_noise(points: TurningPoints, upward: Floats) -> tuple[Indices, Indices]:
@@ -84,13 +89,17 @@ def _corners_as_sampled(
     It is a corner if it bends more than twice as much as next to it, on either side.
     """
     middle = first + 1
-    bend = np.stack(
-        [
-            -upward * (values[i + 1] - 2.0 * values[i] + values[i - 1])
-            for i in (np.clip(middle + k, 1, len(values) - 2) for k in (-1, 0, 1))
-        ]
+    before, here, after = (
+        -upward * _bend(time, values, np.clip(middle + k, 1, len(values) - 2)) for k in (-1, 0, 1)
     )
-    corner = (last - first == 2) & (bend[1] > 2.0 * np.maximum(bend[0], bend[2]))
+    corner = (last - first == 2) & (here > 2.0 * np.maximum(before, after))
     return Vertices(
         np.where(corner, time[middle], found.time), np.where(corner, values[middle], found.value)
     )
+
+
+def _bend(time: Floats, values: Floats, middle: Indices) -> Floats:
+    """Return the second derivative from three samples."""
+    (t0, t1, t2), (v0, v1, v2) = ([x[middle + k] for k in (-1, 0, 1)] for x in (time, values))
+    bend: Floats = 2.0 * ((v2 - v1) / (t2 - t1) - (v1 - v0) / (t1 - t0)) / (t2 - t0)
+    return bend

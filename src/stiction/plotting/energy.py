@@ -43,7 +43,8 @@ PARTS = {
 def draw_budget(ax: Axes, budget: xr.Dataset) -> None:
     """Draw for each interval what the work became, stacked; what was taken out of it goes down.
 
-    Black ticks beside it mark the work of the drive. Parts below a thousandth of the largest are left out.
+    Black ticks beside it mark the work of the drive. Parts below a thousandth of the largest
+    are left out.
     """
     named = {name: budget[name].values for name in PARTS}
     factor, prefix = prefixed(np.concatenate([*named.values(), budget["work"].values]))

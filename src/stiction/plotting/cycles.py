@@ -1,0 +1,105 @@
+"""A record with its cycles marked, and what kind of motion they show."""
+
+from __future__ import annotations
+
+from textwrap import fill
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from stiction.analysis.cycles import find_cycles
+from stiction.analysis.record import Record
+from stiction.analysis.regime import Regime, classify
+from stiction.plotting.style import BLUE, GREY, PAGE, PALE, RED, new_figure, style
+from stiction.plotting.time_series import draw_line, prefixed
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FEW = 12  # cycles that are seen one by one on a page's width
+SHOWN = 6  # cycles in the close-up
+LETTERS = 118  # of a page's width
+
+
+def cycles_figure(record: Record) -> Figure:
+    """Draw the force of a record with its peaks and troughs marked, and its regime in words.
+
+    Where there are many cycles, some from the middle of the record are shown larger below.
+
+    Parameters
+    ----------
+    record : Record
+        Measured, or of a run; not empty.
+
+    Returns
+    -------
+    Figure
+        As wide as a page.
+    """
+    cycles, regime = find_cycles(record), classify(record)
+    many = cycles.sizes["cycle"] > FEW
+    with style():
+        fig = new_figure(PAGE, 4.6 if many else 2.8)
+        panels = fig.subplots(2 if many else 1, 1, squeeze=False)[:, 0]
+        draw_cycles(panels[0], record, cycles)
+        panels[0].set_title(_in_words(regime))
+        if many:
+            _zoom(panels[0], panels[1], record, cycles)
+        panels[-1].set_xlabel("time $t$ (s)")
+    return fig
+
+
+def draw_cycles(ax: Axes, record: Record, cycles: xr.Dataset) -> None:
+    """Draw the force of a record over time and mark peaks and troughs.
+
+    Parameters
+    ----------
+    ax : Axes
+        Drawn on.
+    record : Record
+        Not empty.
+    cycles : Dataset
+        From `stiction.analysis.cycles.find_cycles`.
+    """
+    factor, prefix = prefixed(record.force)
+    draw_line(ax, record.time, factor * record.force, GREY, 0.5)
+    size = float(np.clip(60.0 / max(cycles.sizes["cycle"], 1), 1.5, 4.0))  # pt: they do not touch
+    low_time = np.append(cycles["start"].values[:1], cycles["trough_time"].values)
+    low = np.append(cycles["start_force"].values[:1], cycles["trough"].values)
+    for time, force, color, marker, name in (
+        (cycles["peak_time"].values, cycles["peak"].values, RED, "v", "peak"),
+        (low_time, low, BLUE, "^", "trough"),
+    ):
+        if len(time):
+            ax.plot(time, factor * force, marker, color=color, markersize=size, label=name)
+    if cycles.sizes["cycle"]:
+        ax.legend(
+            loc="lower right",
+            ncols=2,
+            markerscale=4.0 / size,
+            bbox_to_anchor=(1.0, 1.0),
+            borderaxespad=0.1,
+        )
+    ax.margins(y=0.08)
+    ax.set_ylabel(f"spring force ({prefix}N)")
+
+
+def _in_words(regime: Regime) -> str:
+    kind, _, reasons = str(regime).partition(": ")
+    return kind[0].upper() + kind[1:] + "\n" + fill(reasons, LETTERS)
+
+
+def _zoom(whole: Axes, part: Axes, record: Record, cycles: xr.Dataset) -> None:
+    """Show some cycles from the middle on `part`, and shade that time on `whole`."""
+    first = (cycles.sizes["cycle"] - SHOWN) // 2
+    begin, end = cycles["start"].values[first], cycles["trough_time"].values[first + SHOWN - 1]
+    margin = 0.1 * (end - begin)
+    begin, end = begin - margin, end + margin
+    seen = (record.time >= begin) & (record.time <= end)
+    chosen = cycles.isel(cycle=slice(first, first + SHOWN))
+    near = record.model_copy(update={"time": record.time[seen], "force": record.force[seen]})
+    draw_cycles(part, near, chosen)
+    part.set_title("the shaded time")
+    whole.axvspan(begin, end, color=PALE, zorder=0)

@@ -1,0 +1,148 @@
+"""Each kind of motion is told from the others, with what is known of the rig and without."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+from tests.measured import bare, measured
+
+import stiction as st
+from stiction.analysis.decay import dies_out
+
+BETWEEN = "between stick-slip and harmonic vibration"
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "least"),
+    [
+        ("k168_v42", "stick-slip", 0.9),
+        ("k168_v1100", BETWEEN, 0.4),
+        ("k1002_v4300", "harmonic vibration", 0.9),
+        ("k2254_v42", "steady sliding", 0.8),
+    ],
+)
+def test_measured_records_are_told_apart(name: str, kind: str, least: float) -> None:
+    record = measured(name)
+    for known in (record, bare(record)):
+        regime = st.classify(known)
+        assert regime.kind == kind
+        assert regime.confidence > least
+    for part in np.array_split(np.arange(len(record)), 6):
+        assert st.classify(st.Record(time=record.time[part], force=record.force[part])).kind == kind
+
+
+def test_between_says_what_else_it_could_be() -> None:
+    regime = st.classify(measured("k168_v1100"))
+    assert regime.runner_up == "stick-slip"
+    assert regime.confidence < 0.7
+    assert "the force rises for 7" in str(regime)
+    assert 1.2 < regime.evidence["natural_period"] < 1.7  # 2 pi sqrt(m/k) = 85 ms of 125 ms
+
+
+@pytest.mark.parametrize(
+    ("phi", "kind"),
+    [  # critical: 8.66 deg
+        ("1 deg", "stick-slip"),
+        ("8 deg", "stick-slip"),
+        ("8.8 deg", "damped approach"),
+        ("10 deg", "damped approach"),
+    ],
+)
+def test_the_critical_misalignment_parts_stick_slip_from_damped(
+    slider: st.Slider, phi: str, kind: str
+) -> None:
+    run = st.simulate(slider.replace(phi=phi), 10.0, sample_rate=10e3)
+    record = st.record_of(run)
+    assert st.classify(record).kind == kind
+    assert st.classify(bare(record)).kind == kind
+    assert (st.find_cycles(record).sizes["cycle"] > 0) == (kind == "stick-slip")
+
+
+def test_constant_friction_is_a_damped_approach(slider: st.Slider) -> None:
+    law = st.ExponentialWeakening(mu_0=0.2, mu_inf=0.2, v_f="10 mm/s")
+    run = st.simulate(slider.replace(friction=law), 10.0, sample_rate=10e3)
+    regime = st.classify(st.record_of(run))
+    assert regime.kind == "damped approach"
+    assert "each smaller than the last" in str(regime)
+
+
+def test_a_run_before_its_first_slip_is_stuck(paper_run: st.Trajectory) -> None:
+    record = st.record_of(paper_run)
+    early = record.time < 1.5
+    part = st.Record(time=record.time[early], force=record.force[early])
+    assert st.classify(part).kind == "stuck"
+    known = part.model_copy(update={"stiffness": 1e3, "drive_velocity": 1e-3})
+    assert st.classify(known).kind == "stuck"
+    # the same slow rise on a spring that would load a hundred times faster: it slides
+    stiff = part.model_copy(update={"stiffness": 1e5, "drive_velocity": 1e-3})
+    assert st.classify(stiff).kind == "steady sliding"
+
+
+@pytest.mark.parametrize(
+    ("per_cycle", "noise"),  # twelve samples a cycle do not show it under more noise
+    [(12, 0.0), (12, 0.1), (100, 0.0), (100, 0.1), (100, 0.5), (1000, 0.0), (1000, 0.5)],
+)
+def test_a_vibration_is_no_stick_slip(noise: float, per_cycle: int) -> None:
+    time = np.arange(20 * per_cycle) / (3.0 * per_cycle)
+    wave = np.sin(2 * pi * 3.0 * time) + noise * np.random.default_rng(1).normal(size=len(time))
+    regime = st.classify(st.Record(time=time, force=wave))
+    assert regime.kind == "harmonic vibration"
+    assert regime.evidence["period_spread"] < 0.25
+
+
+def test_records_of_no_motion_in_particular() -> None:
+    time = np.arange(4000) * 1e-3
+    random = np.random.default_rng(7)
+    white = random.normal(size=4000)
+    spike = np.where(time == time[777], 5.0, 1.0)
+    kinds = {
+        kind: [st.classify(st.Record(time=time, force=force)).kind for force in forces]
+        for kind, forces in {
+            "steady sliding": [
+                np.ones(4000),
+                white,
+                2.0 + 0.01 * white,
+                spike,
+                spike + 0.01 * white,
+            ],
+            "stuck": [time, time + 0.05 * white, time + spike],
+            "damped approach": [1.0 - np.exp(-5.0 * time), np.exp(-2 * time) * np.sin(40 * time)],
+        }.items()
+    }
+    for kind, found in kinds.items():
+        assert set(found) == {kind}
+
+
+@pytest.mark.parametrize("size", [0, 1, 3, 20])
+def test_too_few_samples_determine_nothing(size: int) -> None:
+    regime = st.classify(st.Record(time=np.arange(size), force=np.ones(size)))
+    assert (regime.kind, regime.confidence) == ("undetermined", 0.0)
+    assert f"there are {size} samples, too few" in str(regime)
+
+
+def test_one_cut_slip_determines_nothing(paper_run: st.Trajectory) -> None:
+    record = st.record_of(paper_run)
+    early = record.time < 2.9
+    regime = st.classify(st.Record(time=record.time[early], force=record.force[early]))
+    assert regime.kind == "undetermined"
+    assert "make no complete cycle" in str(regime)
+
+
+def test_few_cycles_say_less_than_many() -> None:
+    time = np.arange(40_000) * 1e-3
+    confidence = [
+        st.classify(st.Record(time=time[:n], force=time[:n] % 2.0)).confidence
+        for n in (6500, 12_500, 40_000)
+    ]
+    assert confidence == pytest.approx([3 / 5, 6 / 8, 19 / 21])  # (n + 1)/(n + 3) of n cycles
+
+
+def test_what_dies_out() -> None:
+    decay = 0.7 ** np.arange(10)
+    assert dies_out(decay, np.ones(10), 0.5)
+    assert not dies_out(decay[:5], np.ones(5), 0.5)  # it may go on
+    assert dies_out(decay[:5], np.ones(5), 4.0)  # but it did not
+    assert not dies_out(decay[::-1], np.ones(10), 0.5)
+    assert not dies_out([], [], 0.0)
