@@ -1,21 +1,20 @@
 """Creep curves against Eq. (7), from runs and from noisy records."""
 
 from math import radians
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from tests.measured import measured
 
 import stiction as st
 from stiction import theory
-from stiction.analysis.creep_curve import bin_edges
+from stiction.analysis.creep_bins import bin_edges
 from stiction.analysis.trimmed import trimmed_mean
 from stiction.plotting.creep_curve import creep_figure, creep_theory
 
 V, K, F_0 = 1e-3, 1e3, 2.0
 L_X = F_0 / K
-PAPER = Path(__file__).parents[2] / "shared" / "data" / "paper-friction"
 
 
 def one_phase(start: float, slip: float) -> xr.Dataset:
@@ -166,6 +165,22 @@ def test_no_slip_still_creeps(slider):
     assert np.isfinite(curves["velocity"]).any()
 
 
+def test_where_there_is_no_stick_phase_there_is_no_curve():
+    record = st.Record(time=[], force=[], stiffness=K, drive_velocity=V)
+    curves = st.creep_curves(record, st.find_cycles(record))
+    mean = st.mean_creep(curves)
+    assert (curves.sizes["phase"], mean.sizes["bin"]) == (0, 0)
+    with pytest.raises(st.ResultError, match="0 bins of the creep curve lie between"):
+        st.fit_misalignment(mean, V, K)
+
+
+def test_a_drive_the_other_way_creeps_alike(slider, curves):
+    back = slider.replace(drive=st.ConstantVelocity(-V))
+    run = st.simulate(back, 5.0, sample_rate=10e3)
+    mirrored = st.creep_curves(run, st.find_cycles(st.record_of(run)))
+    np.testing.assert_array_equal(mirrored["velocity"], curves["velocity"])
+
+
 def test_what_cannot_be_known_is_refused(curves):
     record = st.Record(time=np.arange(10.0), force=np.arange(10.0), stiffness=1.0)
     with pytest.raises(st.ResultError, match="does not say where the mass is; give"):
@@ -174,13 +189,11 @@ def test_what_cannot_be_known_is_refused(curves):
         st.fit_divergence(st.mean_creep(curves), L_X / V, (3.0, 4.0))
 
 
-@pytest.mark.skipif(not PAPER.is_dir(), reason="the measured records are not part of the project")
 def test_a_measured_record_creeps_before_slip():
-    time, force = np.loadtxt(PAPER / "k168_v42.csv.gz", delimiter=",", skiprows=1).T
-    values = {"time": time, "force": force * 0.0307 * 9.81, "drive_velocity": 42e-6}
-    cycles = st.find_cycles(st.Record(**values, stiffness=168.0))
-    stiffness = float(cycles["stiffness"].median())  # as the early loading has it
-    record = st.Record(**values, stiffness=stiffness)
+    record = measured("k168_v42")
+    cycles = st.find_cycles(record)
+    # as the early loading has it, with which the mass then rests on the average
+    record = record.model_copy(update={"stiffness": float(cycles["stiffness"].median())})
     mean = st.mean_creep(st.creep_curves(record, cycles, 0.04))  # two periods of the mains
     share, error = (mean[name].values / 42e-6 for name in ("velocity", "velocity_error"))
     assert share[0] > 0.5

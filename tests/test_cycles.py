@@ -47,27 +47,20 @@ def test_reversals_of_a_signal_are_paired_as_rainflow_pairs_them() -> None:
 def test_a_random_signal_has_the_reversals_that_a_slow_count_finds() -> None:
     values = np.random.default_rng(1).integers(0, 1000, 300)
     for height in (200, 500, 800):
-        assert standing_out(values, height, height).tolist() == _hysteresis(values, height)
+        assert standing_out(values, height, height).tolist() == walked(values, height)
 
 
-def _hysteresis(values: NDArray[np.int64], height: int) -> list[int]:
+def walked(values: NDArray[np.int64], height: int) -> list[int]:
     """Turning points by walking along: each is known once the signal has come back by `height`."""
-    found, way = [], 0
-    low = high = 0
+    found, low, high, way = [], 0, 0, 0
     for i, value in enumerate(values):
-        high, low = (i if value > values[high] else high), (i if value < values[low] else low)
+        high = i if value > values[high] else high
+        low = i if value < values[low] else low
         if way >= 0 and values[high] - value >= height:
             found, way, low = [*found, high], -1, i
         elif way <= 0 and value - values[low] >= height:
             found, way, high = [*found, low], 1, i
-        if way > 0:
-            low = i if value > values[low] and high == i else low
-    return found[1:] if found and _not_turned(values, found[0], height) else found
-
-
-def _not_turned(values: NDArray[np.int64], index: int, height: int) -> bool:
-    """Whether the signal before the first point does not go far enough for it to be a turn."""
-    return bool(np.ptp(values[: index + 1]) < height)
+    return found[1:]  # before the first there is no leg as high
 
 
 @pytest.mark.parametrize("kind", ["white", "walk", "smooth and white"])

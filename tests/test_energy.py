@@ -132,6 +132,14 @@ def test_free_oscillation_loses_what_its_swings_lose():
     assert float(budget["work"]) == 0.0
 
 
+def test_a_run_that_broke_off_and_one_read_back_have_a_budget(slider, tmp_path):
+    run = st.simulate(slider, 5.0, max_steps=3000)
+    assert not run.status.ok
+    assert closure(st.energy_budget(run))[0] < 1e-6
+    again = st.energy_budget(st.load(run.save(tmp_path / "run.nc")))
+    np.testing.assert_array_equal(again["work"], st.energy_budget(run)["work"])
+
+
 def test_edges_outside_the_run_or_out_of_order_are_refused(slider):
     run = st.simulate(slider, 0.01)
     with pytest.raises(st.ResultError, match=r"the run goes from 0 s to 0\.01 s, the edges from"):

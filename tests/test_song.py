@@ -2,19 +2,18 @@
 
 import tracemalloc
 from math import pi, sin
-from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.signal import ShortTimeFFT
 from scipy.signal.windows import hamming
+from tests.measured import measured
 
 import stiction as st
 from stiction.analysis.ridge import best_path
 from stiction.plotting.song import song_figure
 
 RATE = 2000.0
-PAPER = Path(__file__).parents[2] / "shared" / "data" / "paper-friction"
 NOISE = np.random.default_rng(5).normal(size=40_000)
 
 
@@ -124,14 +123,12 @@ def test_what_has_no_spectrum_is_refused():
         st.strongest_line(record, 3.0)
 
 
-@pytest.mark.skipif(not PAPER.is_dir(), reason="the measured records are not part of the project")
 @pytest.mark.parametrize(
     ("name", "low", "hum"),
     [("k168_v42", 40.0, 50.0), ("k2254_v42", 40.0, 50.0), ("k1002_v4300", 100.0, None)],
 )  # the last one oscillates at 29 Hz itself
 def test_a_measured_record_has_the_hum_of_the_mains_or_nothing(name, low, hum):
-    time, force = np.loadtxt(PAPER / f"{name}.csv.gz", delimiter=",", skiprows=1).T
-    heard = st.strongest_line(st.Record(time=time, force=force), low)["frequency"].values
+    heard = st.strongest_line(measured(name), low)["frequency"].values
     if hum is None:
         assert not np.isfinite(heard).any()
     else:

@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from stiction import presets, stability, theory
     from stiction.analysis.creep_curve import creep_curves, mean_creep
-    from stiction.analysis.creep_fit import fit_divergence, fit_misalignment
     from stiction.analysis.cycles import find_cycles
+    from stiction.analysis.divergence import fit_divergence
     from stiction.analysis.energy import energy_budget
     from stiction.analysis.measured_line import strongest_line
+    from stiction.analysis.misalignment import fit_misalignment
     from stiction.analysis.onset import find_onset
     from stiction.analysis.record import Record, record_of
     from stiction.analysis.regime import Regime, classify
@@ -105,7 +106,9 @@ _HOME = {
     "find_cycles": "analysis.cycles",
     "find_onset": "analysis.onset",
     "fit_divergence": "analysis.creep_fit",
+    "fit_divergence": "analysis.divergence",
     "fit_misalignment": "analysis.creep_fit",
+    "fit_misalignment": "analysis.misalignment",
     "follow_ridge": "analysis.ridge",
     "hear_song": "analysis.song",
     "load": "trajectory",

@@ -51,7 +51,8 @@ def energy_budget(run: Trajectory, edges: ArrayLike | None = None) -> xr.Dataset
     Parameters
     ----------
     run : Trajectory
-        Sampled or not: it is solved once more, with samples where the integrals need them.
+        Sampled or not: it is solved once more, with samples where the integrals need them, some
+        4 kB for each transverse period.
     edges : array, optional
         (n + 1,), s, ascending: from each to the next is an interval, e.g. a cycle. By default
         the whole run.

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from math import pi, sin
-from typing import TYPE_CHECKING
+from math import pi
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
+Rows = dict[str, tuple[Any, str, str]]  # name: values, unit, long name
 
 WIDTH = 50.0  # transverse periods in a window
 STEPS = 5  # windows that overlap at any time
@@ -29,15 +30,11 @@ HIGHEST = 1.2
 def hear_song(run: Trajectory) -> xr.Dataset:
     """Follow the transverse oscillation of a run through time.
 
-    While the friction force is turned by theta, slip has its direction, across which the mass is
-    held as if by a strong damper, F/(m |s|) per second. So it swings along the force, against the
-    stiffness k_x cos^2(theta) + k_y sin^2(theta): the song begins at omega_y and falls as
-    sin(theta), with cos(theta) = k_x u_x/F_0, towards slip. (Beyond the paper, which reports the
-    fall, Fig. 4; this is ``expected``.)
-
-    As in the paper, Eq. (9), its velocity v_y reaches V sin(phi) where the mass sticks. The
-    amplitude v_y/omega is thus V sin(phi)/omega_y, the bound, only at first, and
-    grows as the frequency falls.
+    Its frequency starts at omega_y and falls towards slip as sin(theta), with
+    cos(theta) = k_x u_x/F_0: see `stiction.theory.oscillation_frequency`, which is ``expected``.
+    As in Eq. (9), the velocity v_y reaches V sin(phi), where the mass sticks. The amplitude
+    v_y/omega therefore is V sin(phi)/omega_y, the paper's bound, only at first, and grows as the
+    frequency falls.
 
     Parameters
     ----------
@@ -47,55 +44,40 @@ def hear_song(run: Trajectory) -> xr.Dataset:
     Returns
     -------
     Dataset
-        Over ``time`` (s), the middle of windows of 50 transverse periods: ``frequency`` (Hz; not
-        a number where no line stands out), ``expected`` (Hz), ``prominence`` as in
-        `stiction.follow_ridge`; ``velocity`` (m/s), half the range of v_y, and ``amplitude`` (m),
-        it over the frequency; ``velocity_bound`` V sin(phi) and ``amplitude_bound``
-        V sin(phi)/omega_y; ``share_stuck``, of time, and ``sticks_per_second`` (1/s): both are
-        zero where the oscillation rings down freely.
+        Over ``time`` (s), the middle of windows of 50 transverse periods, which overlap:
+        ``frequency`` (Hz; not a number where no line stands out), ``prominence`` as in
+        `stiction.follow_ridge`, ``expected`` (Hz); ``velocity`` (m/s), half the range of v_y,
+        and ``amplitude`` (m), it over the frequency; ``velocity_bound`` V sin(phi) and
+        ``amplitude_bound`` V sin(phi)/omega_y; ``share_stuck``, of time, and
+        ``sticks_per_second`` (1/s): both are zero where the oscillation rings down freely.
 
     Raises
     ------
     ResultError
         If the run is too short or too coarsely sampled for it.
     """
-
-    slider, data = run.slider, run.data
-    times, v_y = data["time"].values, data["v_y"].values
     natural, width = _scales(run)
-    lines = song_spectrogram(run)
-    found = follow_ridge(lines, LOWEST * natural, HIGHEST * natural)
+    found = follow_ridge(song_spectrogram(run), LOWEST * natural, HIGHEST * natural)
     middle = found["time"].values
-    velocity, force = _in_windows(times, v_y, data["spring_x"].values, middle, width)
+    velocity, bound, expected = _in_windows(run, middle, width)
     edges = np.stack([middle - 0.5 * width, middle + 0.5 * width])
-    across = abs(slider.motion.rate(times[0])[0] * sin(slider.phi))
-    cosine = np.clip(np.abs(force) / slider.F_0, 0.0, 1.0)
-    stiffness = (slider.k_x * cosine**2 + slider.k_y * (1.0 - cosine**2)) / slider.k_y
+    stuck = np.diff(stuck_until(edges, run.sticks), axis=0)[0] / width
     rows = {
-        "expected": (natural * np.sqrt(stiffness), "Hz", "omega_y sin(theta)/2 pi"),
+        "expected": (expected / (2.0 * pi), "Hz", "frequency along the friction force"),
         "velocity": (velocity, "m/s", "half the range of v_y"),
-        "velocity_bound": (np.full(len(middle), across), "m/s", "V sin(phi)"),
+        "velocity_bound": (bound, "m/s", "V sin(phi)"),
         "amplitude": (velocity / (2.0 * pi * found["frequency"].values), "m", "amplitude of u_y"),
-        "amplitude_bound": (
-            np.full(len(middle), across / (2.0 * pi * natural)),
-            "m",
-            "V sin(phi)/omega_y",
-        ),
-        "share_stuck": (np.diff(stuck_until(edges, run.sticks), axis=0)[0] / width, "1", "stuck"),
+        "amplitude_bound": (bound / (2.0 * pi * natural), "m", "V sin(phi)/omega_y"),
+        "share_stuck": (stuck, "1", "share of time stuck"),
         "sticks_per_second": (
             np.diff(sticks_until(edges, run.sticks), axis=0)[0] / width,
             "1/s",
-            "sticks per second",
+            "stick intervals per second",
         ),
     }
     return (
         found.drop_vars("amplitude")
-        .assign(
-            {
-                name: ("time", values, {"units": unit, "long_name": meaning})
-                for name, (values, unit, meaning) in rows.items()
-            }
-        )
+        .assign(_labelled("time", rows))
         .assign_attrs(natural_frequency=natural, width=width)
     )
 
@@ -157,16 +139,22 @@ def song_by_phase(song: xr.Dataset, run: Trajectory, phases: Floats) -> xr.Datas
         "first_frequency": (np.array([f[0] for f in heard]), "Hz", "first frequency heard"),
         "last_frequency": (np.array([f[1] for f in heard]), "Hz", "last frequency heard"),
     }
+    seconds = {"units": "s"}
     return xr.Dataset(
+        _labelled("phase", rows),
         {
-            name: ("phase", values, {"units": unit, "long_name": meaning})
-            for name, (values, unit, meaning) in rows.items()
-        },
-        {
-            "start": ("phase", phases[:, 0], {"units": "s"}),
-            "end": ("phase", phases[:, 1], {"units": "s"}),
+            "start": ("phase", phases[:, 0], seconds),
+            "end": ("phase", phases[:, 1], seconds),
         },
     )
+
+
+def _labelled(dimension: str, rows: Rows) -> dict[str, tuple[str, Any, dict[str, str]]]:
+    """Return variables over a dimension from values, unit and long name of each."""
+    return {
+        name: (dimension, values, {"units": unit, "long_name": meaning})
+        for name, (values, unit, meaning) in rows.items()
+    }
 
 
 def _scales(run: Trajectory) -> tuple[float, float]:
@@ -183,13 +171,25 @@ def _heard(song: xr.Dataset, start: float, end: float) -> tuple[float, float]:
     return (float(heard[0]), float(heard[-1])) if len(heard) else (np.nan, np.nan)
 
 
-def _in_windows(
-    times: Floats, v_y: Floats, force: Floats, middle: Floats, width: float
-) -> tuple[Floats, Floats]:
-    """Return half the range of v_y in the middle fifth of each window, and the mean force."""
-    half = 0.5 * width / STEPS
+def _in_windows(run: Trajectory, middle: Floats, width: float) -> tuple[Floats, Floats, Floats]:
+    """Return half the range of v_y (m/s), its bound, and the expected frequency (rad/s).
+
+    Each in the middle fifth of a window, where those of its neighbours begin and end.
+    """
+    slider, data = run.slider, run.data
+    times, half = data["time"].values, 0.5 * width / STEPS
     begin, end = (np.searchsorted(times, middle + side) for side in (-half, half))
     pairs = np.stack([begin, np.maximum(end, begin + 1)], axis=1).ravel()
     pairs = np.minimum(pairs, len(times) - 1)
-    high, low = np.maximum.reduceat(v_y, pairs)[::2], np.minimum.reduceat(v_y, pairs)[::2]
-    return 0.5 * (high - low), np.add.reduceat(force, pairs)[::2] / np.diff(pairs)[::2]
+    counts = np.diff(pairs)[::2]
+
+    def mean(name: str) -> Floats:
+        return np.asarray(np.add.reduceat(data[name].values, pairs)[::2] / counts)
+
+    v_y, (c, s) = data["v_y"].values, slider.direction
+    range_y = np.maximum.reduceat(v_y, pairs)[::2] - np.minimum.reduceat(v_y, pairs)[::2]
+    across = np.abs(mean("drive_X") * s + mean("drive_Y") * c)
+    holds = slider.F_0 * mean("normal_load") / slider.normal_load
+    cosine = np.clip(np.abs(mean("spring_x")) / np.maximum(holds, 1e-300), 0.0, 1.0)
+    expected = theory.oscillation_frequency(np.arccos(cosine), slider.k_x, slider.k_y, slider.mass)
+    return 0.5 * range_y, across, expected

@@ -110,13 +110,12 @@ def creep_figure(
         ax.set(xscale="log", xlim=(to_slip[-1] * 1.05, to_slip[0]))
         if (value > 2.0 * error).all():
             ax.set(yscale="log", ylim=(0.5 * value.min() / V, 1.5))
-            place = "lower right"
         else:
-            place = "upper left"
             ax.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
             ax.set_ylim(-0.4, 1.3)
         ax.set_xlabel("time to slip (s)")
         ax.set_ylabel(r"creep velocity $\dot{X}/V$ (1)")
-        legend = ax.legend(loc=place)
+        logarithmic = ax.get_yscale() == "log"  # then the curve leaves the lower right free
+        legend = ax.legend(loc="lower right" if logarithmic else "upper left")
         legend.get_lines()[0].set_alpha(0.5)
     return fig

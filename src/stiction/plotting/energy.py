@@ -43,7 +43,8 @@ PARTS = {
 def draw_budget(ax: Axes, budget: xr.Dataset) -> None:
     """Draw for each interval what the work became, stacked; what was taken out of it goes down.
 
-    A black bar marks the work of the drive. Parts below a thousandth of the largest are left out.
+    Black ticks beside it mark the work of the drive. Parts below a thousandth of the largest
+    are left out.
     """
     named = {name: budget[name].values for name in PARTS}
     factor, prefix = prefixed(np.concatenate([*named.values(), budget["work"].values]))
@@ -57,7 +58,7 @@ def draw_budget(ax: Axes, budget: xr.Dataset) -> None:
         bottom = np.where(values >= 0.0, up, down)
         ax.bar(
             place, factor * values, 0.7, factor * bottom, label=label, color=color,
-            hatch=hatch, edgecolor="white", linewidth=0.3,
+            hatch=hatch, edgecolor="white", linewidth=0.0,
         )  # fmt: skip
         up, down = up + np.maximum(values, 0.0), down + np.minimum(values, 0.0)
     work = factor * budget["work"].values
