@@ -12,7 +12,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from stiction import presets, stability, theory
+    from stiction import audit, presets, stability, theory
     from stiction.analysis.creep_curve import creep_curves, mean_creep
     from stiction.analysis.cycles import find_cycles
     from stiction.analysis.divergence import fit_divergence
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from stiction.analysis.onset import find_onset
     from stiction.analysis.record import Record, record_of
     from stiction.analysis.regime import Regime, classify
+    from stiction.analysis.report import Analysis, analyse
     from stiction.analysis.ridge import follow_ridge
     from stiction.analysis.song import hear_song, song_by_phase
     from stiction.analysis.spectrum import spectrogram, stream_spectrogram
@@ -65,6 +66,7 @@ __version__ = "0.3.0"
 
 # where each public name lives; imported when first used, so that `import stiction` is light
 _HOME = {
+    "Analysis": "analysis.report",
     "Anisotropic": "friction",
     "Constant": "drive",
     "ConstantVelocity": "drive",
@@ -98,6 +100,7 @@ _HOME = {
     "Stribeck": "friction",
     "Table": "friction",
     "Trajectory": "trajectory",
+    "analyse": "analysis.report",
     "check_law": "testing",
     "classify": "analysis.regime",
     "compare": "comparison",
@@ -105,9 +108,7 @@ _HOME = {
     "energy_budget": "analysis.energy",
     "find_cycles": "analysis.cycles",
     "find_onset": "analysis.onset",
-    "fit_divergence": "analysis.creep_fit",
     "fit_divergence": "analysis.divergence",
-    "fit_misalignment": "analysis.creep_fit",
     "fit_misalignment": "analysis.misalignment",
     "follow_ridge": "analysis.ridge",
     "hear_song": "analysis.song",
@@ -121,9 +122,10 @@ _HOME = {
     "strongest_line": "analysis.measured_line",
     "summary": "analysis.spread",
 }
-_ROOMS = ("presets", "stability", "theory")
+_ROOMS = ("audit", "presets", "stability", "theory")
 
 __all__ = [
+    "Analysis",
     "Anisotropic",
     "Constant",
     "ConstantVelocity",
@@ -157,6 +159,8 @@ __all__ = [
     "Stribeck",
     "Table",
     "Trajectory",
+    "analyse",
+    "audit",
     "check_law",
     "classify",
     "compare",

@@ -24,7 +24,7 @@ app = cyclopts.App(
     help_format="markdown",
     suppress_keyboard_interrupt=False,
 )
-COMMANDS = ("paper", "init", "run", "plot", "compare", "stability")
+COMMANDS = ("paper", "init", "audit", "run", "plot", "analyse", "compare", "stability")
 for _name in COMMANDS:  # light modules: what is heavy they import when they are called
     app.command(getattr(import_module(f"stiction.cli.{_name}"), _name))
 
