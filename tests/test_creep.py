@@ -185,6 +185,8 @@ def test_what_cannot_be_known_is_refused(curves):
     record = st.Record(time=np.arange(10.0), force=np.arange(10.0), stiffness=1.0)
     with pytest.raises(st.ResultError, match="does not say where the mass is; give"):
         st.creep_curves(record, one_phase(0.0, 9.0))
+    with pytest.raises(st.ResultError, match=r"width must be above 0 s, is -1\.0; leave it out"):
+        st.creep_curves(record, one_phase(0.0, 9.0), -1.0)
     with pytest.raises(st.ResultError, match="0 bins of the creep curve lie between"):
         st.fit_divergence(st.mean_creep(curves), L_X / V, (3.0, 4.0))
 

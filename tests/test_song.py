@@ -44,6 +44,32 @@ def test_the_song_falls_as_the_sine_of_the_force_angle(song):
     assert float(singing["frequency"].min()) < 0.5 * song.attrs["natural_frequency"]
 
 
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"phi": "3 deg"},
+        {"c_y": 20.0},
+        {"driven": "spring"},
+        {"load": st.LoadProgram(modulation=st.Modulation(1.0, 0.7))},
+    ],
+)
+def test_so_does_that_of_other_systems(slider, changes):
+    run = st.simulate(slider.replace(**changes), 1.5, sample_rate=10e3)
+    song = st.hear_song(run)
+    ratio = (song["frequency"] / song["expected"]).values[sings(song, 0.03).values]
+    assert len(ratio) > 80
+    # a load that sways moves the force by as much within a window
+    assert ratio == pytest.approx(0.995, abs=0.015)
+
+
+def test_what_has_died_away_is_not_heard(slider):
+    """With constant friction there is one stick, then steady sliding with the solver's noise."""
+    run = st.simulate(slider.replace(friction=st.Coulomb(0.2)), 3.0, sample_rate=10e3)
+    song = st.hear_song(run)
+    assert song["frequency"].sel(time=slice(0.1, 1.0)).notnull().all()
+    assert not song["frequency"].sel(time=slice(2.2, None)).notnull().any()
+
+
 def test_it_swings_up_to_its_bound_and_sticks_once_a_period(song):
     singing = song.isel(time=sings(song, 0.06))
     share = (singing["velocity"] / singing["velocity_bound"]).values

@@ -73,9 +73,13 @@ def creep_curves(
     Raises
     ------
     ResultError
-        If a record says neither where the mass is nor both stiffness and drive velocity.
+        If a record says neither where the mass is nor both stiffness and drive velocity, or
+        `width` is not above zero.
     """
     import xarray as xr
+
+    if width is not None and not width > 0.0:
+        raise ResultError(f"width must be above 0 s, is {width!r}; leave it out for one that suits")
 
     record = source if isinstance(source, Record) else record_of(source)
     position = _position(record)

@@ -25,6 +25,7 @@ WIDTH = 50.0  # transverse periods in a window
 STEPS = 5  # windows that overlap at any time
 LOWEST = 0.15  # of omega_y: the song falls no lower before it dies away
 HIGHEST = 1.2
+SILENT = 1e-3  # of V sin(phi): what swings less may be the solver's own noise
 
 
 def hear_song(run: Trajectory) -> xr.Dataset:
@@ -45,7 +46,8 @@ def hear_song(run: Trajectory) -> xr.Dataset:
     -------
     Dataset
         Over ``time`` (s), the middle of windows of 50 transverse periods, which overlap:
-        ``frequency`` (Hz; not a number where no line stands out), ``prominence`` as in
+        ``frequency`` (Hz; not a number where no line stands out, or it
+        is below a thousandth of the bound), ``prominence`` as in
         `stiction.follow_ridge`, ``expected`` (Hz); ``velocity`` (m/s), half the range of v_y,
         and ``amplitude`` (m), it over the frequency; ``velocity_bound`` V sin(phi) and
         ``amplitude_bound`` V sin(phi)/omega_y; ``share_stuck``, of time, and
@@ -60,6 +62,7 @@ def hear_song(run: Trajectory) -> xr.Dataset:
     found = follow_ridge(song_spectrogram(run), LOWEST * natural, HIGHEST * natural)
     middle = found["time"].values
     velocity, bound, expected = _in_windows(run, middle, width)
+    found["frequency"] = found["frequency"].where(found["amplitude"] > SILENT * bound)
     edges = np.stack([middle - 0.5 * width, middle + 0.5 * width])
     stuck = np.diff(stuck_until(edges, run.sticks), axis=0)[0] / width
     rows = {

@@ -89,7 +89,7 @@ def song_figure(run: Trajectory, song: xr.Dataset) -> Figure:
         for ax, letter in zip(axes, "abc", strict=True):
             panel_letter(ax, letter)
         axes[0].legend(loc="upper right", ncols=3, labelcolor="white", handlelength=1.4)
-        axes[1].set_ylim(0.0, 4.2)
+        axes[1].set_ylim(0.0, 1.5 * axes[1].get_ylim()[1])  # room for the legend
         axes[1].legend(loc="upper left", ncols=2, columnspacing=1.0)
         axes[-1].set_xlim(float(song["time"][0]), float(song["time"][-1]))
         axes[-1].set_xlabel("time $t$ (s)")
