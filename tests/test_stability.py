@@ -1,6 +1,8 @@
 """Linearised steady sliding: against closed forms, analytic derivatives, and simulation."""
 
+import doctest
 import math
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -338,6 +340,14 @@ def test_a_closed_boundary_closes():
         assert ends[0] == ends[1] or all(edges)
 
 
+def test_springs_that_differ_have_no_point_in_a_plane_of_both_at_once():
+    found = boundary(PAPER, "k_x, k_y", "drive.velocity", x_between=(1e3, 1e6))
+    assert math.isnan(found.attrs["x_own"])
+    assert found.attrs["y_own"] == V
+    with pytest.raises(st.DescriptionError, match="name two parameters"):
+        boundary(PAPER, "mass", "mass")
+
+
 def test_where_nothing_changes_the_boundary_is_empty():
     found = boundary(
         PAPER.replace(friction=st.Coulomb(mu_0=0.2)), "phi", "mass", x_between=("1 deg", "89 deg")
@@ -371,3 +381,12 @@ def test_a_range_that_is_none_is_refused():
         critical(PAPER, "phi", ("0 deg", "100 deg"))
     with pytest.raises(st.DescriptionError, match="degree or radian"):
         critical(PAPER, "phi", (0.0, 0.3))
+
+
+@pytest.mark.parametrize(
+    "module", ["parameter", "stability", "stability.linear", "stability.roots"]
+)
+def test_every_docstring_example_runs(module):
+    result = doctest.testmod(import_module(f"stiction.{module}"))
+    assert result.attempted > 0
+    assert result.failed == 0

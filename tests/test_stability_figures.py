@@ -9,8 +9,9 @@ from stiction import theory
 from stiction.plotting.modes import modes_figure
 from stiction.plotting.onset import onset_figure
 from stiction.plotting.parameter import parameter_symbol, scale_of
-from stiction.plotting.stability import stability_map
+from stiction.plotting.stability import signed_distance, stability_map
 from stiction.stability import boundary, critical, modes_over
+from stiction.stability.axis import axis
 
 PAPER = st.presets.nakano_popov_2020()
 PLANE = {"x_between": ("0 deg", "25 deg"), "y_between": ("0.1 mm/s", "100 mm/s")}
@@ -27,7 +28,7 @@ def test_the_map_names_both_sides_and_marks_the_slider():
     mu, slope = ([f(v) for v in speeds] for f in (PAPER.law.coefficient, PAPER.law.slope))
     known = theory.critical_misalignment(speeds, mu, slope)
     curve = boundary(PAPER, "phi", "drive.velocity", **PLANE)
-    (ax,) = drawn(stability_map(PAPER, curve, (known, speeds))).axes
+    (ax,) = drawn(stability_map(curve, (known, speeds))).axes
     places = {text.get_text(): text.get_position() for text in ax.texts}
     assert places.keys() == {"stable", "unstable"}
     for name, (x, y) in places.items():  # fractions of the axes: is it so there?
@@ -43,7 +44,7 @@ def test_the_map_names_both_sides_and_marks_the_slider():
 def test_a_plane_without_a_boundary_is_named_as_a_whole():
     slider = PAPER.replace(friction=st.Coulomb(mu_0=0.2))
     curve = boundary(slider, "phi", "mass", x_between=("1 deg", "89 deg"))
-    (ax,) = drawn(stability_map(slider, curve)).axes
+    (ax,) = drawn(stability_map(curve)).axes
     assert [text.get_text() for text in ax.texts] == ["stable"]
 
 
@@ -74,3 +75,39 @@ def test_parameters_have_symbols_and_units():
     assert scale_of("k_x", "N/m", (1e3, 5e3)).label == "$k_{x}$ (kN/m)"
     assert scale_of("drive.velocity", "m/s", (1e-6, 1.0), logarithmic=True).unit == "mm/s"
     assert scale_of("phi", "rad", (0.0, 1.0)).named(np.radians(8.0)) == r"$\varphi$ = 8°"
+
+
+VELOCITY = {"x": "drive.velocity", "x_between": ("0.01 mm/s", "1 m/s")}
+STIFFNESS = {"x": "k_y", "x_between": (1e3, 1e8)}
+MIRRORED = {"y": "phi", "y_between": ("-89 deg", "89 deg")}
+AGEING = st.RateStateAgeing(0.01, 0.015, 1e-5, 0.6, 1e-6)
+TILTED = PAPER.replace(phi="5 deg")
+PLANES = {  # slider, plane, connected curves
+    "anisotropic": (
+        TILTED.replace(friction=st.Anisotropic(PAPER.law, 1.3, "20 deg")),
+        VELOCITY | {"y": "k_y", "y_between": (1e3, 1e8)},
+        2,
+    ),
+    "Stribeck": (
+        TILTED.replace(friction=st.Stribeck(0.3, 0.15, "10 mm/s")),
+        STIFFNESS | MIRRORED,
+        2,
+    ),
+    "ageing": (TILTED.replace(friction=AGEING), STIFFNESS | MIRRORED, 2),
+    "corners": (TILTED.replace(friction=AGEING, k_y=1.54e6, c_x=18.75), VELOCITY | MIRRORED, 3),
+}
+
+
+@pytest.mark.parametrize("name", PLANES)
+def test_no_piece_of_the_boundary_is_missing(name):
+    """The side that a point is on, as the curves have it, is that of its eigenvalues."""
+    slider, plane, branches = PLANES[name]
+    curve = boundary(slider, **plane)
+    assert len(np.unique(curve["branch"])) == branches
+    grid = (np.arange(12) + 0.5) / 12
+    across, up = np.meshgrid(grid, grid)
+    signed = signed_distance(curve, across, up)
+    x, y = (axis(slider, plane[way], plane[f"{way}_between"]) for way in "xy")
+    for a, b, side in zip(across.flat, up.flat, signed.flat, strict=True):
+        growth = st.stability.growth_rate(y.on(x.on(slider, a), b))
+        assert (growth > 0) == (side > 0) or abs(side) < 1e-3  # how far a chord may be off

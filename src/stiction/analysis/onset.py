@@ -10,16 +10,15 @@ the last one ended.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot, inf, nan, pi, sqrt
+from math import inf, nan
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.analysis.limit_cycle import KICK, OSCILLATING, REST, UNDECIDED, Found, settled
 from stiction.errors import DescriptionError, Fault
-from stiction.initial import Initial
 from stiction.parameter import changed, read, unit
-from stiction.simulation import simulate
 from stiction.slider import Slider
 from stiction.stability import steady_sliding
 
@@ -27,14 +26,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
-
-KICK = 1e-2  # of the drive's speed: the disturbance that rest is left with
-DECAYED, GROWN = 0.3, 3.0  # times the kick: below it rests, above it can be an oscillation
-PERIODS = 10.0  # of the leading mode, in a block of time
-SAMPLES = 64  # a period: a peak between two is missed by 0.1 %
-EVEN = 0.01  # how far amplitudes of settled blocks may differ
-FEWEST = 6  # blocks, of which the later half must be even
-REST, OSCILLATING, UNDECIDED = range(3)
 
 
 class Onset(NamedTuple):
@@ -61,14 +52,6 @@ class Onset(NamedTuple):
     threshold: float
     hysteresis: tuple[float, float]
     data: xr.Dataset
-
-
-class Found(NamedTuple):
-    """What one run came to: amplitude (m), outcome, and the state in which it ended."""
-
-    amplitude: float
-    outcome: int
-    state: Initial
 
 
 def find_onset(
@@ -135,43 +118,6 @@ def swept(sliders: Sequence[Slider], most_blocks: int, rtol: float) -> list[Foun
         start = found[-1].state if moving else steady_sliding(slider).disturbed(KICK)
         found.append(settled(slider, start, most_blocks, rtol))
     return found
-
-
-def settled(slider: Slider, start: Initial, most_blocks: int, rtol: float) -> Found:
-    """Run a slider in blocks of time until it rests, or oscillates evenly."""
-    period, block, small = scales(slider)
-    state, amplitudes = start, []
-    for count in range(1, most_blocks + 1):
-        run = simulate(slider, block, initial=state, sample_rate=SAMPLES / period, rtol=rtol)
-        end = run.state(float(run.data["time"][-1]))
-        state = end.model_copy(update={"time": 0.0})  # drive and load are steady
-        amplitudes.append(swing(slider, run.data))
-        if amplitudes[-1] < DECAYED * small:
-            return Found(amplitudes[-1], REST, state)
-        late = amplitudes[count // 2 :]
-        if count >= FEWEST and min(late) > GROWN * small and max(late) < (1 + EVEN) * min(late):
-            return Found(float(np.mean(late)), OSCILLATING, state)
-    return Found(amplitudes[-1], UNDECIDED, state)
-
-
-def scales(slider: Slider) -> tuple[float, float, float]:
-    """Return the period of the leading mode (s), a block of time (s), the kick's amplitude (m)."""
-    linear = steady_sliding(slider)
-    c, s = slider.direction
-    speed = hypot(*slider.motion.rate(0.0))
-    compliance = c * c / slider.k_x + s * s / slider.k_y
-    natural = sqrt(slider.mass * compliance)
-    frequency = float(linear.frequencies[0])
-    period = 1.0 / frequency if frequency > 0.0 else 2.0 * pi * natural
-    friction = hypot(slider.k_x * linear.state[0], slider.k_y * linear.state[1])
-    small = KICK * speed * period / (2.0 * pi)
-    return period, PERIODS * period + friction * compliance / speed, small
-
-
-def swing(slider: Slider, data: xr.Dataset) -> float:
-    """Return half of the range of the elongation along the drive, m."""
-    c, s = slider.direction
-    return float(np.ptp(c * data["u_x"].values + s * data["u_y"].values)) / 2.0
 
 
 def judged(data: xr.Dataset) -> Onset:

@@ -98,7 +98,7 @@ def figure(
         return modes_figure(modes_over(slider, paths[0], between), found[0])
     x_between, y_between = ranges or DEFAULT
     x, y = paths
-    return stability_map(slider, boundary(slider, x, y, x_between=x_between, y_between=y_between))
+    return stability_map(boundary(slider, x, y, x_between=x_between, y_between=y_between))
 
 
 def modes(linear: Linearisation) -> Iterator[str]:

@@ -9,7 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from stiction.analysis.onset import OSCILLATING, REST, UNDECIDED, Onset
+from stiction.analysis.limit_cycle import OSCILLATING, REST, UNDECIDED
+from stiction.analysis.onset import Onset
 from stiction.plotting.parameter import PLAIN, scale_of
 from stiction.plotting.style import BLUE, COLUMN, GREY, PALE, RED, new_figure, style
 from stiction.plotting.time_series import prefixed

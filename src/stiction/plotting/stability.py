@@ -9,10 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
-from stiction.parameter import read
 from stiction.plotting.parameter import PLAIN, Scale, scale_of
 from stiction.plotting.style import BLACK, BLUE, COLUMN, new_figure, style
-from stiction.slider import Slider
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -24,14 +22,12 @@ UNSTABLE = "#F9E3C5"
 
 
 def stability_map(
-    slider: Slider, curve: xr.Dataset, closed_form: tuple[ArrayLike, ArrayLike] | None = None
+    curve: xr.Dataset, closed_form: tuple[ArrayLike, ArrayLike] | None = None
 ) -> Figure:
     """Draw the boundary of stability in two parameters, with the slider's own point.
 
     Parameters
     ----------
-    slider : Slider
-        Its values are marked, if they are in the plane.
     curve : Dataset
         From `stiction.stability.boundary`.
     closed_form : pair of arrays, optional
@@ -46,14 +42,13 @@ def stability_map(
         fig = new_figure(COLUMN, 2.9)
         ax = fig.subplots()
         x, y = draw_boundary(ax, curve)
-        x_path, y_path = curve.attrs["x"], curve.attrs["y"]
         if closed_form is not None:
             ax.plot(
                 x.drawn(closed_form[0]), y.drawn(closed_form[1]), color=BLACK, linewidth=1.1,
                 dashes=(1.2, 1.8), dash_capstyle="round", label="closed form", zorder=4,
             )  # fmt: skip
         ax.plot(
-            x.drawn(read(slider, x_path)), y.drawn(read(slider, y_path)), color=BLACK,
+            x.drawn(curve.attrs["x_own"]), y.drawn(curve.attrs["y_own"]), color=BLACK,
             marker="o", markersize=4.5, linestyle="none", label="this slider", zorder=5,
         )  # fmt: skip
         fig.legend(loc="outside upper center", ncols=3)
@@ -91,7 +86,7 @@ def _name_sides(ax: Axes, curve: xr.Dataset) -> None:
     """Tint the unstable side, and write on both what they are, far from the boundary."""
     grid = np.linspace(0.0, 1.0, PIXELS)
     across, up = np.meshgrid(grid, grid)
-    signed = _signed_distance(curve, across, up)
+    signed = signed_distance(curve, across, up)
     if (signed > 0).any():
         ax.contourf(
             across, up, signed, [0.0, np.inf], colors=[UNSTABLE], transform=ax.transAxes, zorder=0
@@ -106,7 +101,7 @@ def _name_sides(ax: Axes, curve: xr.Dataset) -> None:
             )
 
 
-def _signed_distance(curve: xr.Dataset, across: Floats, up: Floats) -> Floats:
+def signed_distance(curve: xr.Dataset, across: Floats, up: Floats) -> Floats:
     """Return the distance to the boundary in fractions of the plane, positive where unstable."""
     ends = []
     for way in ("x", "y"):
@@ -123,8 +118,11 @@ def _signed_distance(curve: xr.Dataset, across: Floats, up: Floats) -> Floats:
         square = max(dx * dx + dy * dy, 1e-30)
         part = np.clip(((across - x) * dx + (up - y) * dy) / square, 0.0, 1.0)
         gap = np.hypot(across - x - part * dx, up - y - part * dy)
-        left = dx * (up - y) - dy * (across - x)
-        side = np.where(gap < nearest, np.sign(left), side)
+        left = (dx * (up - y) - dy * (across - x)) / np.sqrt(square)
+        # of two pieces that meet in the nearest point, the one that is seen more squarely tells
+        closer = gap < nearest * (1 - 1e-9)
+        squarer = (gap <= nearest * (1 + 1e-9)) & (np.abs(left) > np.abs(side))
+        side = np.where(closer | squarer, left, side)
         nearest = np.minimum(gap, nearest)
-    signed: Floats = nearest * side
+    signed: Floats = nearest * np.sign(side)
     return signed

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import exp, log
+from math import exp, inf, log
 from typing import NamedTuple
 
 from stiction.errors import DescriptionError, Fault
@@ -39,7 +39,7 @@ class Axis(NamedTuple):
         """Return where in the range a value (SI) lies; 0 to 1 inside."""
         if self.logarithmic:
             ratio = value / self.low
-            return log(ratio) / log(self.high / self.low) if ratio > 0.0 else -1.0
+            return -inf if ratio <= 0.0 else log(ratio) / log(self.high / self.low)
         return (value - self.low) / (self.high - self.low)
 
     def on(self, slider: Slider, fraction: float) -> Slider:

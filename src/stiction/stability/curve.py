@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING
+from math import nan
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from stiction.errors import DescriptionError, Fault
 from stiction.parameter import read
 from stiction.slider import Slider
 from stiction.stability.axis import Axis, axis
@@ -54,9 +56,9 @@ def boundary(
         Over ``point``: the parameters by their paths (SI), ``frequency`` of the critical mode
         (Hz), and the number ``branch`` of the connected curve that it belongs to; along each,
         steady sliding is unstable on the left, with x to the right and y upwards. The growth
-        rate is zero there to some 1e-12 of the ranges. Attributes: ``x``, ``y``, their ranges
+        rate is zero there to 1e-9 of the ranges or better. Attributes: ``x``, ``y``, their ranges
         ``x_range``, ``y_range``, ``x_scale``, ``y_scale`` ("log" or "linear"), and the slider's
-        own ``growth_rate`` (1/s).
+        own ``x_own``, ``y_own`` (SI) and ``growth_rate`` (1/s).
 
     Raises
     ------
@@ -68,6 +70,8 @@ def boundary(
     Continuation with a spherical constraint: Yamamura, IEEE Trans. Circuits Syst. I 40 (1993), 448.
     """
     across, up = axis(slider, x, x_between), axis(slider, y, y_between)
+    if x == y:
+        raise DescriptionError([Fault(x, "spans no plane with itself; name two parameters")])
 
     def at(point: Point) -> Slider:
         inside = (min(max(each, 0.0), 1.0) for each in point)
@@ -77,27 +81,30 @@ def boundary(
         return growth_rate(at(point))
 
     branches: list[Floats] = []
-    for seed in seeds(lambda point: signed_growth(at(point)), own(slider, across), own(slider, up)):
+    places = (each.fraction(own(slider, each.path)) for each in (across, up))
+    for seed in seeds(lambda point: signed_growth(at(point)), *places):
         if not any(near(seed, branch) for branch in branches):
             curve = both_ways(growth, seed)
             branches += [directed(growth, curve)] if len(curve) > 1 else []
     return table(slider, across, up, branches, at)
 
 
-def own(slider: Slider, along: Axis) -> float | None:
-    """Return where in its range a slider's own parameter is, None if it is not in it."""
-    fraction = along.fraction(read(slider, along.path))
-    return fraction if 0.0 <= fraction <= 1.0 else None
+def own(slider: Slider, path: str) -> float:
+    """Return a slider's own value of a parameter, SI; NaN where several that are joined differ."""
+    try:
+        return read(slider, path)
+    except DescriptionError:
+        return nan
 
 
-def seeds(growth: Growth, x: float | None, y: float | None) -> Iterator[Point]:
-    """Yield points at which the growth rate is zero, on lines across the plane."""
+def seeds(growth: Growth, x: float, y: float) -> Iterator[Point]:
+    """Yield points at which the growth rate is zero: on lines across the plane, and on x, y."""
     for level in (y, *LINES):
-        if level is not None:
+        if 0.0 <= level <= 1.0:
             for found in sign_changes(lambda a, b=level: growth((a, b)), LOOKS)[0]:  # type: ignore[misc]
                 yield found, level
     for place in (x, *LINES):
-        if place is not None:
+        if 0.0 <= place <= 1.0:
             for found in sign_changes(lambda b, a=place: growth((a, b)), LOOKS)[0]:  # type: ignore[misc]
                 yield place, found
 
@@ -121,8 +128,9 @@ def table(
         for name, (values, unit, meaning) in columns.items()
     }
     branch = ("point", np.array(count, dtype=np.int64), {"long_name": "connected curve"})
-    attributes = {"x": x.path, "y": y.path, "growth_rate": growth_rate(slider)}
+    attributes: dict[str, Any] = {"x": x.path, "y": y.path, "growth_rate": growth_rate(slider)}
     for name, each in (("x", x), ("y", y)):
+        attributes[f"{name}_own"] = own(slider, each.path)
         attributes[f"{name}_range"] = np.array([each.low, each.high])
         attributes[f"{name}_scale"] = "log" if each.logarithmic else "linear"
     return xr.Dataset({**data, "branch": branch}, attrs=attributes)
