@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING
+from warnings import catch_warnings, simplefilter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,21 +42,32 @@ def fitted(
     start: tuple[float, ...],
     bounds: tuple[tuple[float, ...], tuple[float, ...]],
 ) -> tuple[list[float], list[float]]:
-    """Return parameters and standard errors, these scaled up where the model misses by more."""
-    from scipy.optimize import curve_fit
+    """Return parameters and standard errors, these scaled up where the model misses by more.
+
+    Raises
+    ------
+    ResultError
+        If no parameters come near.
+    """
+    from scipy.optimize import OptimizeWarning, curve_fit
 
     scale = np.maximum(np.abs(start), 1e-3 * np.abs(bounds[1]).clip(max=1.0))
-    found, covariance = curve_fit(  # type: ignore[no-untyped-call]
-        model,
-        at,
-        values,
-        start,
-        sigma=errors,
-        absolute_sigma=True,
-        bounds=bounds,
-        x_scale=scale,
-        max_nfev=2000,
-    )
+    try:
+        with catch_warnings():
+            simplefilter("ignore", OptimizeWarning)  # then the standard errors are infinite
+            found, covariance = curve_fit(  # type: ignore[no-untyped-call]
+                model,
+                at,
+                values,
+                start,
+                sigma=errors,
+                absolute_sigma=True,
+                bounds=bounds,
+                x_scale=scale,
+                max_nfev=2000,
+            )
+    except RuntimeError:
+        raise ResultError("the creep curve does not have the shape that is fitted") from None
     missed = (values - model(at, *found)) / errors
     excess = max(1.0, float(np.sum(missed**2)) / (len(values) - len(found)))
     return found.tolist(), np.sqrt(np.diag(covariance) * excess).tolist()

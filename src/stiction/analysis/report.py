@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 HARMONICS = 10.0  # of the stick-slip, which a song is sought above
+BINS = 20.0  # that a stick phase is to have at least, to be averaged over them
 
 
 class Analysis(NamedTuple):
@@ -100,26 +101,25 @@ def analyse(source: Trajectory | Record) -> Analysis:
 
     run = source if isinstance(source, Trajectory) else None
     record = source if isinstance(source, Record) else record_of(source)
-    cycles = find_cycles(record)
-    regime = classify(record)
+    cycles, regime = find_cycles(record), classify(record)
     sticking = cycles if regime.kind in (STICK_SLIP, BETWEEN) else cycles.isel(cycle=slice(0))
-    creeping = run or calibrated(record, sticking)
-    curves = tried("creep", lambda: creep_curves(creeping, sticking))
+    if run is not None:
+        song = tried("song", lambda: hear_song(run))
+        energy = tried("energy", lambda: energy_budget(run, edges(run, cycles)))
+        width = None
+    else:
+        song = tried("song", lambda: strongest_line(record, _above(record, cycles)))
+        energy, missing["energy"] = None, "of a measured record only the force is known"
+        width = _free_of_hum(song, sticking)
+    creeping = calibrated(record, sticking)
+    curves = tried("creep", lambda: creep_curves(run or creeping, sticking, width))
     mean = None
     if curves is not None:
         if np.isfinite(curves["velocity"].values).any():
             mean = mean_creep(curves)
         else:
             missing["creep"] = "there is no stick phase to see it in"
-    divergence, misalignment = None, None
-    if mean is not None:
-        divergence, misalignment = _fits(calibrated(record, sticking), mean, tried)
-    if run is not None:
-        song = tried("song", lambda: hear_song(run))
-        energy = tried("energy", lambda: energy_budget(run, edges(run, cycles)))
-    else:
-        song = tried("song", lambda: strongest_line(record, _above(record, cycles)))
-        energy, missing["energy"] = None, "of a measured record only the force is known"
+    divergence, misalignment = _fits(creeping, mean, tried)
     phases = None
     if run is not None and song is not None and curves is not None:
         phases = song_by_phase(song, run, _phases(run, curves, sticking))
@@ -161,16 +161,31 @@ def edges(run: Trajectory, cycles: xr.Dataset) -> np.ndarray:
     return np.unique(np.concatenate([[first], inner, [last]]))
 
 
-def _fits(record: Record, mean: xr.Dataset, tried: Any) -> tuple[Any, Any]:
+def _fits(record: Record, mean: xr.Dataset | None, tried: Any) -> tuple[Any, Any]:
     """Return the fits of the mean creep, None where they cannot be made."""
     V, stiffness = record.drive_velocity, record.stiffness
-    if V is None or stiffness is None:
-        return None, None  # then it is the position that is known
+    if mean is None or V is None or stiffness is None:
+        return None, None
     loading = float(np.nanmax(mean["force"].values)) / stiffness / V
     return (
         tried("divergence", lambda: fit_divergence(mean, loading)),
         tried("misalignment", lambda: fit_misalignment(mean, V, stiffness)),
     )
+
+
+def _free_of_hum(song: xr.Dataset | None, cycles: xr.Dataset) -> float | None:
+    """Return bins (s) over two periods of a line that hums most of the time, which average it out.
+
+    None where there is no such line, or stick phases are too short for it.
+    """
+    if song is None or not cycles.sizes["cycle"]:
+        return None
+    heard = song["frequency"].values
+    rises = cycles["peak_time"].values - cycles["start"].values
+    if np.isfinite(heard).mean() < 0.5:
+        return None
+    width = 2.0 / float(np.nanmedian(heard))
+    return width if width * BINS < float(np.median(rises)) else None
 
 
 def _above(record: Record, cycles: xr.Dataset) -> float:

@@ -101,8 +101,11 @@ def creep(found: Analysis) -> Section:
         )
     elif phi is not None:
         lines.append("No misalignment that it implies stands out of its uncertainty.")
-    fits = ("divergence", "misalignment")
-    return Section("Creep", lines + [found.missing[fit] for fit in fits if fit in found.missing])
+    fits = {"divergence": "No exponent", "misalignment": "No implied misalignment"}
+    lines += [
+        f"{what}: {found.missing[fit]}." for fit, what in fits.items() if fit in found.missing
+    ]
+    return Section("Creep", lines)
 
 
 def song(found: Analysis) -> Section:

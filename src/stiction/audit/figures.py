@@ -60,4 +60,4 @@ def trials(found: Audit) -> Figure | None:
 def stability(found: Audit) -> Figure | None:
     """Draw where steady sliding is stable, over misalignment and drive velocity."""
     curve = boundary(found.slider, "phi", "drive.velocity")
-    return stability_map(found.slider, curve) if curve.sizes["point"] else None
+    return stability_map(curve) if curve.sizes["point"] else None
