@@ -18,8 +18,9 @@ app = cyclopts.App(
     help=(
         "Simulate sliding in which the friction vector rotates (Nakano & Popov, 2020).\n\n"
         "Start with `stiction paper`, which reproduces the paper, or describe an apparatus of "
-        "your own: `stiction init my.toml`, edit it, `stiction run my.toml --output my.nc`, "
-        "`stiction plot my.nc --output my.png`."
+        "your own: `stiction init my.toml`, edit it, `stiction audit my.toml` to know what it will "
+        "show, `stiction run my.toml --output my.nc` to simulate it, `stiction plot my.nc --output "
+        "my.png` to look, `stiction analyse my.nc` to understand."
     ),
     help_format="markdown",
     suppress_keyboard_interrupt=False,
