@@ -59,6 +59,9 @@ if TYPE_CHECKING:
     from stiction.initial import Initial
     from stiction.simulation import simulate
     from stiction.slider import Slider
+    from stiction.study.axes import Grid, Random, Sobol, Values
+    from stiction.study.plan import Study
+    from stiction.study.store import open_study
     from stiction.testing import check_law
     from stiction.trajectory import Trajectory, load
 
@@ -76,6 +79,7 @@ _HOME = {
     "DriveProgram": "drive",
     "ExponentialWeakening": "friction",
     "Free": "drive",
+    "Grid": "study.axes",
     "Harmonic": "drive",
     "Hold": "drive",
     "HyperbolicWeakening": "friction",
@@ -84,6 +88,7 @@ _HOME = {
     "LuGre": "friction",
     "Modulation": "drive",
     "Ramp": "drive",
+    "Random": "study.axes",
     "RateStateAgeing": "friction",
     "RateStateAgeing2": "friction",
     "RateStateSlip": "friction",
@@ -94,12 +99,15 @@ _HOME = {
     "Reversal": "drive",
     "Settings": "description",
     "Slider": "slider",
+    "Sobol": "study.axes",
     "Status": "errors",
     "Step": "drive",
     "StictionError": "errors",
     "Stribeck": "friction",
+    "Study": "study.plan",
     "Table": "friction",
     "Trajectory": "trajectory",
+    "Values": "study.axes",
     "analyse": "analysis.report",
     "check_law": "testing",
     "classify": "analysis.regime",
@@ -114,6 +122,7 @@ _HOME = {
     "hear_song": "analysis.song",
     "load": "trajectory",
     "mean_creep": "analysis.creep_curve",
+    "open_study": "study.store",
     "record_of": "analysis.record",
     "simulate": "simulation",
     "song_by_phase": "analysis.song",
@@ -135,6 +144,7 @@ __all__ = [
     "DriveProgram",
     "ExponentialWeakening",
     "Free",
+    "Grid",
     "Harmonic",
     "Hold",
     "HyperbolicWeakening",
@@ -143,6 +153,7 @@ __all__ = [
     "LuGre",
     "Modulation",
     "Ramp",
+    "Random",
     "RateStateAgeing",
     "RateStateAgeing2",
     "RateStateSlip",
@@ -153,12 +164,15 @@ __all__ = [
     "Reversal",
     "Settings",
     "Slider",
+    "Sobol",
     "Status",
     "Step",
     "StictionError",
     "Stribeck",
+    "Study",
     "Table",
     "Trajectory",
+    "Values",
     "analyse",
     "audit",
     "check_law",
@@ -174,6 +188,7 @@ __all__ = [
     "hear_song",
     "load",
     "mean_creep",
+    "open_study",
     "presets",
     "record_of",
     "simulate",

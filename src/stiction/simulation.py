@@ -16,7 +16,7 @@ from stiction.friction import has_state, states
 from stiction.initial import Initial
 from stiction.labels import VARIABLES, dataset
 from stiction.slider import Slider
-from stiction.solver.integrate import integrate
+from stiction.solver.integrate import Solution, integrate
 from stiction.solver.refusal import reasons
 from stiction.trajectory import Statistics, Trajectory
 
@@ -114,6 +114,37 @@ def run(
 ) -> Trajectory:
     """Simulate a whole description; see `simulate`."""
     _, initial, settings = description
+    times = sample_times(initial.time, settings.duration, settings.sample_rate)
+    solution = solve(description, times, max_steps=max_steps, progress=progress)
+    status = list(Status)[solution.code]
+    statistics = Statistics(*solution.counts)
+    attributes = {
+        "stiction_version": _version(),
+        "solver": f"{kind(description)}, Radau IIA 5",
+        "status": status.name,
+        "status_message": status.value,
+        **vars(statistics),
+    }
+    arrived = solution.times, solution.samples, solution.sticks
+    arrays = partial(dataset, description, *arrived, attributes)
+    return Trajectory(description, arrays, status, statistics)
+
+
+def solve(
+    description: Description,
+    times: np.ndarray,
+    *,
+    max_steps: int = 100_000_000,
+    progress: Callable[[float], None] | None = None,
+) -> Solution:
+    """Integrate a description sampled at `times` (ascending, s): `run` without the labels.
+
+    Raises
+    ------
+    DescriptionError
+        If it cannot be simulated.
+    """
+    _, initial, settings = description
     if max_steps < 1:
         raise DescriptionError([Fault("max_steps", f"must be 1 at least, is {max_steps}")])
     if settings.regularisation is not None and has_state(description.slider.law):
@@ -127,26 +158,13 @@ def run(
     if initial.time + settings.duration == initial.time:
         message = f"is too short to be seen from t = {initial.time:g} s; start earlier"
         raise DescriptionError([Fault("run.duration", message)])
-    times = sample_times(initial.time, settings.duration, settings.sample_rate)
     try:
-        solution = integrate(description, times, max_steps, progress)
+        return integrate(description, times, max_steps, progress)
     except NumbaError:
         found = [Fault("friction", reason) for reason in reasons(description.slider.law)]
         if not found:
             raise
         raise DescriptionError(found) from None
-    status = list(Status)[solution.code]
-    statistics = Statistics(*solution.counts)
-    attributes = {
-        "stiction_version": _version(),
-        "solver": f"{kind(description)}, Radau IIA 5",
-        "status": status.name,
-        "status_message": status.value,
-        **vars(statistics),
-    }
-    arrived = solution.times, solution.samples, solution.sticks
-    arrays = partial(dataset, description, *arrived, attributes)
-    return Trajectory(description, arrays, status, statistics)
 
 
 def kind(description: Description) -> str:

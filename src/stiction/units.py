@@ -70,11 +70,14 @@ def to_si(value: object, kind: Kind) -> float:
 def _parse(text: str, kind: Kind) -> float:
     import pint
 
-    if not QUANTITY.fullmatch(text):
+    found = QUANTITY.fullmatch(text)
+    if not found:
         comma = " (the decimal sign is a point)" if "," in text else ""
         raise fault(
             f"{text!r} is not one number and its unit{comma}; write for example {kind.example!r}"
         )
+    if found[3] is not None and found[3].strip() == kind.unit:
+        return float(text[: found.start(3)])  # many runs are described in SI
     try:
         quantity = _registry().Quantity(text)
         magnitude = float(quantity.magnitude)

@@ -25,7 +25,7 @@ app = cyclopts.App(
     help_format="markdown",
     suppress_keyboard_interrupt=False,
 )
-COMMANDS = ("paper", "init", "audit", "run", "plot", "analyse", "compare", "stability")
+COMMANDS = ("paper", "init", "audit", "run", "plot", "analyse", "compare", "stability", "sweep")
 for _name in COMMANDS:  # light modules: what is heavy they import when they are called
     app.command(getattr(import_module(f"stiction.cli.{_name}"), _name))
 

@@ -1,0 +1,129 @@
+"""How far a study is and how it ended: for a terminal, for a log, for a program."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from time import monotonic
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+if TYPE_CHECKING:
+    from stiction.study.summary import Summary
+    from stiction.study.sweeping import Tally
+
+Report = Callable[["Tally"], None]
+Conclude = Callable[[Path, "Summary"], None]
+EVERY = 1.0  # s between two lines of JSON
+
+
+@contextmanager
+def shown(quiet: bool, json_lines: bool) -> Iterator[tuple[Report | None, Conclude]]:
+    """Yield what takes a study's tally while it runs, and what takes its summary at the end."""
+    if json_lines:
+        yield _each(EVERY, _print_tally), _print_summary
+    elif quiet:
+        yield None, _tell_failures
+    else:
+        with _bar() as report:
+            yield report, _tell
+
+
+def _each(interval: float, report: Report) -> Report:
+    """Return a report that passes on one tally in each interval (s)."""
+    last = [-interval]
+
+    def sometimes(tally: Tally) -> None:
+        if monotonic() - last[0] >= interval:
+            last[0] = monotonic()
+            report(tally)
+
+    return sometimes
+
+
+def _print_tally(tally: Tally) -> None:
+    line = {
+        "runs": tally.runs,
+        "done": tally.before + tally.now,
+        "failed": tally.failed,
+        "runs_per_second": round(tally.rate, 3),
+        "seconds_left": round(tally.left, 1),
+    }
+    print(json.dumps(line), flush=True)
+
+
+def _print_summary(output: Path, result: Summary) -> None:
+    line: dict[str, Any] = {
+        "store": str(output),
+        "runs": result.runs,
+        "done": result.runs - result.pending,
+        "failed": dict(result.failed),
+    }
+    if result.first is not None:
+        line["first_failure"] = str(result.first)
+    print(json.dumps(line), flush=True)
+
+
+def _tell_failures(output: Path, result: Summary) -> None:
+    if result.first is not None:
+        console = Console(stderr=True, soft_wrap=True, highlight=False)
+        console.print(f"{output}: {_failures(result)}", markup=False)
+
+
+def _tell(output: Path, result: Summary) -> None:
+    console = Console(soft_wrap=True, highlight=False)
+    console.print(f"{output}: {result.runs - result.pending} runs", markup=False)
+    if result.first is not None:
+        console.print(_failures(result), markup=False)
+    console.print(f"next: stiction map {output}", markup=False)
+
+
+def _failures(result: Summary) -> str:
+    counts = ", ".join(f"{count} {end.replace('_', ' ')}" for end, count in result.failed.items())
+    return f"{sum(result.failed.values())} failed ({counts}); the first at {result.first}"
+
+
+@contextmanager
+def _bar() -> Iterator[Report | None]:
+    """Show a bar with the rate and the time left, on a terminal."""
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield None
+        return
+    columns = (
+        TextColumn("{task.completed:.0f} of {task.total:.0f} runs"),
+        BarColumn(bar_width=20),
+        TextColumn("{task.fields[rate]}"),
+        TimeElapsedColumn(),
+        TextColumn("{task.fields[left]}"),
+    )
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task("", total=None, rate="", left="")
+
+        def report(tally: Tally) -> None:
+            bar.update(
+                task,
+                total=tally.runs,
+                completed=tally.before + tally.now,
+                rate=f"{tally.rate:.3g} a second",
+                left=f"{clock(tally.left)} left" + _so_far(tally.failed),
+            )
+
+        yield report
+
+
+def _so_far(failed: int) -> str:
+    return f", {failed} failed" if failed else ""
+
+
+def clock(seconds: float) -> str:
+    """Return a time in hours, minutes and seconds."""
+    if seconds == float("inf"):
+        return "-:--"
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"

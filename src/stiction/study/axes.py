@@ -1,0 +1,193 @@
+"""Axes of a study: the values that one parameter takes, one after the other."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any, Literal, cast
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import AfterValidator, BeforeValidator, Field
+
+from stiction.errors import DescriptionError, Fault
+from stiction.validation import Described, unknown
+
+Floats = NDArray[np.float64]
+MOST = 1_000_000_000  # values of an axis
+
+
+def _quantity(value: Any) -> Any:
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        raise ValueError(f"{value!r} is not a number or a string with its unit")
+    return value
+
+
+def _list(value: Any) -> Any:
+    value = value.tolist() if hasattr(value, "tolist") else value
+    if isinstance(value, str) or not isinstance(value, Sequence) or not value:
+        raise ValueError(f"{value!r} is not a list of values; write them in brackets: [..., ...]")
+    return tuple(value)
+
+
+# in which unit is known to the parameter that the axis belongs to
+Quantity = Annotated[Any, AfterValidator(_quantity)]
+Quantities = Annotated[tuple[Quantity, ...], BeforeValidator(_list)]
+Count = Annotated[int, Field(ge=1, le=MOST)]
+Spacing = Literal["linear", "log"]
+
+
+class Positional(Described):
+    """Described by values in the order of its fields, or by their names."""
+
+    def __init__(self, *given: Any, **values: Any) -> None:
+        """Read the values."""
+        super().__init__(**dict(zip(type(self).model_fields, given, strict=False)), **values)
+
+
+class Grid(Positional):
+    """Values at equal distances, or at equal ratios.
+
+    Parameters
+    ----------
+    start, stop : float or str
+        First and last value, in the parameter's unit; in a file ``from`` and ``to``.
+    count : int
+        How many values.
+    spacing : {"linear", "log"}, optional
+        Equal distances or equal ratios.
+    along : str, optional
+        The dimension that the values lie along; the parameter's own when left out. Axes along
+        one dimension go through their values together.
+    """
+
+    start: Quantity
+    stop: Quantity
+    count: Count
+    spacing: Spacing = "linear"
+    along: str | None = None
+
+    def places(self, place: int, seed: int) -> Floats:
+        """Return how far between `start` and `stop` each value lies, 0 to 1."""
+        return np.linspace(0.0, 1.0, self.count)
+
+
+class Values(Positional):
+    """Values one by one.
+
+    Parameters
+    ----------
+    values : sequence
+        Each a number or a string with its unit.
+    along : str, optional
+        As of `Grid`.
+    """
+
+    values: Quantities
+    along: str | None = None
+
+    @property
+    def count(self) -> int:
+        """How many values."""
+        return len(self.values)
+
+
+class Random(Positional):
+    """Values drawn at random, evenly between two or between their logarithms.
+
+    Parameters
+    ----------
+    start, stop, count, spacing
+        As of `Grid`.
+    along : str, optional
+        All random axes lie along ``sample`` unless told, so that each run draws all of them.
+    """
+
+    start: Quantity
+    stop: Quantity
+    count: Count
+    spacing: Spacing = "linear"
+    along: str | None = "sample"
+
+    def places(self, place: int, seed: int) -> Floats:
+        """Return where each value lies; a longer axis begins with the same values."""
+        return np.random.Generator(np.random.Philox([seed, place])).random(self.count)
+
+
+class Sobol(Positional):
+    """Values of a Sobol sequence with a random digital shift, which fill a space evenly.
+
+    Parameters
+    ----------
+    start, stop, count, spacing
+        As of `Grid`; a power of two fills best.
+    along : str, optional
+        All such axes lie along ``sample`` unless told, and fill their space together.
+
+    References
+    ----------
+    Sobol, USSR Comput. Math. Math. Phys. 7, 86 (1967); Matousek, J. Complexity 14, 527 (1998).
+    """
+
+    start: Quantity
+    stop: Quantity
+    count: Count
+    spacing: Spacing = "linear"
+    along: str | None = "sample"
+
+    def places(self, place: int, seed: int) -> Floats:
+        """Return where each value lies: the coordinate `place` of the sequence."""
+        from scipy.stats.qmc import Sobol as Sequence  # slow to import
+
+        # each coordinate is by itself, however many there are; shifted by the seed
+        sequence = Sequence(place + 1, scramble=False, bits=53)
+        with warnings.catch_warnings():  # a count that is no power of two is the user's choice
+            warnings.simplefilter("ignore", UserWarning)
+            points = sequence.random(self.count)[:, place]
+        shift = np.random.Generator(np.random.Philox([seed, place])).integers(0, 2**53)
+        return cast(Floats, ((points * 2.0**53).astype(np.int64) ^ shift) / 2.0**53)
+
+
+Axis = Grid | Values | Random | Sobol
+SAMPLINGS: dict[str, type[Any]] = {"grid": Grid, "random": Random, "sobol": Sobol}
+WRITTEN = {"start": "from", "stop": "to"}
+
+
+def read_axis(value: Any, name: str) -> Axis:
+    """Return an axis from a table of a study's file, or as it is.
+
+    Raises
+    ------
+    DescriptionError
+        Naming each fault below ``axes.name``.
+    """
+    if isinstance(value, Axis):
+        return value
+    path = f"axes.{name}"
+    if not isinstance(value, Mapping):
+        message = f"{value!r} is not an axis; write for example st.Grid('1 deg', '10 deg', 10)"
+        raise DescriptionError([Fault(path, message)])
+    fields = {written: name for name, written in WRITTEN.items()}
+    table = {fields.get(str(key), str(key)): each for key, each in value.items()}
+    sampling = table.pop("sampling", "grid")
+    if sampling not in SAMPLINGS:
+        message = unknown("sampling", str(sampling), SAMPLINGS)
+        raise DescriptionError([Fault(f"{path}.sampling", message)])
+    kind = Values if "values" in table else SAMPLINGS[sampling]
+    try:
+        return cast(Axis, kind(**table))
+    except DescriptionError as error:
+        found = []
+        for fault in error.faults:
+            _, _, field = fault.path.partition(".")
+            first, dot, rest = field.partition(".")
+            found.append(Fault(f"{path}.{WRITTEN.get(first, first)}{dot}{rest}", fault.message))
+        raise DescriptionError(found) from None
+
+
+def axis_table(axis: Axis) -> dict[str, Any]:
+    """Return an axis as a table that can be read back."""
+    sampling = next((name for name, kind in SAMPLINGS.items() if type(axis) is kind), "grid")
+    given = axis.model_dump(mode="json", exclude_none=True)
+    table = {WRITTEN.get(name, name): value for name, value in given.items()}
+    return table if isinstance(axis, Values) else {**table, "sampling": sampling}

@@ -1,0 +1,128 @@
+"""Processes as engines, by dask: of this machine, or of a cluster."""
+
+from __future__ import annotations
+
+import logging
+import warnings
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from itertools import islice
+from types import ModuleType
+from typing import Any, NamedTuple, TypeVar
+
+from stiction.errors import StictionError
+from stiction.study.engines import AHEAD, Work
+
+T = TypeVar("T")
+AGAIN = "what is written is whole, and the same command goes on"
+DEATHS = 10  # of workers, that a task may see before it is taken for their cause
+
+
+class Processes(NamedTuple):
+    """Processes of this machine, started for the study and ended with it.
+
+    While they run, dask's dashboard is at http://localhost:8787 if that is free.
+
+    Parameters
+    ----------
+    workers : int
+        How many; each does one run at a time, and is started anew if it dies.
+    """
+
+    workers: int
+
+    def results(self, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
+        """Yield what comes of each task."""
+        dask = distributed()
+        from dask import config
+
+        with (
+            config.set({"distributed.scheduler.allowed-failures": DEATHS}),
+            warnings.catch_warnings(),
+        ):
+            warnings.filterwarnings("ignore", "Port .* is already in use")
+            cluster = dask.LocalCluster(n_workers=self.workers, threads_per_worker=1)
+            with lost_and_told(), cluster, dask.Client(cluster) as client:
+                yield from handed_out(client, work, tasks)
+
+
+class Scheduler(NamedTuple):
+    """A dask scheduler that runs already, with its workers.
+
+    Parameters
+    ----------
+    address : str
+        As tcp://host:port.
+    """
+
+    address: str
+
+    def results(self, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
+        """Yield what comes of each task."""
+        dask = distributed()
+        try:
+            client = dask.Client(self.address)
+        except (OSError, ValueError) as error:
+            raise StictionError(
+                f"no dask scheduler answers at {self.address}: {error}; start one with "
+                "'dask scheduler' and workers with 'dask worker ADDRESS'"
+            ) from None
+        with lost_and_told(), client:
+            yield from handed_out(client, work, tasks)
+
+
+def distributed() -> ModuleType:
+    """Return dask's scheduler, which is an extra."""
+    try:
+        import distributed as dask
+    except ImportError:
+        raise StictionError(
+            "processes need dask, which is not installed; write: pip install 'stiction[cluster]'"
+        ) from None
+    return dask
+
+
+def handed_out(client: Any, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
+    """Yield what comes of each task, with few handed out for each thread of the workers."""
+    from distributed import as_completed
+
+    waiting = iter(tasks)
+    flying: Any = as_completed(loop=client.loop)  # type: ignore[no-untyped-call]
+
+    def hand_out() -> None:
+        threads = sum(client.nthreads().values()) or 1  # workers come and go
+        for task in islice(waiting, max(AHEAD * threads - flying.count(), 0)):
+            flying.add(client.submit(work, task, wanted, pure=False))
+
+    hand_out()
+    for future in flying:
+        yield future.result()
+        hand_out()
+
+
+def wanted() -> bool:
+    """Return False: a task is wanted. One that no longer is, dask drops or ends."""
+    return False
+
+
+@contextmanager
+def lost_and_told() -> Iterator[None]:
+    """Turn what dask raises, and logs, when a scheduler is lost into a message."""
+    from concurrent.futures import CancelledError
+
+    from distributed import KilledWorker
+    from distributed.comm.core import CommClosedError
+
+    log = logging.getLogger("distributed.client")
+    level = log.level
+    log.setLevel(logging.CRITICAL)
+    try:
+        yield
+    except KilledWorker as error:
+        raise StictionError(
+            f"{DEATHS} workers died at one task ({error.task}); is there enough memory? {AGAIN}"
+        ) from None
+    except (CancelledError, CommClosedError, TimeoutError) as error:
+        raise StictionError(f"dask's scheduler is lost ({error}); {AGAIN}") from None
+    finally:
+        log.setLevel(level)

@@ -1,0 +1,91 @@
+"""The numbers along the axes of a study, in the units of its store."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+import numpy as np
+from pydantic_core import PydanticCustomError
+
+from stiction.description import Description
+from stiction.errors import DescriptionError, Fault
+from stiction.study.axes import Axis, Floats, Values
+from stiction.study.parameters import number, unit
+
+
+class Coordinate(NamedTuple):
+    """The values of a parameter: along which dimension, in SI or degrees, and their unit."""
+
+    dim: str
+    values: Floats
+    unit: str
+
+
+def coordinates(base: Description, axes: Mapping[str, Axis], seed: int) -> dict[str, Coordinate]:
+    """Return the values of each axis; random ones from a stream of their own."""
+    made = {}
+    for place, (path, axis) in enumerate(axes.items()):
+        its = unit(base, path)
+        made[path] = Coordinate(axis.along or path, values(axis, its, place, seed), its)
+    return made
+
+
+def values(axis: Axis, its: str, place: int, seed: int) -> Floats:
+    """Return the values of an axis in a unit; `place` is its place among the axes."""
+    if isinstance(axis, Values):
+        return np.array([number(value, its) for value in axis.values])
+    start, stop = number(axis.start, its), number(axis.stop, its)
+    share = axis.places(place, seed)
+    if axis.spacing == "log":
+        if not start * stop > 0.0:
+            raise ValueError("logarithms need values of one sign, none zero; use spacing 'linear'")
+        made: Floats = start * (stop / start) ** share
+    else:
+        made = start + (stop - start) * share
+    made[share == 0.0], made[share == 1.0] = start, stop  # without rounding
+    return made
+
+
+def coordinate_faults(base: Description, axes: Mapping[str, Axis], seed: int) -> Iterator[Fault]:
+    """Yield what is wrong with each axis by itself, below its path."""
+    taken: dict[str, str] = {}
+    for place, (path, axis) in enumerate(axes.items()):
+        for name in path.split(","):
+            if taken.setdefault(name.strip(), path) != path:
+                yield Fault(path, f"{name.strip()} has an axis already: {taken[name.strip()]!r}")
+        try:
+            its = unit(base, path)
+        except DescriptionError as error:
+            yield from (Fault(path, fault.message) for fault in error.faults)
+            continue
+        ends = () if isinstance(axis, Values) else (("from", axis.start), ("to", axis.stop))
+        listed = enumerate(axis.values, 1) if isinstance(axis, Values) else ends
+        wrong = [*_unreadable(path, listed, its)]
+        yield from wrong
+        if not wrong:
+            try:
+                values(axis.model_copy(update={"count": 1} if ends else {}), its, place, seed)
+            except ValueError as error:
+                yield Fault(path, str(error))
+
+
+def _unreadable(path: str, listed: object, its: str) -> Iterator[Fault]:
+    for name, value in listed:  # type: ignore[attr-defined]
+        try:
+            number(value, its)
+        except PydanticCustomError as error:
+            yield Fault(f"{path}.{name}", error.message())
+
+
+def zip_faults(axes: Mapping[str, Axis]) -> Iterator[Fault]:
+    """Yield each axis that has not as many values as the first along the same dimension."""
+    first: dict[str, tuple[str, int]] = {}
+    for path, axis in axes.items():
+        known, count = first.setdefault(axis.along or path, (path, axis.count))
+        if axis.count != count:
+            yield Fault(
+                path,
+                f"has {axis.count} values and {known} has {count} along {axis.along!r}; "
+                "axes along one dimension go through their values together: give as many",
+            )

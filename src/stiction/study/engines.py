@@ -1,0 +1,59 @@
+"""Engines: what has tasks done, several at a time, and gives back what came of each."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from itertools import islice
+from typing import NamedTuple, Protocol, TypeVar
+
+T = TypeVar("T")
+AHEAD = 2  # tasks handed out for each worker: one in hand, one waiting
+PATIENCE = 0.2  # s; on some systems a thread that waits without end cannot be interrupted
+
+# does a task; the second argument tells whether it is no longer wanted
+Work = Callable[[int, Callable[[], bool]], T]
+
+
+class Engine(Protocol):
+    """Has tasks done."""
+
+    def results(self, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
+        """Yield what comes of each task, in any order, with few tasks in flight at a time.
+
+        Closing the iterator, or an error, drops what is in flight.
+        """
+
+
+class Threads(NamedTuple):
+    """Threads of this process; the solver runs outside Python's lock.
+
+    Parameters
+    ----------
+    workers : int
+        How many run at a time.
+    """
+
+    workers: int = os.cpu_count() or 1
+
+    def results(self, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
+        """Yield what comes of each task."""
+        unwanted = threading.Event()
+        waiting = iter(tasks)
+        with ThreadPoolExecutor(self.workers, "study") as pool:
+
+            def handed_out(count: int) -> set[Future[T]]:
+                return {pool.submit(work, task, unwanted.is_set) for task in islice(waiting, count)}
+
+            try:
+                flying = handed_out(AHEAD * self.workers)
+                while flying:
+                    done, flying = wait(flying, PATIENCE, FIRST_COMPLETED)
+                    flying |= handed_out(len(done))
+                    for future in done:
+                        yield future.result()
+            finally:
+                unwanted.set()
+                pool.shutdown(wait=True, cancel_futures=True)

@@ -1,0 +1,87 @@
+"""What a study keeps of each run: numbers with their units, one line each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import nan
+from typing import NamedTuple
+
+import numpy as np
+
+from stiction.study.observed import Observed
+from stiction.study.regimes import KINDS
+
+
+class Measure(NamedTuple):
+    """A number that a run comes to.
+
+    Parameters
+    ----------
+    unit, long_name : str
+        CF attributes.
+    of : callable
+        From what was observed to the number; NaN where there is none.
+    flags : tuple of str, optional
+        What 0, 1, ... mean, where the number stands for a kind.
+    """
+
+    unit: str
+    long_name: str
+    of: Callable[[Observed], float]
+    flags: tuple[str, ...] = ()
+
+
+def _mean(values: np.ndarray) -> float:
+    return float(values.mean()) if len(values) else nan
+
+
+def _late(seen: Observed) -> np.ndarray:
+    """Return the force in the last quarter of the run."""
+    return seen.force[3 * len(seen.force) // 4 :]
+
+
+def _largest(seen: Observed) -> float:
+    turning = seen.turns.value
+    return max(float(seen.force.max()), float(turning.max()) if len(turning) else -np.inf)
+
+
+MEASURES: dict[str, Measure] = {
+    "regime": Measure("1", "kind of motion", lambda run: KINDS.index(run.regime), KINDS),
+    "peak_force": Measure("N", "largest spring force along x, k_x u_x", _largest),
+    "mean_force": Measure(
+        "N", "mean spring force along x in the last quarter", lambda run: _mean(_late(run))
+    ),
+    "amplitude": Measure(
+        "N",
+        "half the span of the spring force along x in the last quarter",
+        lambda run: 0.5 * float(np.ptp(_late(run))),
+    ),
+    "cycles": Measure("1", "number of complete swings", lambda run: float(len(run.swings.drop))),
+    "period": Measure("s", "mean period of the swings", lambda run: _mean(run.swings.period)),
+    "force_drop": Measure("N", "mean force drop of the swings", lambda run: _mean(run.swings.drop)),
+    "rise_share": Measure(
+        "1", "share of a swing in which the force rises", lambda run: _mean(run.swings.rise_share)
+    ),
+    "peak_velocity": Measure(
+        "m/s", "largest velocity of the mass along X", lambda run: float(run.velocity.max())
+    ),
+    "first_slip_time": Measure(
+        "s",
+        "time at which the mass first moves faster than the drive",
+        lambda run: float(run.time[run.first_slip]),
+    ),
+    "creep_distance": Measure(
+        "m",
+        "distance along X that the mass creeps before its first slip",
+        lambda run: float(run.position[run.first_slip] - run.position[0]),
+    ),
+    "song": Measure(
+        "1", "amplitude of the fast oscillation's rate over the drive's", lambda run: run.song
+    ),
+    "time_stuck": Measure("s", "sum of all stick intervals", lambda run: run.solution.counts.stuck),
+    "stick_count": Measure(
+        "1", "number of stick intervals", lambda run: float(run.solution.counts.sticks)
+    ),
+    "steps": Measure("1", "slip steps of the solver", lambda run: float(run.solution.counts.steps)),
+}
+DEFAULT = ("regime", "peak_force", "amplitude", "period", "creep_distance", "time_stuck")

@@ -1,0 +1,233 @@
+"""A study: a base description, axes over its parameters, and what to keep of each run."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from functools import cached_property, lru_cache
+from itertools import product
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Self
+
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+
+from stiction.description import Description
+from stiction.errors import DescriptionError, Fault
+from stiction.friction.own import Find, kept, named, trusted
+from stiction.study.axes import Axis, axis_table, read_axis
+from stiction.study.coordinates import Coordinate, coordinate_faults, coordinates, zip_faults
+from stiction.study.layout import Index, Layout, laid_out
+from stiction.study.measures import DEFAULT, MEASURES
+from stiction.study.observed import seconds_of
+from stiction.study.parameters import varied
+from stiction.tables import read_toml
+from stiction.validation import Described, faulty, unknown
+
+if TYPE_CHECKING:
+    from stiction.study.engines import Engine
+    from stiction.study.summary import Summary
+    from stiction.study.sweeping import Tally
+
+
+def _is_description(value: Any) -> Any:
+    if not isinstance(value, Description):
+        raise ValueError(
+            f"{value!r} is not a description; write for example "
+            "st.Description(slider, st.Initial(), st.Settings(duration='5 s'))"
+        )
+    return value
+
+
+def _axes(value: Any) -> dict[str, Axis]:
+    if not isinstance(value, Mapping) or not value:
+        raise ValueError("give one axis at least: the path of a parameter, and its values")
+    axes, found = {}, []
+    for path, each in value.items():
+        try:
+            axes[str(path)] = read_axis(each, str(path))
+        except DescriptionError as error:
+            found += [Fault(fault.path.partition(".")[2], fault.message) for fault in error.faults]
+    if found:
+        raise faulty(found)
+    return axes
+
+
+def _measures(value: Any) -> tuple[str, ...]:
+    if isinstance(value, str) or not hasattr(value, "__iter__"):
+        raise ValueError(f"{value!r} is not a list of measures; known: {', '.join(MEASURES)}")
+    wanted = tuple(dict.fromkeys(str(each) for each in value))
+    strange = [name for name in wanted if name not in MEASURES]
+    if strange:
+        raise ValueError("; ".join(unknown("measure", name, MEASURES) for name in strange))
+    return wanted
+
+
+class Study(Described):
+    """Many runs: a base description, and axes over any of its parameters.
+
+    Parameters
+    ----------
+    base : Description
+        What each run has in common.
+    axes : mapping of str to axis
+        For the path of a parameter (``phi``, ``drive.velocity``, ``friction.mu_0``, ``k_x, k_y``
+        for two that share a value; see `stiction.study.parameters`) a `Grid`, `Values`,
+        `Random` or `Sobol`, or a table of the same.
+    measures : sequence of str, optional
+        What to keep of each run, see `stiction.study.measures.MEASURES`.
+    seed : int, optional
+        Of random and Sobol axes.
+
+    Raises
+    ------
+    DescriptionError
+        With every fault at once.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> base = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration=5))
+    >>> study = st.Study(base=base, axes={"phi": st.Grid("1 deg", "10 deg", 10),
+    ...                                   "drive.velocity": st.Values(["1 mm/s", "2 mm/s"])})
+    >>> study.layout.runs
+    20
+    """
+
+    base: Annotated[Any, AfterValidator(_is_description)]
+    axes: Annotated[Any, BeforeValidator(_axes)]
+    measures: Annotated[tuple[str, ...], BeforeValidator(_measures)] = DEFAULT
+    seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
+
+    @model_validator(mode="after")
+    def _can_be_laid_out(self) -> Self:
+        found = [*coordinate_faults(self.base, self.axes, self.seed), *zip_faults(self.axes)]
+        found += [] if found else self._refused()
+        if found:
+            raise faulty([Fault(f"axes.{fault.path}", fault.message) for fault in found])
+        return self
+
+    def _refused(self) -> list[Fault]:
+        """Return what is wrong with an end of a dimension wherever the others are.
+
+        Values that are refused in some places only are no fault: those runs are, one by one.
+        """
+        found: dict[str, Fault] = {}
+        ends = [sorted({0, size - 1}) for size in self.layout.shape]
+        for place, dim in enumerate(self.layout.dims):
+            for end in ends[place]:
+                others = [*ends[:place], [end], *ends[place + 1 :]]
+                refusals = [self._refusal(index) for index in product(*others)]
+                if all(refusals):
+                    found.setdefault(dim, Fault(dim, "; ".join(map(str, refusals[0]))))
+        return list(found.values())
+
+    def _refusal(self, index: Index) -> tuple[Fault, ...]:
+        try:
+            self.description(index)
+        except DescriptionError as error:
+            return error.faults
+        return ()
+
+    @cached_property
+    def layout(self) -> Layout:
+        """How the runs lie along the dimensions."""
+        sizes = {axis.along or path: axis.count for path, axis in self.axes.items()}
+        return laid_out(sizes, seconds_of(self.base))
+
+    @cached_property
+    def coordinates(self) -> dict[str, Coordinate]:
+        """The values of each axis."""
+        return coordinates(self.base, self.axes, self.seed)
+
+    def description(self, index: Index) -> Description:
+        """Return the description of one run.
+
+        Raises
+        ------
+        DescriptionError
+            If the base cannot have these values together.
+        """
+        at = dict(zip(self.layout.dims, index, strict=True))
+        changes = {
+            path: (float(values[at[dim]]), its)
+            for path, (dim, values, its) in self.coordinates.items()
+        }
+        return varied(self.base, changes)
+
+    def run(
+        self,
+        path: str | Path,
+        *,
+        engine: Engine | None = None,
+        progress: Callable[[Tally], None] | None = None,
+    ) -> Summary:
+        """Do all runs that the store at `path` has not; see `stiction.study.sweeping.sweep`."""
+        from stiction.study.sweeping import sweep
+
+        return sweep(self, path, engine=engine, progress=progress)
+
+    @classmethod
+    def from_toml(cls, path: str | Path) -> Self:
+        """Read a study's file: a description with the tables [study] and [axes] beside it.
+
+        Raises
+        ------
+        DescriptionError
+            Naming every fault with its path, or why the file cannot be read.
+        """
+        return cls.from_dict(read_toml(path), find=named(Path(path).parent, Path()))
+
+    @classmethod
+    def from_dict(cls, raw: Mapping[str, Any], *, find: Find | None = None) -> Self:
+        """Read a study from nested tables, as in the TOML file."""
+        found: list[Fault] = []
+        own, axes = raw.get("study", {}), raw.get("axes")
+        if not isinstance(own, Mapping):
+            found.append(Fault("study", f"must be a table [study], is {own!r}"))
+        if axes is None:
+            found.append(Fault("axes", "missing; write for example a table [axes.phi]"))
+        try:
+            rest = {key: value for key, value in raw.items() if key not in ("study", "axes")}
+            base = Description.from_dict(rest, find=find)
+        except DescriptionError as error:
+            raise DescriptionError([*found, *error.faults]) from None
+        if found:
+            raise DescriptionError(found)
+        try:
+            return cls(**{**own, "base": base, "axes": axes})
+        except DescriptionError as error:
+            raise DescriptionError([_in_file(fault) for fault in error.faults]) from None
+
+    @classmethod
+    def from_json(cls, text: str, *folders: Path, trust: bool = False) -> Self:
+        """Read back what `to_json` wrote; `folders` and `trust` as of `Description.from_json`."""
+        find = (trusted if trust else kept)(*folders, Path())
+        return cls.from_dict(json.loads(text), find=find)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return nested tables, as `from_dict` reads them."""
+        base: Description = self.base
+        return {
+            "study": {"measures": list(self.measures), "seed": self.seed},
+            "axes": {path: axis_table(axis) for path, axis in self.axes.items()},
+            **base.to_dict(),
+        }
+
+    def to_json(self) -> str:
+        """Return the study as one JSON string."""
+        return json.dumps(self.to_dict())
+
+    def __reduce__(self) -> tuple[Callable[[str], Study], tuple[str]]:
+        """Pickle by the text, which other processes can read, laws of one's own included."""
+        return _from_text, (self.to_json(),)
+
+
+@lru_cache(maxsize=4)
+def _from_text(text: str) -> Study:
+    return Study.from_json(text, trust=True)
+
+
+def _in_file(fault: Fault) -> Fault:
+    """Return a fault with its path in a study's file."""
+    path = fault.path.removeprefix("Study.")
+    return Fault(path if path.startswith("axes") else f"study.{path}", fault.message)

@@ -1,0 +1,110 @@
+"""Doing a study: what is missing in its store, block by block, on an engine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from pathlib import Path
+from time import perf_counter
+from typing import NamedTuple
+
+import numpy as np
+
+from stiction.study.engines import Engine, Threads
+from stiction.study.plan import Study
+from stiction.study.store import PENDING, Store, create, opened
+from stiction.study.summary import Summary, summary
+from stiction.study.task import done
+
+
+class Tally(NamedTuple):
+    """How far a study is.
+
+    Parameters
+    ----------
+    runs : int
+        Runs in all.
+    before : int
+        Of them done before this time.
+    now : int
+        Done this time.
+    failed : int
+        Failed this time.
+    seconds : float
+        Since this time began.
+    """
+
+    runs: int
+    before: int
+    now: int
+    failed: int
+    seconds: float
+
+    @property
+    def rate(tally) -> float:
+        """Runs per second."""
+        return tally.now / tally.seconds if tally.seconds > 0.0 else 0.0
+
+    @property
+    def left(tally) -> float:
+        """Seconds left at this rate; infinite before the first task is done."""
+        missing = tally.runs - tally.before - tally.now
+        return missing / tally.rate if tally.rate > 0.0 else float("inf")
+
+
+Report = Callable[[Tally], None]
+
+
+def sweep(
+    study: Study,
+    path: str | Path,
+    *,
+    engine: Engine | None = None,
+    progress: Report | None = None,
+) -> Summary:
+    """Do all runs of a study that its store has not, and keep them there.
+
+    It may be stopped at any moment, and goes on where it was when it is called again.
+
+    Parameters
+    ----------
+    study : Study
+        What to run.
+    path : str or Path
+        The store: a folder, made if it is not there.
+    engine : Engine, optional
+        What does the runs: threads of this process when left out.
+    progress : callable, optional
+        Called with a `Tally` after each task.
+
+    Returns
+    -------
+    Summary
+        How the runs ended, of this time and before.
+
+    Raises
+    ------
+    ResultError
+        If something else is there, or the store cannot be written.
+    """
+    store = opened(study, path) if Path(path).exists() else create(study, path)
+    missing = store.status() == PENDING
+    begun = perf_counter()
+    tally = Tally(store.layout.runs, missing.size - int(np.count_nonzero(missing)), 0, 0, 0.0)
+    work = partial(done, study, store)
+    for came in (engine or Threads()).results(work, tasks_left(store, missing)):
+        tally = tally._replace(
+            now=tally.now + came.runs,
+            failed=tally.failed + came.failed,
+            seconds=perf_counter() - begun,
+        )
+        if progress is not None:
+            progress(tally)
+    return summary(study, store)
+
+
+def tasks_left(store: Store, missing: np.ndarray) -> Iterator[int]:
+    """Yield the number of each block in which runs are missing."""
+    for task in range(store.layout.tasks):
+        if missing[store.layout.region(task)].any():
+            yield task

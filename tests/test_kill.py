@@ -1,0 +1,225 @@
+"""A study is killed at random moments, by the system, and goes on with what is missing.
+
+A process that has imported everything forks one that does the study, which is then killed: it is
+as real as one started anew, but there in a hundredth of the time.
+"""
+
+import contextlib
+import os
+import random
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import stiction as st
+from stiction.study.store import PENDING
+
+pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+
+KILLS = 20
+NURSERY = """
+import os, resource, sys
+import stiction as st
+from stiction.study.cluster import Scheduler
+from stiction.study.engines import Threads
+from stiction.study.layout import laid_out
+import distributed, xarray, zarr
+
+study = st.Study.from_json(sys.argv[1])
+study.description((0, 0))
+st.simulate(study.base.slider, 0.01)
+for line in sys.stdin:
+    path, address, limit = line.split()
+    child = os.fork()
+    if child == 0:
+        if int(limit):
+            resource.setrlimit(resource.RLIMIT_FSIZE, (int(limit), int(limit)))
+        engine = Scheduler(address) if address != "-" else Threads(2)
+        try:
+            result = study.run(path, engine=engine)
+            print("done", result.pending, flush=True)
+        except st.StictionError as error:
+            print("told", error, flush=True)
+        os._exit(0)
+    print(child, flush=True)
+    os.waitpid(child, 0)
+    print("over", flush=True)
+"""
+
+
+class Nursery:
+    """Has processes that do a study."""
+
+    def __init__(self, study: st.Study) -> None:
+        self.process = subprocess.Popen(
+            [sys.executable, "-c", NURSERY, study.to_json()],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1,
+            env={**os.environ, "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "3s"},
+        )  # fmt: skip
+
+    def begin(self, path: Path, address: str = "-", limit: int = 0) -> int:
+        print(path, address, limit, file=self.process.stdin, flush=True)
+        return int(self.process.stdout.readline())
+
+    def close(self) -> None:
+        for pipe in (self.process.stdin, self.process.stdout):
+            pipe.close()
+        self.process.wait(timeout=30)
+
+    def end(self) -> str:
+        """Return what the process says, once it is over."""
+        said = ""
+        while (line := self.process.stdout.readline()) != "over\n":
+            assert line, "the nursery died"
+            said += line
+        return said
+
+
+@pytest.fixture(scope="module")
+def study() -> st.Study:
+    """About 400 runs of some 10 ms."""
+    base = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="6 s"))
+    axes = {
+        "phi": st.Grid("0.5 deg", "9 deg", 21),
+        "drive.velocity": st.Grid("0.5 mm/s", "5 mm/s", 19, spacing="log"),
+    }
+    return st.Study(base=base, axes=axes, measures=["peak_force", "stick_count", "time_stuck"])
+
+
+@pytest.fixture(scope="module")
+def undisturbed(study, tmp_path_factory) -> xr.Dataset:
+    path = tmp_path_factory.mktemp("undisturbed") / "a.zarr"
+    study.run(path)
+    return xr.open_zarr(path).load()
+
+
+@pytest.fixture(scope="module")
+def nursery(study):
+    made = Nursery(study)
+    yield made
+    made.close()
+
+
+def marks(path: Path) -> dict[str, int]:
+    """Return when each block was written, by the file of its status."""
+    return {str(file): file.stat().st_mtime_ns for file in path.glob("status/c/*/*")
+            if not file.name.endswith(".partial")}  # fmt: skip
+
+
+def test_killed_twenty_times_nothing_is_lost_or_done_twice(nursery, study, undisturbed, tmp_path):
+    path, chance, before, killed = tmp_path / "a.zarr", random.Random(1), {}, 0
+    while killed < KILLS:
+        child = nursery.begin(path)
+        time.sleep(chance.uniform(0.0, 0.5))
+        os.kill(child, signal.SIGKILL)
+        said = nursery.end()
+        assert not said, "it was done before it was killed often enough: make it longer"
+        killed += 1
+        now = marks(path)
+        assert before.items() <= now.items()  # what was done is there, and was not done again
+        before = now
+    assert 0 < len(before) < study.layout.tasks
+    if path.exists():  # each block that is marked is whole, and as it should be
+        part = xr.open_zarr(path).load()
+        there = part["status"] != PENDING
+        for name in (*study.measures, "status", "message"):
+            found, right = part[name].values[there.values], undisturbed[name].values[there.values]
+            np.testing.assert_array_equal(found, right)
+    nursery.begin(path)
+    assert nursery.end() == "done 0\n"
+    assert before.items() <= marks(path).items()
+    xr.testing.assert_identical(xr.open_zarr(path).load(), undisturbed)
+
+
+def test_a_full_disk_is_told_and_mended(nursery, undisturbed, tmp_path):
+    """The system lets files grow to 2 kB, too few for some: it is told, and made good later."""
+    nursery.begin(tmp_path / "a.zarr", limit=2000)
+    said = nursery.end()
+    assert said.startswith("told")
+    assert "cannot be written" in said
+    assert "same command again" in said
+    nursery.begin(tmp_path / "a.zarr")
+    assert nursery.end() == "done 0\n"
+    xr.testing.assert_identical(xr.open_zarr(tmp_path / "a.zarr").load(), undisturbed)
+
+
+DASK = "from distributed.cli.dask_{0} import main; main()"
+
+
+@contextlib.contextmanager
+def dask(what: str, *arguments: str):
+    """Run a dask scheduler or worker in a process of its own."""
+    command = [sys.executable, "-c", DASK.format(what), *arguments]
+    process = subprocess.Popen(
+        command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
+    )
+    try:
+        yield process
+    finally:
+        os.killpg(process.pid, signal.SIGKILL)  # a worker waits long for its scheduler
+        process.wait(timeout=30)
+
+
+def test_workers_client_and_scheduler_killed(nursery, study, undisturbed, tmp_path):
+    """A scheduler and two workers in processes of their own, on loopback."""
+    from distributed import Client
+
+    path, chance, before = tmp_path / "a.zarr", random.Random(2), {}
+    port = free_port()
+    address = f"tcp://127.0.0.1:{port}"
+    serve = ("scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard")
+    work = ("worker", address, "--nworkers", "2", "--nthreads", "1", "--no-dashboard")
+    with dask(*work), dask(*serve) as scheduler:
+        with Client(address, timeout=30) as watch:
+            for _ in range(2):  # the client dies
+                child = nursery.begin(path, address)
+                more_than(len(marks(path)), path)
+                time.sleep(chance.uniform(0.0, 0.2))
+                os.kill(child, signal.SIGKILL)
+                assert not nursery.end()
+            time.sleep(1.0)  # workers finish what they have in hand
+            before = marks(path)
+            nursery.begin(path, address)
+            for _ in range(2):  # workers die, and are started anew
+                more_than(len(marks(path)), path)
+                time.sleep(chance.uniform(0.0, 0.1))
+                os.kill(chance.choice(workers(watch)), signal.SIGKILL)
+        more_than(len(marks(path)), path)
+        scheduler.kill()
+        assert nursery.end().startswith("told dask's scheduler is lost")
+        assert len(marks(path)) < study.layout.tasks
+    nursery.begin(path)
+    assert nursery.end() == "done 0\n"
+    assert before.items() <= marks(path).items()
+    xr.testing.assert_identical(xr.open_zarr(path).load(), undisturbed)
+
+
+def workers(watch) -> list[int]:
+    """Return the processes of the workers that answer, one at least."""
+    found: list[int] = []
+    while not found:
+        watch.wait_for_workers(1, timeout=60)
+        answers = watch.run(os.getpid, on_error="return")
+        found = [answer for answer in answers.values() if isinstance(answer, int)]
+    return found
+
+
+def more_than(count: int, path: Path) -> None:
+    """Wait until more blocks are done."""
+    end = time.monotonic() + 60.0
+    while len(marks(path)) <= count:
+        assert time.monotonic() < end, "no block was done in a minute"
+        time.sleep(0.01)
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
