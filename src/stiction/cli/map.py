@@ -43,15 +43,10 @@ def map(
     output
         The figure to write (.png, .pdf or .svg); STUDY.png beside the store when left out.
     """
-    from stiction.errors import StictionError
+    from stiction.cli.tally import named
     from stiction.plotting.save import drawable, write
     from stiction.study.mapping import map_figure
 
-    cut = {}
-    for text in at or ():
-        name, equals, value = text.rpartition("=")
-        if not equals:
-            raise StictionError(f"--at {text!r} is no cut; write for example --at 'phi = 1 deg'")
-        cut[name.strip()] = value.strip()
+    cut = dict(named(text, "--at") for text in at or ())
     target = drawable(output or study.with_suffix(".png"))
     print(f"wrote {write(map_figure(study, of or (), cut), target)}")

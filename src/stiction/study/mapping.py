@@ -12,6 +12,7 @@ from stiction.errors import DescriptionError, Fault
 from stiction.plotting.damping import draw_damping_map
 from stiction.plotting.maps import (
     Side,
+    draw_changes,
     draw_measure,
     draw_points,
     draw_regimes,
@@ -114,6 +115,9 @@ def _map(fig: Figure, ax: Axes, view: View, name: str, theory: Plane) -> list[An
         fig.colorbar(mesh, ax=ax, label=label(view.data, name), pad=0.02)
     x_dim, y_dim = (str(dim) for dim in view.data[name].dims)
     fine = side(view, x_dim, theory.x), side(view, y_dim, theory.y)
+    for found in view.changes:
+        if {x_dim, y_dim} <= {*found.data_vars} and not view.at:
+            handles += draw_changes(ax, *(side(view, d, found[d].values) for d in (x_dim, y_dim)))
     return handles + draw_theory(ax, *fine, theory.fields)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, lru_cache
 from itertools import product
 from pathlib import Path
@@ -24,6 +24,8 @@ from stiction.tables import read_toml
 from stiction.validation import Described, faulty, unknown
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from stiction.study.engines import Engine
     from stiction.study.summary import Summary
     from stiction.study.sweeping import Tally
@@ -165,6 +167,21 @@ class Study(Described):
         from stiction.study.sweeping import sweep
 
         return sweep(self, path, engine=engine, progress=progress)
+
+    def refine(
+        self,
+        path: str | Path,
+        along: str,
+        to: float | str,
+        *,
+        apart: Sequence[str] | None = None,
+        engine: Engine | None = None,
+        progress: Callable[[Tally], None] | None = None,
+    ) -> xr.Dataset:
+        """Find where the kind of motion changes; see `stiction.study.refining.refine`."""
+        from stiction.study.refining import refine
+
+        return refine(self, path, along, to, apart=apart, engine=engine, progress=progress)
 
     @classmethod
     def from_toml(cls, path: str | Path) -> Self:

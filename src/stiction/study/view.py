@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 REGIME = "regime"
 RUNS = ("status", "message")  # variables that are no measures
+REFINED, CHANGES = "refined", "changes"  # folders in a store
 
 
 class View(NamedTuple):
@@ -34,11 +35,14 @@ class View(NamedTuple):
         Its store, of which dimensions that are cut are gone.
     at : mapping of str to int
         The place along each of these.
+    changes : sequence of Dataset
+        Where the kind of motion changes, if it was refined; see `stiction.study.refining`.
     """
 
     study: Study
     data: xr.Dataset
     at: Mapping[str, int]
+    changes: Sequence[xr.Dataset]
 
 
 def viewed(path: str | Path, cut: Mapping[str, str | float]) -> View:
@@ -62,7 +66,15 @@ def viewed(path: str | Path, cut: Mapping[str, str | float]) -> View:
         found.append(Fault(", ".join(dims), f"{len(left)} dimensions are left; {remedy}"))
     if found:
         raise DescriptionError(found)
-    return View(study, data.isel(at).load(), at)
+    return View(study, data.isel(at).load(), at, refined(path))
+
+
+def refined(path: str | Path) -> list[xr.Dataset]:
+    """Return the changes that were refined, along one axis each."""
+    import xarray as xr
+
+    folders = sorted(Path(path).glob(f"{REFINED}/*/{CHANGES}"))
+    return [xr.open_zarr(folder, consolidated=False).load() for folder in folders]
 
 
 def chosen(view: View, measures: Sequence[str]) -> list[str]:
