@@ -15,6 +15,8 @@ from stiction.study.engines import AHEAD, Work
 
 T = TypeVar("T")
 AGAIN = "what is written is whole, and the same command goes on"
+# an interrupt in a terminal reaches all its processes: the client alone is to act on it
+UNINTERRUPTED = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 DEATHS = 10  # of workers, that a task may see before it is taken for their cause
 
 
@@ -41,7 +43,9 @@ class Processes(NamedTuple):
             warnings.catch_warnings(),
         ):
             warnings.filterwarnings("ignore", "Port .* is already in use")
-            cluster = dask.LocalCluster(n_workers=self.workers, threads_per_worker=1)
+            cluster = dask.LocalCluster(
+                n_workers=self.workers, threads_per_worker=1, preload=[UNINTERRUPTED]
+            )
             with lost_and_told(), cluster, dask.Client(cluster) as client:
                 yield from handed_out(client, work, tasks)
 

@@ -33,7 +33,11 @@ DAMPING = ("phi", "drive.velocity")  # coordinates that place a run in the dampi
 
 
 def map_figure(
-    path: str | Path, measures: Sequence[str] = (), cut: Mapping[str, str | float] | None = None
+    path: str | Path,
+    measures: Sequence[str] = (),
+    cut: Mapping[str, str | float] | None = None,
+    *,
+    trust: bool = False,
 ) -> Figure:
     """Draw a study: a map over two dimensions, a curve over one, points for samples.
 
@@ -46,6 +50,9 @@ def map_figure(
     cut : mapping, optional
         For a dimension the value at which it is cut (a number, or text with its unit); the
         nearest that was run is taken.
+    trust : bool, optional
+        Whether the text of a friction law that stands in the store may be run; see
+        `stiction.load`.
 
     Returns
     -------
@@ -59,7 +66,7 @@ def map_figure(
     DescriptionError
         If it has no such measure or dimension, or more than two are left.
     """
-    view = viewed(path, cut or {})
+    view = viewed(path, cut or {}, trust)
     wanted = chosen(view, measures)
     draw = {1: _curves, 2: _maps}[len(view.data["status"].dims)]
     names = [name for name, each in view.study.coordinates.items() if each.dim not in view.at]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import cached_property, lru_cache
 from itertools import product
 from pathlib import Path
@@ -20,6 +20,7 @@ from stiction.study.layout import Index, Layout, laid_out
 from stiction.study.measures import DEFAULT, MEASURES
 from stiction.study.observed import seconds_of
 from stiction.study.parameters import varied
+from stiction.study.traces import TRACES
 from stiction.tables import read_toml
 from stiction.validation import Described, faulty, unknown
 
@@ -54,14 +55,22 @@ def _axes(value: Any) -> dict[str, Axis]:
     return axes
 
 
-def _measures(value: Any) -> tuple[str, ...]:
+def _named(value: Any, what: str, known: Collection[str]) -> tuple[str, ...]:
     if isinstance(value, str) or not hasattr(value, "__iter__"):
-        raise ValueError(f"{value!r} is not a list of measures; known: {', '.join(MEASURES)}")
+        raise ValueError(f"{value!r} is not a list of {what}s; known: {', '.join(known)}")
     wanted = tuple(dict.fromkeys(str(each) for each in value))
-    strange = [name for name in wanted if name not in MEASURES]
+    strange = [name for name in wanted if name not in known]
     if strange:
-        raise ValueError("; ".join(unknown("measure", name, MEASURES) for name in strange))
+        raise ValueError("; ".join(unknown(what, name, known) for name in strange))
     return wanted
+
+
+def _measures(value: Any) -> tuple[str, ...]:
+    return _named(value, "measure", MEASURES)
+
+
+def _traces(value: Any) -> tuple[str, ...]:
+    return _named(value, "trace", TRACES)
 
 
 class Study(Described):
@@ -77,6 +86,10 @@ class Study(Described):
         `Random` or `Sobol`, or a table of the same.
     measures : sequence of str, optional
         What to keep of each run, see `stiction.study.measures.MEASURES`.
+    traces : sequence of str, optional
+        Courses over time to keep as well: "force", "velocity", "position".
+    trace_samples : int, optional
+        How many samples of each, evenly spaced over the run.
     seed : int, optional
         Of random and Sobol axes.
 
@@ -98,6 +111,8 @@ class Study(Described):
     base: Annotated[Any, AfterValidator(_is_description)]
     axes: Annotated[Any, BeforeValidator(_axes)]
     measures: Annotated[tuple[str, ...], BeforeValidator(_measures)] = DEFAULT
+    traces: Annotated[tuple[str, ...], BeforeValidator(_traces)] = ()
+    trace_samples: Annotated[int, Field(ge=2, le=100_000)] = 256
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
 
     @model_validator(mode="after")
@@ -225,7 +240,7 @@ class Study(Described):
         """Return nested tables, as `from_dict` reads them."""
         base: Description = self.base
         return {
-            "study": {"measures": list(self.measures), "seed": self.seed},
+            "study": self.model_dump(mode="json", exclude={"base", "axes"}),
             "axes": {path: axis_table(axis) for path, axis in self.axes.items()},
             **base.to_dict(),
         }

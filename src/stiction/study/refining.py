@@ -17,10 +17,11 @@ from pydantic_core import PydanticCustomError
 from stiction.errors import DescriptionError, Fault
 from stiction.study.axes import Floats, Values
 from stiction.study.engines import Engine
+from stiction.study.kept import UNKNOWN, flagged
 from stiction.study.parameters import number
 from stiction.study.plan import Study
 from stiction.study.regimes import KINDS
-from stiction.study.store import UNKNOWN, flagged, open_study
+from stiction.study.store import open_study
 from stiction.study.sweeping import Tally, sweep
 from stiction.study.view import CHANGES, REFINED, REGIME, kinds
 from stiction.validation import unknown

@@ -10,7 +10,7 @@ import os
 import shutil
 import tempfile
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
@@ -21,8 +21,8 @@ import numpy as np
 
 from stiction import errors
 from stiction.errors import ResultError
+from stiction.study.kept import TIME, Kept, flagged, kept, trace_times
 from stiction.study.layout import Index, Layout, Region
-from stiction.study.measures import MEASURES
 from stiction.study.plan import Study
 
 if TYPE_CHECKING:
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     import zarr
 
 FORMAT = 1  # of the store
-UNKNOWN = "unknown"  # what -1 means where a number stands for a kind
 PENDING = -1
 # how a run can end: as every run, or refused before it began, or by an error of the program
 ENDS = (*(status.name.lower() for status in errors.Status), "refused", "error")
@@ -40,9 +39,9 @@ COMPLETED, REFUSED, ERROR = 0, ENDS.index("refused"), ENDS.index("error")
 
 
 class Block(NamedTuple):
-    """What a region's runs came to: arrays of the region's shape."""
+    """What a region's runs came to: arrays of the region's shape, and of each value's own."""
 
-    measures: Mapping[str, np.ndarray]
+    values: Sequence[tuple[Kept, np.ndarray]]
     status: np.ndarray
     message: np.ndarray
 
@@ -75,8 +74,8 @@ class Store(NamedTuple):
     def write(store, region: Region, block: Block) -> None:
         """Write a block, its status last."""
         with told(store.path):
-            for name, values in block.measures.items():
-                store._write(name, region, values, MEASURES[name].unknown)
+            for each, values in block.values:
+                store._write(each.name, region, values, each.unknown)
             if block.message.any():
                 store._array("message")[region] = block.message
             store._write("status", region, block.status, PENDING)
@@ -86,11 +85,11 @@ class Store(NamedTuple):
 
         Through zarr it takes the processor eight times as long, as long as a sixth of a run.
         """
-        block = store.layout.block
-        chunk = np.full(block, fill, values.dtype.newbyteorder("<"))  # whole at the edges, too
+        block, own = store.layout.block, values.shape[len(region) :]
+        chunk = np.full((*block, *own), fill, values.dtype.newbyteorder("<"))  # whole at the edges
         chunk[tuple(slice(0, n) for n in values.shape)] = values
-        places = (str(part.start // b) for part, b in zip(region, block, strict=True))
-        file = store.path.joinpath(name, "c", *places)
+        places = [str(part.start // b) for part, b in zip(region, block, strict=True)]
+        file = store.path.joinpath(name, "c", *places, *["0" for _ in own])
         file.parent.mkdir(parents=True, exist_ok=True)
         part = file.with_name(f".{uuid4().hex}.part")
         try:
@@ -158,14 +157,12 @@ def _lay_out(study: Study, group: zarr.Group) -> None:
         description=study.to_json(),
         coordinates=" ".join([*study.coordinates, "message"]),  # as xarray reads it
     )
-    for name in study.measures:
-        known = MEASURES[name]
-        labels: Any = {"units": known.unit, "long_name": known.long_name}
-        if known.flags:
-            labels = {"long_name": known.long_name, **flagged(UNKNOWN, known.flags)}
+    for each in kept(study):
         group.create_array(
-            name, dtype=known.dtype, fill_value=known.unknown, attributes=labels, **dims, **grid
-        )
+            each.name, dtype=each.dtype, fill_value=each.unknown, attributes=each.labels,
+            shape=(*layout.shape, *each.shape), chunks=(*layout.block, *each.shape),
+            dimension_names=(*layout.dims, *[TIME for _ in each.shape]), compressors=None,
+        )  # fmt: skip
     flags: Any = {"long_name": "how the run ended", **flagged("pending", ENDS)}
     group.create_array(
         "status", dtype=np.int8, fill_value=PENDING, attributes=flags, **dims, **grid
@@ -175,18 +172,20 @@ def _lay_out(study: Study, group: zarr.Group) -> None:
         **dims, **grid,
     )  # fmt: skip
     for path, (dim, values, unit) in study.coordinates.items():
-        labels = {"units": unit or "1", "long_name": path}
-        array = group.create_array(
-            path, shape=values.shape, chunks=values.shape, dtype=np.float64, attributes=labels,
-            dimension_names=(dim,), compressors=None,
-        )  # fmt: skip
-        array[:] = values
+        _write_along(group, path, dim, values, {"units": unit or "1", "long_name": path})
+    if study.traces:
+        _write_along(group, TIME, TIME, *trace_times(study))
 
 
-def flagged(before: str, meanings: Sequence[str]) -> dict[str, Any]:
-    """Return the CF attributes of a variable whose values -1, 0, 1, ... have meanings."""
-    words = [meaning.replace(" ", "_") for meaning in (before, *meanings)]
-    return {"flag_values": [*range(-1, len(meanings))], "flag_meanings": " ".join(words)}
+def _write_along(
+    group: zarr.Group, name: str, dim: str, values: np.ndarray, labels: dict[str, Any]
+) -> None:
+    """Write a coordinate."""
+    array = group.create_array(
+        name, shape=values.shape, chunks=values.shape, dtype=np.float64, attributes=labels,
+        dimension_names=(dim,), compressors=None,
+    )  # fmt: skip
+    array[:] = values
 
 
 def opened(study: Study, path: str | Path) -> Store:

@@ -45,10 +45,10 @@ class View(NamedTuple):
     changes: Sequence[xr.Dataset]
 
 
-def viewed(path: str | Path, cut: Mapping[str, str | float]) -> View:
+def viewed(path: str | Path, cut: Mapping[str, str | float], trust: bool = False) -> View:
     """Return what is left of a study when some of its dimensions are cut."""
     data = open_study(path)
-    study = Study.from_json(data.attrs["description"], Path(path).parent, trust=False)
+    study = Study.from_json(data.attrs["description"], Path(path).parent, trust=trust)
     dims, at, found = study.layout.dims, {}, []
     for dim, value in cut.items():
         if dim not in study.coordinates or dim not in dims:
@@ -79,7 +79,12 @@ def refined(path: str | Path) -> list[xr.Dataset]:
 
 def chosen(view: View, measures: Sequence[str]) -> list[str]:
     """Return what to draw."""
-    kept = [str(name) for name in view.data.data_vars if name not in RUNS]
+    runs = view.data["status"].dims  # traces have time as well
+    kept = [
+        str(name)
+        for name, each in view.data.data_vars.items()
+        if name not in RUNS and each.dims == runs
+    ]
     strange = [name for name in measures if name not in kept]
     if strange:
         raise DescriptionError([Fault(name, unknown("measure", name, kept)) for name in strange])
