@@ -84,17 +84,20 @@ def sweep(
     """
     from stiction.cli.tally import named, shown
 
+    found = None
     study, means = described(config, preset), engine(threads, workers, scheduler)
     try:
         with shown(quiet, json_lines) as (report, conclude):
             result = study.run(output, engine=means, progress=report)
             if refine is not None:
                 along, to = named(refine, "--refine")
-                study.refine(output, along, to, apart=apart, engine=means, progress=report)
+                found = study.refine(output, along, to, apart=apart, engine=means, progress=report)
     except KeyboardInterrupt:
         print(f"{output}: stopped; the same command goes on where it was", file=sys.stderr)
         return 130
     conclude(output, result)
+    if found is not None and not (quiet or json_lines):
+        print(f"{found.sizes['point']} changes along {along}, by {found.attrs['runs']} runs in all")
     return 1 if result.failed else 0
 
 

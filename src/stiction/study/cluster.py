@@ -44,7 +44,10 @@ class Processes(NamedTuple):
         ):
             warnings.filterwarnings("ignore", "Port .* is already in use")
             cluster = dask.LocalCluster(
-                n_workers=self.workers, threads_per_worker=1, preload=[UNINTERRUPTED]
+                n_workers=self.workers,
+                threads_per_worker=1,
+                preload=[UNINTERRUPTED],
+                silence_logs=logging.ERROR,  # of tasks that are cancelled
             )
             with lost_and_told(), cluster, dask.Client(cluster) as client:
                 yield from handed_out(client, work, tasks)
@@ -117,9 +120,10 @@ def lost_and_told() -> Iterator[None]:
     from distributed import KilledWorker
     from distributed.comm.core import CommClosedError
 
-    log = logging.getLogger("distributed.client")
-    level = log.level
-    log.setLevel(logging.CRITICAL)
+    logs = [logging.getLogger(name) for name in ("distributed.client", "tornado.application")]
+    levels = [log.level for log in logs]
+    for log in logs:
+        log.setLevel(logging.CRITICAL)
     try:
         yield
     except KilledWorker as error:
@@ -129,4 +133,5 @@ def lost_and_told() -> Iterator[None]:
     except (CancelledError, CommClosedError, TimeoutError) as error:
         raise StictionError(f"dask's scheduler is lost ({error}); {AGAIN}") from None
     finally:
-        log.setLevel(level)
+        for log, level in zip(logs, levels, strict=True):
+            log.setLevel(level)

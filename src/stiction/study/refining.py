@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic_core import PydanticCustomError
@@ -17,6 +17,7 @@ from pydantic_core import PydanticCustomError
 from stiction.errors import DescriptionError, Fault
 from stiction.study.axes import Floats, Values
 from stiction.study.engines import Engine
+from stiction.study.intervals import Intervals, changes, half_way, halved, widest
 from stiction.study.kept import UNKNOWN, flagged
 from stiction.study.parameters import number
 from stiction.study.plan import Study
@@ -30,23 +31,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 MOST_HALVINGS = 50  # to the distance of two floats
-
-
-class Intervals(NamedTuple):
-    """Pairs of runs of different kind: values of each axis at both, and what they showed.
-
-    Parameters
-    ----------
-    low, high : mapping of str to ndarray
-        (n,) for each axis, in the unit of the study's store.
-    below, above : ndarray
-        (n,) kinds of motion there.
-    """
-
-    low: Mapping[str, Floats]
-    high: Mapping[str, Floats]
-    below: np.ndarray
-    above: np.ndarray
 
 
 def refine(
@@ -126,35 +110,6 @@ def _asked(study: Study, along: str, to: float | str) -> float:
     return width
 
 
-def changes(study: Study, data: xr.Dataset, along: str, apart: Sequence[str] | None) -> Intervals:
-    """Return the neighbours on a study's grid that differ in kind; failed runs do in none."""
-    dims = study.layout.dims
-    axis = dims.index(along)
-    found = np.moveaxis(kinds(data), axis, -1)
-    sides = side(found, apart)
-    differ = (sides[..., 1:] != sides[..., :-1]) & (found[..., 1:] != "") & (found[..., :-1] != "")
-    places = np.argwhere(differ)
-
-    def end(step: int) -> dict[str, Floats]:
-        index = np.insert(places[:, :-1], axis, places[:, -1] + step, axis=1)
-        axes = study.coordinates.items()
-        return {name: each.values[index[:, dims.index(each.dim)]] for name, each in axes}
-
-    last = found.reshape(-1, found.shape[-1])
-    row = np.ravel_multi_index(tuple(places[:, :-1].T), found.shape[:-1]) if found.ndim > 1 else 0
-    return Intervals(end(0), end(1), last[row, places[:, -1]], last[row, places[:, -1] + 1])
-
-
-def side(found: np.ndarray, apart: Sequence[str] | None) -> np.ndarray:
-    """Return what is compared of kinds: they themselves, or whether they are some of them."""
-    return found if apart is None else np.isin(found.astype(str), list(apart))
-
-
-def half_way(low: Floats, high: Floats) -> Floats:
-    """Return the middle of two values; they are one where an axis does not vary."""
-    return np.where(low == high, low, 0.5 * (low + high))
-
-
 def samples(study: Study, values: Mapping[str, Floats]) -> Study:
     """Return a study of single runs."""
     axes: dict[str, Any] = {}
@@ -163,28 +118,6 @@ def samples(study: Study, values: Mapping[str, Floats]) -> Study:
         listed = [f"{v!r}{unit}" if unit else v for v in each.tolist()]
         axes[name] = Values(listed, "sample")
     return Study(base=study.base, axes=axes, measures=[REGIME])
-
-
-def halved(
-    found: Intervals, middle: Mapping[str, Floats], at: np.ndarray, apart: Sequence[str] | None
-) -> Intervals:
-    """Return the half of each interval in which the change is.
-
-    Where a third kind lies half way, or a run that failed, it is the lower half.
-    """
-    upper = side(at, apart) == side(found.below, apart)
-    at = np.where(at == "", found.above, at)  # a run that failed tells nothing: half is a guess
-    return Intervals(
-        {name: np.where(upper, middle[name], low) for name, low in found.low.items()},
-        {name: np.where(upper, high, middle[name]) for name, high in found.high.items()},
-        np.where(upper, at, found.below),
-        np.where(upper, found.above, at),
-    )
-
-
-def widest(found: Intervals, along: str) -> float:
-    """Return the width of the widest interval."""
-    return float(np.max(np.abs(found.high[along] - found.low[along])))
 
 
 def table(study: Study, found: Intervals, along: str, runs: int) -> xr.Dataset:

@@ -10,9 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.study.creation import create
 from stiction.study.engines import Engine, Threads
 from stiction.study.plan import Study
-from stiction.study.store import PENDING, Store, create, opened
+from stiction.study.store import PENDING, Store, opened
 from stiction.study.summary import Summary, summary
 from stiction.study.task import done
 
