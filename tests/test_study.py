@@ -143,6 +143,8 @@ def test_every_fault_of_a_study_is_told_at_once():
         ({"phi": {"values": []}}, "is not a list of values"),
         ({"phi": {"sampling": "sobl"}}, "did you mean 'sobol'"),
         ({"phi": 3}, "3 is not an axis"),
+        ({"phi": st.Values(["1 deg"], "regime")}, "axes.phi.along: cannot be 'regime'"),
+        ({"phi": st.Values(["1 deg"], "../a")}, "axes.phi.along: cannot be '../a'"),
         ({"k_x, mass": st.Values([1.0])}, "cannot share one value"),
         ({"k_x": st.Values([1.0]), "k_x, k_y": st.Values([1.0])}, "has an axis already"),
         (

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from math import isfinite
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Any
@@ -53,7 +54,7 @@ def _print_tally(tally: Tally) -> None:
         "done": tally.before + tally.now,
         "failed": tally.failed,
         "runs_per_second": round(tally.rate, 3),
-        "seconds_left": round(tally.left, 1),
+        "seconds_left": round(tally.left, 1) if isfinite(tally.left) else None,
     }
     print(json.dumps(line), flush=True)
 

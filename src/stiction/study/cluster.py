@@ -99,7 +99,7 @@ def handed_out(client: Any, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
     def hand_out() -> None:
         threads = sum(client.nthreads().values()) or 1  # workers come and go
         for task in islice(waiting, max(AHEAD * threads - flying.count(), 0)):
-            flying.add(client.submit(work, task, wanted, pure=False))
+            flying.add(client.submit(work, task, never, pure=False))
 
     hand_out()
     for future in flying:
@@ -107,8 +107,8 @@ def handed_out(client: Any, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
         hand_out()
 
 
-def wanted() -> bool:
-    """Return False: a task is wanted. One that no longer is, dask drops or ends."""
+def never() -> bool:
+    """Return False: no task finds itself unwanted; what no longer is wanted, dask drops or ends."""
     return False
 
 

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 from uuid import uuid4
 
 import numpy as np
@@ -63,6 +63,10 @@ class Store(NamedTuple):
         """Return the status of every run."""
         return np.asarray(store._array("status")[...])
 
+    def has(store, region: Region) -> bool:
+        """Return whether a block is done: its status is written, last and whole."""
+        return store._file("status", region, 0).is_file()
+
     def message(store, index: Index) -> str:
         """Return why a run failed."""
         return str(store._array("message")[index])
@@ -84,8 +88,7 @@ class Store(NamedTuple):
         block, own = store.layout.block, values.shape[len(region) :]
         chunk = np.full((*block, *own), fill, values.dtype.newbyteorder("<"))  # whole at the edges
         chunk[tuple(slice(0, n) for n in values.shape)] = values
-        places = [str(part.start // b) for part, b in zip(region, block, strict=True)]
-        file = store.path.joinpath(name, "c", *places, *["0" for _ in own])
+        file = store._file(name, region, len(own))
         file.parent.mkdir(parents=True, exist_ok=True)
         part = file.with_name(f".{uuid4().hex}.part")
         try:
@@ -94,6 +97,12 @@ class Store(NamedTuple):
         except OSError:
             part.unlink(missing_ok=True)
             raise
+
+    def _file(store, name: str, region: Region, own: int) -> Path:
+        """Return where the chunk of a region is; its `own` dimensions are not cut."""
+        pairs = zip(region, store.layout.block, strict=True)
+        places = (str(part.start // b) for part, b in pairs)
+        return store.path.joinpath(name, "c", *places, *["0"] * own)
 
     def _array(store, name: str) -> Any:
         return store.group[name]
@@ -105,7 +114,7 @@ class Store(NamedTuple):
 
 @lru_cache(maxsize=4)
 def _reopened(path: str, layout: Layout) -> Store:
-    return Store(Path(path), group_at(path), layout)
+    return Store(Path(path), group_at(path, "r+"), layout)
 
 
 @contextmanager
@@ -128,7 +137,7 @@ def opened(study: Study, path: str | Path) -> Store:
     ResultError
         If there is something else.
     """
-    group = group_at(path)
+    group = group_at(path, "r+")
     held = group.attrs.get("description")
     if held != study.to_json():
         raise ResultError(
@@ -145,7 +154,7 @@ def opened(study: Study, path: str | Path) -> Store:
     return Store(Path(path), group, layout._replace(block=tuple(chunks.chunks)))
 
 
-def group_at(path: str | Path) -> zarr.Group:
+def group_at(path: str | Path, mode: Literal["r", "r+"]) -> zarr.Group:
     """Return what is in the store of a study.
 
     Raises
@@ -158,7 +167,7 @@ def group_at(path: str | Path) -> zarr.Group:
     if not Path(path).exists():
         raise ResultError(f"{path}: no such store; write one with 'stiction sweep'")
     try:
-        group = zarr.open_group(Path(path), mode="r+", use_consolidated=False)
+        group = zarr.open_group(Path(path), mode=mode, use_consolidated=False)
         known = group.attrs.get("format")
     except (OSError, ValueError, KeyError) as error:
         raise ResultError(f"{path}: is not the store of a study: {error}") from None
@@ -180,7 +189,7 @@ def open_study(path: str | Path) -> xr.Dataset:
     """
     import xarray as xr
 
-    group_at(path)
+    group_at(path, "r")
     data: xr.Dataset = xr.open_zarr(path)
     return data
 

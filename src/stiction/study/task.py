@@ -9,7 +9,7 @@ import numpy as np
 
 from stiction.errors import DescriptionError, Status
 from stiction.study.kept import Kept, kept
-from stiction.study.layout import Index, places, size_of
+from stiction.study.layout import Index, places, runs_of, size_of
 from stiction.study.observed import observe
 from stiction.study.plan import Study
 from stiction.study.store import COMPLETED, ERROR, REFUSED, Block, Store
@@ -35,9 +35,14 @@ class Outcome(NamedTuple):
 
 
 def done(study: Study, store: Store, task: int, unwanted: Callable[[], bool]) -> Came:
-    """Do the runs of a block and write it, or nothing if it is no longer wanted."""
+    """Do the runs of a block and write it, or nothing if it is no longer wanted.
+
+    A worker that outlived its client may have done it meanwhile: then it is left as it is.
+    """
     region = store.layout.region(task)
     size = size_of(region)
+    if store.has(region):
+        return Came(runs_of(region), 0)
     status = np.full(size, COMPLETED, np.int8)
     message = np.full(size, "", object)
     wanted = kept(study)
@@ -49,7 +54,8 @@ def done(study: Study, store: Store, task: int, unwanted: Callable[[], bool]) ->
                 array[place] = value
     except Unwanted:
         return Came(0, 0)
-    store.write(region, Block([*zip(wanted, arrays, strict=True)], status, message))
+    if not store.has(region):
+        store.write(region, Block([*zip(wanted, arrays, strict=True)], status, message))
     return Came(status.size, int(np.count_nonzero(status != COMPLETED)))
 
 
