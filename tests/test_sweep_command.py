@@ -50,6 +50,16 @@ def test_a_study_is_run_and_gone_on_with(config, tmp_path, capsys):
     assert capsys.readouterr() == ("", "")
 
 
+def test_progress_on_a_terminal(config, tmp_path, capsys, monkeypatch):
+    monkeypatch.setenv("FORCE_COLOR", "1")  # what rich takes for a terminal
+    monkeypatch.setenv("COLUMNS", "200")
+    assert inside("sweep", config, "-o", tmp_path / "a.zarr", "--threads", 1) == 0
+    shown = capsys.readouterr().err
+    assert "8 of 8 runs" in shown
+    assert "a second" in shown
+    assert "left" in shown
+
+
 def test_progress_as_json_lines(config, tmp_path, capsys):
     assert inside("sweep", config, "-o", tmp_path / "a.zarr", "--json-lines") == 0
     *lines, last = map(json.loads, capsys.readouterr().out.splitlines())

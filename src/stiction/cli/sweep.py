@@ -24,8 +24,8 @@ def sweep(
     threads: int | None = None,
     workers: int | None = None,
     scheduler: str | None = None,
-    quiet: bool = False,
-    json_lines: bool = False,
+    quiet: Annotated[bool, Parameter(negative=())] = False,
+    json_lines: Annotated[bool, Parameter(negative=())] = False,
 ) -> int:
     """Do the study that CONFIG describes: many runs, kept in a zarr store.
 

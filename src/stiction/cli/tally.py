@@ -98,20 +98,22 @@ def _bar() -> Iterator[Report | None]:
         yield None
         return
     columns = (
-        TextColumn("{task.completed:.0f} of {task.total:.0f} runs"),
+        TextColumn("{task.description}"),
         BarColumn(bar_width=20),
         TextColumn("{task.fields[rate]}"),
         TimeElapsedColumn(),
         TextColumn("{task.fields[left]}"),
     )
     with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task("", total=None, rate="", left="")
+        task = bar.add_task("making ready", total=None, rate="", left="")
 
         def report(tally: Tally) -> None:
+            done = tally.before + tally.now
             bar.update(
                 task,
+                description=f"{done} of {tally.runs} runs",
                 total=tally.runs,
-                completed=tally.before + tally.now,
+                completed=done,
                 rate=f"{tally.rate:.3g} a second",
                 left=f"{clock(tally.left)} left" + _so_far(tally.failed),
             )
