@@ -126,3 +126,13 @@ def test_every_measure_of_a_run_that_hardly_began(name):
     run = seen(PAPER, "1 us")
     assert np.isscalar(value(name, run))
     assert run.regime in ("stuck", "undetermined")
+
+
+def test_two_swings_and_then_quiet_are_a_transient():
+    """They are too few to be seen getting smaller, but none follows in fifty periods."""
+    slider = PAPER.replace(phi="14.5 deg", drive=st.ConstantVelocity("3.16 mm/s"))
+    run = seen(slider, "6.5 s")
+    assert len(run.swings.drop) == 2
+    assert run.end - run.swings.end > 50 * run.swings.period.max()
+    assert run.regime == "damped approach"
+    assert st.stability.growth_rate(slider) < 0.0

@@ -1,7 +1,8 @@
 """Which kind of motion a run shows, from the features of its clean samples.
 
 The kinds and their bounds are those of `stiction.analysis.regime`, which finds them in any
-record, noisy or not, and takes a hundred times as long; a test holds the two together.
+record, noisy or not, and takes a hundred times as long; a test holds the two together. Without
+noise a little more can be said: swings that no other follows for long are over, be they but two.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis import regime
-from stiction.analysis.decay import dies_out
+from stiction.analysis.decay import QUIET, dies_out
 from stiction.analysis.level import QUARTER
 from stiction.study.features import PARTS, Features
 
@@ -88,7 +89,8 @@ def kind_of(
     # a cheap condition first, which must hold as well
     dying = count > 0 and bool(cycles.drop[-1] < 0.5 * cycles.drop[0])
     dying = dying and dies_out(cycles.drop, cycles.period, end - cycles.end)
-    if count >= FEWEST and not dying:
+    over = count > 0 and end - cycles.end > QUIET * float(cycles.period.max())
+    if count >= FEWEST and not dying and not over:
         return shape(float(np.sort(cycles.rise_share)[count // 2]))
     kind = regime.DAMPED if dying else course(found, start, end, drive)
     return SONG if kind in (regime.DAMPED, regime.STEADY) and song > SINGS else kind
