@@ -1,5 +1,7 @@
 """Studies: described, laid out, run, stopped, gone on with."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -280,3 +282,10 @@ def test_processes_do_the_same(study, finished, tmp_path):
     xr.testing.assert_identical(
         xr.open_zarr(tmp_path / "a.zarr").load(), xr.open_zarr(finished[0]).load()
     )
+
+
+def test_the_example_s_file():
+    study = st.Study.from_toml(Path(__file__).parent.parent / "examples" / "study.toml")
+    assert study.layout.shape == (24, 16)
+    assert study.description((0, 15)).run.duration == 5.0
+    assert st.Study.from_dict(study.to_dict()).to_json() == study.to_json()

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from itertools import islice
 from types import ModuleType
 from typing import Any, NamedTuple, TypeVar
+from uuid import uuid4
 
 from stiction.errors import StictionError
 from stiction.study.engines import AHEAD, Work
@@ -99,7 +100,8 @@ def handed_out(client: Any, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
     def hand_out() -> None:
         threads = sum(client.nthreads().values()) or 1  # workers come and go
         for task in islice(waiting, max(AHEAD * threads - flying.count(), 0)):
-            flying.add(client.submit(work, task, never, pure=False))
+            name = f"block-{uuid4().hex}-{task}"  # as dask's dashboard shows it
+            flying.add(client.submit(work, task, never, pure=False, key=name))
 
     hand_out()
     for future in flying:
