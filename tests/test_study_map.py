@@ -97,7 +97,7 @@ def test_failed_and_missing_runs_are_hatched(tmp_path):
     base = st.Description(shaken, st.Initial(), st.Settings(duration="0.5 s"))
     st.Study(base=base, axes=axes).run(tmp_path / "a.zarr")
     fig = map_figure(tmp_path / "a.zarr")
-    assert "failed" in drawn(fig)
+    assert "no result" in drawn(fig)
 
 
 def test_the_command(store, tmp_path, capsys):

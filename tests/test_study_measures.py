@@ -128,6 +128,10 @@ def test_every_measure_of_a_run_that_hardly_began(name):
     assert run.regime in ("stuck", "undetermined")
 
 
+def test_what_never_slips_is_stuck():
+    assert seen(PAPER.replace(drive=st.ConstantVelocity(0.0)), "5 s").regime == "stuck"
+
+
 def test_two_swings_and_then_quiet_are_a_transient():
     """They are too few to be seen getting smaller, but none follows in fifty periods."""
     slider = PAPER.replace(phi="14.5 deg", drive=st.ConstantVelocity("3.16 mm/s"))

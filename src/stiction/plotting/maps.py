@@ -67,7 +67,7 @@ def draw_regimes(ax: Axes, x: Side, y: Side, kinds: NDArray[np.object_]) -> list
     x, y : Side
         n and m values.
     kinds : ndarray
-        (n, m), names as in `COLORS`; others (a run that failed) are hatched.
+        (n, m), names as in `COLORS`; others (a run that failed, or is not done) are hatched.
     """
     names = list(COLORS)
     codes = np.full(kinds.shape, np.nan)
@@ -89,7 +89,9 @@ def draw_regimes(ax: Axes, x: Side, y: Side, kinds: NDArray[np.object_]) -> list
         for name in present
     ]
     if failed.any():
-        patches.append(Patch(facecolor="white", edgecolor="#777777", hatch="xxxx", label="failed"))
+        patches.append(
+            Patch(facecolor="white", edgecolor="#777777", hatch="xxxx", label="no result")
+        )
     return patches
 
 

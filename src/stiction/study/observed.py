@@ -10,6 +10,7 @@ from math import ceil, nan, pi, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.analysis.regime import STUCK
 from stiction.description import Description
 from stiction.drive import ConstantVelocity
 from stiction.simulation import sample_times, solve
@@ -142,6 +143,8 @@ class Observed:
     @cached_property
     def regime(self) -> str:
         """The kind of motion, one of `stiction.study.regimes.KINDS`."""
+        if self.solution.counts.steps == 0:  # friction could hold all the time
+            return STUCK
         slider = self.description.slider
         drive = slider.k_x * abs(slider.motion.velocity * slider.direction[0])
         return kind_of(self.features, self.swings, self.start, self.end, drive, self.song)
