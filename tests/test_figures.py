@@ -16,6 +16,7 @@ import stiction as st
 from stiction import theory
 from stiction.analysis.creep import first_slip_time, mean_creep_velocity
 from stiction.analysis.spectrum import rate_spectrogram, ridge, spectrogram
+from stiction.analysis.stuck import stuck_until
 from stiction.paper.creep import creep
 from stiction.paper.figure3 import figure3
 from stiction.paper.figure4 import figure4
@@ -29,7 +30,7 @@ from stiction.plotting.save import save, write
 from stiction.plotting.schematic import draw_schematic
 from stiction.plotting.shapes import Points
 from stiction.plotting.style import BLUE, PURPLE, new_figure, quantity, style
-from stiction.plotting.time_series import cut_open, envelope, prefixed, stuck_until
+from stiction.plotting.time_series import cut_open, envelope, prefixed
 
 
 def drawn(fig: Figure) -> Figure:

@@ -38,7 +38,10 @@ def test_the_paper_s_cycle(paper, paper_run):
     period = float(np.diff(cycles["peak_time"]).mean())
     assert value("period", paper) == pytest.approx(period, rel=1e-4)
     assert value("force_drop", paper) == pytest.approx(float(cycles["drop"].mean()), rel=1e-4)
-    assert value("rise_share", paper) == pytest.approx(float(cycles["rise_share"].mean()), rel=1e-3)
+    # a trough is sharper than the samples: it is placed to half their distance
+    half = 0.5 * float(paper.time[1] - paper.time[0]) / period
+    share = float(cycles["rise_share"].mean())
+    assert value("rise_share", paper) == pytest.approx(share, abs=half)
     assert value("time_stuck", paper) == paper_run.statistics.time_stuck
     assert value("stick_count", paper) == paper_run.statistics.stick_count
     late = data["spring_x"].sel(time=slice(3.75, None))

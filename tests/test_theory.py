@@ -248,3 +248,15 @@ def test_printed_equation_8_misses_by_a_factor_of_s(s):
     bound = 100 * phi  # the next order is phi/c^3 and phi c/s, below 20 phi
     assert corrected == pytest.approx(1.0, abs=bound)
     assert printed == pytest.approx(s, abs=bound)
+
+
+def test_the_mass_swings_along_the_friction_force():
+    omega_y = theory.natural_frequency(1e7, 0.25)
+    assert theory.oscillation_frequency(np.pi / 2, 1e3, 1e7, 0.25) == pytest.approx(omega_y)
+    assert theory.oscillation_frequency(0.0, 1e3, 1e7, 0.25) == pytest.approx(
+        theory.natural_frequency(1e3, 0.25)
+    )
+    assert theory.oscillation_frequency(np.pi / 6, 1e3, 1e7, 0.25) == pytest.approx(
+        0.5 * omega_y,
+        rel=2e-4,  # 3 k_x/(2 k_y)
+    )

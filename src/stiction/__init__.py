@@ -12,11 +12,20 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from stiction import presets, stability, theory
+    from stiction import audit, presets, stability, theory
+    from stiction.analysis.creep_curve import creep_curves, mean_creep
     from stiction.analysis.cycles import find_cycles
+    from stiction.analysis.divergence import fit_divergence
+    from stiction.analysis.energy import energy_budget
+    from stiction.analysis.measured_line import strongest_line
+    from stiction.analysis.misalignment import fit_misalignment
     from stiction.analysis.onset import find_onset
     from stiction.analysis.record import Record, record_of
     from stiction.analysis.regime import Regime, classify
+    from stiction.analysis.report import Analysis, analyse
+    from stiction.analysis.ridge import follow_ridge
+    from stiction.analysis.song import hear_song, song_by_phase
+    from stiction.analysis.spectrum import spectrogram, stream_spectrogram
     from stiction.analysis.spread import summary
     from stiction.comparison import compare
     from stiction.description import Description, Settings
@@ -56,10 +65,11 @@ if TYPE_CHECKING:
     from stiction.testing import check_law
     from stiction.trajectory import Trajectory, load
 
-__version__ = "0.3.0"
+__version__ = "0.4.0"
 
 # where each public name lives; imported when first used, so that `import stiction` is light
 _HOME = {
+    "Analysis": "analysis.report",
     "Anisotropic": "friction",
     "Constant": "drive",
     "ConstantVelocity": "drive",
@@ -98,20 +108,33 @@ _HOME = {
     "Table": "friction",
     "Trajectory": "trajectory",
     "Values": "study.axes",
+    "analyse": "analysis.report",
     "check_law": "testing",
     "classify": "analysis.regime",
     "compare": "comparison",
+    "creep_curves": "analysis.creep_curve",
+    "energy_budget": "analysis.energy",
     "find_cycles": "analysis.cycles",
     "find_onset": "analysis.onset",
+    "fit_divergence": "analysis.divergence",
+    "fit_misalignment": "analysis.misalignment",
+    "follow_ridge": "analysis.ridge",
+    "hear_song": "analysis.song",
     "load": "trajectory",
+    "mean_creep": "analysis.creep_curve",
     "open_study": "study.store",
     "record_of": "analysis.record",
     "simulate": "simulation",
+    "song_by_phase": "analysis.song",
+    "spectrogram": "analysis.spectrum",
+    "stream_spectrogram": "analysis.spectrum",
+    "strongest_line": "analysis.measured_line",
     "summary": "analysis.spread",
 }
-_ROOMS = ("presets", "stability", "theory")
+_ROOMS = ("audit", "presets", "stability", "theory")
 
 __all__ = [
+    "Analysis",
     "Anisotropic",
     "Constant",
     "ConstantVelocity",
@@ -150,17 +173,30 @@ __all__ = [
     "Table",
     "Trajectory",
     "Values",
+    "analyse",
+    "audit",
     "check_law",
     "classify",
     "compare",
+    "creep_curves",
+    "energy_budget",
     "find_cycles",
     "find_onset",
+    "fit_divergence",
+    "fit_misalignment",
+    "follow_ridge",
+    "hear_song",
     "load",
+    "mean_creep",
     "open_study",
     "presets",
     "record_of",
     "simulate",
+    "song_by_phase",
+    "spectrogram",
     "stability",
+    "stream_spectrogram",
+    "strongest_line",
     "summary",
     "theory",
 ]

@@ -181,6 +181,26 @@ def transverse_amplitude_bound(V: ArrayLike, phi: ArrayLike, omega_y: ArrayLike)
     return V * np.sin(phi) / omega_y
 
 
+def oscillation_frequency(theta: ArrayLike, k_x: ArrayLike, k_y: ArrayLike, m: ArrayLike) -> Floats:
+    """Angular frequency at which the mass swings along the friction force during creep (rad/s).
+
+    sqrt((k_x cos^2(theta) + k_y sin^2(theta))/m), nearly omega_y sin(theta). Not in the paper,
+    which finds omega_y at first and that it falls towards slip (Fig. 4). Slip has the direction of
+    the friction; across it the mass is held as by a damper of F_0/(m |s|) per second, which is far
+    above omega_y where |s| is about V sin(phi). So it swings along the force alone, against the
+    stiffness in that direction. The short sticks of each swing, which make its period about 0.5 %
+    longer at the paper's parameters, are left out.
+
+    Parameters
+    ----------
+    theta : angle of the friction force to the x axis (rad), see `creep_force_angle`.
+    k_x, k_y, m : stiffnesses (N/m), mass (kg).
+    """
+    theta, k_x, k_y, m = _floats(theta, k_x, k_y, m)
+    omega: Floats = np.sqrt((k_x * np.cos(theta) ** 2 + k_y * np.sin(theta) ** 2) / m)
+    return omega
+
+
 @_limits
 def damping_number(
     F_0: ArrayLike, V: ArrayLike, phi: ArrayLike, m: ArrayLike, k_x: ArrayLike

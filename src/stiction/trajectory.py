@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
@@ -14,6 +12,7 @@ import numpy as np
 
 from stiction.description import Description
 from stiction.errors import DescriptionError, ResultError, Status
+from stiction.files import placeable, whole
 from stiction.friction import states
 from stiction.initial import Initial
 from stiction.labels import VARIABLES
@@ -126,18 +125,8 @@ class Trajectory:
             If the file cannot be written there.
         """
         target = writable(path)
-        name = ""
-        try:
-            handle, name = tempfile.mkstemp(dir=target.parent, suffix=".part")
-            os.close(handle)
-            self.data.to_netcdf(name, engine="h5netcdf")
-            os.chmod(name, 0o666 & ~_umask())
-            os.replace(name, target)
-        except OSError as error:
-            raise ResultError(f"{target}: cannot be written: {error.strerror or error}") from None
-        finally:
-            if name:
-                Path(name).unlink(missing_ok=True)
+        with whole(target) as part:
+            self.data.to_netcdf(part, engine="h5netcdf")
         return target
 
 
@@ -152,11 +141,7 @@ def writable(path: str | Path) -> Path:
     target = Path(path)
     if target.suffix != ".nc":
         raise ResultError(f"{target}: a result is NetCDF; name it {target.with_suffix('.nc')}")
-    if not target.parent.is_dir():
-        raise ResultError(f"{target}: no folder {target.parent}; make it first")
-    if target.exists() and not target.is_file():
-        raise ResultError(f"{target}: is there, and is not a file; choose another name")
-    return target
+    return placeable(target)
 
 
 def load(path: str | Path, *, trust: bool = False) -> Trajectory:
@@ -207,9 +192,3 @@ def load(path: str | Path, *, trust: bool = False) -> Trajectory:
 
 def _as_read(data: xr.Dataset) -> xr.Dataset:
     return data
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from functools import cache, partial
-from math import isfinite
+from math import isfinite, isinf, isnan, pi
 from typing import Annotated, Any, NamedTuple
 
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
@@ -160,3 +160,23 @@ Coefficients = Annotated[tuple[Coefficient, ...], BeforeValidator(_listed)]
 Time = Annotated[float, reader("a time", "s", "5 s")]
 Duration = Annotated[float, reader("a time", "s", "5 s"), Field(gt=0)]
 Rate = Annotated[float, reader("a frequency", "Hz", "10 kHz"), Field(gt=0)]
+
+
+def in_words(value: float, unit: str) -> str:
+    """Return a value in an SI unit as text, with a prefix that suits it; an angle in degrees.
+
+    Examples
+    --------
+    >>> in_words(3.49e-5, "m"), in_words(0.0174533, "rad"), in_words(float("nan"), "N")
+    ('34.9 µm', '1 deg', 'none')
+    """
+    if isnan(value):
+        return "none"
+    if isinf(value):
+        return "∞" if value > 0.0 else "-∞"
+    if unit in ("", "1"):
+        return f"{value:.4g}"
+    if unit == "rad":
+        return f"{value * 180.0 / pi:.4g} deg"
+    quantity = _registry().Quantity(float(f"{value:.4g}"), unit)
+    return f"{quantity.to_compact() if value else quantity:.4g~P}"

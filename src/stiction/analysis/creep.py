@@ -17,8 +17,7 @@ def first_slip_time(run: Trajectory) -> float:
 
     Creep is slower than the drive, rapid slip faster. If it never happens, the run's last time.
     """
-    times = run.data["time"].values
-    drive = np.array([run.slider.motion.rate(t)[0] for t in times])
+    times, drive = run.data["time"].values, run.data["drive_X"].values
     faster = np.flatnonzero(run.data["V_X"].values * np.sign(drive) > np.abs(drive))
     return float(times[faster[0]] if len(faster) else times[-1])
 

@@ -18,13 +18,25 @@ app = cyclopts.App(
     help=(
         "Simulate sliding in which the friction vector rotates (Nakano & Popov, 2020).\n\n"
         "Start with `stiction paper`, which reproduces the paper, or describe an apparatus of "
-        "your own: `stiction init my.toml`, edit it, `stiction run my.toml --output my.nc`, "
-        "`stiction plot my.nc --output my.png`."
+        "your own: `stiction init my.toml`, edit it, `stiction audit my.toml` to know what it will "
+        "show, `stiction run my.toml --output my.nc` to simulate it, `stiction plot my.nc --output "
+        "my.png` to look, `stiction analyse my.nc` to understand."
     ),
     help_format="markdown",
     suppress_keyboard_interrupt=False,
 )
-COMMANDS = ("paper", "init", "run", "plot", "compare", "stability", "sweep", "map")
+COMMANDS = (
+    "paper",
+    "init",
+    "audit",
+    "run",
+    "plot",
+    "analyse",
+    "compare",
+    "stability",
+    "sweep",
+    "map",
+)
 for _name in COMMANDS:  # light modules: what is heavy they import when they are called
     app.command(getattr(import_module(f"stiction.cli.{_name}"), _name))
 

@@ -47,7 +47,8 @@ def run(config: Path, /, *, output: Annotated[Path, Parameter(alias="-o")]) -> i
         f"{statistics.stick_count}, {stuck:.6g} s in all; {statistics.steps} steps{mapped}",
         f"largest k_x u_x{sampled}: {peak:.4g} N, {peak / result.slider.normal_load:.4g} of the "
         "normal load",
-        f"next: stiction plot {output} --output {output.with_suffix('.png')}",
+        f"next: stiction plot {output} --output {output.with_suffix('.png')}, "
+        f"stiction analyse {output}",
     ):
         console.print(line, markup=False)
     if statistics.steps == 0:

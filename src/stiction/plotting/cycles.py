@@ -79,8 +79,9 @@ def draw_cycles(ax: Axes, record: Record, cycles: xr.Dataset) -> None:
             loc="lower right",
             ncols=2,
             markerscale=4.0 / size,
-            bbox_to_anchor=(1.0, 1.0),
-            borderaxespad=0.1,
+            frameon=True,
+            framealpha=0.8,
+            edgecolor="none",
         )
     ax.margins(y=0.08)
     ax.set_ylabel(f"spring force ({prefix}N)")

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 from matplotlib.figure import Figure
 
 from stiction.errors import ResultError
+from stiction.files import placeable, whole
 from stiction.plotting.style import style
 
 FORMATS = (".png", ".pdf", ".svg")
@@ -40,22 +40,8 @@ def write(fig: Figure, path: str | Path) -> Path:
     """
     target = drawable(path)
     suffix = target.suffix.lower()
-    part = None
-    try:
-        handle, name = tempfile.mkstemp(dir=target.parent, suffix=".part")
-        os.close(handle)
-        part = Path(name)
-        with style():
-            fig.savefig(part, format=suffix[1:], metadata=METADATA.get(suffix))
-        mask = os.umask(0)
-        os.umask(mask)
-        part.chmod(0o666 & ~mask)
-        part.replace(target)
-    except OSError as error:
-        raise ResultError(f"{target}: cannot be written: {error.strerror or error}") from None
-    finally:
-        if part is not None:
-            part.unlink(missing_ok=True)
+    with whole(target) as part, style():
+        fig.savefig(part, format=suffix[1:], metadata=METADATA.get(suffix))
     return target
 
 
@@ -71,8 +57,12 @@ def drawable(path: str | Path) -> Path:
     suffix = target.suffix.lower()
     if suffix not in FORMATS:
         raise ResultError(f"{target}: unknown format {suffix!r}; use {', '.join(FORMATS)}")
-    if not target.parent.is_dir():
-        raise ResultError(f"{target}: no folder {target.parent}; make it first")
-    if target.exists() and not target.is_file():
-        raise ResultError(f"{target}: is there, and is not a file; choose another name")
-    return target
+    return placeable(target)
+
+
+def png(fig: Figure) -> bytes:
+    """Return a figure as a PNG image, to be put into a page."""
+    image = BytesIO()
+    with style():
+        fig.savefig(image, format="png")
+    return image.getvalue()

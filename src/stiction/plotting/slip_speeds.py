@@ -8,9 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, NullFormatter
 
+from stiction.analysis.stuck import stuck_until
 from stiction.plotting.curves import Curve, common, mark_early_end
 from stiction.plotting.style import GREY
-from stiction.plotting.time_series import stuck_until
 
 DEEPEST = 1e-24  # of the largest slip speed: what is below is rounding
 ROW = 0.8  # height of a filled row

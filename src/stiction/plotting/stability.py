@@ -118,8 +118,11 @@ def signed_distance(curve: xr.Dataset, across: Floats, up: Floats) -> Floats:
         square = max(dx * dx + dy * dy, 1e-30)
         part = np.clip(((across - x) * dx + (up - y) * dy) / square, 0.0, 1.0)
         gap = np.hypot(across - x - part * dx, up - y - part * dy)
-        left = dx * (up - y) - dy * (across - x)
-        side = np.where(gap < nearest, np.sign(left), side)
+        left = (dx * (up - y) - dy * (across - x)) / np.sqrt(square)
+        # of two pieces that meet in the nearest point, the one that is seen more squarely tells
+        closer = gap < nearest * (1 - 1e-9)
+        squarer = (gap <= nearest * (1 + 1e-9)) & (np.abs(left) > np.abs(side))
+        side = np.where(closer | squarer, left, side)
         nearest = np.minimum(gap, nearest)
-    signed: Floats = nearest * side
+    signed: Floats = nearest * np.sign(side)
     return signed

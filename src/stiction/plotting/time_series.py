@@ -9,6 +9,7 @@ from matplotlib.patches import StepPatch
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 
+from stiction.analysis.stuck import stuck_until
 from stiction.plotting.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED
 from stiction.trajectory import Trajectory
 
@@ -161,14 +162,3 @@ def draw_time_stuck(ax: Axes, run: Trajectory, bins: int = 300) -> StepPatch:
     ax.set_ylabel("stuck (%)")
     ax.set_ylim(0, 105)
     return ax.stairs(share, edges, fill=True, color=GREY)
-
-
-def stuck_until(time: ArrayLike, sticks: ArrayLike) -> Floats:
-    """Return the time (s) spent stuck up to each `time`, for stick intervals of shape (n, 2)."""
-    ends = np.asarray(sticks, dtype=np.float64).reshape(-1, 2)
-    if len(ends) == 0:
-        return np.zeros_like(np.asarray(time, dtype=np.float64))
-    total = np.cumsum(ends[:, 1] - ends[:, 0])
-    known = np.column_stack([total - (ends[:, 1] - ends[:, 0]), total]).ravel()
-    stuck: Floats = np.interp(np.asarray(time, dtype=np.float64), ends.ravel(), known)
-    return stuck

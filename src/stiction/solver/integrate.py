@@ -185,7 +185,7 @@ def slip_jump(slider: Slider, t: float) -> tuple[float, float]:
 
 def joined(sticks: np.ndarray) -> np.ndarray:
     """Return stick intervals (n, 2) with those made one that go on from stretch to stretch."""
-    if len(sticks) < 2:
-        return sticks.copy()
     apart = sticks[1:, 0] > sticks[:-1, 1]
+    if apart.all():
+        return sticks.copy()
     return np.column_stack([sticks[np.r_[True, apart], 0], sticks[np.r_[apart, True], 1]])

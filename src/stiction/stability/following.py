@@ -73,7 +73,9 @@ def followed(growth: Growth, seed: Point, way: float) -> Iterator[Point]:
         gone += step
         if not all(0.0 <= each <= 1.0 for each in here):
             # beyond the edge the growth rate is what it is there: the curve leaves squarely
-            yield min(max(here[0], 0.0), 1.0), min(max(here[1], 0.0), 1.0)
+            edge = min(max(here[0], 0.0), 1.0), min(max(here[1], 0.0), 1.0)
+            if hypot(edge[0] - last[0], edge[1] - last[1]) > SHORTEST**2:  # not there already
+                yield edge
             return
         back = gone > 2.0 * LONGEST and hypot(seed[0] - last[0], seed[1] - last[1]) < step
         if back and abs(turn(start, way)) < pi / 2.0:  # not past it, the other way

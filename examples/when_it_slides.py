@@ -1,0 +1,16 @@
+"""From which misalignment, speed or damper on does it slide steadily, and how hard is the onset?"""
+
+import numpy as np
+
+import stiction as st
+
+slider = st.presets.nakano_popov_2020()
+print(st.stability.steady_sliding(slider))
+
+phi = st.stability.critical(slider, "phi", between=("0 deg", "45 deg"))
+print("critical misalignment (deg):", np.degrees(phi.values).round(4))  # 8.656
+damper = st.stability.critical(slider, "c_x", between=("0 N*s/m", "300 N*s/m"))
+print("critical damping (N s/m):", damper.values.round(2))
+
+curve = st.stability.boundary(slider, "phi", "drive.velocity")  # followed, not gridded
+print(curve.sizes["point"], "points on the boundary in the plane of misalignment and speed")

@@ -1,0 +1,144 @@
+"""Where the work of the drive goes: friction, dampers, springs, motion."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stiction.analysis.quadrature import integrals, states_at
+from stiction.errors import ResultError
+from stiction.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+
+# name: long name; all in J
+ENERGIES = {
+    "work": "work of the drive",
+    "friction_x": "dissipated by friction along x",
+    "friction_y": "dissipated by friction along y",
+    "damper_x": "dissipated by the damper along x",
+    "damper_y": "dissipated by the damper along y",
+    "spring_x": "change of the energy of the spring along x",
+    "spring_y": "change of the energy of the spring along y",
+    "kinetic": "change of the kinetic energy",
+    "residual": "work less what became of it",
+    "quadrature": "bound of the error of the quadrature in the residual",
+}
+
+
+def energy_budget(run: Trajectory, edges: ArrayLike | None = None) -> xr.Dataset:
+    """Return where the work of the drive goes, between each edge and the next.
+
+    With slip velocity s, elongation u and friction F, the mass obeys m u'' + C u' + K u = F in
+    the frame of its spring's foot; multiplied by the velocities,
+
+        P = F.s + u'.C u' + d/dt (u.K u/2 + m |v|^2/2).
+
+    Over a driven plate the drive works on the plate, P = F.v_d, and the mass has v = u'. Where
+    the spring is driven it works on the spring's end, P = v_d.(K u + C u'), and v = s. At a
+    steady drive both are the same run, seen from two frames. Each term is integrated by itself
+    from the run's states, and nothing is adjusted: the residual is what the solver errs by.
+
+    Friction does no work while the mass sticks, nor does the normal load in the plane. The
+    friction of a law with internal state can give work back: what its bristles store is part of
+    it.
+
+    Parameters
+    ----------
+    run : Trajectory
+        Sampled or not: it is solved once more, with samples where the integrals need them, some
+        4 kB for each transverse period.
+    edges : array, optional
+        (n + 1,), s, ascending: from each to the next is an interval, e.g. a cycle. By default
+        the whole run.
+
+    Returns
+    -------
+    Dataset
+        Over ``interval``: ``start``, ``end`` (s), and in J ``work``, ``friction_x``,
+        ``friction_y``, ``damper_x``, ``damper_y``, ``spring_x``, ``spring_y`` and ``kinetic``
+        (changes), ``residual`` (work less all others), and ``quadrature``, a bound of the part
+        of the residual that is not the solver's. Their sums over ``interval`` are those of the
+        whole.
+
+    Raises
+    ------
+    ResultError
+        If the edges do not ascend, or lie outside the run.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), duration=0.1)
+    >>> budget = st.energy_budget(run)
+    >>> abs(float(budget["residual"].sum())) < 1e-6 * float(budget["work"].sum())
+    True
+    """
+    import xarray as xr
+
+    borders = _edges(run, edges)
+    powers, off = integrals(
+        run, borders, lambda t, rows: _powers(run, t, rows), run.description.run.rtol
+    )
+    stored = np.diff(_stored(run, borders, states_at(run, borders)), axis=1)
+    spent = np.concatenate([powers[1:], stored])
+    residual = powers[0] - spent.sum(axis=0)
+    values = [powers[0], *spent, residual, off.sum(axis=0)]
+    variables = {
+        name: ("interval", value, {"units": "J", "long_name": ENERGIES[name]})
+        for name, value in zip(ENERGIES, values, strict=True)
+    }
+    seconds = {"units": "s"}
+    return xr.Dataset(
+        variables,
+        {
+            "start": ("interval", borders[:-1], seconds),
+            "end": ("interval", borders[1:], seconds),
+        },
+    )
+
+
+def _edges(run: Trajectory, edges: ArrayLike | None) -> Floats:
+    """Return the edges, or say what is wrong with them."""
+    first, last = (float(run.data["time"][i]) for i in (0, -1))
+    if edges is None:
+        return np.array([first, last])
+    found = np.asarray(edges, dtype=np.float64)
+    if found.ndim != 1 or len(found) < 2 or not (np.diff(found) > 0.0).all():
+        raise ResultError(f"edges must be two times or more that ascend, are {edges!r}")
+    if found[0] < first or found[-1] > last:
+        raise ResultError(
+            f"the run goes from {first:g} s to {last:g} s, the edges from {found[0]:g} s to "
+            f"{found[-1]:g} s; leave out those that lie outside"
+        )
+    return found
+
+
+def _powers(run: Trajectory, t: Floats, rows: Floats) -> Floats:
+    """Return the power of the drive, of friction and of the dampers (W), each along x and y."""
+    s, (c, n) = run.slider, run.slider.direction
+    u_x, u_y, s_x, s_y, f_x, f_y = rows[:, :6].T
+    X, Y = s.motion.rate(t)
+    d_x, d_y = X * c - Y * n, X * n + Y * c
+    v_x, v_y = d_x - s_x, d_y - s_y
+    if s.driven == "plate":
+        work = f_x * d_x + f_y * d_y
+    else:
+        work = (s.k_x * u_x + s.c_x * v_x) * d_x + (s.k_y * u_y + s.c_y * v_y) * d_y
+    return np.stack([work, f_x * s_x, f_y * s_y, s.c_x * v_x**2, s.c_y * v_y**2])
+
+
+def _stored(run: Trajectory, t: Floats, rows: Floats) -> Floats:
+    """Return the energies (J) of the springs along x and y, and of the moving mass."""
+    s, (c, n) = run.slider, run.slider.direction
+    u_x, u_y, v_x, v_y = rows[:, :4].T
+    if s.driven == "plate":
+        X, Y = s.motion.rate(t)
+        v_x, v_y = X * c - Y * n - v_x, X * n + Y * c - v_y
+    kinetic = 0.5 * s.mass * (v_x**2 + v_y**2)
+    return np.stack([0.5 * s.k_x * u_x**2, 0.5 * s.k_y * u_y**2, kinetic])

@@ -1,0 +1,84 @@
+"""The tables of an analysis as files: CSV for each, JSON for what it comes to."""
+
+from __future__ import annotations
+
+import json
+from math import isfinite
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from stiction.analysis.report import Analysis
+from stiction.files import placeable, whole
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def tables(found: Analysis) -> dict[str, xr.Dataset]:
+    """Return every table that there is, by its name."""
+    named = {
+        "cycles": found.cycles,
+        "summary": found.summary,
+        "creep": found.creep,
+        "creep-phases": found.curves,
+        "song": found.song,
+        "song-phases": found.phases,
+        "energy": found.energy,
+    }
+    return {name: table for name, table in named.items() if table is not None}
+
+
+def write(found: Analysis, folder: Path) -> list[Path]:
+    """Write all tables into a folder, ``analysis.json`` first; return the paths."""
+    paths = [placeable(folder / "analysis.json")]
+    with whole(paths[0]) as part:
+        part.write_text(json.dumps(numbers(found), indent=2) + "\n", encoding="utf-8")
+    for name, table in tables(found).items():
+        path = placeable(folder / f"{name}.csv")
+        with whole(path) as part:
+            with_units(table).to_csv(part, float_format="%.12g")
+        paths.append(path)
+    return paths
+
+
+def with_units(table: xr.Dataset) -> Any:
+    """Return a table as a data frame, its columns named with their units: ``peak [N]``."""
+    units = {
+        str(name): f"{name} [{values.attrs['units']}]"
+        for name, values in table.variables.items()
+        if values.attrs.get("units", "1") != "1"
+    }
+    frame = table.to_dataframe()
+    return frame.rename(columns=units).rename_axis(index=units)
+
+
+def numbers(found: Analysis) -> dict[str, Any]:
+    """Return what an analysis comes to, in SI and rad, for JSON; null where it is not known."""
+    mean = {
+        str(row): {
+            "mean": _number(found.summary["mean"].sel(quantity=row)),
+            "standard_deviation": _number(found.summary["standard_deviation"].sel(quantity=row)),
+            "number": int(found.summary["number"].sel(quantity=row)),
+            "unit": str(found.summary["unit"].sel(quantity=row).values),
+        }
+        for row in found.summary["quantity"].values
+    }
+    fits = {"divergence": found.divergence, "misalignment": found.misalignment}
+    return {
+        "regime": {
+            "kind": found.regime.kind,
+            "confidence": _number(found.regime.confidence),
+            "runner_up": found.regime.runner_up or None,
+            "evidence": {name: _number(value) for name, value in found.regime.evidence.items()},
+        },
+        "cycles": mean,
+        **{
+            name: None if fit is None else {key: _number(v) for key, v in fit._asdict().items()}
+            for name, fit in fits.items()
+        },
+        "missing": found.missing,
+    }
+
+
+def _number(value: Any) -> float | None:
+    return float(value) if isfinite(float(value)) else None

@@ -1,0 +1,59 @@
+"""The strongest line of a measured record, followed through time."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from stiction.analysis.record import Record
+from stiction.analysis.ridge import follow_ridge
+from stiction.analysis.spectrum import spectrogram
+from stiction.errors import ResultError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+PERIODS = 100.0  # of the lowest frequency, in a window
+STEPS = 5  # windows that overlap at any time
+
+
+def strongest_line(record: Record, low: float, *, width: float | None = None) -> xr.Dataset:
+    """Follow the strongest line of a measured force through time, if there is one.
+
+    Parameters
+    ----------
+    record : Record
+        With samples that are equally spaced.
+    low : float
+        Hz, above the frequencies of the stick-slip itself: a sawtooth has many harmonics, ten
+        times its frequency is a start.
+    width : float, optional
+        Of the windows, s; by default a hundred periods of `low`, and a tenth of the record at
+        most.
+
+    Returns
+    -------
+    Dataset
+        As `stiction.follow_ridge`, with amplitudes in N. Where no line stands out of the noise,
+        the frequency is not a number; that it is so everywhere is an answer.
+
+    Raises
+    ------
+    ResultError
+        If samples are not equally spaced, or `low` is not below half the sample rate.
+    """
+    steps, rate = np.diff(record.time), record.sample_rate
+    if len(steps) == 0 or np.ptp(steps) > 0.5 * steps.mean():
+        raise ResultError(
+            "a spectrum needs samples that are equally spaced; interpolate the record first"
+        )
+    if not 0.0 < low < 0.5 * rate:
+        raise ResultError(
+            f"low must lie between 0 and half the sample rate, {0.5 * rate:g} Hz, is {low:g}"
+        )
+    chosen = width or min(PERIODS / low, 0.1 * record.duration)
+    lines = spectrogram(
+        record.force, rate, width=chosen, step=chosen / STEPS, start=float(record.time[0])
+    )
+    return follow_ridge(lines.assign_attrs(units="N"), low, 0.5 * rate)

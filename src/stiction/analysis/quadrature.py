@@ -1,0 +1,155 @@
+"""Integrals over the time of a run, as exact as the run itself.
+
+The run is made once more, with samples at the nodes of a quadrature. Samples never influence the
+steps, so both are the same run. Panels break where the motion is not smooth in time; each has
+Kronrod's fifteen points, and Gauss's seven among them say how exact it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import pi, sqrt
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.description import Description
+from stiction.drive import drive_stretches, load_stretches
+from stiction.solver.integrate import integrate
+from stiction.solver.stretch import fastest_swing, stretches
+from stiction.trajectory import Trajectory
+
+Floats = NDArray[np.float64]
+Integrand = Callable[[Floats, Floats], Floats]
+
+PASSES = 6  # of splitting panels in four: down to a thousandth of the first
+MOST = 200_000  # panels that are split further at once, some 0.5 GB
+ROUNDING = 1e-13  # of an integral; sums of so many numbers are not closer
+
+# R. Piessens et al., QUADPACK (Springer, 1983), routine qk15: nodes from the end of (-1, 1) to
+# its middle; Gauss's are the second, fourth, ... of them
+_NODES = (
+    0.991455371120812639206854697526329,
+    0.949107912342758524526189684047851,
+    0.864864423359769072789712788640926,
+    0.741531185599394439863864773280788,
+    0.586087235467691130294144838258730,
+    0.405845151377397166906606412076961,
+    0.207784955007898467600689403773245,
+)
+_WEIGHTS = (
+    0.022935322010529224963732008058970,
+    0.063092092629978553290700663189204,
+    0.104790010322250183839876322541518,
+    0.140653259715525918745189590510238,
+    0.169004726639267902826583426598550,
+    0.190350578064785409913256402421014,
+    0.204432940075298892414161999234649,
+)
+NODES = 0.5 * (1.0 + np.array([*(-x for x in _NODES), 0.0, *reversed(_NODES)]))
+KRONROD = 0.5 * np.array([*_WEIGHTS, 0.209482141084727828012999174891714, *reversed(_WEIGHTS)])
+GAUSS = np.zeros(15)
+GAUSS[1::2] = 0.5 * np.polynomial.legendre.leggauss(7)[1]
+
+
+class Integral(NamedTuple):
+    """Integrals (quantity, interval) and bounds of what the quadrature is off by."""
+
+    value: Floats
+    error: Floats
+
+
+def integrals(run: Trajectory, edges: Floats, integrand: Integrand, accuracy: float) -> Integral:
+    """Integrate functions of a run's state over time, between each edge and the next.
+
+    Panels are split until their errors together are below what is wanted, or can hardly be split
+    further; the bound that is returned holds in any case.
+
+    Parameters
+    ----------
+    run : Trajectory
+        Sampled or not.
+    edges : ndarray
+        (n + 1,), s, ascending, within the run.
+    integrand : callable
+        Of times (m,), s, and rows (m, 7 or more) as in `stiction.solver.sampling`; returns the
+        quantities to integrate, (q, m), all in one unit.
+    accuracy : float
+        Wanted bound of the quadrature's error, as a share of the integral of the magnitude of
+        the largest quantity.
+
+    Returns
+    -------
+    Integral
+        Of shape (q, n).
+    """
+    starts, lengths = panels(run, edges)
+    value = error = np.zeros((0, 0))
+    left = 0.0
+    for turn in range(PASSES):
+        t = starts[:, None] + lengths[:, None] * NODES
+        found = integrand(t.ravel(), states_at(run, t.ravel())).reshape(-1, *t.shape)
+        part, off = lengths * (found @ KRONROD), lengths * np.abs(found @ (KRONROD - GAUSS))
+        if turn == 0:
+            value, error = np.zeros((2, len(found), len(edges) - 1))
+            size = (lengths * (np.abs(found) @ KRONROD)).sum(axis=1).max()
+            left = max(accuracy, ROUNDING) * size
+        worst = off.max(axis=0)
+        poor = worst > _threshold(worst, left if turn == 0 else 0.5 * left)
+        if turn == PASSES - 1 or poor.sum() > MOST:
+            poor[:] = False
+        which = np.searchsorted(edges, starts[~poor], side="right") - 1
+        for into, values in ((value, part), (error, off)):
+            for row, one in zip(into, values[:, ~poor], strict=True):
+                row += np.bincount(which, one, len(row))
+        if not poor.any():
+            break
+        left -= worst[~poor].sum()
+        starts, lengths = split(starts[poor], lengths[poor], np.full(poor.sum(), 4))
+    return Integral(value, error)
+
+
+def _threshold(errors: Floats, left: float) -> float:
+    """Return the largest error to be accepted so that those accepted add up to `left` at most."""
+    ascending = np.sort(errors)
+    within = np.searchsorted(np.cumsum(ascending), left, side="right")
+    return float(ascending[within - 1]) if within else 0.0
+
+
+def panels(run: Trajectory, edges: Floats) -> tuple[Floats, Floats]:
+    """Return starts and lengths (s) of panels that no stick begins or ends inside.
+
+    Nor does one reach over an edge, or over a jump or bend of the drive or load. None is longer
+    than the shortest period of what swings: of springs and programs while it slips, of programs
+    alone while it sticks.
+    """
+    slider, first, last = run.slider, edges[0], edges[-1]
+    programs = [end for end, _ in drive_stretches(slider.motion)]
+    programs += [end for end, _ in load_stretches(slider.normal_load, slider.load)]
+    breaks = np.unique(np.concatenate([edges, run.sticks.ravel(), programs]))
+    breaks = breaks[(breaks >= first) & (breaks <= last)]
+    starts, lengths = breaks[:-1], np.diff(breaks)
+    imposed = max((fastest_swing(s.problem) for s in stretches(slider, first, last)), default=0.0)
+    natural = sqrt(max(slider.k_x, slider.k_y) / slider.mass)
+    held = np.searchsorted(run.sticks[:, 0], starts, side="right")
+    stuck = starts < np.append(run.sticks[:, 1], -np.inf)[held - 1]
+    omega = np.where(stuck, imposed, max(imposed, natural))
+    counts = np.ceil(np.maximum(1.0, omega * lengths / (2.0 * pi))).astype(np.intp)
+    return split(starts, lengths, counts)
+
+
+def split(starts: Floats, lengths: Floats, counts: NDArray[np.intp]) -> tuple[Floats, Floats]:
+    """Return starts and lengths (s) of intervals cut into so many equal parts each."""
+    which = np.repeat(np.arange(len(counts)), counts)
+    part = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
+    length = (lengths / counts)[which]
+    return starts[which] + part * length, length
+
+
+def states_at(run: Trajectory, times: Floats) -> Floats:
+    """Return rows as in `stiction.solver.sampling` at `times` (ascending, s) within the run."""
+    slider, initial, settings = run.description
+    span = {"duration": max(float(times[-1]) - initial.time, 1e-300)}
+    until = settings.model_copy(update=span)
+    return integrate(Description(slider, initial, until), times, 2**62, None).samples

@@ -1,0 +1,200 @@
+"""Everything that a run or a record says of itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+
+import numpy as np
+
+from stiction.analysis.creep_curve import creep_curves, mean_creep
+from stiction.analysis.cycles import find_cycles
+from stiction.analysis.divergence import Divergence, fit_divergence
+from stiction.analysis.energy import energy_budget
+from stiction.analysis.measured_line import strongest_line
+from stiction.analysis.misalignment import Misalignment, fit_misalignment
+from stiction.analysis.record import Record, record_of
+from stiction.analysis.regime import BETWEEN, STICK_SLIP, Regime, classify
+from stiction.analysis.song import hear_song, song_by_phase
+from stiction.analysis.spread import summary
+from stiction.errors import StictionError
+from stiction.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+T = TypeVar("T")
+HARMONICS = 10.0  # of the stick-slip, which a song is sought above
+BINS = 20.0  # that a stick phase is to have at least, to be averaged over them
+
+
+class Analysis(NamedTuple):
+    """What a run or a record means; what it cannot say is None, and `missing` says why.
+
+    Parameters
+    ----------
+    source : Trajectory or Record
+        What was analysed.
+    record : Record
+        Its force over time.
+    regime : Regime
+        Which kind of motion it is, how sure that is, and why.
+    cycles, summary : Dataset
+        A row a cycle (`stiction.find_cycles`), and mean and spread of each quantity.
+    curves, creep : Dataset or None
+        The creep of each stick phase, and of all together (`stiction.mean_creep`).
+    divergence : Divergence or None
+        How creep diverges towards slip.
+    misalignment : Misalignment or None
+        The misalignment that the creep implies.
+    song : Dataset or None
+        The high-frequency oscillation over time (`stiction.hear_song`); of a record, its
+        strongest line (`stiction.strongest_line`).
+    phases : Dataset or None
+        How rest and ring-down share each stick phase (`stiction.song_by_phase`); of runs only.
+    energy : Dataset or None
+        Where the work of the drive goes, in each cycle (`stiction.energy_budget`); of runs only.
+    missing : dict
+        For each part that is None, why.
+    """
+
+    source: Trajectory | Record
+    record: Record
+    regime: Regime
+    cycles: xr.Dataset
+    summary: xr.Dataset
+    curves: xr.Dataset | None
+    creep: xr.Dataset | None
+    divergence: Divergence | None
+    misalignment: Misalignment | None
+    song: xr.Dataset | None
+    phases: xr.Dataset | None
+    energy: xr.Dataset | None
+    missing: dict[str, str]
+
+
+def analyse(source: Trajectory | Record) -> Analysis:
+    """Return everything that a run or a record says of itself.
+
+    Parameters
+    ----------
+    source : Trajectory or Record
+        A run, sampled several times each transverse period for its creep and song; or a
+        measured force, with whatever else is known of it.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> slider = st.presets.nakano_popov_2020()
+    >>> found = st.analyse(st.simulate(slider, duration=5.0, sample_rate=10e3))
+    >>> found.regime.kind, found.cycles.sizes["cycle"]
+    ('stick-slip', 3)
+    """
+    missing: dict[str, str] = {}
+
+    def tried(name: str, find: Callable[[], T]) -> T | None:
+        try:
+            return find()
+        except StictionError as error:
+            missing[name] = str(error)
+            return None
+
+    run = source if isinstance(source, Trajectory) else None
+    record = source if isinstance(source, Record) else record_of(source)
+    cycles, regime = find_cycles(record), classify(record)
+    sticking = cycles if regime.kind in (STICK_SLIP, BETWEEN) else cycles.isel(cycle=slice(0))
+    if run is not None:
+        song = tried("song", lambda: hear_song(run))
+        energy = tried("energy", lambda: energy_budget(run, edges(run, cycles)))
+        width = None
+    else:
+        song = tried("song", lambda: strongest_line(record, _above(record, cycles)))
+        energy, missing["energy"] = None, "of a measured record only the force is known"
+        width = _free_of_hum(song, sticking)
+    creeping = calibrated(record, sticking)
+    curves = tried("creep", lambda: creep_curves(run or creeping, sticking, width))
+    mean = None
+    if curves is not None:
+        if np.isfinite(curves["velocity"].values).any():
+            mean = mean_creep(curves)
+        else:
+            missing["creep"] = "there is no stick phase to see it in"
+    divergence, misalignment = _fits(creeping, mean, tried)
+    phases = None
+    if run is not None and song is not None and curves is not None:
+        phases = song_by_phase(song, run, _phases(run, curves, sticking))
+    return Analysis(
+        source,
+        record,
+        regime,
+        cycles,
+        summary(cycles),
+        curves,
+        mean,
+        divergence,
+        misalignment,
+        song,
+        phases,
+        energy,
+        missing,
+    )
+
+
+def calibrated(record: Record, cycles: xr.Dataset) -> Record:
+    """Return a record with the stiffness that its own loading shows, unless it has a position.
+
+    A few per cent between a stated stiffness and that at which the force rises would hide the
+    creep, V less the rate of force over stiffness; so creep is counted from the even loading in
+    the first half of each rise (the median over cycles).
+    """
+    shown = cycles["stiffness"].values
+    shown = shown[np.isfinite(shown)]
+    if record.position is not None or not len(shown) or not np.median(shown) > 0.0:
+        return record
+    return record.model_copy(update={"stiffness": float(np.median(shown))})
+
+
+def edges(run: Trajectory, cycles: xr.Dataset) -> np.ndarray:
+    """Return times (s) at which a run begins, its cycles do, the last one ends, and it ends."""
+    first, last = (float(run.data["time"][i]) for i in (0, -1))
+    inner = np.concatenate([cycles["start"].values, cycles["trough_time"].values[-1:]])
+    return np.unique(np.concatenate([[first], inner, [last]]))
+
+
+def _fits(record: Record, mean: xr.Dataset | None, tried: Any) -> tuple[Any, Any]:
+    """Return the fits of the mean creep, None where they cannot be made."""
+    V, stiffness = record.drive_velocity, record.stiffness
+    if mean is None or V is None or stiffness is None:
+        return None, None
+    loading = float(np.nanmax(mean["force"].values)) / stiffness / V
+    return (
+        tried("divergence", lambda: fit_divergence(mean, loading)),
+        tried("misalignment", lambda: fit_misalignment(mean, V, stiffness)),
+    )
+
+
+def _free_of_hum(song: xr.Dataset | None, cycles: xr.Dataset) -> float | None:
+    """Return bins (s) over two periods of a line that hums most of the time, which average it out.
+
+    None where there is no such line, or stick phases are too short for it.
+    """
+    if song is None or not cycles.sizes["cycle"]:
+        return None
+    heard = song["frequency"].values
+    rises = cycles["peak_time"].values - cycles["start"].values
+    if np.isfinite(heard).mean() < 0.5:
+        return None
+    width = 2.0 / float(np.nanmedian(heard))
+    return width if width * BINS < float(np.median(rises)) else None
+
+
+def _above(record: Record, cycles: xr.Dataset) -> float:
+    """Return the frequency (Hz) above which a song is sought."""
+    fastest = cycles["period"].values.min() if cycles.sizes["cycle"] else record.duration / 10.0
+    return HARMONICS / max(float(fastest), 1e-300)
+
+
+def _phases(run: Trajectory, curves: xr.Dataset, cycles: xr.Dataset) -> np.ndarray:
+    """Return start and end (s) of each stick phase of a run, the first loading among them."""
+    starts = np.concatenate([[float(run.data["time"][0])], cycles["start"].values])
+    return np.column_stack([starts, curves["slip_time"].values])

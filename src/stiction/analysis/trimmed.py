@@ -1,0 +1,43 @@
+"""The mean of values among which a few are wild."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+CUT = 0.1  # share of the values left out at each end
+
+
+class Mean(NamedTuple):
+    """A mean and its standard error, in the unit of the values."""
+
+    value: float
+    error: float
+
+
+def trimmed_mean(values: NDArray[np.float64]) -> Mean:
+    """Return the mean without the smallest and the largest tenth, and its standard error.
+
+    The error is that of the values with those left out put back at the nearest ones kept
+    (J. W. Tukey & D. H. McLaughlin, Sankhya A 25, 331 (1963)); it holds for independent values.
+    Not a number where there are none, or for the error only one. Unlike a median, the mean of
+    values in steps is finer than the steps.
+
+    Parameters
+    ----------
+    values : ndarray
+        (n,), in any order.
+    """
+    count = len(values)
+    if count == 0:
+        return Mean(np.nan, np.nan)
+    cut = int(CUT * count)
+    ordered = np.sort(values)
+    kept = ordered[cut : count - cut]
+    value = float(kept.mean())
+    if count == 1:
+        return Mean(value, np.nan)
+    back = np.clip(ordered, kept[0], kept[-1])
+    return Mean(value, float(back.std(ddof=1)) / (1.0 - 2.0 * cut / count) / count**0.5)

@@ -1,0 +1,11 @@
+"""What to know of an apparatus before its friction measurements are believed.
+
+>>> import stiction as st
+>>> found = st.audit.examine(st.presets.nakano_popov_2020().replace(phi="9.5 deg"))
+>>> found.observation.regime.kind, found.sliding.stable
+('damped approach', True)
+"""
+
+from stiction.audit.report import Audit, examine
+
+__all__ = ["Audit", "examine"]

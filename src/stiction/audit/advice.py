@@ -1,0 +1,110 @@
+"""What to change of an apparatus, each advice tried in a simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import inf, isfinite, nan, sqrt
+from typing import Any, NamedTuple
+
+from stiction.analysis.regime import DAMPED, STEADY
+from stiction.audit.observation import Observation, coarse_rate, observe
+from stiction.audit.prediction import predict
+from stiction.parameter import changed, read, unit
+from stiction.slider import Slider
+from stiction.stability import Critical, critical, growth_rate
+
+# How far beyond a critical value to go, of it: farther where an oscillation, once there, goes on
+# although steady sliding is stable
+BEYOND = (0.15, 0.5, 1.0, 2.0)
+CALM = (DAMPED, STEADY)
+LEVERS = ("phi", "drive.velocity", "c_x", "k_x")
+STRONGEST = 10.0  # times critical damping: as far as a damper is tried
+
+
+class Advice(NamedTuple):
+    """One parameter, what it is, what it takes to slide steadily, and what is seen then.
+
+    Parameters
+    ----------
+    path, unit : str
+        The parameter, and its SI unit.
+    now : float
+        Its value.
+    between : tuple of float
+        The range in which a better one was looked for.
+    critical, then : float
+        The value from which on steady sliding is stable, and the one that is advised; not a
+        number where there is none in the range.
+    growth : float
+        The growth rate (1/s) then.
+    tried : Observation or None
+        The simulation with the value that is advised.
+    """
+
+    path: str
+    unit: str
+    now: float
+    between: tuple[float, float]
+    critical: float
+    then: float
+    growth: float
+    tried: Observation | None
+
+    @property
+    def works(self) -> bool:
+        """Whether the simulation with it comes to slide steadily."""
+        return self.tried is not None and self.tried.regime.kind in CALM
+
+
+def advise(slider: Slider) -> Iterator[Advice]:
+    """Yield, for each lever, the nearest value at which sliding is steady, and try it."""
+    for path in LEVERS:
+        found, now = critical(slider, path, limits(slider, path)), read(slider, path)
+        advice = Advice(path, found.unit, now, found.between, nan, nan, nan, None)
+        for beyond in BEYOND:
+            edge, then = nearest(found, now, beyond)
+            if isfinite(then):
+                better = changed(slider, path, written(slider, path, then))
+                advice = advice._replace(critical=edge, then=then, **tried(better))
+            if advice.tried is None or advice.works:
+                break
+        yield advice
+
+
+def tried(slider: Slider) -> dict[str, Any]:
+    """Return the growth rate of a changed slider, and a simulation of it."""
+    growth, prediction = growth_rate(slider), predict(slider)
+    seen = observe(slider, prediction, growth, sample_rate=coarse_rate(prediction))
+    return {"growth": growth, "tried": seen}
+
+
+def limits(slider: Slider, path: str) -> tuple[float | str, float | str] | None:
+    """Return the range in which a parameter can be changed; none for that of `critical`."""
+    if path == "phi":
+        return ("-90 deg", "0 deg") if slider.phi < 0.0 else ("0 deg", "90 deg")
+    if path == "c_x":
+        return 0.0, max(STRONGEST * 2.0 * sqrt(slider.k_x * slider.mass), 2.0 * slider.c_x)
+    return None
+
+
+def written(slider: Slider, path: str, value: float) -> float | str:
+    """Return a value as a slider reads it: an angle with its unit."""
+    return f"{value!r} rad" if unit(slider, path) == "rad" else value
+
+
+def nearest(found: Critical, now: float, beyond: float) -> tuple[float, float]:
+    """Return the critical value nearest to the present one, and one `beyond` it, as a share of it.
+
+    That is where sliding is stable: farther, but not past the middle of the stretch in which it
+    is. Not numbers if it is stable nowhere.
+    """
+    borders = [found.between[0], *map(float, found.values), found.between[1]]
+    best, distance = (nan, nan), inf
+    for low, high, stable in zip(borders[:-1], borders[1:], found.stable, strict=True):
+        edge, way = (low, 1) if now <= low else (high, -1)
+        if stable and abs(edge - now) < distance and low < high:
+            middle = 0.5 * (low + high)
+            then = edge + way * beyond * abs(edge)
+            then = min(then, middle) if way > 0 else max(then, middle)
+            best, distance = (edge, then), abs(edge - now)
+    return best

@@ -1,0 +1,63 @@
+"""The figures of an audit; none where there is nothing to draw."""
+
+from __future__ import annotations
+
+from math import hypot
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from stiction.analysis.creep_curve import creep_curves, mean_creep
+from stiction.audit.report import Audit
+from stiction.audit.words import NAMES
+from stiction.paper.figure5 import figure5
+from stiction.plotting.creep_curve import creep_figure, creep_theory
+from stiction.plotting.cycles import cycles_figure
+from stiction.plotting.stability import stability_map
+from stiction.plotting.trials import Trial, trials_figure
+from stiction.stability import boundary
+from stiction.units import in_words
+
+
+def test(found: Audit) -> Figure | None:
+    """Draw the simulated test as its load cell records it."""
+    return cycles_figure(found.observation.record)
+
+
+def creep(found: Audit) -> Figure | None:
+    """Draw the creep before slip, and Eqs. (7) and (8)."""
+    seen, slider = found.observation, found.slider
+    curves = creep_curves(seen.run, seen.cycles)
+    if slider.phi == 0.0 or not np.isfinite(curves["velocity"].values).any():
+        return None
+    V, phi = hypot(*slider.motion.rate(0.0)), abs(slider.phi)
+    lines = creep_theory(V, phi, slider.F_0 / slider.k_x)
+    return creep_figure(curves, mean_creep(curves), V, lines)
+
+
+def damping(found: Audit) -> Figure | None:
+    """Draw the damping diagram, with the way of the friction force now and as is advised."""
+    others = [each.then for each in found.advices if each.path == "phi" and each.works]
+    others += [float(value) for value in found.misalignment.values]
+    if found.slider.phi == 0.0 or not others:
+        return None
+    return figure5(found.slider, others[0])
+
+
+def trials(found: Audit) -> Figure | None:
+    """Draw the force of the same test now and with each change."""
+    tried = [
+        Trial(
+            f"{NAMES[each.path]} = {in_words(each.then, each.unit)}: {each.tried.regime.kind}",
+            each.tried.record,
+        )
+        for each in found.advices
+        if each.tried is not None
+    ]
+    return trials_figure(found.observation.record, tried) if tried else None
+
+
+def stability(found: Audit) -> Figure | None:
+    """Draw where steady sliding is stable, over misalignment and drive velocity."""
+    curve = boundary(found.slider, "phi", "drive.velocity")
+    return stability_map(curve) if curve.sizes["point"] else None

@@ -1,0 +1,107 @@
+"""An audit as one HTML page, figures inside."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+from jinja2 import Environment, PackageLoader
+from matplotlib.figure import Figure
+
+import stiction
+from stiction.audit import figures
+from stiction.audit.report import Audit
+from stiction.audit.words import sections
+from stiction.errors import ResultError
+from stiction.files import placeable, whole
+from stiction.plotting.save import png
+
+SUFFIXES = (".html", ".htm")
+
+
+class Illustration(NamedTuple):
+    """A figure as text, and what it shows."""
+
+    image: str
+    caption: str
+
+
+# which figures stand below which section, and what they show
+DRAWN: dict[str, tuple[tuple[Callable[[Audit], Figure | None], str], ...]] = {
+    "Verdict": ((figures.test, "The simulated test as its load cell records it."),),
+    "Is it stick?": (
+        (figures.creep, "Creep before slip, averaged over the transverse motion, and Eq. (7)."),
+        (figures.damping, "How the friction force turns during creep, and where slow turns fast."),
+    ),
+    "What to change": (
+        (figures.trials, "Each advice tried: the force of the same test, now and then."),
+        (figures.stability, "Where steady sliding is stable, and where this apparatus is."),
+    ),
+}
+
+
+def writable(path: str | Path) -> Path:
+    """Return the path of a page, if one can be written there.
+
+    Raises
+    ------
+    ResultError
+        If it has another suffix than .html, no folder, or is something else than a file.
+    """
+    target = Path(path)
+    if target.suffix.lower() not in SUFFIXES:
+        raise ResultError(f"{target}: the report is a page; name it {target.with_suffix('.html')}")
+    return placeable(target)
+
+
+def write(found: Audit, path: str | Path, name: str) -> Path:
+    """Write the report of an audit as a page that needs no other file; return the path.
+
+    Raises
+    ------
+    ResultError
+        If it cannot be written there.
+    """
+    target = writable(path)
+    text = page(found, name)
+    with whole(target) as part:
+        part.write_text(text, encoding="utf-8")
+    return target
+
+
+def page(found: Audit, name: str) -> str:
+    """Return the page as text; `name` is what it is an audit of."""
+    environment = Environment(
+        loader=PackageLoader("stiction.audit", "."), autoescape=True, trim_blocks=True
+    )
+    return environment.get_template("page.html.jinja").render(
+        name=name,
+        version=stiction.__version__,
+        parts=sections(found),
+        figures={title: illustrations(found, drawn) for title, drawn in DRAWN.items()},
+        description=described(found),
+    )
+
+
+def illustrations(
+    found: Audit, drawn: tuple[tuple[Callable[[Audit], Figure | None], str], ...]
+) -> list[Illustration]:
+    """Return the figures of a section, those that there is something to draw for."""
+    made = ((draw(found), caption) for draw, caption in drawn)
+    return [
+        Illustration(b64encode(png(figure)).decode("ascii"), caption)
+        for figure, caption in made
+        if figure is not None
+    ]
+
+
+def described(found: Audit) -> str:
+    """Return the description of the apparatus, in SI."""
+    tables = found.observation.run.description.to_dict()
+    return "\n".join(
+        f"[{title}]\n" + "".join(f"{key} = {value!r}\n" for key, value in table.items())
+        for title, table in tables.items()
+        if title not in ("run", "initial")
+    )

@@ -1,0 +1,153 @@
+"""What theory says of an apparatus, from its description alone."""
+
+from __future__ import annotations
+
+from math import cos, hypot, isfinite, nan, pi, sin, sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from stiction import theory
+from stiction.friction import Anisotropic, has_state
+from stiction.slider import Slider
+
+SEEN = 10.0  # samples in each period of the song: enough to see its shape, not just its pitch
+
+
+class Prediction(NamedTuple):
+    """Closed forms and estimates, in SI and rad; not a number where theory has nothing to say.
+
+    Parameters
+    ----------
+    F_0 : float
+        Friction at vanishing slip, N.
+    f_x, f_y : float
+        Natural frequencies along the soft and the stiff axis, Hz.
+    A, zeta : float
+        Damping number and damping ratio at theta = phi, Eq. (10).
+    theta_c : float
+        Force angle at which zeta = 1, where slow slip turns fast, rad.
+    phi_c : float
+        Misalignment from which on steady sliding is stable, for a rigid transverse spring, rad;
+        not a number for laws with internal state or a grain, see `stiction.stability` for those.
+    first_stick : float
+        How long the mass really rests when the drive starts, s.
+    load_up : float
+        From the start of the drive to the slip: Eq. (7) until theta_c, s; where zeta stays above
+        1, until the spring alone would carry friction.
+    creep_at_start, creep_at_slip : float
+        Velocity along the drive at both ends of that, Eq. (7), m/s.
+    creep_distance : float
+        How far it has crept when it slips, m.
+    mu_static, mu_kinetic : float
+        What would be read as coefficients of friction: largest and mean force over load.
+    drop, period : float
+        Fall of the force in a slip, N, and time from one slip to the next, s.
+    amplitude : float
+        Bound of the transverse swing, V sin(phi)/omega_y, m.
+    sample_rate : float
+        What it takes to see the song, Hz.
+    """
+
+    F_0: float
+    f_x: float
+    f_y: float
+    A: float
+    zeta: float
+    theta_c: float
+    phi_c: float
+    first_stick: float
+    load_up: float
+    creep_at_start: float
+    creep_at_slip: float
+    creep_distance: float
+    mu_static: float
+    mu_kinetic: float
+    drop: float
+    period: float
+    amplitude: float
+    sample_rate: float
+
+    @property
+    def slips(self) -> bool:
+        """Whether Eq. (10) has the slow motion turn fast before friction points along the drive."""
+        return isfinite(self.drop)
+
+
+def predict(slider: Slider) -> Prediction:
+    """Return what theory says of a slider under a steady drive.
+
+    The paper's theory is for friction that is set-valued at zero slip; for other laws F_0 is
+    taken at the drive's speed. The misalignment counts by its size, not by its sign.
+    """
+    s, phi = slider, abs(slider.phi)
+    V = hypot(*s.motion.rate(0.0))
+    F_0, l_x = s.F_0, s.F_0 / s.k_x
+    omega_x, omega_y = (float(theory.natural_frequency(k, s.mass)) for k in (s.k_x, s.k_y))
+    A = float(theory.damping_number(F_0, V, phi, s.mass, s.k_x))
+    zeta = float(theory.damping_ratio(A, phi)) if isfinite(A) else 0.0
+    theta_c = float(theory.critical_angle(A)) if isfinite(A) else 0.0
+    turn = theta_c if theta_c > phi else phi
+    fast = zeta < 1.0
+    load_up = float(theory.creep_time(turn, V, phi, l_x)) if fast and phi > 0.0 else l_x / V
+    creep = theory.creep_velocity(np.array([0.0, load_up]), V, phi, l_x)
+    peak = F_0 * cos(turn)
+    drop, mean = stick_slip(slider, peak) if fast else (nan, peak)
+    if not drop > 0.0:  # friction does not fall below what the spring held
+        drop, mean = nan, peak
+    return Prediction(
+        F_0,
+        omega_x / (2.0 * pi),
+        omega_y / (2.0 * pi),
+        A,
+        zeta,
+        theta_c,
+        critical_misalignment(slider, V),
+        float(theory.first_stick_duration(F_0, V, phi, s.k_x, s.k_y)),
+        load_up,
+        float(creep[0]),
+        float(creep[1]),
+        crept(V, phi, l_x, load_up),
+        peak / s.normal_load,
+        mean / s.normal_load,
+        drop,
+        drop / (s.k_x * V * cos(phi)) + pi / omega_x,
+        float(theory.transverse_amplitude_bound(V, phi, omega_y)),
+        SEEN * omega_y / (2.0 * pi),
+    )
+
+
+def critical_misalignment(slider: Slider, V: float) -> float:
+    """Return phi_c in closed form (rad), see `stiction.theory.critical_misalignment`."""
+    law: Any = slider.law
+    if has_state(law) or isinstance(law, Anisotropic):
+        return nan
+    friction = law.coefficient(V), law.slope(V)
+    W, c_x = slider.normal_load, slider.c_x
+    return float(theory.critical_misalignment(V, *friction, c_x=c_x, W=W))
+
+
+def crept(V: float, phi: float, l_x: float, t: float) -> float:
+    """Return how far the mass has moved along X by Eq. (7) at time `t` (m).
+
+    X = V t - u_x cos(phi) - u_y sin(phi), Eq. (6), with u_y constant from the first stick on.
+    """
+    return V * t - float(theory.creep_elongation(t, V, phi, l_x)) * cos(phi)
+
+
+def stick_slip(slider: Slider, peak: float) -> tuple[float, float]:
+    """Return by how much the force falls in a slip from `peak`, and its mean in the slip (N).
+
+    An estimate: the slip is half a free swing of the mass on the soft spring, s = v sin(tau),
+    about the mean of friction along its way, F = (1/2) integral of F(v sin(tau)) sin(tau); the
+    fastest slip v = (peak - F)/sqrt(k_x m) + V follows from it, and it from v. It ends as far
+    below the mean as it began above it.
+    """
+    V = hypot(*slider.motion.rate(0.0))
+    tau = (np.arange(64) + 0.5) * (pi / 64)
+    mean = 0.5 * peak
+    for _ in range(60):  # half of the way each time: friction that weakens steeply would overshoot
+        v = max(peak - mean, 0.0) / sqrt(slider.k_x * slider.mass) + V
+        force = [slider.law.coefficient(v * sin(at)) * slider.normal_load for at in tau]
+        mean = 0.5 * (mean + float(np.mean(force * np.sin(tau)) * pi / 2.0))
+    return 2.0 * (peak - mean), mean

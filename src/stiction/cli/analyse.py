@@ -1,0 +1,57 @@
+"""``stiction analyse``: what a run means."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+
+def analyse(
+    result: Path,
+    /,
+    *,
+    output: Annotated[Path | None, Parameter(alias="-o")] = None,
+    trust: bool = False,
+) -> None:
+    """Analyse a result: kind of motion, cycles, creep before slip, song, energy.
+
+    Prints what was found and writes all of it: cycles.csv (a row a cycle), summary.csv,
+    creep.csv, song.csv, energy.csv, analysis.json, and a figure of each. Nothing is to be tuned.
+    Creep and song need a run that is sampled several times each transverse period.
+
+    Parameters
+    ----------
+    result
+        A file written by `stiction run`.
+    output
+        The folder to write to, RESULT-analysis unless told; made if it is not there.
+    trust
+        Run the friction law of one's own that the result holds, where its file is not found.
+    """
+    from stiction.analysis.export import write as write_tables
+    from stiction.analysis.report import analyse as understand
+    from stiction.analysis.words import each_cycle, sections
+    from stiction.cli.compare import usable
+    from stiction.cli.progress import progress
+    from stiction.cli.tables import printed
+    from stiction.plotting.analysis import figures
+    from stiction.plotting.save import drawable, write
+    from stiction.sections import Section
+    from stiction.trajectory import load
+
+    folder = result.with_name(f"{result.stem}-analysis") if output is None else output
+    run = load(result, trust=trust)
+    usable(folder)
+    with progress("analysing"):
+        found = understand(run)
+        parts = sections(found)
+        folder.mkdir(exist_ok=True)
+        paths = write_tables(found, folder)
+        for name, figure in figures(found).items():
+            paths.append(write(figure, drawable(folder / f"{name}.png")))
+    if found.cycles.sizes["cycle"]:
+        parts.insert(2, Section("Cycle by cycle", [], each_cycle(found.cycles)))
+    printed(str(result), parts)
+    print(f"\nwrote {', '.join(path.name for path in paths)} to {folder}")

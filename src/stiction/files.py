@@ -1,0 +1,53 @@
+"""Files that are written whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from stiction.errors import ResultError
+
+
+def placeable(path: str | Path) -> Path:
+    """Return a path, if a file can be put there, in place of what is there.
+
+    Raises
+    ------
+    ResultError
+        If there is no such folder, or something else than a file is there.
+    """
+    target = Path(path)
+    if not target.parent.is_dir():
+        raise ResultError(f"{target}: no folder {target.parent}; make it first")
+    if target.exists() and not target.is_file():
+        raise ResultError(f"{target}: is there, and is not a file; choose another name")
+    return target
+
+
+@contextmanager
+def whole(target: Path) -> Iterator[Path]:
+    """Yield a path to write to, beside `target`, which takes its place when all is written.
+
+    Raises
+    ------
+    ResultError
+        If it cannot be written there.
+    """
+    part = None
+    try:
+        handle, name = tempfile.mkstemp(dir=target.parent, suffix=".part")
+        os.close(handle)
+        part = Path(name)
+        yield part
+        mask = os.umask(0)
+        os.umask(mask)
+        part.chmod(0o666 & ~mask)
+        part.replace(target)
+    except OSError as error:
+        raise ResultError(f"{target}: cannot be written: {error.strerror or error}") from None
+    finally:
+        if part is not None:
+            part.unlink(missing_ok=True)

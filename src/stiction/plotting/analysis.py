@@ -1,0 +1,33 @@
+"""The figures of an analysis: cycles, creep, song, energy."""
+
+from __future__ import annotations
+
+from matplotlib.figure import Figure
+
+from stiction.analysis.report import Analysis
+from stiction.plotting.creep_curve import creep_figure, creep_theory
+from stiction.plotting.cycles import cycles_figure
+from stiction.plotting.energy import energy_figure
+from stiction.plotting.song import song_figure
+from stiction.trajectory import Trajectory
+
+
+def figures(found: Analysis) -> dict[str, Figure]:
+    """Return the figure of every part of an analysis that there is, by its name."""
+    drawn = {}
+    if len(found.record):
+        drawn["cycles"] = cycles_figure(found.record)
+    if found.curves is not None and found.creep is not None and found.record.drive_velocity:
+        V, fit = found.record.drive_velocity, found.misalignment
+        lines = {}
+        if fit is not None and found.record.stiffness is not None:
+            l_x = fit.F_0 / found.record.stiffness
+            lines = {
+                f"{name}, fitted": line for name, line in creep_theory(V, fit.phi, l_x).items()
+            }
+        drawn["creep"] = creep_figure(found.curves, found.creep, V, lines)
+    if isinstance(found.source, Trajectory) and found.song is not None:
+        drawn["song"] = song_figure(found.source, found.song)
+    if found.energy is not None:
+        drawn["energy"] = energy_figure(found.energy)
+    return drawn

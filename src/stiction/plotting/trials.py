@@ -1,0 +1,66 @@
+"""The force of a test, and of the same test after a change."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from stiction.analysis.record import Record
+from stiction.plotting.style import BLUE, GREY, PAGE, new_figure, style
+from stiction.plotting.time_series import draw_line, prefixed
+
+PANEL = 1.35  # height of a row, in
+ACROSS = 2
+
+
+class Trial(NamedTuple):
+    """What was changed, in words, and what was recorded then."""
+
+    title: str
+    record: Record
+
+
+def trials_figure(before: Record, trials: Sequence[Trial]) -> Figure:
+    """Draw the force of each trial over that of the test before, a panel a trial.
+
+    Time runs as long as the trial does; where the test before is longer, it is cut, where it is
+    shorter, it ends.
+
+    Parameters
+    ----------
+    before : Record
+        The test before anything was changed, grey.
+    trials : sequence of Trial
+        At least one; blue.
+
+    Returns
+    -------
+    Figure
+        As wide as a page.
+    """
+    rows = -(-len(trials) // ACROSS)
+    largest = [np.abs(each.force).max() for each in (before, *(trial.record for trial in trials))]
+    factor, prefix = prefixed(np.array(largest))
+    with style():
+        fig = new_figure(PAGE, 0.5 + PANEL * rows)
+        panels = fig.subplots(rows, ACROSS, squeeze=False, sharey=True).ravel()
+        for ax, (title, record) in zip(panels, trials, strict=False):
+            start, end = record.time[0], record.time[-1]
+            seen = (before.time >= start) & (before.time <= end)
+            line = draw_line(ax, before.time[seen], factor * before.force[seen], GREY, 0.7)
+            line.set_label("now")
+            line = draw_line(ax, record.time, factor * record.force, BLUE, 1.0)
+            line.set_label("changed")
+            ax.set_xlim(start, end)
+            ax.set_title(title)
+            ax.set_xlabel("time $t$ (s)")
+        for ax in panels[len(trials) :]:
+            ax.set_axis_off()
+        for ax in panels[::ACROSS]:
+            ax.set_ylabel(f"spring force ({prefix}N)")
+        panels[0].legend(loc="lower right", ncols=2)
+        panels[0].margins(y=0.08)
+    return fig

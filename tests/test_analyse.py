@@ -1,0 +1,107 @@
+import csv
+import json
+from math import degrees
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.analysis.export import write
+from stiction.analysis.report import calibrated
+from stiction.analysis.words import sections
+from stiction.cli import main
+
+PAPER = st.presets.nakano_popov_2020()
+
+
+@pytest.fixture(scope="module")
+def run():
+    return st.simulate(PAPER, duration=5.0, sample_rate=10e3)
+
+
+@pytest.fixture(scope="module")
+def found(run):
+    return st.analyse(run)
+
+
+def test_a_run_says_everything_of_itself(found):
+    assert found.missing == {}
+    assert found.regime.kind == "stick-slip"
+    assert found.cycles.sizes["cycle"] == 3
+    assert found.phases.sizes["phase"] == 4  # the first loading is one
+    assert float(found.energy["work"].sum()) > 0.0
+    assert degrees(found.misalignment.phi) == pytest.approx(1.0, abs=0.02)
+
+
+def test_bare_arrays_say_what_they_can(run):
+    record = st.Record(time=run.data["time"].values, force=run.data["spring_x"].values)
+    found = st.analyse(record)
+    assert found.cycles.sizes["cycle"] == 3
+    assert "stiffness and drive_velocity" in found.missing["creep"]
+    assert found.energy is None
+    assert all(part.sentences for part in sections(found))
+
+
+def test_creep_of_a_measured_record_is_counted_from_its_own_loading(run):
+    data = {"time": run.data["time"].values, "force": run.data["spring_x"].values}
+    stated = st.Record(**data, stiffness=900.0, drive_velocity=1e-3)
+    found = st.analyse(stated)
+    shown = calibrated(stated, found.cycles).stiffness
+    assert shown == pytest.approx(982.0, abs=1.0)  # k_x less what creeps already
+    late = found.creep.isel(bin=slice(1, 10))
+    true = st.analyse(run).creep
+    at = np.interp(late["begin"], true["begin"], true["velocity"])
+    assert late["velocity"].values == pytest.approx(at, abs=0.03e-3)  # the share of V that is lost
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 10, 1000])
+def test_short_and_constant_records_are_no_error(count):
+    record = st.Record(time=np.arange(count) * 1e-3, force=np.ones(count))
+    found = st.analyse(record)
+    assert found.cycles.sizes["cycle"] == 0
+    assert [part.title for part in sections(found)] == [
+        "Motion", "Cycles", "Creep", "Song", "Energy",
+    ]  # fmt: skip
+
+
+def test_a_run_without_samples_or_misalignment_is_no_error():
+    for run in (
+        st.simulate(PAPER, duration=0.5),
+        st.simulate(PAPER.replace(phi="0 deg"), duration=0.5, sample_rate=1e3),
+        st.simulate(PAPER.replace(drive=st.ConstantVelocity(0.0)), duration=0.1, sample_rate=1e3),
+    ):
+        assert all(part.sentences for part in sections(st.analyse(run)))
+
+
+def test_tables_and_numbers_as_files(found, tmp_path):
+    names = [path.name for path in write(found, tmp_path)]
+    assert names == [
+        "analysis.json", "cycles.csv", "summary.csv", "creep.csv", "creep-phases.csv",
+        "song.csv", "song-phases.csv", "energy.csv",
+    ]  # fmt: skip
+    with (tmp_path / "cycles.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert float(rows[0]["peak [N]"]) == pytest.approx(float(found.cycles["peak"][0]), rel=1e-11)
+    numbers = json.loads((tmp_path / "analysis.json").read_text())
+    assert numbers["regime"]["kind"] == "stick-slip"
+    assert numbers["cycles"]["period"]["unit"] == "s"
+    assert numbers["misalignment"]["phi"] == found.misalignment.phi
+
+
+def test_the_command_writes_tables_and_figures(run, tmp_path, capsys):
+    result = run.save(tmp_path / "my.nc")
+    with pytest.raises(SystemExit) as ended:
+        main(["analyse", str(result)])
+    assert ended.value.code == 0
+    assert "It diverges towards slip with the exponent" in " ".join(capsys.readouterr().out.split())
+    written = sorted(path.name for path in (tmp_path / "my-analysis").iterdir())
+    assert {"cycles.png", "creep.png", "song.png", "energy.png", "cycles.csv"} < set(written)
+
+
+def test_the_command_refuses_a_file_for_a_folder(run, tmp_path, capsys):
+    result = run.save(tmp_path / "my.nc")
+    (tmp_path / "my-analysis").write_text("")
+    with pytest.raises(SystemExit) as ended:
+        main(["analyse", str(result)])
+    assert ended.value.code == 2
+    assert "is not a folder" in capsys.readouterr().err

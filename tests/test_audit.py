@@ -1,0 +1,177 @@
+import re
+from math import cos, degrees, isnan, pi, sin, sqrt
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+
+import stiction as st
+from stiction import theory
+from stiction.analysis.regime import DAMPED, STICK_SLIP
+from stiction.audit.advice import nearest
+from stiction.audit.page import page
+from stiction.audit.prediction import predict
+from stiction.audit.report import examine
+from stiction.audit.words import sections
+from stiction.cli import main
+from stiction.stability import Critical
+
+PAPER = st.presets.nakano_popov_2020()
+
+
+@pytest.fixture(scope="module")
+def found():
+    return examine(PAPER)
+
+
+def test_load_up_and_creep_by_integrating_eq_7():
+    p, V, phi, l_x = predict(PAPER), 1e-3, PAPER.phi, 2e-3
+
+    def rate(_, u):
+        return [float(theory.elongation_rate(u[0], V, phi, l_x))]
+
+    def slow_turns_fast(_, u):
+        return u[0] - l_x * cos(p.theta_c)
+
+    slow_turns_fast.terminal = True
+    way = solve_ivp(rate, (0, 5), [0.0], events=slow_turns_fast, rtol=1e-11, atol=1e-14)
+    assert p.load_up == pytest.approx(way.t[-1], rel=1e-8)
+    distance = quad(lambda t: theory.creep_velocity(t, V, phi, l_x), 0, p.load_up, epsrel=1e-10)[0]
+    assert p.creep_distance == pytest.approx(distance, rel=1e-8)
+    assert p.mu_static == pytest.approx(0.2 * cos(theory.critical_angle(3623.887)), rel=1e-7)
+
+
+def test_a_slip_is_half_a_swing_that_friction_stops():
+    # the estimate balances energy: what the spring gives is what friction takes along the way
+    p = predict(PAPER)
+    peak, mean = p.mu_static * 10.0, p.mu_kinetic * 10.0
+    v = (peak - mean) / sqrt(1e3 * 0.25) + 1e-3
+    law = PAPER.friction
+    work = quad(lambda tau: law.coefficient(v * sin(tau)) * 10.0 * sin(tau), 0, pi)[0] / 2.0
+    assert work == pytest.approx(mean, rel=1e-3)  # 64 midpoints of a smooth function
+    assert p.drop == pytest.approx(2.0 * (peak - mean), rel=1e-12)
+
+
+def test_theory_beside_the_simulation(found):
+    p, seen = found.prediction, found.observation
+    sticks = seen.run.sticks
+    assert p.first_stick == pytest.approx(sticks[0, 1] - sticks[0, 0], rel=1e-6)
+    # Eq. (7) leaves out inertia, of relative order (omega_x load_up)^-1, here 1/128
+    assert seen.mean("mu_static") == pytest.approx(p.mu_static, rel=1 / 128)
+    assert seen.mean("period") == pytest.approx(
+        p.period, rel=0.05
+    )  # damping in the slip is left out
+    assert seen.mean("drop") == pytest.approx(p.drop, rel=0.05)
+
+
+def test_critical_misalignment_of_the_paper_s_case(found):
+    assert degrees(found.prediction.phi_c) == pytest.approx(8.655, abs=5e-4)
+    assert degrees(found.misalignment.values[0]) == pytest.approx(8.656, abs=5e-4)
+    assert "8.6560 deg (8.6554 deg in closed form): the margin is 7.656 deg more" in str(
+        sections(found)[0].sentences
+    )
+
+
+def test_shares_of_a_cycle_add_up_and_rest_is_that_of_the_sticks(found):
+    seen = found.observation
+    rest, creep, slip = seen.shares
+    assert rest + creep + slip == pytest.approx(1.0, abs=1e-12)
+    begin, end = float(seen.cycles["start"][0]), float(seen.cycles["trough_time"][-1])
+    inside = [stick for stick in seen.run.sticks if begin <= stick[0] and stick[1] <= end]
+    assert rest == pytest.approx(np.diff(inside, axis=1).sum() / (end - begin), abs=1e-5)
+
+
+def test_advice_is_tried_and_says_when_it_does_not_help(found):
+    advices = {each.path: each for each in found.advices}
+    phi, speed, damper = (advices[path] for path in ("phi", "drive.velocity", "c_x"))
+    assert phi.works
+    assert damper.works
+    assert phi.tried.regime.kind == DAMPED
+    # far beyond the critical speed friction is flat: what oscillates goes on oscillating
+    assert speed.growth < 0.0
+    assert not speed.works
+    assert isnan(advices["k_x"].then)
+    rows = next(part for part in sections(found) if part.title == "What to change").table.rows
+    assert [row[-1].startswith("no value") for row in rows] == [False, False, False, True]
+    assert "no remedy" in rows[1][-1]
+
+
+def test_an_advised_damper_is_what_the_closed_form_says(found):
+    # at phi = 1 deg, k_y to infinity: c + F' cos^2 + F/V sin^2 = 0
+    law, c, s = PAPER.friction, cos(PAPER.phi) ** 2, sin(PAPER.phi) ** 2
+    closed = -(law.slope(1e-3) * 10 * c + law.coefficient(1e-3) * 10 / 1e-3 * s) / c
+    damper = next(each for each in found.advices if each.path == "c_x")
+    assert damper.critical == pytest.approx(closed, rel=2e-3)  # of order k_x/k_y and c_x^2/(m k_y)
+
+
+def test_what_slides_steadily_needs_nothing():
+    found = examine(PAPER.replace(phi="10 deg"))
+    assert found.advices == ()
+    assert found.observation.regime.kind == DAMPED
+    assert sections(found)[-1].sentences == ["Nothing: it slides steadily once it has settled."]
+
+
+@pytest.mark.parametrize(
+    ("changes", "kind"),
+    [
+        ({"phi": "0 deg"}, STICK_SLIP),
+        ({"phi": "-1 deg"}, STICK_SLIP),
+        ({"drive": st.ConstantVelocity(-1e-3)}, STICK_SLIP),
+        ({"friction": st.Coulomb(mu_0=0.2)}, DAMPED),
+    ],
+)
+def test_audits_of_other_apparatus(changes, kind):
+    found = examine(PAPER.replace(**changes))
+    assert found.observation.regime.kind == kind
+    assert all(part.sentences or part.table for part in sections(found))
+    assert page(found, "it").count("<section") == len(sections(found)) + 1
+
+
+def test_a_mirrored_apparatus_has_the_same_audit(found):
+    mirrored = examine(PAPER.replace(phi="-1 deg"))
+    assert mirrored.prediction == found.prediction
+    assert mirrored.observation.mean("drop") == found.observation.mean("drop")
+    assert mirrored.misalignment.values[-1] == pytest.approx(-found.misalignment.values[0])
+
+
+def test_the_nearest_stable_stretch_is_advised():
+    found = Critical(
+        "k", "", (1.0, 100.0), np.array([10.0, 50.0]), np.zeros(2), (True, False, True)
+    )
+    assert nearest(found, 12.0, 0.15) == (10.0, 8.5)
+    assert nearest(found, 45.0, 0.15) == (50.0, pytest.approx(57.5))
+    assert nearest(found, 45.0, 9.0) == (50.0, 75.0)  # not past the middle of the stretch
+
+
+def test_the_page_needs_nothing_from_outside(found):
+    text = page(found, "a <rig>")
+    assert "Audit of a &lt;rig&gt;" in text
+    assert text.count("data:image/png;base64,") == 5
+    assert not re.findall(r'(?:src|href)="(?!data:)(?!https://arxiv)', text)
+    assert "<script" not in text
+
+
+def test_the_command_prints_and_writes(tmp_path, capsys):
+    config, report = tmp_path / "my.toml", tmp_path / "my.html"
+    for arguments in (["init", str(config)], ["audit", str(config), "-o", str(report)]):
+        with pytest.raises(SystemExit) as ended:
+            main(arguments)
+        assert ended.value.code == 0
+    printed = capsys.readouterr().out
+    assert "damping number A, Eq. (10)" in printed
+    assert report.read_text(encoding="utf-8").endswith("</html>")
+
+
+def test_what_cannot_be_audited_or_written_says_why(tmp_path, capsys):
+    config = tmp_path / "my.toml"
+    with pytest.raises(SystemExit):
+        main(["init", str(config)])
+    with pytest.raises(SystemExit) as ended:
+        main(["audit", str(config), "-o", str(tmp_path / "report.txt")])
+    assert ended.value.code == 2
+    assert "report.html" in capsys.readouterr().err
+    config.write_text(config.read_text().replace('velocity = "1 mm/s"', "velocity = 0"))
+    with pytest.raises(SystemExit) as ended:
+        main(["audit", str(config)])
+    assert ended.value.code == 2
+    assert "drive.velocity: is zero" in capsys.readouterr().err
