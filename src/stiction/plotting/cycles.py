@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 FEW = 12  # cycles that are seen one by one on a page's width
 SHOWN = 6  # cycles in the close-up
-LETTERS = 118  # of a page's width
+LETTERS = 108  # of a page's width
 
 
 def cycles_figure(record: Record) -> Figure:
