@@ -147,9 +147,9 @@ def classify(source: Trajectory | Record) -> Regime:
 def _by_shape(record: Record, found: Swings) -> Regime:
     table, count = found.table, found.table.sizes["cycle"]
     shares = table["rise_share"].values
-    kinds = [_shape(share) for share in shares]
+    kinds = [shape(share) for share in shares]
     typical = float(np.median(shares))
-    kind = _shape(typical)
+    kind = shape(typical)
     alike = kinds.count(kind)
     evidence = {"cycles": count, "rise_share": typical}
     if kind == UNDETERMINED:
@@ -174,7 +174,8 @@ def _by_shape(record: Record, found: Swings) -> Regime:
     return Regime(kind, confidence, evidence, others[-1] if others else "")
 
 
-def _shape(rise_share: float) -> str:
+def shape(rise_share: float) -> str:
+    """Return the kind of cycles whose force rises for so much of the time."""
     if rise_share < BACKWARD:
         return UNDETERMINED
     rests = rest_share(rise_share)

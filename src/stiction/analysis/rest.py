@@ -8,6 +8,9 @@ from numpy.typing import ArrayLike, NDArray
 Floats = NDArray[np.float64]
 
 ANGLES = np.geomspace(1e-4, np.pi / 2, 2000)[::-1]  # beta; linear between them, to 1e-5 in share
+_GAINED = 2.0 / np.tan(ANGLES)
+_CYCLE = np.pi + 2.0 * ANGLES + _GAINED  # omega times the period
+RISES, RESTS = np.append(1.0 - np.pi / _CYCLE, 1.0), np.append(_GAINED / _CYCLE, 1.0)
 
 
 def rest_share(rise_share: ArrayLike) -> Floats:
@@ -30,10 +33,5 @@ def rest_share(rise_share: ArrayLike) -> Floats:
     ----------
     The cycle: J. P. Den Hartog, Mechanical Vibrations, 4th ed. (1956), section 7.3.
     """
-    gained = 2.0 / np.tan(ANGLES)
-    cycle = np.pi + 2.0 * ANGLES + gained  # omega times the period
-    rises, rests = 1.0 - np.pi / cycle, gained / cycle
-    found: Floats = np.interp(
-        np.asarray(rise_share, float), np.append(rises, 1.0), np.append(rests, 1.0)
-    )
+    found: Floats = np.interp(np.asarray(rise_share, float), RISES, RESTS)
     return np.maximum(found, 0.0)
