@@ -10,6 +10,7 @@ from stiction.analysis.export import write
 from stiction.analysis.report import calibrated
 from stiction.analysis.words import sections
 from stiction.cli import main
+from stiction.plotting.analysis import figures
 
 PAPER = st.presets.nakano_popov_2020()
 
@@ -127,5 +128,7 @@ def test_few_samples_show_no_creep(slider: st.Slider) -> None:
 
 
 def test_an_aligned_run_implies_no_misalignment(slider: st.Slider) -> None:
-    found = st.analyse(st.simulate(slider.replace(phi="0 deg"), 5.0, sample_rate=1e3))
+    found = st.analyse(st.simulate(slider.replace(phi="0 deg"), 5.0, sample_rate=10e3))
     assert (found.divergence, found.misalignment) == (None, None)
+    assert "there is no misalignment" in found.missing["song"]
+    assert set(figures(found)) == {"cycles", "creep", "energy"}  # no picture of silence

@@ -95,8 +95,9 @@ class Regime(NamedTuple):
     kind : str
         "stick-slip" (at rest, or in creep, for three quarters of a cycle or more), "between
         stick-slip and harmonic vibration" (for half of it or more), "harmonic vibration" (for
-        less or not at all), "damped approach" (a transient that dies out), "steady sliding",
-        "stuck" (it loads and never slips) or "undetermined".
+        less or not at all), "damped approach" (a transient that dies out), "steady sliding" (no
+        swings stand apart from the noise: what is smaller is not seen), "stuck" (it loads and
+        never slips) or "undetermined".
     confidence : float
         0 to 1. With cycles: the share of them that have the kind's shape themselves, counted
         with one more of either, so that three cycles say less than thirty.

@@ -108,7 +108,7 @@ def creep(found: Analysis) -> Section:
         )
     elif d is not None:
         lines.append("No divergence towards slip stands out of its uncertainty.")
-    if phi is not None and abs(phi.phi) > SURE * phi.phi_error:
+    if phi is not None and phi.stands_out:
         angle, error = degrees(phi.phi), degrees(phi.phi_error)
         lines.append(
             f"By Eq. (7) it implies a misalignment of {angle:.3g} ± {error:.1g} deg{_true(found)}, "
