@@ -209,10 +209,11 @@ def song(found: Audit) -> list[str]:
             "stiction analyse."
         ]
     lines = [
-        f"The transverse spring swings at {in_words(p.f_y, 'Hz')}, or lower as slip approaches, by "
-        f"{in_words(p.amplitude, 'm')} at most (V sin φ/ω_y), {force} of transverse force. Sample "
-        f"at {in_words(p.sample_rate, 'Hz')} to see it; above {in_words(2.0 * p.f_y, 'Hz')} it is "
-        f"not mistaken for another frequency."
+        f"The transverse spring swings at {in_words(p.f_y, 'Hz')} at first, by "
+        f"{in_words(p.amplitude, 'm')} (V sin φ/ω_y), {force} of transverse force; towards slip "
+        f"the frequency falls, as sin θ, and the swing grows with its period. Sample at "
+        f"{in_words(p.sample_rate, 'Hz')} to see it; above {in_words(2.0 * p.f_y, 'Hz')} it is not "
+        f"mistaken for another frequency."
     ]
     if seen.coarse:
         rate = in_words(seen.record.sample_rate, "Hz")
