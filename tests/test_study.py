@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 import stiction as st
+from stiction.study.cluster import Processes
 from stiction.study.engines import Threads
 from stiction.study.layout import Layout, laid_out, places
 from stiction.study.parameters import unit, varied
@@ -142,6 +143,8 @@ def test_every_fault_of_a_study_is_told_at_once():
         ({"phi": {"values": []}}, "is not a list of values"),
         ({"phi": {"sampling": "sobl"}}, "did you mean 'sobol'"),
         ({"phi": 3}, "3 is not an axis"),
+        ({"phi": st.Values(["1 deg"], "regime")}, "axes.phi.along: cannot be 'regime'"),
+        ({"phi": st.Values(["1 deg"], "../a")}, "axes.phi.along: cannot be '../a'"),
         ({"k_x, mass": st.Values([1.0])}, "cannot share one value"),
         ({"k_x": st.Values([1.0]), "k_x, k_y": st.Values([1.0])}, "has an axis already"),
         (
@@ -238,3 +241,42 @@ def test_blocks_cover_each_run_once(shape, seconds):
 def test_a_million_runs_are_few_tasks():
     layout = laid_out({"a": 1000, "b": 1000}, 1e-2)
     assert layout.tasks <= 4096 * 1.1
+
+
+def test_traces_are_kept_decimated(tmp_path):
+    axes = {"phi": st.Values(["1 deg", "95 deg", "3 deg"])}
+    base = BASE._replace(run=st.Settings(duration="0.5 s", sample_rate="2 kHz"))
+    study = st.Study(
+        base=base, axes=axes, measures=[], traces=["force", "position"], trace_samples=26
+    )
+    study.run(tmp_path / "a.zarr")
+    data = xr.open_zarr(tmp_path / "a.zarr").load()
+    assert data["force_trace"].dims == ("phi", "time")
+    assert data["time"].attrs["units"] == "s"
+    assert np.isnan(data["position_trace"].isel(phi=1)).all()
+    run = st.simulate(PAPER.replace(phi="3 deg"), "0.5 s", sample_rate="2 kHz").data
+    whole = run.sel(time=data["time"].values, method="nearest")
+    # both are samples of the same solution at the same times, but for rounding of the times
+    np.testing.assert_allclose(data["force_trace"][2], whole["spring_x"], atol=1e-9)
+    np.testing.assert_allclose(data["position_trace"][2], whole["X"], atol=1e-12)
+
+
+def test_a_store_of_another_version_is_refused(study, tmp_path):
+    import zarr
+
+    study.run(tmp_path / "a.zarr")
+    group = zarr.open_group(tmp_path / "a.zarr", mode="r+", use_consolidated=False)
+    group.attrs["stiction_version"] = "0.0.1"
+    with pytest.raises(st.ResultError, match=r"begun by stiction 0\.0\.1"):
+        study.run(tmp_path / "a.zarr")
+    group.attrs["format"] = 99
+    with pytest.raises(st.ResultError, match="has format 99"):
+        st.open_study(tmp_path / "a.zarr")
+
+
+def test_processes_do_the_same(study, finished, tmp_path):
+    """Dask's own scheduler and workers, in processes of this machine."""
+    study.run(tmp_path / "a.zarr", engine=Processes(2))
+    xr.testing.assert_identical(
+        xr.open_zarr(tmp_path / "a.zarr").load(), xr.open_zarr(finished[0]).load()
+    )

@@ -109,7 +109,7 @@ def test_the_command(store, tmp_path, capsys):
     with pytest.raises(SystemExit) as end:
         main(["map", str(store), "--at", "friction.mu_inf", "-o", str(target)])
     assert end.value.code == 2
-    assert "write for example --at 'phi = 1 deg'" in capsys.readouterr().err
+    assert "write for example 'phi = 1 deg'" in capsys.readouterr().err
     with pytest.raises(SystemExit) as end:
         main(["map", str(tmp_path / "no.zarr"), "-o", str(target)])
     assert end.value.code == 2

@@ -15,6 +15,7 @@ def map(
     of: Annotated[list[str] | None, Parameter(negative=())] = None,
     at: Annotated[list[str] | None, Parameter(negative=())] = None,
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
+    trust: Annotated[bool, Parameter(negative=())] = False,
 ) -> None:
     """Draw what the study in the store STUDY found, finished or not.
 
@@ -42,16 +43,14 @@ def map(
         taken. Repeat it for several.
     output
         The figure to write (.png, .pdf or .svg); STUDY.png beside the store when left out.
+    trust
+        Run the text of a friction law of one's own that stands in the store, if its file is not
+        here.
     """
-    from stiction.errors import StictionError
+    from stiction.cli.tally import named
     from stiction.plotting.save import drawable, write
     from stiction.study.mapping import map_figure
 
-    cut = {}
-    for text in at or ():
-        name, equals, value = text.rpartition("=")
-        if not equals:
-            raise StictionError(f"--at {text!r} is no cut; write for example --at 'phi = 1 deg'")
-        cut[name.strip()] = value.strip()
+    cut = dict(named(text, "--at") for text in at or ())
     target = drawable(output or study.with_suffix(".png"))
-    print(f"wrote {write(map_figure(study, of or (), cut), target)}")
+    print(f"wrote {write(map_figure(study, of or (), cut, trust=trust), target)}")

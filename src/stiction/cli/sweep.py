@@ -19,6 +19,8 @@ def sweep(
     *,
     output: Annotated[Path, Parameter(alias="-o")],
     preset: str | None = None,
+    refine: str | None = None,
+    apart: Annotated[list[str] | None, Parameter(negative=())] = None,
     threads: int | None = None,
     workers: int | None = None,
     scheduler: str | None = None,
@@ -62,6 +64,12 @@ def sweep(
     preset
         A ready study in place of CONFIG: yaw-angle (phi x V: misalignment stabilises),
         anisotropy (k_y x phi), damping-diagram (A x theta, Fig. 5 with simulations on it).
+    refine
+        An axis and how closely to find where the kind of motion changes along it, for each value
+        of the others, as "phi = 0.01 deg": by halving, not by filling the grid.
+    apart
+        With --refine, a kind of motion that is told from all others, as "damped approach"; repeat
+        it for more. All are told from each other when left out.
     threads
         How many runs at a time in this process; as many as there are cores when left out.
     workers
@@ -74,16 +82,22 @@ def sweep(
     json_lines
         Write progress and outcome to standard output as JSON, a line each, at most one a second.
     """
-    from stiction.cli.tally import shown
+    from stiction.cli.tally import named, shown
 
+    found = None
     study, means = described(config, preset), engine(threads, workers, scheduler)
     try:
         with shown(quiet, json_lines) as (report, conclude):
             result = study.run(output, engine=means, progress=report)
+            if refine is not None:
+                along, to = named(refine, "--refine")
+                found = study.refine(output, along, to, apart=apart, engine=means, progress=report)
     except KeyboardInterrupt:
         print(f"{output}: stopped; the same command goes on where it was", file=sys.stderr)
         return 130
     conclude(output, result)
+    if found is not None and not (quiet or json_lines):
+        print(f"{found.sizes['point']} changes along {along}, by {found.attrs['runs']} runs in all")
     return 1 if result.failed else 0
 
 

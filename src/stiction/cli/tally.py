@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from math import isfinite
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+from stiction.errors import StictionError
 
 if TYPE_CHECKING:
     from stiction.study.summary import Summary
@@ -51,7 +54,7 @@ def _print_tally(tally: Tally) -> None:
         "done": tally.before + tally.now,
         "failed": tally.failed,
         "runs_per_second": round(tally.rate, 3),
-        "seconds_left": round(tally.left, 1),
+        "seconds_left": round(tally.left, 1) if isfinite(tally.left) else None,
     }
     print(json.dumps(line), flush=True)
 
@@ -127,3 +130,11 @@ def clock(seconds: float) -> str:
     minutes, rest = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"
+
+
+def named(text: str, option: str) -> tuple[str, str]:
+    """Return name and value of an option's ``NAME=VALUE``."""
+    name, equals, value = text.rpartition("=")
+    if not equals:
+        raise StictionError(f"{option} {text!r} is no NAME=VALUE; write for example 'phi = 1 deg'")
+    return name.strip(), value.strip()

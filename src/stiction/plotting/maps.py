@@ -137,6 +137,14 @@ def draw_theory(ax: Axes, x: Side, y: Side, fields: Mapping[str, Floats]) -> lis
     return lines
 
 
+def draw_changes(ax: Axes, x: Side, y: Side) -> list[Line2D]:
+    """Draw a point where a change of the kind of motion was found; return what the legend shows."""
+    return ax.plot(
+        x.values, y.values, "o", color=BLACK, markersize=2.4, markeredgecolor="white",
+        markeredgewidth=0.5, label="change, refined", zorder=5,
+    )  # fmt: skip
+
+
 def draw_slice(ax: Axes, x: Side, values: Floats, label: str) -> None:
     """Draw a measure over one parameter, a point a run."""
     ax.plot(x.values, values, "-", color=BLUE, linewidth=0.8)

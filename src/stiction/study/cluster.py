@@ -15,6 +15,8 @@ from stiction.study.engines import AHEAD, Work
 
 T = TypeVar("T")
 AGAIN = "what is written is whole, and the same command goes on"
+# an interrupt in a terminal reaches all its processes: the client alone is to act on it
+UNINTERRUPTED = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 DEATHS = 10  # of workers, that a task may see before it is taken for their cause
 
 
@@ -41,7 +43,12 @@ class Processes(NamedTuple):
             warnings.catch_warnings(),
         ):
             warnings.filterwarnings("ignore", "Port .* is already in use")
-            cluster = dask.LocalCluster(n_workers=self.workers, threads_per_worker=1)
+            cluster = dask.LocalCluster(
+                n_workers=self.workers,
+                threads_per_worker=1,
+                preload=[UNINTERRUPTED],
+                silence_logs=logging.ERROR,  # of tasks that are cancelled
+            )
             with lost_and_told(), cluster, dask.Client(cluster) as client:
                 yield from handed_out(client, work, tasks)
 
@@ -92,7 +99,7 @@ def handed_out(client: Any, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
     def hand_out() -> None:
         threads = sum(client.nthreads().values()) or 1  # workers come and go
         for task in islice(waiting, max(AHEAD * threads - flying.count(), 0)):
-            flying.add(client.submit(work, task, wanted, pure=False))
+            flying.add(client.submit(work, task, never, pure=False))
 
     hand_out()
     for future in flying:
@@ -100,8 +107,8 @@ def handed_out(client: Any, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
         hand_out()
 
 
-def wanted() -> bool:
-    """Return False: a task is wanted. One that no longer is, dask drops or ends."""
+def never() -> bool:
+    """Return False: no task finds itself unwanted; what no longer is wanted, dask drops or ends."""
     return False
 
 
@@ -113,9 +120,10 @@ def lost_and_told() -> Iterator[None]:
     from distributed import KilledWorker
     from distributed.comm.core import CommClosedError
 
-    log = logging.getLogger("distributed.client")
-    level = log.level
-    log.setLevel(logging.CRITICAL)
+    logs = [logging.getLogger(name) for name in ("distributed.client", "tornado.application")]
+    levels = [log.level for log in logs]
+    for log in logs:
+        log.setLevel(logging.CRITICAL)
     try:
         yield
     except KilledWorker as error:
@@ -125,4 +133,5 @@ def lost_and_told() -> Iterator[None]:
     except (CancelledError, CommClosedError, TimeoutError) as error:
         raise StictionError(f"dask's scheduler is lost ({error}); {AGAIN}") from None
     finally:
-        log.setLevel(level)
+        for log, level in zip(logs, levels, strict=True):
+            log.setLevel(level)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
@@ -11,7 +12,11 @@ from pydantic_core import PydanticCustomError
 from stiction.description import Description
 from stiction.errors import DescriptionError, Fault
 from stiction.study.axes import Axis, Floats, Range
+from stiction.study.measures import MEASURES
 from stiction.study.parameters import number, unit
+
+TAKEN = {"status", "message", "time", *MEASURES}  # names in a store
+NAME = re.compile(r"\w[\w ,.-]*")
 
 
 class Coordinate(NamedTuple):
@@ -54,6 +59,8 @@ def coordinate_faults(base: Description, axes: Mapping[str, Axis], seed: int) ->
         for name in path.split(","):
             if taken.setdefault(name.strip(), path) != path:
                 yield Fault(path, f"{name.strip()} has an axis already: {taken[name.strip()]!r}")
+        if axis.along is not None and (axis.along in TAKEN or not NAME.fullmatch(axis.along)):
+            yield Fault(f"{path}.along", f"cannot be {axis.along!r}; write a name such as 'sample'")
         try:
             its = unit(base, path)
         except DescriptionError as error:

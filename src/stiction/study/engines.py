@@ -13,6 +13,9 @@ T = TypeVar("T")
 AHEAD = 2  # tasks handed out for each worker: one in hand, one waiting
 PATIENCE = 0.2  # s; on some systems a thread that waits without end cannot be interrupted
 
+# of those that this process may use: a batch system lends some of the machine's
+CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
 # does a task; the second argument tells whether it is no longer wanted
 Work = Callable[[int, Callable[[], bool]], T]
 
@@ -36,7 +39,7 @@ class Threads(NamedTuple):
         How many run at a time.
     """
 
-    workers: int = os.cpu_count() or 1
+    workers: int = CORES
 
     def results(self, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
         """Yield what comes of each task."""

@@ -86,3 +86,8 @@ def places(region: Region) -> Iterator[Index]:
 def size_of(region: Region) -> Index:
     """Return how many runs a region has along each dimension."""
     return tuple(part.stop - part.start for part in region)
+
+
+def runs_of(region: Region) -> int:
+    """Return how many runs a region has."""
+    return prod(size_of(region))

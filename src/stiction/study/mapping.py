@@ -12,6 +12,7 @@ from stiction.errors import DescriptionError, Fault
 from stiction.plotting.damping import draw_damping_map
 from stiction.plotting.maps import (
     Side,
+    draw_changes,
     draw_measure,
     draw_points,
     draw_regimes,
@@ -32,7 +33,11 @@ DAMPING = ("phi", "drive.velocity")  # coordinates that place a run in the dampi
 
 
 def map_figure(
-    path: str | Path, measures: Sequence[str] = (), cut: Mapping[str, str | float] | None = None
+    path: str | Path,
+    measures: Sequence[str] = (),
+    cut: Mapping[str, str | float] | None = None,
+    *,
+    trust: bool = False,
 ) -> Figure:
     """Draw a study: a map over two dimensions, a curve over one, points for samples.
 
@@ -45,6 +50,9 @@ def map_figure(
     cut : mapping, optional
         For a dimension the value at which it is cut (a number, or text with its unit); the
         nearest that was run is taken.
+    trust : bool, optional
+        Whether the text of a friction law that stands in the store may be run; see
+        `stiction.load`.
 
     Returns
     -------
@@ -58,7 +66,7 @@ def map_figure(
     DescriptionError
         If it has no such measure or dimension, or more than two are left.
     """
-    view = viewed(path, cut or {})
+    view = viewed(path, cut or {}, trust)
     wanted = chosen(view, measures)
     draw = {1: _curves, 2: _maps}[len(view.data["status"].dims)]
     names = [name for name, each in view.study.coordinates.items() if each.dim not in view.at]
@@ -114,6 +122,9 @@ def _map(fig: Figure, ax: Axes, view: View, name: str, theory: Plane) -> list[An
         fig.colorbar(mesh, ax=ax, label=label(view.data, name), pad=0.02)
     x_dim, y_dim = (str(dim) for dim in view.data[name].dims)
     fine = side(view, x_dim, theory.x), side(view, y_dim, theory.y)
+    for found in view.changes:
+        if {x_dim, y_dim} <= {*found.data_vars} and not view.at:
+            handles += draw_changes(ax, *(side(view, d, found[d].values) for d in (x_dim, y_dim)))
     return handles + draw_theory(ax, *fine, theory.fields)
 
 

@@ -30,16 +30,6 @@ class Measure(NamedTuple):
     of: Callable[[Observed], float]
     flags: tuple[str, ...] = ()
 
-    @property
-    def dtype(measure) -> type[np.generic]:
-        """How it is kept."""
-        return np.int8 if measure.flags else np.float64
-
-    @property
-    def unknown(measure) -> float:
-        """What stands where there is none."""
-        return -1 if measure.flags else nan
-
 
 def _mean(values: np.ndarray) -> float:
     return float(values.sum()) / len(values) if len(values) else nan

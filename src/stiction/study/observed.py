@@ -90,15 +90,13 @@ class Observed:
         c, s = self.description.slider.direction
         return self.way * c * self.column(2) + self.way * s * self.column(3)
 
-    def position(self, i: int) -> float:
-        """Return the position X of the mass along the drive at sample `i` of `time` (m).
-
-        Eq. (6) of Nakano & Popov.
-        """
-        slider, u = self.description.slider, (self.column(0)[i], self.column(1)[i])
+    @property
+    def positions(self) -> Floats:
+        """Position X of the mass along the drive (m): Eq. (6) of Nakano & Popov."""
+        slider = self.description.slider
         c, s = slider.direction
-        travel = float(slider.motion.travel(0.0, self.time[i])[0])
-        return self.way * float(travel - c * u[0] - s * u[1])
+        travel = slider.motion.travel(0.0, self.time)[0]
+        return np.asarray(self.way * (travel - c * self.column(0) - s * self.column(1)))
 
     @cached_property
     def features(self) -> Features:
@@ -112,10 +110,10 @@ class Observed:
     @cached_property
     def first_slip(self) -> tuple[float, float]:
         """When the mass is first faster than the drive (s), and how far it came until then (m)."""
-        at = self.features.slipped
+        at, positions = self.features.slipped, self.positions
         if at < 0:
             return nan, nan
-        return float(self.time[at]), self.position(at) - self.position(0)
+        return float(self.time[at]), float(positions[at] - positions[0])
 
     @cached_property
     def swings(self) -> Swings:

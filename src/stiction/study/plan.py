@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, lru_cache
 from itertools import product
 from pathlib import Path
@@ -14,52 +14,22 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 from stiction.description import Description
 from stiction.errors import DescriptionError, Fault
 from stiction.friction.own import Find, kept, named, trusted
-from stiction.study.axes import Axis, axis_table, read_axis
+from stiction.study.axis_table import axis_table
 from stiction.study.coordinates import Coordinate, coordinate_faults, coordinates, zip_faults
 from stiction.study.layout import Index, Layout, laid_out
-from stiction.study.measures import DEFAULT, MEASURES
+from stiction.study.measures import DEFAULT
 from stiction.study.observed import seconds_of
 from stiction.study.parameters import varied
+from stiction.study.reading import axes_of, is_description, measures_of, traces_of
 from stiction.tables import read_toml
-from stiction.validation import Described, faulty, unknown
+from stiction.validation import Described, faulty
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from stiction.study.engines import Engine
     from stiction.study.summary import Summary
     from stiction.study.sweeping import Tally
-
-
-def _is_description(value: Any) -> Any:
-    if not isinstance(value, Description):
-        raise ValueError(
-            f"{value!r} is not a description; write for example "
-            "st.Description(slider, st.Initial(), st.Settings(duration='5 s'))"
-        )
-    return value
-
-
-def _axes(value: Any) -> dict[str, Axis]:
-    if not isinstance(value, Mapping) or not value:
-        raise ValueError("give one axis at least: the path of a parameter, and its values")
-    axes, found = {}, []
-    for path, each in value.items():
-        try:
-            axes[str(path)] = read_axis(each, str(path))
-        except DescriptionError as error:
-            found += [Fault(fault.path.partition(".")[2], fault.message) for fault in error.faults]
-    if found:
-        raise faulty(found)
-    return axes
-
-
-def _measures(value: Any) -> tuple[str, ...]:
-    if isinstance(value, str) or not hasattr(value, "__iter__"):
-        raise ValueError(f"{value!r} is not a list of measures; known: {', '.join(MEASURES)}")
-    wanted = tuple(dict.fromkeys(str(each) for each in value))
-    strange = [name for name in wanted if name not in MEASURES]
-    if strange:
-        raise ValueError("; ".join(unknown("measure", name, MEASURES) for name in strange))
-    return wanted
 
 
 class Study(Described):
@@ -75,6 +45,10 @@ class Study(Described):
         `Random` or `Sobol`, or a table of the same.
     measures : sequence of str, optional
         What to keep of each run, see `stiction.study.measures.MEASURES`.
+    traces : sequence of str, optional
+        Courses over time to keep as well: "force", "velocity", "position".
+    trace_samples : int, optional
+        How many samples of each, evenly spaced over the run.
     seed : int, optional
         Of random and Sobol axes.
 
@@ -93,9 +67,11 @@ class Study(Described):
     20
     """
 
-    base: Annotated[Any, AfterValidator(_is_description)]
-    axes: Annotated[Any, BeforeValidator(_axes)]
-    measures: Annotated[tuple[str, ...], BeforeValidator(_measures)] = DEFAULT
+    base: Annotated[Any, AfterValidator(is_description)]
+    axes: Annotated[Any, BeforeValidator(axes_of)]
+    measures: Annotated[tuple[str, ...], BeforeValidator(measures_of)] = DEFAULT
+    traces: Annotated[tuple[str, ...], BeforeValidator(traces_of)] = ()
+    trace_samples: Annotated[int, Field(ge=2, le=100_000)] = 256
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
 
     @model_validator(mode="after")
@@ -166,6 +142,21 @@ class Study(Described):
 
         return sweep(self, path, engine=engine, progress=progress)
 
+    def refine(
+        self,
+        path: str | Path,
+        along: str,
+        to: float | str,
+        *,
+        apart: Sequence[str] | None = None,
+        engine: Engine | None = None,
+        progress: Callable[[Tally], None] | None = None,
+    ) -> xr.Dataset:
+        """Find where the kind of motion changes; see `stiction.study.refining.refine`."""
+        from stiction.study.refining import refine
+
+        return refine(self, path, along, to, apart=apart, engine=engine, progress=progress)
+
     @classmethod
     def from_toml(cls, path: str | Path) -> Self:
         """Read a study's file: a description with the tables [study] and [axes] beside it.
@@ -208,7 +199,7 @@ class Study(Described):
         """Return nested tables, as `from_dict` reads them."""
         base: Description = self.base
         return {
-            "study": {"measures": list(self.measures), "seed": self.seed},
+            "study": self.model_dump(mode="json", exclude={"base", "axes"}),
             "axes": {path: axis_table(axis) for path, axis in self.axes.items()},
             **base.to_dict(),
         }

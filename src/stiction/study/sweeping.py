@@ -8,11 +8,11 @@ from pathlib import Path
 from time import perf_counter
 from typing import NamedTuple
 
-import numpy as np
-
+from stiction.study.creation import create
 from stiction.study.engines import Engine, Threads
+from stiction.study.layout import runs_of
 from stiction.study.plan import Study
-from stiction.study.store import PENDING, Store, create, opened
+from stiction.study.store import Store, opened
 from stiction.study.summary import Summary, summary
 from stiction.study.task import done
 
@@ -88,11 +88,12 @@ def sweep(
         If something else is there, or the store cannot be written.
     """
     store = opened(study, path) if Path(path).exists() else create(study, path)
-    missing = store.status() == PENDING
+    layout = store.layout
+    left = sum(runs_of(layout.region(task)) for task in tasks_left(store))
     begun = perf_counter()
-    tally = Tally(store.layout.runs, missing.size - int(np.count_nonzero(missing)), 0, 0, 0.0)
+    tally = Tally(layout.runs, layout.runs - left, 0, 0, 0.0)
     work = partial(done, study, store)
-    for came in (engine or Threads()).results(work, tasks_left(store, missing)):
+    for came in (engine or Threads()).results(work, tasks_left(store)):
         tally = tally._replace(
             now=tally.now + came.runs,
             failed=tally.failed + came.failed,
@@ -103,8 +104,8 @@ def sweep(
     return summary(study, store)
 
 
-def tasks_left(store: Store, missing: np.ndarray) -> Iterator[int]:
-    """Yield the number of each block in which runs are missing."""
+def tasks_left(store: Store) -> Iterator[int]:
+    """Yield the number of each block that is not done, one by one: there may be many."""
     for task in range(store.layout.tasks):
-        if missing[store.layout.region(task)].any():
+        if not store.has(store.layout.region(task)):
             yield task

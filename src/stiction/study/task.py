@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from stiction.errors import DescriptionError, Status
-from stiction.study.layout import Index, places, size_of
-from stiction.study.measures import MEASURES
+from stiction.study.kept import Kept, kept
+from stiction.study.layout import Index, places, runs_of, size_of
 from stiction.study.observed import observe
 from stiction.study.plan import Study
 from stiction.study.store import COMPLETED, ERROR, REFUSED, Block, Store
@@ -27,33 +27,41 @@ class Came(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """What came of a run: how it ended, why, and its measures."""
+    """What came of a run: how it ended, why, and what is kept of it."""
 
     status: int
     message: str
-    values: tuple[float, ...]
+    values: tuple[Any, ...]
 
 
 def done(study: Study, store: Store, task: int, unwanted: Callable[[], bool]) -> Came:
-    """Do the runs of a block and write it, or nothing if it is no longer wanted."""
+    """Do the runs of a block and write it, or nothing if it is no longer wanted.
+
+    A worker that outlived its client may have done it meanwhile: then it is left as it is.
+    """
     region = store.layout.region(task)
     size = size_of(region)
+    if store.has(region):
+        return Came(runs_of(region), 0)
     status = np.full(size, COMPLETED, np.int8)
     message = np.full(size, "", object)
-    kept = {name: MEASURES[name] for name in study.measures}
-    measures = {name: np.full(size, each.unknown, each.dtype) for name, each in kept.items()}
+    wanted = kept(study)
+    arrays = [np.full((*size, *each.shape), each.unknown, each.dtype) for each in wanted]
     try:
         for place, index in zip(np.ndindex(size), places(region), strict=True):
-            status[place], message[place], values = outcome(study, index, unwanted)
-            for name, value in zip(study.measures, values, strict=False):
-                measures[name][place] = value
+            status[place], message[place], values = outcome(study, wanted, index, unwanted)
+            for array, value in zip(arrays, values, strict=False):  # none of a run that failed
+                array[place] = value
     except Unwanted:
         return Came(0, 0)
-    store.write(region, Block(measures, status, message))
+    if not store.has(region):
+        store.write(region, Block([*zip(wanted, arrays, strict=True)], status, message))
     return Came(status.size, int(np.count_nonzero(status != COMPLETED)))
 
 
-def outcome(study: Study, index: Index, unwanted: Callable[[], bool]) -> Outcome:
+def outcome(
+    study: Study, wanted: Sequence[Kept], index: Index, unwanted: Callable[[], bool]
+) -> Outcome:
     """Do one run. Whatever goes wrong in it is what came of it."""
 
     def report(_: float) -> None:
@@ -66,10 +74,10 @@ def outcome(study: Study, index: Index, unwanted: Callable[[], bool]) -> Outcome
         ended = list(Status)[seen.solution.code]
         if not ended.ok:
             return Outcome(seen.solution.code, ended.value, ())
-        return Outcome(COMPLETED, "", tuple(MEASURES[name].of(seen) for name in study.measures))
-    except Unwanted:
+        return Outcome(COMPLETED, "", tuple(each.of(seen) for each in wanted))
+    except (Unwanted, OSError, MemoryError):
         raise
     except DescriptionError as error:
         return Outcome(REFUSED, "; ".join(map(str, error.faults)), ())
-    except (ArithmeticError, ValueError, LookupError, RuntimeError) as error:
+    except Exception as error:  # whatever a law of one's own raises
         return Outcome(ERROR, f"{type(error).__name__}: {error}", ())

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 REGIME = "regime"
 RUNS = ("status", "message")  # variables that are no measures
+REFINED, CHANGES = "refined", "changes"  # folders in a store
 
 
 class View(NamedTuple):
@@ -34,17 +35,20 @@ class View(NamedTuple):
         Its store, of which dimensions that are cut are gone.
     at : mapping of str to int
         The place along each of these.
+    changes : sequence of Dataset
+        Where the kind of motion changes, if it was refined; see `stiction.study.refining`.
     """
 
     study: Study
     data: xr.Dataset
     at: Mapping[str, int]
+    changes: Sequence[xr.Dataset]
 
 
-def viewed(path: str | Path, cut: Mapping[str, str | float]) -> View:
+def viewed(path: str | Path, cut: Mapping[str, str | float], trust: bool = False) -> View:
     """Return what is left of a study when some of its dimensions are cut."""
     data = open_study(path)
-    study = Study.from_json(data.attrs["description"], Path(path).parent, trust=False)
+    study = Study.from_json(data.attrs["description"], Path(path).parent, trust=trust)
     dims, at, found = study.layout.dims, {}, []
     for dim, value in cut.items():
         if dim not in study.coordinates or dim not in dims:
@@ -62,12 +66,25 @@ def viewed(path: str | Path, cut: Mapping[str, str | float]) -> View:
         found.append(Fault(", ".join(dims), f"{len(left)} dimensions are left; {remedy}"))
     if found:
         raise DescriptionError(found)
-    return View(study, data.isel(at).load(), at)
+    return View(study, data.isel(at).load(), at, refined(path))
+
+
+def refined(path: str | Path) -> list[xr.Dataset]:
+    """Return the changes that were refined, along one axis each."""
+    import xarray as xr
+
+    folders = sorted(Path(path).glob(f"{REFINED}/*/{CHANGES}"))
+    return [xr.open_zarr(folder, consolidated=False).load() for folder in folders]
 
 
 def chosen(view: View, measures: Sequence[str]) -> list[str]:
     """Return what to draw."""
-    kept = [str(name) for name in view.data.data_vars if name not in RUNS]
+    runs = view.data["status"].dims  # traces have time as well
+    kept = [
+        str(name)
+        for name, each in view.data.data_vars.items()
+        if name not in RUNS and each.dims == runs
+    ]
     strange = [name for name in measures if name not in kept]
     if strange:
         raise DescriptionError([Fault(name, unknown("measure", name, kept)) for name in strange])

@@ -1,0 +1,25 @@
+"""Where it sticks and slips, vibrates or comes to rest: a study over two parameters.
+
+Writes regime_map.zarr, which xarray.open_zarr reads, and regime_map.png. Stopped and started
+again, it does what is missing.
+"""
+
+import stiction as st
+from stiction.plotting.save import write
+from stiction.study.mapping import map_figure
+
+base = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="6 s"))
+study = st.Study(
+    base=base,
+    axes={
+        "phi": st.Grid("1 deg", "12 deg", 12),
+        "drive.velocity": st.Grid("0.6 mm/s", "20 mm/s", 8, spacing="log"),
+    },
+    measures=["regime", "peak_force", "period"],
+)
+print(study.run("regime_map.zarr"))
+write(map_figure("regime_map.zarr"), "regime_map.png")
+
+changes = study.refine("regime_map.zarr", "phi", "0.01 deg", apart=["damped approach"])
+for V, phi in zip(changes["drive.velocity"].values, changes["phi"].values, strict=True):
+    print(f"at V = {1e3 * V:6.3f} mm/s it comes to rest from phi = {phi:.2f} deg on")

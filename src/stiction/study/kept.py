@@ -1,0 +1,91 @@
+"""All that a study keeps of each run, measures and traces alike: how it is found and stored."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import nan
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from stiction.study.axes import Floats
+from stiction.study.measures import MEASURES
+from stiction.study.observed import Observed
+from stiction.study.plan import Study
+from stiction.study.traces import TRACES
+
+UNKNOWN = "unknown"  # what -1 means where a number stands for a kind
+TIME = "time"  # dimension of traces
+
+
+class Kept(NamedTuple):
+    """A variable of a study's store.
+
+    Parameters
+    ----------
+    name : str
+        Of the variable.
+    of : callable
+        From what was observed of a run to its value.
+    shape : tuple of int
+        Of the value: () for a number.
+    dtype : type
+        How it is stored.
+    unknown : float
+        What stands where there is none.
+    labels : dict
+        CF attributes.
+    """
+
+    name: str
+    of: Callable[[Observed], Any]
+    shape: tuple[int, ...]
+    dtype: type[np.generic]
+    unknown: float
+    labels: dict[str, Any]
+
+
+def kept(study: Study) -> list[Kept]:
+    """Return what is kept of each run of a study."""
+    return [
+        *(_measure(name) for name in study.measures),
+        *(_trace(name, study.trace_samples) for name in study.traces),
+    ]
+
+
+def _measure(name: str) -> Kept:
+    known = MEASURES[name]
+    if known.flags:
+        labels = {"long_name": known.long_name, **flagged(UNKNOWN, known.flags)}
+        return Kept(name, known.of, (), np.int8, -1, labels)
+    labels = {"units": known.unit, "long_name": known.long_name}
+    return Kept(name, known.of, (), np.float64, nan, labels)
+
+
+def _trace(name: str, count: int) -> Kept:
+    known = TRACES[name]
+
+    def decimated(run: Observed) -> Floats:
+        at = np.linspace(run.start, run.end, count)
+        return np.interp(at, run.time, known.of(run))
+
+    labels = {"units": known.unit, "long_name": known.long_name}
+    return Kept(f"{name}_trace", decimated, (count,), np.float64, nan, labels)
+
+
+def trace_times(study: Study) -> tuple[Floats, dict[str, str]]:
+    """Return the times of the samples of traces, and their CF attributes.
+
+    In shares of the run's duration where that differs from run to run.
+    """
+    share = np.linspace(0.0, 1.0, study.trace_samples)
+    if {"run.duration", "initial.time"} & study.coordinates.keys():
+        return share, {"units": "1", "long_name": "share of the run's duration"}
+    start, duration = study.base.initial.time, study.base.run.duration
+    return start + duration * share, {"units": "s", "long_name": "time"}
+
+
+def flagged(before: str, meanings: Sequence[str]) -> dict[str, Any]:
+    """Return the CF attributes of a variable whose values -1, 0, 1, ... have meanings."""
+    words = [meaning.replace(" ", "_") for meaning in (before, *meanings)]
+    return {"flag_values": [*range(-1, len(meanings))], "flag_meanings": " ".join(words)}

@@ -1,0 +1,60 @@
+"""Reading the parts of a study: each value as it is given, or what to write instead."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import Any
+
+from stiction.description import Description
+from stiction.errors import DescriptionError, Fault
+from stiction.study.axes import Axis
+from stiction.study.axis_table import read_axis
+from stiction.study.measures import MEASURES
+from stiction.study.traces import TRACES
+from stiction.validation import faulty, unknown
+
+
+def is_description(value: Any) -> Any:
+    """Return a description, or say that it is none."""
+    if not isinstance(value, Description):
+        raise ValueError(
+            f"{value!r} is not a description; write for example "
+            "st.Description(slider, st.Initial(), st.Settings(duration='5 s'))"
+        )
+    return value
+
+
+def axes_of(value: Any) -> dict[str, Axis]:
+    """Return axes by their paths, with every fault in them at once."""
+    if not isinstance(value, Mapping) or not value:
+        raise ValueError("give one axis at least: the path of a parameter, and its values")
+    axes, found = {}, []
+    for path, each in value.items():
+        try:
+            axes[str(path)] = read_axis(each, str(path))
+        except DescriptionError as error:
+            found += [Fault(fault.path.partition(".")[2], fault.message) for fault in error.faults]
+    if found:
+        raise faulty(found)
+    return axes
+
+
+def named_ones(value: Any, what: str, known: Collection[str]) -> tuple[str, ...]:
+    """Return names that are all known, each once."""
+    if isinstance(value, str) or not hasattr(value, "__iter__"):
+        raise ValueError(f"{value!r} is not a list of {what}s; known: {', '.join(known)}")
+    wanted = tuple(dict.fromkeys(str(each) for each in value))
+    strange = [name for name in wanted if name not in known]
+    if strange:
+        raise ValueError("; ".join(unknown(what, name, known) for name in strange))
+    return wanted
+
+
+def measures_of(value: Any) -> tuple[str, ...]:
+    """Return names of measures."""
+    return named_ones(value, "measure", MEASURES)
+
+
+def traces_of(value: Any) -> tuple[str, ...]:
+    """Return names of traces."""
+    return named_ones(value, "trace", TRACES)

@@ -1,0 +1,143 @@
+"""Refining a study where the kind of motion changes, instead of filling a grid.
+
+Between two neighbours of the grid that differ in kind, the run half way is done, then that half
+way to where the change is, and so on. All intervals are halved at once, in a study of their own
+that lies inside the store: what was stopped goes on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from pydantic_core import PydanticCustomError
+
+from stiction.errors import DescriptionError, Fault
+from stiction.study.axes import Floats, Values
+from stiction.study.engines import Engine
+from stiction.study.intervals import Intervals, changes, half_way, halved, widest
+from stiction.study.kept import UNKNOWN, flagged
+from stiction.study.parameters import number
+from stiction.study.plan import Study
+from stiction.study.regimes import KINDS
+from stiction.study.store import open_study
+from stiction.study.sweeping import Tally, sweep
+from stiction.study.view import CHANGES, REFINED, REGIME, kinds
+from stiction.validation import unknown
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+MOST_HALVINGS = 50  # to the distance of two floats
+
+
+def refine(
+    study: Study,
+    path: str | Path,
+    along: str,
+    to: float | str,
+    *,
+    apart: Sequence[str] | None = None,
+    engine: Engine | None = None,
+    progress: Callable[[Tally], None] | None = None,
+) -> xr.Dataset:
+    """Find where the kind of motion changes along one axis of a study, for each value of others.
+
+    Parameters
+    ----------
+    study : Study
+        With a grid along the axis that is fine enough to show each change; it keeps "regime".
+    path : str or Path
+        Its store; what is not done of it is done first.
+    along : str
+        The axis.
+    to : float or str
+        How closely a change is to be known, in the axis' unit.
+    apart : sequence of str, optional
+        Kinds that are told from all others, e.g. those that come to rest; each from each when
+        left out.
+    engine, progress
+        As of `stiction.study.sweeping.sweep`.
+
+    Returns
+    -------
+    Dataset
+        Over ``point``, each change: every axis, ``along`` in the middle of what is left of the
+        interval; ``half_width`` of it; ``below`` and ``above``, the kinds on both sides, as
+        "regime" in the store. Attribute ``runs``: how many were done in all. It is kept in the
+        store as well, in the group ``refined/ALONG/changes``, and `stiction map` draws it.
+
+    Raises
+    ------
+    DescriptionError
+        If there is no such axis, or the study keeps no regime.
+    """
+    width = _asked(study, along, to)
+    sweep(study, path, engine=engine, progress=progress)
+    found, runs = changes(study, open_study(path).load(), along, apart), study.layout.runs
+    folder = Path(path) / REFINED / along
+    folder.mkdir(parents=True, exist_ok=True)
+    for level in range(1, MOST_HALVINGS):
+        if not len(found.below) or widest(found, along) <= width:
+            break
+        middle = {name: half_way(found.low[name], found.high[name]) for name in found.low}
+        part = samples(study, middle)
+        sweep(part, folder / f"{level}.zarr", engine=engine, progress=progress)
+        at_middle = kinds(open_study(folder / f"{level}.zarr").load())
+        found, runs = halved(found, middle, at_middle, apart), runs + part.layout.runs
+    made = table(study, found, along, runs)
+    made.to_zarr(folder / CHANGES, mode="w", zarr_format=3, consolidated=False)
+    return made
+
+
+def _asked(study: Study, along: str, to: float | str) -> float:
+    """Return the width that is asked for, if all of it can be."""
+    found = []
+    if along not in study.coordinates or along not in study.layout.dims:
+        found.append(Fault("along", unknown("dimension", along, study.layout.dims)))
+    if REGIME not in study.measures:
+        found.append(Fault("study.measures", f"lacks {REGIME!r}, by which changes are seen"))
+    if found:
+        raise DescriptionError(found)
+    try:
+        width = number(to, study.coordinates[along].unit)
+    except PydanticCustomError as error:
+        raise DescriptionError([Fault("to", error.message())]) from None
+    if not width > 0.0:
+        raise DescriptionError([Fault("to", f"must be greater than 0, is {to!r}")])
+    return width
+
+
+def samples(study: Study, values: Mapping[str, Floats]) -> Study:
+    """Return a study of single runs."""
+    axes: dict[str, Any] = {}
+    for name, each in values.items():
+        unit = " deg" if study.coordinates[name].unit == "deg" else ""
+        listed = [f"{v!r}{unit}" if unit else v for v in each.tolist()]
+        axes[name] = Values(listed, "sample")
+    return Study(base=study.base, axes=axes, measures=[REGIME])
+
+
+def table(study: Study, found: Intervals, along: str, runs: int) -> xr.Dataset:
+    """Return the changes as labelled arrays."""
+    import xarray as xr
+
+    data: dict[str, Any] = {
+        name: (
+            "point",
+            half_way(found.low[name], found.high[name]),
+            {"units": each.unit or "1", "long_name": name},
+        )
+        for name, each in study.coordinates.items()
+    }
+    unit = study.coordinates[along].unit or "1"
+    half = 0.5 * np.abs(found.high[along] - found.low[along])
+    names = {"units": unit, "long_name": f"half the width of what is left in {along}"}
+    data["half_width"] = ("point", half, names)
+    for name in ("below", "above"):
+        codes = np.array([KINDS.index(kind) for kind in getattr(found, name)], np.int8)
+        meaning = {"long_name": f"kind of motion {name}", **flagged(UNKNOWN, KINDS)}
+        data[name] = ("point", codes, meaning)
+    return xr.Dataset(data, attrs={"along": along, "runs": runs})

@@ -1,0 +1,24 @@
+"""Courses over time that a study can keep of each run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from stiction.study.axes import Floats
+from stiction.study.observed import Observed
+
+
+class Trace(NamedTuple):
+    """A course over time: its CF attributes, and the evenly spaced samples of a run."""
+
+    unit: str
+    long_name: str
+    of: Callable[[Observed], Floats]
+
+
+TRACES: dict[str, Trace] = {
+    "force": Trace("N", "spring force along x, k_x u_x", lambda run: run.force),
+    "velocity": Trace("m/s", "velocity of the mass along X", lambda run: run.velocity),
+    "position": Trace("m", "position of the mass along X", lambda run: run.positions),
+}

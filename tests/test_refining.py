@@ -1,0 +1,91 @@
+"""Refining a study where the kind of motion changes."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import stiction as st
+from stiction.study.observed import REVERSAL
+from stiction.study.regimes import KINDS
+
+PAPER = st.presets.nakano_popov_2020()
+BASE = st.Description(PAPER, st.Initial(), st.Settings(duration="6 s"))
+CALM = ("damped approach", "steady sliding", "song")
+V = st.Values(["0.5 mm/s", "1 mm/s"])
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory):
+    axes = {"phi": st.Grid("4 deg", "12 deg", 9), "drive.velocity": V}
+    study = st.Study(base=BASE, axes=axes, measures=["regime"])
+    path = tmp_path_factory.mktemp("refined") / "a.zarr"
+    return study, path, study.refine(path, "phi", "0.01 deg", apart=CALM)
+
+
+def test_the_same_boundary_as_that_of_a_filled_grid(found, tmp_path):
+    """To a hundredth of a degree, with less than a tenth of the runs."""
+    _, _, changes = found
+    assert (2 * changes["half_width"] <= 0.01).all()
+    around = {"phi": st.Grid("6 deg", "6.4 deg", 41), "drive.velocity": st.Values(["0.5 mm/s"])}
+    st.Study(base=BASE, axes=around, measures=["regime"]).run(tmp_path / "a.zarr")
+    filled = xr.open_zarr(tmp_path / "a.zarr").load().isel({"drive.velocity": 0})
+    calm = np.isin(np.array(KINDS)[filled["regime"].values], CALM)
+    edge = np.flatnonzero(np.diff(calm))
+    at = 0.5 * (filled["phi"].values[edge] + filled["phi"].values[edge + 1])
+    assert np.abs(at - float(changes["phi"][0])).min() <= 0.01
+    assert changes.attrs["runs"] < 0.1 * 801 * 2
+
+
+def test_changes_lie_at_the_loss_of_stability(found):
+    """Growth is slow there: it is not seen if it takes longer than a run to span what is."""
+    study, _, changes = found
+    np.testing.assert_array_equal(changes["drive.velocity"], [0.5e-3, 1e-3])
+    meanings = changes["below"].attrs["flag_meanings"].split()
+    assert {meanings[code + 1] for code in changes["above"].values} == {"damped_approach"}
+    for point in range(2):
+        at = changes.isel(point=point)
+        drive = st.ConstantVelocity(float(at["drive.velocity"]))
+        slider = study.base.slider.replace(phi=f"{float(at['phi'])} deg", drive=drive)
+        loading = slider.F_0 / slider.k_x / drive.velocity
+        slowest = -np.log(REVERSAL) / (study.base.run.duration - loading)
+        assert abs(st.stability.growth_rate(slider)) < slowest
+
+
+def test_it_goes_on_where_it_was_and_is_kept(found):
+    study, path, changes = found
+    tallies = []
+    again = study.refine(path, "phi", "0.01 deg", apart=CALM, progress=tallies.append)
+    assert not tallies  # nothing was left to do
+    xr.testing.assert_identical(again, changes)
+    finer = study.refine(path, "phi", "0.001 deg", apart=CALM)
+    assert (np.abs(finer["phi"] - changes["phi"]) <= changes["half_width"]).all()
+    kept = xr.open_zarr(path, group="refined/phi/changes", consolidated=False).load()
+    np.testing.assert_array_equal(kept["phi"], finer["phi"])
+
+
+def test_along_another_axis_with_one_zipped_to_it(tmp_path):
+    axes = {
+        "phi": st.Values(["3 deg"]),
+        "drive.velocity": st.Grid("1 mm/s", "20 mm/s", 4, "log"),
+        "run.duration": st.Values([6.0, 5.0, 4.0, 3.0], "drive.velocity"),
+    }
+    study = st.Study(base=BASE, axes=axes, measures=["regime"])
+    changes = study.refine(tmp_path / "a.zarr", "drive.velocity", "0.1 mm/s")
+    assert KINDS[int(changes["below"][0])] == "stick-slip"
+    assert KINDS[int(changes["above"][-1])] == "harmonic vibration"
+    assert (np.diff(changes["run.duration"]) < 0).all()
+
+
+@pytest.mark.parametrize(
+    ("along", "to", "says"),
+    [
+        ("ph", "0.1 deg", "did you mean 'phi'"),
+        ("phi", 0.1, "degree or radian"),
+        ("phi", "0 deg", "must be greater than 0"),
+    ],
+)
+def test_what_cannot_be_refined(found, along, to, says):
+    study, path, _ = found
+    with pytest.raises(st.DescriptionError) as error:
+        study.refine(path, along, to)
+    assert says in str(error.value)
