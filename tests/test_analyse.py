@@ -10,6 +10,7 @@ from stiction.analysis.export import write
 from stiction.analysis.report import calibrated
 from stiction.analysis.words import sections
 from stiction.cli import main
+from stiction.plotting.analysis import figures
 
 PAPER = st.presets.nakano_popov_2020()
 
@@ -105,3 +106,29 @@ def test_the_command_refuses_a_file_for_a_folder(run, tmp_path, capsys):
         main(["analyse", str(result)])
     assert ended.value.code == 2
     assert "is not a folder" in capsys.readouterr().err
+
+
+def test_an_even_rise_creeps_by_no_more_than_rounding() -> None:
+    time = np.arange(20_000) * 1e-3
+    known = {"stiffness": 0.1, "drive_velocity": 1.0}
+    found = st.analyse(st.Record(time=time, force=0.1 * (time % 2.0) + 1.0, **known))
+    assert found.creep is not None
+    # all but the bin at slip, into which the fall of one sample reaches
+    still = np.abs(found.creep["velocity"].values) <= 2.0 * found.creep["velocity_error"].values
+    assert still[1:].all()
+    assert (found.creep["velocity_error"].values > 0.0).all()
+
+
+def test_few_samples_show_no_creep(slider: st.Slider) -> None:
+    for rate in (None, 1.0, 10.0):
+        found = st.analyse(st.simulate(slider, 5.0, sample_rate=rate))
+        assert found.misalignment is None
+        if rate is None:
+            assert "samples enough" in found.missing["creep"]
+
+
+def test_an_aligned_run_implies_no_misalignment(slider: st.Slider) -> None:
+    found = st.analyse(st.simulate(slider.replace(phi="0 deg"), 5.0, sample_rate=10e3))
+    assert (found.divergence, found.misalignment) == (None, None)
+    assert "there is no misalignment" in found.missing["song"]
+    assert set(figures(found)) == {"cycles", "creep", "energy"}  # no picture of silence

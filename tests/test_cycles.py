@@ -259,3 +259,11 @@ def test_the_figure_marks_every_cycle_and_names_the_regime(paper: st.Record) -> 
         assert marks == ([count, count + 1] if count else [])
         assert st.classify(record).kind in fig.axes[0].get_title(loc="left").lower()
         assert "N)" in fig.axes[0].get_ylabel()
+
+
+def test_a_cycle_with_a_gap_is_none() -> None:
+    time = np.arange(20_000) * 1e-3
+    seen = (time < 7.0) | (time > 11.3)  # whole cycles from 2 s to 6 s and from 12 s to 18 s
+    cycles = st.find_cycles(st.Record(time=time[seen], force=0.1 * (time[seen] % 2.0)))
+    assert cycles["start"].values.round(2).tolist() == [2.0, 4.0, 12.0, 14.0, 16.0]
+    assert cycles["period"].values == pytest.approx(2.0, abs=2e-3)

@@ -44,3 +44,26 @@ def test_a_drive_the_other_way_is_turned_round():
     assert np.array_equal(mirrored.force, there.force)
     assert np.array_equal(mirrored.position, there.position)
     assert mirrored.drive_velocity == there.drive_velocity
+
+
+@pytest.mark.parametrize(
+    ("force", "said"),
+    [
+        (np.ones(3) + 0j, "not of type complex128"),
+        (np.arange(3).astype("datetime64[ms]"), "not of type datetime64"),
+        (["1", "2", "3"], "not of type <U1"),
+        (np.ma.masked_greater([1.0, 2.0, 9.0], 5.0), "1 of 3 samples are not finite"),
+        ([1.0, 1e200, 2.0], "below 1e+100, is 1e+200"),
+    ],
+)
+def test_what_is_no_number_is_not_taken_for_one(force: object, said: str) -> None:
+    with pytest.raises(st.DescriptionError, match=r"Record\.force") as error:
+        Record(time=[0.0, 1.0, 2.0], force=force)
+    assert said in str(error.value)
+
+
+def test_a_run_is_read_like_its_record(paper_run: st.Trajectory) -> None:
+    assert st.classify(paper_run) == st.classify(st.record_of(paper_run))
+    assert st.find_cycles(paper_run).identical(st.find_cycles(st.record_of(paper_run)))
+    with pytest.raises(st.ResultError, match="a str is neither a run nor a record"):
+        st.classify("run.nc")

@@ -10,6 +10,7 @@ from tests.measured import bare, measured
 
 import stiction as st
 from stiction.analysis.decay import dies_out
+from stiction.analysis.rest import rest_share
 
 BETWEEN = "between stick-slip and harmonic vibration"
 
@@ -146,3 +147,35 @@ def test_what_dies_out() -> None:
     assert dies_out(decay[:5], np.ones(5), 4.0)  # but it did not
     assert not dies_out(decay[::-1], np.ones(10), 0.5)
     assert not dies_out([], [], 0.0)
+
+
+@pytest.mark.parametrize("velocity", ["2 mm/s", "20 mm/s", "60 mm/s", "150 mm/s"])
+def test_the_shape_of_a_cycle_says_how_long_it_rests(velocity: str, slider: st.Slider) -> None:
+    """Friction that is constant in slip, and larger at rest: the case of the closed form."""
+    drive = st.ConstantVelocity(velocity)
+    law = st.Coulomb(mu_0=0.2, mu_static=0.3)
+    aligned = slider.replace(phi="0 deg", friction=law, drive=drive)
+    period = 2.0 * 3.0 / (1e3 * drive.velocity) + 0.1  # s, at least: it loads from trough to peak
+    run = st.simulate(aligned, 12.0 * period, sample_rate=4000.0 / period)
+    cycles = st.find_cycles(run)
+    begin, end = float(cycles["start"][1]), float(cycles["trough_time"][-1])
+    rests = np.diff(np.clip(run.sticks, begin, end), axis=1).sum() / (end - begin)
+    # a peak is placed to a fraction of a sample, of which a period has a hundred or more; the
+    # share of rest changes six times as much as that of the rise at most, where that is > 0.52
+    assert rests == pytest.approx(float(rest_share(cycles["rise_share"].median())), abs=0.02)
+    assert st.classify(run).evidence["rest_share"] == pytest.approx(rests, abs=0.02)
+
+
+def test_a_force_with_the_wrong_sign_is_asked_about() -> None:
+    time = np.arange(20_000) * 1e-3
+    regime = st.classify(st.Record(time=time, force=1.0 - time % 2.0))
+    assert regime.kind == "undetermined"
+    assert "is its sign right?" in str(regime)
+
+
+def test_words_have_units_and_no_powers_of_ten() -> None:
+    time = np.arange(20_000) * 1e-3
+    rig = {"stiffness": 1e6, "mass": 1e-3}
+    text = str(st.classify(st.Record(time=time, force=1e-9 * (time % 2.0), **rig)))
+    assert "a period is 10100 times the mass's own" in text  # 2 s sqrt(k/m)/(2 pi)
+    assert "spans 310 pN" in str(st.classify(st.Record(time=time, force=1.6e-11 * time)))

@@ -47,3 +47,19 @@ def test_what_is_wrong_is_said_in_one_line(config, capsys):
     assert "not a unit of an angle" in capsys.readouterr().err
     assert inside("stability", config, "--between", "0 deg", "3 deg") == 2
     assert "--between as often or not at all, not 2 and 1 times" in capsys.readouterr().err
+
+
+def test_a_range_may_begin_below_zero(config, capsys):
+    assert inside("stability", config, "--over", "phi", "--between", "-10 deg", "10 deg") == 0
+    text = capsys.readouterr().out
+    assert "not stable above -8.65603 deg" in text
+    assert "stable above 8.65603 deg" in text
+
+
+def test_a_usual_range_that_is_not_allowed_says_so(config, capsys):
+    law = 'law = "rate-and-state-ageing"\na = 0.01\nb = 0.015\nD_c = "10 um"\n'
+    text = config.read_text().split("[friction]")[0] + "[friction]\n" + law
+    text += 'mu_star = 0.2\nV_star = "1 mm/s"\n[drive]\nvelocity = "1 mm/s"\n'
+    config.write_text(text)
+    assert inside("stability", config, "--over", "friction.a") == 2
+    assert "the usual range, 1e-05 to 10.0, is not allowed; give another" in capsys.readouterr().err

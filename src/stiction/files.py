@@ -27,6 +27,21 @@ def placeable(path: str | Path) -> Path:
     return target
 
 
+def make_folder(folder: Path) -> Path:
+    """Make a folder, if it is not there; return it.
+
+    Raises
+    ------
+    ResultError
+        If it cannot be made.
+    """
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        raise ResultError(f"{folder}: cannot be made: {error.strerror or error}") from None
+    return folder
+
+
 @contextmanager
 def whole(target: Path) -> Iterator[Path]:
     """Yield a path to write to, beside `target`, which takes its place when all is written.

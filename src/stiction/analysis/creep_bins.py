@@ -47,16 +47,19 @@ def between_rests(
     if len(rests):
         after = np.searchsorted(rests, times).clip(0, len(rests) - 1)
         pair = np.stack([rests[np.maximum(after - 1, 0)], rests[after]])
-        near = pair[np.argmin(np.abs(pair - times), axis=0), np.arange(len(times))]
-        at_rest = np.abs(near - times) < 0.5 * reach
-        edges = np.where(at_rest, near, times)
-    time = record.time
+        closest = pair[np.argmin(np.abs(pair - times), axis=0), np.arange(len(times))]
+        at_rest = np.abs(closest - times) < 0.5 * reach
+        edges = np.where(at_rest, closest, times)
+    # only what is near the phase, or a long record with many phases would take its length squared
+    first, last = np.searchsorted(record.time, [times[-1] - 2 * reach, times[0] + 2 * reach])
+    near = slice(max(0, first - 1), last + 1)
+    time, position = record.time[near], position[near]
     ends = np.clip(np.stack([edges - reach, edges + reach]), time[0], time[-1])
     ends[:, at_rest | (edges > slip - reach)] = np.nan
     average = np.diff(_integral(time, position, ends), axis=0)[0] / np.diff(ends, axis=0)[0]
     place = np.where(np.isnan(average), np.interp(edges, time, position), average)
     passed = np.diff(edges)
-    force = np.diff(_integral(time, np.asarray(record.force), edges)) / passed
+    force = np.diff(_integral(time, record.force[near], edges)) / passed
     unknown = np.full(len(passed), np.nan)
     return Bins(np.diff(place) / passed, unknown, force, slip - edges[1:], slip - edges[:-1])
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from stiction.analysis.creep import first_slip_time
 from stiction.analysis.creep_bins import Bins, between_halves, between_rests, bin_edges
-from stiction.analysis.record import Record, record_of
+from stiction.analysis.record import Record, recorded
 from stiction.analysis.trimmed import trimmed_mean
 from stiction.errors import ResultError
 from stiction.trajectory import Trajectory
@@ -21,6 +21,7 @@ Floats = NDArray[np.float64]
 
 FINEST = 100  # bins in a stick phase, if all were as narrow as the last
 LAG = 8  # samples, over which noise is looked at; a load cell's is not independent in successive
+FEWEST = 4  # samples in a bin of a run
 AIM = 0.1  # of the drive velocity: error of the mean curve in its narrowest bins
 
 # name: (unit, long name), as CF attributes
@@ -57,17 +58,18 @@ def creep_curves(
     cycles : Dataset
         With ``start`` and ``peak_time`` (s) over ``cycle``, from `stiction.find_cycles`.
     width : float, optional
-        Of the narrowest bin, s. By default a hundredth of the median stick phase; in a noisy
-        record as much as it takes to know the mean of all phases to a tenth of the drive velocity.
-        Against the hum of the mains give it two of its periods: that of a half of each bin is then
-        averaged away.
+        Of the narrowest bin, s. By default a hundredth of the median stick phase, and four
+        samples of a run at least; in a noisy record as much as it takes to know the mean of all
+        phases to a tenth of the drive velocity. Against the hum of the mains give it two of its
+        periods: that of a half of each bin is then averaged away.
 
     Returns
     -------
     Dataset
         Over ``phase`` and ``bin``: ``velocity`` (m/s), ``velocity_error`` (m/s; for samples
-        whose noise is independent, not a number in a run), ``force`` (N), ``begin`` and ``end``
-        (s), the time to slip at both ends of the bin; not a number where a phase is shorter.
+        whose noise is independent, in a run for rounding alone), ``force`` (N), ``begin`` and
+        ``end`` (s), the time to slip at both ends of the bin; not a number where a phase is
+        shorter.
         Over ``phase``: ``slip_time`` (s), when it ends.
 
     Raises
@@ -81,7 +83,7 @@ def creep_curves(
     if width is not None and not width > 0.0:
         raise ResultError(f"width must be above 0 s, is {width!r}; leave it out for one that suits")
 
-    record = source if isinstance(source, Record) else record_of(source)
+    record = recorded(source)
     position = _position(record)
     phases = np.column_stack([cycles["start"].values, cycles["peak_time"].values])
     if isinstance(source, Trajectory):
@@ -89,6 +91,7 @@ def creep_curves(
     length = phases[:, 1] - phases[:, 0]
     least = width or _least_width(record, position, length, isinstance(source, Trajectory))
     edges = bin_edges(least, float(length.max(initial=0.0)))
+    grain = _grain(record, position)
     table = np.full((len(Bins._fields), len(phases), len(edges) - 1), np.nan)
     for phase, (start, slip) in enumerate(phases):
         times = slip - edges[edges <= slip - start]
@@ -96,7 +99,8 @@ def creep_curves(
             found = between_rests(record, position, source.sticks[:, 1], times, slip)
         else:
             found = between_halves(record, position, times, slip)
-        table[:, phase, : len(times) - 1] = found
+        rounding = grain / (found.begin - found.end)
+        table[:, phase, : len(times) - 1] = found._replace(error=np.fmax(found.error, rounding))
     return xr.Dataset(
         {
             name: (("phase", "bin"), values, {"units": unit, "long_name": meaning})
@@ -122,7 +126,7 @@ def mean_creep(curves: xr.Dataset) -> xr.Dataset:
     Dataset
         Over ``bin``, without bins that no phase reaches: ``velocity``, ``force``, ``begin``,
         ``end`` as in `creep_curves`; ``velocity_error`` (m/s), the standard error from the
-        scatter of the phases, of a single phase its own; ``phases``, their number.
+        scatter of the phases, and no less than their own errors leave; ``phases``, their number.
     """
     import xarray as xr
 
@@ -133,7 +137,7 @@ def mean_creep(curves: xr.Dataset) -> xr.Dataset:
     means = np.array([[trimmed_mean(row) for row in column] for column in columns])
     middle, error = means.reshape(len(bins), len(CURVES), 2).T
     count = seen[:, bins].sum(axis=0)
-    velocity_error = np.where(count > 1, error[0], middle[1])
+    velocity_error = np.fmax(error[0], middle[1] / np.sqrt(count))
     values = [middle[0], velocity_error, *middle[2:]]
     found = xr.Dataset(
         {
@@ -156,10 +160,18 @@ def _position(record: Record) -> Floats:
     return np.asarray(record.drive_velocity * record.time - record.force / record.stiffness)
 
 
+def _grain(record: Record, position: Floats) -> float:
+    """Return to how much (m) rounding leaves the position known: V t is its largest part."""
+    travelled = (record.drive_velocity or 0.0) * np.abs(record.time).max(initial=0.0)
+    return float(4.0 * np.spacing(max(travelled, np.abs(position).max(initial=0.0))))
+
+
 def _least_width(record: Record, position: Floats, length: Floats, exact: bool) -> float:
     """Return a width (s) of bins that shows as much as the noise of so many phases allows."""
     fine = float(np.median(length)) / FINEST if len(length) else 1.0
-    if exact or not len(length) or record.drive_velocity is None or len(record) <= 2 * LAG + 1:
+    if exact:  # the motion between two samples is not known
+        return max(fine, FEWEST / record.sample_rate) if len(record) > 1 else fine
+    if not len(length) or record.drive_velocity is None or len(record) <= 2 * LAG + 1:
         return fine
     bent = position[: -2 * LAG] - 2.0 * position[LAG:-LAG] + position[2 * LAG :]
     noise = trimmed_mean(bent).error * (len(bent) / 6.0) ** 0.5  # standard deviation, if normal

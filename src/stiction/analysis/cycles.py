@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from stiction.analysis.decay import dies_out
 from stiction.analysis.pieces import fitted
-from stiction.analysis.record import Record
+from stiction.analysis.record import Record, recorded
 from stiction.analysis.turning_points import turning_points, without_spikes
 from stiction.analysis.vertices import Vertices, vertices
+from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -38,23 +39,25 @@ COLUMNS = {
     "slip_distance": ("m", "distance slipped, from peak to trough"),
     "peak_slip_speed": ("m/s", "largest slip speed"),
 }
+UNSEEN = 0.25  # of a period without a sample: what happened there is not known
 LOADING = (0.1, 0.5)  # part of the rise that is straight: after the swing, before the creep
 QUARTER = 4  # of a fall, to each side: cubics through so much of half a sine are 0.2 % too flat
 
 
-def find_cycles(record: Record) -> xr.Dataset:
+def find_cycles(source: Trajectory | Record) -> xr.Dataset:
     """Find the macroscopic cycles of a record, from trough over peak to trough.
 
     Nothing is to be tuned: a cycle is what stands apart from all smaller reversals of the force
     (`stiction.analysis.turning_points`), so noise, ripple, single wild samples and slow drift
     make none; swings that die out are a transient, and none either. A cycle that the record's
-    beginning or end cuts is left out; so is the first loading of a run that starts unloaded, as
+    beginning or end cuts is left out, and one with a gap, a quarter of its period without a
+    sample; so is the first loading of a run that starts unloaded, as
     no slip comes before it.
 
     Parameters
     ----------
-    record : Record
-        Measured, or of a run: ``st.record_of(run)``.
+    source : Trajectory or Record
+        A run, or what was measured.
 
     Returns
     -------
@@ -91,7 +94,7 @@ def find_cycles(record: Record) -> xr.Dataset:
     >>> cycles.sizes["cycle"], cycles["period"].values.round(3).tolist()
     (3, [2.0, 2.0, 2.0])
     """
-    found = swings(record)
+    found = swings(recorded(source))
     return found.table.isel(cycle=slice(0)) if found.dying else found.table
 
 
@@ -131,6 +134,8 @@ def swings(record: Record) -> Swings:
         count = (len(points.index) - first - 1) // 2
         corners = Vertices(*(each[first : first + 2 * count + 1] for each in found))
         columns = _measured(record, force, corners)
+        seen = _longest_step(record.time, corners) < UNSEEN * columns["period"]
+        columns = {name: values[seen] for name, values in columns.items()}
     table = xr.Dataset(
         {
             name: ("cycle", columns[name], {"units": unit, "long_name": meaning})
@@ -168,6 +173,13 @@ def _measured(record: Record, force: Floats, corners: Vertices) -> dict[str, Flo
         "slip_distance": _moved(record, peak_time, trough_time, trough - peak),
         "peak_slip_speed": _fastest(record, force, peak_time, trough_time),
     }
+
+
+def _longest_step(time: Floats, corners: Vertices) -> Floats:
+    """Return the longest time between two samples in each cycle."""
+    begin, end = (_from(time, corners.time[i:j:2]) for i, j in (_THREE[0], _THREE[2]))
+    ends = np.stack([begin, np.maximum(end, begin + 1)], axis=1).ravel()
+    return np.asarray(np.maximum.reduceat(np.diff(time), np.minimum(ends, len(time) - 2))[::2])
 
 
 _THREE = ((0, -1), (1, None), (2, None))  # of troughs and peaks in turn: start, peak, trough

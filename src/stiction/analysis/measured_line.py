@@ -41,7 +41,8 @@ def strongest_line(record: Record, low: float, *, width: float | None = None) ->
     Raises
     ------
     ResultError
-        If samples are not equally spaced, or `low` is not below half the sample rate.
+        If samples are not equally spaced, `low` is not below half the sample rate, or windows of
+        that width hold too few samples.
     """
     steps, rate = np.diff(record.time), record.sample_rate
     if len(steps) == 0 or np.ptp(steps) > 0.5 * steps.mean():
@@ -52,8 +53,15 @@ def strongest_line(record: Record, low: float, *, width: float | None = None) ->
         raise ResultError(
             f"low must lie between 0 and half the sample rate, {0.5 * rate:g} Hz, is {low:g}"
         )
-    chosen = width or min(PERIODS / low, 0.1 * record.duration)
-    lines = spectrogram(
-        record.force, rate, width=chosen, step=chosen / STEPS, start=float(record.time[0])
-    )
-    return follow_ridge(lines.assign_attrs(units="N"), low, 0.5 * rate)
+    chosen = min(PERIODS / low, 0.1 * record.duration) if width is None else width
+    if not 0.0 < chosen <= record.duration:
+        raise ResultError(
+            f"width must lie between 0 s and the record's {record.duration:g} s, is {chosen:g} s"
+        )
+    try:
+        lines = spectrogram(
+            record.force, rate, width=chosen, step=chosen / STEPS, start=float(record.time[0])
+        )
+        return follow_ridge(lines.assign_attrs(units="N"), low, 0.5 * rate)
+    except ValueError as error:  # too few samples in a window, or lines above `low`
+        raise ResultError(str(error)) from None

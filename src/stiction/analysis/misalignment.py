@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 
+SURE = 2.0  # standard errors that an angle must be away from nothing
+
+
 class Misalignment(NamedTuple):
     """The misalignment that a creep curve implies (rad), F_0 (N), and their standard errors."""
 
@@ -22,6 +25,11 @@ class Misalignment(NamedTuple):
     phi_error: float
     F_0: float
     F_0_error: float
+
+    @property
+    def stands_out(self) -> bool:
+        """Whether it is more than two standard errors away from none."""
+        return abs(self.phi) > SURE * self.phi_error
 
 
 def fit_misalignment(

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, model_validator
 
+from stiction.errors import ResultError
 from stiction.trajectory import Trajectory
 from stiction.units import Force, Mass, PositiveSpeed, Stiffness
 from stiction.validation import Described
@@ -15,9 +16,15 @@ from stiction.validation import Described
 Floats = NDArray[np.float64]
 
 
+LARGEST = 1e100  # of any sample, in SI: the square of it is a number, too
+
+
 def _samples(values: Any) -> Floats:
+    given = np.ma.asanyarray(values) if np.ma.isMaskedArray(values) else np.asarray(values)
+    if given.dtype.kind in "cmMSU":  # complex numbers, times of a calendar, text
+        raise ValueError(f"must be numbers, one a sample, in SI, not of type {given.dtype}")
     try:
-        samples = np.array(values, dtype=np.float64)
+        samples = np.array(np.ma.filled(given.astype(np.float64), np.nan))
     except (TypeError, ValueError):
         raise ValueError("must be numbers, one a sample, in SI") from None
     if samples.ndim != 1:
@@ -28,6 +35,8 @@ def _samples(values: Any) -> Floats:
             f"{len(lost)} of {len(samples)} samples are not finite, the first is number "
             f"{lost[0] + 1}; leave them out of every array: samples need not be equally spaced"
         )
+    if np.abs(samples).max(initial=0.0) > LARGEST:
+        raise ValueError(f"must be in SI and below {LARGEST:g}, is {np.abs(samples).max():g}")
     samples.setflags(write=False)
     return samples
 
@@ -108,6 +117,24 @@ class Record(Described):
     def sample_rate(self) -> float:
         """Samples per second, where they are equally spaced; their mean otherwise; 0 for none."""
         return (len(self) - 1) / self.duration if len(self) > 1 else 0.0
+
+
+def recorded(source: Trajectory | Record) -> Record:
+    """Return what was recorded, of a run or of a measurement.
+
+    Raises
+    ------
+    ResultError
+        If it is neither.
+    """
+    if isinstance(source, Record):
+        return source
+    if isinstance(source, Trajectory):
+        return record_of(source)
+    raise ResultError(
+        f"a {type(source).__name__} is neither a run nor a record; make one with "
+        "st.Record(time=..., force=...)"
+    )
 
 
 def record_of(run: Trajectory) -> Record:

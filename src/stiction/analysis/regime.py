@@ -10,8 +10,11 @@ import numpy as np
 from stiction.analysis.cycles import Swings, swings
 from stiction.analysis.decay import MANY, ORDERED, order
 from stiction.analysis.level import PARTS, course
-from stiction.analysis.record import Record
+from stiction.analysis.record import Record, recorded
+from stiction.analysis.rest import rest_share
 from stiction.analysis.turning_points import CLEAR
+from stiction.trajectory import Trajectory
+from stiction.units import in_words
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -24,10 +27,9 @@ STEADY = "steady sliding"
 STUCK = "stuck"
 UNDETERMINED = "undetermined"
 
-# Bounds of the rise's share of a cycle. A mass that slips swings back in the time it swung out, so
-# of the share r that the force rises, 1 - r is the swing and the rest is stick: none of the rise
-# at r = 1/2 (a sine), a third at r = 3/5, two thirds at r = 3/4. Below 2/5 it falls slowly.
-SHAPES = ((0.75, STICK_SLIP), (0.6, BETWEEN), (0.4, HARMONIC), (0.0, UNDETERMINED))
+# Bounds of the share of a cycle for which the mass rests, or creeps, by the cycle's shape
+SHAPES = ((0.75, STICK_SLIP), (0.5, BETWEEN), (0.0, HARMONIC))
+BACKWARD = 0.4  # share of the rise, below which the force falls slowly and rises fast
 # Standard deviation of the periods over their mean. Noise through a narrow filter, which rings,
 # has 0.15, through a wide one, which does not, 0.37 and more.
 REGULAR = 0.25
@@ -39,24 +41,49 @@ SLOW = 0.1  # of stiffness times drive velocity: the mass goes at 9/10 of the dr
 GROWN = 0.1  # of a force drop: less is not worth a word
 NOISE_SHOWS = 1e-3  # of a force drop; what is less is no noise of a load cell
 
+
+def _whole(value: float) -> str:
+    return f"{value:.0f}"
+
+
+def _percent(value: float) -> str:
+    return f"{value:.0%}"
+
+
+def _rounded(value: float) -> str:
+    return f"{float(f'{value:.3g}'):g}"
+
+
+def _force(value: float) -> str:
+    return in_words(value, "N")
+
+
 WORDS = {
-    "cycles": "{:.0f} complete cycles",
-    "rise_share": "the force rises for {:.0%} of a cycle (a sine: 50%, a sawtooth: 100%)",
-    "cycles_alike": "{:.0%} of the cycles have this shape themselves",
-    "period_spread": "periods differ by {:.0%} of their mean",
-    "natural_period": "a period is {:.2g} times the mass's own on its spring",
-    "drop_over_noise": "force drops are {:.3g} times as high as noise reaches",
-    "swings": "{:.0f} swings, each smaller than the last but for noise",
-    "last_over_first": "the last force drop is {:.2g} times the first",
-    "turns": "{:.0f} peaks and troughs make no complete cycle",
-    "change": "the force changes by {:.3g} N from beginning to end",
-    "span": "it spans {:.3g} N, averaged over a 32nd of the time",
-    "scatter": "it scatters by {:.3g} N about that",
-    "late_share": "in the last quarter of the time it spans {:.2%} of this",
-    "one_way": "{:.0%} of all its ups and downs is this change",
-    "rate_kept": "at the end it changes at {:.2g} times the rate of the beginning",
-    "rate_over_drive": "at the end its rate is {:.2g} times stiffness times drive velocity",
-    "samples": "there are {:.0f} samples, too few",
+    "cycles": ("{} complete cycles", _whole),
+    "rise_share": ("the force rises for {} of a cycle (a sine: 50%, a sawtooth: 100%)", _percent),
+    "rest_share": ("a mass that swings so rests or creeps for {} of it", _percent),
+    "backward": (
+        "it falls slowly and rises fast, in {} of the cycles: is its sign right?",
+        _percent,
+    ),
+    "cycles_alike": ("{} of the cycles have this shape themselves", _percent),
+    "period_spread": ("periods differ by {} of their mean", _percent),
+    "natural_period": ("a period is {} times the mass's own on its spring", _rounded),
+    "drop_over_noise": ("force drops are {} times as high as noise reaches", _rounded),
+    "swings": ("{} swings, each smaller than the last but for noise", _whole),
+    "last_over_first": ("the last force drop is {} times the first", _rounded),
+    "turns": ("{} peaks and troughs make no complete cycle", _whole),
+    "change": ("the force changes by {} from beginning to end", _force),
+    "span": ("it spans {}, averaged over a 32nd of the time", _force),
+    "scatter": ("it scatters by {} about that", _force),
+    "late_share": ("in the last quarter of the time it spans {} of this", _percent),
+    "one_way": ("{} of all its ups and downs is this change", _percent),
+    "rate_kept": ("at the end it changes at {} times the rate of the beginning", _rounded),
+    "rate_over_drive": (
+        "at the end its rate is {} times stiffness times drive velocity",
+        _rounded,
+    ),
+    "samples": ("there are {} samples, too few", _whole),
 }
 
 
@@ -66,9 +93,11 @@ class Regime(NamedTuple):
     Parameters
     ----------
     kind : str
-        "stick-slip", "between stick-slip and harmonic vibration", "harmonic vibration", "damped
-        approach" (a transient that dies out), "steady sliding", "stuck" (it loads and never
-        slips) or "undetermined".
+        "stick-slip" (at rest, or in creep, for three quarters of a cycle or more), "between
+        stick-slip and harmonic vibration" (for half of it or more), "harmonic vibration" (for
+        less or not at all), "damped approach" (a transient that dies out), "steady sliding" (no
+        swings stand apart from the noise: what is smaller is not seen), "stuck" (it loads and
+        never slips) or "undetermined".
     confidence : float
         0 to 1. With cycles: the share of them that have the kind's shape themselves, counted
         with one more of either, so that three cycles say less than thirty.
@@ -86,22 +115,24 @@ class Regime(NamedTuple):
     def __str__(self) -> str:
         """Say it in words."""
         other = f"; else {self.runner_up}" if self.runner_up else ""
-        reasons = "; ".join(WORDS[name].format(value) for name, value in self.evidence.items())
+        said = ((*WORDS[name], value) for name, value in self.evidence.items())
+        reasons = "; ".join(text.format(written(value)) for text, written, value in said)
         return f"{self.kind} (confidence {self.confidence:.2f}{other}): {reasons}"
 
 
-def classify(record: Record) -> Regime:
+def classify(source: Trajectory | Record) -> Regime:
     """Tell which kind of motion a record shows.
 
-    Cycles decide by their shape (`SHAPES`), if there are any; if not, or if they die out, the
-    course of the force does: it loads to the end, settles, or stays about where it is.
+    Cycles decide by their shape (`stiction.analysis.rest`), if there are any; if not, or if they
+    die out, the course of the force does: it loads to the end, settles, or stays about where it is.
 
     Parameters
     ----------
-    record : Record
-        Measured, or of a run. With stiffness, drive velocity and mass the rate of loading and
+    source : Trajectory or Record
+        A run, or what was measured. With stiffness, drive velocity and mass the rate of loading and
         the natural period count as well; without, the shape alone.
     """
+    record = recorded(source)
     if len(record) < PARTS:
         return Regime(UNDETERMINED, 0.0, {"samples": len(record)})
     found = swings(record)
@@ -117,12 +148,16 @@ def classify(record: Record) -> Regime:
 def _by_shape(record: Record, found: Swings) -> Regime:
     table, count = found.table, found.table.sizes["cycle"]
     shares = table["rise_share"].values
-    kinds = [_shape(share) for share in shares]
-    kind = _shape(float(np.median(shares)))
+    kinds = [shape(share) for share in shares]
+    typical = float(np.median(shares))
+    kind = shape(typical)
     alike = kinds.count(kind)
-    evidence = {
-        "cycles": count,
-        "rise_share": float(np.median(shares)),
+    evidence = {"cycles": count, "rise_share": typical}
+    if kind == UNDETERMINED:
+        evidence["backward"] = alike / count
+    else:
+        evidence["rest_share"] = float(rest_share(typical))
+    evidence |= {
         "cycles_alike": alike / count,
         "period_spread": float(table["period"].std() / table["period"].mean()),
     }
@@ -140,8 +175,12 @@ def _by_shape(record: Record, found: Swings) -> Regime:
     return Regime(kind, confidence, evidence, others[-1] if others else "")
 
 
-def _shape(rise_share: float) -> str:
-    return next(kind for bound, kind in SHAPES if rise_share >= bound)
+def shape(rise_share: float) -> str:
+    """Return the kind of cycles whose force rises for so much of the time."""
+    if rise_share < BACKWARD:
+        return UNDETERMINED
+    rests = rest_share(rise_share)
+    return next(kind for bound, kind in SHAPES if rests >= bound)
 
 
 def _natural_period(record: Record, table: xr.Dataset) -> dict[str, float]:

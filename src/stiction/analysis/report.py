@@ -13,11 +13,11 @@ from stiction.analysis.divergence import Divergence, fit_divergence
 from stiction.analysis.energy import energy_budget
 from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.misalignment import Misalignment, fit_misalignment
-from stiction.analysis.record import Record, record_of
+from stiction.analysis.record import Record, recorded
 from stiction.analysis.regime import BETWEEN, STICK_SLIP, Regime, classify
 from stiction.analysis.song import hear_song, song_by_phase
 from stiction.analysis.spread import summary
-from stiction.errors import StictionError
+from stiction.errors import ResultError, StictionError
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ def analyse(source: Trajectory | Record) -> Analysis:
             return None
 
     run = source if isinstance(source, Trajectory) else None
-    record = source if isinstance(source, Record) else record_of(source)
+    record = recorded(source)
     cycles, regime = find_cycles(record), classify(record)
     sticking = cycles if regime.kind in (STICK_SLIP, BETWEEN) else cycles.isel(cycle=slice(0))
     if run is not None:
@@ -118,8 +118,9 @@ def analyse(source: Trajectory | Record) -> Analysis:
         if np.isfinite(curves["velocity"].values).any():
             mean = mean_creep(curves)
         else:
-            missing["creep"] = "there is no stick phase to see it in"
-    divergence, misalignment = _fits(creeping, mean, tried)
+            missing["creep"] = "there is no stick phase with samples enough to see it in"
+    aligned = run is not None and run.slider.phi == 0.0
+    divergence, misalignment = (None, None) if aligned else _fits(creeping, mean, tried)
     phases = None
     if run is not None and song is not None and curves is not None:
         phases = song_by_phase(song, run, _phases(run, curves, sticking))
@@ -157,6 +158,8 @@ def calibrated(record: Record, cycles: xr.Dataset) -> Record:
 def edges(run: Trajectory, cycles: xr.Dataset) -> np.ndarray:
     """Return times (s) at which a run begins, its cycles do, the last one ends, and it ends."""
     first, last = (float(run.data["time"][i]) for i in (0, -1))
+    if first == last:
+        raise ResultError("the run has a single sample; run it longer than 1/sample_rate")
     inner = np.concatenate([cycles["start"].values, cycles["trough_time"].values[-1:]])
     return np.unique(np.concatenate([[first], inner, [last]]))
 

@@ -56,9 +56,11 @@ def hear_song(run: Trajectory) -> xr.Dataset:
     Raises
     ------
     ResultError
-        If the run is too short or too coarsely sampled for it.
+        If the run is too short or too coarsely sampled for it, or nothing moves along y.
     """
     natural, width = _scales(run)
+    if not run.data["v_y"].values.any():
+        raise ResultError("nothing moves across the drive: there is no misalignment")
     found = follow_ridge(song_spectrogram(run), LOWEST * natural, HIGHEST * natural)
     middle = found["time"].values
     velocity, bound, expected = _in_windows(run, middle, width)

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stiction.analysis.columns import Quantity, grid
 from stiction.analysis.report import Analysis
 from stiction.sections import Section, Table
+from stiction.trajectory import Trajectory
 from stiction.units import in_words
 
 if TYPE_CHECKING:
@@ -26,6 +28,18 @@ COLUMNS = {
     "creep_distance": "creep",
     "slip_distance": "slip",
 }
+ENERGIES = {
+    "work": "work",
+    "friction_x": "friction x",
+    "friction_y": "friction y",
+    "damper_x": "damper x",
+    "damper_y": "damper y",
+    "spring_x": "spring x",
+    "spring_y": "spring y",
+    "kinetic": "kinetic",
+}
+NOTHING = 1e-6  # of the work: what is less stands in the files, not in the terminal
+SLIGHT = 1e-3  # of a velocity: an error that is less is not worth a word
 SURE = 2.0  # standard errors that a fit must be away from nothing
 
 
@@ -61,14 +75,13 @@ def cycles(found: Analysis) -> Section:
 def each_cycle(table: xr.Dataset) -> Table:
     """Return the first cycles, a row each."""
     known = [name for name in COLUMNS if np.isfinite(table[name].values).any()]
-    rows = [
-        (
-            str(int(table["cycle"][at])),
-            *(in_words(float(table[name][at]), table[name].attrs["units"]) for name in known),
-        )
-        for at in range(min(table.sizes["cycle"], SHOWN))
-    ]
-    return Table(("cycle", *(COLUMNS[name] for name in known)), rows)
+    columns = {
+        COLUMNS[name]: Quantity(table[name].values, table[name].attrs["units"]) for name in known
+    }
+    numbers = grid(columns, SHOWN)
+    cycle = [str(number) for number in table["cycle"].values]
+    rows = [(number, *row) for number, row in zip(cycle, numbers.rows, strict=False)]
+    return Table(("cycle", *numbers.headings), rows)
 
 
 def creep(found: Analysis) -> Section:
@@ -78,13 +91,15 @@ def creep(found: Analysis) -> Section:
     far, near = (found.creep.isel(bin=at) for at in (-1, 0))
     long, short = (in_words(float(row["begin"]), "s") for row in (far, near))
     phases = int(found.creep["phases"].max())
+    end = "slip" if _slips(found) else "the end"
     lines = [
-        f"From {_measured(far, 'velocity', 'm/s')} at {long} before slip to "
-        f"{_measured(near, 'velocity', 'm/s')} in the last {short}; "
+        f"At {long} before {end} {_creeping(far)}, in the last {short} {_creeping(near)}; "
         f"{phases} stick phase{'s' * (phases != 1)}."
     ]
     if found.record.position is None:
         lines.append("Counted from the even loading in the first half of each rise.")
+    if isinstance(found.source, Trajectory) and found.source.slider.phi == 0.0:
+        lines.append("There is no misalignment, so friction does not turn.")
     d, phi = found.divergence, found.misalignment
     if d is not None and d.amplitude > SURE * d.amplitude_error and d.exponent > 0.0:
         lines.append(
@@ -93,11 +108,11 @@ def creep(found: Analysis) -> Section:
         )
     elif d is not None:
         lines.append("No divergence towards slip stands out of its uncertainty.")
-    if phi is not None and abs(phi.phi) > SURE * phi.phi_error:
+    if phi is not None and phi.stands_out:
         angle, error = degrees(phi.phi), degrees(phi.phi_error)
         lines.append(
-            f"By Eq. (7) it implies a misalignment of {angle:.3g} ± {error:.1g} deg, and "
-            f"F_0 = {in_words(phi.F_0, 'N')}."
+            f"By Eq. (7) it implies a misalignment of {angle:.3g} ± {error:.1g} deg{_true(found)}, "
+            f"and F_0 = {in_words(phi.F_0, 'N')}."
         )
     elif phi is not None:
         lines.append("No misalignment that it implies stands out of its uncertainty.")
@@ -116,53 +131,58 @@ def song(found: Analysis) -> Section:
     heard = heard[np.isfinite(heard)]
     if not len(heard):
         return Section("Song", ["No line stands out of the noise."])
-    lines = [
-        f"Heard in {len(heard) / found.song.sizes['time']:.0%} of the time, between "
-        f"{in_words(heard.min(), 'Hz')} and {in_words(heard.max(), 'Hz')}."
-    ]
+    low, high = (in_words(float(each), "Hz") for each in (heard.min(), heard.max()))
+    share = 100.0 * len(heard) / found.song.sizes["time"]
+    pitch = f"between {low} and {high}" if low != high else f"at {low}"
+    lines = [f"Heard in {share:.2g}% of the time, {pitch}."]
     if found.phases is None:
         return Section("Song", lines)
     natural = found.song.attrs["natural_frequency"]
     lines[0] += f" The transverse natural frequency is {in_words(natural, 'Hz')}."
-    names = ("share_stuck", "sticks_per_second", "ring_down", "first_frequency", "last_frequency")
-    units = ("%", "1/s", "%", "Hz", "Hz")
-    rows = [
-        (
-            in_words(float(found.phases["start"][at]), "s"),
-            *(
-                f"{100.0 * float(found.phases[name][at]):.3g} %"
-                if unit == "%"
-                else in_words(float(found.phases[name][at]), unit)
-                for name, unit in zip(names, units, strict=True)
-            ),
-        )
-        for at in range(min(found.phases.sizes["phase"], SHOWN))
-    ]
-    heads = ("stick phase from", "at rest", "sticks", "ringing down", "song from", "to")
-    return Section("Song", lines, Table(heads, rows))
+    phases = found.phases
+    columns = {
+        "stick phase from": Quantity(phases["start"].values, "s"),
+        "at rest": Quantity(100.0 * phases["share_stuck"].values, "%"),
+        "sticks": Quantity(phases["sticks_per_second"].values, "1/s"),
+        "ringing down": Quantity(100.0 * phases["ring_down"].values, "%"),
+        "song from": Quantity(phases["first_frequency"].values, "Hz"),
+        "to": Quantity(phases["last_frequency"].values, "Hz"),
+    }
+    return Section("Song", lines, grid(columns, SHOWN))
 
 
 def energy(found: Analysis) -> Section:
     """Return where the work of the drive goes."""
     if found.energy is None:
         return Section("Energy", [f"Not known: {found.missing['energy']}."])
-    every = ("work", "friction_x", "friction_y", "damper_x", "damper_y", "spring_x", "kinetic")
-    names = [name for name in every if found.energy[name].values.any()]
-    rows = [
-        (
-            in_words(float(found.energy["start"][at]), "s"),
-            *(in_words(float(found.energy[name][at]), "J") for name in names),
-        )
-        for at in range(min(found.energy.sizes["interval"], SHOWN))
-    ]
-    work, left = (float(np.abs(found.energy[name]).sum()) for name in ("work", "residual"))
-    heads = ("from", *(name.replace("_", " along ") for name in names))
+    budget = found.energy
+    work, left = (float(np.abs(budget[name]).sum()) for name in ("work", "residual"))
+    names = [name for name in ENERGIES if np.abs(budget[name]).max() > NOTHING * work]
+    columns = {"from": Quantity(budget["start"].values, "s")}
+    columns |= {ENERGIES[name]: Quantity(budget[name].values, "J") for name in names}
     closes = f"It closes to {left / work:.1g} of the work." if work > 0.0 else "No work is done."
-    sentence = f"Where the work of the drive goes, from each time to the next. {closes}"
-    return Section("Energy", [sentence], Table(heads, rows))
+    small = [ENERGIES[name] for name in ENERGIES if name not in names]
+    less = f" Less than {NOTHING:.0e} of it: {', '.join(small)}." if small and work > 0.0 else ""
+    sentence = f"Where the work of the drive goes, from each time to the next. {closes}{less}"
+    return Section("Energy", [sentence], grid(columns, SHOWN))
 
 
-def _measured(row: xr.Dataset, name: str, unit: str) -> str:
-    value, error = float(row[name]), float(row[f"{name}_error"])
-    spread = f" ± {in_words(error, unit)}" if isfinite(error) and error > 0.0 else ""
-    return in_words(value, unit) + spread
+def _true(found: Analysis) -> str:
+    """Return the misalignment that a run has, to hold the implied one against."""
+    if not isinstance(found.source, Trajectory):
+        return ""
+    return f" (the run has {degrees(abs(found.source.slider.phi)):.3g} deg)"
+
+
+def _slips(found: Analysis) -> bool:
+    """Return whether the last stick phase ends before the record does."""
+    return found.curves is None or float(found.curves["slip_time"][-1]) < found.record.time[-1]
+
+
+def _creeping(row: xr.Dataset) -> str:
+    """Say how fast it creeps in a bin, and to how much that is known if it is worth a word."""
+    value, error = float(row["velocity"]), float(row["velocity_error"])
+    if abs(value) <= SURE * error:
+        return f"it creeps no faster than {in_words(SURE * error, 'm/s')} (two standard errors)"
+    spread = f" ± {in_words(error, 'm/s')}" if error > SLIGHT * abs(value) else ""
+    return f"it creeps at {in_words(value, 'm/s')}{spread}"

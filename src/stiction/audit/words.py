@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from math import degrees, isfinite, nan
+from math import degrees, hypot, isfinite, nan, tan
 
 import numpy as np
 
 from stiction.analysis.creep import first_slip_time
-from stiction.analysis.regime import STICK_SLIP
+from stiction.analysis.regime import BETWEEN, DAMPED, STICK_SLIP, STUCK, UNDETERMINED
 from stiction.audit.advice import Advice
 from stiction.audit.report import Audit
+from stiction.friction import has_state
 from stiction.sections import Section, Table
 from stiction.units import in_words
 
@@ -21,11 +22,21 @@ NAMES = {
 }
 
 
+SEEN = {  # kinds of motion, in a sentence
+    BETWEEN: f"a motion {BETWEEN}",
+    DAMPED: f"a {DAMPED} to steady sliding",
+    STUCK: "a mass that is stuck",
+    UNDETERMINED: "a motion of no clear kind",
+}
+# of the time until the slip: a first stick that is longer is no short beginning, as in Eq. (7)
+SHORT = 0.1
+
+
 def sections(found: Audit) -> list[Section]:
     """Return the report, part by part."""
     return [
         Section("Verdict", verdict(found)),
-        Section("Predicted and simulated", [], numbers(found)),
+        Section("Predicted and simulated", supposed(found), numbers(found)),
         Section("Is it stick?", stick(found)),
         Section("Song", song(found)),
         Section("What to change", *changes(found)),
@@ -37,7 +48,11 @@ def verdict(found: Audit) -> list[str]:
     seen, growth = found.observation, found.sliding.growth_rate
     if not seen.run.status.ok:
         return [f"The simulation ended early: {seen.run.status.value}."]
-    lines = [f"In the simulated test the load cell sees {seen.regime}."]
+    kind = seen.regime.kind
+    lines = [
+        f"In the simulated test the load cell sees {SEEN.get(kind, kind)}"
+        f"{str(seen.regime).removeprefix(kind)}."
+    ]
     if found.sliding.stable:
         lines.append(f"Steady sliding is stable: disturbances decay at {-growth:.4g} per second.")
     else:
@@ -55,11 +70,19 @@ def verdict(found: Audit) -> list[str]:
 def margin(found: Audit) -> str:
     """Return where phi stands beside its critical values."""
     phi, values = found.slider.phi, found.misalignment.values
+    closed = found.prediction.phi_c
     if not len(values):
         always = "stable" if all(found.misalignment.stable) else "unstable"
-        return f"No misalignment changes that: it is {always} at every φ of that sign."
+        sign = " of that sign" if phi else ""
+        rigid = (
+            f"; on a transverse spring that is rigid it would be stable from {degrees(closed):.4f} "
+            "deg on"
+        )
+        return (
+            f"No misalignment changes that: it is {always} at every φ{sign}"
+            f"{rigid if always == 'unstable' and isfinite(closed) else ''}."
+        )
     nearest = float(values[np.argmin(np.abs(values - phi))])
-    closed = found.prediction.phi_c
     lowest = abs(nearest) == np.min(np.abs(values))
     form = f" ({degrees(closed):.4f} deg in closed form)" if lowest and isfinite(closed) else ""
     way = "more" if abs(nearest) > abs(phi) else "less"
@@ -68,6 +91,24 @@ def margin(found: Audit) -> str:
         f"{abs(degrees(nearest - phi)):.4g} deg {way} misalignment than now, "
         f"{degrees(phi):.4g} deg."
     )
+
+
+def supposed(found: Audit) -> list[str]:
+    """Return what the theory supposes and this apparatus is not."""
+    p, s = found.prediction, found.slider
+    if has_state(s.law):
+        return [
+            "The theory is for friction without internal state: with this law the first column is "
+            f"an orientation, with F_0 taken at {in_words(hypot(*s.motion.rate(0.0)), 'm/s')}."
+        ]
+    if s.phi != 0.0 and p.first_stick > SHORT * p.load_up:
+        ratio, share = s.k_y * tan(abs(s.phi)) / s.k_x, p.first_stick / p.load_up
+        return [
+            f"Eqs. (7) and (10) suppose that the transverse spring is loaded at once, k_y tan φ ≫ "
+            f"k_x. Here it is only {ratio:.3g} k_x, and the first stick takes {share:.0%} of the "
+            "time until the slip that they give: they are an orientation."
+        ]
+    return []
 
 
 def numbers(found: Audit) -> Table:
@@ -87,7 +128,7 @@ def numbers(found: Audit) -> Table:
         ("time until the first slip, Eq. (7)", p.load_up if p.zeta < 1.0 else nan, slip, "s"),
         ("creep velocity at first, V sin² φ", p.creep_at_start, None, "m/s"),
         ("creep velocity when it slips, Eq. (7)", p.creep_at_slip, None, "m/s"),
-        ("creep before slip", p.creep_distance, seen.mean("creep_distance"), "m"),
+        ("creep before the first slip", p.creep_distance, crept(found, slip), "m"),
         ("apparent static friction", p.mu_static, peak(found), ""),
         ("apparent kinetic friction", p.mu_kinetic, seen.mean("mu_kinetic"), ""),
         ("force drop", p.drop, seen.mean("drop"), "N"),
@@ -101,6 +142,13 @@ def numbers(found: Audit) -> Table:
     return Table(("quantity", "theory", "simulated"), lines)
 
 
+def crept(found: Audit, slip: float) -> float:
+    """Return how far the mass has moved when it first slips, m; not a number if it does not."""
+    data = found.observation.run.data
+    along = abs(data["X"].values - float(data["X"][0]))
+    return float(np.interp(slip, data["time"].values, along)) if isfinite(slip) else nan
+
+
 def peak(found: Audit) -> float:
     """Return what would be read as the coefficient of static friction."""
     largest = float(np.max(found.observation.record.force, initial=0.0))
@@ -112,21 +160,33 @@ def stick(found: Audit) -> list[str]:
     seen, s = found.observation, found.slider
     rest, creep, slip = (f"{100.0 * share:.3g} %" for share in seen.shares)
     whole = "of each cycle" if seen.cycles.sizes["cycle"] else "of the time until it slides"
+    state = has_state(s.law)
+    slowly = "creeping" if s.phi or state else "sliding slowly"
     lines = [
         f"Moving slower than the drive, which a load cell shows as a rising force, takes "
         f"{100.0 * (seen.shares.rest + seen.shares.creep):.3g} % {whole}: at rest {rest}, "
-        f"creeping {creep}. Slipping faster than the drive takes {slip}."
+        f"{slowly} {creep}. Moving faster than the drive takes {slip}."
     ]
     if s.phi == 0.0:
-        return [*lines, "There is no misalignment: nothing turns, and what sticks is at rest."]
-    if seen.shares.creep > seen.shares.rest:
+        lines.append("There is no misalignment, so friction does not turn.")
+    if state and seen.shares.creep > 0.0:
+        lines.append(
+            "Friction with internal state creeps by itself. What the misalignment adds to it, an "
+            "audit of the same apparatus with phi = 0 shows."
+            if s.phi
+            else "What creeps, creeps by the law of friction."
+        )
+    elif s.phi and seen.shares.creep > seen.shares.rest:
         distance = seen.mean("creep_distance")
-        far = in_words(distance if isfinite(distance) else found.prediction.creep_distance, "m")
+        far = (
+            f"{in_words(distance, 'm')} before each slip"
+            if isfinite(distance)
+            else f"{in_words(found.prediction.creep_distance, 'm')}, by Eq. (7), before it slides"
+        )
         lines.append(
             f"What looks like stick is mostly creep under a friction force that turns: an artefact "
-            f"of the misalignment. The mass covers {far} before it slips, from "
-            f"{in_words(found.prediction.creep_at_start, 'm/s')} on. The largest force says how "
-            f"friction turned, not that the interface has static friction."
+            f"of the misalignment. The mass covers {far}. The largest force says how friction "
+            f"turned, not that the interface has static friction."
         )
     if seen.regime.kind == STICK_SLIP:
         lines.append(
@@ -142,11 +202,18 @@ def song(found: Audit) -> list[str]:
     if p.amplitude == 0.0:
         return ["Without misalignment the transverse spring is not excited."]
     force = in_words(p.amplitude * found.slider.k_y, "N")
+    if has_state(found.slider.law):
+        return [
+            f"The transverse natural frequency is {in_words(p.f_y, 'Hz')}. Whether friction with "
+            f"internal state lets it sing, a run sampled at {in_words(p.sample_rate, 'Hz')} shows: "
+            "stiction analyse."
+        ]
     lines = [
-        f"The transverse spring swings at {in_words(p.f_y, 'Hz')}, or lower as slip approaches, by "
-        f"{in_words(p.amplitude, 'm')} at most (V sin φ/ω_y), {force} of transverse force. Sample "
-        f"at {in_words(p.sample_rate, 'Hz')} to see it; above {in_words(2.0 * p.f_y, 'Hz')} it is "
-        f"not mistaken for another frequency."
+        f"The transverse spring swings at {in_words(p.f_y, 'Hz')} at first, by "
+        f"{in_words(p.amplitude, 'm')} (V sin φ/ω_y), {force} of transverse force; towards slip "
+        f"the frequency falls, as sin θ, and the swing grows with its period. Sample at "
+        f"{in_words(p.sample_rate, 'Hz')} to see it; above {in_words(2.0 * p.f_y, 'Hz')} it is not "
+        f"mistaken for another frequency."
     ]
     if seen.coarse:
         rate = in_words(seen.record.sample_rate, "Hz")
@@ -159,9 +226,10 @@ def changes(found: Audit) -> tuple[list[str], Table | None]:
     if found.sliding.stable:
         return ["Nothing: it slides steadily once it has settled."], None
     rows = [_change(found, advice) for advice in found.advices]
+    works = any(advice.works for advice in found.advices)
+    what = "To slide steadily, one of these" if works else "None of these makes it slide steadily"
     return [
-        "To slide steadily, one of these; each was simulated, and the last column says what the "
-        "load cell shows then."
+        f"{what}; each was simulated, and the last column says what the load cell shows then."
     ], Table(("change", "now", "stable from", "tried", "simulated: force drop, motion"), rows)
 
 
@@ -169,7 +237,7 @@ def _change(found: Audit, advice: Advice) -> tuple[str, ...]:
     name, now = NAMES[advice.path], in_words(advice.now, advice.unit)
     if advice.tried is None:
         low, high = (in_words(end, advice.unit) for end in advice.between)
-        return name, now, "nowhere", f"{low} to {high}", "no value makes sliding steady"
+        return name, now, "nowhere", f"{low} to {high}", "no value in that range"
     edge, then = in_words(advice.critical, advice.unit), in_words(advice.then, advice.unit)
     before, after = found.observation.mean("drop"), advice.tried.mean("drop")
     fall = f"{in_words(before, 'N')} → {in_words(after, 'N')}"

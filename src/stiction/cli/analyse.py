@@ -36,6 +36,7 @@ def analyse(
     from stiction.cli.compare import usable
     from stiction.cli.progress import progress
     from stiction.cli.tables import printed
+    from stiction.files import make_folder
     from stiction.plotting.analysis import figures
     from stiction.plotting.save import drawable, write
     from stiction.sections import Section
@@ -47,7 +48,7 @@ def analyse(
     with progress("analysing"):
         found = understand(run)
         parts = sections(found)
-        folder.mkdir(exist_ok=True)
+        make_folder(folder)
         paths = write_tables(found, folder)
         for name, figure in figures(found).items():
             paths.append(write(figure, drawable(folder / f"{name}.png")))

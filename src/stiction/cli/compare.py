@@ -104,12 +104,9 @@ def usable(folder: Path) -> None:
 
 def save(runs: Mapping[str, Trajectory], folder: Path) -> list[Path]:
     """Write each run to a file named after its law; return the paths."""
-    from stiction.errors import ResultError
+    from stiction.files import make_folder
 
-    try:
-        folder.mkdir(exist_ok=True)
-    except OSError as error:
-        raise ResultError(f"{folder}: cannot be made: {error.strerror or error}") from None
+    make_folder(folder)
     names = (re.sub(r"[^\w.-]+", "-", label).strip("-") for label in runs)
     paths = (folder / f"{count}-{name}.nc" for count, name in enumerate(names, 1))
     return [run.save(path) for run, path in zip(runs.values(), paths, strict=True)]

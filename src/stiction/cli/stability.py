@@ -25,7 +25,9 @@ def stability(
     /,
     *,
     over: Annotated[list[str] | None, Parameter(negative=())] = None,
-    between: Annotated[list[tuple[str, str]] | None, Parameter(negative=())] = None,
+    between: Annotated[
+        list[tuple[str, str]] | None, Parameter(negative=(), allow_leading_hyphen=True)
+    ] = None,
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
 ) -> None:
     """Say whether the apparatus of CONFIG slides steadily, and at which parameters that changes.

@@ -28,9 +28,24 @@ def printed(title: str, parts: Iterable[Section]) -> None:
 
 def table(found: Table) -> Grid:
     """Return a table for the terminal."""
-    shown = Grid(box=SIMPLE_HEAD, header_style="bold", padding=(0, 1), pad_edge=False)
-    for heading in found.headings:
-        shown.add_column(heading)
+    shown = Grid(box=SIMPLE_HEAD, header_style="bold", padding=(0, 1, 0, 0), pad_edge=False)
+    for at, heading in enumerate(found.headings):
+        numbers = all(number(row[at]) for row in found.rows)
+        shown.add_column(
+            heading,
+            justify="right" if numbers else "left",
+            overflow="fold",
+            min_width=max(map(len, heading.split()), default=0),  # headings break between words
+        )
     for row in found.rows:
         shown.add_row(*(Text(cell) for cell in row))
     return shown
+
+
+def number(text: str) -> bool:
+    """Return whether a cell is a bare number, or stands for one that is not known."""
+    try:
+        float(text)
+    except ValueError:
+        return text == "none"
+    return True

@@ -38,7 +38,8 @@ def figure5(slider: Slider, other_phi: float = radians(10)) -> Figure:
         paths = [(damping_number(slider, phi), phi) for phi in (slider.phi, other_phi)]
         low = min(1e-1, *(A / 10 for A, _ in paths))
         high = max(1e5, *(A * 10 for A, _ in paths))
-        draw_damping_map(ax, (low, high), (min(0.5, degrees(abs(slider.phi)) / 2), 90.0))
+        lowest = min(0.5, degrees(abs(slider.phi)) / 2)
+        draw_damping_map(ax, (low, high), (lowest, 90.0))
         for (A, phi), color in zip(paths, (RED, BLUE), strict=True):
             draw_force_path(ax, A, phi, color, _label(A, phi))
         for place, text in (
@@ -46,7 +47,7 @@ def figure5(slider: Slider, other_phi: float = radians(10)) -> Figure:
             ((0.29, 0.15), "underdamped:\nrapid slip"),
         ):
             ax.text(*place, text, transform=ax.transAxes, ha="center", va="center", bbox=CLEAR)
-        at = high / 2.5
+        at = min(high / 2.5, 1.0 / sin(radians(2.0 * lowest)) ** 3)  # above the lower edge
         boundary = float(degrees(theory.critical_angle(at)))
         ax.text(at, 0.88 * boundary, r"$\zeta$ = 1", color=GREEN, ha="right", va="top", bbox=CLEAR)
         fig.legend(loc="outside upper center", ncols=2)

@@ -20,7 +20,7 @@ def figures(found: Analysis) -> dict[str, Figure]:
     if found.curves is not None and found.creep is not None and found.record.drive_velocity:
         V, fit = found.record.drive_velocity, found.misalignment
         lines = {}
-        if fit is not None and found.record.stiffness is not None:
+        if fit is not None and fit.stands_out and found.record.stiffness is not None:
             l_x = fit.F_0 / found.record.stiffness
             lines = {
                 f"{name}, fitted": line for name, line in creep_theory(V, fit.phi, l_x).items()

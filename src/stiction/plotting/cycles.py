@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 FEW = 12  # cycles that are seen one by one on a page's width
 SHOWN = 6  # cycles in the close-up
-LETTERS = 118  # of a page's width
+LETTERS = 108  # of a page's width
 
 
 def cycles_figure(record: Record) -> Figure:
@@ -102,5 +102,7 @@ def _zoom(whole: Axes, part: Axes, record: Record, cycles: xr.Dataset) -> None:
     chosen = cycles.isel(cycle=slice(first, first + SHOWN))
     near = record.model_copy(update={"time": record.time[seen], "force": record.force[seen]})
     draw_cycles(part, near, chosen)
+    if (legend := part.get_legend()) is not None:
+        legend.remove()  # it stands above, and would hide what is seen larger here
     part.set_title("the shaded time")
     whole.axvspan(begin, end, color=PALE, zorder=0)

@@ -26,8 +26,8 @@ class Trial(NamedTuple):
 def trials_figure(before: Record, trials: Sequence[Trial]) -> Figure:
     """Draw the force of each trial over that of the test before, a panel a trial.
 
-    Time runs as long as the trial does; where the test before is longer, it is cut, where it is
-    shorter, it ends.
+    Each panel has its own range of forces. Time runs as long as the trial does; where the test
+    before is longer, it is cut, where it is shorter, it ends.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def trials_figure(before: Record, trials: Sequence[Trial]) -> Figure:
     factor, prefix = prefixed(np.array(largest))
     with style():
         fig = new_figure(PAGE, 0.5 + PANEL * rows)
-        panels = fig.subplots(rows, ACROSS, squeeze=False, sharey=True).ravel()
+        panels = fig.subplots(rows, ACROSS, squeeze=False).ravel()
         for ax, (title, record) in zip(panels, trials, strict=False):
             start, end = record.time[0], record.time[-1]
             seen = (before.time >= start) & (before.time <= end)
@@ -57,10 +57,10 @@ def trials_figure(before: Record, trials: Sequence[Trial]) -> Figure:
             ax.set_xlim(start, end)
             ax.set_title(title)
             ax.set_xlabel("time $t$ (s)")
+            ax.margins(y=0.08)
         for ax in panels[len(trials) :]:
             ax.set_axis_off()
         for ax in panels[::ACROSS]:
             ax.set_ylabel(f"spring force ({prefix}N)")
         panels[0].legend(loc="lower right", ncols=2)
-        panels[0].margins(y=0.08)
     return fig

@@ -68,7 +68,13 @@ def axis(slider: Slider, path: str, between: Sequence[float | str] | None = None
     ends = default(slider, path) if between is None else between
     if isinstance(ends, str) or len(ends) != 2:
         raise DescriptionError([Fault(path, f"{ends!r} is not a range; give its two ends")])
-    low, high = (read(changed(slider, path, end), path) for end in ends)
+    try:
+        low, high = (read(changed(slider, path, end), path) for end in ends)
+    except DescriptionError as error:
+        if between is not None:
+            raise
+        message = f"the usual range, {ends[0]} to {ends[1]}, is not allowed; give another: {error}"
+        raise DescriptionError([Fault(path, message)]) from None
     if not low < high:
         raise DescriptionError([Fault(path, f"{ends!r} is not a range; give its low end first")])
     return Axis(path, unit(slider, path), low, high)

@@ -91,14 +91,9 @@ def kind_of(
     dying = dying and dies_out(cycles.drop, cycles.period, end - cycles.end)
     over = count > 0 and end - cycles.end > QUIET * float(cycles.period.max())
     if count >= FEWEST and not dying and not over:
-        return shape(float(np.sort(cycles.rise_share)[count // 2]))
+        return regime.shape(float(np.sort(cycles.rise_share)[count // 2]))
     kind = regime.DAMPED if dying else course(found, start, end, drive)
     return SONG if kind in (regime.DAMPED, regime.STEADY) and song > SINGS else kind
-
-
-def shape(rise_share: float) -> str:
-    """Return the kind of cycles whose force rises for so much of the time."""
-    return next(kind for bound, kind in regime.SHAPES if rise_share >= bound)
 
 
 def course(found: Features, start: float, end: float, drive: float) -> str:

@@ -1,0 +1,55 @@
+"""Columns of numbers that can be compared at a glance: one unit, one number of decimals in each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import floor, isfinite, log10
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from stiction.sections import Table
+
+PREFIXES = "qryzafpnµm kMGTPEZYRQ"  # of the SI, 10^-30 to 10^30
+DIGITS = 4  # of the largest number in a column
+PLAIN = ("1", "%", "1/s")  # units that take no prefix
+
+
+class Quantity(NamedTuple):
+    """Values of a quantity, (n,), and their SI unit."""
+
+    values: ArrayLike
+    unit: str
+
+
+def grid(quantities: Mapping[str, Quantity], rows: int) -> Table:
+    """Return a table of quantities by their headings, its first rows, each in a unit that suits.
+
+    Examples
+    --------
+    >>> grid({"force": Quantity([0.25, -0.0012, float("nan")], "N")}, 3)
+    Table(headings=('force (mN)',), rows=[('250.0',), ('-1.2',), ('none',)])
+    """
+    columns, headings = [], []
+    for name, (values, unit) in quantities.items():
+        numbers = np.asarray(values, dtype=np.float64)[:rows]
+        power, decimals = scale(numbers.tolist(), unit)
+        prefixed = PREFIXES[power + 10].strip() + unit
+        headings.append(name if unit == "1" else f"{name} ({prefixed})")
+        columns.append([cell(value / 1000.0**power, decimals) for value in numbers.tolist()])
+    return Table(tuple(headings), list(zip(*columns, strict=True)))
+
+
+def scale(values: Sequence[float], unit: str) -> tuple[int, int]:
+    """Return a power of a thousand, and decimals, for four digits of the largest value."""
+    largest = max((abs(value) for value in values if isfinite(value)), default=0.0)
+    # as the largest is written, so that 999.97 is 1000.0 of the next prefix
+    size = floor(log10(float(f"{largest:.{DIGITS - 1}e}"))) if largest > 0.0 else 0
+    power = 0 if unit in PLAIN else min(max(size // 3, -10), 10)
+    return power, max(0, DIGITS - 1 - (size - 3 * power))
+
+
+def cell(value: float, decimals: int) -> str:
+    """Return a number with so many decimals, and no sign if they are all zero."""
+    return f"{round(value, decimals) + 0.0:.{decimals}f}" if isfinite(value) else "none"
