@@ -13,12 +13,9 @@ from .section import Cell, Table
 DURATIONS = (5.0, 500.0)  # s
 RATES = (None, 1e3)  # 1/s
 WORKER = """
-import resource, sys
+import sys
 import stiction as st
-
-def peak():  # bytes; the system counts kibibytes, but for macOS
-    unit = 1 if sys.platform == "darwin" else 1024
-    return unit * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+from benchmarks.peak import peak
 
 duration, rate = float(sys.argv[1]), float(sys.argv[2]) or None
 slider = st.presets.nakano_popov_2020()

@@ -22,17 +22,14 @@ ROUNDS = 3
 PLANNED = (10**4, 10**5, 10**6)
 
 COMMON = """
-import json, resource, sys, tempfile
+import json, sys, tempfile
 from pathlib import Path
 from time import perf_counter, process_time
 import stiction as st
 from stiction.study.engines import Threads
 from stiction.study.observed import observe
 from stiction.study import observed
-
-def peak():  # MB; the system counts kibibytes, but for macOS
-    unit = 1 if sys.platform == "darwin" else 1024
-    return 1e-6 * unit * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+from benchmarks.peak import peak
 
 def study(side, other, duration):
     settings = st.Settings(duration=duration)
@@ -45,7 +42,7 @@ def timed(work):
     wall, processor = perf_counter(), process_time()
     work()
     print(json.dumps({"seconds": perf_counter() - wall, "processor": process_time() - processor,
-                      "memory": peak()}))
+                      "memory": 1e-6 * peak()}))
 
 with tempfile.TemporaryDirectory() as folder:  # imports what is needed, loads the kernel
     study(2, 2, 0.01).run(Path(folder) / "a.zarr")
@@ -94,7 +91,7 @@ def enough(tally):
 with tempfile.TemporaryDirectory() as folder:
     path = Path(folder) / "a.zarr"
     begin = perf_counter()
-    before = peak()
+    before = 1e-6 * peak()
     try:
         made.run(path, engine=Threads(1), progress=enough)
     except KeyboardInterrupt:
@@ -102,7 +99,7 @@ with tempfile.TemporaryDirectory() as folder:
     metadata = sum(file.stat().st_size for file in path.rglob("zarr.json"))
     done = (st.open_study(path)["status"].values >= 0).sum()
     print(json.dumps({"tasks": made.layout.tasks, "metadata": metadata, "before": before,
-                      "memory": peak(), "done": int(done)}))
+                      "memory": 1e-6 * peak(), "done": int(done)}))
 """
 )
 HEADINGS = (
