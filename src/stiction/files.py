@@ -27,6 +27,20 @@ def placeable(path: str | Path) -> Path:
     return target
 
 
+def usable_folder(folder: Path) -> None:
+    """Refuse a folder for results that is none, or that cannot be made.
+
+    Raises
+    ------
+    ResultError
+        If something else is there, or there is no folder to make it in.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise ResultError(f"{folder}: is there, and is not a folder; choose another name")
+    if not folder.exists() and not folder.parent.is_dir():
+        raise ResultError(f"{folder}: no folder {folder.parent}; make it first")
+
+
 def make_folder(folder: Path) -> Path:
     """Make a folder, if it is not there; return it.
 

@@ -42,14 +42,14 @@ def unit(slider: Slider, path: str) -> str:
         If the slider has no such parameter, or those that are joined differ in their unit.
     """
     known = units(slider)
-    names = _names(path)
-    found = [Fault(name, unknown("parameter", name, known)) for name in names if name not in known]
+    joined = names(path)
+    found = [Fault(name, unknown("parameter", name, known)) for name in joined if name not in known]
     if found:
         raise DescriptionError(found)
-    if len({known[name] for name in names}) > 1:
-        listed = ", ".join(f"{name} ({known[name] or 'a number'})" for name in names)
+    if len({known[name] for name in joined}) > 1:
+        listed = ", ".join(f"{name} ({known[name] or 'a number'})" for name in joined)
         raise DescriptionError([Fault(path, f"cannot share one value: {listed}; name one of them")])
-    return known[names[0]]
+    return known[joined[0]]
 
 
 def read(slider: Slider, path: str) -> float:
@@ -67,7 +67,7 @@ def read(slider: Slider, path: str) -> float:
     0.01
     """
     unit(slider, path)
-    values = {name: float(_value(slider, name)) for name in _names(path)}
+    values = {name: float(_value(slider, name)) for name in names(path)}
     if len(set(values.values())) > 1:
         listed = ", ".join(f"{name} is {value:g}" for name, value in values.items())
         raise DescriptionError([Fault(path, f"has no one value: {listed}; set both first")])
@@ -98,7 +98,7 @@ def changed(slider: Slider, path: str, value: float | str) -> Slider:
     0.002
     """
     unit(slider, path)
-    for name in _names(path):
+    for name in names(path):
         room, _, field = name.rpartition(".")
         part = {field: value}
         if room:
@@ -112,7 +112,7 @@ def placed(slider: Slider, path: str, value: float) -> Slider:
 
     The path must be known, and the value lie between two that `changed` takes.
     """
-    for name in _names(path):
+    for name in names(path):
         room, _, field = name.rpartition(".")
         new: Any = value
         if room:
@@ -121,7 +121,8 @@ def placed(slider: Slider, path: str, value: float) -> Slider:
     return slider
 
 
-def _names(path: str) -> list[str]:
+def names(path: str) -> list[str]:
+    """Return the paths that are joined in one."""
     return [name.strip() for name in path.split(",")]
 
 

@@ -94,8 +94,7 @@ def find_cycles(source: Trajectory | Record) -> xr.Dataset:
     >>> cycles.sizes["cycle"], cycles["period"].values.round(3).tolist()
     (3, [2.0, 2.0, 2.0])
     """
-    found = swings(recorded(source))
-    return found.table.isel(cycle=slice(0)) if found.dying else found.table
+    return swings(recorded(source)).cycles
 
 
 class Swings(NamedTuple):
@@ -104,7 +103,7 @@ class Swings(NamedTuple):
     Parameters
     ----------
     table : Dataset
-        As `find_cycles` returns it.
+        A row a swing, with the columns of `find_cycles`.
     dying : bool
         Whether they die out: then they are a transient, no cycles.
     turns : int
@@ -119,6 +118,11 @@ class Swings(NamedTuple):
     turns: int
     noise: float
     clearness: float
+
+    @property
+    def cycles(self) -> xr.Dataset:
+        """The table, empty if the swings die out."""
+        return self.table.isel(cycle=slice(0)) if self.dying else self.table
 
 
 def swings(record: Record) -> Swings:

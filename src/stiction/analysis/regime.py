@@ -133,9 +133,13 @@ def classify(source: Trajectory | Record) -> Regime:
         the natural period count as well; without, the shape alone.
     """
     record = recorded(source)
+    return regime_of(record, swings(record))
+
+
+def regime_of(record: Record, found: Swings) -> Regime:
+    """Tell which kind of motion a record shows, of which the swings are known: see `classify`."""
     if len(record) < PARTS:
         return Regime(UNDETERMINED, 0.0, {"samples": len(record)})
-    found = swings(record)
     if found.dying:
         drop = found.table["drop"].values
         sure = (len(drop) + 1) / (len(drop) + 3)

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 import numpy as np
 
 from stiction.analysis.creep_curve import creep_curves, mean_creep
-from stiction.analysis.cycles import find_cycles
+from stiction.analysis.cycles import swings
 from stiction.analysis.divergence import Divergence, fit_divergence
 from stiction.analysis.energy import energy_budget
 from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.misalignment import Misalignment, fit_misalignment
 from stiction.analysis.record import Record, recorded
-from stiction.analysis.regime import BETWEEN, STICK_SLIP, Regime, classify
+from stiction.analysis.regime import BETWEEN, STICK_SLIP, Regime, regime_of
 from stiction.analysis.song import hear_song, song_by_phase
 from stiction.analysis.spread import summary
 from stiction.errors import ResultError, StictionError
@@ -101,7 +101,8 @@ def analyse(source: Trajectory | Record) -> Analysis:
 
     run = source if isinstance(source, Trajectory) else None
     record = recorded(source)
-    cycles, regime = find_cycles(record), classify(record)
+    found = swings(record)
+    cycles, regime = found.cycles, regime_of(record, found)
     sticking = cycles if regime.kind in (STICK_SLIP, BETWEEN) else cycles.isel(cycle=slice(0))
     if run is not None:
         song = tried("song", lambda: hear_song(run))

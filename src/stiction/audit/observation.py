@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from stiction import theory
-from stiction.analysis.cycles import find_cycles
+from stiction.analysis.cycles import swings
 from stiction.analysis.record import Record, record_of
-from stiction.analysis.regime import Regime, classify
+from stiction.analysis.regime import Regime, regime_of
 from stiction.audit.prediction import SEEN, Prediction
 from stiction.simulation import simulate
 from stiction.slider import Slider
@@ -90,8 +90,9 @@ def observe(
         max_steps=MOST_STEPS,
     )
     record = record_of(run)
-    cycles = find_cycles(record)
-    return Observation(run, record, cycles, classify(record), shares(run, cycles))
+    found = swings(record)
+    cycles = found.cycles
+    return Observation(run, record, cycles, regime_of(record, found), shares(run, cycles))
 
 
 def coarse_rate(prediction: Prediction) -> float:

@@ -33,10 +33,9 @@ def analyse(
     from stiction.analysis.export import write as write_tables
     from stiction.analysis.report import analyse as understand
     from stiction.analysis.words import each_cycle, sections
-    from stiction.cli.compare import usable
     from stiction.cli.progress import progress
     from stiction.cli.tables import printed
-    from stiction.files import make_folder
+    from stiction.files import make_folder, usable_folder
     from stiction.plotting.analysis import figures
     from stiction.plotting.save import drawable, write
     from stiction.sections import Section
@@ -44,7 +43,7 @@ def analyse(
 
     folder = result.with_name(f"{result.stem}-analysis") if output is None else output
     run = load(result, trust=trust)
-    usable(folder)
+    usable_folder(folder)
     with progress("analysing"):
         found = understand(run)
         parts = sections(found)

@@ -62,13 +62,14 @@ def compare(
     from stiction import comparison
     from stiction.cli.progress import progress
     from stiction.description import Description
+    from stiction.files import usable_folder
     from stiction.plotting.comparison import comparison as draw
     from stiction.plotting.save import drawable, write
 
     description = sampled(Description.from_toml(config))
     drawable(output)
     if data is not None:
-        usable(data)
+        usable_folder(data)
     with progress("simulating and drawing") as report:
         runs = comparison.compare(description, law, progress=report)
         figure = draw(runs)
@@ -90,16 +91,6 @@ def sampled(description: Description) -> Description:
     settings = description.run.model_dump(exclude_none=True)
     rate = SAMPLES / description.run.duration
     return description._replace(run=type(description.run)(**(settings | {"sample_rate": rate})))
-
-
-def usable(folder: Path) -> None:
-    """Refuse a folder for results that is none, or that cannot be made."""
-    from stiction.errors import ResultError
-
-    if folder.exists() and not folder.is_dir():
-        raise ResultError(f"{folder}: is there, and is not a folder; choose another name")
-    if not folder.exists() and not folder.parent.is_dir():
-        raise ResultError(f"{folder}: no folder {folder.parent}; make it first")
 
 
 def save(runs: Mapping[str, Trajectory], folder: Path) -> list[Path]:

@@ -9,9 +9,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from stiction.analysis.cycles import find_cycles
+from stiction.analysis.cycles import swings
 from stiction.analysis.record import Record
-from stiction.analysis.regime import Regime, classify
+from stiction.analysis.regime import Regime, regime_of
 from stiction.plotting.style import BLUE, GREY, PAGE, PALE, RED, new_figure, style
 from stiction.plotting.time_series import draw_line, prefixed
 
@@ -38,7 +38,8 @@ def cycles_figure(record: Record) -> Figure:
     Figure
         As wide as a page.
     """
-    cycles, regime = find_cycles(record), classify(record)
+    found = swings(record)
+    cycles, regime = found.cycles, regime_of(record, found)
     many = cycles.sizes["cycle"] > FEW
     with style():
         fig = new_figure(PAGE, 4.6 if many else 2.8)

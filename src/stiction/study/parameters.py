@@ -17,6 +17,7 @@ from stiction.description import Description
 from stiction.drive.pieces import LEVELS
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import Anisotropic
+from stiction.parameter import names
 from stiction.units import Kind, to_si, unit_of
 from stiction.validation import made, unknown
 
@@ -85,11 +86,6 @@ def _hints(owner: Any) -> dict[str, Any]:
 @lru_cache(maxsize=256)
 def _hints_of(kind: Any) -> dict[str, Any]:
     return get_type_hints(kind, include_extras=True)
-
-
-def names(path: str) -> list[str]:
-    """Return the paths that are joined in one."""
-    return [name.strip() for name in path.split(",")]
 
 
 def _keys(name: str) -> list[str]:
