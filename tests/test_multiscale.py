@@ -8,8 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st_
 
 import stiction as st
+from stiction.solver.patch import POINTS, interpolated
 from stiction.solver.problem import Problem
-from stiction.solver.returns import POINTS, interpolated
+from stiction.solver.recall import remember, remembered
+from stiction.solver.returns import Cycle, unknown
 from stiction.solver.stretch import stretches
 from stiction.solver.takeoff import angle, elongation_held, lead, wrapped
 
@@ -184,17 +186,39 @@ def test_differences_of_angles_are_small():
     assert wrapped(5.0) == pytest.approx(5.0 - 2 * pi)
 
 
-def test_newton_s_form_through_leja_points():
-    n = 15
+@pytest.mark.parametrize("n", [14, 15])
+def test_newton_s_form_through_leja_points(n):
     values = np.exp(POINTS[:n])
-    coefficients = np.zeros((n, 3))
+    coefficients = np.zeros((n + 1, 3))
     for i in range(n):
-        rest = values[i] - interpolated(coefficients, i, POINTS[i]).time
+        rest = values[i] - interpolated(coefficients, i, POINTS[i])[1]
         coefficients[i, 1] = rest / np.prod(POINTS[i] - POINTS[:i])
     x = np.linspace(-1, 1, 101)
-    found = [interpolated(coefficients, n, at).time for at in x]
+    found = [interpolated(coefficients, n, at)[1] for at in x]
     assert found == pytest.approx(np.exp(x), rel=1e-13)
     assert len(np.unique(POINTS)) == len(POINTS)
+
+
+def recalled(theta: float, *begun: float) -> tuple[bool, float, float]:
+    """What slips that began at these angles, and ended at 2, tell of one from `theta`."""
+    known, last = unknown(1e-3), Cycle(0.01, 0.001, 1e-4)
+    for start in begun:
+        remember(known, start, Cycle(2.0 - start, 0.5 - 0.1 * start, 0.02))
+    found, cycle = remembered(known, theta, last)
+    return found, theta + cycle.turn, cycle.time
+
+
+def test_slips_end_where_others_did():
+    found, end, time = recalled(1.006, 1.0, 1.004)
+    assert found
+    assert end == pytest.approx(2.0, abs=1e-15)
+    assert time == pytest.approx(0.5 - 0.1006, abs=1e-15)
+
+
+def test_what_may_be_before_the_edge_is_not_known():
+    assert not recalled(0.999, 1.0, 1.004)[0]  # it may stick again before it slips
+    assert not recalled(1.03, 1.0, 1.004)[0]  # nor is it known what comes that far behind
+    assert not recalled(1.006, 1.004)[0]  # one slip does not show that all end there
 
 
 def log(low: float, high: float) -> st_.SearchStrategy[float]:

@@ -3,26 +3,16 @@
 from __future__ import annotations
 
 from math import inf, nan
-from typing import NamedTuple
 
 import numpy as np
 
+from stiction.solver.chart import added, advance, chart
 from stiction.solver.compiled import compiled, inlined
 from stiction.solver.loop import at_rest
+from stiction.solver.patch import cycle_from, followed, place
 from stiction.solver.problem import Problem, in_principal_axes, rate
-from stiction.solver.returns import (
-    FAR,
-    PATCHES,
-    Cycle,
-    Returns,
-    added,
-    advance,
-    chart,
-    interpolated,
-    place,
-    remember,
-    remembered,
-)
+from stiction.solver.recall import remember, remembered
+from stiction.solver.returns import FAR, PATCHES, Cycle, Hold, Returns
 from stiction.solver.sampling import sample_stick
 from stiction.solver.state import (
     COMPLETED,
@@ -42,14 +32,6 @@ VAIN = 30  # nodes that may be in vain at first, and one more for each so many c
 VAIN_EACH = 4
 SLIP_STEPS = 1_000_000_000
 SAME = 1e-3  # of a slip: a landing so near to another is the same
-
-
-class Hold(NamedTuple):
-    """A stick that is not yet among those of the run: start, end (s) and angle at its end."""
-
-    start: float
-    end: float
-    theta: float
 
 
 @inlined
@@ -77,16 +59,18 @@ def landed(problem: Problem, state: State, hold: Hold) -> State:
 
 @inlined
 def reach(known: Returns, theta: float, turn: float) -> float:
-    """Return over which angles to try a patch.
+    """Return over which angles from `theta` on to try a patch.
 
-    Half way to an edge at most, and not over another patch unless that is near.
+    Half way to an edge at most, a quarter if the last try from here was in vain, and not over
+    another patch unless that is near.
     """
     way = 1.0 if turn > 0.0 else -1.0
     width = float(known.width[0])
+    part = 0.25 if known.patches[known.sizes[0], 0] == theta - turn else 0.5
     for i in range(known.sizes[1]):
         gap = way * float(known.edges[i] - theta)
         if gap >= 0.0:
-            width = min(width, 0.5 * gap)
+            width = min(width, part * gap)
     for i in range(known.sizes[0]):
         gap = way * float(known.patches[i, 0] - theta)
         if gap > 0.3 * width:
@@ -146,20 +130,25 @@ def pays(known: Returns, hold: Hold, cycle: Cycle, over: float, t_end: float) ->
 
 
 @inlined
-def recorded(state: State, hold: Hold, sticks: np.ndarray) -> State:
-    """Return the state with one more stick, which the map has found."""
-    motion, memory, counts = state
-    sticks[counts.sticks, 0] = hold.start
-    sticks[counts.sticks, 1] = hold.end
-    counts = Counts(
+def with_sticks(counts: Counts, sticks: int, stuck: float) -> Counts:
+    """Return the counts with so many sticks (`stuck` s longer together) that the map has found."""
+    return Counts(
         counts.steps,
         counts.rejected,
         counts.iterations,
-        counts.sticks + 1,
-        counts.stuck + (hold.end - hold.start),
-        counts.mapped + 1,
+        sticks,
+        counts.stuck + stuck,
+        counts.mapped + (sticks - counts.sticks),
     )
-    return State(motion, memory, counts)
+
+
+@inlined
+def known_cycle(known: Returns, theta: float, last: Cycle) -> tuple[bool, Cycle]:
+    """Return the cycle from an angle, if it is known."""
+    row, x = place(known, theta)
+    if row >= 0:
+        return True, cycle_from(known, row, x)
+    return remembered(known, theta, last)
 
 
 @inlined
@@ -175,19 +164,20 @@ def mapped(
     known: Returns,
 ) -> tuple[int, State, int]:
     """Learn from the cycle that ends with the stick at hand, and follow the map from there."""
-    hold, found_before, row = hold_of(problem, state.motion), state.counts.mapped, -1
+    hold, found_before = hold_of(problem, state.motion), state.counts.mapped
     theta, taken_off = known.last[0], known.last[1]
-    cycle = Cycle(wrapped(hold.theta - theta), hold.end - taken_off, hold.start - taken_off)
+    cycle = Cycle(wrapped(hold.theta - theta), hold.end - taken_off, hold.end - hold.start)
     known.sizes[4] += 1
     if cycle.turn < inf:  # a number: both ends are known
         remember(known, theta, cycle)
     while cycle.turn < inf and state.counts.sticks < len(sticks):
-        row, x = place(known, hold.theta, row)
-        if row >= 0:
-            n = int(known.patches[row, 2])
-            found, following = True, interpolated(known.coefficients[row], n, x)
-        else:
-            found, following = remembered(known, hold.theta, cycle)
+        until = min(t_end, times[k]) if k < len(times) else t_end
+        count = state.counts.sticks
+        hold, cycle, count, stuck = followed(known, hold, cycle, sticks, count, until)
+        state = State(state.motion, state.memory, with_sticks(state.counts, count, stuck))
+        if count == len(sticks):
+            break
+        found, following = known_cycle(known, hold.theta, cycle)
         if not found:
             over = reach(known, hold.theta, cycle.turn)
             if not pays(known, hold, cycle, over, t_end):
@@ -195,7 +185,7 @@ def mapped(
             start, over = hold.theta - cycle.turn, over + cycle.turn  # no gap after another
             state = chart(problem, accuracy, state, known, start, over, FAR * cycle.time)
             continue
-        landing, end = hold.end + following.landing, hold.end + following.time
+        landing, end = hold.end + (following.time - following.held), hold.end + following.time
         if not hold.end < landing < end < t_end:
             break
         if k < len(times) and times[k] <= end:
@@ -204,7 +194,9 @@ def mapped(
             )
             if code > COMPLETED:
                 return code, state, k
-        state = recorded(state, hold, sticks)
+        sticks[count, 0], sticks[count, 1] = hold.start, hold.end
+        counts = with_sticks(state.counts, count + 1, hold.end - hold.start)
+        state = State(state.motion, state.memory, counts)
         hold = Hold(landing, end, wrapped(hold.theta + following.turn))
         cycle = following
     if state.counts.mapped > found_before:

@@ -1,0 +1,145 @@
+"""Charting the return map: a patch, node by node, each a cycle solved in full."""
+
+from __future__ import annotations
+
+from math import inf, nan, sqrt
+from typing import Any
+
+import numpy as np
+
+from stiction.solver import loop
+from stiction.solver.compiled import inlined, piece
+from stiction.solver.patch import POINTS, interpolated
+from stiction.solver.problem import Problem, in_principal_axes, rate
+from stiction.solver.returns import NEAR, NODES, Cycle, Returns
+from stiction.solver.state import (
+    NOTHING,
+    RUNNING,
+    Accuracy,
+    Counts,
+    Memory,
+    Motion,
+    State,
+    at_takeoff,
+)
+from stiction.solver.stick import stick_duration
+from stiction.solver.takeoff import angle, elongation_held, lead, wrapped
+
+NODE_STEPS = 10_000
+FINER = 0.1  # tolerance of a node's steps over that of others: their noise is below what closes
+
+_loop: Any = loop.advance
+# as a part of what calls it, so that a user's own law is kept with that alone
+advance = piece(_loop.py_func)
+
+
+@inlined
+def added(a: Counts, b: Counts) -> Counts:
+    """Return the counts with another's steps, but not its stick intervals."""
+    return Counts(
+        a.steps + b.steps,
+        a.rejected + b.rejected,
+        a.iterations + b.iterations,
+        a.sticks,
+        a.stuck,
+        a.mapped,
+    )
+
+
+@inlined
+def finer(accuracy: Accuracy) -> Accuracy:
+    """Return what the steps of a node's cycle are held to."""
+    tolerance, newton = FINER * accuracy.tolerance, FINER * accuracy.newton
+    _, _, speed, free_x, free_y, longest, drive = accuracy
+    return Accuracy(tolerance, newton, speed, free_x, free_y, longest, drive)
+
+
+@inlined
+def solved(
+    problem: Problem, accuracy: Accuracy, memory: Memory, theta: float, longest: float
+) -> tuple[bool, Cycle, float, State]:
+    """Solve the cycle from an angle.
+
+    Returns whether it ends within `longest` (s), the cycle, by what angle the stick at its end
+    turns, and the state there.
+    """
+    fine, early = finer(accuracy), lead(problem, theta)
+    u_x, u_y = elongation_held(problem, theta)
+    v_x, v_y = in_principal_axes(problem, rate(problem.drive, 0.0))
+    motion = Motion(0.0, u_x - v_x * early, u_y - v_y * early, 0.0, 1.0, 0.0)
+    state = State(motion, at_takeoff(memory), NOTHING)
+    stick, never, nowhere = np.empty((1, 2)), np.empty(0), np.empty((0, 0))
+    code, state, _, _ = advance(
+        problem, state, early + longest, fine, NODE_STEPS, never, nowhere, 0, stick
+    )
+    end = state.motion
+    held, _ = stick_duration(problem, end.t, end.u_x, end.u_y, inf)
+    there = angle(problem, end.u_x + v_x * held, end.u_y + v_y * held)
+    swing = wrapped(there - angle(problem, end.u_x, end.u_y))
+    returns = code == RUNNING and state.counts.sticks == 1 and 0.0 < held < inf
+    return returns, Cycle(wrapped(there - theta), end.t - stick[0, 1] + held, held), swing, state
+
+
+@inlined
+def added_node(coefficients: np.ndarray, n: int, cycle: Cycle, swing: float) -> float:
+    """Add node `n` to the polynomials and return by how much they missed it before.
+
+    Turns are relative to themselves and to the stick's: they may be nothing where cycles repeat.
+    """
+    c, x, product = coefficients, POINTS[n], 1.0
+    turn, time, square = interpolated(c, n, x)
+    for i in range(n):
+        product *= x - POINTS[i]
+    off_turn, off_time = cycle.turn - turn, cycle.time - time
+    off_square = cycle.held * cycle.held - square
+    c[n, 0], c[n, 1], c[n, 2] = off_turn / product, off_time / product, off_square / product
+    miss = abs(off_turn) / max(abs(cycle.turn), abs(swing))
+    return max(
+        miss,
+        abs(off_time) / cycle.time,
+        abs(off_square) / (2.0 * NEAR * cycle.time * cycle.held),
+    )
+
+
+@inlined
+def chart(
+    problem: Problem,
+    accuracy: Accuracy,
+    state: State,
+    known: Returns,
+    theta: float,
+    reach: float,
+    longest: float,
+) -> State:
+    """Add a patch over the angles from `theta` on, or an edge if some of them do not return.
+
+    The state is given back with what that took. A try that fails leaves its first node to the
+    next one from the same angle.
+    """
+    motion, memory, counts = state
+    row, missed = known.sizes[0], inf
+    patch, c = known.patches[row], known.coefficients[row]
+    first = 1 if patch[0] == theta else 0
+    c[first:] = 0.0
+    patch[0] = theta
+    for n in range(first, NODES):
+        there = theta + 0.5 * (POINTS[n] + 1.0) * reach
+        returns, cycle, swing, end = solved(problem, accuracy, memory, there, longest)
+        memory, counts = end.memory, added(counts, end.counts)
+        known.sizes[3] += 1
+        if not returns:
+            known.edges[known.sizes[1]] = there
+            known.sizes[1] += 1
+            patch[0] = theta if n > 0 else nan
+            return State(motion, memory, counts)
+        miss = added_node(c, n, cycle, swing)
+        if miss < known.closing and missed < 10.0 * known.closing:
+            patch[1], patch[2] = 2.0 / reach, n + 1
+            known.sizes[0] += 1
+            known.sizes[3] -= n + 1
+            return State(motion, memory, counts)
+        if n >= NODES // 2 and miss > sqrt(known.closing):  # the error falls geometrically
+            break
+        missed = miss
+    known.width[0] *= 0.5
+    return State(motion, memory, counts)
