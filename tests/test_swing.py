@@ -8,7 +8,8 @@ import pytest
 from scipy.linalg import expm
 
 import stiction as st
-from stiction.solver.radau import A, C, D
+from stiction.solver.defect import dips
+from stiction.solver.radau import A, C, D, cubic
 from stiction.solver.swing import MOST, Oscillator, after, swing
 
 OSCILLATORS = [
@@ -21,6 +22,11 @@ OSCILLATORS = [
 @numba.njit
 def _after(o, t):
     return after(o, t)
+
+
+@numba.njit
+def _dips(o, h, p, margin):
+    return dips(o, swing(o, h, False), h, o.level + o.x, p, margin)
 
 
 @numba.njit
@@ -39,6 +45,23 @@ def test_it_solves_its_equation(o, part):
     got = np.array(_after(o, t)) / [scale, scale * sqrt(o.k), scale * t]
     want = np.array([o.level + x, v, slid]) / [scale, scale * sqrt(o.k), scale * t]
     assert got == pytest.approx(want, abs=1e-12)
+
+
+@pytest.mark.parametrize("least", [-1e-3, 1e-3])
+@pytest.mark.parametrize("early", [0.3, 0.5, 0.7])
+def test_a_dip_between_the_stages_is_seen(least, early):
+    """Of the oscillation itself; of a cubic through its values both kinds look alike."""
+    h = sqrt(0.98 * MOST)
+    o = Oscillator(1.0, 1.0, 0.0, 1.0 + least, -np.cos(early * h), -np.sin(early * h))
+    p = tuple(_after(o, c * h)[0] for c in C)
+    assert min(p) > 0.0
+    x = np.linspace(0.0, 1.0, 1001)
+    assert _after(o, x * h)[0].min() == pytest.approx(least, abs=1e-5)
+    assert _dips(o, h, p, 0.0) == (least < 0.0)
+    assert not _dips(o, h, p, least - 1e-5)
+    assert _dips(o, h, p, least + 1e-5)
+    seen = cubic((o.level + o.x, *p), x).min()
+    assert abs(seen - least) > abs(least)
 
 
 @pytest.mark.parametrize("o", OSCILLATORS)

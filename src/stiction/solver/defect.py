@@ -4,17 +4,25 @@ from __future__ import annotations
 
 from math import inf, sqrt
 
-from stiction.solver.blocks import Triple, dot
+from stiction.solver.blocks import Triple, dot, less
 from stiction.solver.compiled import inlined
 from stiction.solver.frame import Frame, friction, pull
 from stiction.solver.newton import products
 from stiction.solver.problem import Problem, in_principal_axes, rate
-from stiction.solver.radau import DEFECT_WEIGHT, DERIVATIVE, INTEGRAL, INTERIOR, VALUE, cubic
+from stiction.solver.radau import (
+    DEFECT_WEIGHT,
+    DERIVATIVE,
+    INTEGRAL,
+    INTERIOR,
+    VALUE,
+    cubic,
+    cubic_slope,
+)
 from stiction.solver.state import Accuracy
 from stiction.solver.surface import flow
-from stiction.solver.swing import Swing
+from stiction.solver.swing import Oscillator, Swing, after, swings
 
-LOOKED_AT = 12  # parts of a step between which the slip is looked at, where it has a minimum
+LOOKS = 4  # at where the slip may be least: each comes some ten times nearer
 
 
 @inlined
@@ -68,15 +76,32 @@ def local_error(
 
 
 @inlined
-def dips(r: float, p: Triple, margin: float) -> bool:
+def dips(o: Oscillator, s: Swing, h: float, r: float, p: Triple, margin: float) -> bool:
     """Return whether the slip passes below a margin (m/s) inside the step and comes back.
 
-    A slip that is as small as its error may have been zero.
+    Looked for where its rate of change vanishes, in the slip as it is: the oscillation that the
+    step is laid over, and the cubic of what is left. A cubic through the slip at the stages would
+    miss what the oscillation does between them.
     """
-    if p[0] < 0.0 or p[1] < 0.0:
-        return True
-    if p[0] < r and (p[2] > min(p[0], p[1]) or p[2] < 0.1 * r):  # a minimum may be inside
-        for i in range(1, LOOKED_AT):
-            if cubic((r, p[0], p[1], p[2]), i / LOOKED_AT) < margin:
-                return True
+    laid, (q0, q1, q2) = swings(o, h), less(p, s.p)
+    rest = (0.0 if laid else r, q0, q1, q2)
+    falls, rises = h * o.v, s.dp[2] + cubic_slope(rest, 1.0)
+    if r == 0.0 or not falls < 0.0 < rises:  # at take-off a fall is rounding
+        return False
+    left, right = 0.0, 1.0
+    for _ in range(LOOKS):
+        x = left + (right - left) * falls / (falls - rises)
+        now, change = cubic(rest, x), cubic_slope(rest, x)
+        if laid:
+            above, rate_above, _ = after(o, x * h)
+            now, change = now + above, change + h * rate_above
+        if now < margin:
+            return True
+        if change < 0.0:
+            left, falls = x, change
+        else:
+            right, rises = x, change
+        # it curves upwards: no lower than where the tangent meets the other end
+        if now - abs(change) * (right - left) > margin:
+            return False
     return False

@@ -6,11 +6,13 @@ from math import inf, sqrt
 
 from stiction.solver.blocks import Triple, inverse, times
 from stiction.solver.compiled import inlined
-from stiction.solver.frame import Frame, Outset
+from stiction.solver.frame import Frame, Outset, elongation
 from stiction.solver.newton import products
+from stiction.solver.problem import Problem
 from stiction.solver.radau import A, C, D, cubic
 from stiction.solver.slip import added
 from stiction.solver.state import Memory
+from stiction.solver.stick import margin
 from stiction.solver.swing import Oscillator, Swing, after, swings
 
 
@@ -44,6 +46,18 @@ def swung_to_rest(o: Oscillator, t: float) -> float:
         if v < 0.0:
             return max(t - p / v, 0.5 * t)
     return t
+
+
+@inlined
+def passes(problem: Problem, frame: Frame, o: Oscillator, t: float) -> bool:
+    """Return whether the slip goes on where it would vanish after `t`: friction cannot hold there.
+
+    It then passes close by zero, and turns as it does.
+    """
+    if not swings(o, t):
+        return False
+    u_x, u_y = elongation(problem, frame, t, after(o, t)[2], 0.0)
+    return margin(problem, frame.t + t, u_x, u_y)[0] > 0.0
 
 
 @inlined

@@ -76,6 +76,19 @@ def cubic(values: tuple[float, float, float, float], c: float) -> float:
 
 
 @inlined
+def cubic_slope(values: tuple[float, float, float, float], c: float) -> float:
+    """Return the derivative by `c` of the cubic through `values` at 0 and the three stages."""
+    d1, d2, d3 = c - C[0], c - C[1], c - 1.0
+    e1, e2, e3 = d2 * d3, d1 * d3, d1 * d2
+    return (
+        _W0 * (e1 + e2 + e3) * values[0]
+        + _W1 * (e1 + c * (d2 + d3)) * values[1]
+        + _W2 * (e2 + c * (d1 + d3)) * values[2]
+        + _W3 * (e3 + c * (d1 + d2)) * values[3]
+    )
+
+
+@inlined
 def integral(values: Triple, c: float) -> float:
     """Return the integral from 0 to `c` of the quadratic through `values` at the stages."""
     i, j, k = _INTEGRALS

@@ -8,7 +8,7 @@ from stiction.solver.blocks import Triple
 from stiction.solver.compiled import inlined
 from stiction.solver.defect import dips, local_error
 from stiction.solver.frame import Frame, Outset
-from stiction.solver.guess import predicted, swung_to_rest, time_to_landing
+from stiction.solver.guess import passes, predicted, swung_to_rest, time_to_landing
 from stiction.solver.newton import solve
 from stiction.solver.problem import Problem
 from stiction.solver.radau import step_factor
@@ -49,8 +49,11 @@ def step(
     o = oscillator(frame, start)
     t, h = frame.t, within_reach(o, min(size_to_try(memory), accuracy.longest), accuracy)
     until = inf if frame.r == 0.0 else time_to_landing(frame, start, o, h)
-    if EVEN * until < h < DIRECT * until:
-        h = EVEN * until  # two even steps rather than a long and a short one
+    if EVEN * until < h:
+        if passes(problem, frame, o, swung_to_rest(o, until)):
+            h, until = EVEN * until, inf
+        elif h < DIRECT * until:
+            h = EVEN * until  # two even steps rather than a long and a short one
     landing = h >= until
     if landing:
         h = swung_to_rest(o, until)
@@ -80,12 +83,14 @@ def step(
             p, landing, warm = (0.5 * frame.r, 0.2 * frame.r, 0.0), True, True
             continue
         factor = 0.3
-        if converged and p[2] >= 0.0 and not dips(frame.r, p, 0.0):
+        if converged and min(p) >= 0.0:
             relative = local_error(problem, frame, s, h, p, w, accuracy)
             error = relative / accuracy.tolerance
+            # a slip that is as small as its error may have been zero
+            least = 0.0 if landing else relative * (accuracy.speed + frame.r)
             if error > 1.0:
                 factor = step_factor(error, 1.0)
-            elif landing or not dips(frame.r, p, relative * (accuracy.speed + frame.r)):
+            elif not dips(o, s, h, frame.r, p, least):
                 return True, landing, s, h, p, w, error, rejected, iterations
         rejected += 1
         if landing:  # once is enough: too long a landing is approached by shorter steps
