@@ -201,7 +201,7 @@ def test_newton_s_form_through_leja_points(n):
 
 def recalled(theta: float, *begun: float) -> tuple[bool, float, float]:
     """What slips that began at these angles, and ended at 2, tell of one from `theta`."""
-    known, last = unknown(1e-3), Cycle(0.01, 0.001, 1e-4)
+    known, last = unknown(1e-3), Cycle(0.01, 0.001, 1e-6)
     for start in begun:
         remember(known, start, Cycle(2.0 - start, 0.5 - 0.1 * start, 0.02))
     found, cycle = remembered(known, theta, last)
@@ -219,6 +219,12 @@ def test_what_may_be_before_the_edge_is_not_known():
     assert not recalled(0.999, 1.0, 1.004)[0]  # it may stick again before it slips
     assert not recalled(1.03, 1.0, 1.004)[0]  # nor is it known what comes that far behind
     assert not recalled(1.006, 1.004)[0]  # one slip does not show that all end there
+
+
+def test_a_stick_too_short_to_tell_is_none():
+    """With 1e-6 s a turn of 0.01 before the edge, the bound of 3e-7 s is 0.0009 before it."""
+    assert recalled(1.0 - 0.8e-3, 1.0, 1.004)[0]
+    assert not recalled(1.0 - 1.0e-3, 1.0, 1.004)[0]
 
 
 def log(low: float, high: float) -> st_.SearchStrategy[float]:

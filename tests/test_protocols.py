@@ -213,6 +213,8 @@ def test_a_program_is_its_pieces_one_after_the_other(slider):
     assert np.all(np.diff(whole.sticks.ravel()) > 0)
     total = sum(end - start for start, end in sticks)
     assert np.diff(whole.sticks).sum() == pytest.approx(total, rel=1e-6)
+    assert whole.statistics.stick_count == len(whole.sticks) < len(sticks)
+    assert whole.statistics.time_stuck == pytest.approx(total, rel=1e-6)
 
 
 def test_free_springs_relax_to_rest(slider):

@@ -1,5 +1,8 @@
 """Corners: no drive, no misalignment, right angle, no friction, nonsense."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -117,3 +120,46 @@ def test_regularised_approaches_the_exact_solution():
         error = np.abs(run.data["spring_x"].values - exact.data["spring_x"].values).max()
         digit = 10.0 ** np.floor(np.log10(want))
         assert error == pytest.approx(want, abs=0.5 * digit)
+
+
+PESTERED = """
+import itertools, os, signal, threading, time
+import stiction as st
+
+slider, simulate = st.presets.nakano_popov_2020(), st.simulate  # what is imported late is there
+bristles = slider.replace(friction=st.LuGre(0.15, 0.2, 1e-2, 1e5, 300.0, 0.4))
+runs = [(slider, {}), (slider, {"multiscale": True}), (bristles, {})]
+enough, interrupted = threading.Event(), 0
+
+def pester():
+    for gap in itertools.cycle([3e-3, 5e-3, 7e-3, 11e-3, 13e-3]):
+        time.sleep(gap)
+        if enough.is_set():
+            break
+        os.kill(os.getpid(), signal.SIGINT)
+
+thread = threading.Thread(target=pester)
+while interrupted < 300:
+    try:
+        if thread.ident is None:
+            thread.start()
+        for system, how in runs * 10:
+            simulate(system, 0.02, **how)
+    except KeyboardInterrupt:
+        interrupted += 1
+while thread.is_alive():
+    try:
+        enough.set()
+        thread.join()
+    except KeyboardInterrupt:
+        pass
+assert all(simulate(system, 0.02, **how).status.ok for system, how in runs)
+"""
+
+
+def test_interrupts_do_no_harm():
+    """From the first run on, which is compiled or loaded: they arrive, and nothing crashes."""
+    done = subprocess.run(
+        [sys.executable, "-c", PESTERED], capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 0, done.stderr

@@ -48,7 +48,7 @@ class ResultError(StictionError, ValueError):
 class Status(Enum):
     """How a run ended; each value is the message that explains it.
 
-    The order is the contract with the compiled loop, which returns the position.
+    The order is the contract with the compiled loop, which returns the position in `STATUSES`.
     """
 
     COMPLETED = "the run reached its duration"
@@ -67,3 +67,6 @@ class Status(Enum):
     def ok(self) -> bool:
         """Whether the run came to its intended end."""
         return self is Status.COMPLETED
+
+
+STATUSES = tuple(Status)

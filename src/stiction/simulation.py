@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache, partial
+from functools import partial
 from importlib.metadata import version
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numba.core.errors import NumbaError
 
 from stiction.description import Description, Settings
-from stiction.errors import DescriptionError, Fault, Status
+from stiction.errors import STATUSES, DescriptionError, Fault, Status
 from stiction.friction import has_state, states
 from stiction.initial import Initial
 from stiction.labels import VARIABLES, dataset
@@ -19,6 +19,9 @@ from stiction.slider import Slider
 from stiction.solver.integrate import Solution, integrate
 from stiction.solver.refusal import reasons
 from stiction.trajectory import Statistics, Trajectory
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 PAPERS = Initial()
 
@@ -116,18 +119,24 @@ def run(
     _, initial, settings = description
     times = sample_times(initial.time, settings.duration, settings.sample_rate)
     solution = solve(description, times, max_steps=max_steps, progress=progress)
-    status = list(Status)[solution.code]
-    statistics = Statistics(*solution.counts)
+    status, statistics = STATUSES[solution.code], Statistics(*solution.counts)
+    arrays = partial(labelled, description, solution, status, statistics)
+    return Trajectory(description, arrays, status, statistics)
+
+
+def labelled(
+    description: Description, solution: Solution, status: Status, statistics: Statistics
+) -> xr.Dataset:
+    """Return what a run found as labelled arrays, and how it was found."""
     attributes = {
-        "stiction_version": _version(),
+        "stiction_version": version("stiction"),
         "solver": f"{kind(description)}, Radau IIA 5",
         "status": status.name,
         "status_message": status.value,
         **vars(statistics),
     }
-    arrived = solution.times, solution.samples, solution.sticks
-    arrays = partial(dataset, description, *arrived, attributes)
-    return Trajectory(description, arrays, status, statistics)
+    _, times, samples, sticks, _ = solution
+    return dataset(description, times, samples, sticks, attributes)
 
 
 def solve(
@@ -174,12 +183,6 @@ def kind(description: Description) -> str:
     if description.run.regularisation is not None:
         return "regularised"
     return f"set-valued friction{', multiscale' if description.run.multiscale else ''}"
-
-
-@cache
-def _version() -> str:
-    """Return the version; looking it up takes as long as a hundred cycles of stick and slip."""
-    return version("stiction")
 
 
 def sample_times(start: float, duration: float, rate: float | None) -> np.ndarray:

@@ -16,6 +16,7 @@ from numba.core import config
 from platformdirs import user_cache_path
 
 from stiction.friction.source import text_of
+from stiction.solver.interrupt import uninterrupted
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -74,6 +75,24 @@ def specialised(function: Any, *kinds: type) -> Any:
     except OSError:
         return _jit(function.py_func, inline=False, keep=False)
     return _kept(function.py_func, f"own-{digest.hexdigest()[:16]}")
+
+
+_met: set[tuple[Any, ...]] = set()
+
+
+def called(function: Any, kinds: tuple[type, ...], *arguments: Any) -> Any:
+    """Call what `specialised` returns; what it returns must be made of plain tuples and numbers.
+
+    The first time it is compiled, or loaded, which no interrupt may cut short: numba would be left
+    with half of its parts in place, and this process could compile nothing more.
+    """
+    solve = specialised(function, *kinds)
+    if (solve, kinds) in _met:
+        return solve(*arguments)
+    with uninterrupted():
+        found = solve(*arguments)
+        _met.add((solve, kinds))
+    return found
 
 
 def _source(kind: type) -> str:

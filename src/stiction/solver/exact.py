@@ -5,16 +5,15 @@ from __future__ import annotations
 from math import nan, sqrt
 
 from stiction.description import Description
-from stiction.solver import loop
-from stiction.solver.compiled import specialised
+from stiction.solver.compiled import called
 from stiction.solver.frame import friction
+from stiction.solver.loop import steps
 from stiction.solver.output import Output
 from stiction.solver.problem import Problem, constant, kinds_of, steady
 from stiction.solver.returns import Returns, unknown
 from stiction.solver.sampling import COLUMNS
-from stiction.solver.state import Accuracy, Motion, State, cooled, start
+from stiction.solver.state import Accuracy, Motion, Plain, State, cooled, named, start
 from stiction.solver.stick import holding
-from stiction.solver.stretch import system_of
 from stiction.solver.strides import stride
 from stiction.solver.surface import friction_along
 
@@ -29,9 +28,7 @@ class Exact:
     def begin(self, description: Description) -> State:
         """Return the state from which a run starts."""
         slider, initial, _ = description
-        initial.internal(slider)  # none may be given
-        u = (initial.u_x, initial.u_y)
-        return start(system_of(slider), initial.time, u, initial.slip(slider))
+        return start(slider, initial.time, (initial.u_x, initial.u_y), initial.slip(slider))
 
     def entered(self, state: State, x: float, y: float) -> State:
         """Return the state at the start of a stretch, where the slip velocity jumps by (x, y).
@@ -51,12 +48,10 @@ class Exact:
         self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
     ) -> tuple[int, State]:
         """Advance until `end` (s) or until the budget is used up."""
-        code, state, out.filled, turns = specialised(loop.advance, *kinds_of(problem))(
-            problem, state, end, held, budget, out.times, out.samples, out.filled, out.sticks
-        )
-        out.used += turns
-        out.make_room(state.counts.sticks)
-        return code, state
+        times, samples, sticks = out.times, out.samples, out.sticks
+        arguments = problem, state, end, held, budget, times, samples, out.filled, sticks
+        code, now, out.filled, turns = called(steps, kinds_of(problem), *arguments)
+        return code, arrived(now, out, turns)
 
     def last_row(self, problem: Problem, state: State) -> list[float]:
         """Return the sample of a state between two steps."""
@@ -94,18 +89,16 @@ class Multiscale(Exact):
         if self.known is None or problem != self.problem:
             self.problem, self.known = problem, unknown(self.rtol)
         fine = held._replace(tolerance=FINER * held.tolerance, newton=FINER * held.newton)
-        code, state, out.filled, turns = specialised(stride, *kinds_of(problem))(
-            problem,
-            state,
-            end,
-            fine,
-            budget,
-            out.times,
-            out.samples,
-            out.filled,
-            out.sticks,
-            self.known,
-        )
-        out.used += turns
-        out.make_room(state.counts.sticks)
-        return code, state
+        times, samples, sticks = out.times, out.samples, out.sticks
+        arguments = problem, state, end, fine, budget, times, samples, out.filled, sticks
+        found = called(stride, kinds_of(problem), *arguments, self.known)
+        code, now, out.filled, turns = found
+        return code, arrived(now, out, turns)
+
+
+def arrived(now: Plain, out: Output, turns: int) -> State:
+    """Return the state that so many turns led to, with room for further sticks."""
+    state = named(now)
+    out.used += turns
+    out.make_room(state.counts.sticks)
+    return state

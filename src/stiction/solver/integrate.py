@@ -14,7 +14,6 @@ from stiction.drive import jump
 from stiction.friction import has_state
 from stiction.slider import Slider
 from stiction.solver.exact import Exact, Multiscale
-from stiction.solver.interrupt import uninterrupted
 from stiction.solver.output import Output
 from stiction.solver.problem import Problem
 from stiction.solver.smooth.method import Smooth
@@ -149,24 +148,22 @@ def integrate(
         if progress is not None:
             progress((t - initial.time) / settings.duration)
 
-    with uninterrupted() as release:
-        for stretch in stretches(slider, t, end):
-            state = method.entered(state, *slip_jump(slider, t))
-            held = accuracy(slider, stretch, t, settings.rtol)
-            code = RUNNING
-            while code == RUNNING:
-                release()
-                budget = min(BUDGET, max_steps - out.used)
-                if budget <= 0:
-                    code = TOO_MANY_STEPS
-                    break
-                code, state = method.advance(stretch.problem, state, stretch.end, held, budget, out)
-                report(state.motion.t)
-            t = stretch.end
-            if code == COMPLETED and stretch.lost:
-                code = CONTACT_LOST
-            if code != COMPLETED:
+    for stretch in stretches(slider, t, end):
+        state = method.entered(state, *slip_jump(slider, t))
+        held = accuracy(slider, stretch, t, settings.rtol)
+        code = RUNNING
+        while code == RUNNING:
+            budget = min(BUDGET, max_steps - out.used)
+            if budget <= 0:
+                code = TOO_MANY_STEPS
                 break
+            code, state = method.advance(stretch.problem, state, stretch.end, held, budget, out)
+            report(state.motion.t)
+        t = stretch.end
+        if code == COMPLETED and stretch.lost:
+            code = CONTACT_LOST
+        if code != COMPLETED:
+            break
     assert stretch is not None
     k, counts = out.filled, Counts(*state.counts)
     times, samples = times[:k], out.samples[:k]
@@ -174,8 +171,7 @@ def integrate(
         earlier = times < state.motion.t
         times = np.append(times[earlier], state.motion.t)
         samples = np.vstack([samples[earlier], method.last_row(stretch.problem, state)])
-    sticks = joined(out.sticks[: counts.sticks])
-    return Solution(code, times, samples, sticks, counts._replace(sticks=len(sticks)))
+    return Solution(code, times, samples, out.sticks[: counts.sticks].copy(), counts)
 
 
 def slip_jump(slider: Slider, t: float) -> tuple[float, float]:
@@ -184,14 +180,8 @@ def slip_jump(slider: Slider, t: float) -> tuple[float, float]:
     The mass keeps its velocity. That over a plate which is driven jumps with the plate's;
     over a plate at rest it does not.
     """
-    X, Y = jump(slider.motion, t) if slider.driven == "plate" else (0.0, 0.0)
+    if slider.driven != "plate":
+        return 0.0, 0.0
+    X, Y = jump(slider.motion, t)
     c, s = slider.direction
     return X * c - Y * s, X * s + Y * c
-
-
-def joined(sticks: np.ndarray) -> np.ndarray:
-    """Return stick intervals (n, 2) with those made one that go on from stretch to stretch."""
-    apart = sticks[1:, 0] > sticks[:-1, 1]
-    if apart.all():
-        return sticks.copy()
-    return np.column_stack([sticks[np.r_[True, apart], 0], sticks[np.r_[apart, True], 1]])

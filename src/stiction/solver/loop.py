@@ -6,7 +6,7 @@ from math import isfinite, sqrt
 
 import numpy as np
 
-from stiction.solver.blocks import dot
+from stiction.solver.blocks import Triple, dot
 from stiction.solver.compiled import compiled, inlined
 from stiction.solver.frame import Frame, Outset, elongation, frame_of, outset, turned
 from stiction.solver.landing import land, pursuit
@@ -32,9 +32,11 @@ from stiction.solver.state import (
     Counts,
     Memory,
     Motion,
+    Plain,
     State,
     at_takeoff,
     counted,
+    plain,
     planned,
     size_to_try,
 )
@@ -68,13 +70,17 @@ def stick(
         k = sample_stick(problem, t, u_x, u_y, end, times, samples, k)
         d_x, d_y = in_principal_axes(problem, travel(problem.drive, t, end - t))
         u_x, u_y = u_x + d_x, u_y + d_y
-        sticks[counts.sticks, 0] = t
-        sticks[counts.sticks, 1] = end
+        row = counts.sticks
+        if row > 0 and sticks[row - 1, 1] == t:  # the same stick goes on in another stretch
+            row -= 1
+        else:
+            sticks[row, 0] = t
+        sticks[row, 1] = end
         counts = Counts(
             counts.steps,
             counts.rejected,
             counts.iterations,
-            counts.sticks + 1,
+            row + 1,
             counts.stuck + (end - t),
             counts.mapped,
         )
@@ -130,7 +136,7 @@ def slip(
     memory = Memory(
         h * factor if h > 0.1 * memory.h or end < t_stop else memory.h,
         plan,
-        memory.place + 1,
+        1 if turns_up(r, p) else memory.place + 1,
         h,
         min(at_ease, 3.0),
         not landing,
@@ -139,6 +145,12 @@ def slip(
     )
     r = 0.0 if landing else p[2] * sqrt(1.0 + w[2] * w[2])
     return True, State(Motion(end, u_x, u_y, r, e_x, e_y), memory, counts), k
+
+
+@inlined
+def turns_up(r: float, p: Triple) -> bool:
+    """Return whether the slip falls and rises again in a step: a swing ends, another begins."""
+    return p[0] < r and p[1] < p[2]
 
 
 @inlined
@@ -154,7 +166,7 @@ def at_rest(problem: Problem, motion: Motion, accuracy: Accuracy) -> bool:
     return margin(problem, motion.t, motion.u_x, motion.u_y)[0] < 0.0 or motion.r == 0.0
 
 
-@compiled
+@inlined
 def advance(
     problem: Problem,
     state: State,
@@ -218,3 +230,22 @@ def advance(
             return STEP_UNDERFLOW, state, k, turn
     code = COMPLETED if state.motion.t >= t_end else RUNNING
     return code, state, k, budget
+
+
+@compiled
+def steps(
+    problem: Problem,
+    state: State,
+    t_end: float,
+    accuracy: Accuracy,
+    budget: int,
+    times: np.ndarray,
+    samples: np.ndarray,
+    k: int,
+    sticks: np.ndarray,
+) -> tuple[int, Plain, int, int]:
+    """Advance, and return the state as Python takes it best."""
+    code, state, k, turns = advance(
+        problem, state, t_end, accuracy, budget, times, samples, k, sticks
+    )
+    return code, plain(state), k, turns

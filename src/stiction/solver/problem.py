@@ -75,7 +75,7 @@ class Problem(NamedTuple):
 
 def kinds_of(problem: Problem) -> tuple[Any, ...]:
     """Return the types for which the compiled code is specialised."""
-    return type(problem.law), type(problem.drive), type(problem.load)
+    return type(problem.law), type(problem.surface), type(problem.drive), type(problem.load)
 
 
 def coefficient(law: FrictionLaw, v: float) -> float:

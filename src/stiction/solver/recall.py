@@ -47,9 +47,14 @@ def change(known: Returns, i: int, j: int, off: float) -> Cycle:
 
 @inlined
 def under_way(known: Returns, row: int, theta: float, last: Cycle) -> bool:
-    """Return whether the cycle in a row began at an angle or a little earlier on the way to it."""
-    behind = float(theta - known.past[row, 0])
-    return 0.0 <= behind / last.turn <= FAR
+    """Return whether the cycle in a row began at an angle or a little earlier on the way to it.
+
+    Or so little later that a stick before it would be shorter than times of landing may differ
+    by: it grows with the square root of the distance to the edge, and was `last.held` a turn ago.
+    """
+    behind = float(theta - known.past[row, 0]) / last.turn
+    shortest = NEAR * known.closing * last.time / last.held
+    return -min(shortest * shortest, 1.0) <= behind <= FAR
 
 
 @inlined

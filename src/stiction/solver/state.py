@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from math import sqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+from stiction.slider import Slider
 from stiction.solver.compiled import inlined
-from stiction.solver.problem import System
 
 RUNNING, COMPLETED, STEP_UNDERFLOW, NON_FINITE, TOO_MANY_STEPS, CONTACT_LOST = -1, 0, 1, 2, 3, 4
 
@@ -90,23 +90,41 @@ class State(NamedTuple):
     counts: Counts
 
 
-def first_step(system: System) -> float:
+Plain = tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...]]
+
+
+@inlined
+def plain(state: State) -> Plain:
+    """Return the state as tuples without names.
+
+    They are made into Python's in a fraction of the time, and without Python's own code, in which
+    an interrupt may arrive (see `interrupt`).
+    """
+    return state.motion[:], state.memory[:], state.counts[:]
+
+
+def named(state: Plain) -> State:
+    """Return the state that `plain` was given."""
+    motion, memory, counts = state
+    return State(Motion(*motion), Memory(*memory), Counts(*counts))
+
+
+def first_step(slider: Slider) -> float:
     """Return the size of the first step to try, s."""
-    return 0.05 / sqrt(max(system.k_x, system.k_y) / system.mass)
+    return 0.05 / sqrt(max(slider.k_x, slider.k_y) / slider.mass)
 
 
-def start(system: System, t: float, u: tuple[float, float], slip: tuple[float, float]) -> State:
+def start(slider: Slider, t: float, u: tuple[float, float], slip: tuple[float, float]) -> State:
     """Return the state from which a run starts."""
     r = sqrt(slip[0] ** 2 + slip[1] ** 2)
     e = (slip[0] / r, slip[1] / r) if r > 0.0 else (1.0, 0.0)
-    h = first_step(system)
+    h = first_step(slider)
     nothing = (0.0, 0.0, 0.0, 0.0)
     plan = (h, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     memory = Memory(h, plan, 0, h, 1.0, False, nothing, nothing)
     return State(Motion(t, u[0], u[1], r, e[0], e[1]), memory, NOTHING)
 
 
-@inlined
 def cooled(memory: Memory, h: float) -> Memory:
     """Return a memory whose cubics predict nothing: the motion has a kink here."""
     return Memory(h, memory.plan, PLANNED, memory.h_last, memory.ease, False, memory.p, memory.w)

@@ -21,8 +21,10 @@ from stiction.solver.state import (
     Accuracy,
     Counts,
     Motion,
+    Plain,
     State,
     at_takeoff,
+    plain,
 )
 from stiction.solver.stick import stick_duration
 from stiction.solver.takeoff import angle, elongation_held, wrapped
@@ -217,7 +219,7 @@ def stride(
     k: int,
     sticks: np.ndarray,
     known: Returns,
-) -> tuple[int, State, int, int]:
+) -> tuple[int, Plain, int, int]:
     """Advance as `stiction.solver.loop.advance` does, by the return map where it is known.
 
     Parameters
@@ -242,13 +244,13 @@ def stride(
             )
             turns += state.counts.steps - steps
             if code > COMPLETED:
-                return code, state, k, turns
+                return code, plain(state), k, turns
         if turns >= budget or state.counts.sticks == len(sticks):
-            return RUNNING, state, k, turns
+            return RUNNING, plain(state), k, turns
         room = sticks[: state.counts.sticks + (1 if rests else 0)]  # until the next landing
         code, state, k, used = advance(
             problem, state, t_end, accuracy, budget - turns, times, samples, k, room
         )
         turns += used
         if code != RUNNING:
-            return code, state, k, turns
+            return code, plain(state), k, turns

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.errors import DescriptionError, Status
+from stiction.errors import STATUSES, DescriptionError
 from stiction.study.kept import Kept, kept
 from stiction.study.layout import Index, places, runs_of, size_of
 from stiction.study.observed import observe
@@ -71,7 +71,7 @@ def outcome(
     report(0.0)
     try:
         seen = observe(study.description(index), report)
-        ended = list(Status)[seen.solution.code]
+        ended = STATUSES[seen.solution.code]
         if not ended.ok:
             return Outcome(seen.solution.code, ended.value, ())
         return Outcome(COMPLETED, "", tuple(each.of(seen) for each in wanted))

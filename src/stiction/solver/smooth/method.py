@@ -10,6 +10,7 @@ import numpy as np
 from stiction.description import Description
 from stiction.friction import states
 from stiction.solver.compiled import specialised
+from stiction.solver.interrupt import uninterrupted
 from stiction.solver.output import Output
 from stiction.solver.problem import Problem, at, force, kinds_of
 from stiction.solver.sampling import COLUMNS
@@ -17,7 +18,6 @@ from stiction.solver.smooth import loop
 from stiction.solver.smooth.law import Smoothed
 from stiction.solver.smooth.state import Memory, Motion, State
 from stiction.solver.state import NOTHING, Accuracy, first_step
-from stiction.solver.stretch import system_of
 
 # of the slip speed below which that of set-valued friction is not resolved: states remember slower
 # slip. LuGre's published case comes out 600 times better for 14 % more steps.
@@ -39,7 +39,7 @@ class Smooth:
         slider, initial, _ = description
         motion = Motion(initial.time, initial.u_x, initial.u_y, *initial.slip(slider))
         internal = np.array(initial.internal(slider), dtype=np.float64)
-        h = self.first_step = first_step(system_of(slider))
+        h = self.first_step = first_step(slider)
         memory = Memory(h, h, False, np.zeros((4, 2 + self.states)))
         return State(motion, internal, memory, NOTHING)
 
@@ -55,16 +55,13 @@ class Smooth:
         self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
     ) -> tuple[int, State]:
         """Advance until `end` (s) or until the budget is used up."""
-        code, state, out.filled, turns = specialised(loop.advance, *kinds_of(problem))(
-            self.smooth(problem),
-            state,
-            end,
-            self.resolved(held),
-            budget,
-            out.times,
-            out.samples,
-            out.filled,
-        )
+        solve = specialised(loop.advance, *kinds_of(problem))
+        smooth, resolved = self.smooth(problem), self.resolved(held)
+        times, samples = out.times, out.samples
+        with uninterrupted():  # the state comes back as named tuples and arrays
+            code, state, out.filled, turns = solve(
+                smooth, state, end, resolved, budget, times, samples, out.filled
+            )
         out.used += turns
         return code, state
 
