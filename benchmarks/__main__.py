@@ -15,6 +15,7 @@ from .report import save, show
 # each module has run(progress, quick) -> Section
 PARTS = {
     "precision": "precision.diagram",
+    "multiscale": "multiscale",
     "ensembles": "ensembles.comparison",
     "verification": "verification",
     "conservation": "conservation",

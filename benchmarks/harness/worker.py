@@ -11,11 +11,14 @@ import importlib
 import json
 import os
 import sys
+from math import inf
 from time import perf_counter
 
 import numpy as np
 
 from .contestant import Contestant, Failed
+
+MOMENT = 0.02  # s
 
 
 def main() -> None:
@@ -47,13 +50,19 @@ def main() -> None:
 
 
 def timed(contestant: Contestant, times, into: str | None) -> float:
-    """Return how long a contestant takes, s; its elongations go to a file if one is named."""
-    start = perf_counter()
-    found = contestant.solve(times)
-    seconds = perf_counter() - start
+    """Return how long a contestant takes, s; its elongations go to a file if one is named.
+
+    One that takes less than a moment goes on until that is over, and its shortest time counts: a
+    first run finds the processor's caches full of what ran before.
+    """
+    shortest, until = inf, perf_counter() + MOMENT
+    while perf_counter() < until:
+        start = perf_counter()
+        found = contestant.solve(times)
+        shortest = min(shortest, perf_counter() - start)
     if into is not None:
         np.save(into, found)
-    return seconds
+    return shortest
 
 
 if __name__ == "__main__":

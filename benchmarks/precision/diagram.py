@@ -31,7 +31,8 @@ HEADINGS = (
 )
 TERMS = (
     "Errors: largest on a 1 ms grid over 5 s. Times: of whole calls without samples, compiled"
-    " before, in rounds; a run that takes longer than 1.5 s is timed once, with its samples.",
+    " before, in rounds, in each of which runs are repeated for 20 ms; one that takes longer than"
+    " 1.5 s is timed once, with its samples.",
     "Times as long as stiction: the shortest time beside that of the fastest row of stiction that"
     " is at least as accurate in both forces, which is named.",
 )
