@@ -64,6 +64,19 @@ def test_a_dip_between_the_stages_is_seen(least, early):
     assert abs(seen - least) > abs(least)
 
 
+@pytest.mark.parametrize("least", [-1e-3, 1e-3])
+def test_a_dip_before_another_fall_is_seen(least):
+    """In a step too long to be laid over an oscillation: the slip is its cubic."""
+    bottom = 0.3
+    slip = np.polynomial.Polynomial([0.0, 0.0, 3.0, -4.0])(np.polynomial.Polynomial([-bottom, 1.0]))
+    slip, h = slip + least, sqrt(2.0 * MOST)
+    p = tuple(float(slip(c)) for c in C)
+    assert min(p) > 0.0
+    assert p[1] > p[2]
+    o = Oscillator(1.0, 1.0, 0.0, 0.0, slip(0.0), slip.deriv()(0.0) / h)
+    assert _dips(o, h, p, 0.0) == (least < 0.0)
+
+
 @pytest.mark.parametrize("o", OSCILLATORS)
 def test_what_it_adds_to_the_equations_is_what_its_cubic_leaves(o):
     h = 0.5 * sqrt(MOST / o.k)

@@ -26,6 +26,7 @@ from stiction.solver.radau import (
     C,
     D,
     cubic,
+    cubic_slope,
 )
 from stiction.solver.stick import stick_duration
 from stiction.solver.stretch import stretches
@@ -298,6 +299,7 @@ def test_collocation_cubic():
     close = {"rel": 0, "abs": 100 * EPS}
     for x in (0.0, 0.1, 0.5, 1.0, 2.5):
         assert cubic(values, x) == pytest.approx(polynomial(x), rel=1e3 * EPS)
+        assert cubic_slope(values, x) == pytest.approx(polynomial.deriv()(x), rel=1e3 * EPS)
     assert np.dot(VALUE, values) == pytest.approx(polynomial(INTERIOR), **close)
     assert np.dot(DERIVATIVE, values) == pytest.approx(polynomial.deriv()(INTERIOR), **close)
     square = np.polynomial.Polynomial([0.3, -1.1, 2.0])  # stages alone hold a quadratic

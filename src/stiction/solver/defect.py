@@ -15,6 +15,7 @@ from stiction.solver.radau import (
     INTEGRAL,
     INTERIOR,
     VALUE,
+    C,
     cubic,
     cubic_slope,
 )
@@ -85,10 +86,12 @@ def dips(o: Oscillator, s: Swing, h: float, r: float, p: Triple, margin: float) 
     """
     laid, (q0, q1, q2) = swings(o, h), less(p, s.p)
     rest = (0.0 if laid else r, q0, q1, q2)
+    left, right = 0.0, 1.0
     falls, rises = h * o.v, s.dp[2] + cubic_slope(rest, 1.0)
+    if p[0] < p[1] >= p[2]:  # it may have come back before, and fall again
+        right, rises = C[1], s.dp[1] + cubic_slope(rest, C[1])
     if r == 0.0 or not falls < 0.0 < rises:  # at take-off a fall is rounding
         return False
-    left, right = 0.0, 1.0
     for _ in range(LOOKS):
         x = left + (right - left) * falls / (falls - rises)
         now, change = cubic(rest, x), cubic_slope(rest, x)
