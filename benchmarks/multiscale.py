@@ -25,7 +25,7 @@ DURATIONS = (5.0, 10.0, 20.0, 50.0)  # s
 BOUND = Errors(1e-3, inf)  # N
 RTOL = (1e-2, 4e-3, 3e-3, 1e-3, 3e-4, 1e-4)
 REFERENCE = 1e-11  # its rtol
-ROUNDS = 9
+ROUNDS = 5
 HEADINGS = (
     "duration (s)",
     "stiction",

@@ -18,7 +18,7 @@ from .section import Cell, Section, Table
 
 CORES = os.cpu_count() or 1
 SIDE, QUICK_SIDE = 24, 8  # runs along phi and along V
-ROUNDS = 3
+ROUNDS = 2
 PLANNED = (10**4, 10**5, 10**6)
 
 COMMON = """

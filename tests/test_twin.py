@@ -21,6 +21,8 @@ from stiction.solver.radau import (
     DERIVATIVE,
     INTEGRAL,
     INTERIOR,
+    LATER,
+    LATER_WEIGHT,
     VALUE,
     A,
     C,
@@ -313,6 +315,7 @@ def test_defect_weight():
     error, defect = nodes.integ(), nodes(INTERIOR)
     worst = max(abs(error(x)) for x in np.linspace(0.0, 1.0, 1001))
     assert worst / abs(defect) == pytest.approx(DEFECT_WEIGHT, rel=0.05)
+    assert worst / abs(nodes(LATER)) == pytest.approx(LATER_WEIGHT, rel=0.05)
 
 
 def test_quintic_is_of_sixth_order():

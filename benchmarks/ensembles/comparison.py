@@ -65,9 +65,9 @@ def run(progress: Progress, quick: bool) -> Section:
             compare,
             progress,
             times=GRID,
-            repeats=2 if quick else 5,
+            repeats=2 if quick else 3,
             budget=2.0 if quick else 4.0,
-            seconds=40.0 if quick else 140.0,
+            seconds=40.0 if quick else 110.0,
         )
     pending = iter(typical)
     usual = [row if row.errors is None else row._replace(errors=next(pending)) for row in rows]

@@ -4,26 +4,26 @@ from __future__ import annotations
 
 from math import inf, sqrt
 
-from stiction.solver.blocks import Triple, dot, less
+from stiction.solver.blocks import Triple, less
 from stiction.solver.compiled import inlined
 from stiction.solver.frame import Frame, friction, pull
 from stiction.solver.newton import products
 from stiction.solver.problem import Problem, in_principal_axes, rate
 from stiction.solver.radau import (
     DEFECT_WEIGHT,
-    DERIVATIVE,
-    INTEGRAL,
     INTERIOR,
-    VALUE,
+    LATER,
+    LATER_WEIGHT,
     C,
     cubic,
     cubic_slope,
+    integral,
 )
 from stiction.solver.state import Accuracy
 from stiction.solver.surface import flow
-from stiction.solver.swing import Oscillator, Swing, after, swings
+from stiction.solver.swing import MOST, Oscillator, Swing, after, swings
 
-LOOKS = 4  # at where the slip may be least: each comes some ten times nearer
+LOOKS = 6  # at most, at where the slip may be least
 
 
 @inlined
@@ -38,17 +38,42 @@ def local_error(
 ) -> float:
     """Return the largest relative error of the collocation cubic inside the step.
 
-    Its defect at an interior point, times the step size; that of w is divided by how stiffly
-    w follows the force. Held against the slip speed, but against no more than the drive's: a
-    rapid slip is over in few steps, and its error shifts all that follows; for w accordingly;
-    and in each principal axis against what the elongation rate there can be.
+    Its defect at an interior point, times the step size. In a step longer than an oscillation,
+    which the cubic may run through anyhow, that can vanish by chance: there at two.
     """
-    r, dt = frame.r, INTERIOR * h
-    p_in = VALUE[0] * r + VALUE[1] * p[0] + VALUE[2] * p[1] + VALUE[3] * p[2] + s.p_in
-    w_in = VALUE[1] * w[0] + VALUE[2] * w[1] + VALUE[3] * w[2]
-    dp = DERIVATIVE[0] * r + DERIVATIVE[1] * p[0] + DERIVATIVE[2] * p[1] + DERIVATIVE[3] * p[2]
-    dw = DERIVATIVE[1] * w[0] + DERIVATIVE[2] * w[1] + DERIVATIVE[3] * w[2]
-    slid_1, slid_2 = h * (dot(INTEGRAL, p) + s.slid_in), h * dot(INTEGRAL, products(p, w))
+    over = s.p_in, s.rest_in, s.slid_in
+    error = error_at(problem, frame, over, h, p, w, accuracy, INTERIOR, DEFECT_WEIGHT)
+    if frame.k_11 * h * h > MOST:
+        over = 0.0, 0.0, 0.0
+        later = error_at(problem, frame, over, h, p, w, accuracy, LATER, LATER_WEIGHT)
+        error = max(error, later)
+    return error
+
+
+@inlined
+def error_at(
+    problem: Problem,
+    frame: Frame,
+    over: Triple,
+    h: float,
+    p: Triple,
+    w: Triple,
+    accuracy: Accuracy,
+    c: float,
+    weight: float,
+) -> float:
+    """Return the relative error that follows from the defect at `c` (0 to 1), of this weight.
+
+    `over` is what the oscillation adds there (see `Swing`). The defect of w is divided by how
+    stiffly w follows the force. Errors are held against the slip speed, but against no more than
+    the drive's: a rapid slip is over in few steps, and its error shifts all that follows; for w
+    accordingly; and in each principal axis against what the elongation rate there can be.
+    """
+    r, dt, (p_over, rest_over, slid_over) = frame.r, c * h, over
+    along, turn = (r, p[0], p[1], p[2]), (0.0, w[0], w[1], w[2])
+    p_in, w_in = cubic(along, c) + p_over, cubic(turn, c)
+    dp, dw = cubic_slope(along, c), cubic_slope(turn, c)
+    slid_1, slid_2 = h * (integral(p, c) + slid_over), h * integral(products(p, w), c)
     b_1, b_2, _, _ = pull(problem, frame, dt)
     a_1 = b_1 - frame.k_11 * slid_1 - frame.k_12 * slid_2 - (frame.c_11 + frame.c_12 * w_in) * p_in
     a_2 = b_2 - frame.k_12 * slid_1 - frame.k_22 * slid_2 - (frame.c_12 + frame.c_22 * w_in) * p_in
@@ -57,8 +82,8 @@ def local_error(
     if p_in < 0.0:
         return inf
     n = flow(problem, frame.surface, w_in)
-    error_p = dp - h * (a_1 - f * n.n_1) + s.rest_in
-    stiffness = p_in + DEFECT_WEIGHT * h * abs(a_1 + f * n.dtau)
+    error_p = dp - h * (a_1 - f * n.n_1) + rest_over
+    stiffness = p_in + weight * h * abs(a_1 + f * n.dtau)
     error_w = (p_in * dw - h * (a_2 - w_in * a_1 - f * n.tau)) / (stiffness + 1e-300)
     error_q = w_in * error_p + p_in * error_w
     e_x, e_y, size = frame.e_x, frame.e_y, p_in * stretch
@@ -68,7 +93,7 @@ def local_error(
     held = min(size, accuracy.drive)
     scale_x = speed + min(held, abs(v_x) + accuracy.free_x)
     scale_y = speed + min(held, abs(v_y) + accuracy.free_y)
-    return DEFECT_WEIGHT * max(
+    return weight * max(
         abs(error_p) / (speed + held),
         abs(error_w) * (speed + size) / (speed + held),
         abs(error_p * e_x - error_q * e_y) / scale_x,
@@ -84,14 +109,17 @@ def dips(o: Oscillator, s: Swing, h: float, r: float, p: Triple, margin: float) 
     step is laid over, and the cubic of what is left. A cubic through the slip at the stages would
     miss what the oscillation does between them.
     """
+    if r == 0.0 or not o.v < 0.0:  # at take-off a fall is rounding
+        return False
     laid, (q0, q1, q2) = swings(o, h), less(p, s.p)
     rest = (0.0 if laid else r, q0, q1, q2)
     left, right = 0.0, 1.0
     falls, rises = h * o.v, s.dp[2] + cubic_slope(rest, 1.0)
     if p[0] < p[1] >= p[2]:  # it may have come back before, and fall again
         right, rises = C[1], s.dp[1] + cubic_slope(rest, C[1])
-    if r == 0.0 or not falls < 0.0 < rises:  # at take-off a fall is rounding
+    if not rises > 0.0:
         return False
+    side = 0
     for _ in range(LOOKS):
         x = left + (right - left) * falls / (falls - rises)
         now, change = cubic(rest, x), cubic_slope(rest, x)
@@ -100,10 +128,13 @@ def dips(o: Oscillator, s: Swing, h: float, r: float, p: Triple, margin: float) 
             now, change = now + above, change + h * rate_above
         if now < margin:
             return True
+        # the end that stays twice counts half (Illinois): or else it would be come near to slowly
         if change < 0.0:
-            left, falls = x, change
+            left, falls, rises = x, change, 0.5 * rises if side < 0 else rises
+            side = -1
         else:
-            right, rises = x, change
+            right, rises, falls = x, change, 0.5 * falls if side > 0 else falls
+            side = 1
         # it curves upwards: no lower than where the tangent meets the other end
         if now - abs(change) * (right - left) > margin:
             return False

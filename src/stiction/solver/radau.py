@@ -48,6 +48,9 @@ D: Matrix = _inverse(A)
 INTERIOR = 0.4
 _DEFECT = Polynomial.fromroots(C)
 DEFECT_WEIGHT = abs(float(_DEFECT.integ()(C[0]) / _DEFECT(INTERIOR)))
+# another such point, about where the defect is largest after the second stage
+LATER = 0.85
+LATER_WEIGHT = abs(float(_DEFECT.integ()(C[0]) / _DEFECT(LATER)))
 _NODES = (0.0, *C)
 VALUE = tuple(float(_lagrange(_NODES, i)(INTERIOR)) for i in range(4))
 DERIVATIVE = tuple(float(_lagrange(_NODES, i).deriv()(INTERIOR)) for i in range(4))
