@@ -2,61 +2,32 @@
 
 from __future__ import annotations
 
-from math import inf, nan
+from math import inf
 
 import numpy as np
 
-from stiction.solver.chart import added, advance, chart
+from stiction.solver.chart import advance, chart
 from stiction.solver.compiled import compiled, inlined
+from stiction.solver.holds import hold_of, landed, sample_cycle
 from stiction.solver.loop import at_rest
 from stiction.solver.patch import cycle_from, followed, place
-from stiction.solver.problem import Problem, in_principal_axes, rate
+from stiction.solver.problem import Problem
 from stiction.solver.recall import remember, remembered
 from stiction.solver.returns import FAR, PATCHES, Cycle, Hold, Returns
-from stiction.solver.sampling import sample_stick
 from stiction.solver.state import (
     COMPLETED,
-    NOTHING,
     RUNNING,
     Accuracy,
     Counts,
-    Motion,
     Plain,
     State,
-    at_takeoff,
     plain,
 )
-from stiction.solver.stick import stick_duration
-from stiction.solver.takeoff import angle, elongation_held, wrapped
+from stiction.solver.takeoff import wrapped
 
 PAYS = 8.0  # cycles that a patch must be good for
 VAIN = 30  # nodes that may be in vain at first, and one more for each so many cycles solved
 VAIN_EACH = 4
-SLIP_STEPS = 1_000_000_000
-SAME = 1e-3  # of a slip: a landing so near to another is the same
-
-
-@inlined
-def hold_of(problem: Problem, motion: Motion) -> Hold:
-    """Return the stick that begins at a landing; the angle is not a number if it is none."""
-    t, u_x, u_y = motion.t, motion.u_x, motion.u_y
-    duration, _ = stick_duration(problem, t, u_x, u_y, inf)
-    if not 0.0 < duration < inf:
-        return Hold(t, t + duration, nan)
-    v_x, v_y = in_principal_axes(problem, rate(problem.drive, 0.0))
-    return Hold(t, t + duration, angle(problem, u_x + v_x * duration, u_y + v_y * duration))
-
-
-@inlined
-def landed(problem: Problem, state: State, hold: Hold) -> State:
-    """Return the state at the start of a stick."""
-    motion, memory, counts = state
-    u_x, u_y = elongation_held(problem, hold.theta)
-    v_x, v_y = in_principal_axes(problem, rate(problem.drive, 0.0))
-    back = hold.end - hold.start
-    u_x, u_y = u_x - v_x * back, u_y - v_y * back
-    landing = Motion(hold.start, u_x, u_y, 0.0, motion.e_x, motion.e_y)
-    return State(landing, at_takeoff(memory), counts)
 
 
 @inlined
@@ -68,7 +39,8 @@ def reach(known: Returns, theta: float, turn: float) -> float:
     """
     way = 1.0 if turn > 0.0 else -1.0
     width = float(known.width[0])
-    part = 0.25 if known.patches[known.sizes[0], 0] == theta - turn else 0.5
+    tried = known.patches[min(known.sizes[0], PATCHES - 1), 0]
+    part = 0.25 if tried == theta - turn else 0.5
     for i in range(known.sizes[1]):
         gap = way * float(known.edges[i] - theta)
         if gap >= 0.0:
@@ -78,42 +50,6 @@ def reach(known: Returns, theta: float, turn: float) -> float:
         if gap > 0.3 * width:
             width = min(width, gap)
     return way * width
-
-
-@inlined
-def sample_cycle(
-    problem: Problem,
-    state: State,
-    hold: Hold,
-    landing: float,
-    accuracy: Accuracy,
-    times: np.ndarray,
-    samples: np.ndarray,
-    k: int,
-) -> tuple[int, State, int]:
-    """Fill the samples of a stick and the slip until `landing` (s), by steps.
-
-    These find a landing of their own; where it is does not count, since samples do not
-    influence the motion. Samples after it are those of the stick that follows.
-    """
-    start = landed(problem, state, hold)
-    motion, memory, counts = start
-    k = sample_stick(problem, hold.start, motion.u_x, motion.u_y, hold.end, times, samples, k)
-    if k == len(times) or times[k] > landing:
-        return COMPLETED, state, k
-    until = k
-    while until < len(times) and times[until] <= landing:
-        until += 1
-    slip, room, counts = landing - hold.end, np.empty((1, 2)), state.counts
-    code, alone = RUNNING, State(motion, memory, NOTHING)
-    # it may stick for a moment where the map has it just not
-    while code == RUNNING and k < until and alone.motion.t < landing - SAME * slip:
-        alone = State(alone.motion, alone.memory, NOTHING)
-        code, alone, k, _ = advance(
-            problem, alone, landing + slip, accuracy, SLIP_STEPS, times[:until], samples, k, room
-        )
-        counts = added(counts, alone.counts)
-    return code, State(state.motion, state.memory, counts), k
 
 
 @inlined
