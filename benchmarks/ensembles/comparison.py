@@ -67,7 +67,7 @@ def run(progress: Progress, quick: bool) -> Section:
             times=GRID,
             repeats=2 if quick else 3,
             budget=2.0 if quick else 4.0,
-            seconds=40.0 if quick else 110.0,
+            seconds=40.0 if quick else 140.0,
         )
     pending = iter(typical)
     usual = [row if row.errors is None else row._replace(errors=next(pending)) for row in rows]
