@@ -61,7 +61,7 @@ def run(progress: Progress, quick: bool) -> Section:
             lambda found: largest(spring_force(found), known.force),
             progress,
             times=GRID,
-            repeats=3 if quick else 5,
+            repeats=3 if quick else 4,
             budget=1.0 if quick else 1.5,
             seconds=90.0 if quick else 190.0,
         )
