@@ -17,9 +17,9 @@ from rich.progress import Progress
 from .section import Cell, Section, Table
 
 CORES = os.cpu_count() or 1
-SIDE, QUICK_SIDE = 20, 8  # runs along phi and along V
+SIDE, QUICK_SIDE = 16, 8  # runs along phi and along V
 ROUNDS = 2
-PLANNED = (10**4, 10**5, 10**6)
+PLANNED = (10**4, 10**6)
 
 COMMON = """
 import json, sys, tempfile
