@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import nan, sqrt
+from typing import Any
 
 from stiction.description import Description
 from stiction.solver.compiled import called
@@ -12,7 +13,7 @@ from stiction.solver.output import Output
 from stiction.solver.problem import Problem, constant, kinds_of, steady
 from stiction.solver.returns import Returns, unknown
 from stiction.solver.sampling import COLUMNS
-from stiction.solver.state import Accuracy, Motion, Plain, State, cooled, named, start
+from stiction.solver.state import Accuracy, Motion, State, cooled, named, start
 from stiction.solver.stick import holding
 from stiction.solver.strides import stride
 from stiction.solver.surface import friction_along
@@ -48,10 +49,7 @@ class Exact:
         self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
     ) -> tuple[int, State]:
         """Advance until `end` (s) or until the budget is used up."""
-        times, samples, sticks = out.times, out.samples, out.sticks
-        arguments = problem, state, end, held, budget, times, samples, out.filled, sticks
-        code, now, out.filled, turns = called(steps, kinds_of(problem), *arguments)
-        return code, arrived(now, out, turns)
+        return advanced(steps, problem, state, end, held, budget, out)
 
     def last_row(self, problem: Problem, state: State) -> list[float]:
         """Return the sample of a state between two steps."""
@@ -89,16 +87,24 @@ class Multiscale(Exact):
         if self.known is None or problem != self.problem:
             self.problem, self.known = problem, unknown(self.rtol)
         fine = held._replace(tolerance=FINER * held.tolerance, newton=FINER * held.newton)
-        times, samples, sticks = out.times, out.samples, out.sticks
-        arguments = problem, state, end, fine, budget, times, samples, out.filled, sticks
-        found = called(stride, kinds_of(problem), *arguments, self.known)
-        code, now, out.filled, turns = found
-        return code, arrived(now, out, turns)
+        return advanced(stride, problem, state, end, fine, budget, out, self.known)
 
 
-def arrived(now: Plain, out: Output, turns: int) -> State:
-    """Return the state that so many turns led to, with room for further sticks."""
+def advanced(
+    function: Any,
+    problem: Problem,
+    state: State,
+    end: float,
+    held: Accuracy,
+    budget: int,
+    out: Output,
+    *more: Any,
+) -> tuple[int, State]:
+    """Call a compiled loop, and make room for further sticks."""
+    times, samples, sticks = out.times, out.samples, out.sticks
+    arguments = problem, state, end, held, budget, times, samples, out.filled, sticks, *more
+    code, now, out.filled, turns = called(function, kinds_of(problem), *arguments)
     state = named(now)
     out.used += turns
     out.make_room(state.counts.sticks)
-    return state
+    return code, state

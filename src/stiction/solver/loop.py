@@ -10,10 +10,7 @@ from stiction.solver.compiled import compiled, inlined
 from stiction.solver.frame import frame_of, outset
 from stiction.solver.landing import land, pursuit
 from stiction.solver.phases import slip, stick
-from stiction.solver.problem import (
-    Problem,
-    isotropic,
-)
+from stiction.solver.problem import Problem, isotropic
 from stiction.solver.state import (
     COMPLETED,
     NON_FINITE,

@@ -49,14 +49,14 @@ def step(
     o = oscillator(frame, start)
     t, h = frame.t, within_reach(o, min(size_to_try(memory), accuracy.longest), accuracy)
     until = inf if frame.r == 0.0 else time_to_landing(frame, start, o, h)
+    landing = False
     if EVEN * until < h:
-        if passes(problem, frame, o, swung_to_rest(o, until)):
-            h, until = EVEN * until, inf
-        elif h < DIRECT * until:
-            h = EVEN * until  # two even steps rather than a long and a short one
-    landing = h >= until
-    if landing:
-        h = swung_to_rest(o, until)
+        rest = swung_to_rest(o, until)
+        # two even steps rather than a long and a short one, or where the slip passes by zero
+        if h < DIRECT * until or passes(problem, frame, o, rest):
+            h = EVEN * until
+        else:
+            h, landing = rest, True
     may_land = frame.r > 0.0
     s = swing(o, 0.0, False)
     rejected = iterations = 0
