@@ -9,7 +9,7 @@ from multiprocessing import get_context
 
 from rich.progress import Progress
 
-from stiction.paper.numbers import Number
+from stiction.reproduction.numbers import Number
 
 from . import convergence
 from .cases import GROUPS, Case

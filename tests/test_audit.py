@@ -8,13 +8,13 @@ from scipy.integrate import quad, solve_ivp
 import stiction as st
 from stiction import theory
 from stiction.analysis.regime import DAMPED, STICK_SLIP
-from stiction.audit.advice import nearest
-from stiction.audit.page import page
-from stiction.audit.prediction import predict
-from stiction.audit.report import examine
-from stiction.audit.words import sections
+from stiction.auditing.advice import nearest
+from stiction.auditing.page import page
+from stiction.auditing.prediction import predict
+from stiction.auditing.report import examine
+from stiction.auditing.words import sections
 from stiction.cli import main
-from stiction.stability import Critical
+from stiction.linear_stability import Critical
 
 PAPER = st.presets.nakano_popov_2020()
 

@@ -169,8 +169,8 @@ def test_paper_one_figure(tmp_path):
 
 
 def test_a_wrong_number_is_an_exit_status(tmp_path, monkeypatch, capsys):
-    from stiction.paper import reproduce
-    from stiction.paper.numbers import Number
+    from stiction.reproduction import reproduce
+    from stiction.reproduction.numbers import Number
 
     wrong = [Number("here", "one", 1.0, 2.0, 0.5), Number("here", "nothing", 0.0, float("nan"), 1)]
     monkeypatch.setattr(reproduce, "numbers", lambda *_: wrong)

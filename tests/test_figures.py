@@ -17,12 +17,6 @@ from stiction import theory
 from stiction.analysis.creep import first_slip_time, mean_creep_velocity
 from stiction.analysis.spectrum import rate_spectrogram, ridge, spectrogram
 from stiction.analysis.stuck import stuck_until
-from stiction.paper.creep import creep
-from stiction.paper.figure3 import figure3
-from stiction.paper.figure4 import figure4
-from stiction.paper.figure5 import figure5
-from stiction.paper.schematic import schematic
-from stiction.paper.zero_slip import zero_slip
 from stiction.plotting.damping import draw_damping_map
 from stiction.plotting.misalignment import drawn_misalignment
 from stiction.plotting.overview import overview
@@ -31,6 +25,12 @@ from stiction.plotting.schematic import draw_schematic
 from stiction.plotting.shapes import Points
 from stiction.plotting.style import BLUE, PURPLE, new_figure, quantity, style
 from stiction.plotting.time_series import cut_open, envelope, prefixed
+from stiction.reproduction.creep import creep
+from stiction.reproduction.figure3 import figure3
+from stiction.reproduction.figure4 import figure4
+from stiction.reproduction.figure5 import figure5
+from stiction.reproduction.schematic import schematic
+from stiction.reproduction.zero_slip import zero_slip
 
 
 def drawn(fig: Figure) -> Figure:

@@ -7,7 +7,7 @@ import pytest
 
 import stiction as st
 from stiction.analysis.onset import find_onset
-from stiction.stability import critical
+from stiction.linear_stability import critical
 
 PAPER = st.presets.nakano_popov_2020()
 LAW = st.Stribeck(mu_s=0.3, mu_c=0.15, v_s="20 mm/s")

@@ -11,10 +11,10 @@ from hypothesis import strategies as some
 
 import stiction as st
 from stiction import theory
+from stiction.linear_stability import boundary, critical, growth_rate, modes_over, steady_sliding
+from stiction.linear_stability.derivatives import derivative, set_valued, with_state
+from stiction.linear_stability.steady import drive_velocity
 from stiction.parameter import placed
-from stiction.stability import boundary, critical, growth_rate, modes_over, steady_sliding
-from stiction.stability.derivatives import derivative, set_valued, with_state
-from stiction.stability.steady import drive_velocity
 
 PAPER = st.presets.nakano_popov_2020()
 V, W = 1e-3, 10.0

@@ -6,12 +6,12 @@ from matplotlib.figure import Figure
 
 import stiction as st
 from stiction import theory
+from stiction.linear_stability import boundary, critical, modes_over
+from stiction.linear_stability.axis import axis
 from stiction.plotting.modes import modes_figure
 from stiction.plotting.onset import onset_figure
 from stiction.plotting.parameter import parameter_symbol, scale_of
 from stiction.plotting.stability import signed_distance, stability_map
-from stiction.stability import boundary, critical, modes_over
-from stiction.stability.axis import axis
 
 PAPER = st.presets.nakano_popov_2020()
 PLANE = {"x_between": ("0 deg", "25 deg"), "y_between": ("0.1 mm/s", "100 mm/s")}

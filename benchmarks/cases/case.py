@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import stiction as st
-from stiction.paper.numbers import Number
+from stiction.reproduction.numbers import Number
 
 Floats = NDArray[np.float64]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import stiction as st
-from stiction.paper.numbers import Number
+from stiction.reproduction.numbers import Number
 from stiction.solver.integrate import tolerance
 
 from .case import Case, block

@@ -8,7 +8,7 @@ from math import atan, pi, sqrt, tan
 import numpy as np
 
 import stiction as st
-from stiction.paper.numbers import Number
+from stiction.reproduction.numbers import Number
 
 from .case import Case, block, crest
 

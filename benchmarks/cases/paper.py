@@ -7,7 +7,7 @@ from math import cos
 
 import stiction as st
 from stiction import theory
-from stiction.paper.numbers import Number, reference
+from stiction.reproduction.numbers import Number, reference
 from stiction.solver.twin import twin
 
 from .case import Case, crest

@@ -8,7 +8,7 @@ from math import nan
 from scipy.optimize import brentq
 
 import stiction as st
-from stiction.paper.numbers import Number
+from stiction.reproduction.numbers import Number
 from stiction.solver.integrate import tolerance
 
 from .case import Case, block, growth

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 import stiction as st
-from stiction.paper.numbers import Number
+from stiction.reproduction.numbers import Number
 from stiction.solver.integrate import tolerance
 
 from .case import Case, growth

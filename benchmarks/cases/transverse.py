@@ -8,7 +8,7 @@ from math import pi, sqrt
 from scipy.special import ellipk
 
 import stiction as st
-from stiction.paper.numbers import Number
+from stiction.reproduction.numbers import Number
 
 from .case import Case, block
 

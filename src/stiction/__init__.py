@@ -12,7 +12,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from stiction import audit, presets, stability, theory
+    from stiction import auditing as audit
+    from stiction import linear_stability as stability
+    from stiction import presets, theory
     from stiction.analysis.creep_curve import creep_curves, mean_creep
     from stiction.analysis.cycles import find_cycles
     from stiction.analysis.divergence import fit_divergence
@@ -131,7 +133,13 @@ _HOME = {
     "strongest_line": "analysis.measured_line",
     "summary": "analysis.spread",
 }
-_ROOMS = ("audit", "presets", "stability", "theory")
+_ROOMS = {
+    "audit": "auditing",
+    "linear_stability": "linear_stability",
+    "presets": "presets",
+    "stability": "linear_stability",
+    "theory": "theory",
+}
 
 __all__ = [
     "Analysis",
@@ -204,7 +212,7 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     if name in _ROOMS:
-        return import_module(f"stiction.{name}")
+        return import_module(f"stiction.{_ROOMS[name]}")
     if name in _HOME:
         return getattr(import_module(f"stiction.{_HOME[name]}"), name)
     raise AttributeError(f"module 'stiction' has no attribute {name!r}")

@@ -264,7 +264,7 @@ def critical_misalignment(
         tan^2(phi_c) = -(c_x + F'(V))/(c_x + F(V)/V).
 
     Zero where steady sliding is stable at any misalignment. The finite k_y of Fig. 3 shifts it by
-    0.0007 deg, see `stiction.stability`.
+    0.0007 deg, see `stiction.linear_stability`.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
 """What an unstable steady sliding becomes: the amplitude of the oscillation, and how it sets in.
 
-Beyond the boundary of stability (`stiction.stability`) a limit cycle is left. It can grow from zero
-(a soft onset: a supercritical Hopf bifurcation), or be there at once at full size (hard: a
-subcritical one), and then it lasts, going back, where steady sliding is stable again: hysteresis.
+Beyond the boundary of stability (`stiction.linear_stability`) a limit cycle is left. It can grow
+from zero (a soft onset: a supercritical Hopf bifurcation), or be there at once at full size (hard:
+a subcritical one), and then it lasts, going back, where steady sliding is stable again: hysteresis.
 Here it is found by simulation alone: a parameter is swept up and down, each run beginning where
 the last one ended.
 """
@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 
 from stiction.analysis.limit_cycle import KICK, OSCILLATING, REST, UNDECIDED, Found, settled
 from stiction.errors import DescriptionError, Fault
+from stiction.linear_stability import steady_sliding
 from stiction.parameter import changed, read, unit
 from stiction.slider import Slider
-from stiction.stability import steady_sliding
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -69,7 +69,7 @@ def find_onset(
     slider : Slider
         With a steady drive and load. Any friction law.
     path : str
-        The parameter, see `stiction.stability.critical`.
+        The parameter, see `stiction.linear_stability.critical`.
     values : sequence of float or str
         Its values, ascending, with their units if it is an angle; from well on the stable side
         to well on the other.

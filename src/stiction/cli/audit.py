@@ -27,15 +27,15 @@ def audit(config: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o
     output
         An HTML page to write the same report to, with figures, in one file.
     """
-    from stiction.audit.report import examine
-    from stiction.audit.words import sections
+    from stiction.auditing.report import examine
+    from stiction.auditing.words import sections
     from stiction.cli.progress import progress
     from stiction.cli.tables import printed
     from stiction.slider import Slider
 
     slider = Slider.from_toml(config)
     if output is not None:
-        from stiction.audit.page import writable, write
+        from stiction.auditing.page import writable, write
 
         writable(output)
     with progress("auditing") as report:

@@ -20,7 +20,7 @@ def paper(*, out: Path = Path("paper-output"), figure: Literal[3, 4, 5] | None =
         Only this figure, without the table of numbers.
     """
     from stiction.cli.progress import progress
-    from stiction.paper.reproduce import reproduce
+    from stiction.reproduction.reproduce import reproduce
 
     with progress("simulating and drawing") as report:
         written, table = reproduce(out, figure, report)

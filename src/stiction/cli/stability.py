@@ -12,8 +12,8 @@ from cyclopts import Parameter
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from stiction.linear_stability import Critical, Linearisation
     from stiction.slider import Slider
-    from stiction.stability import Critical, Linearisation
 
 OVER = ("phi", "drive.velocity")
 DEFAULT = (None, None)
@@ -64,9 +64,9 @@ def stability(
     from rich.console import Console
 
     from stiction.errors import StictionError
+    from stiction.linear_stability import critical, steady_sliding
     from stiction.plotting.save import drawable, write
     from stiction.slider import Slider
-    from stiction.stability import critical, steady_sliding
 
     slider = Slider.from_toml(config)
     paths = list(over or OVER)
@@ -91,9 +91,9 @@ def figure(
     slider: Slider, paths: Sequence[str], ranges: Sequence[Ends], found: Sequence[Critical]
 ) -> Figure:
     """Return the modes over one parameter, or the map of two."""
+    from stiction.linear_stability import boundary, modes_over
     from stiction.plotting.modes import modes_figure
     from stiction.plotting.stability import stability_map
-    from stiction.stability import boundary, modes_over
 
     if len(paths) == 1:
         between = ranges[0] if ranges else None

@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from stiction.linear_stability import Critical
 from stiction.plotting.parameter import PLAIN, Scale, scale_of
 from stiction.plotting.stability import UNSTABLE
 from stiction.plotting.style import BLUE, COLUMN, GREY, ORANGE, new_figure, style
-from stiction.stability import Critical
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -23,7 +23,7 @@ def modes_figure(modes: xr.Dataset, critical: Critical | None = None) -> Figure:
     Parameters
     ----------
     modes : Dataset
-        From `stiction.stability.modes_over`.
+        From `stiction.linear_stability.modes_over`.
     critical : Critical, optional
         Critical values of the same parameter: dashed, with their numbers above.
 

@@ -30,7 +30,7 @@ def onset_figure(onset: Onset, critical: float | None = None) -> Figure:
     onset : Onset
         From `stiction.find_onset`.
     critical : float, optional
-        Where linear theory has the onset, SI, from `stiction.stability.critical`.
+        Where linear theory has the onset, SI, from `stiction.linear_stability.critical`.
     """
     with style():
         fig = new_figure(COLUMN, 2.7)

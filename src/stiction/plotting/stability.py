@@ -29,7 +29,7 @@ def stability_map(
     Parameters
     ----------
     curve : Dataset
-        From `stiction.stability.boundary`.
+        From `stiction.linear_stability.boundary`.
     closed_form : pair of arrays, optional
         Another boundary to compare with, the two parameters in SI.
 
@@ -56,7 +56,7 @@ def stability_map(
 
 
 def draw_boundary(ax: Axes, curve: xr.Dataset) -> tuple[Scale, Scale]:
-    """Draw the boundary from `stiction.stability.boundary`; both sides are named.
+    """Draw the boundary from `stiction.linear_stability.boundary`; both sides are named.
 
     Returns the scales of the two axes, to draw more on them.
     """

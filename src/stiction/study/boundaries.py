@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction import stability
+from stiction import linear_stability as stability
 from stiction import theory as closed_forms
 from stiction.drive import ConstantVelocity
 from stiction.errors import StictionError

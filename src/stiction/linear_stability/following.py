@@ -13,7 +13,7 @@ from math import atan2, cos, hypot, pi, sin
 
 import numpy as np
 
-from stiction.stability.derivatives import Floats
+from stiction.linear_stability.derivatives import Floats
 
 Point = tuple[float, float]
 Growth = Callable[[Point], float]  # beyond an edge of the plane, what it is at the edge

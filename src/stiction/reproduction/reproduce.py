@@ -10,15 +10,15 @@ from matplotlib.figure import Figure
 from stiction import presets
 from stiction.errors import StictionError
 from stiction.friction import Coulomb
-from stiction.paper.creep import creep
-from stiction.paper.figure3 import figure3
-from stiction.paper.figure4 import figure4
-from stiction.paper.figure5 import figure5
-from stiction.paper.numbers import numbers
-from stiction.paper.schematic import schematic
-from stiction.paper.table import Table
-from stiction.paper.zero_slip import zero_slip
 from stiction.plotting.save import save
+from stiction.reproduction.creep import creep
+from stiction.reproduction.figure3 import figure3
+from stiction.reproduction.figure4 import figure4
+from stiction.reproduction.figure5 import figure5
+from stiction.reproduction.numbers import numbers
+from stiction.reproduction.schematic import schematic
+from stiction.reproduction.table import Table
+from stiction.reproduction.zero_slip import zero_slip
 from stiction.simulation import simulate
 from stiction.trajectory import Trajectory
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from stiction.paper.numbers import Number
+from stiction.reproduction.numbers import Number
 
 HEADER = ("where", "what", "stated", "computed", "deviation", "tolerance", "unit", "verdict")
 

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stiction.linear_stability.axis import axis
+from stiction.linear_stability.linear import Complex, steady_sliding
 from stiction.slider import Slider
-from stiction.stability.axis import axis
-from stiction.stability.linear import Complex, steady_sliding
 
 if TYPE_CHECKING:
     import xarray as xr

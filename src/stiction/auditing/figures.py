@@ -8,14 +8,14 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from stiction.analysis.creep_curve import creep_curves, mean_creep
-from stiction.audit.report import Audit
-from stiction.audit.words import NAMES
-from stiction.paper.figure5 import figure5
+from stiction.auditing.report import Audit
+from stiction.auditing.words import NAMES
+from stiction.linear_stability import boundary
 from stiction.plotting.creep_curve import creep_figure, creep_theory
 from stiction.plotting.cycles import cycles_figure
 from stiction.plotting.stability import stability_map
 from stiction.plotting.trials import Trial, trials_figure
-from stiction.stability import boundary
+from stiction.reproduction.figure5 import figure5
 from stiction.units import in_words
 
 

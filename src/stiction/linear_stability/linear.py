@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from stiction.errors import StictionError
 from stiction.friction import states
 from stiction.initial import Initial
+from stiction.linear_stability.derivatives import ROUNDING, Floats, Response
+from stiction.linear_stability.steady import drive_velocity, steady_friction
 from stiction.slider import Slider
-from stiction.stability.derivatives import ROUNDING, Floats, Response
-from stiction.stability.steady import drive_velocity, steady_friction
 
 Complex = NDArray[np.complex128]
 

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stiction.errors import DescriptionError, Fault
+from stiction.linear_stability.axis import Axis, axis
+from stiction.linear_stability.derivatives import Floats
+from stiction.linear_stability.following import Growth, Point, both_ways, directed, near
+from stiction.linear_stability.linear import growth_rate, steady_sliding
+from stiction.linear_stability.roots import sign_changes, signed_growth
 from stiction.parameter import read
 from stiction.slider import Slider
-from stiction.stability.axis import Axis, axis
-from stiction.stability.derivatives import Floats
-from stiction.stability.following import Growth, Point, both_ways, directed, near
-from stiction.stability.linear import growth_rate, steady_sliding
-from stiction.stability.roots import sign_changes, signed_growth
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -11,7 +11,7 @@ from stiction import theory
 from stiction.analysis.cycles import swings
 from stiction.analysis.record import Record, record_of
 from stiction.analysis.regime import Regime, regime_of
-from stiction.audit.prediction import SEEN, Prediction
+from stiction.auditing.prediction import SEEN, Prediction
 from stiction.simulation import simulate
 from stiction.slider import Slider
 from stiction.trajectory import Trajectory

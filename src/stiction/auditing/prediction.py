@@ -29,7 +29,7 @@ class Prediction(NamedTuple):
         Force angle at which zeta = 1, where slow slip turns fast, rad.
     phi_c : float
         Misalignment from which on steady sliding is stable, for a rigid transverse spring, rad;
-        not a number for laws with internal state or a grain, see `stiction.stability` for those.
+        not a number for laws with internal state or a grain: see `stiction.linear_stability`.
     first_stick : float
         How long the mass really rests when the drive starts, s.
     load_up : float

@@ -11,9 +11,9 @@ from jinja2 import Environment, PackageLoader
 from matplotlib.figure import Figure
 
 import stiction
-from stiction.audit import figures
-from stiction.audit.report import Audit
-from stiction.audit.words import sections
+from stiction.auditing import figures
+from stiction.auditing.report import Audit
+from stiction.auditing.words import sections
 from stiction.errors import ResultError
 from stiction.files import placeable, whole
 from stiction.plotting.save import png
@@ -74,7 +74,7 @@ def write(found: Audit, path: str | Path, name: str) -> Path:
 def page(found: Audit, name: str) -> str:
     """Return the page as text; `name` is what it is an audit of."""
     environment = Environment(
-        loader=PackageLoader("stiction.audit", "."), autoescape=True, trim_blocks=True
+        loader=PackageLoader("stiction.auditing", "."), autoescape=True, trim_blocks=True
     )
     return environment.get_template("page.html.jinja").render(
         name=name,

@@ -6,10 +6,10 @@
 152.35
 """
 
-from stiction.stability.curve import boundary
-from stiction.stability.linear import Linearisation, growth_rate, steady_sliding
-from stiction.stability.roots import Critical, critical
-from stiction.stability.spectrum import modes_over
+from stiction.linear_stability.curve import boundary
+from stiction.linear_stability.linear import Linearisation, growth_rate, steady_sliding
+from stiction.linear_stability.roots import Critical, critical
+from stiction.linear_stability.spectrum import modes_over
 
 __all__ = [
     "Critical",

@@ -7,11 +7,11 @@ from math import inf, isfinite, nan, sqrt
 from typing import Any, NamedTuple
 
 from stiction.analysis.regime import DAMPED, STEADY
-from stiction.audit.observation import Observation, coarse_rate, observe
-from stiction.audit.prediction import predict
+from stiction.auditing.observation import Observation, coarse_rate, observe
+from stiction.auditing.prediction import predict
+from stiction.linear_stability import Critical, critical, growth_rate
 from stiction.parameter import changed, read, unit
 from stiction.slider import Slider
-from stiction.stability import Critical, critical, growth_rate
 
 # How far beyond a critical value to go, of it: farther where an oscillation, once there, goes on
 # although steady sliding is stable

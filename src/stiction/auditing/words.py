@@ -8,8 +8,8 @@ import numpy as np
 
 from stiction.analysis.creep import first_slip_time
 from stiction.analysis.regime import BETWEEN, DAMPED, STICK_SLIP, STUCK, UNDETERMINED
-from stiction.audit.advice import Advice
-from stiction.audit.report import Audit
+from stiction.auditing.advice import Advice
+from stiction.auditing.report import Audit
 from stiction.friction import has_state
 from stiction.sections import Section, Table
 from stiction.units import in_words

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from stiction.audit.advice import LEVERS, Advice, advise, limits
-from stiction.audit.observation import Observation, coarse_rate, observe
-from stiction.audit.prediction import Prediction, predict
+from stiction.auditing.advice import LEVERS, Advice, advise, limits
+from stiction.auditing.observation import Observation, coarse_rate, observe
+from stiction.auditing.prediction import Prediction, predict
+from stiction.linear_stability import Critical, Linearisation, critical, steady_sliding
 from stiction.slider import Slider
-from stiction.stability import Critical, Linearisation, critical, steady_sliding
 
 
 class Audit(NamedTuple):

@@ -8,10 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.linear_stability.axis import axis
+from stiction.linear_stability.derivatives import Floats
+from stiction.linear_stability.linear import steady_sliding
 from stiction.slider import Slider
-from stiction.stability.axis import axis
-from stiction.stability.derivatives import Floats
-from stiction.stability.linear import steady_sliding
 
 POINTS = 65  # at which a range is looked at first
 NEUTRAL = 1e-14  # growth rates beside the largest eigenvalue: below, rounding

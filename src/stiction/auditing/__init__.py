@@ -6,6 +6,6 @@
 ('damped approach', True)
 """
 
-from stiction.audit.report import Audit, examine
+from stiction.auditing.report import Audit, examine
 
 __all__ = ["Audit", "examine"]
