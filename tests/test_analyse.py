@@ -61,7 +61,7 @@ def test_short_and_constant_records_are_no_error(count):
     found = st.analyse(record)
     assert found.cycles.sizes["cycle"] == 0
     assert [part.title for part in sections(found)] == [
-        "Motion", "Cycles", "Creep", "Song", "Energy",
+        "Motion", "Cycles", "Creep", "Oscillation", "Energy",
     ]  # fmt: skip
 
 
@@ -78,7 +78,7 @@ def test_tables_and_numbers_as_files(found, tmp_path):
     names = [path.name for path in write(found, tmp_path)]
     assert names == [
         "analysis.json", "cycles.csv", "summary.csv", "creep.csv", "creep-phases.csv",
-        "song.csv", "song-phases.csv", "energy.csv",
+        "oscillation.csv", "oscillation-phases.csv", "energy.csv",
     ]  # fmt: skip
     with (tmp_path / "cycles.csv").open() as file:
         rows = list(csv.DictReader(file))
@@ -96,7 +96,7 @@ def test_the_command_writes_tables_and_figures(run, tmp_path, capsys):
     assert ended.value.code == 0
     assert "It diverges towards slip with the exponent" in " ".join(capsys.readouterr().out.split())
     written = sorted(path.name for path in (tmp_path / "my-analysis").iterdir())
-    assert {"cycles.png", "creep.png", "song.png", "energy.png", "cycles.csv"} < set(written)
+    assert {"cycles.png", "creep.png", "oscillation.png", "energy.png", "cycles.csv"} < set(written)
 
 
 def test_the_command_refuses_a_file_for_a_folder(run, tmp_path, capsys):
@@ -130,5 +130,14 @@ def test_few_samples_show_no_creep(slider: st.Slider) -> None:
 def test_an_aligned_run_implies_no_misalignment(slider: st.Slider) -> None:
     found = st.analyse(st.simulate(slider.replace(phi="0 deg"), 5.0, sample_rate=10e3))
     assert (found.divergence, found.misalignment) == (None, None)
-    assert "there is no misalignment" in found.missing["song"]
+    assert "there is no misalignment" in found.missing["oscillation"]
     assert set(figures(found)) == {"cycles", "creep", "energy"}  # no picture of silence
+
+
+def test_old_names_go_on_working_with_a_warning(run, found) -> None:
+    with pytest.warns(DeprecationWarning, match="transverse_oscillation"):
+        assert st.hear_song is st.transverse_oscillation
+    with pytest.warns(DeprecationWarning, match="oscillation_by_phase"):
+        assert st.song_by_phase is st.oscillation_by_phase
+    with pytest.warns(DeprecationWarning, match="oscillation"):
+        assert found.song is found.oscillation

@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     from stiction.analysis.measured_line import strongest_line
     from stiction.analysis.misalignment import fit_misalignment
     from stiction.analysis.onset import find_onset
+    from stiction.analysis.oscillation import oscillation_by_phase, transverse_oscillation
     from stiction.analysis.record import Record, record_of
     from stiction.analysis.regime import Regime, classify
     from stiction.analysis.report import Analysis, analyse
     from stiction.analysis.ridge import follow_ridge
-    from stiction.analysis.song import hear_song, song_by_phase
     from stiction.analysis.spectrum import spectrogram, stream_spectrogram
     from stiction.analysis.spread import summary
     from stiction.comparison import compare
@@ -121,18 +121,20 @@ _HOME = {
     "fit_divergence": "analysis.divergence",
     "fit_misalignment": "analysis.misalignment",
     "follow_ridge": "analysis.ridge",
-    "hear_song": "analysis.song",
     "load": "trajectory",
     "mean_creep": "analysis.creep_curve",
     "open_study": "study.store",
+    "oscillation_by_phase": "analysis.oscillation",
     "record_of": "analysis.record",
     "simulate": "simulation",
-    "song_by_phase": "analysis.song",
     "spectrogram": "analysis.spectrum",
     "stream_spectrogram": "analysis.spectrum",
     "strongest_line": "analysis.measured_line",
     "summary": "analysis.spread",
+    "transverse_oscillation": "analysis.oscillation",
 }
+# old public names, which go on working for one version
+_RENAMED = {"hear_song": "transverse_oscillation", "song_by_phase": "oscillation_by_phase"}
 _ROOMS = {
     "audit": "auditing",
     "linear_stability": "linear_stability",
@@ -193,26 +195,35 @@ __all__ = [
     "fit_divergence",
     "fit_misalignment",
     "follow_ridge",
-    "hear_song",
     "load",
     "mean_creep",
     "open_study",
+    "oscillation_by_phase",
     "presets",
     "record_of",
     "simulate",
-    "song_by_phase",
     "spectrogram",
     "stability",
     "stream_spectrogram",
     "strongest_line",
     "summary",
     "theory",
+    "transverse_oscillation",
 ]
 
 
 def __getattr__(name: str) -> Any:
     if name in _ROOMS:
         return import_module(f"stiction.{_ROOMS[name]}")
+    if name in _RENAMED:
+        from warnings import warn
+
+        warn(
+            f"st.{name} is now called st.{_RENAMED[name]}; the old name goes with the next version",
+            DeprecationWarning,
+            stacklevel=2,
+        )
+        name = _RENAMED[name]
     if name in _HOME:
         return getattr(import_module(f"stiction.{_HOME[name]}"), name)
     raise AttributeError(f"module 'stiction' has no attribute {name!r}")

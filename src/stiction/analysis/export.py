@@ -21,8 +21,8 @@ def tables(found: Analysis) -> dict[str, xr.Dataset]:
         "summary": found.summary,
         "creep": found.creep,
         "creep-phases": found.curves,
-        "song": found.song,
-        "song-phases": found.phases,
+        "oscillation": found.oscillation,
+        "oscillation-phases": found.phases,
         "energy": found.energy,
     }
     return {name: table for name, table in named.items() if table is not None}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from warnings import warn
 
 import numpy as np
 
@@ -13,9 +14,9 @@ from stiction.analysis.divergence import Divergence, fit_divergence
 from stiction.analysis.energy import energy_budget
 from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.misalignment import Misalignment, fit_misalignment
+from stiction.analysis.oscillation import oscillation_by_phase, transverse_oscillation
 from stiction.analysis.record import Record, recorded
 from stiction.analysis.regime import BETWEEN, STICK_SLIP, Regime, regime_of
-from stiction.analysis.song import hear_song, song_by_phase
 from stiction.analysis.spread import summary
 from stiction.errors import ResultError, StictionError
 from stiction.trajectory import Trajectory
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 T = TypeVar("T")
-HARMONICS = 10.0  # of the stick-slip, which a song is sought above
+HARMONICS = 10.0  # of the stick-slip, which a oscillation is sought above
 BINS = 20.0  # that a stick phase is to have at least, to be averaged over them
 
 
@@ -47,11 +48,12 @@ class Analysis(NamedTuple):
         How creep diverges towards slip.
     misalignment : Misalignment or None
         The misalignment that the creep implies.
-    song : Dataset or None
-        The high-frequency oscillation over time (`stiction.hear_song`); of a record, its
-        strongest line (`stiction.strongest_line`).
+    oscillation : Dataset or None
+        The transverse oscillation over time (`stiction.transverse_oscillation`); of a record,
+        its strongest fast line (`stiction.strongest_line`).
     phases : Dataset or None
-        How rest and ring-down share each stick phase (`stiction.song_by_phase`); of runs only.
+        How rest and ring-down share each stick phase (`stiction.oscillation_by_phase`); of runs
+        only.
     energy : Dataset or None
         Where the work of the drive goes, in each cycle (`stiction.energy_budget`); of runs only.
     missing : dict
@@ -67,10 +69,16 @@ class Analysis(NamedTuple):
     creep: xr.Dataset | None
     divergence: Divergence | None
     misalignment: Misalignment | None
-    song: xr.Dataset | None
+    oscillation: xr.Dataset | None
     phases: xr.Dataset | None
     energy: xr.Dataset | None
     missing: dict[str, str]
+
+    @property
+    def song(self) -> xr.Dataset | None:
+        """The old name of `oscillation`, which goes with the next version."""
+        warn("Analysis.song is now called Analysis.oscillation", DeprecationWarning, stacklevel=2)
+        return self.oscillation
 
 
 def analyse(source: Trajectory | Record) -> Analysis:
@@ -79,7 +87,7 @@ def analyse(source: Trajectory | Record) -> Analysis:
     Parameters
     ----------
     source : Trajectory or Record
-        A run, sampled several times each transverse period for its creep and song; or a
+        A run, sampled several times each transverse period for its creep and oscillation; or a
         measured force, with whatever else is known of it.
 
     Examples
@@ -105,13 +113,13 @@ def analyse(source: Trajectory | Record) -> Analysis:
     cycles, regime = found.cycles, regime_of(record, found)
     sticking = cycles if regime.kind in (STICK_SLIP, BETWEEN) else cycles.isel(cycle=slice(0))
     if run is not None:
-        song = tried("song", lambda: hear_song(run))
+        oscillation = tried("oscillation", lambda: transverse_oscillation(run))
         energy = tried("energy", lambda: energy_budget(run, edges(run, cycles)))
         width = None
     else:
-        song = tried("song", lambda: strongest_line(record, _above(record, cycles)))
+        oscillation = tried("oscillation", lambda: strongest_line(record, _above(record, cycles)))
         energy, missing["energy"] = None, "of a measured record only the force is known"
-        width = _free_of_hum(song, sticking)
+        width = _free_of_hum(oscillation, sticking)
     creeping = calibrated(record, sticking)
     curves = tried("creep", lambda: creep_curves(run or creeping, sticking, width))
     mean = None
@@ -123,8 +131,8 @@ def analyse(source: Trajectory | Record) -> Analysis:
     aligned = run is not None and run.slider.phi == 0.0
     divergence, misalignment = (None, None) if aligned else _fits(creeping, mean, tried)
     phases = None
-    if run is not None and song is not None and curves is not None:
-        phases = song_by_phase(song, run, _phases(run, curves, sticking))
+    if run is not None and oscillation is not None and curves is not None:
+        phases = oscillation_by_phase(oscillation, run, _phases(run, curves, sticking))
     return Analysis(
         source,
         record,
@@ -135,7 +143,7 @@ def analyse(source: Trajectory | Record) -> Analysis:
         mean,
         divergence,
         misalignment,
-        song,
+        oscillation,
         phases,
         energy,
         missing,
@@ -177,23 +185,23 @@ def _fits(record: Record, mean: xr.Dataset | None, tried: Any) -> tuple[Any, Any
     )
 
 
-def _free_of_hum(song: xr.Dataset | None, cycles: xr.Dataset) -> float | None:
+def _free_of_hum(oscillation: xr.Dataset | None, cycles: xr.Dataset) -> float | None:
     """Return bins (s) over two periods of a line that hums most of the time, which average it out.
 
     None where there is no such line, or stick phases are too short for it.
     """
-    if song is None or not cycles.sizes["cycle"]:
+    if oscillation is None or not cycles.sizes["cycle"]:
         return None
-    heard = song["frequency"].values
+    seen = oscillation["frequency"].values
     rises = cycles["peak_time"].values - cycles["start"].values
-    if np.isfinite(heard).mean() < 0.5:
+    if np.isfinite(seen).mean() < 0.5:
         return None
-    width = 2.0 / float(np.nanmedian(heard))
+    width = 2.0 / float(np.nanmedian(seen))
     return width if width * BINS < float(np.median(rises)) else None
 
 
 def _above(record: Record, cycles: xr.Dataset) -> float:
-    """Return the frequency (Hz) above which a song is sought."""
+    """Return the frequency (Hz) above which a oscillation is sought."""
     fastest = cycles["period"].values.min() if cycles.sizes["cycle"] else record.duration / 10.0
     return HARMONICS / max(float(fastest), 1e-300)
 

@@ -50,7 +50,7 @@ def sections(found: Analysis) -> list[Section]:
         Section("Motion", [f"{kind[0].upper()}{kind[1:]}."]),
         cycles(found),
         creep(found),
-        song(found),
+        oscillation(found),
         energy(found),
     ]
 
@@ -123,21 +123,21 @@ def creep(found: Analysis) -> Section:
     return Section("Creep", lines)
 
 
-def song(found: Analysis) -> Section:
-    """Return what it sings, and when."""
-    if found.song is None:
-        return Section("Song", [f"Not heard: {found.missing['song']}."])
-    heard = found.song["frequency"].values
-    heard = heard[np.isfinite(heard)]
-    if not len(heard):
-        return Section("Song", ["No line stands out of the noise."])
-    low, high = (in_words(float(each), "Hz") for each in (heard.min(), heard.max()))
-    share = 100.0 * len(heard) / found.song.sizes["time"]
+def oscillation(found: Analysis) -> Section:
+    """Return what oscillates fast, and when."""
+    if found.oscillation is None:
+        return Section("Oscillation", [f"Not seen: {found.missing['oscillation']}."])
+    seen = found.oscillation["frequency"].values
+    seen = seen[np.isfinite(seen)]
+    if not len(seen):
+        return Section("Oscillation", ["No line stands out of the noise."])
+    low, high = (in_words(float(each), "Hz") for each in (seen.min(), seen.max()))
+    share = 100.0 * len(seen) / found.oscillation.sizes["time"]
     pitch = f"between {low} and {high}" if low != high else f"at {low}"
-    lines = [f"Heard in {share:.2g}% of the time, {pitch}."]
+    lines = [f"Seen in {share:.2g}% of the time, {pitch}."]
     if found.phases is None:
-        return Section("Song", lines)
-    natural = found.song.attrs["natural_frequency"]
+        return Section("Oscillation", lines)
+    natural = found.oscillation.attrs["natural_frequency"]
     lines[0] += f" The transverse natural frequency is {in_words(natural, 'Hz')}."
     phases = found.phases
     columns = {
@@ -145,10 +145,10 @@ def song(found: Analysis) -> Section:
         "at rest": Quantity(100.0 * phases["share_stuck"].values, "%"),
         "sticks": Quantity(phases["sticks_per_second"].values, "1/s"),
         "ringing down": Quantity(100.0 * phases["ring_down"].values, "%"),
-        "song from": Quantity(phases["first_frequency"].values, "Hz"),
+        "oscillation from": Quantity(phases["first_frequency"].values, "Hz"),
         "to": Quantity(phases["last_frequency"].values, "Hz"),
     }
-    return Section("Song", lines, grid(columns, SHOWN))
+    return Section("Oscillation", lines, grid(columns, SHOWN))
 
 
 def energy(found: Analysis) -> Section:

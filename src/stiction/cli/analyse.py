@@ -15,11 +15,11 @@ def analyse(
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
     trust: bool = False,
 ) -> None:
-    """Analyse a result: kind of motion, cycles, creep before slip, song, energy.
+    """Analyse a result: kind of motion, cycles, creep before slip, oscillation, energy.
 
     Prints what was found and writes all of it: cycles.csv (a row a cycle), summary.csv,
-    creep.csv, song.csv, energy.csv, analysis.json, and a figure of each. Nothing is to be tuned.
-    Creep and song need a run that is sampled several times each transverse period.
+    creep.csv, oscillation.csv, energy.csv, analysis.json, and a figure of each. Nothing is to be
+    tuned. Creep and oscillation need a run that is sampled several times each transverse period.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The figures of an analysis: cycles, creep, song, energy."""
+"""The figures of an analysis: cycles, creep, oscillation, energy."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from stiction.analysis.report import Analysis
 from stiction.plotting.creep_curve import creep_figure, creep_theory
 from stiction.plotting.cycles import cycles_figure
 from stiction.plotting.energy import energy_figure
-from stiction.plotting.song import song_figure
+from stiction.plotting.oscillation import oscillation_figure
 from stiction.trajectory import Trajectory
 
 
@@ -26,8 +26,8 @@ def figures(found: Analysis) -> dict[str, Figure]:
                 f"{name}, fitted": line for name, line in creep_theory(V, fit.phi, l_x).items()
             }
         drawn["creep"] = creep_figure(found.curves, found.creep, V, lines)
-    if isinstance(found.source, Trajectory) and found.song is not None:
-        drawn["song"] = song_figure(found.source, found.song)
+    if isinstance(found.source, Trajectory) and found.oscillation is not None:
+        drawn["oscillation"] = oscillation_figure(found.source, found.oscillation)
     if found.energy is not None:
         drawn["energy"] = energy_figure(found.energy)
     return drawn

@@ -1,4 +1,4 @@
-"""The song: the high-frequency oscillation in the stick phase, followed through its cycles."""
+"""The transverse oscillation in the stick phase, followed through its cycles."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ Rows = dict[str, tuple[Any, str, str]]  # name: values, unit, long name
 
 WIDTH = 50.0  # transverse periods in a window
 STEPS = 5  # windows that overlap at any time
-LOWEST = 0.15  # of omega_y: the song falls no lower before it dies away
+LOWEST = 0.15  # of omega_y: the frequency falls no lower before it dies away
 HIGHEST = 1.2
 SILENT = 1e-3  # of V sin(phi): what swings less may be the solver's own noise
 
 
-def hear_song(run: Trajectory) -> xr.Dataset:
+def transverse_oscillation(run: Trajectory) -> xr.Dataset:
     """Follow the transverse oscillation of a run through time.
 
     Its frequency starts at omega_y and falls towards slip as sin(theta), with
@@ -61,7 +61,7 @@ def hear_song(run: Trajectory) -> xr.Dataset:
     natural, width = _scales(run)
     if not run.data["v_y"].values.any():
         raise ResultError("nothing moves across the drive: there is no misalignment")
-    found = follow_ridge(song_spectrogram(run), LOWEST * natural, HIGHEST * natural)
+    found = follow_ridge(oscillation_spectrogram(run), LOWEST * natural, HIGHEST * natural)
     middle = found["time"].values
     velocity, bound, expected = _in_windows(run, middle, width)
     found["frequency"] = found["frequency"].where(found["amplitude"] > SILENT * bound)
@@ -87,8 +87,8 @@ def hear_song(run: Trajectory) -> xr.Dataset:
     )
 
 
-def song_spectrogram(run: Trajectory) -> xr.DataArray:
-    """Return the spectrogram of v_y (m/s) in which the song is followed, see `hear_song`."""
+def oscillation_spectrogram(run: Trajectory) -> xr.DataArray:
+    """Return the spectrogram of v_y (m/s), see `transverse_oscillation`."""
     times = run.data["time"].values
     natural, width = _scales(run)
     span = float(times[-1] - times[0])
@@ -105,13 +105,13 @@ def song_spectrogram(run: Trajectory) -> xr.DataArray:
     return lines.assign_attrs(units="m/s", long_name="amplitude of v_y")
 
 
-def song_by_phase(song: xr.Dataset, run: Trajectory, phases: Floats) -> xr.Dataset:
+def oscillation_by_phase(oscillation: xr.Dataset, run: Trajectory, phases: Floats) -> xr.Dataset:
     """Return how ring-down and micro stick-slip share each stick phase.
 
     Parameters
     ----------
-    song : Dataset
-        From `hear_song`.
+    oscillation : Dataset
+        From `transverse_oscillation`.
     run : Trajectory
         The same run.
     phases : array
@@ -123,7 +123,7 @@ def song_by_phase(song: xr.Dataset, run: Trajectory, phases: Floats) -> xr.Datas
         Over ``phase``: ``start``, ``end`` (s); ``share_stuck``, of its time; ``sticks`` and
         ``sticks_per_second``, on the average; ``rings_from`` (s), when its last stick ends and
         the oscillation begins to ring down; ``ring_down``, the share of its time from there to
-        slip; ``first_frequency`` and ``last_frequency`` (Hz) that are heard in it.
+        slip; ``first_frequency`` and ``last_frequency`` (Hz) that are seen in it.
     """
     import xarray as xr
 
@@ -134,15 +134,15 @@ def song_by_phase(song: xr.Dataset, run: Trajectory, phases: Floats) -> xr.Datas
     ends = np.append(-np.inf, run.sticks[:, 1])[begun[:, 1]]
     last = np.clip(ends, phases[:, 0], phases[:, 1])
     stuck = np.diff(stuck_until(phases, run.sticks), axis=1)[:, 0]
-    heard = [_heard(song, *phase) for phase in phases]
+    seen = [_frequencies(oscillation, *phase) for phase in phases]
     rows = {
         "share_stuck": (stuck / length, "1", "share of time stuck"),
         "sticks": (count, "1", "stick intervals"),
         "sticks_per_second": (count / length, "1/s", "stick intervals per second"),
         "rings_from": (last, "s", "end of the last stick"),
         "ring_down": ((phases[:, 1] - last) / length, "1", "share of time without sticks, to slip"),
-        "first_frequency": (np.array([f[0] for f in heard]), "Hz", "first frequency heard"),
-        "last_frequency": (np.array([f[1] for f in heard]), "Hz", "last frequency heard"),
+        "first_frequency": (np.array([f[0] for f in seen]), "Hz", "first frequency seen"),
+        "last_frequency": (np.array([f[1] for f in seen]), "Hz", "last frequency seen"),
     }
     seconds = {"units": "s"}
     return xr.Dataset(
@@ -168,12 +168,14 @@ def _scales(run: Trajectory) -> tuple[float, float]:
     return omega_y / (2.0 * pi), WIDTH * 2.0 * pi / omega_y
 
 
-def _heard(song: xr.Dataset, start: float, end: float) -> tuple[float, float]:
-    half = 0.5 * song.attrs["width"]
-    inside = (song["time"].values >= start + half) & (song["time"].values <= end - half)
-    heard = song["frequency"].values[inside]
-    heard = heard[np.isfinite(heard)]
-    return (float(heard[0]), float(heard[-1])) if len(heard) else (np.nan, np.nan)
+def _frequencies(oscillation: xr.Dataset, start: float, end: float) -> tuple[float, float]:
+    half = 0.5 * oscillation.attrs["width"]
+    inside = (oscillation["time"].values >= start + half) & (
+        oscillation["time"].values <= end - half
+    )
+    seen = oscillation["frequency"].values[inside]
+    seen = seen[np.isfinite(seen)]
+    return (float(seen[0]), float(seen[-1])) if len(seen) else (np.nan, np.nan)
 
 
 def _in_windows(run: Trajectory, middle: Floats, width: float) -> tuple[Floats, Floats, Floats]:

@@ -1,4 +1,4 @@
-"""The song of the stick phase: its spectrogram, its frequency, its amplitude, and the rests."""
+"""The transverse oscillation: spectrogram, frequency, amplitude, and the rests."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from stiction.analysis.song import song_spectrogram
+from stiction.analysis.oscillation import oscillation_spectrogram
 from stiction.plotting.spectrogram import draw_spectrogram
 from stiction.plotting.style import (
     BLACK,
@@ -28,40 +28,42 @@ if TYPE_CHECKING:
 HIGHEST = 1.5  # of omega_y, drawn
 
 
-def draw_ridge(ax: Axes, song: xr.Dataset) -> None:
+def draw_ridge(ax: Axes, oscillation: xr.Dataset) -> None:
     """Draw over a spectrogram (kHz) the frequency followed, and omega_y sin(theta) in theory."""
-    time = song["time"].values
-    natural = song.attrs["natural_frequency"] / 1e3
+    time = oscillation["time"].values
+    natural = oscillation.attrs["natural_frequency"] / 1e3
     ax.axhline(natural, color="white", linewidth=0.8, dashes=(5, 3), label=r"$\omega_y/2\pi$")
     expected = r"$\omega_y \sin\theta/2\pi$"
-    ax.plot(time, song["expected"].values / 1e3, color="white", lw=1.6, alpha=0.6, label=expected)
-    ax.plot(time, song["frequency"].values / 1e3, color=RED, lw=0.9, label="ridge")
+    ax.plot(
+        time, oscillation["expected"].values / 1e3, color="white", lw=1.6, alpha=0.6, label=expected
+    )
+    ax.plot(time, oscillation["frequency"].values / 1e3, color=RED, lw=0.9, label="ridge")
 
 
-def draw_amplitudes(ax: Axes, song: xr.Dataset) -> None:
+def draw_amplitudes(ax: Axes, oscillation: xr.Dataset) -> None:
     """Draw velocity and displacement of the oscillation as shares of their bounds."""
-    time = song["time"].values
-    share = (song["amplitude"] / song["amplitude_bound"]).values
+    time = oscillation["time"].values
+    share = (oscillation["amplitude"] / oscillation["amplitude_bound"]).values
     ax.plot(
         time, share, color=BLUE, dashes=(4, 1.5), label=r"of $u_y$, over $V\sin\varphi/\omega_y$"
     )
-    share = (song["velocity"] / song["velocity_bound"]).values
+    share = (oscillation["velocity"] / oscillation["velocity_bound"]).values
     ax.plot(time, share, color=BLACK, label=r"of $v_y$, over $V\sin\varphi$")
     ax.axhline(1.0, color=GREY, linewidth=0.6, zorder=1)
     ax.set_ylim(0.0, None)
     ax.set_ylabel("amplitude (1)")
 
 
-def draw_share_stuck(ax: Axes, song: xr.Dataset) -> None:
+def draw_share_stuck(ax: Axes, oscillation: xr.Dataset) -> None:
     """Draw the share of time stuck (%): where it is zero, the oscillation rings down freely."""
-    share = 100.0 * song["share_stuck"].values
-    ax.fill_between(song["time"].values, share, color=ORANGE, linewidth=0)
+    share = 100.0 * oscillation["share_stuck"].values
+    ax.fill_between(oscillation["time"].values, share, color=ORANGE, linewidth=0)
     ax.set_ylim(0.0, None)
     ax.set_ylabel("stuck (%)")
 
 
-def song_figure(run: Trajectory, song: xr.Dataset) -> Figure:
-    """Draw the song of a run over time.
+def oscillation_figure(run: Trajectory, oscillation: xr.Dataset) -> Figure:
+    """Draw the transverse oscillation of a run over time.
 
     (a) Spectrogram of v_y with the frequency followed, omega_y, and omega_y sin(theta). (b) The
     amplitudes of v_y and u_y over their bounds. (c) The share of time stuck.
@@ -69,8 +71,8 @@ def song_figure(run: Trajectory, song: xr.Dataset) -> Figure:
     Parameters
     ----------
     run : Trajectory
-        As for `stiction.hear_song`.
-    song : Dataset
+        As for `stiction.transverse_oscillation`.
+    oscillation : Dataset
         What that returned.
 
     Returns
@@ -78,20 +80,20 @@ def song_figure(run: Trajectory, song: xr.Dataset) -> Figure:
     Figure
         As wide as a column.
     """
-    natural = song.attrs["natural_frequency"]
+    natural = oscillation.attrs["natural_frequency"]
     with style():
         fig = new_figure(COLUMN, 4.6)
         axes = fig.subplots(3, 1, sharex=True, height_ratios=[2.0, 1.2, 1.0])
-        mesh = draw_spectrogram(axes[0], song_spectrogram(run), highest=HIGHEST * natural)
-        draw_ridge(axes[0], song)
-        draw_amplitudes(axes[1], song)
-        draw_share_stuck(axes[2], song)
+        mesh = draw_spectrogram(axes[0], oscillation_spectrogram(run), highest=HIGHEST * natural)
+        draw_ridge(axes[0], oscillation)
+        draw_amplitudes(axes[1], oscillation)
+        draw_share_stuck(axes[2], oscillation)
         for ax, letter in zip(axes, "abc", strict=True):
             panel_letter(ax, letter)
         axes[0].legend(loc="upper right", ncols=3, labelcolor="white", handlelength=1.4)
         axes[1].set_ylim(0.0, 1.5 * axes[1].get_ylim()[1])  # room for the legend
         axes[1].legend(loc="upper left", ncols=2, columnspacing=1.0)
-        axes[-1].set_xlim(float(song["time"][0]), float(song["time"][-1]))
+        axes[-1].set_xlim(float(oscillation["time"][0]), float(oscillation["time"][-1]))
         axes[-1].set_xlabel("time $t$ (s)")
         bar = fig.colorbar(mesh, ax=axes, location="bottom", extend="both", aspect=35, pad=0.01)
         bar.set_label("amplitude of $v_y$ (dB re 1 µm/s)")

@@ -1,4 +1,4 @@
-"""The song's frequency, its share of the cycle, and spectra of what does not fit into memory."""
+"""The oscillation's frequency and share of the cycle; spectra of what is beyond memory."""
 
 import tracemalloc
 from math import pi, sin
@@ -11,21 +11,21 @@ from tests.measured import measured
 
 import stiction as st
 from stiction.analysis.ridge import best_path
-from stiction.plotting.song import song_figure
+from stiction.plotting.oscillation import oscillation_figure
 
 RATE = 2000.0
 NOISE = np.random.default_rng(5).normal(size=40_000)
 
 
 @pytest.fixture(scope="module")
-def song(paper_run):
-    return st.hear_song(paper_run)
+def oscillation(paper_run):
+    return st.transverse_oscillation(paper_run)
 
 
-def sings(song, least: float):
+def oscillates(oscillation, least: float):
     """Where it sticks every period; not where slip ends in a stick or where that begins."""
-    stuck = (song["share_stuck"] > least) & (song["share_stuck"] < 0.08)
-    return stuck & (song["sticks_per_second"] > 300)
+    stuck = (oscillation["share_stuck"] > least) & (oscillation["share_stuck"] < 0.08)
+    return stuck & (oscillation["sticks_per_second"] > 300)
 
 
 def phases(run: st.Trajectory) -> np.ndarray:
@@ -33,15 +33,15 @@ def phases(run: st.Trajectory) -> np.ndarray:
     return np.column_stack([cycles["start"].values, cycles["peak_time"].values])
 
 
-def test_the_song_falls_as_the_sine_of_the_force_angle(song):
-    assert float(song["frequency"][0]) == pytest.approx(
-        song.attrs["natural_frequency"], rel=0.01
+def test_the_oscillation_falls_as_the_sine_of_the_force_angle(oscillation):
+    assert float(oscillation["frequency"][0]) == pytest.approx(
+        oscillation.attrs["natural_frequency"], rel=0.01
     )  # each stick lengthens the period by some 0.5 %
-    singing = song.isel(time=sings(song, 0.03))
+    singing = oscillation.isel(time=oscillates(oscillation, 0.03))
     ratio = (singing["frequency"] / singing["expected"]).values
     assert len(ratio) > 300
     assert ratio == pytest.approx(0.995, abs=0.006)
-    assert float(singing["frequency"].min()) < 0.5 * song.attrs["natural_frequency"]
+    assert float(singing["frequency"].min()) < 0.5 * oscillation.attrs["natural_frequency"]
 
 
 @pytest.mark.parametrize(
@@ -55,8 +55,10 @@ def test_the_song_falls_as_the_sine_of_the_force_angle(song):
 )
 def test_so_does_that_of_other_systems(slider, changes):
     run = st.simulate(slider.replace(**changes), 1.5, sample_rate=10e3)
-    song = st.hear_song(run)
-    ratio = (song["frequency"] / song["expected"]).values[sings(song, 0.03).values]
+    oscillation = st.transverse_oscillation(run)
+    ratio = (oscillation["frequency"] / oscillation["expected"]).values[
+        oscillates(oscillation, 0.03).values
+    ]
     assert len(ratio) > 80
     # a load that sways moves the force by as much within a window
     assert ratio == pytest.approx(0.995, abs=0.015)
@@ -65,26 +67,26 @@ def test_so_does_that_of_other_systems(slider, changes):
 def test_what_has_died_away_is_not_heard(slider):
     """With constant friction there is one stick, then steady sliding with the solver's noise."""
     run = st.simulate(slider.replace(friction=st.Coulomb(0.2)), 3.0, sample_rate=10e3)
-    song = st.hear_song(run)
-    assert song["frequency"].sel(time=slice(0.1, 1.0)).notnull().all()
-    assert not song["frequency"].sel(time=slice(2.2, None)).notnull().any()
+    oscillation = st.transverse_oscillation(run)
+    assert oscillation["frequency"].sel(time=slice(0.1, 1.0)).notnull().all()
+    assert not oscillation["frequency"].sel(time=slice(2.2, None)).notnull().any()
 
 
-def test_it_swings_up_to_its_bound_and_sticks_once_a_period(song):
-    singing = song.isel(time=sings(song, 0.06))
+def test_it_swings_up_to_its_bound_and_sticks_once_a_period(oscillation):
+    singing = oscillation.isel(time=oscillates(oscillation, 0.06))
     share = (singing["velocity"] / singing["velocity_bound"]).values
     # in between it swings a little further back, where friction has helped
     assert 1.0 < share.min() < share.max() < 1.06
     off = (singing["sticks_per_second"] - singing["frequency"]).values
-    assert np.abs(off).max() < 1.5 / song.attrs["width"]  # counts are whole
-    known = song["amplitude"] * 2 * pi * song["frequency"]
-    np.testing.assert_allclose(known, song["velocity"].where(known.notnull()), rtol=1e-12)
-    bound = 1e-3 * sin(np.radians(1)) / (2 * pi * song.attrs["natural_frequency"])
-    assert float(song["amplitude_bound"][0]) == pytest.approx(bound, rel=1e-12)
+    assert np.abs(off).max() < 1.5 / oscillation.attrs["width"]  # counts are whole
+    known = oscillation["amplitude"] * 2 * pi * oscillation["frequency"]
+    np.testing.assert_allclose(known, oscillation["velocity"].where(known.notnull()), rtol=1e-12)
+    bound = 1e-3 * sin(np.radians(1)) / (2 * pi * oscillation.attrs["natural_frequency"])
+    assert float(oscillation["amplitude_bound"][0]) == pytest.approx(bound, rel=1e-12)
 
 
-def test_ring_down_and_micro_stick_slip_share_each_phase(paper_run, song):
-    table = st.song_by_phase(song, paper_run, phases(paper_run))
+def test_ring_down_and_micro_stick_slip_share_each_phase(paper_run, oscillation):
+    table = st.oscillation_by_phase(oscillation, paper_run, phases(paper_run))
     begin, end = paper_run.sticks.T
     for phase in range(3):
         row = table.isel(phase=phase)
@@ -102,7 +104,7 @@ def test_ring_down_and_micro_stick_slip_share_each_phase(paper_run, song):
 def test_sampled_too_coarsely_it_is_not_heard(slider):
     run = st.simulate(slider, 0.1, sample_rate=2e3)
     with pytest.raises(st.ResultError, match=r"1007 Hz: sample the run at 5033 Hz or more"):
-        st.hear_song(run)
+        st.transverse_oscillation(run)
 
 
 def test_a_ridge_is_finer_than_its_lines_and_keeps_to_its_own():
@@ -214,7 +216,7 @@ def test_too_short_a_stream_is_refused():
         list(st.stream_spectrogram([NOISE[:10], NOISE[:20]], RATE))
 
 
-def test_the_figure_says_what_is_drawn(paper_run, song):
-    axes = song_figure(paper_run, song).axes
+def test_the_figure_says_what_is_drawn(paper_run, oscillation):
+    axes = oscillation_figure(paper_run, oscillation).axes
     assert [ax.get_ylabel() for ax in axes[:3]] == ["frequency (kHz)", "amplitude (1)", "stuck (%)"]
     assert axes[2].get_xlabel() == "time $t$ (s)"
