@@ -20,6 +20,6 @@ study = st.Study(
 print(study.run("regime_map.zarr"))
 write(map_figure("regime_map.zarr"), "regime_map.png")
 
-changes = study.refine("regime_map.zarr", "phi", "0.01 deg", apart=["damped approach"])
+changes = study.refine("regime_map.zarr", "phi", "0.01 deg", apart=["settling"])
 for V, phi in zip(changes["drive.velocity"].values, changes["phi"].values, strict=True):
     print(f"at V = {1e3 * V:6.3f} mm/s it comes to rest from phi = {phi:.2f} deg on")

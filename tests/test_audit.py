@@ -7,7 +7,7 @@ from scipy.integrate import quad, solve_ivp
 
 import stiction as st
 from stiction import theory
-from stiction.analysis.regime import DAMPED, STICK_SLIP
+from stiction.analysis.regime import SETTLING, STICK_SLIP
 from stiction.auditing.advice import nearest
 from stiction.auditing.page import page
 from stiction.auditing.prediction import predict
@@ -86,7 +86,7 @@ def test_advice_is_tried_and_says_when_it_does_not_help(found):
     phi, speed, damper = (advices[path] for path in ("phi", "drive.velocity", "c_x"))
     assert phi.works
     assert damper.works
-    assert phi.tried.regime.kind == DAMPED
+    assert phi.tried.regime.kind == SETTLING
     # far beyond the critical speed friction is flat: what oscillates goes on oscillating
     assert speed.growth < 0.0
     assert not speed.works
@@ -107,7 +107,7 @@ def test_an_advised_damper_is_what_the_closed_form_says(found):
 def test_what_slides_steadily_needs_nothing():
     found = examine(PAPER.replace(phi="10 deg"))
     assert found.advices == ()
-    assert found.observation.regime.kind == DAMPED
+    assert found.observation.regime.kind == SETTLING
     assert sections(found)[-1].sentences == ["Nothing: it slides steadily once it has settled."]
 
 
@@ -117,7 +117,7 @@ def test_what_slides_steadily_needs_nothing():
         ({"phi": "0 deg"}, STICK_SLIP),
         ({"phi": "-1 deg"}, STICK_SLIP),
         ({"drive": st.ConstantVelocity(-1e-3)}, STICK_SLIP),
-        ({"friction": st.Coulomb(mu_0=0.2)}, DAMPED),
+        ({"friction": st.Coulomb(mu_0=0.2)}, SETTLING),
     ],
 )
 def test_audits_of_other_apparatus(changes, kind):

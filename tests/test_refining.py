@@ -10,7 +10,7 @@ from stiction.study.regimes import KINDS
 
 PAPER = st.presets.nakano_popov_2020()
 BASE = st.Description(PAPER, st.Initial(), st.Settings(duration="6 s"))
-CALM = ("damped approach", "steady sliding", "song")
+CALM = ("settling", "steady sliding", "transverse oscillation")
 V = st.Values(["0.5 mm/s", "1 mm/s"])
 
 
@@ -41,7 +41,7 @@ def test_changes_lie_at_the_loss_of_stability(found):
     study, _, changes = found
     np.testing.assert_array_equal(changes["drive.velocity"], [0.5e-3, 1e-3])
     meanings = changes["below"].attrs["flag_meanings"].split()
-    assert {meanings[code + 1] for code in changes["above"].values} == {"damped_approach"}
+    assert {meanings[code + 1] for code in changes["above"].values} == {"settling"}
     for point in range(2):
         at = changes.isel(point=point)
         drive = st.ConstantVelocity(float(at["drive.velocity"]))
@@ -89,3 +89,12 @@ def test_what_cannot_be_refined(found, along, to, says):
     with pytest.raises(st.DescriptionError) as error:
         study.refine(path, along, to)
     assert says in str(error.value)
+
+
+def test_a_kind_s_former_name_goes_on_and_a_strange_one_does_not(found, tmp_path):
+    study, path, changes = found
+    with pytest.warns(DeprecationWarning, match="now called 'settling'"):
+        again = study.refine(path, "phi", "0.01 deg", apart=["damped approach", *CALM[1:]])
+    np.testing.assert_array_equal(again["above"], changes["above"])
+    with pytest.raises(st.DescriptionError, match="did you mean 'settling'"):
+        study.refine(path, "phi", "0.01 deg", apart=["setling"])

@@ -12,14 +12,14 @@ import stiction as st
 from stiction.analysis.decay import dies_out
 from stiction.analysis.rest import rest_share
 
-BETWEEN = "between stick-slip and harmonic vibration"
+TRANSITIONAL = "transitional oscillation"
 
 
 @pytest.mark.parametrize(
     ("name", "kind", "least"),
     [
         ("k168_v42", "stick-slip", 0.9),
-        ("k168_v1100", BETWEEN, 0.4),
+        ("k168_v1100", TRANSITIONAL, 0.4),
         ("k1002_v4300", "harmonic vibration", 0.9),
         ("k2254_v42", "steady sliding", 0.8),
     ],
@@ -47,8 +47,8 @@ def test_between_says_what_else_it_could_be() -> None:
     [  # critical: 8.66 deg
         ("1 deg", "stick-slip"),
         ("8 deg", "stick-slip"),
-        ("8.8 deg", "damped approach"),
-        ("10 deg", "damped approach"),
+        ("8.8 deg", "settling"),
+        ("10 deg", "settling"),
     ],
 )
 def test_the_critical_misalignment_parts_stick_slip_from_damped(
@@ -61,11 +61,11 @@ def test_the_critical_misalignment_parts_stick_slip_from_damped(
     assert (st.find_cycles(record).sizes["cycle"] > 0) == (kind == "stick-slip")
 
 
-def test_constant_friction_is_a_damped_approach(slider: st.Slider) -> None:
+def test_constant_friction_is_a_transient(slider: st.Slider) -> None:
     law = st.ExponentialWeakening(mu_0=0.2, mu_inf=0.2, v_f="10 mm/s")
     run = st.simulate(slider.replace(friction=law), 10.0, sample_rate=10e3)
     regime = st.classify(st.record_of(run))
-    assert regime.kind == "damped approach"
+    assert regime.kind == "settling"
     assert "each smaller than the last" in str(regime)
 
 
@@ -109,7 +109,7 @@ def test_records_of_no_motion_in_particular() -> None:
                 spike + 0.01 * white,
             ],
             "stuck": [time, time + 0.05 * white, time + spike],
-            "damped approach": [1.0 - np.exp(-5.0 * time), np.exp(-2 * time) * np.sin(40 * time)],
+            "settling": [1.0 - np.exp(-5.0 * time), np.exp(-2 * time) * np.sin(40 * time)],
         }.items()
     }
     for kind, found in kinds.items():

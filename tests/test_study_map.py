@@ -35,7 +35,7 @@ def drawn(fig):
 def test_a_map_of_regimes_with_both_boundaries(store):
     fig = map_figure(store, cut={"friction.mu_inf": 0.15})
     found = drawn(fig)
-    assert {PHI_C, ZETA, "stick-slip", "damped approach"} <= found
+    assert {PHI_C, ZETA, "stick-slip", "settling"} <= found
     (ax,) = fig.axes
     assert (ax.get_xlabel(), ax.get_ylabel()) == (r"$\varphi$ (deg)", "$V$ (mm/s)")
     assert (ax.get_xscale(), ax.get_yscale()) == ("linear", "log")

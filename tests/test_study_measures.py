@@ -139,5 +139,5 @@ def test_two_swings_and_then_quiet_are_a_transient():
     run = seen(slider, "6.5 s")
     assert len(run.swings.drop) == 2
     assert run.end - run.swings.end > 50 * run.swings.period.max()
-    assert run.regime == "damped approach"
+    assert run.regime == "settling"
     assert st.stability.growth_rate(slider) < 0.0

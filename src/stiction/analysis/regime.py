@@ -20,15 +20,16 @@ if TYPE_CHECKING:
     import xarray as xr
 
 STICK_SLIP = "stick-slip"
-BETWEEN = "between stick-slip and harmonic vibration"
+TRANSITIONAL = "transitional oscillation"
 HARMONIC = "harmonic vibration"
-DAMPED = "damped approach"
+IRREGULAR = "irregular vibration"
+SETTLING = "settling"
 STEADY = "steady sliding"
 STUCK = "stuck"
 UNDETERMINED = "undetermined"
 
 # Bounds of the share of a cycle for which the mass rests, or creeps, by the cycle's shape
-SHAPES = ((0.75, STICK_SLIP), (0.5, BETWEEN), (0.0, HARMONIC))
+SHAPES = ((0.75, STICK_SLIP), (0.5, TRANSITIONAL), (0.0, HARMONIC))
 BACKWARD = 0.4  # share of the rise, below which the force falls slowly and rises fast
 # Standard deviation of the periods over their mean. Noise through a narrow filter, which rings,
 # has 0.15, through a wide one, which does not, 0.37 and more.
@@ -93,11 +94,11 @@ class Regime(NamedTuple):
     Parameters
     ----------
     kind : str
-        "stick-slip" (at rest, or in creep, for three quarters of a cycle or more), "between
-        stick-slip and harmonic vibration" (for half of it or more), "harmonic vibration" (for
-        less or not at all), "damped approach" (a transient that dies out), "steady sliding" (no
-        swings stand apart from the noise: what is smaller is not seen), "stuck" (it loads and
-        never slips) or "undetermined".
+        "stick-slip" (at rest, or in creep, for three quarters of a cycle or more),
+        "transitional oscillation" (for half of it or more), "harmonic vibration" (for less or
+        not at all), "settling" (a transient that decays), "steady sliding" (no swings stand
+        apart from the noise: what is smaller is not seen), "stuck" (it loads and never slips)
+        or "undetermined".
     confidence : float
         0 to 1. With cycles: the share of them that have the kind's shape themselves, counted
         with one more of either, so that three cycles say less than thirty.
@@ -143,7 +144,7 @@ def regime_of(record: Record, found: Swings) -> Regime:
     if found.dying:
         drop = found.table["drop"].values
         sure = (len(drop) + 1) / (len(drop) + 3)
-        return Regime(DAMPED, sure, {"swings": len(drop), "last_over_first": drop[-1] / drop[0]})
+        return Regime(SETTLING, sure, {"swings": len(drop), "last_over_first": drop[-1] / drop[0]})
     if found.table.sizes["cycle"]:
         return _by_shape(record, found)
     return _by_course(record, found)
@@ -209,7 +210,7 @@ def _by_course(record: Record, found: Swings) -> Regime:
     late = way.late_span / way.span if way.span > 0.0 else 1.0
     if late <= SETTLED:
         sure = 1.0 - late / (2.0 * SETTLED)
-        return Regime(DAMPED, sure, evidence | {"late_share": late})
+        return Regime(SETTLING, sure, evidence | {"late_share": late})
     if found.turns:
         return Regime(UNDETERMINED, 0.0, evidence | {"turns": found.turns})
     rising = way.change > 0.0 and way.one_way >= ONE_WAY

@@ -16,7 +16,7 @@ from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.misalignment import Misalignment, fit_misalignment
 from stiction.analysis.oscillation import oscillation_by_phase, transverse_oscillation
 from stiction.analysis.record import Record, recorded
-from stiction.analysis.regime import BETWEEN, STICK_SLIP, Regime, regime_of
+from stiction.analysis.regime import STICK_SLIP, TRANSITIONAL, Regime, regime_of
 from stiction.analysis.spread import summary
 from stiction.errors import ResultError, StictionError
 from stiction.trajectory import Trajectory
@@ -111,7 +111,7 @@ def analyse(source: Trajectory | Record) -> Analysis:
     record = recorded(source)
     found = swings(record)
     cycles, regime = found.cycles, regime_of(record, found)
-    sticking = cycles if regime.kind in (STICK_SLIP, BETWEEN) else cycles.isel(cycle=slice(0))
+    sticking = cycles if regime.kind in (STICK_SLIP, TRANSITIONAL) else cycles.isel(cycle=slice(0))
     if run is not None:
         oscillation = tried("oscillation", lambda: transverse_oscillation(run))
         energy = tried("energy", lambda: energy_budget(run, edges(run, cycles)))

@@ -3,7 +3,7 @@
 >>> import stiction as st
 >>> found = st.audit.examine(st.presets.nakano_popov_2020().replace(phi="9.5 deg"))
 >>> found.observation.regime.kind, found.sliding.stable
-('damped approach', True)
+('settling', True)
 """
 
 from stiction.auditing.report import Audit, examine

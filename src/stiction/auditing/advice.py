@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from math import inf, isfinite, nan, sqrt
 from typing import Any, NamedTuple
 
-from stiction.analysis.regime import DAMPED, STEADY
+from stiction.analysis.regime import SETTLING, STEADY
 from stiction.auditing.observation import Observation, coarse_rate, observe
 from stiction.auditing.prediction import predict
 from stiction.linear_stability import Critical, critical, growth_rate
@@ -16,7 +16,7 @@ from stiction.slider import Slider
 # How far beyond a critical value to go, of it: farther where an oscillation, once there, goes on
 # although steady sliding is stable
 BEYOND = (0.15, 0.5, 1.0, 2.0)
-CALM = (DAMPED, STEADY)
+CALM = (SETTLING, STEADY)
 LEVERS = ("phi", "drive.velocity", "c_x", "k_x")
 STRONGEST = 10.0  # times critical damping: as far as a damper is tried
 

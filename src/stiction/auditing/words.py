@@ -7,7 +7,7 @@ from math import degrees, hypot, isfinite, nan, tan
 import numpy as np
 
 from stiction.analysis.creep import first_slip_time
-from stiction.analysis.regime import BETWEEN, DAMPED, STICK_SLIP, STUCK, UNDETERMINED
+from stiction.analysis.regime import SETTLING, STICK_SLIP, STUCK, TRANSITIONAL, UNDETERMINED
 from stiction.auditing.advice import Advice
 from stiction.auditing.report import Audit
 from stiction.friction import has_state
@@ -23,8 +23,8 @@ NAMES = {
 
 
 SEEN = {  # kinds of motion, in a sentence
-    BETWEEN: f"a motion {BETWEEN}",
-    DAMPED: f"a {DAMPED} to steady sliding",
+    TRANSITIONAL: f"a {TRANSITIONAL} between stick-slip and harmonic vibration",
+    SETTLING: f"a motion {SETTLING} to steady sliding",
     STUCK: "a mass that is stuck",
     UNDETERMINED: "a motion of no clear kind",
 }

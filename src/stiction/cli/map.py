@@ -19,10 +19,10 @@ def map(
 ) -> None:
     """Draw what the study in the store STUDY found, finished or not.
 
-    Over two parameters a map of the kind of motion: stick-slip, harmonic vibration, what lies
-    between, damped approach, steady sliding, song. Two lines over it say what theory expects:
-    where steady sliding loses its stability, and where the damping ratio at slip is 1. Over one
-    parameter a curve; samples over phi and V as points in the damping diagram.
+    Over two parameters a map of the kind of motion: stick-slip, transitional oscillation,
+    harmonic vibration, settling, steady sliding, transverse oscillation. Two lines over it say
+    what theory expects: where steady sliding loses its stability, and where the damping ratio at
+    slip is 1. Over one parameter a curve; samples over phi and V as points in the damping diagram.
 
     For example, after `stiction sweep --preset yaw-angle -o yaw.zarr`:
 

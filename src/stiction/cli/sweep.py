@@ -68,7 +68,7 @@ def sweep(
         An axis and how closely to find where the kind of motion changes along it, for each value
         of the others, as "phi = 0.01 deg": by halving, not by filling the grid.
     apart
-        With --refine, a kind of motion that is told from all others, as "damped approach"; repeat
+        With --refine, a kind of motion that is told from all others, as "settling"; repeat
         it for more. All are told from each other when left out.
     threads
         How many runs at a time in this process; as many as there are cores when left out.

@@ -25,15 +25,15 @@ DEEPEST = 1e6  # of the largest value: what is less is nothing
 # light for what is calm, dark and warm for what is violent, told apart without colour as well
 COLORS = {
     "stick-slip": "#C44E00",
-    "between stick-slip and harmonic vibration": "#EE9A4D",
+    "transitional oscillation": "#EE9A4D",
     "harmonic vibration": "#FBDDA6",
-    "damped approach": "#CFE3F1",
+    "settling": "#CFE3F1",
     "steady sliding": "#8FC1E3",
-    "song": "#A3558F",
+    "transverse oscillation": "#A3558F",
+    "irregular vibration": "#6B4E9B",
     "stuck": "#8A8A8A",
     "undetermined": "#FFFFFF",
 }
-SHORT = {"between stick-slip and harmonic vibration": "between these"}
 
 
 class Side(NamedTuple):
@@ -85,7 +85,7 @@ def draw_regimes(ax: Axes, x: Side, y: Side, kinds: NDArray[np.object_]) -> list
     _framed(ax, x, y)
     present = [name for code, name in enumerate(names) if (codes == code).any()]
     patches = [
-        Patch(facecolor=COLORS[name], edgecolor=BLACK, linewidth=0.4, label=SHORT.get(name, name))
+        Patch(facecolor=COLORS[name], edgecolor=BLACK, linewidth=0.4, label=name)
         for name in present
     ]
     if failed.any():
@@ -163,8 +163,7 @@ def draw_points(ax: Axes, x: Floats, y: Floats, kinds: Sequence[str]) -> list[Li
         if here.any():
             look = {"marker": "o", "linestyle": "none", "markeredgecolor": BLACK}
             size = {"markersize": 3.2, "markeredgewidth": 0.3, "color": color}
-            label = SHORT.get(name, name)
-            made += ax.plot(x[here], y[here], **look, **size, label=label, zorder=4)  # type: ignore[arg-type]
+            made += ax.plot(x[here], y[here], **look, **size, label=name, zorder=4)  # type: ignore[arg-type]
     return made
 
 

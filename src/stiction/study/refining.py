@@ -7,6 +7,7 @@ that lies inside the store: what was stopped goes on.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,7 +22,7 @@ from stiction.study.intervals import Intervals, changes, half_way, halved, wides
 from stiction.study.kept import UNKNOWN, flagged
 from stiction.study.parameters import number
 from stiction.study.plan import Study
-from stiction.study.regimes import KINDS
+from stiction.study.regimes import FORMERLY, KINDS
 from stiction.study.store import open_study
 from stiction.study.sweeping import Tally, sweep
 from stiction.study.view import CHANGES, REFINED, REGIME, kinds
@@ -74,7 +75,7 @@ def refine(
     DescriptionError
         If there is no such axis, or the study keeps no regime.
     """
-    width = _asked(study, along, to)
+    width, apart = _asked(study, along, to), _kinds(apart)
     sweep(study, path, engine=engine, progress=progress)
     found, runs = changes(study, open_study(path).load(), along, apart), study.layout.runs
     folder = Path(path) / REFINED / along
@@ -108,6 +109,21 @@ def _asked(study: Study, along: str, to: float | str) -> float:
     if not width > 0.0:
         raise DescriptionError([Fault("to", f"must be greater than 0, is {to!r}")])
     return width
+
+
+def _kinds(apart: Sequence[str] | None) -> list[str] | None:
+    """Return kinds of motion by the names that they have now."""
+    if apart is None:
+        return None
+    for name in FORMERLY.keys() & set(apart):
+        text = f"the kind of motion {name!r} is now called {FORMERLY[name]!r}"
+        warnings.warn(text, DeprecationWarning, stacklevel=3)
+    now = [FORMERLY.get(name, name) for name in apart]
+    if strange := [name for name in now if name not in KINDS]:
+        raise DescriptionError(
+            [Fault("apart", unknown("kind of motion", name, KINDS)) for name in strange]
+        )
+    return now
 
 
 def samples(study: Study, values: Mapping[str, Floats]) -> Study:

@@ -20,17 +20,23 @@ from stiction.study.features import PARTS, Features
 
 Floats = NDArray[np.float64]
 
-SONG = "song"
+SONG = "transverse oscillation"
 KINDS = (
     regime.UNDETERMINED,
     regime.STUCK,
     regime.STICK_SLIP,
-    regime.BETWEEN,
+    regime.TRANSITIONAL,
     regime.HARMONIC,
-    regime.DAMPED,
+    regime.SETTLING,
     regime.STEADY,
     SONG,
-)
+    regime.IRREGULAR,
+)  # stores hold their places: a new one goes to the end
+FORMERLY = {
+    "between stick-slip and harmonic vibration": regime.TRANSITIONAL,
+    "damped approach": regime.SETTLING,
+    "song": SONG,
+}
 FEWEST = 2  # swings that tell a kind: one may be the end of a transient
 SINGS = 0.1  # of the largest that the fast oscillation can be before the slip reverses
 
@@ -92,8 +98,8 @@ def kind_of(
     over = count > 0 and end - cycles.end > QUIET * float(cycles.period.max())
     if count >= FEWEST and not dying and not over:
         return regime.shape(float(np.sort(cycles.rise_share)[count // 2]))
-    kind = regime.DAMPED if dying else course(found, start, end, drive)
-    return SONG if kind in (regime.DAMPED, regime.STEADY) and song > SINGS else kind
+    kind = regime.SETTLING if dying else course(found, start, end, drive)
+    return SONG if kind in (regime.SETTLING, regime.STEADY) and song > SINGS else kind
 
 
 def course(found: Features, start: float, end: float, drive: float) -> str:
@@ -103,7 +109,7 @@ def course(found: Features, start: float, end: float, drive: float) -> str:
     quarter = QUARTER * (end - start) / PARTS
     early, late = (f[QUARTER] - f[0]) / quarter, (f[-1] - f[-1 - QUARTER]) / quarter
     if span > 0.0 and max(f[-QUARTER:]) - min(f[-QUARTER:]) <= regime.SETTLED * span:
-        return regime.DAMPED
+        return regime.SETTLING
     if len(found.turn_time):
         return regime.UNDETERMINED
     ups_and_downs = sum(abs(b - a) for a, b in pairwise(f))
