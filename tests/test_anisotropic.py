@@ -32,8 +32,8 @@ def test_a_circle_is_isotropic_friction(slider):
     plain = soft(slider, friction=WEAKENING)
     circle = soft(slider, friction=st.Anisotropic(WEAKENING, 1.0, "20 deg"))
     one, other = (st.simulate(s, 0.3, sample_rate=1e3, rtol=1e-9) for s in (plain, circle))
-    assert len(one.sticks) == len(other.sticks) > 3
-    assert other.sticks == pytest.approx(one.sticks, rel=1e-6)
+    assert len(one.stick_intervals) == len(other.stick_intervals) > 3
+    assert other.stick_intervals == pytest.approx(one.stick_intervals, rel=1e-6)
     for name in ("u_x", "u_y", "friction", "theta"):
         assert other.data[name].values == pytest.approx(
             one.data[name].values, rel=1e-5, nan_ok=True
@@ -57,7 +57,7 @@ def test_a_stick_ends_on_the_ellipse(slider, ratio, angle):
     run = st.simulate(s, 0.05, initial=st.Initial(v_x=V[0], v_y=V[1]), rtol=1e-10)
     pull = np.array([s.k_x, s.k_y]) * V
     end = 0.25 * 10.0 / np.sqrt(pull @ np.linalg.solve(tensor(s), pull))
-    assert run.sticks[0] == pytest.approx([0.0, end], rel=1e-12)
+    assert run.stick_intervals[0] == pytest.approx([0.0, end], rel=1e-12)
 
 
 def test_force_and_slip_obey_the_flow_rule(slider):

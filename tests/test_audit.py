@@ -54,7 +54,7 @@ def test_a_slip_is_half_a_swing_that_friction_stops():
 
 def test_theory_beside_the_simulation(found):
     p, seen = found.prediction, found.observation
-    sticks = seen.run.sticks
+    sticks = seen.run.stick_intervals
     assert p.first_stick == pytest.approx(sticks[0, 1] - sticks[0, 0], rel=1e-6)
     # Eq. (7) leaves out inertia, of relative order (omega_x load_up)^-1, here 1/128
     assert seen.mean("mu_static") == pytest.approx(p.mu_static, rel=1 / 128)
@@ -77,7 +77,7 @@ def test_shares_of_a_cycle_add_up_and_rest_is_that_of_the_sticks(found):
     rest, creep, slip = seen.shares
     assert rest + creep + slip == pytest.approx(1.0, abs=1e-12)
     begin, end = float(seen.cycles["start"][0]), float(seen.cycles["trough_time"][-1])
-    inside = [stick for stick in seen.run.sticks if begin <= stick[0] and stick[1] <= end]
+    inside = [stick for stick in seen.run.stick_intervals if begin <= stick[0] and stick[1] <= end]
     assert rest == pytest.approx(np.diff(inside, axis=1).sum() / (end - begin), abs=1e-5)
 
 

@@ -40,9 +40,9 @@ def test_panels_break_where_sticks_and_programs_do(slider):
     run = st.simulate(slider.replace(drive=program), 0.05)
     starts, lengths = panels(run, np.array([0.0, 0.02, 0.05]))
     assert starts[1:] == pytest.approx((starts + lengths)[:-1], abs=1e-16)
-    for edge in (0.02, 0.031, *run.sticks[run.sticks < 0.05].ravel()):
+    for edge in (0.02, 0.031, *run.stick_intervals[run.stick_intervals < 0.05].ravel()):
         assert np.abs(starts - edge).min() < 1e-12
-    middle, (begin, end) = starts + 0.5 * lengths, run.sticks.T
+    middle, (begin, end) = starts + 0.5 * lengths, run.stick_intervals.T
     slipping = ~((begin[:, None] < middle) & (middle < end[:, None])).any(axis=0)
     period = 2 * pi * np.sqrt(slider.mass / slider.k_y)
     assert 0.0 < lengths[slipping].max() <= period < lengths.max()

@@ -132,7 +132,7 @@ def test_zero_slip_shows_rests_inside_the_circle(fine: st.Trajectory) -> None:
     assert speed.get_ylabel().endswith("(µm/s)")
     assert len(speed.collections[0].get_paths()) == 4  # shaded once each oscillation
     time, slip = curve(speed).T
-    for start, end in (fine.sticks - 0.5) * 1e3:
+    for start, end in (fine.stick_intervals - 0.5) * 1e3:
         inside = (time > start + 0.005) & (time < end - 0.005)
         assert np.all(slip[inside] == 0)
     friction = curve(force)[:, 1]

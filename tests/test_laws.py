@@ -62,7 +62,7 @@ def test_stribeck_with_exponent_one_is_exponential_weakening(slider):
         st.simulate(slider.replace(friction=law), 0.05) for law in (exponential, stribeck)
     )
     # pow(x, 1) is x to the last bit; sums may be contracted otherwise, which stick-slip amplifies
-    assert other.sticks == pytest.approx(one.sticks, rel=1e-9)
+    assert other.stick_intervals == pytest.approx(one.stick_intervals, rel=1e-9)
 
 
 def test_a_dense_table_of_a_law_is_that_law(slider):
@@ -71,8 +71,8 @@ def test_a_dense_table_of_a_law_is_that_law(slider):
     speeds = [i * 2e-5 for i in range(5001)]
     table = st.Table(v=speeds, mu=[exponential.coefficient(v) for v in speeds])
     one, other = (st.simulate(slider.replace(friction=law), 0.05) for law in (exponential, table))
-    assert other.sticks[0] == pytest.approx(one.sticks[0], rel=1e-12)
-    assert other.sticks[:10] == pytest.approx(one.sticks[:10], rel=1e-6)
+    assert other.stick_intervals[0] == pytest.approx(one.stick_intervals[0], rel=1e-12)
+    assert other.stick_intervals[:10] == pytest.approx(one.stick_intervals[:10], rel=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -28,8 +28,8 @@ def test_the_paper_s_run_keeps_its_tolerance(slider, sharp_run, rtol):
     assert run.status.ok
     assert error(run, sharp_run, "spring_x") < 5.0 * rtol  # N; a full run's is below 15 rtol
     assert run.statistics.mapped > 0.99 * run.statistics.stick_count
-    assert run.statistics.stick_count == len(run.sticks)
-    assert run.statistics.time_stuck == pytest.approx(np.diff(run.sticks).sum(), rel=1e-12)
+    assert run.statistics.stick_count == len(run.stick_intervals)
+    assert run.statistics.time_stuck == pytest.approx(np.diff(run.stick_intervals).sum(), rel=1e-12)
     assert full.statistics.mapped == 0
 
 
@@ -52,15 +52,15 @@ def test_ten_times_fewer_steps_at_a_millinewton(slider, sharp_run):
 
 def test_every_stick_is_there(slider, sharp_run):
     run = st.simulate(slider, 5.0, rtol=1e-8, multiscale=True)
-    assert len(run.sticks) == len(sharp_run.sticks) == 2959
-    np.testing.assert_allclose(run.sticks, sharp_run.sticks, rtol=0, atol=1e-7)
+    assert len(run.stick_intervals) == len(sharp_run.stick_intervals) == 2959
+    np.testing.assert_allclose(run.stick_intervals, sharp_run.stick_intervals, rtol=0, atol=1e-7)
 
 
 def test_samples_do_not_influence_the_motion(slider):
     coarse, fine = (
         st.simulate(slider, 2.2, sample_rate=rate, multiscale=True) for rate in (None, 2e3)
     )
-    assert np.array_equal(coarse.sticks, fine.sticks)
+    assert np.array_equal(coarse.stick_intervals, fine.stick_intervals)
     for name in ("u_x", "u_y", "slip_x", "slip_y"):
         assert float(coarse.final[name]) == float(fine.final[name])
 
@@ -70,8 +70,8 @@ def test_a_long_run_costs_little_more(slider):
     long = st.simulate(slider, 100.0, multiscale=True)
     full = st.simulate(slider, 100.0, rtol=1e-8)
     assert long.statistics.steps < 2 * short.statistics.steps
-    assert len(long.sticks) == len(full.sticks)
-    np.testing.assert_allclose(long.sticks, full.sticks, rtol=0, atol=2e-5)
+    assert len(long.stick_intervals) == len(full.stick_intervals)
+    np.testing.assert_allclose(long.stick_intervals, full.stick_intervals, rtol=0, atol=2e-5)
 
 
 def test_a_run_goes_on_from_inside_a_cycle(slider):
@@ -109,8 +109,8 @@ def test_a_program_is_mapped_where_it_is_steady(slider):
         st.simulate(stepped, 1.4, sample_rate=1e3, rtol=1e-7, multiscale=multiscale)
         for multiscale in (False, True)
     )
-    assert len(one.sticks) == len(other.sticks)
-    assert 0.8 * len(other.sticks) < other.statistics.mapped < len(other.sticks)
+    assert len(one.stick_intervals) == len(other.stick_intervals)
+    assert 0.8 * len(other.stick_intervals) < other.statistics.mapped < len(other.stick_intervals)
     assert error(one, other, "spring_x") < 1e-5
 
 
@@ -129,8 +129,8 @@ def test_a_limit_cycle_of_long_sticks():
         st.simulate(block, 2000.0, rtol=1e-8, multiscale=multiscale) for multiscale in (False, True)
     )
     assert other.statistics.mapped > 0.8 * other.statistics.stick_count
-    assert len(one.sticks) == len(other.sticks)
-    np.testing.assert_allclose(other.sticks, one.sticks, rtol=1e-7)
+    assert len(one.stick_intervals) == len(other.stick_intervals)
+    np.testing.assert_allclose(other.stick_intervals, one.stick_intervals, rtol=1e-7)
 
 
 def test_budget_and_progress(slider):
@@ -177,7 +177,7 @@ def test_sticks_end_on_a_closed_curve(slider, theta, driven):
             u_x=u_x - 1e-3 * c * early, u_y=u_y - 1e-3 * s * early, v_x=1e-3 * c, v_y=1e-3 * s
         )
         run = st.simulate(system, 3 * early, initial=start)
-        assert run.sticks[0] == pytest.approx([0.0, early], rel=1e-9)
+        assert run.stick_intervals[0] == pytest.approx([0.0, early], rel=1e-9)
 
 
 def test_differences_of_angles_are_small():

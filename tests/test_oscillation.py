@@ -87,7 +87,7 @@ def test_it_swings_up_to_its_bound_and_sticks_once_a_period(oscillation):
 
 def test_ring_down_and_micro_stick_slip_share_each_phase(paper_run, oscillation):
     table = st.oscillation_by_phase(oscillation, paper_run, phases(paper_run))
-    begin, end = paper_run.sticks.T
+    begin, end = paper_run.stick_intervals.T
     for phase in range(3):
         row = table.isel(phase=phase)
         inside = (begin >= float(row["start"])) & (end <= float(row["end"]))

@@ -94,7 +94,7 @@ def test_a_description_names_a_file_and_a_class(config):
     builtin = run.slider.replace(friction=st.HyperbolicWeakening(mu_0=0.2, v_h=0.05))
     same = st.simulate(builtin, 0.05, sample_rate=1e4)
     # the slope is rounded otherwise; a step is kept to 2e-5
-    assert run.sticks == pytest.approx(same.sticks, rel=1e-9, abs=1e-9)
+    assert run.stick_intervals == pytest.approx(same.stick_intervals, rel=1e-9, abs=1e-9)
     assert st.Slider.from_toml(config) == run.slider
 
 
@@ -328,7 +328,7 @@ def test_machine_code_is_kept_for_the_next_process(config, tmp_path):
 import pickle, stiction as st
 from stiction.simulation import run
 d = st.Description.from_toml({str(config)!r})
-print(run(d).sticks[0, 1])
+print(run(d).stick_intervals[0, 1])
 open("law.pickle", "wb").write(pickle.dumps(d.slider))
 """
     one = python(code, tmp_path, **cache)

@@ -114,7 +114,7 @@ class Mine(NamedTuple):
 USE = """
 import stiction as st, mylaw
 slider = st.presets.nakano_popov_2020().replace(friction=mylaw.Mine(0.2))
-print(st.simulate(slider, 0.1).sticks[0, 1])
+print(st.simulate(slider, 0.1).stick_intervals[0, 1])
 """
 
 
@@ -130,3 +130,20 @@ def test_a_user_s_law_is_compiled_cached_and_seen_when_edited(tmp_path):
     law.unlink()
     code = "import stiction as st; print(st.simulate(st.presets.nakano_popov_2020(), 0.02).status)"
     assert "COMPLETED" in run_python(code, NUMBA_CACHE_DIR=cache["NUMBA_CACHE_DIR"])
+
+
+def test_old_names_go_on_working_with_a_warning():
+    from stiction import _RENAMED
+    from stiction.deprecation import old_names
+
+    for old, new in _RENAMED.items():
+        with pytest.warns(DeprecationWarning, match=f"stiction.{old} is now called stiction.{new}"):
+            assert getattr(st, old) is not None
+        assert old not in dir(st)
+    find = old_names("stiction", {"old_load": "load", "older": "stiction.errors.Status"})
+    with pytest.warns(DeprecationWarning, match=r"stiction.old_load is now called stiction.load"):
+        assert find("old_load") is st.load
+    with pytest.warns(DeprecationWarning, match=r"stiction.older is now called stiction.errors.Status"):
+        assert find("older") is st.Status
+    with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
+        find("nonsense")

@@ -106,7 +106,7 @@ def test_mirror_symmetry(slider):
     one, other = (st.simulate(s, duration, sample_rate=500 / duration) for s in (slider, mirrored))
     for name, sign in (("u_x", 1), ("u_y", -1), ("slip_x", 1), ("slip_y", -1), ("friction", 1)):
         assert np.array_equal(one.data[name].values, sign * other.data[name].values)
-    assert np.array_equal(one.sticks, other.sticks)
+    assert np.array_equal(one.stick_intervals, other.stick_intervals)
 
 
 @given(sliders(damped=False), log(1e-2, 1e2), log(1e-2, 1e2), log(1e-2, 1e2))

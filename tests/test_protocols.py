@@ -38,8 +38,8 @@ def first_release(slider, end, **initial):
     start = st.Initial(v_x=slider.motion.rate(0.0)[0], v_y=0.0, **initial)
     run = st.simulate(slider, end, initial=start, rtol=RTOL)
     assert run.status.ok
-    assert run.sticks[0, 0] == 0.0
-    return run.sticks[0, 1]
+    assert run.stick_intervals[0, 0] == 0.0
+    return run.stick_intervals[0, 1]
 
 
 # --- when a stick ends: |K u + C v_d + m dv_d/dt| = mu W(t), to rounding ------------------------
@@ -58,7 +58,7 @@ def test_an_accelerated_drive_uses_friction_up_by_its_inertia(driven, inertia):
 def test_a_drive_that_accelerates_more_than_friction_holds_slips_at_once():
     ramp = st.DriveProgram(program=[st.Ramp(20.0, 10.0)])  # m a = 2 mu W
     run = st.simulate(block(drive=ramp), 0.1, initial=st.Initial(v_x=0.0, v_y=0.0))
-    assert len(run.sticks) == 0
+    assert len(run.stick_intervals) == 0
 
 
 def test_a_rising_load_prolongs_a_stick_and_a_falling_one_ends_it():
@@ -97,11 +97,11 @@ def test_a_load_that_all_but_releases_a_stick(excess):
     held = 0.75 + excess  # the smallest limit is 0.75
     run = st.simulate(slider, 1.0, initial=st.Initial(u_x=held, v_x=0.0, v_y=0.0), rtol=RTOL)
     if excess < 0:
-        assert run.sticks.tolist() == [[0.0, 1.0]]
+        assert run.stick_intervals.tolist() == [[0.0, 1.0]]
     else:
         at = brentq(lambda t: 1 + 0.25 * sin(14 * pi * t) - held, 0.5 / 7, 0.75 / 7, xtol=1e-15)
-        assert run.sticks[0, 1] == pytest.approx(at, abs=1e-9)  # flat: sqrt of rounding
-        assert len(run.sticks) > 1
+        assert run.stick_intervals[0, 1] == pytest.approx(at, abs=1e-9)  # flat: sqrt of rounding
+        assert len(run.stick_intervals) > 1
 
 
 def test_a_long_hold_under_vibration_is_one_stick():
@@ -109,7 +109,7 @@ def test_a_long_hold_under_vibration_is_one_stick():
     drive = st.DriveProgram(across=st.Modulation(0.5, 100.0))
     slider = block(drive=drive, driven="spring", k_y=500.0)  # 0.8 of what friction holds
     run = st.simulate(slider, 100.0, initial=st.Initial(v_x=0.0, v_y=0.0))
-    assert run.sticks.tolist() == [[0.0, 100.0]]
+    assert run.stick_intervals.tolist() == [[0.0, 100.0]]
     assert run.statistics.stick_count == 1
 
 
@@ -121,7 +121,7 @@ def test_static_friction_above_kinetic_is_the_classical_stick_slip():
     slip = 2 * (pi - atan((F_s - F_k) / V))
     stick = 2 * (F_s - F_k) / V
     run = st.simulate(slider, F_s / V + 3 * (slip + stick), rtol=RTOL)
-    starts, ends = run.sticks.T
+    starts, ends = run.stick_intervals.T
     assert ends[0] == pytest.approx(F_s / V, rel=1e-13)
     assert starts[1:] - ends[:-1] == pytest.approx(slip, rel=1e-8)
     assert (ends - starts)[1:3] == pytest.approx(stick, rel=1e-8)
@@ -159,9 +159,9 @@ def test_a_slip_that_just_reaches_zero_sticks():
     exact = st.simulate(slider, 5.0, rtol=1e-10)
     for rtol in (1e-5, 1e-6, 1e-7):
         run = st.simulate(slider, 5.0, rtol=rtol)
-        assert len(run.sticks) == len(exact.sticks) == 8
+        assert len(run.stick_intervals) == len(exact.stick_intervals) == 8
         # a slip grows for 0.6 s, 2 radians, from the error of the step in which it starts
-        assert run.sticks == pytest.approx(exact.sticks, abs=25 * tolerance(rtol))
+        assert run.stick_intervals == pytest.approx(exact.stick_intervals, abs=25 * tolerance(rtol))
 
 
 # --- jumps ---------------------------------------------------------------------------------------
@@ -207,13 +207,13 @@ def test_a_program_is_its_pieces_one_after_the_other(slider):
             state = st.Initial(**(state.model_dump(exclude_unset=True) | changes))
         run = st.simulate(part, duration, initial=state, rtol=1e-9)
         last, state = run.final, run.state(run.final["time"].item())
-        sticks += run.sticks.tolist()
+        sticks += run.stick_intervals.tolist()
     for name in ("u_x", "u_y"):
         assert float(whole.final[name]) == pytest.approx(float(last[name]), rel=1e-7)
-    assert np.all(np.diff(whole.sticks.ravel()) > 0)
+    assert np.all(np.diff(whole.stick_intervals.ravel()) > 0)
     total = sum(end - start for start, end in sticks)
-    assert np.diff(whole.sticks).sum() == pytest.approx(total, rel=1e-6)
-    assert whole.statistics.stick_count == len(whole.sticks) < len(sticks)
+    assert np.diff(whole.stick_intervals).sum() == pytest.approx(total, rel=1e-6)
+    assert whole.statistics.stick_count == len(whole.stick_intervals) < len(sticks)
     assert whole.statistics.time_stuck == pytest.approx(total, rel=1e-6)
 
 
@@ -221,8 +221,8 @@ def test_free_springs_relax_to_rest(slider):
     """Drive stopped: the spring keeps what friction can hold, and nothing moves any more."""
     drive = st.DriveProgram(velocity=1e-3, program=[st.Constant(duration=1.0), st.Free()])
     run = st.simulate(slider.replace(drive=drive), 1.5, sample_rate=1e3)
-    assert run.sticks[-1, 1] == 1.5
-    after = run.data.sel(time=slice(run.sticks[-1, 0] + 1e-3, None))
+    assert run.stick_intervals[-1, 1] == 1.5
+    after = run.data.sel(time=slice(run.stick_intervals[-1, 0] + 1e-3, None))
     assert len(after["time"]) > 400
     assert np.ptp(after["X"].values) == 0.0
     assert float(run.final["friction"]) <= slider.F_0 * (1 + 1e-12)

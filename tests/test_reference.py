@@ -18,7 +18,7 @@ def test_reaches_its_duration(paper_run):
 def test_the_default_tolerance_keeps_its_promise(paper_run, sharp_run):
     exact = float(sharp_run.final["u_x"])
     assert float(paper_run.final["u_x"]) == pytest.approx(exact, rel=1e-6)
-    assert len(paper_run.sticks) == len(sharp_run.sticks)
+    assert len(paper_run.stick_intervals) == len(sharp_run.stick_intervals)
 
 
 def test_rtol_means_something(slider, sharp_run):
@@ -52,7 +52,7 @@ def test_steady_sliding_near_its_onset_stays_steady(slider, phi, rtol):
 
 def test_samples_do_not_influence_the_run(slider, paper_run):
     other = st.simulate(slider, 5.0, sample_rate=777.0)
-    assert np.array_equal(other.sticks, paper_run.sticks)
+    assert np.array_equal(other.stick_intervals, paper_run.stick_intervals)
     assert other.statistics == paper_run.statistics
     shared = st.simulate(slider, 5.0, sample_rate=100.0)
     for name in ("u_x", "u_y", "slip_x", "slip_y", "friction", "theta"):

@@ -159,7 +159,7 @@ def test_the_shape_of_a_cycle_says_how_long_it_rests(velocity: str, slider: st.S
     run = st.simulate(aligned, 12.0 * period, sample_rate=4000.0 / period)
     cycles = st.find_cycles(run)
     begin, end = float(cycles["start"][1]), float(cycles["trough_time"][-1])
-    rests = np.diff(np.clip(run.sticks, begin, end), axis=1).sum() / (end - begin)
+    rests = np.diff(np.clip(run.stick_intervals, begin, end), axis=1).sum() / (end - begin)
     # a peak is placed to a fraction of a sample, of which a period has a hundred or more; the
     # share of rest changes six times as much as that of the rise at most, where that is > 0.52
     assert rests == pytest.approx(float(rest_share(cycles["rise_share"].median())), abs=0.02)

@@ -17,7 +17,7 @@ def test_no_drive_stays_at_rest():
     run = st.simulate(slider(drive=st.ConstantVelocity(0.0)), 1.0, sample_rate=10)
     assert run.status.ok
     assert (run.data["sticking"] == 1).all()
-    assert run.sticks.tolist() == [[0.0, 1.0]]
+    assert run.stick_intervals.tolist() == [[0.0, 1.0]]
     assert np.isnan(run.data["theta"]).all()  # no force, no direction
 
 
@@ -26,7 +26,7 @@ def test_no_misalignment_is_one_dimensional():
     assert run.status.ok
     assert (run.data["u_y"] == 0).all()
     # a classical stick-slip oscillator: real stick until k_x u_x = mu_0 W
-    assert run.sticks[0, 1] == pytest.approx(2.0, rel=1e-9)
+    assert run.stick_intervals[0, 1] == pytest.approx(2.0, rel=1e-9)
 
 
 def test_right_angle():
@@ -88,7 +88,8 @@ def test_corners_end_with_an_answer(mass, V, phi, k_y):
     assert np.isfinite(run.data["u_y"].values).all()
     if run.status is st.Status.TOO_MANY_STEPS:
         # a cycle takes some twenty steps: tens of thousands of them have been followed
-        cycles = (float(run.final["time"]) - run.sticks[0, 1]) * np.sqrt(k_y / mass) / (2 * np.pi)
+        lasted = float(run.final["time"]) - run.stick_intervals[0, 1]
+        cycles = lasted * np.sqrt(k_y / mass) / (2 * np.pi)
         assert cycles > 2e4
 
 
@@ -116,7 +117,7 @@ def test_regularised_approaches_the_exact_solution():
     for delta, want in reference.items():
         run = st.simulate(slider(), 5.0, sample_rate=1e3, rtol=1e-8, regularisation=delta)
         assert run.status.ok
-        assert len(run.sticks) == 0
+        assert len(run.stick_intervals) == 0
         error = np.abs(run.data["spring_x"].values - exact.data["spring_x"].values).max()
         digit = 10.0 ** np.floor(np.log10(want))
         assert error == pytest.approx(want, abs=0.5 * digit)

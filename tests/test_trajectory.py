@@ -19,8 +19,46 @@ def test_variables_and_units(run):
         assert run.data[name].attrs["units"] == unit
         assert run.data[name].attrs["long_name"]
     assert run.data["time"].attrs["units"] == "s"
+    assert dict(run.data.sizes) == {"time": 501}
     assert run.data["u_x"].dims == ("time",)
-    assert run.data["stick_start"].dims == ("stick",)
+
+
+def test_sticks_are_a_table_of_their_own(run):
+    assert dict(run.sticks.sizes) == {"stick": run.statistics.stick_count}
+    assert set(run.sticks.variables) == {"stick_start", "stick_end", "stick_duration"}
+    for variable in run.sticks.values():
+        assert variable.attrs["units"] == "s"
+        assert variable.attrs["long_name"]
+    start, end = run.stick_intervals.T
+    assert np.array_equal(run.sticks["stick_start"], start)
+    assert np.array_equal(run.sticks["stick_end"], end)
+    assert np.array_equal(run.sticks["stick_duration"], end - start)
+
+
+def test_tables_of_pandas_have_one_row_a_sample_and_one_a_stick(run):
+    samples, sticks = run.to_dataframe(), run.sticks.to_dataframe()
+    assert len(samples) == run.data.sizes["time"] == 501
+    assert samples.index.name == "time"
+    assert set(samples.columns) == set(VARIABLES)
+    assert len(sticks) == run.statistics.stick_count
+
+
+def test_sticks_do_not_need_the_samples(slider):
+    lazy = st.simulate(slider, "20 ms", sample_rate="1 kHz")
+    assert lazy.sticks.sizes["stick"] == 9
+    assert "data" not in vars(lazy)
+
+
+def test_mu_is_the_law_s_coefficient_in_steady_sliding():
+    law = st.ExponentialWeakening(mu_0=0.2, mu_inf=0.3, v_f=0.01)
+    slider = st.presets.nakano_popov_2020().replace(friction=law, phi="30 deg", c_x=5.0, c_y=5.0)
+    run = st.simulate(slider, "40 s", sample_rate="10 Hz")
+    assert float(run.final["mu"]) == pytest.approx(law.coefficient(1e-3), rel=1e-4)
+    d = run.data
+    along = np.hypot(d["spring_x"], d["spring_y"]) * np.cos(
+        np.arctan2(d["spring_y"], d["spring_x"]) - slider.phi
+    )
+    np.testing.assert_allclose(d["mu"], along / d["normal_load"], rtol=1e-12, atol=1e-15)
 
 
 def test_variables_belong_together(run):
@@ -46,7 +84,7 @@ def test_sticking(run):
     d = run.data
     time, stuck = d["time"].values, d["sticking"].values.astype(bool)
     inside = np.zeros_like(stuck)
-    for start, end in run.sticks:
+    for start, end in run.stick_intervals:
         inside |= (time > start) & (time < end)
     assert np.array_equal(stuck, inside)
     assert (d["slip_speed"].values[stuck] == 0).all()
@@ -57,29 +95,45 @@ def test_sticking(run):
         rtol=1e-12,
     )
     assert (d["friction"].values <= run.slider.F_0 * (1 + 1e-12)).all()
-    assert (run.sticks[:, 1] > run.sticks[:, 0]).all()
-    assert run.statistics.stick_count == len(run.sticks)
-    assert run.statistics.time_stuck == pytest.approx(np.diff(run.sticks).sum(), rel=1e-12)
+    assert (run.stick_intervals[:, 1] > run.stick_intervals[:, 0]).all()
+    assert run.statistics.stick_count == len(run.stick_intervals)
+    assert run.statistics.time_stuck == pytest.approx(np.diff(run.stick_intervals).sum(), rel=1e-12)
 
 
 def test_the_paper_s_own_start_sticks_at_once(run):
     # slip of 1e-9 m/s is stopped by f = 8 m/s^2 in 1.25e-10 s
     assert float(run.data["slip_speed"][0]) == pytest.approx(1e-9, rel=1e-12)
-    assert run.sticks[0, 0] == pytest.approx(1.25e-10, rel=1e-6)
+    assert run.stick_intervals[0, 0] == pytest.approx(1.25e-10, rel=1e-6)
 
 
 def test_save_and_load(run, tmp_path):
     path = run.save(tmp_path / "run.nc")
     again = st.load(path)
     assert again.data.identical(run.data)
+    assert again.sticks.identical(run.sticks)
+    assert np.array_equal(again.stick_intervals, run.stick_intervals)
     assert again.description == run.description
     assert again.statistics == run.statistics
     assert again.status is run.status
     with h5netcdf.File(path) as file:  # the contract, as another program sees it
-        assert set(file.dimensions) == {"time", "stick"}
+        assert set(file.dimensions) == {"time"}
+        assert set(file.groups) == {"sticks"}
+        assert set(file["sticks"].variables) == {"stick_start", "stick_end", "stick_duration"}
         assert file.attrs["status"] == "COMPLETED"
         assert file.attrs["stiction_version"]
         assert file.attrs["solver"]
+
+
+@pytest.mark.parametrize("duration", ["50 ms", "1e-11 s"])  # with sticks and without
+def test_files_of_version_0_4_load(slider, tmp_path, duration):
+    run = st.simulate(slider, duration, sample_rate="10 kHz")
+    sticks = {name: ("stick", run.sticks[name].values) for name in ("stick_start", "stick_end")}
+    beside = run.data.drop_vars("mu").assign(sticks)  # mu came later
+    beside.to_netcdf(tmp_path / "old.nc", engine="h5netcdf")
+    again = st.load(tmp_path / "old.nc")
+    assert again.data.equals(run.data)
+    assert again.data["mu"].attrs == run.data["mu"].attrs
+    assert again.sticks.identical(run.sticks)
 
 
 def test_save_and_load_refuse(run, tmp_path):
@@ -94,12 +148,15 @@ def test_save_and_load_refuse(run, tmp_path):
     run.data.drop_vars("psi").to_netcdf(tmp_path / "half.nc", engine="h5netcdf")
     with pytest.raises(st.ResultError, match="lacks psi"):
         st.load(tmp_path / "half.nc")
+    run.data.to_netcdf(tmp_path / "no-sticks.nc", engine="h5netcdf")
+    with pytest.raises(st.ResultError, match="lacks stick_start, stick_end"):
+        st.load(tmp_path / "no-sticks.nc")
 
 
 def test_without_sampling(slider):
     run = st.simulate(slider, 0.05)
     assert run.data["time"].values.tolist() == [0.0, 0.05]
-    assert len(run.sticks) > 10
+    assert len(run.stick_intervals) > 10
 
 
 def test_too_many_steps_keeps_what_was_computed(slider):

@@ -57,7 +57,7 @@ def belt(rtol: float) -> list[Number]:
     law = st.HyperbolicWeakening(mu_0=1.0, v_h=1 / D)
     slider = block(friction=law, drive=st.ConstantVelocity(SPEED))
     run = st.simulate(slider, 60.0, sample_rate=1e3, rtol=rtol)
-    starts, ends = run.sticks[1:-1].T  # whole ones, after a first cycle
+    starts, ends = run.stick_intervals[1:-1].T  # whole ones, after a first cycle
     whole = slice(*np.searchsorted(run.data["time"].values, ends[[0, -1]]))
     computed = (
         float(np.mean(starts[1:] - ends[:-1])),

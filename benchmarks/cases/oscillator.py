@@ -41,7 +41,7 @@ def den_hartog(r: float, S: float, wanted: float, rtol: float) -> list[Number]:
         Number(where, "amplitude x_0 k/P_0 as printed", wanted, crest(x), 5e-8),
         Number(where, "  in closed form", exact, crest(x), 1e-8),
         Number(where, "  on the other side", exact, crest(-x), 1e-8),
-        Number(where, "stops in a period", 0, len(last.sticks), 0),
+        Number(where, "stops in a period", 0, len(last.stick_intervals), 0),
     ]
 
 
@@ -57,14 +57,14 @@ def free(rtol: float) -> list[Number]:
         found = float(run.final["u_x"])
         numbers.append(Number("Siconos", f"turning point {n + 1}", turn, found, 5e-7))
     run = st.simulate(slider, 30.0, initial=start, rtol=rtol)
-    rest = float(run.sticks[0, 0])
+    rest = float(run.stick_intervals[0, 0])
     return [
         *numbers,
         Number("Siconos", "at rest from", first + 7 * pi, rest, 5e-7),
         Number("Siconos", "  as printed", 22.42356, rest, 5e-6),
         Number("Siconos", "  at", 14 - radius, float(run.final["u_x"]), 5e-7),
         Number("Siconos", "  as printed", 0.682179, float(run.final["u_x"]), 5e-7),
-        Number("Siconos", "stops", 1, len(run.sticks), 0),
+        Number("Siconos", "stops", 1, len(run.stick_intervals), 0),
     ]
 
 

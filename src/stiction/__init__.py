@@ -11,6 +11,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from stiction.deprecation import old_names
+
 if TYPE_CHECKING:
     from stiction import auditing as audit
     from stiction import linear_stability as stability
@@ -212,21 +214,15 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
+def _find(name: str) -> Any:
     if name in _ROOMS:
         return import_module(f"stiction.{_ROOMS[name]}")
-    if name in _RENAMED:
-        from warnings import warn
-
-        warn(
-            f"st.{name} is now called st.{_RENAMED[name]}; the old name goes with the next version",
-            DeprecationWarning,
-            stacklevel=2,
-        )
-        name = _RENAMED[name]
     if name in _HOME:
         return getattr(import_module(f"stiction.{_HOME[name]}"), name)
     raise AttributeError(f"module 'stiction' has no attribute {name!r}")
+
+
+__getattr__ = old_names(__name__, _RENAMED, _find)
 
 
 def __dir__() -> list[str]:

@@ -1,13 +1,15 @@
-"""From the solver's samples to labelled arrays: names, units, derived quantities."""
+"""From the solver's numbers to two tables: samples, and stick intervals; names and units."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from stiction.description import Description
 from stiction.friction import states
+from stiction.slider import Slider
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,9 +34,13 @@ VARIABLES = {
     "drive_X": ("m/s", "drive velocity along X"),
     "drive_Y": ("m/s", "drive velocity across X"),
     "normal_load": ("N", "normal load"),
+    "mu": ("1", "apparent friction coefficient: spring force along X over the normal load"),
     "sticking": ("1", "whether the slip is zero"),
+}
+STICKS = {
     "stick_start": ("s", "start of a stick interval"),
     "stick_end": ("s", "end of a stick interval"),
+    "stick_duration": ("s", "duration of a stick interval"),
 }
 
 
@@ -42,10 +48,9 @@ def dataset(
     description: Description,
     times: np.ndarray,
     samples: np.ndarray,
-    sticks: np.ndarray,
     attributes: dict[str, Any],
 ) -> xr.Dataset:
-    """Return the labelled arrays of a run from the solver's samples.
+    """Return the samples of a run as a dataset over ``time``.
 
     Parameters
     ----------
@@ -55,8 +60,6 @@ def dataset(
         (n,), s.
     samples : ndarray
         (n, 7 + internal states); the columns of `stiction.solver.sampling`, then the states.
-    sticks : ndarray
-        (m, 2), s.
     attributes : dict
         Attributes of the dataset beside the description.
     """
@@ -93,20 +96,35 @@ def dataset(
         "drive_Y": np.broadcast_to(rate_Y, times.shape).copy(),
         "normal_load": np.broadcast_to(slider.weight(times), times.shape).copy(),
         "sticking": sticking.astype(np.int8),
-        "stick_start": sticks[:, 0].copy(),
-        "stick_end": sticks[:, 1].copy(),
     }
-    variables = {
-        name: (
-            "stick" if name.startswith("stick_") else "time",
-            value,
-            {"units": VARIABLES[name][0], "long_name": VARIABLES[name][1]},
-        )
-        for name, value in values.items()
-    }
+    values["mu"] = apparent_friction(slider, values)
+    variables = {name: ("time", values[name], described(*VARIABLES[name])) for name in VARIABLES}
     for state, value in zip(states(slider.law), columns[7:], strict=True):
-        known = {"units": state.unit, "long_name": state.meaning}
-        variables[state.name] = ("time", value, known)
-    time = ("time", times, {"units": "s", "long_name": "time"})
+        variables[state.name] = ("time", value, described(state.unit, state.meaning))
+    time = ("time", times, described("s", "time"))
     attributes = {"description": description.to_json(), **attributes}
     return xr.Dataset(variables, {"time": time}, attributes)
+
+
+def apparent_friction(slider: Slider, values: Mapping[Any, Any]) -> Any:
+    """Return the spring force along the drive direction X over the normal load.
+
+    That is what a friction test reports; in steady sliding it is the coefficient of the law.
+    """
+    c, s = slider.direction
+    with np.errstate(divide="ignore", invalid="ignore"):  # a load may vanish at the end of a run
+        return (values["spring_x"] * c + values["spring_y"] * s) / values["normal_load"]
+
+
+def stick_table(intervals: np.ndarray) -> xr.Dataset:
+    """Return stick intervals, (n, 2) in s, as a dataset over ``stick``."""
+    import xarray as xr
+
+    start, end = intervals.T
+    columns = dict(zip(STICKS, (start.copy(), end.copy(), end - start), strict=True))
+    return xr.Dataset({name: ("stick", columns[name], described(*STICKS[name])) for name in STICKS})
+
+
+def described(unit: str, meaning: str) -> dict[str, str]:
+    """Return the CF attributes of a variable."""
+    return {"units": unit, "long_name": meaning}

@@ -90,7 +90,7 @@ def simulate(
     --------
     >>> import stiction as st
     >>> run = st.simulate(st.presets.nakano_popov_2020(), duration=0.02, sample_rate=1e3)
-    >>> f"{run.sticks[0, 1] * 1e3:.4f} ms"
+    >>> f"{float(run.sticks['stick_end'][0]) * 1e3:.4f} ms"
     '11.4595 ms'
     """
     if not isinstance(slider, Slider):
@@ -121,7 +121,7 @@ def run(
     solution = solve(description, times, max_steps=max_steps, progress=progress)
     status, statistics = STATUSES[solution.code], Statistics(*solution.counts)
     arrays = partial(labelled, description, solution, status, statistics)
-    return Trajectory(description, arrays, status, statistics)
+    return Trajectory(description, arrays, solution.sticks, status, statistics)
 
 
 def labelled(
@@ -135,8 +135,7 @@ def labelled(
         "status_message": status.value,
         **vars(statistics),
     }
-    _, times, samples, sticks, _ = solution
-    return dataset(description, times, samples, sticks, attributes)
+    return dataset(description, solution.times, solution.samples, attributes)
 
 
 def solve(

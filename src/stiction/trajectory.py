@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,11 +15,14 @@ from stiction.errors import DescriptionError, ResultError, Status
 from stiction.files import placeable, whole
 from stiction.friction import states
 from stiction.initial import Initial
-from stiction.labels import VARIABLES
+from stiction.labels import VARIABLES, apparent_friction, described, stick_table
 from stiction.slider import Slider
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
+
+STICK_GROUP = "sticks"  # of a result file
 
 
 @dataclass(frozen=True)
@@ -58,6 +61,8 @@ class Trajectory:
         What was run.
     arrays : callable
         Returns `data`, which is made when it is first asked for.
+    stick_intervals : ndarray
+        Stick intervals, (n, 2): start and end of each, in s; `sticks` as a plain array.
     status : Status
         How the run ended.
     statistics : Statistics
@@ -66,6 +71,7 @@ class Trajectory:
 
     description: Description
     arrays: Callable[[], xr.Dataset]
+    stick_intervals: np.ndarray = field(compare=False)
     status: Status
     statistics: Statistics
 
@@ -77,21 +83,35 @@ class Trajectory:
 
     @cached_property
     def data(self) -> xr.Dataset:
-        """Variables over ``time`` with units (see `stiction.labels`).
-
-        Also every stick interval, whatever the sample rate, over ``stick``.
-        """
+        """The samples: variables over ``time``, with units (see `stiction.labels`)."""
         return self.arrays()
+
+    @cached_property
+    def sticks(self) -> xr.Dataset:
+        """Every stick interval, whatever the sample rate: a dataset over ``stick``.
+
+        `stick_start`, `stick_end` and `stick_duration`, in s.
+        """
+        return stick_table(self.stick_intervals)
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return the samples as a table of pandas, one row a sample, indexed by time.
+
+        Stick intervals are a table of their own: ``run.sticks.to_dataframe()``.
+
+        Examples
+        --------
+        >>> import stiction as st
+        >>> run = st.simulate(st.presets.nakano_popov_2020(), "20 ms", sample_rate="1 kHz")
+        >>> len(run.to_dataframe()), len(run.sticks.to_dataframe())
+        (21, 9)
+        """
+        return self.data.to_dataframe()
 
     @property
     def slider(self) -> Slider:
         """The system that was run."""
         return self.description.slider
-
-    @cached_property
-    def sticks(self) -> np.ndarray:
-        """Stick intervals, (n, 2): start and end of each, in s."""
-        return np.column_stack([self.data["stick_start"].values, self.data["stick_end"].values])
 
     @property
     def final(self) -> xr.Dataset:
@@ -127,6 +147,7 @@ class Trajectory:
         target = writable(path)
         with whole(target) as part:
             self.data.to_netcdf(part, engine="h5netcdf")
+            self.sticks.to_netcdf(part, mode="a", group=STICK_GROUP, engine="h5netcdf")
         return target
 
 
@@ -161,15 +182,11 @@ def load(path: str | Path, *, trust: bool = False) -> Trajectory:
     ResultError
         If there is no such file, or it is not a result of this package.
     """
-    import xarray as xr
-
     if not Path(path).is_file():
         raise ResultError(f"{path}: no such file; write one with 'stiction run'")
-    try:
-        data = xr.load_dataset(path, engine="h5netcdf")
-    except (OSError, ValueError, KeyError) as error:
-        raise ResultError(f"{path}: not a NetCDF file that can be read: {error}") from None
-    missing = [name for name in VARIABLES if name not in data]
+    data, sticks = _read(path)
+    missing = [name for name in VARIABLES if name not in data and name != "mu"]
+    missing += [name for name in _ENDS if name not in sticks]
     if missing or "description" not in data.attrs:
         what = ", ".join(missing) or "its description"
         raise ResultError(f"{path}: not a result of 'stiction run'; it lacks {what}")
@@ -187,8 +204,33 @@ def load(path: str | Path, *, trust: bool = False) -> Trajectory:
         status = Status[data.attrs["status"]]
     except (DescriptionError, KeyError, ValueError, AttributeError) as error:
         raise ResultError(f"{path}: its attributes cannot be read: {error}") from None
-    return Trajectory(description, partial(_as_read, data), status, statistics)
+    intervals = np.column_stack([sticks[name].values for name in _ENDS])
+    arrays = partial(_with_mu, data, description.slider)
+    return Trajectory(description, arrays, intervals, status, statistics)
 
 
-def _as_read(data: xr.Dataset) -> xr.Dataset:
-    return data
+_ENDS = ("stick_start", "stick_end")
+
+
+def _read(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
+    """Return the two tables of a file; up to version 0.4 both stood in the root group."""
+    import xarray as xr
+
+    try:
+        data = xr.load_dataset(path, engine="h5netcdf")
+        if "stick" in data.dims:
+            return data.drop_dims("stick"), data.drop_dims("time")
+    except (OSError, ValueError, KeyError) as error:
+        raise ResultError(f"{path}: not a NetCDF file that can be read: {error}") from None
+    try:
+        return data, xr.load_dataset(path, group=STICK_GROUP, engine="h5netcdf")
+    except (OSError, ValueError, KeyError):
+        return data, xr.Dataset()
+
+
+def _with_mu(data: xr.Dataset, slider: Slider) -> xr.Dataset:
+    """Return the samples as read, with the apparent coefficient if they are of version 0.4."""
+    if "mu" in data:
+        return data
+    mu = apparent_friction(slider, data)
+    return data.assign(mu=mu.assign_attrs(described(*VARIABLES["mu"])))

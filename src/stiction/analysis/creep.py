@@ -46,7 +46,7 @@ def mean_creep_velocity(run: Trajectory, width: float = 0.02) -> xr.DataArray:
 
     times, X = run.data["time"].values, run.data["X"].values
     end = first_slip_time(run)
-    rests = run.sticks[run.sticks[:, 1] < end, 1]
+    rests = run.stick_intervals[run.stick_intervals[:, 1] < end, 1]
     edges = list(rests[:1]) or [times[0]]
     for rest in rests:
         if rest - edges[-1] >= width:

@@ -96,7 +96,7 @@ def creep_curves(
     for phase, (start, slip) in enumerate(phases):
         times = slip - edges[edges <= slip - start]
         if isinstance(source, Trajectory):
-            found = between_rests(record, position, source.sticks[:, 1], times, slip)
+            found = between_rests(record, position, source.stick_intervals[:, 1], times, slip)
         else:
             found = between_halves(record, position, times, slip)
         rounding = grain / (found.begin - found.end)

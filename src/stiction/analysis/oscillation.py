@@ -66,7 +66,7 @@ def transverse_oscillation(run: Trajectory) -> xr.Dataset:
     velocity, bound, expected = _in_windows(run, middle, width)
     found["frequency"] = found["frequency"].where(found["amplitude"] > SILENT * bound)
     edges = np.stack([middle - 0.5 * width, middle + 0.5 * width])
-    stuck = np.diff(stuck_until(edges, run.sticks), axis=0)[0] / width
+    stuck = np.diff(stuck_until(edges, run.stick_intervals), axis=0)[0] / width
     rows = {
         "expected": (expected / (2.0 * pi), "Hz", "frequency along the friction force"),
         "velocity": (velocity, "m/s", "half the range of v_y"),
@@ -75,7 +75,7 @@ def transverse_oscillation(run: Trajectory) -> xr.Dataset:
         "amplitude_bound": (bound / (2.0 * pi * natural), "m", "V sin(phi)/omega_y"),
         "share_stuck": (stuck, "1", "share of time stuck"),
         "sticks_per_second": (
-            np.diff(sticks_until(edges, run.sticks), axis=0)[0] / width,
+            np.diff(sticks_until(edges, run.stick_intervals), axis=0)[0] / width,
             "1/s",
             "stick intervals per second",
         ),
@@ -129,11 +129,11 @@ def oscillation_by_phase(oscillation: xr.Dataset, run: Trajectory, phases: Float
 
     phases = np.asarray(phases, dtype=np.float64).reshape(-1, 2)
     length = phases[:, 1] - phases[:, 0]
-    begun = sticks_until(phases, run.sticks)
+    begun = sticks_until(phases, run.stick_intervals)
     count = begun[:, 1] - begun[:, 0]
-    ends = np.append(-np.inf, run.sticks[:, 1])[begun[:, 1]]
+    ends = np.append(-np.inf, run.stick_intervals[:, 1])[begun[:, 1]]
     last = np.clip(ends, phases[:, 0], phases[:, 1])
-    stuck = np.diff(stuck_until(phases, run.sticks), axis=1)[:, 0]
+    stuck = np.diff(stuck_until(phases, run.stick_intervals), axis=1)[:, 0]
     seen = [_frequencies(oscillation, *phase) for phase in phases]
     rows = {
         "share_stuck": (stuck / length, "1", "share of time stuck"),

@@ -127,13 +127,13 @@ def panels(run: Trajectory, edges: Floats) -> tuple[Floats, Floats]:
     slider, first, last = run.slider, edges[0], edges[-1]
     programs = [end for end, _ in drive_stretches(slider.motion)]
     programs += [end for end, _ in load_stretches(slider.normal_load, slider.load)]
-    breaks = np.unique(np.concatenate([edges, run.sticks.ravel(), programs]))
+    breaks = np.unique(np.concatenate([edges, run.stick_intervals.ravel(), programs]))
     breaks = breaks[(breaks >= first) & (breaks <= last)]
     starts, lengths = breaks[:-1], np.diff(breaks)
     imposed = max((fastest_swing(s.problem) for s in stretches(slider, first, last)), default=0.0)
     natural = sqrt(max(slider.k_x, slider.k_y) / slider.mass)
-    held = np.searchsorted(run.sticks[:, 0], starts, side="right")
-    stuck = starts < np.append(run.sticks[:, 1], -np.inf)[held - 1]
+    held = np.searchsorted(run.stick_intervals[:, 0], starts, side="right")
+    stuck = starts < np.append(run.stick_intervals[:, 1], -np.inf)[held - 1]
     omega = np.where(stuck, imposed, max(imposed, natural))
     counts = np.ceil(np.maximum(1.0, omega * lengths / (2.0 * pi))).astype(np.intp)
     return split(starts, lengths, counts)

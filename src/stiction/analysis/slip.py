@@ -104,7 +104,7 @@ def outcome(run: Trajectory) -> Outcome:
     end = first_slip_time(run)
     loading = speed[: np.searchsorted(times, end) + 1]
     parts = np.array_split(loading, min(100, len(loading)))
-    rests = bool((run.sticks[:, 0] < end).any())
+    rests = bool((run.stick_intervals[:, 0] < end).any())
     statistics = run.statistics
     return Outcome(
         run.status,

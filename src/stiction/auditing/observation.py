@@ -108,5 +108,5 @@ def shares(run: Trajectory, cycles: xr.Dataset) -> Shares:
     if cycles.sizes["cycle"]:
         begin, end = float(cycles["start"][0]), float(cycles["trough_time"][-1])
     slip = float((speed[(times >= begin) & (times <= end)] > 1.0).mean())
-    rest = float(np.diff(np.clip(run.sticks, begin, end), axis=1).sum() / (end - begin))
+    rest = float(np.diff(np.clip(run.stick_intervals, begin, end), axis=1).sum() / (end - begin))
     return Shares(rest, max(0.0, 1.0 - slip - rest), slip)

@@ -114,7 +114,7 @@ def supposed(found: Audit) -> list[str]:
 def numbers(found: Audit) -> Table:
     """Return predicted quantities beside what the simulation shows."""
     p, seen, s = found.prediction, found.observation, found.slider
-    first = seen.run.sticks[0, 1] - seen.run.sticks[0, 0] if len(seen.run.sticks) else 0.0
+    first = float(np.diff(seen.run.stick_intervals[:1]).sum())  # zero if it never sticks
     slip = first_slip_time(seen.run)
     slip = slip if slip < seen.record.time[-1] else nan
     rows = [

@@ -65,7 +65,7 @@ def draw_rests(ax: Axes, curves: Sequence[Curve], bins: int = 300) -> None:
     end = max(float(curve.run.data["time"][-1]) for curve in curves)
     edges = np.linspace(first[0], max(end, np.nextafter(first[0], np.inf)), bins + 1)
     for row, curve in enumerate(curves):
-        share = np.diff(stuck_until(edges, curve.run.sticks)) / np.diff(edges)
+        share = np.diff(stuck_until(edges, curve.run.stick_intervals)) / np.diff(edges)
         fill_row(ax, row, share, edges, curve)
     finish_rows(ax, len(curves))
     ax.set_ylabel("zero\nslip", rotation=0, ha="right", va="center")
@@ -83,7 +83,8 @@ def draw_held(ax: Axes, curves: Sequence[Curve], bins: int = 120) -> None:
     edges = np.linspace(low - pad, high + pad, bins + 1)
     for row, (curve, force) in enumerate(zip(curves, forces, strict=True)):
         times = curve.run.data["time"].values
-        stuck = np.diff(stuck_until(times, curve.run.sticks))  # however short: all are counted
+        # however short: all are counted
+        stuck = np.diff(stuck_until(times, curve.run.stick_intervals))
         total, _ = np.histogram(force[:-1] * factor, edges, weights=np.diff(times))
         held, _ = np.histogram(force[:-1] * factor, edges, weights=stuck)
         share = np.divide(held, total, out=np.zeros(bins), where=total > 0)

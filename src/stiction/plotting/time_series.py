@@ -158,7 +158,7 @@ def draw_time_stuck(ax: Axes, run: Trajectory, bins: int = 300) -> StepPatch:
     """
     times = run.data["time"].values
     edges = np.linspace(times[0], max(times[-1], np.nextafter(times[0], np.inf)), bins + 1)
-    share = 100.0 * np.diff(stuck_until(edges, run.sticks)) / np.diff(edges)
+    share = 100.0 * np.diff(stuck_until(edges, run.stick_intervals)) / np.diff(edges)
     ax.set_ylabel("stuck (%)")
     ax.set_ylim(0, 105)
     return ax.stairs(share, edges, fill=True, color=GREY)

@@ -108,7 +108,7 @@ def from_simulation(run: Trajectory) -> list[Number]:
     d, slider = run.data, run.slider
     time, slip = d["time"].values, first_slip_time(run)
     stick = (time > 0.05) & (time < 0.9 * slip)
-    first = run.sticks[0, 1]
+    first = run.stick_intervals[0, 1]
     outset = (time > first) & (time < first + 1e-3)
     early = (time > 0.05) & (time < 0.1)
     drop = 100 * (1 - d["friction"].values[stick].min() / slider.F_0)
@@ -142,7 +142,7 @@ def from_simulation(run: Trajectory) -> list[Number]:
             "Results",
             "time at full stop until first slip ('never')",
             0,
-            100 * float(_stopped(run, run.sticks[0, 1], slip)),
+            100 * float(_stopped(run, run.stick_intervals[0, 1], slip)),
             0,
             "%",
             finding=True,
@@ -161,7 +161,7 @@ def from_simulation(run: Trajectory) -> list[Number]:
 
 def _stopped(run: Trajectory, start: float, end: float) -> float:
     """Return the fraction of the time between two times (s) at zero slip."""
-    within = np.clip(run.sticks, start, end)
+    within = np.clip(run.stick_intervals, start, end)
     return float(np.diff(within, axis=1).sum() / (end - start))
 
 
@@ -217,16 +217,16 @@ def reference(run: Trajectory) -> list[Number]:
     peak = int(force[time < 2.5].argmax())
     trough = peak + int(force[peak:][time[peak:] < time[peak] + 0.3].argmin())
     next_peak = trough + int(force[trough:][time[trough:] < time[trough] + 1.2].argmax())
-    where = "reference"
+    where, stick = "reference", float(run.stick_intervals[0, 1])
     return [
-        Number(where, "end of the first stick", 11.4595, 1e3 * run.sticks[0, 1], 5e-5, "ms"),
+        Number(where, "end of the first stick", 11.4595, 1e3 * stick, 5e-5, "ms"),
         Number(where, "first peak of k_x u_x", 1.9926, float(force[peak]), 5e-5, "N"),
         Number(where, "  at", 2.0321, float(time[peak]), 1e-4, "s"),
         Number(where, "first trough of k_x u_x", 1.1686, float(force[trough]), 5e-5, "N"),
         Number(where, "  at", 2.0905, float(time[trough]), 1e-4, "s"),
         Number(where, "period", 0.9151, float(time[next_peak] - time[peak]), 2e-4, "s"),
         Number(where, "largest X'", 26.284, 1e3 * float(d["V_X"].max()), 5e-4, "mm/s"),
-        Number(where, "stick intervals in 5 s", 2959, len(run.sticks), 0),
+        Number(where, "stick intervals in 5 s", 2959, len(run.stick_intervals), 0),
         Number(where, "time stuck in 5 s", 0.323110, run.statistics.time_stuck, 5e-7, "s"),
         Number(where, "u_x(5 s)", 1.3305693378, 1e3 * float(run.final["u_x"]), 1e-10, "mm"),
         Number(where, "u_y(5 s)", 1.474023e-4, 1e3 * float(run.final["u_y"]), 5e-11, "mm"),

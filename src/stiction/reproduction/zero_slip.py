@@ -61,7 +61,7 @@ def zero_slip(run: Trajectory, window: tuple[float, float]) -> Figure:
         force.margins(y=0.2)
         for ax in (speed, force):
             ax.set_xlim(0, (window[1] - window[0]) * 1e3)
-            shade_sticks(ax, (run.sticks - window[0]) * 1e3)
+            shade_sticks(ax, (run.stick_intervals - window[0]) * 1e3)
         draw_friction_circle(circle, run, window)
         slip, stick = draw_friction_arc(arc, run, window)
         arc.legend([slip, stick], ["slip", "stick"], loc="lower left")

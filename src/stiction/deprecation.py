@@ -1,0 +1,48 @@
+"""Old public names go on working for one version, with a warning that names the new one."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from typing import Any
+
+
+def warn_renamed(old: str, new: str, *, stacklevel: int = 3) -> None:
+    """Warn the caller's caller that `old` is called `new` now."""
+    message = f"{old} is now called {new}; the old name goes with the next version"
+    warnings.warn(message, DeprecationWarning, stacklevel=stacklevel)
+
+
+def old_names(
+    module: str, renamed: Mapping[str, str], otherwise: Callable[[str], Any] | None = None
+) -> Callable[[str], Any]:
+    """Return a module's ``__getattr__`` that knows old names.
+
+    Parameters
+    ----------
+    module : str
+        The module's ``__name__``.
+    renamed : mapping
+        From each old name to the new one, an attribute of the same module, or written with dots
+        from the package on (``"stiction.plotting.run"``).
+    otherwise : callable, optional
+        Asked for any other name; an `AttributeError` when left out.
+
+    Examples
+    --------
+    In ``stiction/analysis/oscillation.py``::
+
+        __getattr__ = old_names(__name__, {"hear_song": "transverse_oscillation"})
+    """
+
+    def find(name: str) -> Any:
+        if name in renamed:
+            home, _, new = renamed[name].rpartition(".")
+            warn_renamed(f"{module}.{name}", f"{home or module}.{new}")
+            return getattr(import_module(home or module), new)
+        if otherwise is not None:
+            return otherwise(name)
+        raise AttributeError(f"module {module!r} has no attribute {name!r}")
+
+    return find
