@@ -8,12 +8,14 @@ does not say whether it is in degrees or radians.
 from __future__ import annotations
 
 import re
-from functools import cache, partial
+from functools import partial
 from math import isfinite, isinf, isnan, pi
 from typing import Annotated, Any, NamedTuple
 
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
 from pydantic_core import PydanticCustomError
+
+from stiction.unit_text import UnitError, factor, registry, short
 
 
 class Kind(NamedTuple):
@@ -27,15 +29,10 @@ class Kind(NamedTuple):
 VELOCITY = Kind("a velocity", "m/s", "1 mm/s")
 FORCE = Kind("a force", "N", "10 N")
 
-# one number, then a unit that begins with a letter: nothing to calculate, no decimal comma
-QUANTITY = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+|nan|inf)([eE][+-]?\d+)?(\s*[^\W\d][^\s,]*)?\s*")
-
-
-@cache
-def _registry() -> Any:
-    import pint  # slow to import and only needed where a string is read
-
-    return pint.UnitRegistry()
+# one number, then whatever is its unit: nothing to calculate, no decimal comma
+QUANTITY = re.compile(
+    r"\s*([+−-]?(?:\d+\.?\d*|\.\d+|nan|inf)(?:[eE][+−-]?\d+)?)(?![\d,])(.*)", re.S
+)
 
 
 def to_si(value: object, kind: Kind) -> float:
@@ -44,7 +41,8 @@ def to_si(value: object, kind: Kind) -> float:
     Parameters
     ----------
     value : float, int or str
-        A bare number in SI, or a string of a number and a unit.
+        A bare number in SI, or a string of a number and a unit; NumPy's numbers and pint's
+        quantities are read as these.
     kind : Kind
         The quantity that is wanted.
 
@@ -53,6 +51,7 @@ def to_si(value: object, kind: Kind) -> float:
     PydanticCustomError
         With the rule, the offending value and what to write instead.
     """
+    value = _bare(value)
     angle = kind.unit == "rad"
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise fault(f"{value!r} is not {kind.name}; write for example {kind.example!r}")
@@ -67,36 +66,41 @@ def to_si(value: object, kind: Kind) -> float:
     return number
 
 
-def _parse(text: str, kind: Kind) -> float:
-    import pint
+def _bare(value: object) -> object:
+    """Return a number of NumPy as Python's, a quantity of pint as text, others as they are."""
+    if hasattr(value, "magnitude") and hasattr(value, "units"):
+        return f"{_bare(value.magnitude)!r} {value.units}"
+    return value.item() if hasattr(value, "item") and getattr(value, "shape", None) == () else value
 
+
+def _parse(text: str, kind: Kind) -> float:
     found = QUANTITY.fullmatch(text)
     if not found:
         comma = " (the decimal sign is a point)" if "," in text else ""
         raise fault(
             f"{text!r} is not one number and its unit{comma}; write for example {kind.example!r}"
         )
-    if found[3] is not None and found[3].strip() == kind.unit:
-        return float(text[: found.start(3)])  # many runs are described in SI
-    try:
-        quantity = _registry().Quantity(text)
-        magnitude = float(quantity.magnitude)
-    except Exception as error:  # pint raises whatever its tokenizer meets
-        raise fault(
-            f"cannot read the unit of {text!r} (capitals matter); "
-            f"write for example {kind.example!r}"
-        ) from error
-    if quantity.unitless and kind.unit:
+    number, unit = float(found[1].replace("−", "-")), found[2].strip()
+    if unit == kind.unit:
+        return number  # many runs are described in SI
+    if not unit:
         raise fault(f"{text!r} has no unit; write for example {kind.example!r}")
-    if not kind.unit and not quantity.unitless:
+    if not kind.unit:
         raise fault(f"{text!r} must be a number without a unit; write for example {kind.example}")
     try:
-        return float(quantity.to(kind.unit).magnitude) if kind.unit else magnitude
-    except pint.DimensionalityError as error:
+        size = factor(unit, kind.unit)
+    except UnitError as error:
         raise fault(
-            f"{text!r} is in {quantity.units:~P}, not a unit of {kind.name}; "
-            f"write for example {kind.example!r}"
+            f"{text!r} is not one number and its unit: {error}; write for example {kind.example!r}"
         ) from error
+    if size is None:
+        raise fault(
+            f"{text!r} is in {short(unit) or 'no unit'}, not a unit of {kind.name}; "
+            f"write for example {kind.example!r}"
+        )
+    parts = round(1.0 / size)
+    # a division by a whole number gives the float nearest to what was written
+    return number / parts if size < 1.0 and abs(parts * size - 1.0) < 1e-14 else number * size
 
 
 def fault(message: str) -> PydanticCustomError:
@@ -178,5 +182,5 @@ def in_words(value: float, unit: str) -> str:
         return f"{value:.4g}"
     if unit == "rad":
         return f"{value * 180.0 / pi:.4g} deg"
-    quantity = _registry().Quantity(float(f"{value:.4g}"), unit)
+    quantity = registry().Quantity(float(f"{value:.4g}"), unit)
     return f"{quantity.to_compact() if value else quantity:.4g~P}"

@@ -1,0 +1,115 @@
+"""The text of a unit, as people write it, to its factor in SI.
+
+Products are written with ``*``, ``·``, ``.`` or a space, quotients with ``/``, powers with ``^``,
+``**``, small digits, or digits alone (``m s-1``). Nothing else is evaluated: the registry of units
+is asked for names only.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator
+from functools import cache, lru_cache
+from typing import Any
+
+LONGEST = 60  # characters
+TOKEN = re.compile(
+    r"\s*(?:(?P<name>[^\W\d_][^\W\d]*|°)"
+    r"(?P<power>\s*(?:\*\*|\^)\s*[+-]?\d(?!\d)|[+-]?\d(?!\d)|[⁺⁻]?[⁰¹²³⁴⁵⁶⁷⁸⁹])?"
+    r"|(?P<one>1)(?=\s*/)|(?P<sign>[*/·⋅×.()]))\s*"
+)
+SMALL = str.maketrans("⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "+-0123456789")
+# what the registry would misread or not know: a newton second is no plural of newton
+SPELLED = {"°": ("degree",), "Ns": ("newton", "second"), "Nm": ("newton", "meter")}
+
+
+class UnitError(ValueError):
+    """A unit that cannot be read; the message says why."""
+
+
+@cache
+def registry() -> Any:
+    """Return the registry of units."""
+    import pint  # slow to import and only needed where a string is read
+
+    return pint.UnitRegistry()
+
+
+@lru_cache(maxsize=1024)
+def factor(text: str, wanted: str) -> float | None:
+    """Return how many of the unit `wanted` one of the unit `text` is; None if they do not match.
+
+    A radian counts as a unit: ``rad/s`` is no frequency in Hz, which would be off by 2 pi.
+
+    Raises
+    ------
+    UnitError
+        If the text is no unit.
+
+    Examples
+    --------
+    >>> factor("N s/m", "N*s/m"), factor("mm s^-1", "m/s"), factor("rad/s", "Hz")
+    (1.0, 0.001, None)
+    """
+    one, other = (registry().Quantity(1.0, plain(each)).to_root_units() for each in (text, wanted))
+    return float(one.magnitude / other.magnitude) if one.units == other.units else None
+
+
+def short(text: str) -> str:
+    """Return a unit in its short form, e.g. ``N·s/m``."""
+    return f"{registry().Unit(plain(text)):~P}"
+
+
+def plain(text: str) -> str:
+    """Return a unit as a product of names to whole powers, or refuse it."""
+    if len(text) > LONGEST:
+        raise UnitError(f"it is longer than {LONGEST} characters")
+    tokens = _tokens(text)
+    powers = _product(tokens, text, closing="")
+    for name in powers:
+        if name not in registry():
+            raise UnitError(f"{name!r} is no unit that is known (capitals matter)")
+    return " * ".join(f"{name}**{power}" for name, power in powers.items())
+
+
+def _tokens(text: str) -> Iterator[re.Match[str]]:
+    at = 0
+    while at < len(text):
+        token = TOKEN.match(text, at)
+        if token is None:
+            raise UnitError(f"{text[at:].strip()[:20]!r} is no unit")
+        at = token.end()
+        yield token
+
+
+def _product(tokens: Iterator[re.Match[str]], text: str, closing: str) -> Counter[str]:
+    """Return the power of each name in a product, to the end or to the closing bracket."""
+    powers: Counter[str] = Counter()
+    sign = ""  # what stands before the next factor; nothing: a space
+    divided = wanted = False  # whether a quotient has begun; whether a factor must follow
+    for token in tokens:
+        if token["sign"] == ")" and closing and not wanted:
+            return powers
+        if token["sign"] and token["sign"] != "(":
+            if token["sign"] == ")" or wanted or (not powers and token["sign"] != "/"):
+                raise UnitError(f"{token['sign']!r} stands where a unit is wanted")
+            sign, wanted = token["sign"], True
+            continue
+        if divided and sign not in ("/", "*"):
+            raise UnitError("what follows '/' can be read in two ways; put it in brackets")
+        inner = _product(tokens, text, ")") if token["sign"] else _factor(token)
+        for name, power in inner.items():
+            powers[name] += -power if sign == "/" else power
+        divided, sign, wanted = divided or sign == "/", "", False
+    if closing or wanted:
+        raise UnitError("it breaks off")
+    return Counter({name: power for name, power in powers.items() if power})
+
+
+def _factor(token: re.Match[str]) -> dict[str, int]:
+    if token["one"]:
+        return {}
+    written = (token["power"] or "1").translate(SMALL)
+    power = int(re.sub(r"[*^\s]", "", written))
+    return dict.fromkeys(SPELLED.get(token["name"], (token["name"],)), power)
