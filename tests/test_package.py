@@ -143,7 +143,7 @@ def test_old_names_go_on_working_with_a_warning():
     find = old_names("stiction", {"old_load": "load", "older": "stiction.errors.Status"})
     with pytest.warns(DeprecationWarning, match=r"stiction.old_load is now called stiction.load"):
         assert find("old_load") is st.load
-    with pytest.warns(DeprecationWarning, match=r"stiction.older is now called stiction.errors.Status"):
+    with pytest.warns(DeprecationWarning, match=r"older is now called stiction.errors.Status"):
         assert find("older") is st.Status
     with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
         find("nonsense")
