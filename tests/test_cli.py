@@ -4,20 +4,41 @@ import json
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
+from waiting import PATIENCE
 
 import stiction as st
 from stiction.cli import COMMANDS, main
+
+# runs the command, and says so once the simulation is on its way
+TOLD = """
+from stiction import simulation
+from stiction.cli import main
+
+run = simulation.run
+
+def told(description, progress):
+    said = []
+
+    def report(fraction):
+        if not said:
+            said.append(print("on its way", flush=True))
+        progress(fraction)
+
+    return run(description, progress=report)
+
+simulation.run = told
+main()
+"""
 
 
 def stiction(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
     """Run the installed command in a process of its own."""
     command = [sys.executable, "-c", "from stiction.cli import main; main()", *map(str, arguments)]
     return subprocess.run(
-        command, cwd=cwd, capture_output=True, text=True, timeout=120, check=False
+        command, cwd=cwd, capture_output=True, text=True, timeout=PATIENCE, check=False
     )
 
 
@@ -125,13 +146,13 @@ def test_run_does_not_write_over_what_is_no_result(config, tmp_path, monkeypatch
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 def test_ctrl_c_ends_a_long_run_cleanly(config, tmp_path):
     config.write_text(config.read_text().replace('"50 ms"', '"1e5 s"').replace("10 kHz", "1 Hz"))
-    command = [sys.executable, "-c", "from stiction.cli import main; main()", "run", str(config)]
     process = subprocess.Popen(
-        [*command, "--output", "long.nc"], cwd=tmp_path, stderr=subprocess.PIPE, text=True
-    )
-    time.sleep(4.0)  # imports and loading take less; the run would take minutes
+        [sys.executable, "-c", TOLD, "run", str(config), "--output", "long.nc"],
+        cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    assert process.stdout.readline() == "on its way\n"
     process.send_signal(signal.SIGINT)
-    _, errors = process.communicate(timeout=60)
+    _, errors = process.communicate(timeout=PATIENCE)
     assert process.returncode == 130
     assert "interrupted" in errors
     assert "Traceback" not in errors

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
+from waiting import PATIENCE
 
 import stiction as st
 from stiction.cli import main
@@ -73,7 +74,7 @@ def python(code, cwd, **environment):
         env=os.environ | environment,
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=PATIENCE,
         check=False,
     )
     assert done.returncode == 0, done.stderr

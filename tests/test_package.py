@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from waiting import PATIENCE
 
 import stiction as st
 
@@ -19,7 +20,7 @@ def run_python(code: str, **environment: str) -> str:
         [sys.executable, "-W", "error::DeprecationWarning:stiction", "-c", code],
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=PATIENCE,
         env=os.environ | environment,
         check=False,
     )
@@ -73,7 +74,7 @@ def test_examples_run(path, tmp_path):
         cwd=tmp_path,
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=PATIENCE,
         check=False,
     )
     assert done.returncode == 0, done.stderr

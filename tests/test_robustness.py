@@ -5,6 +5,7 @@ import sys
 
 import numpy as np
 import pytest
+from waiting import PATIENCE
 
 import stiction as st
 
@@ -130,28 +131,20 @@ import stiction as st
 slider, simulate = st.presets.nakano_popov_2020(), st.simulate  # what is imported late is there
 bristles = slider.replace(friction=st.LuGre(0.15, 0.2, 1e-2, 1e5, 300.0, 0.4))
 runs = [(slider, {}), (slider, {"multiscale": True}), (bristles, {})]
-enough, interrupted = threading.Event(), 0
+wanted = threading.Semaphore(0)
 
 def pester():
     for gap in itertools.cycle([3e-3, 5e-3, 7e-3, 11e-3, 13e-3]):
+        wanted.acquire()
         time.sleep(gap)
-        if enough.is_set():
-            break
         os.kill(os.getpid(), signal.SIGINT)
 
-thread = threading.Thread(target=pester)
-while interrupted < 300:
+threading.Thread(target=pester, daemon=True).start()
+for _ in range(300):
     try:
-        if thread.ident is None:
-            thread.start()
-        for system, how in runs * 10:
+        wanted.release()  # one each time: none arrives where it is not waited for
+        for system, how in itertools.cycle(runs):
             simulate(system, 0.02, **how)
-    except KeyboardInterrupt:
-        interrupted += 1
-while thread.is_alive():
-    try:
-        enough.set()
-        thread.join()
     except KeyboardInterrupt:
         pass
 assert all(simulate(system, 0.02, **how).status.ok for system, how in runs)
@@ -161,6 +154,6 @@ assert all(simulate(system, 0.02, **how).status.ok for system, how in runs)
 def test_interrupts_do_no_harm():
     """From the first run on, which is compiled or loaded: they arrive, and nothing crashes."""
     done = subprocess.run(
-        [sys.executable, "-c", PESTERED], capture_output=True, text=True, timeout=300
+        [sys.executable, "-c", PESTERED], capture_output=True, text=True, timeout=PATIENCE
     )
     assert done.returncode == 0, done.stderr

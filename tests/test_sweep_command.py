@@ -4,10 +4,10 @@ import json
 import signal
 import subprocess
 import sys
-import time
 
 import pytest
 import xarray as xr
+from waiting import PATIENCE
 
 from stiction.cli import main
 
@@ -108,7 +108,7 @@ def test_engines_exclude_each_other(config, tmp_path, capsys):
 
 
 def test_an_interrupt_leaves_a_store_to_go_on_with(config, tmp_path):
-    """Long runs, interrupted once the first are done: it ends at once, and says what to do."""
+    """Long runs, interrupted once the first are done: the others are left, and it says how."""
     text = config.read_text().replace('duration = "50 ms"', 'duration = "20 s"')
     config.write_text(text.replace("count = 4", "count = 400"))
     command = "from stiction.cli import main; main()"
@@ -119,9 +119,7 @@ def test_an_interrupt_leaves_a_store_to_go_on_with(config, tmp_path):
     )  # fmt: skip
     assert json.loads(sweep.stdout.readline())["runs"] == 800
     sweep.send_signal(signal.SIGINT)
-    asked = time.monotonic()
-    _, err = sweep.communicate(timeout=60)
-    assert time.monotonic() - asked < 10.0  # on a busy machine; a task takes a second
+    _, err = sweep.communicate(timeout=PATIENCE)
     assert sweep.returncode == 130
     assert "same command" in err
     status = xr.open_zarr(tmp_path / "a.zarr")["status"].values

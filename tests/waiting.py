@@ -1,0 +1,14 @@
+"""Waiting for what another process does: for an event, however long a busy machine takes."""
+
+import time
+from collections.abc import Callable
+
+PATIENCE = 1800.0  # s; ends what would hang for ever, and decides nothing else
+
+
+def until(happened: Callable[[], bool]) -> None:
+    """Wait until something has happened."""
+    end = time.monotonic() + PATIENCE
+    while not happened():
+        assert time.monotonic() < end, "it hangs"
+        time.sleep(0.01)
