@@ -16,6 +16,7 @@ from benchmarks.precision import levels
 from benchmarks.precision.figure import figure, front
 from benchmarks.section import Section, Table
 from rich.progress import Progress
+
 from waiting import PATIENCE
 
 HANGS = 3

@@ -7,10 +7,10 @@ import sys
 from pathlib import Path
 
 import pytest
-from waiting import PATIENCE
 
 import stiction as st
 from stiction.cli import COMMANDS, main
+from waiting import PATIENCE
 
 # runs the command, and says so once the simulation is on its way
 TOLD = """

@@ -17,10 +17,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from waiting import PATIENCE, until
 
 import stiction as st
 from stiction.study.store import PENDING
+from waiting import PATIENCE, until
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
 

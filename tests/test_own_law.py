@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
-from waiting import PATIENCE
 
 import stiction as st
 from stiction.cli import main
 from stiction.friction import has_state
+from waiting import PATIENCE
 
 LAW = """
 from typing import NamedTuple

@@ -7,9 +7,9 @@ import sys
 from pathlib import Path
 
 import pytest
-from waiting import PATIENCE
 
 import stiction as st
+from waiting import PATIENCE
 
 ROOT = Path(__file__).parent.parent
 HEAVY = {"numba", "scipy", "xarray", "matplotlib", "pint", "pandas"}

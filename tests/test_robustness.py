@@ -5,9 +5,9 @@ import sys
 
 import numpy as np
 import pytest
-from waiting import PATIENCE
 
 import stiction as st
+from waiting import PATIENCE
 
 
 def slider(**changes) -> st.Slider:

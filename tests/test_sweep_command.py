@@ -7,9 +7,9 @@ import sys
 
 import pytest
 import xarray as xr
-from waiting import PATIENCE
 
 from stiction.cli import main
+from waiting import PATIENCE
 
 STUDY = """
 [study]
