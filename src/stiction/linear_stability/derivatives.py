@@ -15,8 +15,11 @@ from stiction.slider import Slider
 Floats = NDArray[np.float64]
 
 ROUNDING = float(np.finfo(np.float64).eps)
-COLUMNS = 5  # of Richardson's scheme: an error in the tenth power of the step
-RATIO = 4.0  # of one step to the next
+SMALL = 4.0 * ROUNDING  # of what takes a few operations
+NEIGHBOUR = 1e-9  # relative distance of arguments whose values differ by slope and rounding
+FIRST, COLUMNS = 2, 6  # of Richardson's scheme: errors in the sixth to twelfth power of the step
+RATIO = 2.0  # of one step to the next
+SHARE = 1.0 / 16.0  # of a change from step to step: from the sixth power on, the next is a 64th
 
 
 class Response(NamedTuple):
@@ -65,10 +68,13 @@ def set_valued(slider: Slider, slip: Floats) -> Response:
     q = float(np.sqrt(slip @ push))
     mu, slope = law.coefficient(v), law.slope(v)
     along = np.outer(push, slip) * (slope / (q * v))
-    across = (N - np.outer(push, push) / q**2) * (mu / q)
+    turned = np.array([-slip[1], slip[0]])
+    # N - (N s)(N s)^T/q^2, which is of two nearly equal terms
+    across = float(np.linalg.det(N)) / q**2 * np.outer(turned, turned) * (mu / q)
     slopes = slider.normal_load * (along + across)
-    size = slider.normal_load * (abs(slope) + mu / q)
-    return Response(slider.normal_load * mu / q * push, slopes, np.full((2, 2), ROUNDING * size))
+    doubt = np.abs(np.outer(push, slip)) * ((SMALL * abs(slope) + noise(law.slope, v, v)) / (q * v))
+    doubt += SMALL * np.abs(across)
+    return Response(slider.normal_load * mu / q * push, slopes, slider.normal_load * doubt)
 
 
 def with_state(slider: Slider, slip: Floats, state: Floats) -> Response:
@@ -96,27 +102,41 @@ def derivative(
     """Return the derivative of a vector function by variable `i`, and an estimate of its error.
 
     Central differences over ever shorter steps, from `widest` to about `narrowest`, extrapolated
-    to a step of zero; of all extrapolations each component takes the one that changed least from
-    its neighbours (Ridders, Adv. Eng. Software 4 (1982), 75). Steps at which the function has no
+    to a step of zero; of all extrapolations each component takes the one with the least error
+    (Ridders, Adv. Eng. Software 4 (1982), 75): a share of what it changed with the last step, as
+    the next change is smaller by more than that, and rounding. Steps at which the function has no
     value are passed over.
     """
     unit = np.eye(len(at))[i]
     steps = widest * RATIO ** -np.arange(np.ceil(log(widest / narrowest, RATIO)) + 1.0)
     values = [(tried(function, at + h * unit), tried(function, at - h * unit)) for h in steps]
     ahead, behind = np.array(values).transpose(1, 0, 2)
-    h = steps[:, None]
+    h = 0.5 * ((at[i] + steps) - (at[i] - steps))[:, None]  # as rounded
     table = (ahead - behind) / (2.0 * h)
-    noise = ROUNDING * (np.abs(ahead) + np.abs(behind)) / h
+    doubt = SMALL * (np.abs(ahead) + np.abs(behind)) / h
+    near = noise(lambda x: function(at + (x - at[i]) * unit), float(at[i]), narrowest)
+    doubt += 2.0 * near / h
     found, errors = [], []
     for column in range(1, COLUMNS):
-        coarse, fine, noise = table[:-1], table[1:], noise[1:]
+        coarse, fine, doubt = table[:-1], table[1:], doubt[1:]
         table = fine + (fine - coarse) / (RATIO ** (2 * column) - 1.0)
-        found.append(table)
-        errors.append(np.maximum(np.abs(table - fine), np.abs(table - coarse)) + noise)
+        if column < FIRST:
+            continue
+        found.append(table[1:])
+        errors.append(np.abs(np.diff(table, axis=0)) * SHARE + doubt[1:])
     every, error = np.concatenate(found), np.concatenate(errors)
     error = np.where(np.isfinite(error), error, np.inf)
     best = np.argmin(error, axis=0)[None, :]
     return np.take_along_axis(every, best, 0)[0], np.take_along_axis(error, best, 0)[0]
+
+
+def noise(function: Callable[[float], Any], at: float, scale: float) -> Any:
+    """Return the rounding error that a smooth function shows over a few neighbours of a place.
+
+    Second differences: over steps that are so small beside its scale nothing else is in them.
+    """
+    values = [function(at + step * NEIGHBOUR * scale) for step in range(-4, 5)]
+    return np.abs(np.diff(values, 2, axis=0)).max(axis=0)
 
 
 def tried(function: Callable[[Floats], Floats], at: Floats) -> Floats:

@@ -8,16 +8,17 @@ from math import hypot, pi
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.errors import StictionError
 from stiction.friction import states
 from stiction.initial import Initial
-from stiction.linear_stability.derivatives import ROUNDING, Floats, Response
+from stiction.linear_stability.derivatives import Floats, Response
+from stiction.linear_stability.eigenvalues import Complex, Eigenvalues, eigenvalues
 from stiction.linear_stability.steady import drive_velocity, steady_friction
 from stiction.slider import Slider
 
-Complex = NDArray[np.complex128]
+STABLE, UNSTABLE = "stable", "unstable"
+BOUNDARY = "on the boundary of stability within its uncertainty"
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,39 +57,33 @@ class Linearisation:
     def __repr__(self) -> str:
         """Say what becomes of a small disturbance."""
         f, zeta = self.frequencies[0], self.damping_ratios[0]
-        verdict = "stable" if self.stable else "unstable"
         rate = f"{self.growth_rate:.4g} /s at {f:.4g} Hz"
-        return f"<Steady sliding, {verdict}: fastest growth {rate}, damping ratio {zeta:.3g}>"
+        return f"<Steady sliding, {self.verdict}: fastest growth {rate}, damping ratio {zeta:.3g}>"
 
     @cached_property
-    def _modes(self) -> tuple[Complex, Complex, Floats]:
-        """Eigenvalues, mode shapes and errors of the eigenvalues, fastest growth first."""
-        from scipy.linalg import eig
-
-        values, left, right = eig(self.matrix, left=True, right=True)
-        order = np.lexsort((-values.imag, -values.real))
-        values, left, right = values[order], left[:, order], right[:, order]
-        # first order: d lambda = w^H dA v/(w^H v)
-        doubt = self.error + ROUNDING * np.abs(self.matrix)
-        reach = np.einsum("ik,ij,jk->k", np.abs(left), doubt, np.abs(right))
-        reach += ROUNDING * np.abs(values).max()  # of the eigenvalue solver
-        with np.errstate(divide="ignore"):  # without bound where two modes are about to part
-            return values, right, reach / np.abs(np.sum(left.conj() * right, axis=0))
+    def _modes(self) -> Eigenvalues:
+        return eigenvalues(self.matrix, self.error)
 
     @property
     def eigenvalues(self) -> Complex:
         """Eigenvalues lambda, 1/s, (n,), the fastest growing first."""
-        return self._modes[0]
+        return self._modes.values
 
     @property
     def uncertainty(self) -> Floats:
-        """How large an error of each eigenvalue (1/s) follows from that of the matrix, (n,)."""
-        return self._modes[2]
+        """A bound of the error of each eigenvalue (1/s), from that of the matrix, (n,)."""
+        return self._modes.uncertainty
+
+    @property
+    def growth_uncertainty(self) -> float:
+        """A bound of the error of `growth_rate`, 1/s."""
+        highest = self.growth_rates + self._modes.growth_uncertainty
+        return float(max(self._modes.growth_uncertainty[0], highest.max() - self.growth_rate))
 
     @property
     def shapes(self) -> Complex:
         """Mode shapes, (n, n): column k belongs to eigenvalue k, rows as in `names`."""
-        return self._modes[1]
+        return self._modes.vectors
 
     @property
     def growth_rates(self) -> Floats:
@@ -113,8 +108,15 @@ class Linearisation:
 
     @property
     def stable(self) -> bool:
-        """Whether every small disturbance decays, beyond doubt: see `uncertainty`."""
-        return bool(self.growth_rate < -self.uncertainty[0])
+        """Whether every small disturbance decays, beyond doubt: see `growth_uncertainty`."""
+        return self.verdict == STABLE
+
+    @property
+    def verdict(self) -> str:
+        """What becomes of small disturbances: "stable", "unstable" or "on the boundary ..."."""
+        if abs(self.growth_rate) <= self.growth_uncertainty:
+            return BOUNDARY
+        return STABLE if self.growth_rate < 0.0 else UNSTABLE
 
     def disturbed(self, size: float = 1e-3, mode: int = 0) -> Initial:
         """Return steady sliding with a small disturbance, to start a run from.

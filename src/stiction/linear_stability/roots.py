@@ -10,11 +10,11 @@ import numpy as np
 
 from stiction.linear_stability.axis import axis
 from stiction.linear_stability.derivatives import Floats
-from stiction.linear_stability.linear import steady_sliding
+from stiction.linear_stability.linear import BOUNDARY, steady_sliding
 from stiction.slider import Slider
 
 POINTS = 65  # at which a range is looked at first
-NEUTRAL = 1e-14  # growth rates beside the largest eigenvalue: below, rounding
+CLEAR = 1e-6  # of the largest eigenvalue: the sign of a growth rate that is larger is no rounding
 
 
 class Critical(NamedTuple):
@@ -33,6 +33,9 @@ class Critical(NamedTuple):
     stable : tuple of bool
         (n + 1,): whether it is stable below the first value, between the first and the second,
         ..., above the last.
+    neutral : bool
+        Whether it is neither anywhere: disturbances neither grow nor decay, within what is
+        certain.
     """
 
     path: str
@@ -41,6 +44,7 @@ class Critical(NamedTuple):
     values: Floats
     frequencies: Floats
     stable: tuple[bool, ...]
+    neutral: bool = False
 
 
 def critical(
@@ -88,17 +92,20 @@ def critical(
 
     crossings, stable = sign_changes(growth, points)
     leading = [steady_sliding(along.on(slider, at)).frequencies[0] for at in crossings]
-    values = np.array([along.value(at) for at in crossings])
-    return Critical(
-        path, along.unit, (along.low, along.high), values, np.array(leading, dtype=float), stable
-    )
+    values, frequencies = np.array([along.value(at) for at in crossings]), np.array(leading)
+    neutral = not any(growth(fraction) for fraction in (0.0, 0.5, 1.0)) and not any(stable)
+    ends = along.low, along.high
+    return Critical(path, along.unit, ends, values, frequencies.astype(float), stable, neutral)
 
 
 def signed_growth(slider: Slider) -> float:
-    """Return the growth rate (1/s), exactly zero where it is nothing but rounding."""
-    values = np.linalg.eigvals(steady_sliding(slider).matrix)
+    """Return the growth rate (1/s), exactly zero where it may have either sign."""
+    linear = steady_sliding(slider)
+    values = np.linalg.eigvals(linear.matrix)
     growth = float(values.real.max())
-    return growth if abs(growth) > NEUTRAL * float(np.abs(values).max()) else 0.0
+    if abs(growth) > CLEAR * float(np.abs(values).max()):
+        return growth
+    return 0.0 if linear.verdict == BOUNDARY else linear.growth_rate
 
 
 def sign_changes(

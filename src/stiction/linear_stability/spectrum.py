@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stiction.linear_stability.axis import axis
-from stiction.linear_stability.linear import Complex, steady_sliding
+from stiction.linear_stability.eigenvalues import Complex
+from stiction.linear_stability.linear import steady_sliding
 from stiction.slider import Slider
 
 if TYPE_CHECKING:
