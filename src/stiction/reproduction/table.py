@@ -57,22 +57,22 @@ class Table:
 
     @property
     def summary(self) -> str:
-        """One line: how many numbers agree, and which do not."""
-        wrong = [n.what.strip() for n in self.numbers if n.verdict == "WRONG"]
-        parts = []
-        for whose, part in (
-            ("of the paper's numbers", [n for n in self.numbers if n.where != "reference"]),
-            (
-                "reference values of this project",
-                [n for n in self.numbers if n.where == "reference"],
-            ),
-        ):
-            checked = [n for n in part if not n.finding]
-            if checked:
-                parts.append(f"{sum(n.agrees for n in checked)} of {len(checked)} {whose} agree")
-        findings = sum(n.verdict == "finding" for n in self.numbers)
+        """One line: how many of the numbers listed agree, and which do not."""
+        kinds = {
+            "of the paper's numbers": [n for n in self.numbers if n.where != "reference"],
+            "reference values of this project": [n for n in self.numbers if n.where == "reference"],
+        }
+        parts = [
+            f"{sum(n.verdict == 'agrees' for n in part)} of {len(part)} {whose} agree"
+            for whose, part in kinds.items()
+            if part
+        ]
+        findings = [n for n in self.numbers if n.verdict == "finding"]
         if findings:
-            parts.append(f"{findings} findings beyond the paper, see README")
+            named = ", ".join(f"{n.where} {n.what.strip()}" for n in findings)
+            count = "1 is a finding" if len(findings) == 1 else f"{len(findings)} are findings"
+            parts.append(f"{count}: {named}")
+        wrong = [n.what.strip() for n in self.numbers if n.verdict == "WRONG"]
         if wrong:
             parts.append(f"wrong: {', '.join(wrong)}")
         return "; ".join(parts)
