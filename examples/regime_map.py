@@ -5,8 +5,6 @@ again, it does what is missing.
 """
 
 import stiction as st
-from stiction.plotting.save import write
-from stiction.study.mapping import map_figure
 
 base = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="6 s"))
 study = st.Study(
@@ -17,9 +15,9 @@ study = st.Study(
     },
     measures=["regime", "peak_force", "period"],
 )
-print(study.run("regime_map.zarr"))
-write(map_figure("regime_map.zarr"), "regime_map.png")
+print(st.sweep(study, "regime_map.zarr"))
+st.map("regime_map.zarr").plot()[0].figure.savefig("regime_map.png")
 
-changes = study.refine("regime_map.zarr", "phi", "0.01 deg", apart=["settling"])
+changes = st.refine(study, "regime_map.zarr", "phi", "0.01 deg", apart=["settling"])
 for V, phi in zip(changes["drive.velocity"].values, changes["phi"].values, strict=True):
     print(f"at V = {1e3 * V:6.3f} mm/s it comes to rest from phi = {phi:.2f} deg on")

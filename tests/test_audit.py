@@ -11,7 +11,7 @@ from stiction.analysis.regime import SETTLING, STICK_SLIP
 from stiction.auditing.advice import nearest
 from stiction.auditing.page import page
 from stiction.auditing.prediction import predict
-from stiction.auditing.report import examine
+from stiction.auditing.report import audit as examine
 from stiction.auditing.words import sections
 from stiction.cli import main
 from stiction.linear_stability import Critical

@@ -64,7 +64,7 @@ def runs(described: st.Description) -> dict[str, st.Trajectory]:
     found = st.compare(described, ["coulomb", '{law = "coulomb", mu_0 = 0.15}'])
     straight = described.slider.replace(phi="0 deg", friction=st.Coulomb(0.2))
     still = st.Initial(epsilon=0.0)
-    return found | {"held": st.simulate(straight, 0.2, sample_rate=10e3, initial=still)}
+    return {**found, "held": st.simulate(straight, 0.2, sample_rate=10e3, initial=still)}
 
 
 def command(*arguments: object) -> int:

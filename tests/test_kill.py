@@ -46,7 +46,7 @@ for line in sys.stdin:
             resource.setrlimit(resource.RLIMIT_FSIZE, (int(limit), int(limit)))
         engine = Scheduler(address) if address != "-" else Threads(2)
         try:
-            result = study.run(path, engine=engine)
+            result = st.sweep(study, path, engine=engine)
             print("done", result.pending, flush=True)
         except st.StictionError as error:
             print("told", error, flush=True)
@@ -101,7 +101,7 @@ def study() -> st.Study:
 @pytest.fixture(scope="module")
 def undisturbed(study, tmp_path_factory) -> xr.Dataset:
     path = tmp_path_factory.mktemp("undisturbed") / "a.zarr"
-    study.run(path)
+    st.sweep(study, path)
     return xr.open_zarr(path).load()
 
 

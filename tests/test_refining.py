@@ -19,7 +19,7 @@ def found(tmp_path_factory):
     axes = {"phi": st.Grid("4 deg", "12 deg", 9), "drive.velocity": V}
     study = st.Study(base=BASE, axes=axes, measures=["regime"])
     path = tmp_path_factory.mktemp("refined") / "a.zarr"
-    return study, path, study.refine(path, "phi", "0.01 deg", apart=CALM)
+    return study, path, st.refine(study, path, "phi", "0.01 deg", apart=CALM)
 
 
 def test_the_same_boundary_as_that_of_a_filled_grid(found, tmp_path):
@@ -27,7 +27,7 @@ def test_the_same_boundary_as_that_of_a_filled_grid(found, tmp_path):
     _, _, changes = found
     assert (2 * changes["half_width"] <= 0.01).all()
     around = {"phi": st.Grid("6 deg", "6.4 deg", 41), "drive.velocity": st.Values(["0.5 mm/s"])}
-    st.Study(base=BASE, axes=around, measures=["regime"]).run(tmp_path / "a.zarr")
+    st.sweep(st.Study(base=BASE, axes=around, measures=["regime"]), tmp_path / "a.zarr")
     filled = xr.open_zarr(tmp_path / "a.zarr").load().isel({"drive.velocity": 0})
     calm = np.isin(np.array(KINDS)[filled["regime"].values], CALM)
     edge = np.flatnonzero(np.diff(calm))
@@ -48,16 +48,16 @@ def test_changes_lie_at_the_loss_of_stability(found):
         slider = study.base.slider.replace(phi=f"{float(at['phi'])} deg", drive=drive)
         loading = slider.F_0 / slider.k_x / drive.velocity
         slowest = -np.log(REVERSAL) / (study.base.run.duration - loading)
-        assert abs(st.stability.growth_rate(slider)) < slowest
+        assert abs(st.linear_stability.growth_rate(slider)) < slowest
 
 
 def test_it_goes_on_where_it_was_and_is_kept(found):
     study, path, changes = found
     tallies = []
-    again = study.refine(path, "phi", "0.01 deg", apart=CALM, progress=tallies.append)
+    again = st.refine(study, path, "phi", "0.01 deg", apart=CALM, progress=tallies.append)
     assert not tallies  # nothing was left to do
     xr.testing.assert_identical(again, changes)
-    finer = study.refine(path, "phi", "0.001 deg", apart=CALM)
+    finer = st.refine(study, path, "phi", "0.001 deg", apart=CALM)
     assert (np.abs(finer["phi"] - changes["phi"]) <= changes["half_width"]).all()
     kept = xr.open_zarr(path, group="refined/phi/changes", consolidated=False).load()
     np.testing.assert_array_equal(kept["phi"], finer["phi"])
@@ -70,7 +70,7 @@ def test_along_another_axis_with_one_zipped_to_it(tmp_path):
         "run.duration": st.Values([6.0, 5.0, 4.0, 3.0], "drive.velocity"),
     }
     study = st.Study(base=BASE, axes=axes, measures=["regime"])
-    changes = study.refine(tmp_path / "a.zarr", "drive.velocity", "0.1 mm/s")
+    changes = st.refine(study, tmp_path / "a.zarr", "drive.velocity", "0.1 mm/s")
     assert KINDS[int(changes["below"][0])] == "stick-slip"
     assert KINDS[int(changes["above"][-1])] == "harmonic vibration"
     assert (np.diff(changes["run.duration"]) < 0).all()
@@ -87,7 +87,7 @@ def test_along_another_axis_with_one_zipped_to_it(tmp_path):
 def test_what_cannot_be_refined(found, along, to, says):
     study, path, _ = found
     with pytest.raises(st.DescriptionError) as error:
-        study.refine(path, along, to)
+        st.refine(study, path, along, to)
     assert says in str(error.value)
 
 

@@ -35,7 +35,7 @@ def test_the_map_names_both_sides_and_marks_the_slider():
         slider = PAPER.replace(
             phi=f"{25 * x} deg", drive=st.ConstantVelocity(f"{0.1 * 1000**y} mm/s")
         )
-        assert (st.stability.growth_rate(slider) > 0) == (name == "unstable")
+        assert (st.linear_stability.growth_rate(slider) > 0) == (name == "unstable")
     assert (ax.get_xlabel(), ax.get_ylabel()) == (r"$\varphi$ (deg)", "$V$ (mm/s)")
     own = next(line for line in ax.lines if line.get_label() == "this slider")
     assert own.get_xydata() == pytest.approx(np.array([[1.0, 1.0]]))
@@ -109,5 +109,5 @@ def test_no_piece_of_the_boundary_is_missing(name):
     signed = signed_distance(curve, across, up)
     x, y = (axis(slider, plane[way], plane[f"{way}_between"]) for way in "xy")
     for a, b, side in zip(across.flat, up.flat, signed.flat, strict=True):
-        growth = st.stability.growth_rate(y.on(x.on(slider, a), b))
+        growth = st.linear_stability.growth_rate(y.on(x.on(slider, a), b))
         assert (growth > 0) == (side > 0) or abs(side) < 1e-3  # how far a chord may be off

@@ -30,7 +30,7 @@ def study() -> st.Study:
 def finished(tmp_path_factory):
     """A study with runs that fail among others, done undisturbed."""
     path = tmp_path_factory.mktemp("study") / "a.zarr"
-    return path, st.Study(base=BASE, axes=AXES, measures=MEASURES).run(path)
+    return path, st.sweep(st.Study(base=BASE, axes=AXES, measures=MEASURES), path)
 
 
 def test_each_value_is_that_of_the_run_by_itself(finished):
@@ -70,7 +70,7 @@ def test_a_run_that_fails_is_data(tmp_path):
         "friction.mu_0": st.Values([0.2, 0.17]),
     }
     base = BASE._replace(slider=shaken)
-    result = st.Study(base=base, axes=axes, measures=["peak_force"]).run(tmp_path / "a.zarr")
+    result = st.sweep(st.Study(base=base, axes=axes, measures=["peak_force"]), tmp_path / "a.zarr")
     data = xr.open_zarr(tmp_path / "a.zarr").load()
     meanings = dict(enumerate(data["status"].attrs["flag_meanings"].split(), -1))
     found = [meanings[int(code)] for code in data["status"].values.ravel()]
@@ -90,18 +90,18 @@ def test_what_was_stopped_goes_on_and_comes_out_the_same(tmp_path, study, finish
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        study.run(tmp_path / "a.zarr", engine=Threads(2), progress=stop)
+        st.sweep(study, tmp_path / "a.zarr", engine=Threads(2), progress=stop)
     part = xr.open_zarr(tmp_path / "a.zarr").load()
     left = int((part["status"] == -1).sum())
     assert 0 < left < 15
     tallies = []
-    result = study.run(tmp_path / "a.zarr", progress=tallies.append)
+    result = st.sweep(study, tmp_path / "a.zarr", progress=tallies.append)
     assert (result.pending, result.failed) == (0, {})
     assert tallies[-1].now == left
     assert tallies[-1].before == 15 - left
     whole = xr.open_zarr(tmp_path / "a.zarr").load()
     xr.testing.assert_identical(whole, xr.open_zarr(finished[0]).load())
-    assert study.run(tmp_path / "a.zarr") == result  # nothing left to do
+    assert st.sweep(study, tmp_path / "a.zarr") == result  # nothing left to do
 
 
 def test_another_study_s_store_is_refused(finished, tmp_path):
@@ -171,7 +171,7 @@ def test_axes_along_one_dimension_go_together(tmp_path):
     slider = study.description((1, 0)).slider
     assert (slider.k_x, slider.k_y) == (2e3, 2e6)
     assert (slider.law.mu_0, slider.law.mu_inf) == (0.1, 0.1)
-    study.run(tmp_path / "a.zarr")
+    st.sweep(study, tmp_path / "a.zarr")
     data = xr.open_zarr(tmp_path / "a.zarr")
     assert data["peak_force"].dims == ("spring", "friction.mu_0, friction.mu_inf")
     assert data["k_y"].dims == ("spring",)
@@ -251,7 +251,7 @@ def test_traces_are_kept_decimated(tmp_path):
     study = st.Study(
         base=base, axes=axes, measures=[], traces=["force", "position"], trace_samples=26
     )
-    study.run(tmp_path / "a.zarr")
+    st.sweep(study, tmp_path / "a.zarr")
     data = xr.open_zarr(tmp_path / "a.zarr").load()
     assert data["force_trace"].dims == ("phi", "time")
     assert data["time"].attrs["units"] == "s"
@@ -266,11 +266,11 @@ def test_traces_are_kept_decimated(tmp_path):
 def test_a_store_of_another_version_is_refused(study, tmp_path):
     import zarr
 
-    study.run(tmp_path / "a.zarr")
+    st.sweep(study, tmp_path / "a.zarr")
     group = zarr.open_group(tmp_path / "a.zarr", mode="r+", use_consolidated=False)
     group.attrs["stiction_version"] = "0.0.1"
     with pytest.raises(st.ResultError, match=r"begun by stiction 0\.0\.1"):
-        study.run(tmp_path / "a.zarr")
+        st.sweep(study, tmp_path / "a.zarr")
     group.attrs["format"] = 99
     with pytest.raises(st.ResultError, match="has format 99"):
         st.open_study(tmp_path / "a.zarr")
@@ -278,7 +278,7 @@ def test_a_store_of_another_version_is_refused(study, tmp_path):
 
 def test_processes_do_the_same(study, finished, tmp_path):
     """Dask's own scheduler and workers, in processes of this machine."""
-    study.run(tmp_path / "a.zarr", engine=Processes(2))
+    st.sweep(study, tmp_path / "a.zarr", engine=Processes(2))
     xr.testing.assert_identical(
         xr.open_zarr(tmp_path / "a.zarr").load(), xr.open_zarr(finished[0]).load()
     )

@@ -24,7 +24,7 @@ AXES = {
 @pytest.fixture(scope="module")
 def store(tmp_path_factory):
     path = tmp_path_factory.mktemp("map") / "a.zarr"
-    st.Study(base=BASE, axes=AXES).run(path)
+    st.sweep(st.Study(base=BASE, axes=AXES), path)
     return path
 
 
@@ -95,7 +95,7 @@ def test_failed_and_missing_runs_are_hatched(tmp_path):
         "load.modulation.amplitude": st.Values([1.0, 12.0]),
     }
     base = st.Description(shaken, st.Initial(), st.Settings(duration="0.5 s"))
-    st.Study(base=base, axes=axes).run(tmp_path / "a.zarr")
+    st.sweep(st.Study(base=base, axes=axes), tmp_path / "a.zarr")
     fig = map_figure(tmp_path / "a.zarr")
     assert "no result" in drawn(fig)
 

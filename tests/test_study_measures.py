@@ -140,4 +140,4 @@ def test_two_swings_and_then_quiet_are_a_transient():
     assert len(run.swings.drop) == 2
     assert run.end - run.swings.end > 50 * run.swings.period.max()
     assert run.regime == "settling"
-    assert st.stability.growth_rate(slider) < 0.0
+    assert st.linear_stability.growth_rate(slider) < 0.0

@@ -14,9 +14,7 @@ from typing import TYPE_CHECKING, Any
 from stiction.deprecation import old_names
 
 if TYPE_CHECKING:
-    from stiction import auditing as audit
-    from stiction import linear_stability as stability
-    from stiction import presets, theory
+    from stiction import linear_stability, plotting, presets, theory
     from stiction.analysis.creep_curve import creep_curves, mean_creep
     from stiction.analysis.cycles import find_cycles
     from stiction.analysis.divergence import fit_divergence
@@ -27,11 +25,12 @@ if TYPE_CHECKING:
     from stiction.analysis.oscillation import oscillation_by_phase, transverse_oscillation
     from stiction.analysis.record import Record, record_of
     from stiction.analysis.regime import Regime, classify
-    from stiction.analysis.report import Analysis, analyse
+    from stiction.analysis.report import Analysis, analyse, analyze
     from stiction.analysis.ridge import follow_ridge
     from stiction.analysis.spectrum import spectrogram, stream_spectrogram
     from stiction.analysis.spread import summary
-    from stiction.comparison import compare
+    from stiction.auditing.report import Audit, audit
+    from stiction.comparison import Comparison, compare
     from stiction.description import Description, Settings
     from stiction.drive import (
         Constant,
@@ -61,11 +60,18 @@ if TYPE_CHECKING:
         Table,
     )
     from stiction.initial import Initial
-    from stiction.simulation import simulate
+    from stiction.linear_stability.examination import Stability, stability
+    from stiction.plotting.door import plot
+    from stiction.reproduction.reproduce import paper
+    from stiction.simulation import run, simulate
     from stiction.slider import Slider
     from stiction.study.axes import Grid, Random, Sobol, Values
+    from stiction.study.mapping import Map, map
     from stiction.study.plan import Study
+    from stiction.study.refining import refine
     from stiction.study.store import open_study
+    from stiction.study.sweeping import sweep
+    from stiction.template import init
     from stiction.testing import check_law
     from stiction.trajectory import Trajectory, load
 
@@ -75,6 +81,8 @@ __version__ = "0.4.0"
 _HOME = {
     "Analysis": "analysis.report",
     "Anisotropic": "friction",
+    "Audit": "auditing.report",
+    "Comparison": "comparison",
     "Constant": "drive",
     "ConstantVelocity": "drive",
     "Coulomb": "friction",
@@ -90,6 +98,7 @@ _HOME = {
     "Initial": "initial",
     "LoadProgram": "drive",
     "LuGre": "friction",
+    "Map": "study.mapping",
     "Modulation": "drive",
     "Ramp": "drive",
     "Random": "study.axes",
@@ -104,6 +113,7 @@ _HOME = {
     "Settings": "description",
     "Slider": "slider",
     "Sobol": "study.axes",
+    "Stability": "linear_stability.examination",
     "Status": "errors",
     "Step": "drive",
     "StictionError": "errors",
@@ -113,6 +123,8 @@ _HOME = {
     "Trajectory": "trajectory",
     "Values": "study.axes",
     "analyse": "analysis.report",
+    "analyze": "analysis.report",
+    "audit": "auditing.report",
     "check_law": "testing",
     "classify": "analysis.regime",
     "compare": "comparison",
@@ -123,31 +135,35 @@ _HOME = {
     "fit_divergence": "analysis.divergence",
     "fit_misalignment": "analysis.misalignment",
     "follow_ridge": "analysis.ridge",
+    "init": "template",
     "load": "trajectory",
+    "map": "study.mapping",
     "mean_creep": "analysis.creep_curve",
     "open_study": "study.store",
     "oscillation_by_phase": "analysis.oscillation",
+    "paper": "reproduction.reproduce",
+    "plot": "plotting.door",
     "record_of": "analysis.record",
+    "refine": "study.refining",
+    "run": "simulation",
     "simulate": "simulation",
     "spectrogram": "analysis.spectrum",
+    "stability": "linear_stability.examination",
     "stream_spectrogram": "analysis.spectrum",
     "strongest_line": "analysis.measured_line",
     "summary": "analysis.spread",
+    "sweep": "study.sweeping",
     "transverse_oscillation": "analysis.oscillation",
 }
 # old public names, which go on working for one version
 _RENAMED = {"hear_song": "transverse_oscillation", "song_by_phase": "oscillation_by_phase"}
-_ROOMS = {
-    "audit": "auditing",
-    "linear_stability": "linear_stability",
-    "presets": "presets",
-    "stability": "linear_stability",
-    "theory": "theory",
-}
+_ROOMS = ("linear_stability", "plotting", "presets", "theory")
 
 __all__ = [
     "Analysis",
     "Anisotropic",
+    "Audit",
+    "Comparison",
     "Constant",
     "ConstantVelocity",
     "Coulomb",
@@ -163,6 +179,7 @@ __all__ = [
     "Initial",
     "LoadProgram",
     "LuGre",
+    "Map",
     "Modulation",
     "Ramp",
     "Random",
@@ -177,6 +194,7 @@ __all__ = [
     "Settings",
     "Slider",
     "Sobol",
+    "Stability",
     "Status",
     "Step",
     "StictionError",
@@ -186,6 +204,7 @@ __all__ = [
     "Trajectory",
     "Values",
     "analyse",
+    "analyze",
     "audit",
     "check_law",
     "classify",
@@ -197,18 +216,27 @@ __all__ = [
     "fit_divergence",
     "fit_misalignment",
     "follow_ridge",
+    "init",
+    "linear_stability",
     "load",
+    "map",
     "mean_creep",
     "open_study",
     "oscillation_by_phase",
+    "paper",
+    "plot",
+    "plotting",
     "presets",
     "record_of",
+    "refine",
+    "run",
     "simulate",
     "spectrogram",
     "stability",
     "stream_spectrogram",
     "strongest_line",
     "summary",
+    "sweep",
     "theory",
     "transverse_oscillation",
 ]
@@ -216,7 +244,7 @@ __all__ = [
 
 def _find(name: str) -> Any:
     if name in _ROOMS:
-        return import_module(f"stiction.{_ROOMS[name]}")
+        return import_module(f"stiction.{name}")
     if name in _HOME:
         return getattr(import_module(f"stiction.{_HOME[name]}"), name)
     raise AttributeError(f"module 'stiction' has no attribute {name!r}")

@@ -7,27 +7,92 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from stiction.description import MOST_SAMPLES, Description
+from stiction.analysis.slip import outcome
+from stiction.description import MOST_SAMPLES, Description, description_of
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import Law, name_of, parameters
 from stiction.laws import exchanged, read_laws
+from stiction.sections import Section, Table, as_html, as_text
 from stiction.simulation import run
 from stiction.trajectory import Trajectory
 
+SAMPLES = 20_000  # where the description asks for none
+HEADINGS = (
+    "law", "sticks", "stuck (s)", "largest k_x u_x/W", "fastest slip (m/s)",
+    "in first load-up: slowest (m/s)", "median (m/s)", "steps", "run",
+)  # fmt: skip
+
+
+class Comparison(dict[str, Trajectory]):
+    """Runs of one apparatus under several friction laws, by the name of the law.
+
+    The description's own law is the first.
+    """
+
+    def __repr__(self) -> str:
+        """Name the laws."""
+        return f"<Comparison of {', '.join(self)}>"
+
+    def __str__(self) -> str:
+        """Return the report as text."""
+        return as_text(self.tables())
+
+    def _repr_html_(self) -> str:
+        return as_html(self.tables())
+
+    @property
+    def ok(self) -> bool:
+        """Whether every run reached its duration."""
+        return all(run.status.ok for run in self.values())
+
+    def tables(self) -> list[Section]:
+        """Return a table with a row for each law."""
+        rows = [row(label, run) for label, run in self.items()]
+        early = [
+            f"{label} ended early: {run.status.value}."
+            for label, run in self.items()
+            if not run.status.ok
+        ]
+        return [Section("Friction laws", early, Table(HEADINGS, rows))]
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draw the runs together; see `stiction.plotting.plot_comparison`."""
+        from stiction.plotting import plot_comparison
+
+        return plot_comparison(self, axes)
+
+
+def row(label: str, run: Trajectory) -> tuple[str, ...]:
+    """Return the row of one law."""
+    o = outcome(run)
+    speeds = (f"{value:.3g}" for value in (o.fastest, o.slowest, o.creep))
+    ended = "completed" if o.status.ok else o.status.name.lower().replace("_", " ")
+    stuck = (str(o.sticks), f"{o.time_stuck:.4g}")
+    return label, *stuck, f"{o.peak:.4f}", *speeds, str(o.steps), ended
+
+
+def sampled(description: Description) -> Description:
+    """Return the description with a sample rate, which a figure over time needs."""
+    if description.run.sample_rate is not None:
+        return description
+    settings = description.run.model_dump(exclude_none=True)
+    rate = SAMPLES / description.run.duration
+    return description._replace(run=type(description.run)(**(settings | {"sample_rate": rate})))
+
 
 def compare(
-    description: Description,
+    description: Description | str | Path,
     laws: Sequence[Law | Mapping[str, Any] | str | Path],
     *,
     max_steps: int = 100_000_000,
     progress: Callable[[float], None] | None = None,
-) -> dict[str, Trajectory]:
+) -> Comparison:
     """Simulate one apparatus under its own friction law and under others.
 
     Parameters
     ----------
-    description : Description
-        What is run; only its friction law is exchanged.
+    description : Description, str or Path
+        What is run, or its file; only its friction law is exchanged.
     laws : sequence of law, mapping, str or Path
         Each a friction law; a table as in a description; the same written as text, e.g.
         ``'{law = "coulomb", mu_0 = 0.15}'``; a description file, of which the table [friction]
@@ -41,15 +106,16 @@ def compare(
 
     Returns
     -------
-    dict of str to Trajectory
-        By the name of the law, with the parameters that differ where a name occurs twice; the
-        description's own law first.
+    Comparison
+        A mapping: the run by the name of the law, with the parameters that differ where a name
+        occurs twice; the description's own law first. With ``tables()`` and ``plot()``.
 
     Raises
     ------
     DescriptionError
         With every law that cannot be read, at once.
     """
+    description = sampled(description_of(description))
     own = description.slider.law
     all_laws = [own, *read_laws(description, [laws] if isinstance(laws, str | Path) else laws)]
     settings = description.run
@@ -61,7 +127,7 @@ def compare(
     for name, law in zip(labels(all_laws), all_laws, strict=True):
         part = None if progress is None else share(progress, len(runs), len(all_laws))
         runs[name] = run(exchanged(description, law), max_steps=max_steps, progress=part)
-    return runs
+    return Comparison(runs)
 
 
 def share(progress: Callable[[float], None], done: int, runs: int) -> Callable[[float], None]:

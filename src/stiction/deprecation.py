@@ -46,3 +46,26 @@ def old_names(
         raise AttributeError(f"module {module!r} has no attribute {name!r}")
 
     return find
+
+
+def old_attributes(function: Callable[..., Any], renamed: Mapping[str, str]) -> None:
+    """Let a function that took the place of a module answer to what the module held.
+
+    Parameters
+    ----------
+    function : callable
+        For example `stiction.audit`.
+    renamed : mapping
+        From each old name in the module to the new one, written from the package on.
+    """
+
+    def forwarding(old: str, new: str) -> Callable[..., Any]:
+        def forward(*args: Any, **values: Any) -> Any:
+            warn_renamed(f"stiction.{function.__name__}.{old}", new)
+            home, _, name = new.rpartition(".")
+            return getattr(import_module(home), name)(*args, **values)
+
+        return forward
+
+    for old, new in renamed.items():
+        setattr(function, old, forwarding(old, new))

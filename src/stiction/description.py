@@ -65,15 +65,23 @@ class Description(NamedTuple):
     run: Settings
 
     @classmethod
-    def from_toml(cls, path: str | Path) -> Self:
+    def from_toml(cls, path: str | Path, changes: Mapping[str, Any] | None = None) -> Self:
         """Read a description file.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+        changes : mapping, optional
+            Other values of some parameters, by their paths: ``{"drive.velocity": "2 mm/s"}``;
+            see `stiction.paths`.
 
         Raises
         ------
         DescriptionError
             Naming every fault with its path, or why the file cannot be read.
         """
-        return cls.from_dict(read_toml(path), find=named(Path(path).parent, Path()))
+        return cls.from_dict(read_toml(path, changes), find=named(Path(path).parent, Path()))
 
     @classmethod
     def from_dict(cls, raw: Mapping[str, Any], *, find: Find | None = None) -> Self:
@@ -111,6 +119,11 @@ class Description(NamedTuple):
     def to_json(self) -> str:
         """Return the description as one JSON string."""
         return json.dumps(self.to_dict())
+
+
+def description_of(source: Description | str | Path) -> Description:
+    """Return a description, or that in a file."""
+    return source if isinstance(source, Description) else Description.from_toml(source)
 
 
 def table(value: Any) -> dict[str, Any]:

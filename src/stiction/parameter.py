@@ -2,7 +2,8 @@
 
 A path is a field of `Slider` (``phi``, ``c_x``), or one of its drive's or of its friction law's
 (``drive.velocity``, ``friction.mu_inf``); several that share one value are joined by commas, as
-``"k_x, k_y"`` for a spring that is equally stiff in all directions.
+``"k_x, k_y"`` for a spring that is equally stiff in all directions. ``V`` is short for
+``drive.velocity``, ``W`` for ``normal_load``, ``m`` for ``mass``.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from typing import Any, get_type_hints
 
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import Anisotropic
+from stiction.paths import canonical
 from stiction.slider import Apparatus, Slider
 from stiction.units import unit_of
 from stiction.validation import made, unknown
@@ -122,8 +124,8 @@ def placed(slider: Slider, path: str, value: float) -> Slider:
 
 
 def names(path: str) -> list[str]:
-    """Return the paths that are joined in one."""
-    return [name.strip() for name in path.split(",")]
+    """Return the paths that are joined in one, short names such as ``V`` resolved."""
+    return [canonical(name) for name in path.split(",")]
 
 
 def _units(owner: Any) -> dict[str, str]:

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Iterable, Sequence
+from html import escape
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 class Table(NamedTuple):
@@ -12,6 +16,12 @@ class Table(NamedTuple):
     headings: tuple[str, ...]
     rows: Sequence[tuple[str, ...]]
 
+    def to_dataframe(table) -> pd.DataFrame:
+        """Return the table as a pandas data frame, its cells as text."""
+        import pandas as pd
+
+        return pd.DataFrame(list(table.rows), columns=list(table.headings))
+
 
 class Section(NamedTuple):
     """A part of a report: title, sentences, and a table if there is one."""
@@ -19,3 +29,38 @@ class Section(NamedTuple):
     title: str
     sentences: list[str]
     table: Table | None = None
+
+    def __str__(section) -> str:
+        """Return the section as plain text."""
+        lines = [section.title, *(f"  {sentence}" for sentence in section.sentences)]
+        return "\n".join([*lines, *(table_lines(section.table) if section.table else ())])
+
+
+def table_lines(table: Table) -> list[str]:
+    """Return a table as lines of text, its columns as wide as they must be."""
+    rows = [table.headings, *table.rows]
+    widths = [max(len(row[at]) for row in rows) for at in range(len(table.headings))]
+    lines = ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)) for row in rows]
+    lines.insert(1, "  ".join("-" * width for width in widths))
+    return [f"  {line}".rstrip() for line in lines]
+
+
+def as_text(parts: Iterable[Section]) -> str:
+    """Return a report as plain text."""
+    return "\n\n".join(map(str, parts))
+
+
+def as_html(parts: Iterable[Section]) -> str:
+    """Return a report as HTML, for a notebook."""
+    lines = []
+    for part in parts:
+        lines.append(f"<h4>{escape(part.title)}</h4>")
+        lines += [f"<p>{escape(sentence)}</p>" for sentence in part.sentences]
+        if part.table is not None:
+            rows = [("th", part.table.headings), *(("td", row) for row in part.table.rows)]
+            body = (
+                "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in row) + "</tr>"
+                for tag, row in rows
+            )
+            lines.append(f"<table>{''.join(body)}</table>")
+    return "\n".join(lines)

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from importlib.metadata import version
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numba.core.errors import NumbaError
 
-from stiction.description import Description, Settings
+from stiction.description import Description, Settings, description_of
 from stiction.errors import STATUSES, DescriptionError, Fault, Status
 from stiction.friction import has_state, states
 from stiction.initial import Initial
@@ -110,12 +111,26 @@ def simulate(
 
 
 def run(
-    description: Description,
+    description: Description | str | Path,
     *,
     max_steps: int = 100_000_000,
     progress: Callable[[float], None] | None = None,
 ) -> Trajectory:
-    """Simulate a whole description; see `simulate`."""
+    """Simulate a whole description: slider, start and settings; see `simulate`.
+
+    Parameters
+    ----------
+    description : Description, str or Path
+        What is run, or its file.
+    max_steps, progress
+        As of `simulate`.
+
+    Returns
+    -------
+    Trajectory
+        Whatever happens; ``run.status`` says how the run ended.
+    """
+    description = description_of(description)
     _, initial, settings = description
     times = sample_times(initial.time, settings.duration, settings.sample_rate)
     solution = solve(description, times, max_steps=max_steps, progress=progress)

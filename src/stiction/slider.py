@@ -177,9 +177,12 @@ class Slider(Apparatus):
         return type(self)(**(values | changes))
 
     @classmethod
-    def from_toml(cls, path: str | Path) -> Slider:
-        """Read the slider of a description file; `Description` reads the whole of it."""
-        raw, find = read_toml(path), named(Path(path).parent, Path())
+    def from_toml(cls, path: str | Path, changes: Mapping[str, Any] | None = None) -> Slider:
+        """Read the slider of a description file; `Description` reads the whole of it.
+
+        With `changes`, other values of some parameters by their paths, as `Description.from_toml`.
+        """
+        raw, find = read_toml(path, changes), named(Path(path).parent, Path())
         return cls.from_parts(
             gather(
                 {name: raw[name] for name in raw if name in SLIDER_TABLES},

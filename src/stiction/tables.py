@@ -8,21 +8,30 @@ from pathlib import Path
 from typing import Any
 
 from stiction.errors import DescriptionError, Fault
+from stiction.paths import with_changes
 from stiction.validation import unknown
 
 Reader = Callable[[dict[str, Any]], Any]
 
 
-def read_toml(path: str | Path) -> dict[str, Any]:
-    """Read a TOML file.
+def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """Read a TOML file, with other values of some parameters.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    changes : mapping, optional
+        For the path of a parameter (see `stiction.paths`) its value.
 
     Raises
     ------
     DescriptionError
-        Saying why the file cannot be read.
+        Saying why the file cannot be read, or which parameter is none.
     """
     try:
-        return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
+        raw = tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
+        return with_changes(raw, changes) if changes else raw
     except OSError as error:
         message = f"{error.strerror or 'cannot be read'}; write a description with 'stiction init'"
     except UnicodeDecodeError:

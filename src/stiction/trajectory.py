@@ -118,6 +118,12 @@ class Trajectory:
         """The last sample."""
         return self.data.isel(time=-1)
 
+    def plot(self, axes: Any = None) -> Any:
+        """Draw the run, all of it or on given axes; see `stiction.plotting.plot_run`."""
+        from stiction.plotting import plot_run
+
+        return plot_run(self, axes)
+
     def state(self, time: float | str) -> Initial:
         """Return the state at the sample nearest to `time` (s), to start another run from.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 from warnings import warn
 
@@ -19,7 +20,8 @@ from stiction.analysis.record import Record, recorded
 from stiction.analysis.regime import STICK_SLIP, TRANSITIONAL, Regime, regime_of
 from stiction.analysis.spread import summary
 from stiction.errors import ResultError, StictionError
-from stiction.trajectory import Trajectory
+from stiction.sections import Section
+from stiction.trajectory import Trajectory, load
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -80,15 +82,29 @@ class Analysis(NamedTuple):
         warn("Analysis.song is now called Analysis.oscillation", DeprecationWarning, stacklevel=2)
         return self.oscillation
 
+    def tables(self) -> list[Section]:
+        """Return the report in sentences and tables, part by part."""
+        from stiction.analysis.words import sections
 
-def analyse(source: Trajectory | Record) -> Analysis:
+        return sections(self)
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draw the force with its cycles; see `stiction.plotting.plot_analysis`."""
+        from stiction.plotting import plot_analysis
+
+        return plot_analysis(self, axes)
+
+
+def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) -> Analysis:
     """Return everything that a run or a record says of itself.
 
     Parameters
     ----------
     source : Trajectory or Record
         A run, sampled several times each transverse period for its creep and oscillation; or a
-        measured force, with whatever else is known of it.
+        measured force, with whatever else is known of it; or the file of a run.
+    trust : bool, optional
+        Of a file, see `stiction.load`.
 
     Examples
     --------
@@ -107,6 +123,8 @@ def analyse(source: Trajectory | Record) -> Analysis:
             missing[name] = str(error)
             return None
 
+    if isinstance(source, str | Path):
+        source = load(source, trust=trust)
     run = source if isinstance(source, Trajectory) else None
     record = recorded(source)
     found = swings(record)
@@ -148,6 +166,9 @@ def analyse(source: Trajectory | Record) -> Analysis:
         energy,
         missing,
     )
+
+
+analyze = analyse
 
 
 def calibrated(record: Record, cycles: xr.Dataset) -> Record:

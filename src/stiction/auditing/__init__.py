@@ -1,11 +1,11 @@
 """What to know of an apparatus before its friction measurements are believed.
 
 >>> import stiction as st
->>> found = st.audit.examine(st.presets.nakano_popov_2020().replace(phi="9.5 deg"))
+>>> found = st.audit(st.presets.nakano_popov_2020().replace(phi="9.5 deg"))
 >>> found.observation.regime.kind, found.sliding.stable
 ('settling', True)
 """
 
-from stiction.auditing.report import Audit, examine
+from stiction.auditing.report import Audit, audit
 
-__all__ = ["Audit", "examine"]
+__all__ = ["Audit", "audit"]

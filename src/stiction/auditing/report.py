@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple
 
 from stiction.auditing.advice import LEVERS, Advice, advise, limits
 from stiction.auditing.observation import Observation, coarse_rate, observe
 from stiction.auditing.prediction import Prediction, predict
+from stiction.deprecation import old_attributes
 from stiction.linear_stability import Critical, Linearisation, critical, steady_sliding
+from stiction.sections import Section, as_html, as_text
 from stiction.slider import Slider
 
 
@@ -38,16 +41,64 @@ class Audit(NamedTuple):
     observation: Observation
     advices: tuple[Advice, ...]
 
+    def __repr__(self) -> str:
+        """Say what was simulated, and whether steady sliding is stable."""
+        verdict = "stable" if self.sliding.stable else "not stable"
+        return f"<Audit: {self.observation.regime.kind}; steady sliding is {verdict}>"
 
-def examine(slider: Slider, progress: Callable[[float], None] | None = None) -> Audit:
-    """Audit an apparatus.
+    def __str__(self) -> str:
+        """Return the report as text."""
+        return as_text(self.tables())
+
+    def _repr_html_(self) -> str:
+        return as_html(self.tables())
+
+    @property
+    def ok(self) -> bool:
+        """Whether every simulation reached its end."""
+        runs = [self.observation, *(each.tried for each in self.advices if each.tried)]
+        return all(each.run.status.ok for each in runs)
+
+    def tables(self) -> list[Section]:
+        """Return the report in sentences and tables, part by part."""
+        from stiction.auditing.words import sections
+
+        return sections(self)
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draw the simulated test as its load cell records it; see `stiction.plotting`."""
+        from stiction.plotting import plot_cycles
+
+        return plot_cycles(self.observation.record, axes)
+
+    def write_html(self, path: str | Path, name: str = "apparatus") -> Path:
+        """Write the report as a page that needs no other file, figures inside; return the path.
+
+        Raises
+        ------
+        ResultError
+            If it cannot be written there.
+        """
+        from stiction.auditing.page import write
+
+        return write(self, path, name)
+
+
+def audit(slider: Slider | str | Path, progress: Callable[[float], None] | None = None) -> Audit:
+    """Audit an apparatus: is what it will show friction, or itself?
 
     Parameters
     ----------
-    slider : Slider
-        With a steady drive and load.
+    slider : Slider, str or Path
+        The apparatus, or the file of its description; with a steady drive and load.
     progress : callable, optional
         Called with the fraction done.
+
+    Returns
+    -------
+    Audit
+        What theory predicts beside what a simulated test shows, and what to change; with
+        ``tables()``, ``plot()`` and ``write_html(path)``.
 
     Raises
     ------
@@ -55,21 +106,34 @@ def examine(slider: Slider, progress: Callable[[float], None] | None = None) -> 
         If drive or load are not steady.
     StictionError
         If friction comes to no steady sliding.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> st.audit(st.presets.nakano_popov_2020().replace(phi="9.5 deg"))
+    <Audit: damped approach; steady sliding is stable>
     """
+
+    system = slider if isinstance(slider, Slider) else Slider.from_toml(slider)
 
     def report(done: int) -> None:
         if progress is not None:
             progress(done / (len(LEVERS) + 1))
 
-    sliding, prediction = steady_sliding(slider), predict(slider)
+    sliding, prediction = steady_sliding(system), predict(system)
     growth = sliding.growth_rate
     rate = max(prediction.sample_rate, coarse_rate(prediction))
-    observation = observe(slider, prediction, growth, sample_rate=rate)
+    observation = observe(system, prediction, growth, sample_rate=rate)
     report(1)
     advices = []
     if not sliding.stable:
-        for advice in advise(slider):
+        for advice in advise(system):
             advices.append(advice)
             report(1 + len(advices))
-    misalignment = critical(slider, "phi", limits(slider, "phi"))
-    return Audit(slider, prediction, sliding, misalignment, observation, tuple(advices))
+    misalignment = critical(system, "phi", limits(system, "phi"))
+    return Audit(system, prediction, sliding, misalignment, observation, tuple(advices))
+
+
+FORMER = {"Audit": "stiction.auditing.Audit", "examine": "stiction.audit"}
+old_attributes(audit, FORMER)
+examine = audit

@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
 
-from cyclopts import Parameter
+from stiction.cli.options import MaybeOutput
 
 
-def analyse(
-    result: Path,
-    /,
-    *,
-    output: Annotated[Path | None, Parameter(alias="-o")] = None,
-    trust: bool = False,
-) -> None:
+def analyse(result: Path, /, *, output: MaybeOutput = None, trust: bool = False) -> None:
     """Analyse a result: kind of motion, cycles, creep before slip, oscillation, energy.
 
     Prints what was found and writes all of it: cycles.csv (a row a cycle), summary.csv,
     creep.csv, oscillation.csv, energy.csv, analysis.json, and a figure of each. Nothing is to be
     tuned. Creep and oscillation need a run that is sampled several times each transverse period.
+
+    For example, after `stiction run my.toml -o my.nc`:
+
+        stiction analyse my.nc
+
+        stiction analyse my.nc -o report
 
     Parameters
     ----------

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
 
-from cyclopts import Parameter
+from stiction.cli.options import Changes, MaybeOutput, changes
 
 
-def audit(config: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o")] = None) -> int:
+def audit(config: Path, /, *, output: MaybeOutput = None, set: Changes = None) -> int:
     """Audit the apparatus that CONFIG describes: is what it will show friction, or itself?
 
     Prints what theory predicts from the description alone beside what a simulated test shows:
@@ -16,6 +15,12 @@ def audit(config: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o
     like stick, apparent friction coefficients, period, the frequency that the rig sings at and
     the sampling rate that it takes to see it; and, if it does not slide steadily, what to change,
     each advice tried in a simulation.
+
+    For example, with what `stiction init my.toml` writes:
+
+        stiction audit my.toml -o my.html
+
+        stiction audit my.toml --set phi=3deg --set W=20N
 
     The drive and the load must be steady; [run] is not used. Exit status: 0 when every
     simulation reached its end, 1 when one ended earlier, 2 when the description cannot be audited.
@@ -27,21 +32,19 @@ def audit(config: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o
     output
         An HTML page to write the same report to, with figures, in one file.
     """
-    from stiction.auditing.report import examine
-    from stiction.auditing.words import sections
+    from stiction.auditing.report import audit as examine
     from stiction.cli.progress import progress
     from stiction.cli.tables import printed
     from stiction.slider import Slider
 
-    slider = Slider.from_toml(config)
+    slider = Slider.from_toml(config, changes(set))
     if output is not None:
-        from stiction.auditing.page import writable, write
+        from stiction.auditing.page import writable
 
         writable(output)
     with progress("auditing") as report:
         found = examine(slider, report)
-    printed(str(config), sections(found))
+    printed(str(config), found.tables())
     if output is not None:
-        print(f"wrote {write(found, output, str(config))}")
-    runs = [found.observation, *(each.tried for each in found.advices if each.tried)]
-    return 0 if all(each.run.status.ok for each in runs) else 1
+        print(f"wrote {found.write_html(output, str(config))}")
+    return 0 if found.ok else 1

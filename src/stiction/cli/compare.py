@@ -9,15 +9,10 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-if TYPE_CHECKING:
-    from stiction.description import Description
-    from stiction.trajectory import Trajectory
+from stiction.cli.options import Changes, Output, changes
 
-SAMPLES = 20_000  # where the description asks for none
-HEADER = (
-    ("sticks", "stuck", "largest", "fastest", "in first load-up", "", "steps", "run", "law"),
-    ("", "(s)", "k_x u_x/W", "slip (m/s)", "slowest (m/s)", "median", "", "", ""),
-)
+if TYPE_CHECKING:
+    from stiction.trajectory import Trajectory
 
 
 def compare(
@@ -25,8 +20,9 @@ def compare(
     /,
     *,
     law: Annotated[list[str], Parameter(negative=())],
-    output: Annotated[Path, Parameter(alias="-o")],
+    output: Output,
     data: Path | None = None,
+    set: Changes = None,
 ) -> int:
     """Run the apparatus of CONFIG under its own friction law and others, and draw them together.
 
@@ -57,40 +53,26 @@ def compare(
     data
         A folder for the results as well, a NetCDF file each; made if it is not there.
     """
-    from rich.console import Console
-
     from stiction import comparison
     from stiction.cli.progress import progress
+    from stiction.cli.tables import printed
     from stiction.description import Description
     from stiction.files import usable_folder
-    from stiction.plotting.comparison import comparison as draw
+    from stiction.plotting.canvas import figure_of
     from stiction.plotting.save import drawable, write
 
-    description = sampled(Description.from_toml(config))
+    description = Description.from_toml(config, changes(set))
     drawable(output)
     if data is not None:
         usable_folder(data)
     with progress("simulating and drawing") as report:
-        runs = comparison.compare(description, law, progress=report)
-        figure = draw(runs)
+        found = comparison.compare(description, law, progress=report)
+        figure = figure_of(found.plot)
     write(figure, output)
-    written = [output, *([] if data is None else save(runs, data))]
-    console = Console(soft_wrap=True, highlight=False)
-    for line in (*table(runs), "", *(f"wrote {path}" for path in written)):
-        console.print(line, markup=False)
-    for label, run in runs.items():
-        if not run.status.ok:
-            console.print(f"{label} [red]ended early[/red]: {run.status.value}")
-    return 0 if all(run.status.ok for run in runs.values()) else 1
-
-
-def sampled(description: Description) -> Description:
-    """Return the description with a sample rate, which a figure over time needs."""
-    if description.run.sample_rate is not None:
-        return description
-    settings = description.run.model_dump(exclude_none=True)
-    rate = SAMPLES / description.run.duration
-    return description._replace(run=type(description.run)(**(settings | {"sample_rate": rate})))
+    printed(str(config), found.tables())
+    for path in (output, *([] if data is None else save(found, data))):
+        print(f"wrote {path}")
+    return 0 if found.ok else 1
 
 
 def save(runs: Mapping[str, Trajectory], folder: Path) -> list[Path]:
@@ -101,20 +83,3 @@ def save(runs: Mapping[str, Trajectory], folder: Path) -> list[Path]:
     names = (re.sub(r"[^\w.-]+", "-", label).strip("-") for label in runs)
     paths = (folder / f"{count}-{name}.nc" for count, name in enumerate(names, 1))
     return [run.save(path) for run, path in zip(runs.values(), paths, strict=True)]
-
-
-def table(runs: Mapping[str, Trajectory]) -> list[str]:
-    """Return the lines of a table with a row for each law."""
-    from stiction.analysis.slip import outcome
-
-    rows: list[tuple[str, ...]] = [*HEADER]
-    for label, run in runs.items():
-        o = outcome(run)
-        speeds = (f"{value:.3g}" for value in (o.fastest, o.slowest, o.creep))
-        stuck = (str(o.sticks), f"{o.time_stuck:.4g}")
-        ended = "completed" if o.status.ok else o.status.name.lower().replace("_", " ")
-        rows.append((*stuck, f"{o.peak:.4f}", *speeds, str(o.steps), ended, label))
-    widths = [max(len(row[at]) for row in rows) for at in range(len(rows[0]))]
-    lines = ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)) for row in rows]
-    lines.insert(len(HEADER), "  ".join("-" * width for width in widths))
-    return [line.rstrip() for line in lines]

@@ -7,6 +7,8 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from stiction.cli.options import MaybeOutput, named
+
 
 def map(
     study: Path,
@@ -14,7 +16,7 @@ def map(
     *,
     of: Annotated[list[str] | None, Parameter(negative=())] = None,
     at: Annotated[list[str] | None, Parameter(negative=())] = None,
-    output: Annotated[Path | None, Parameter(alias="-o")] = None,
+    output: MaybeOutput = None,
     trust: Annotated[bool, Parameter(negative=())] = False,
 ) -> None:
     """Draw what the study in the store STUDY found, finished or not.
@@ -47,10 +49,11 @@ def map(
         Run the text of a friction law of one's own that stands in the store, if its file is not
         here.
     """
-    from stiction.cli.tally import named
+    from stiction.plotting.canvas import figure_of
     from stiction.plotting.save import drawable, write
-    from stiction.study.mapping import map_figure
+    from stiction.study.mapping import map as look
 
     cut = dict(named(text, "--at") for text in at or ())
     target = drawable(output or study.with_suffix(".png"))
-    print(f"wrote {write(map_figure(study, of or (), cut, trust=trust), target)}")
+    found = look(study, of or (), cut, trust=trust)
+    print(f"wrote {write(figure_of(found.plot), target)}")

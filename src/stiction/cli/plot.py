@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
 
-from cyclopts import Parameter
+from stiction.cli.options import Output
 
 
-def plot(
-    result: Path, /, *, output: Annotated[Path, Parameter(alias="-o")], trust: bool = False
-) -> None:
+def plot(result: Path, /, *, output: Output, trust: bool = False) -> None:
     """Draw the overview of a result: the system, forces, direction, position, slip speed.
+
+    For example, after `stiction run my.toml -o my.nc`:
+
+        stiction plot my.nc -o my.png
 
     Parameters
     ----------
@@ -22,9 +23,9 @@ def plot(
     trust
         Run the friction law of one's own that the result holds, where its file is not found.
     """
-    from stiction.plotting.overview import overview
+    from stiction.plotting.canvas import figure_of
+    from stiction.plotting.door import plot as draw
     from stiction.plotting.save import drawable, write
-    from stiction.trajectory import load
 
     drawable(output)
-    print(f"wrote {write(overview(load(result, trust=trust)), output)}")
+    print(f"wrote {write(figure_of(draw, result, trust=trust), output)}")

@@ -3,13 +3,23 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING
 
-from cyclopts import Parameter
+from stiction.cli.options import Changes, Output, changes
+
+if TYPE_CHECKING:
+    from stiction.trajectory import Trajectory
 
 
-def run(config: Path, /, *, output: Annotated[Path, Parameter(alias="-o")]) -> int:
+def run(config: Path, /, *, output: Output, set: Changes = None) -> int:
     """Simulate the apparatus that CONFIG describes and write the result as NetCDF.
+
+    For example, with what `stiction init my.toml` writes, and then with another misalignment
+    and speed:
+
+        stiction run my.toml -o my.nc
+
+        stiction run my.toml --set phi=3deg --set V=2mm/s -o other.nc
 
     Exit status: 0 when the run reached its duration, 1 when it ended earlier (what was
     computed is written all the same), 2 when the description cannot be simulated.
@@ -23,36 +33,44 @@ def run(config: Path, /, *, output: Annotated[Path, Parameter(alias="-o")]) -> i
     """
     from rich.console import Console
 
+    from stiction import simulation
     from stiction.cli.progress import progress
     from stiction.description import Description
-    from stiction.simulation import run as simulate
     from stiction.trajectory import writable
 
-    description = Description.from_toml(config)
+    description = Description.from_toml(config, changes(set))
     writable(output)
     with progress("simulating") as report:
-        result = simulate(description, progress=report)
+        result = simulation.run(description, progress=report)
         result.save(output)
     console = Console(soft_wrap=True, highlight=False)
-    statistics, stuck = result.statistics, result.statistics.time_stuck
+    for line in said(result, output):
+        console.print(line, markup=False)
+    return 0 if result.status.ok else 1
+
+
+def said(result: Trajectory, output: Path) -> list[str]:
+    """Return what is said of a run that is written."""
+    statistics = result.statistics
+    lines = []
     if not result.status.ok:
         reached = float(result.data.time[-1])
-        console.print(f"[red]ended early[/red] at t = {reached:.6g} s: {result.status.value}")
+        lines.append(f"ended early at t = {reached:.6g} s: {result.status.value}")
     peak = float(abs(result.data["spring_x"]).max())
     mapped = f", {statistics.mapped} intervals without any" if statistics.mapped else ""
     few = result.data.sizes["time"] <= 2
     sampled = " at start and end (no sample_rate)" if few else ""
-    for line in (
+    lines += [
         f"{output}: {result.data.sizes['time']} samples, stick intervals: "
-        f"{statistics.stick_count}, {stuck:.6g} s in all; {statistics.steps} steps{mapped}",
+        f"{statistics.stick_count}, {statistics.time_stuck:.6g} s in all; "
+        f"{statistics.steps} steps{mapped}",
         f"largest k_x u_x{sampled}: {peak:.4g} N, {peak / result.slider.normal_load:.4g} of the "
         "normal load",
         f"next: stiction plot {output} --output {output.with_suffix('.png')}, "
         f"stiction analyse {output}",
-    ):
-        console.print(line, markup=False)
+    ]
     if statistics.steps == 0:
         still = not result.data["drive_X"].any() and not result.data["drive_Y"].any()
         remedy = "the drive is at rest; give it a velocity" if still else "run it longer"
-        console.print(f"it never slipped: friction could hold all the time; {remedy}")
-    return 0 if result.status.ok else 1
+        lines.append(f"it never slipped: friction could hold all the time; {remedy}")
+    return lines

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
+
+from stiction.cli.options import Changes, Output, changes, named
 
 if TYPE_CHECKING:
     from stiction.study.engines import Engine
@@ -17,7 +20,7 @@ def sweep(
     config: Path | None = None,
     /,
     *,
-    output: Annotated[Path, Parameter(alias="-o")],
+    output: Output,
     preset: str | None = None,
     refine: str | None = None,
     apart: Annotated[list[str] | None, Parameter(negative=())] = None,
@@ -26,6 +29,7 @@ def sweep(
     scheduler: str | None = None,
     quiet: Annotated[bool, Parameter(negative=())] = False,
     json_lines: Annotated[bool, Parameter(negative=())] = False,
+    set: Changes = None,
 ) -> int:
     """Do the study that CONFIG describes: many runs, kept in a zarr store.
 
@@ -82,16 +86,18 @@ def sweep(
     json_lines
         Write progress and outcome to standard output as JSON, a line each, at most one a second.
     """
-    from stiction.cli.tally import named, shown
+    from stiction.cli.tally import shown
+    from stiction.study.refining import refine as halve
+    from stiction.study.sweeping import sweep as do
 
     found = None
-    study, means = described(config, preset), engine(threads, workers, scheduler)
+    study, means = described(config, preset, changes(set)), engine(threads, workers, scheduler)
     try:
         with shown(quiet, json_lines) as (report, conclude):
-            result = study.run(output, engine=means, progress=report)
+            result = do(study, output, engine=means, progress=report)
             if refine is not None:
                 along, to = named(refine, "--refine")
-                found = study.refine(output, along, to, apart=apart, engine=means, progress=report)
+                found = halve(study, output, along, to, apart=apart, engine=means, progress=report)
     except KeyboardInterrupt:
         print(f"{output}: stopped; the same command goes on where it was", file=sys.stderr)
         return 130
@@ -101,16 +107,20 @@ def sweep(
     return 1 if result.failed else 0
 
 
-def described(config: Path | None, preset: str | None) -> Study:
-    """Return the study that is asked for."""
+def described(config: Path | None, preset: str | None, given: Mapping[str, Any]) -> Study:
+    """Return the study that is asked for, with other values of some parameters."""
     from stiction.errors import StictionError
+    from stiction.paths import with_changes
     from stiction.study import presets
     from stiction.study.plan import Study
 
     if (config is None) == (preset is None):
         known = ", ".join(presets.PRESETS)
         raise StictionError(f"give a study's file or --preset NAME, one of both; known: {known}")
-    return Study.from_toml(config) if config is not None else presets.preset(str(preset))
+    if config is not None:
+        return Study.from_toml(config, given)
+    study = presets.preset(str(preset))
+    return Study.from_dict(with_changes(study.to_dict(), given)) if given else study
 
 
 def engine(threads: int | None, workers: int | None, scheduler: str | None) -> Engine:

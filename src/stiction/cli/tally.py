@@ -13,8 +13,6 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-from stiction.errors import StictionError
-
 if TYPE_CHECKING:
     from stiction.study.summary import Summary
     from stiction.study.sweeping import Tally
@@ -132,11 +130,3 @@ def clock(seconds: float) -> str:
     minutes, rest = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"
-
-
-def named(text: str, option: str) -> tuple[str, str]:
-    """Return name and value of an option's ``NAME=VALUE``."""
-    name, equals, value = text.rpartition("=")
-    if not equals:
-        raise StictionError(f"{option} {text!r} is no NAME=VALUE; write for example 'phi = 1 deg'")
-    return name.strip(), value.strip()

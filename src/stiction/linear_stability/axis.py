@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from stiction.errors import DescriptionError, Fault
 from stiction.parameter import changed, placed, read, unit
+from stiction.paths import canonical_path
 from stiction.slider import Slider
 
 DECADES = 3.0  # either way from a parameter's own value, where no range is given
@@ -65,6 +66,7 @@ def axis(slider: Slider, path: str, between: Sequence[float | str] | None = None
     DescriptionError
         If the range is none, or not all of it is allowed.
     """
+    path = canonical_path(path)
     ends = default(slider, path) if between is None else between
     if isinstance(ends, str) or len(ends) != 2:
         raise DescriptionError([Fault(path, f"{ends!r} is not a range; give its two ends")])

@@ -166,7 +166,7 @@ def steady_sliding(slider: Slider) -> Linearisation:
     --------
     >>> import stiction as st
     >>> slider = st.presets.nakano_popov_2020()
-    >>> st.stability.steady_sliding(slider.replace(phi="10 deg"))
+    >>> st.linear_stability.steady_sliding(slider.replace(phi="10 deg"))
     <Steady sliding, stable: fastest growth -31.46 /s at 9.015 Hz, damping ratio 0.485>
     """
     slip = drive_velocity(slider)

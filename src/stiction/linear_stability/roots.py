@@ -81,7 +81,7 @@ def critical(
     Examples
     --------
     >>> import numpy as np, stiction as st
-    >>> found = st.stability.critical(st.presets.nakano_popov_2020(), "phi")
+    >>> found = st.linear_stability.critical(st.presets.nakano_popov_2020(), "phi")
     >>> np.degrees(found.values).round(4), found.frequencies.round(1), found.stable
     (array([ 8.656 , 76.2634]), array([ 10.2, 988.6]), (False, True, False))
     """

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from matplotlib.figure import Figure
 
 from stiction.analysis.report import Analysis
 from stiction.plotting.creep_curve import creep_figure, creep_theory
-from stiction.plotting.cycles import cycles_figure
+from stiction.plotting.cycles import cycles_figure, plot_cycles
 from stiction.plotting.energy import energy_figure
 from stiction.plotting.oscillation import oscillation_figure
 from stiction.trajectory import Trajectory
+
+
+def plot_analysis(found: Analysis, axes: Any = None) -> Any:
+    """Draw the force with its cycles and its kind of motion; see `plot_cycles`."""
+    return plot_cycles(found.record, axes)
 
 
 def figures(found: Analysis) -> dict[str, Figure]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from textwrap import wrap
 
 from matplotlib.axes import Axes
@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from stiction.friction import name_of
+from stiction.plotting.canvas import canvas, figure_of, fixed
 from stiction.plotting.curves import Curve, curves_of, draw_over_time
 from stiction.plotting.slip_speeds import (
     draw_held,
@@ -18,7 +19,7 @@ from stiction.plotting.slip_speeds import (
     draw_speeds,
     set_speed_limits,
 )
-from stiction.plotting.style import GREY, PAGE, new_figure, style
+from stiction.plotting.style import GREY, PAGE, style
 from stiction.plotting.words import parameters_in_words, system_in_words, wrapped
 from stiction.trajectory import Trajectory
 
@@ -32,6 +33,13 @@ NOTE = (
 
 
 def comparison(runs: Mapping[str, Trajectory]) -> Figure:
+    """Return the figure of `plot_comparison`, as wide as a page."""
+    return figure_of(plot_comparison, runs)
+
+
+def plot_comparison(
+    runs: Mapping[str, Trajectory], axes: Mapping[str, Axes] | None = None
+) -> dict[str, Axes]:
     """Draw runs of one apparatus together: force, position, slip speed, phase portrait.
 
     Slip speed is on a logarithmic axis: a line for the mean over a 500th of the time, a pale
@@ -43,39 +51,58 @@ def comparison(runs: Mapping[str, Trajectory]) -> Figure:
     ----------
     runs : mapping of str to Trajectory
         By what each is called, e.g. from `stiction.compare`.
+    axes : mapping of str to Axes, optional
+        What to draw, and where: any of "force", "X", "speed", "rest", "portrait", "held" and
+        "words". All, on a new figure as wide as a page, when left out.
 
     Returns
     -------
-    Figure
-        As wide as a page.
+    dict of str to Axes
+        The axes by their names.
     """
     with style():
         curves = curves_of(runs)
         legend = [legend_text(curve) for curve in curves]
-        lines = sum(text.count("\n") + 1.6 for text in legend) + 8
-        top, strip = max(2.3, lines * LINE), 0.08 + 0.1 * len(curves)
-        fig = new_figure(PAGE, top + 2.5 + strip)
-        ax = fig.subplot_mosaic(
-            [["force", "words"], ["X", "words"], ["speed", "portrait"], ["rest", "held"]],
-            width_ratios=[1.6, 1],
-            height_ratios=[top / 2, top / 2, 2.2, strip],
-        )
-        draw_over_time(ax["force"], curves, "spring_x", "$k_x u_x$")
-        draw_over_time(ax["X"], curves, "X", "$X$")
-        draw_speeds(ax["speed"], curves)
-        draw_portrait(ax["portrait"], curves)
-        draw_rests(ax["rest"], curves)
-        draw_held(ax["held"], curves)
-        for name in ("speed", "portrait"):
-            set_speed_limits(ax[name], curves)
-        for name in ("force", "X", "speed"):
-            ax[name].set_xlim(ax["rest"].get_xlim())
-            ax[name].tick_params(labelbottom=False)
-        ax["portrait"].set_xlim(ax["held"].get_xlim())
-        ax["portrait"].tick_params(labelbottom=False, labelleft=False)
-        write_legend(ax["words"], curves, legend)
-        fig.align_ylabels([ax[name] for name in ("force", "X", "speed", "rest")])
-    return fig
+        panels = dict(_panels(curves, legend) if axes is None else axes)
+        draw: dict[str, Callable[[Axes], None]] = {
+            "force": lambda ax: draw_over_time(ax, curves, "spring_x", "$k_x u_x$"),
+            "X": lambda ax: draw_over_time(ax, curves, "X", "$X$"),
+            "speed": lambda ax: draw_speeds(ax, curves),
+            "portrait": lambda ax: draw_portrait(ax, curves),
+            "rest": lambda ax: draw_rests(ax, curves),
+            "held": lambda ax: draw_held(ax, curves),
+            "words": lambda ax: write_legend(ax, curves, legend),
+        }
+        for name, ax in panels.items():
+            draw[name](ax)
+        for name in {"speed", "portrait"} & panels.keys():
+            set_speed_limits(panels[name], curves)
+        if axes is None:
+            _align(panels)
+    return panels
+
+
+def _panels(curves: list[Curve], legend: list[str]) -> dict[str, Axes]:
+    """Return the axes of a new figure, by their names."""
+    lines = sum(text.count("\n") + 1.6 for text in legend) + 8
+    top, strip = max(2.3, lines * LINE), 0.08 + 0.1 * len(curves)
+    panels: dict[str, Axes] = canvas(PAGE, top + 2.5 + strip).subplot_mosaic(
+        [["force", "words"], ["X", "words"], ["speed", "portrait"], ["rest", "held"]],
+        width_ratios=[1.6, 1],
+        height_ratios=[top / 2, top / 2, 2.2, strip],
+    )
+    fixed([*panels.values()])
+    return panels
+
+
+def _align(ax: Mapping[str, Axes]) -> None:
+    """Let panels above each other share the labels below them."""
+    for name in ("force", "X", "speed"):
+        ax[name].set_xlim(ax["rest"].get_xlim())
+        ax[name].tick_params(labelbottom=False)
+    ax["portrait"].set_xlim(ax["held"].get_xlim())
+    ax["portrait"].tick_params(labelbottom=False, labelleft=False)
+    ax["force"].figure.align_ylabels([ax[name] for name in ("force", "X", "speed", "rest")])
 
 
 def legend_text(curve: Curve) -> str:

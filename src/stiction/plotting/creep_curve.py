@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from stiction import theory
-from stiction.plotting.style import BLACK, BLUE, COLUMN, GREEN, GREY, RED, new_figure, style
+from stiction.plotting.canvas import figure_of, panel
+from stiction.plotting.style import BLACK, BLUE, COLUMN, GREEN, GREY, RED, style
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -76,6 +77,17 @@ def draw_mean(ax: Axes, mean: xr.Dataset, V: float) -> None:
 def creep_figure(
     curves: xr.Dataset, mean: xr.Dataset, V: float, lines: Mapping[str, Line] | None = None
 ) -> Figure:
+    """Return the figure of `plot_creep`, as wide as a column."""
+    return figure_of(plot_creep, curves, mean, V, lines)
+
+
+def plot_creep(
+    curves: xr.Dataset,
+    mean: xr.Dataset,
+    V: float,
+    lines: Mapping[str, Line] | None = None,
+    ax: Axes | None = None,
+) -> Axes:
     """Draw creep curves by the time to slip, which is at the right.
 
     The velocity is on a logarithmic axis if the mean is above twice its error everywhere, on a
@@ -90,17 +102,13 @@ def creep_figure(
     lines : mapping of str to callable, optional
         What to compare with, each by its name: velocity (m/s) as a function of the time to slip
         (s), from `creep_theory` or a fit's ``velocity``.
-
-    Returns
-    -------
-    Figure
-        As wide as a column.
+    ax : Axes, optional
+        Drawn on; a new figure as wide as a column when left out.
     """
     middle = 0.5 * (mean["begin"] + mean["end"]).values
     value, error = mean["velocity"].values, np.nan_to_num(mean["velocity_error"].values)
     with style():
-        fig = new_figure(COLUMN, 2.9)
-        ax = fig.subplots()
+        ax = panel(ax, COLUMN, 2.9)
         draw_phases(ax, curves, V)
         draw_mean(ax, mean, V)
         to_slip = np.geomspace(0.5 * middle.min(), middle.max(), 400)
@@ -118,4 +126,4 @@ def creep_figure(
         logarithmic = ax.get_yscale() == "log"  # then the curve leaves the lower right free
         legend = ax.legend(loc="lower right" if logarithmic else "upper left")
         legend.get_lines()[0].set_alpha(0.5)
-    return fig
+    return ax

@@ -2,54 +2,70 @@
 
 from __future__ import annotations
 
-from textwrap import fill
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from stiction.analysis.cycles import swings
-from stiction.analysis.record import Record
-from stiction.analysis.regime import Regime, regime_of
-from stiction.plotting.style import BLUE, GREY, PAGE, PALE, RED, new_figure, style
+from stiction.analysis.record import Record, recorded
+from stiction.analysis.regime import regime_of
+from stiction.plotting.canvas import canvas, figure_of, fixed, listed
+from stiction.plotting.style import BLUE, GREY, PAGE, PALE, RED, style
 from stiction.plotting.time_series import draw_line, prefixed
+from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
     import xarray as xr
 
 FEW = 12  # cycles that are seen one by one on a page's width
 SHOWN = 6  # cycles in the close-up
-LETTERS = 108  # of a page's width
 
 
 def cycles_figure(record: Record) -> Figure:
-    """Draw the force of a record with its peaks and troughs marked, and its regime in words.
+    """Return the figure of `plot_cycles`, as wide as a page."""
+    return figure_of(plot_cycles, record)
+
+
+def plot_cycles(
+    source: Trajectory | Record, axes: Axes | Sequence[Axes] | None = None
+) -> NDArray[np.object_]:
+    """Draw the force of a record with its peaks and troughs marked, and its kind of motion.
 
     Where there are many cycles, some from the middle of the record are shown larger below.
 
     Parameters
     ----------
-    record : Record
-        Measured, or of a run; not empty.
+    source : Record or Trajectory
+        Measured, or a run; not empty.
+    axes : Axes, or two of them, optional
+        For the whole record, and for the part that is shown larger; a new figure as wide as a
+        page when left out.
 
     Returns
     -------
-    Figure
-        As wide as a page.
+    ndarray of Axes
+        One, or two where there are many cycles.
     """
+    record = recorded(source)
     found = swings(record)
     cycles, regime = found.cycles, regime_of(record, found)
     many = cycles.sizes["cycle"] > FEW
     with style():
-        fig = new_figure(PAGE, 4.6 if many else 2.8)
-        panels = fig.subplots(2 if many else 1, 1, squeeze=False)[:, 0]
+        if axes is None:
+            fig = canvas(PAGE, 4.4 if many else 2.6)
+            panels = fixed(list(fig.subplots(2 if many else 1, 1, squeeze=False)[:, 0]))
+        else:
+            panels = listed(axes)
         draw_cycles(panels[0], record, cycles)
-        panels[0].set_title(_in_words(regime))
-        if many:
+        panels[0].set_title(regime.kind.capitalize())
+        if many and len(panels) > 1:
             _zoom(panels[0], panels[1], record, cycles)
         panels[-1].set_xlabel("time $t$ (s)")
-    return fig
+    return np.array(panels, dtype=object)
 
 
 def draw_cycles(ax: Axes, record: Record, cycles: xr.Dataset) -> None:
@@ -86,11 +102,6 @@ def draw_cycles(ax: Axes, record: Record, cycles: xr.Dataset) -> None:
         )
     ax.margins(y=0.08)
     ax.set_ylabel(f"spring force ({prefix}N)")
-
-
-def _in_words(regime: Regime) -> str:
-    kind, _, reasons = str(regime).partition(": ")
-    return kind[0].upper() + kind[1:] + "\n" + fill(reasons, LETTERS)
 
 
 def _zoom(whole: Axes, part: Axes, record: Record, cycles: xr.Dataset) -> None:

@@ -11,7 +11,8 @@ from matplotlib.markers import CARETDOWN
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from stiction import theory
-from stiction.plotting.style import BLACK, GREEN
+from stiction.plotting.canvas import panel
+from stiction.plotting.style import BLACK, COLUMN, GREEN, style
 
 SHADES = LinearSegmentedColormap.from_list("damping", ["#E9BE8B", "#FFFFFF", "#9DBDD3"])
 CLEAR = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 1.0}
@@ -60,6 +61,26 @@ def draw_damping_map(
     ax.set_xlabel(r"damping number $A$ (1)")
     ax.set_ylabel(r"force angle $\theta$ (deg)")
     return boundary
+
+
+def plot_damping(
+    A: tuple[float, float] = (1e-1, 1e5),
+    theta: tuple[float, float] = (0.5, 90.0),
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw the damping diagram: the damping ratio over damping number and force angle.
+
+    Parameters
+    ----------
+    A, theta
+        Ranges, as of `draw_damping_map`.
+    ax : Axes, optional
+        Drawn on; a new figure as wide as a column when left out.
+    """
+    with style():
+        ax = panel(ax, COLUMN, 2.7)
+        draw_damping_map(ax, A, theta)
+    return ax
 
 
 def draw_force_path(ax: Axes, A: float, phi: float, color: str, label: str) -> Line2D:

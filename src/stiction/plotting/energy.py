@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
 
+from stiction.plotting.canvas import canvas, figure_of, fixed, listed
 from stiction.plotting.style import (
     BLACK,
     BLUE,
@@ -19,7 +22,6 @@ from stiction.plotting.style import (
     PURPLE,
     RED,
     SKY,
-    new_figure,
     panel_letter,
     style,
 )
@@ -82,28 +84,38 @@ def draw_closure(ax: Axes, budget: xr.Dataset) -> None:
 
 
 def energy_figure(budget: xr.Dataset) -> Figure:
+    """Return the figure of `plot_energy`, as wide as a column."""
+    return figure_of(plot_energy, budget)
+
+
+def plot_energy(budget: xr.Dataset, axes: Sequence[Axes] | None = None) -> NDArray[np.object_]:
     """Draw an energy budget: (a) where the work goes, (b) how exactly that closes.
 
     Parameters
     ----------
     budget : Dataset
         From `stiction.energy_budget`, with some intervals, e.g. cycles.
+    axes : two Axes, optional
+        Drawn on; a new figure as wide as a column when left out.
 
     Returns
     -------
-    Figure
-        As wide as a column.
+    ndarray of Axes
+        The two.
     """
     with style():
-        fig = new_figure(COLUMN, 4.3)
-        axes = fig.subplots(2, 1, sharex=True, height_ratios=[1.8, 1.0])
-        draw_budget(axes[0], budget)
-        draw_closure(axes[1], budget)
-        for ax, letter in zip(axes, "ab", strict=True):
+        if axes is None:
+            fig = canvas(COLUMN, 4.3)
+            panels = fixed(list(fig.subplots(2, 1, sharex=True, height_ratios=[1.8, 1.0])))
+            fig.align_ylabels(panels)
+        else:
+            panels = listed(axes)
+        draw_budget(panels[0], budget)
+        draw_closure(panels[1], budget)
+        for ax, letter in zip(panels, "ab", strict=True):
             panel_letter(ax, letter)
-        axes[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
-        axes[1].legend(loc="best")
-        axes[1].xaxis.set_major_locator(MaxNLocator(integer=True))
-        axes[1].set_xlabel("interval")
-        fig.align_ylabels(axes)
-    return fig
+        panels[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
+        panels[1].legend(loc="best")
+        panels[1].xaxis.set_major_locator(MaxNLocator(integer=True))
+        panels[1].set_xlabel("interval")
+    return np.array(panels, dtype=object)

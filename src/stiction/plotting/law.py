@@ -8,9 +8,29 @@ from matplotlib.lines import Line2D
 
 from stiction.friction import has_state
 from stiction.friction.law import static_coefficient
-from stiction.plotting.style import PURPLE
+from stiction.plotting.canvas import panel
+from stiction.plotting.style import COLUMN, PURPLE, style
 from stiction.plotting.time_series import prefixed
 from stiction.slider import Slider
+
+
+def plot_law(slider: Slider, fastest: float | None = None, ax: Axes | None = None) -> Axes:
+    """Draw the friction coefficient of a slider over slip speed.
+
+    Parameters
+    ----------
+    slider : Slider
+        The system.
+    fastest : float, optional
+        Largest slip speed, m/s; ten times that of the drive when left out.
+    ax : Axes, optional
+        Drawn on; a new figure as wide as a column when left out.
+    """
+    with style():
+        ax = panel(ax, COLUMN, 2.2)
+        speed = 10.0 * abs(slider.motion.velocity) if fastest is None else fastest
+        draw_law(ax, slider, speed)
+    return ax
 
 
 def draw_law(ax: Axes, slider: Slider, fastest: float) -> Line2D:

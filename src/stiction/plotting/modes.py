@@ -2,22 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from stiction.linear_stability import Critical
+from stiction.plotting.canvas import canvas, figure_of, fixed, listed
 from stiction.plotting.parameter import PLAIN, Scale, scale_of
 from stiction.plotting.stability import UNSTABLE
-from stiction.plotting.style import BLUE, COLUMN, GREY, ORANGE, new_figure, style
+from stiction.plotting.style import BLUE, COLUMN, GREY, ORANGE, style
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
 def modes_figure(modes: xr.Dataset, critical: Critical | None = None) -> Figure:
+    """Return the figure of `plot_modes`, as wide as a column."""
+    return figure_of(plot_modes, modes, critical)
+
+
+def plot_modes(
+    modes: xr.Dataset, critical: Critical | None = None, axes: Sequence[Axes] | None = None
+) -> NDArray[np.object_]:
     """Draw growth rates and frequencies of the modes over one parameter.
 
     Parameters
@@ -26,19 +36,25 @@ def modes_figure(modes: xr.Dataset, critical: Critical | None = None) -> Figure:
         From `stiction.linear_stability.modes_over`.
     critical : Critical, optional
         Critical values of the same parameter: dashed, with their numbers above.
+    axes : two Axes, optional
+        Drawn on; a new figure as wide as a column when left out.
 
     Returns
     -------
-    Figure
-        As wide as a column.
+    ndarray of Axes
+        The two.
     """
     values, log = modes["value"], modes.attrs["scale"] == "log"
     ends = values.values[[0, -1]]
     scale = scale_of(values.attrs["long_name"], values.attrs["units"], ends, logarithmic=log)
     marked = scale.drawn(() if critical is None else critical.values)
     with style():
-        fig = new_figure(COLUMN, 3.6)
-        above, below = fig.subplots(2, 1, sharex=True)
+        if axes is None:
+            fig = canvas(COLUMN, 3.6)
+            above, below = fixed(list(fig.subplots(2, 1, sharex=True)))
+            fig.align_ylabels([above, below])
+        else:
+            above, below = listed(axes)
         draw_growth_rates(above, modes, scale)
         draw_frequencies(below, modes, scale)
         for ax in (above, below):
@@ -59,9 +75,10 @@ def modes_figure(modes: xr.Dataset, critical: Critical | None = None) -> Figure:
         if log:
             below.xaxis.set_major_formatter(PLAIN)
         below.set_xlabel(scale.label)
-        fig.legend(*above.get_legend_handles_labels(), loc="outside upper center", ncols=2)
-        fig.align_ylabels([above, below])
-    return fig
+        above.legend(
+            loc="lower center", bbox_to_anchor=(0.5, 1.07 if len(marked) else 1.0), ncols=2
+        )
+    return np.array([above, below], dtype=object)
 
 
 def draw_growth_rates(ax: Axes, modes: xr.Dataset, scale: Scale) -> None:

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from stiction.analysis.limit_cycle import OSCILLATING, REST, UNDECIDED
 from stiction.analysis.onset import Onset
+from stiction.plotting.canvas import figure_of, panel
 from stiction.plotting.parameter import PLAIN, scale_of
-from stiction.plotting.style import BLUE, COLUMN, GREY, PALE, RED, new_figure, style
+from stiction.plotting.style import BLUE, COLUMN, GREY, PALE, RED, style
 from stiction.plotting.time_series import prefixed
 
 LOOKS: dict[str, dict[str, Any]] = {
@@ -23,7 +24,12 @@ SPREAD = 30.0  # ratio of amplitudes beyond which their axis is logarithmic
 
 
 def onset_figure(onset: Onset, critical: float | None = None) -> Figure:
-    """Draw the amplitude of the oscillation, swept up and down, on a figure a column wide.
+    """Return the figure of `plot_onset`, as wide as a column."""
+    return figure_of(plot_onset, onset, critical)
+
+
+def plot_onset(onset: Onset, critical: float | None = None, ax: Axes | None = None) -> Axes:
+    """Draw the amplitude of the oscillation, swept up and down.
 
     Parameters
     ----------
@@ -31,12 +37,14 @@ def onset_figure(onset: Onset, critical: float | None = None) -> Figure:
         From `stiction.find_onset`.
     critical : float, optional
         Where linear theory has the onset, SI, from `stiction.linear_stability.critical`.
+    ax : Axes, optional
+        Drawn on; a new figure as wide as a column when left out.
     """
     with style():
-        fig = new_figure(COLUMN, 2.7)
-        draw_onset(fig.subplots(), onset, critical)
-        fig.legend(loc="outside upper center", ncols=2)
-    return fig
+        ax = panel(ax, COLUMN, 2.7)
+        draw_onset(ax, onset, critical)
+        ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
+    return ax
 
 
 def draw_onset(ax: Axes, onset: Onset, critical: float | None = None) -> None:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from stiction.analysis.oscillation import oscillation_spectrogram
+from stiction.plotting.canvas import canvas, figure_of, fixed, listed
 from stiction.plotting.spectrogram import draw_spectrogram
 from stiction.plotting.style import (
     BLACK,
@@ -16,7 +20,6 @@ from stiction.plotting.style import (
     GREY,
     ORANGE,
     RED,
-    new_figure,
     panel_letter,
     style,
 )
@@ -63,6 +66,13 @@ def draw_share_stuck(ax: Axes, oscillation: xr.Dataset) -> None:
 
 
 def oscillation_figure(run: Trajectory, oscillation: xr.Dataset) -> Figure:
+    """Return the figure of `plot_oscillation`, as wide as a column."""
+    return figure_of(plot_oscillation, run, oscillation)
+
+
+def plot_oscillation(
+    run: Trajectory, oscillation: xr.Dataset, axes: Sequence[Axes] | None = None
+) -> NDArray[np.object_]:
     """Draw the transverse oscillation of a run over time.
 
     (a) Spectrogram of v_y with the frequency followed, omega_y, and omega_y sin(theta). (b) The
@@ -74,28 +84,35 @@ def oscillation_figure(run: Trajectory, oscillation: xr.Dataset) -> Figure:
         As for `stiction.transverse_oscillation`.
     oscillation : Dataset
         What that returned.
+    axes : three Axes, optional
+        Drawn on; a new figure as wide as a column when left out.
 
     Returns
     -------
-    Figure
-        As wide as a column.
+    ndarray of Axes
+        The three.
     """
     natural = oscillation.attrs["natural_frequency"]
     with style():
-        fig = new_figure(COLUMN, 4.6)
-        axes = fig.subplots(3, 1, sharex=True, height_ratios=[2.0, 1.2, 1.0])
-        mesh = draw_spectrogram(axes[0], oscillation_spectrogram(run), highest=HIGHEST * natural)
-        draw_ridge(axes[0], oscillation)
-        draw_amplitudes(axes[1], oscillation)
-        draw_share_stuck(axes[2], oscillation)
-        for ax, letter in zip(axes, "abc", strict=True):
+        if axes is None:
+            fig = canvas(COLUMN, 4.6)
+            panels = fixed(list(fig.subplots(3, 1, sharex=True, height_ratios=[2.0, 1.2, 1.0])))
+            fig.align_ylabels(panels)
+        else:
+            panels = listed(axes)
+        mesh = draw_spectrogram(panels[0], oscillation_spectrogram(run), highest=HIGHEST * natural)
+        draw_ridge(panels[0], oscillation)
+        draw_amplitudes(panels[1], oscillation)
+        draw_share_stuck(panels[2], oscillation)
+        for ax, letter in zip(panels, "abc", strict=True):
             panel_letter(ax, letter)
-        axes[0].legend(loc="upper right", ncols=3, labelcolor="white", handlelength=1.4)
-        axes[1].set_ylim(0.0, 1.5 * axes[1].get_ylim()[1])  # room for the legend
-        axes[1].legend(loc="upper left", ncols=2, columnspacing=1.0)
-        axes[-1].set_xlim(float(oscillation["time"][0]), float(oscillation["time"][-1]))
-        axes[-1].set_xlabel("time $t$ (s)")
-        bar = fig.colorbar(mesh, ax=axes, location="bottom", extend="both", aspect=35, pad=0.01)
+        panels[0].legend(loc="upper right", ncols=3, labelcolor="white", handlelength=1.4)
+        panels[1].set_ylim(0.0, 1.5 * panels[1].get_ylim()[1])  # room for the legend
+        panels[1].legend(loc="upper left", ncols=2, columnspacing=1.0)
+        panels[-1].set_xlim(float(oscillation["time"][0]), float(oscillation["time"][-1]))
+        panels[-1].set_xlabel("time $t$ (s)")
+        bar = panels[0].figure.colorbar(
+            mesh, ax=panels, location="bottom", extend="both", aspect=35, pad=0.01
+        )
         bar.set_label("amplitude of $v_y$ (dB re 1 µm/s)")
-        fig.align_ylabels(axes)
-    return fig
+    return np.array(panels, dtype=object)

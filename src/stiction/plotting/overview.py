@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from typing import Any
+
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure, SubFigure
+from matplotlib.figure import Figure
 
 from stiction.plotting import time_series
+from stiction.plotting.canvas import canvas, figure_of, fixed
 from stiction.plotting.law import draw_law
 from stiction.plotting.schematic import draw_schematic
-from stiction.plotting.style import BLACK, BLUE, ORANGE, PAGE, RED, new_figure, style
+from stiction.plotting.style import BLACK, BLUE, ORANGE, PAGE, RED, style
+from stiction.plotting.time_series import Floats
 from stiction.plotting.words import (
     base_velocity,
     law_in_words,
@@ -22,7 +27,15 @@ LINE, GAP = 10.5, 3.0  # of what is written, pt
 DRAWING, LAW = 2.1, 1.7  # heights of the system's drawing and of the law, in
 
 
+SERIES = ("force", "friction", "direction", "position", "speed", "stuck")
+
+
 def overview(run: Trajectory) -> Figure:
+    """Return the figure of `plot_run`, as wide as a page."""
+    return figure_of(plot_run, run)
+
+
+def plot_run(run: Trajectory, axes: Mapping[str, Axes] | None = None) -> dict[str, Axes]:
     """Draw a run: the system, its parameters, how it ended, and what it did over time.
 
     Friction law, spring forces, magnitude and direction of the friction force, position, slip
@@ -32,26 +45,59 @@ def overview(run: Trajectory) -> Figure:
     ----------
     run : Trajectory
         Any run, of any system, ended well or not.
+    axes : mapping of str to Axes, optional
+        What to draw, and where: any of "system", "words", "law", "drive_X", "drive_Y",
+        "normal_load" (where these change), "force", "friction", "direction", "position",
+        "speed", "stuck". All, on a new figure as wide as a page, when left out.
 
     Returns
     -------
-    Figure
-        As wide as a page.
+    dict of str to Axes
+        The axes by their names.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "20 ms", sample_rate="10 kHz")
+    >>> run.plot()["force"].get_ylabel()
+    'spring force (mN)'
     """
+    with style():
+        panels = dict(_panels(run) if axes is None else axes)
+        drawings = {"system": _system, "words": _written, "law": _law, **_series(run)}
+        for name, ax in panels.items():
+            drawings[name](ax, run)
+        series = [ax for name, ax in panels.items() if name not in ("system", "words", "law")]
+        if axes is None:
+            for ax in series[:-1]:
+                ax.set_xlabel("")
+            series[0].figure.align_ylabels(series)
+    return panels
+
+
+def _panels(run: Trajectory) -> dict[str, Axes]:
+    """Return the axes of a new figure, by their names."""
     words = _words(run)
     written = sum(GAP + LINE * (1 + len(lines)) for _, lines, _ in words) / 72 + 0.3
-    with style():
-        fig = new_figure(PAGE, max(6.2, DRAWING + written + LAW + 0.1))
-        left, right = fig.subfigures(1, 2, squeeze=False, width_ratios=[1, 1.55])[0]
-        panels = left.subplot_mosaic(
-            [["system"], ["words"], ["law"]], height_ratios=[DRAWING, written, LAW]
-        )
-        draw_schematic(panels["system"], run.slider)
-        _write(panels["words"], words)
-        drive = abs(base_velocity(run.slider))  # what slips when nothing else does
-        draw_law(panels["law"], run.slider, max(drive, float(run.data["slip_speed"].max())))
-        _draw_series(right, run)
-    return fig
+    fig = canvas(PAGE, max(6.2, DRAWING + written + LAW + 0.1))
+    left, right = fig.subfigures(1, 2, squeeze=False, width_ratios=[1, 1.55])[0]
+    panels = left.subplot_mosaic(
+        [["system"], ["words"], ["law"]], height_ratios=[DRAWING, written, LAW]
+    )
+    imposed = [name for name, *_ in time_series.imposed(run)]
+    heights = [0.85] * len(imposed) + [1.4, 1, 1, 1, 1.2, 0.6]
+    series = right.subplots(len(heights), 1, sharex=True, height_ratios=heights)
+    fixed([*panels.values(), *series])
+    return {**panels, **dict(zip((*imposed, *SERIES), series, strict=True))}
+
+
+def _system(ax: Axes, run: Trajectory) -> None:
+    draw_schematic(ax, run.slider)
+
+
+def _law(ax: Axes, run: Trajectory) -> None:
+    drive = abs(base_velocity(run.slider))  # what slips when nothing else does
+    draw_law(ax, run.slider, max(drive, float(run.data["slip_speed"].max())))
 
 
 def _words(run: Trajectory) -> list[tuple[str, list[str], str]]:
@@ -64,36 +110,57 @@ def _words(run: Trajectory) -> list[tuple[str, list[str], str]]:
     ]
 
 
-def _draw_series(figure: SubFigure, run: Trajectory) -> None:
-    """Draw what was done to the system, where it changes, and what the system did."""
-    imposed = time_series.imposed(run)
-    heights = [0.85] * len(imposed) + [1.4, 1, 1, 1, 1.2, 0.6]
-    series = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights)
-    for ax, (values, symbol, unit) in zip(series, imposed, strict=False):
-        time_series.draw_values(ax, run, values, symbol, unit)
-    forces, friction, direction, position, speed, stuck = series[len(imposed) :]
+def _series(run: Trajectory) -> dict[str, Callable[[Axes, Trajectory], Any]]:
+    """Return what draws each quantity over time, by its name."""
+
+    def spaced(draw: Callable[[Axes, Trajectory], Any]) -> Callable[[Axes, Trajectory], Any]:
+        def drawn(ax: Axes, run: Trajectory) -> None:
+            draw(ax, run)
+            ax.set_xlabel("time $t$ (s)")
+            times = run.data["time"].values
+            if times[-1] > times[0]:
+                ax.set_xlim(times[0], times[-1])
+            if draw not in (time_series.draw_slip_speed, time_series.draw_time_stuck):
+                ax.margins(y=0.12)
+
+        return drawn
+
+    def imposed(values: Floats, symbol: str, unit: str) -> Callable[[Axes, Trajectory], Any]:
+        return lambda ax, run: time_series.draw_values(ax, run, values, symbol, unit)
+
+    drawings = (
+        _forces,
+        time_series.draw_friction,
+        time_series.draw_direction,
+        time_series.draw_position,
+        time_series.draw_slip_speed,
+        time_series.draw_time_stuck,
+    )
+    found = {each[0]: imposed(*each[1:]) for each in time_series.imposed(run)}
+    named: dict[str, Callable[[Axes, Trajectory], Any]] = {
+        **found,
+        **dict(zip(SERIES, drawings, strict=True)),
+    }
+    return {name: spaced(draw) for name, draw in named.items()}
+
+
+def _forces(ax: Axes, run: Trajectory) -> None:
+    """Draw both spring forces."""
     factor, prefix = time_series.prefixed(
         abs(run.data["spring_x"].values) + abs(run.data["spring_y"].values)
     )
     times = run.data["time"].values
     for axis, color in (("x", RED), ("y", ORANGE)):
         values = run.data[f"spring_{axis}"].values * factor
-        line = time_series.draw_line(forces, times, values, color)
+        line = time_series.draw_line(ax, times, values, color)
         line.set_label(f"$k_{axis} u_{axis}$")
         line.set_zorder(2.2 if axis == "x" else 2.0)  # what swings across would hide it
-    forces.set_ylabel(f"spring force ({prefix}N)")
-    forces.legend(loc="lower right", ncols=2, bbox_to_anchor=(1.0, 0.97), borderaxespad=0.0)
-    time_series.draw_friction(friction, run)
-    time_series.draw_direction(direction, run)
-    time_series.draw_position(position, run)
-    time_series.draw_slip_speed(speed, run)
-    time_series.draw_time_stuck(stuck, run)
-    for ax in series[:-2]:
-        ax.margins(y=0.12)
-    stuck.set_xlabel("time $t$ (s)")
-    if times[-1] > times[0]:
-        stuck.set_xlim(times[0], times[-1])
-    figure.align_ylabels(series)
+    ax.set_ylabel(f"spring force ({prefix}N)")
+    ax.legend(loc="lower right", ncols=2, bbox_to_anchor=(1.0, 0.97), borderaxespad=0.0)
+
+
+def _written(ax: Axes, run: Trajectory) -> None:
+    _write(ax, _words(run))
 
 
 def _write(ax: Axes, words: list[tuple[str, list[str], str]]) -> None:

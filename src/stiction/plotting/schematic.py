@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from stiction.plotting import shapes
+from stiction.plotting.canvas import panel
 from stiction.plotting.misalignment import (
     Placement,
     drawn_misalignment,
@@ -16,12 +17,26 @@ from stiction.plotting.misalignment import (
     placement,
 )
 from stiction.plotting.shapes import Points, polar
-from stiction.plotting.style import BLUE, FLOOR, GREEN, GREY, PURPLE, RED
+from stiction.plotting.style import BLUE, COLUMN, FLOOR, GREEN, GREY, PURPLE, RED, style
 from stiction.slider import Slider
 
 # half a side of the block, where the bracket stands along x and y, how far it overhangs
 BLOCK, WALL_X, WALL_Y, OVERHANG = 0.6, 3.0, 2.7, 0.75
 BACK = 3.0  # how far F and the axes reach behind the block
+
+
+def plot_slider(slider: Slider, ax: Axes | None = None) -> Axes:
+    """Draw the system seen from above; see `draw_schematic`.
+
+    Parameters
+    ----------
+    slider : Slider
+        The system.
+    ax : Axes, optional
+        Drawn on; a new figure as wide as a column when left out.
+    """
+    with style():
+        return draw_schematic(panel(ax, COLUMN, 2.4), slider)
 
 
 def draw_schematic(ax: Axes, slider: Slider) -> Axes:

@@ -9,8 +9,36 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.lines import Line2D
 
+from stiction.plotting.canvas import panel
+from stiction.plotting.style import COLUMN, style
+
 if TYPE_CHECKING:
     import xarray as xr
+
+
+def plot_spectrogram(
+    amplitude: xr.DataArray, highest: float | None = None, ax: Axes | None = None
+) -> Axes:
+    """Draw amplitudes over time and frequency, in decibels below the largest.
+
+    Parameters
+    ----------
+    amplitude : DataArray
+        Over ``frequency`` (Hz) and ``time`` (s), from `stiction.spectrogram`.
+    highest : float, optional
+        Upper end of the frequency axis, Hz; all when left out.
+    ax : Axes, optional
+        Drawn on; a new figure as wide as a column when left out.
+    """
+    with style():
+        ax = panel(ax, COLUMN, 2.6)
+        top = float(amplitude["frequency"].max()) if highest is None else highest
+        mesh = draw_spectrogram(
+            ax, amplitude, reference=float(amplitude.max()), decibels=(-70.0, 0.0), highest=top
+        )
+        ax.set_xlabel("time $t$ (s)")
+        ax.figure.colorbar(mesh, ax=ax, label="amplitude (dB of the largest)", extend="min")
+    return ax
 
 
 def draw_spectrogram(

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
+from stiction.linear_stability import Stability
+from stiction.plotting.canvas import figure_of, panel
 from stiction.plotting.parameter import PLAIN, Scale, scale_of
-from stiction.plotting.style import BLACK, BLUE, COLUMN, new_figure, style
+from stiction.plotting.style import BLACK, BLUE, COLUMN, style
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -21,9 +23,35 @@ PIXELS = 161  # each way, of the signed distance to the boundary
 UNSTABLE = "#F9E3C5"
 
 
+def plot_stability(found: Stability, axes: Any = None) -> Any:
+    """Draw the modes over one parameter, or the boundary in the plane of two.
+
+    Parameters
+    ----------
+    found : Stability
+        From `stiction.stability`.
+    axes : Axes, optional
+        As of `plot_modes` (two of them) or `plot_boundary` (one).
+    """
+    if len(found.criticals) == 2:
+        return plot_boundary(found.boundary, ax=axes)
+    from stiction.plotting.modes import plot_modes
+
+    return plot_modes(found.modes, found.criticals[0], axes)
+
+
 def stability_map(
     curve: xr.Dataset, closed_form: tuple[ArrayLike, ArrayLike] | None = None
 ) -> Figure:
+    """Return the figure of `plot_boundary`, as wide as a column."""
+    return figure_of(plot_boundary, curve, closed_form)
+
+
+def plot_boundary(
+    curve: xr.Dataset,
+    closed_form: tuple[ArrayLike, ArrayLike] | None = None,
+    ax: Axes | None = None,
+) -> Axes:
     """Draw the boundary of stability in two parameters, with the slider's own point.
 
     Parameters
@@ -32,15 +60,11 @@ def stability_map(
         From `stiction.linear_stability.boundary`.
     closed_form : pair of arrays, optional
         Another boundary to compare with, the two parameters in SI.
-
-    Returns
-    -------
-    Figure
-        As wide as a column.
+    ax : Axes, optional
+        Drawn on; a new figure as wide as a column when left out.
     """
     with style():
-        fig = new_figure(COLUMN, 2.9)
-        ax = fig.subplots()
+        ax = panel(ax, COLUMN, 2.9)
         x, y = draw_boundary(ax, curve)
         if closed_form is not None:
             ax.plot(
@@ -51,8 +75,8 @@ def stability_map(
             x.drawn(curve.attrs["x_own"]), y.drawn(curve.attrs["y_own"]), color=BLACK,
             marker="o", markersize=4.5, linestyle="none", label="this slider", zorder=5,
         )  # fmt: skip
-        fig.legend(loc="outside upper center", ncols=3)
-    return fig
+        ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
+    return ax
 
 
 def draw_boundary(ax: Axes, curve: xr.Dataset) -> tuple[Scale, Scale]:

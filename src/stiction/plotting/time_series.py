@@ -73,14 +73,18 @@ def draw_values(
     return draw_line(ax, run.data["time"].values, array * factor, color)
 
 
-def imposed(run: Trajectory) -> list[tuple[Floats, str, str]]:
-    """Return what a protocol imposes and is not constant: values over time, symbol, unit.
+def imposed(run: Trajectory) -> list[tuple[str, Floats, str, str]]:
+    """Return what a protocol imposes and is not constant: its name, values, symbol, unit.
 
     Drive velocity along X and across it, and normal load.
     """
     names = (("drive_X", "$V$"), ("drive_Y", "$V_Y$"), ("normal_load", "$W$"))
-    found = [(run.data[name], symbol) for name, symbol in names]
-    return [(d.values, symbol, d.attrs["units"]) for d, symbol in found if np.ptp(d.values) > 0]
+    found = [(name, run.data[name], symbol) for name, symbol in names]
+    return [
+        (name, each.values, symbol, each.attrs["units"])
+        for name, each, symbol in found
+        if np.ptp(each.values) > 0
+    ]
 
 
 def prefixed(values: ArrayLike) -> tuple[float, str]:

@@ -6,10 +6,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from stiction.analysis.record import Record
-from stiction.plotting.style import BLUE, GREY, PAGE, new_figure, style
+from stiction.plotting.canvas import canvas, figure_of, fixed, listed
+from stiction.plotting.style import BLUE, GREY, PAGE, style
 from stiction.plotting.time_series import draw_line, prefixed
 
 PANEL = 1.35  # height of a row, in
@@ -24,6 +27,13 @@ class Trial(NamedTuple):
 
 
 def trials_figure(before: Record, trials: Sequence[Trial]) -> Figure:
+    """Return the figure of `plot_trials`, as wide as a page."""
+    return figure_of(plot_trials, before, trials)
+
+
+def plot_trials(
+    before: Record, trials: Sequence[Trial], axes: Sequence[Axes] | None = None
+) -> NDArray[np.object_]:
     """Draw the force of each trial over that of the test before, a panel a trial.
 
     Each panel has its own range of forces. Time runs as long as the trial does; where the test
@@ -35,18 +45,23 @@ def trials_figure(before: Record, trials: Sequence[Trial]) -> Figure:
         The test before anything was changed, grey.
     trials : sequence of Trial
         At least one; blue.
+    axes : Axes, one for each trial, optional
+        Drawn on; a new figure as wide as a page when left out.
 
     Returns
     -------
-    Figure
-        As wide as a page.
+    ndarray of Axes
+        One for each trial.
     """
     rows = -(-len(trials) // ACROSS)
     largest = [np.abs(each.force).max() for each in (before, *(trial.record for trial in trials))]
     factor, prefix = prefixed(np.array(largest))
     with style():
-        fig = new_figure(PAGE, 0.5 + PANEL * rows)
-        panels = fig.subplots(rows, ACROSS, squeeze=False).ravel()
+        if axes is None:
+            fig = canvas(PAGE, 0.5 + PANEL * rows)
+            panels = fixed(list(fig.subplots(rows, ACROSS, squeeze=False).ravel()))
+        else:
+            panels = listed(axes)
         for ax, (title, record) in zip(panels, trials, strict=False):
             start, end = record.time[0], record.time[-1]
             seen = (before.time >= start) & (before.time <= end)
@@ -63,4 +78,4 @@ def trials_figure(before: Record, trials: Sequence[Trial]) -> Figure:
         for ax in panels[::ACROSS]:
             ax.set_ylabel(f"spring force ({prefix}N)")
         panels[0].legend(loc="lower right", ncols=2)
-    return fig
+    return np.array(panels[: len(trials)], dtype=object)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Literal, NamedTuple
 
 from matplotlib.figure import Figure
 
@@ -19,6 +20,7 @@ from stiction.reproduction.numbers import numbers
 from stiction.reproduction.schematic import schematic
 from stiction.reproduction.table import Table
 from stiction.reproduction.zero_slip import zero_slip
+from stiction.sections import Section
 from stiction.simulation import simulate
 from stiction.trajectory import Trajectory
 
@@ -28,30 +30,64 @@ WINDOW = (0.500, 0.504)  # four transverse periods in the middle of the first st
 FINE = 1e6
 
 
-def reproduce(
-    folder: Path, figure: int | None, report: Callable[[float], None]
-) -> tuple[list[Path], Table | None]:
-    """Write the paper's figures and numbers to `folder`.
+class Reproduction(NamedTuple):
+    """The paper, computed again.
 
     Parameters
     ----------
-    folder : Path
-        Made if it is not there.
-    figure : int, optional
-        Only this figure (3, 4 or 5); all of them, and the table, when None.
-    report : callable
+    files : list of Path
+        What was written: figures and tables.
+    table : Table or None
+        Every number beside the stated one; None where only one figure was asked for.
+    """
+
+    files: list[Path]
+    table: Table | None
+
+    @property
+    def agrees(self) -> bool:
+        """Whether no number is wrong."""
+        return self.table is None or self.table.agrees
+
+    def tables(self) -> list[Section]:
+        """Return the numbers as a table, with a sentence that counts the verdicts."""
+        return [] if self.table is None else [self.table.section]
+
+
+def paper(
+    output: str | Path = "paper-output",
+    figure: Literal[3, 4, 5] | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Reproduction:
+    """Reproduce Nakano & Popov (2020): its figures, and its numbers beside the computed ones.
+
+    Parameters
+    ----------
+    output : str or Path, optional
+        The folder to write to, made if it is not there.
+    figure : {3, 4, 5}, optional
+        Only this figure; all of them, and the table, when left out.
+    progress : callable, optional
         Called with the fraction done.
 
     Returns
     -------
-    written, table
-        Paths, and the table unless one figure was asked for.
+    Reproduction
+        The files that were written, and the table.
 
     Raises
     ------
     StictionError
         If the folder cannot be made.
     """
+    written, table = reproduce(Path(output), figure, progress or (lambda fraction: None))
+    return Reproduction(written, table)
+
+
+def reproduce(
+    folder: Path, figure: int | None, report: Callable[[float], None]
+) -> tuple[list[Path], Table | None]:
+    """Write the paper's figures and numbers to `folder`; see `paper`."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

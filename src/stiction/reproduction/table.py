@@ -8,6 +8,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from stiction.reproduction.numbers import Number
+from stiction.sections import Section
+from stiction.sections import Table as Rows
 
 HEADER = ("where", "what", "stated", "computed", "deviation", "tolerance", "unit", "verdict")
 
@@ -45,6 +47,11 @@ class Table:
             )
             for n in self.numbers
         ]
+
+    @property
+    def section(self) -> Section:
+        """The table as a part of a report, with the line that counts the verdicts."""
+        return Section("The paper's numbers", [self.summary], Rows(HEADER, self.rows))
 
     @property
     def text(self) -> str:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stiction.errors import DescriptionError, Fault
+from stiction.plotting.canvas import canvas, figure_of, fixed, listed, panel
 from stiction.plotting.damping import draw_damping_map
 from stiction.plotting.maps import (
     Side,
@@ -20,16 +22,112 @@ from stiction.plotting.maps import (
     draw_theory,
 )
 from stiction.plotting.parameter import Scale, in_unit, parameter_symbol
-from stiction.plotting.style import COLUMN, PAGE, new_figure, style
+from stiction.plotting.style import COLUMN, PAGE, style
 from stiction.study.boundaries import Plane, damping_number, plane
 from stiction.study.layout import Index
 from stiction.study.view import REGIME, View, chosen, kinds, label, viewed
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 DAMPING = ("phi", "drive.velocity")  # coordinates that place a run in the damping diagram
+
+
+class Map(NamedTuple):
+    """What a study found over one or two parameters, and what is drawn of it.
+
+    Parameters
+    ----------
+    view : View
+        The study and its store, cut down to one or two dimensions.
+    measures : tuple of str
+        What is drawn.
+    """
+
+    view: View
+    measures: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        """Say what is drawn over what."""
+        return f"<Map of {', '.join(self.measures)} over {', '.join(self.dims)}>"
+
+    @property
+    def data(self) -> xr.Dataset:
+        """The store, cut down."""
+        return self.view.data
+
+    @property
+    def dims(self) -> tuple[str, ...]:
+        """The dimensions that are left."""
+        return tuple(str(dim) for dim in self.data["status"].dims)
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draw it; see `stiction.study.mapping.plot_map`."""
+        return plot_map(self, axes)
+
+
+def map(
+    store: str | Path,
+    of: str | Sequence[str] = (),
+    at: Mapping[str, str | float] | None = None,
+    *,
+    trust: bool = False,
+) -> Map:
+    """Return what a study found, finished or not, over one or two of its parameters.
+
+    Parameters
+    ----------
+    store : str or Path
+        What `stiction.sweep` wrote.
+    of : str or sequence of str, optional
+        Measures to draw, a panel each; the regime, if it was kept, when left out.
+    at : mapping, optional
+        For a dimension the value at which it is cut (a number, or text with its unit); the
+        nearest that was run is taken.
+    trust : bool, optional
+        Whether the text of a friction law that stands in the store may be run; see
+        `stiction.load`.
+
+    Returns
+    -------
+    Map
+        Its ``data``, and its ``plot()``.
+
+    Raises
+    ------
+    ResultError
+        If it is no study's store.
+    DescriptionError
+        If it has no such measure or dimension, or more than two are left.
+    """
+    view = viewed(store, at or {}, trust)
+    return Map(view, tuple(chosen(view, [of] if isinstance(of, str) else of)))
+
+
+def plot_map(found: Map, axes: Any = None) -> NDArray[np.object_]:
+    """Draw a study: a map over two dimensions, a curve over one, points for samples.
+
+    Parameters
+    ----------
+    found : Map
+        From `stiction.map`.
+    axes : Axes, one for each measure, optional
+        Drawn on; a new figure when left out, as wide as a column, or as a page for several.
+
+    Returns
+    -------
+    ndarray of Axes
+        One for each measure.
+    """
+    view = found.view
+    draw = {1: _curves, 2: _maps}[len(found.dims)]
+    names = [name for name, each in view.study.coordinates.items() if each.dim not in view.at]
+    if len(found.dims) == 1 and len({*names} - {"run.duration"}) > 1:
+        draw = _points
+    with style():
+        return np.array(draw(view, found.measures, axes), dtype=object)
 
 
 def map_figure(
@@ -39,41 +137,8 @@ def map_figure(
     *,
     trust: bool = False,
 ) -> Figure:
-    """Draw a study: a map over two dimensions, a curve over one, points for samples.
-
-    Parameters
-    ----------
-    path : str or Path
-        Its store, finished or not.
-    measures : sequence of str, optional
-        What to draw, a panel each; the regime, if it was kept, when left out.
-    cut : mapping, optional
-        For a dimension the value at which it is cut (a number, or text with its unit); the
-        nearest that was run is taken.
-    trust : bool, optional
-        Whether the text of a friction law that stands in the store may be run; see
-        `stiction.load`.
-
-    Returns
-    -------
-    Figure
-        As wide as a column, or as a page for several panels.
-
-    Raises
-    ------
-    ResultError
-        If it is no study's store.
-    DescriptionError
-        If it has no such measure or dimension, or more than two are left.
-    """
-    view = viewed(path, cut or {}, trust)
-    wanted = chosen(view, measures)
-    draw = {1: _curves, 2: _maps}[len(view.data["status"].dims)]
-    names = [name for name, each in view.study.coordinates.items() if each.dim not in view.at]
-    if len(view.data["status"].dims) == 1 and len({*names} - {"run.duration"}) > 1:
-        draw = _points
-    with style():
-        return draw(view, wanted)
+    """Return the figure of `plot_map`."""
+    return figure_of(plot_map, map(path, measures, cut, trust=trust))
 
 
 def side(view: View, dim: str, values: np.ndarray | None = None) -> Side:
@@ -93,25 +158,30 @@ def even(values: np.ndarray) -> float:
     return float(np.std(steps) / np.abs(np.mean(steps))) if np.mean(steps) else np.inf
 
 
-def _maps(view: View, measures: Sequence[str]) -> Figure:
+def _maps(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
     x_dim, y_dim = view.data["status"].dims
     theory = plane(view.study, str(x_dim), str(y_dim), view.at)
     columns = min(len(measures), 2)
     rows = -(-len(measures) // columns)
-    fig = new_figure(COLUMN if columns == 1 else PAGE, 2.9 * rows + 0.4)
-    panels = fig.subplots(rows, columns, squeeze=False).ravel()
+    if axes is None:
+        fig = canvas(COLUMN if columns == 1 else PAGE, 2.9 * rows + 0.4)
+        panels = fixed(list(fig.subplots(rows, columns, squeeze=False).ravel()))
+    else:
+        panels = listed(axes)
     handles: list[Any] = []
     for ax, name in zip(panels, measures, strict=False):
-        handles += _map(fig, ax, view, name, theory)
+        handles += _map(ax, view, name, theory)
     for ax in panels[len(measures) :]:
         ax.set_axis_off()
     unique = {handle.get_label(): handle for handle in handles}
-    if unique:
+    if unique and axes is None:
         fig.legend(handles=[*unique.values()], loc="outside upper center", ncols=2 * columns)
-    return fig
+    elif unique:
+        panels[0].legend(handles=[*unique.values()], loc="lower left", bbox_to_anchor=(0.0, 1.0))
+    return list(panels[: len(measures)])
 
 
-def _map(fig: Figure, ax: Axes, view: View, name: str, theory: Plane) -> list[Any]:
+def _map(ax: Axes, view: View, name: str, theory: Plane) -> list[Any]:
     """Draw one map with the theory over it; return what the legend tells."""
     x, y = (side(view, str(dim)) for dim in view.data[name].dims)
     handles: list[Any] = []
@@ -119,7 +189,7 @@ def _map(fig: Figure, ax: Axes, view: View, name: str, theory: Plane) -> list[An
         handles += draw_regimes(ax, x, y, kinds(view.data))
     else:
         mesh = draw_measure(ax, x, y, view.data[name].values)
-        fig.colorbar(mesh, ax=ax, label=label(view.data, name), pad=0.02)
+        ax.figure.colorbar(mesh, ax=ax, label=label(view.data, name), pad=0.02)
     x_dim, y_dim = (str(dim) for dim in view.data[name].dims)
     fine = side(view, x_dim, theory.x), side(view, y_dim, theory.y)
     for found in view.changes:
@@ -128,18 +198,21 @@ def _map(fig: Figure, ax: Axes, view: View, name: str, theory: Plane) -> list[An
     return handles + draw_theory(ax, *fine, theory.fields)
 
 
-def _curves(view: View, measures: Sequence[str]) -> Figure:
+def _curves(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
     (dim,) = view.data["status"].dims
-    fig = new_figure(COLUMN, 0.6 + 1.7 * len(measures))
-    panels = fig.subplots(len(measures), 1, sharex=True, squeeze=False)[:, 0]
+    if axes is None:
+        fig = canvas(COLUMN, 0.6 + 1.7 * len(measures))
+        panels = fixed(list(fig.subplots(len(measures), 1, sharex=True, squeeze=False)[:, 0]))
+    else:
+        panels = listed(axes)
     for ax, name in zip(panels, measures, strict=True):
         draw_slice(ax, side(view, str(dim)), view.data[name].values, label(view.data, name))
         if ax is not panels[-1]:
             ax.set_xlabel("")
-    return fig
+    return list(panels)
 
 
-def _points(view: View, measures: Sequence[str]) -> Figure:
+def _points(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
     """Draw samples in the damping diagram, if their place there is known."""
     (dim,) = view.data["status"].dims
     known = view.study.coordinates
@@ -149,10 +222,9 @@ def _points(view: View, measures: Sequence[str]) -> Figure:
     indices: list[Index] = [(i,) for i in range(view.data.sizes[dim])]
     A = np.array([damping_number(view.study.description(index).slider) for index in indices])
     phi = known["phi"].values
-    fig = new_figure(COLUMN, 3.4)
-    ax = fig.subplots()
+    ax = panel(None if axes is None else listed(axes)[0], COLUMN, 3.4)
     draw_damping_map(ax, (A.min() / 2, A.max() * 2), (phi.min() / 1.5, 90.0))
     handles = draw_points(ax, A, phi, list(kinds(view.data)))
     ax.set_ylabel(r"force angle $\theta$; points: $\varphi$ (deg)")
-    fig.legend(handles=handles, loc="outside upper center", ncols=2)
-    return fig
+    ax.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
+    return [ax]

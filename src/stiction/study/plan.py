@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Self
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
+from stiction.deprecation import warn_renamed
 from stiction.description import Description
 from stiction.errors import DescriptionError, Fault
 from stiction.friction.own import Find, kept, named, trusted
@@ -137,8 +138,10 @@ class Study(Described):
         engine: Engine | None = None,
         progress: Callable[[Tally], None] | None = None,
     ) -> Summary:
-        """Do all runs that the store at `path` has not; see `stiction.study.sweeping.sweep`."""
+        """Deprecated: `stiction.sweep`."""
         from stiction.study.sweeping import sweep
+
+        warn_renamed("Study.run(store)", "stiction.sweep(study, store)")
 
         return sweep(self, path, engine=engine, progress=progress)
 
@@ -152,21 +155,25 @@ class Study(Described):
         engine: Engine | None = None,
         progress: Callable[[Tally], None] | None = None,
     ) -> xr.Dataset:
-        """Find where the kind of motion changes; see `stiction.study.refining.refine`."""
+        """Deprecated: `stiction.refine`."""
         from stiction.study.refining import refine
+
+        warn_renamed("Study.refine(store)", "stiction.refine(study, store)")
 
         return refine(self, path, along, to, apart=apart, engine=engine, progress=progress)
 
     @classmethod
-    def from_toml(cls, path: str | Path) -> Self:
+    def from_toml(cls, path: str | Path, changes: Mapping[str, Any] | None = None) -> Self:
         """Read a study's file: a description with the tables [study] and [axes] beside it.
+
+        With `changes`, other values of some parameters by their paths, as `Description.from_toml`.
 
         Raises
         ------
         DescriptionError
             Naming every fault with its path, or why the file cannot be read.
         """
-        return cls.from_dict(read_toml(path), find=named(Path(path).parent, Path()))
+        return cls.from_dict(read_toml(path, changes), find=named(Path(path).parent, Path()))
 
     @classmethod
     def from_dict(cls, raw: Mapping[str, Any], *, find: Find | None = None) -> Self:

@@ -7,6 +7,7 @@ from typing import Any
 
 from stiction.description import Description
 from stiction.errors import DescriptionError, Fault
+from stiction.paths import canonical_path
 from stiction.study.axes import Axis
 from stiction.study.axis_table import read_axis
 from stiction.study.measures import MEASURES
@@ -31,7 +32,7 @@ def axes_of(value: Any) -> dict[str, Axis]:
     axes, found = {}, []
     for path, each in value.items():
         try:
-            axes[str(path)] = read_axis(each, str(path))
+            axes[canonical_path(str(path))] = read_axis(each, str(path))
         except DescriptionError as error:
             found += [Fault(fault.path.partition(".")[2], fault.message) for fault in error.faults]
     if found:

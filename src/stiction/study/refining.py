@@ -16,6 +16,7 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from stiction.errors import DescriptionError, Fault
+from stiction.paths import canonical_path
 from stiction.study.axes import Floats, Values
 from stiction.study.engines import Engine
 from stiction.study.intervals import Intervals, changes, half_way, halved, widest
@@ -75,6 +76,7 @@ def refine(
     DescriptionError
         If there is no such axis, or the study keeps no regime.
     """
+    along = canonical_path(along)
     width, apart = _asked(study, along, to), _kinds(apart)
     sweep(study, path, engine=engine, progress=progress)
     found, runs = changes(study, open_study(path).load(), along, apart), study.layout.runs

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from stiction.sections import Section
 from stiction.study.plan import Study
 from stiction.study.store import COMPLETED, ENDS, PENDING, Store
 
@@ -37,12 +39,35 @@ class Summary(NamedTuple):
         How many ended in each other way than as intended.
     first : Failure or None
         The first of them.
+    store : Path
+        Where the runs are kept.
     """
 
     runs: int
     pending: int
     failed: Mapping[str, int]
     first: Failure | None
+    store: Path = Path()
+
+    def __repr__(self) -> str:
+        """Say how many runs are done and failed."""
+        failed = sum(self.failed.values())
+        return f"<Sweep {self.store}: {self.runs - self.pending} of {self.runs}, {failed} failed>"
+
+    def tables(self) -> list[Section]:
+        """Return in a sentence how the runs ended, and the first that failed."""
+        lines = [f"{self.runs - self.pending} of {self.runs} runs are done."]
+        if self.first is not None:
+            counts = (f"{count} {end.replace('_', ' ')}" for end, count in self.failed.items())
+            many = sum(self.failed.values())
+            lines.append(f"{many} failed ({', '.join(counts)}); the first at {self.first}")
+        return [Section(str(self.store), lines)]
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draw what was found; see `stiction.map`."""
+        from stiction.study.mapping import map
+
+        return map(self.store).plot(axes)
 
 
 def summary(study: Study, store: Store) -> Summary:
@@ -60,4 +85,4 @@ def summary(study: Study, store: Store) -> Summary:
         at = dict(zip(store.layout.dims, index, strict=True))
         where = {p: (float(c.values[at[c.dim]]), c.unit) for p, c in study.coordinates.items()}
         first = Failure(where, ENDS[status[index]], store.message(index))
-    return Summary(status.size, pending, failed, first)
+    return Summary(status.size, pending, failed, first, store.path)

@@ -10,6 +10,7 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from stiction.errors import DescriptionError, Fault
+from stiction.paths import canonical_path
 from stiction.study.parameters import number
 from stiction.study.plan import Study
 from stiction.study.regimes import KINDS
@@ -50,7 +51,8 @@ def viewed(path: str | Path, cut: Mapping[str, str | float], trust: bool = False
     data = open_study(path)
     study = Study.from_json(data.attrs["description"], Path(path).parent, trust=trust)
     dims, at, found = study.layout.dims, {}, []
-    for dim, value in cut.items():
+    for name, value in cut.items():
+        dim = canonical_path(name)
         if dim not in study.coordinates or dim not in dims:
             found.append(Fault(dim, unknown("dimension", dim, dims)))
             continue

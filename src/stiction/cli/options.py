@@ -1,0 +1,47 @@
+"""Options that several commands share: where to write, and other values of parameters."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any
+
+from cyclopts import Parameter
+
+from stiction.errors import StictionError
+
+Output = Annotated[Path, Parameter(name=("--output", "-o"))]
+MaybeOutput = Annotated[Path | None, Parameter(name=("--output", "-o"))]
+Changes = Annotated[
+    list[str] | None,
+    Parameter(
+        name="--set",
+        negative=(),
+        help=(
+            "Another value of a parameter than CONFIG has, NAME=VALUE: --set phi=3deg "
+            '--set "V = 2 mm/s" --set friction.mu_0=0.3 --set duration=10s; repeat it for more.'
+        ),
+    ),
+]
+
+
+def named(text: str, option: str) -> tuple[str, str]:
+    """Return name and value of an option's ``NAME=VALUE``."""
+    name, equals, value = text.partition("=")
+    if not equals or not name.strip():
+        raise StictionError(f"{option} {text!r} is no NAME=VALUE; write for example 'phi = 1 deg'")
+    return name.strip(), value.strip()
+
+
+def changes(given: list[str] | None) -> dict[str, Any]:
+    """Return the values that ``--set`` gives: numbers, truth values and lists as in TOML."""
+    pairs = (named(text, "--set") for text in given or ())
+    return {name: value(text) for name, text in pairs}
+
+
+def value(text: str) -> Any:
+    """Return a value as TOML has it; what is none is text, as a number with its unit."""
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text

@@ -1,0 +1,201 @@
+"""Is steady sliding stable, and at which parameters does that change: all in one object."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import degrees
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from stiction.deprecation import old_attributes
+from stiction.errors import StictionError
+from stiction.linear_stability.curve import boundary
+from stiction.linear_stability.linear import Linearisation, steady_sliding
+from stiction.linear_stability.roots import Critical, critical
+from stiction.linear_stability.spectrum import modes_over
+from stiction.sections import Section, Table, as_html, as_text
+from stiction.slider import Slider
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+OVER = ("phi", "drive.velocity")
+Ends = Sequence[float | str]
+
+
+@dataclass(frozen=True, repr=False)
+class Stability:
+    """Steady sliding, its modes, and where they begin to grow.
+
+    Parameters
+    ----------
+    sliding : Linearisation
+        Steady sliding of the slider as it is, and its modes.
+    criticals : tuple of Critical
+        For each parameter that is varied, the values at which stability changes.
+    """
+
+    sliding: Linearisation
+    criticals: tuple[Critical, ...]
+
+    def __repr__(self) -> str:
+        """Say whether it slides steadily, and what was varied."""
+        verdict = "stable" if self.sliding.stable else "not stable"
+        return f"<Stability: steady sliding is {verdict}; over {', '.join(self.over)}>"
+
+    def __str__(self) -> str:
+        """Return the report as text."""
+        return as_text(self.tables())
+
+    def _repr_html_(self) -> str:
+        return as_html(self.tables())
+
+    @property
+    def slider(self) -> Slider:
+        """The system."""
+        return self.sliding.slider
+
+    @property
+    def over(self) -> tuple[str, ...]:
+        """The parameters that are varied."""
+        return tuple(each.path for each in self.criticals)
+
+    @property
+    def stable(self) -> bool:
+        """Whether every small disturbance of steady sliding decays."""
+        return self.sliding.stable
+
+    @cached_property
+    def modes(self) -> xr.Dataset:
+        """Growth rates and frequencies over the first parameter, see `modes_over`."""
+        first = self.criticals[0]
+        return modes_over(self.slider, first.path, ends(first))
+
+    @cached_property
+    def boundary(self) -> xr.Dataset:
+        """The boundary of stability in the plane of the two parameters, see `boundary`."""
+        if len(self.criticals) != 2:
+            raise StictionError("a boundary needs two parameters: over=('phi', 'drive.velocity')")
+        x, y = self.criticals
+        return boundary(self.slider, x.path, y.path, x_between=ends(x), y_between=ends(y))
+
+    def tables(self) -> list[Section]:
+        """Return the modes and the critical values, in sentences and tables."""
+        return [modes_section(self.sliding), critical_section(self.criticals)]
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draw the modes over one parameter, or the boundary in the plane of two.
+
+        See `stiction.plotting.plot_modes` and `stiction.plotting.plot_boundary`.
+        """
+        from stiction.plotting import plot_stability
+
+        return plot_stability(self, axes)
+
+
+def stability(
+    slider: Slider | str | Path,
+    over: str | Sequence[str] = OVER,
+    between: Ends | Sequence[Ends | None] | None = None,
+) -> Stability:
+    """Say whether a slider slides steadily, and at which values of parameters that changes.
+
+    Steady sliding is linearised: each mode of a small disturbance grows or decays.
+
+    Parameters
+    ----------
+    slider : Slider, str or Path
+        The system, or the file of its description; with a steady drive and a constant load.
+    over : str or two of them, optional
+        The parameters to vary, for example ``"c_x"``; see `stiction.linear_stability.critical`.
+    between : pair of float or str, or such a pair for each parameter, optional
+        The ranges, in SI or with units; 0 to 90 degrees for an angle, else three decades either
+        way, when left out.
+
+    Returns
+    -------
+    Stability
+        With ``sliding`` (modes), ``criticals``, ``boundary``, ``tables()`` and ``plot()``.
+
+    Raises
+    ------
+    DescriptionError
+        If there is no such parameter, no such range, or no steady sliding.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> found = st.stability(st.presets.nakano_popov_2020(), over="phi")
+    >>> found.stable, np.degrees(found.criticals[0].values).round(2)
+    (False, array([ 8.66, 76.26]))
+    """
+    system = slider if isinstance(slider, Slider) else Slider.from_toml(slider)
+    paths = [over] if isinstance(over, str) else list(over)
+    ranges: list[Any] = [None] * len(paths) if between is None else list(between)
+    if isinstance(over, str) and between is not None:
+        ranges = [between]
+    if not 1 <= len(paths) <= 2 or len(ranges) != len(paths):
+        counts = f"{len(paths)} and {0 if between is None else len(ranges)}"
+        raise StictionError(
+            f"give one or two parameters, and as many ranges or none; given: {counts}"
+        )
+    found = (critical(system, *each) for each in zip(paths, ranges, strict=True))
+    return Stability(steady_sliding(system), tuple(found))
+
+
+def ends(found: Critical) -> tuple[float | str, float | str]:
+    """Return the range that was searched, as it is read."""
+    low, high = found.between
+    return (f"{low!r} rad", f"{high!r} rad") if found.unit == "rad" else (low, high)
+
+
+def modes_section(linear: Linearisation) -> Section:
+    """Return the verdict, and a row for each mode; of a conjugate pair one."""
+    verdict = "stable: every" if linear.stable else "not stable: not every"
+    modes = zip(linear.eigenvalues, linear.frequencies, linear.damping_ratios, strict=True)
+    rows = [
+        (f"{value.real:.6g}", f"{f:.6g}", f"{zeta:.4g}")
+        for value, f, zeta in modes
+        if value.imag >= 0.0
+    ]
+    sentence = f"Steady sliding is {verdict} small disturbance decays."
+    headings = ("growth rate (1/s)", "frequency (Hz)", "damping ratio")
+    return Section("Steady sliding", [sentence], Table(headings, rows))
+
+
+def critical_section(found: Sequence[Critical]) -> Section:
+    """Return where stability changes along each parameter."""
+    return Section("Where that changes", [line for each in found for line in changes(each)])
+
+
+def changes(found: Critical) -> Iterator[str]:
+    """Yield where stability changes along a parameter."""
+    low, high = (written(end, found.unit) for end in found.between)
+    names = ["stable" if each else "not stable" for each in found.stable]
+    if not len(found.values):
+        yield f"{found.path}: {names[0]} from {low} to {high}"
+        return
+    yield f"{found.path}, from {low} to {high}: {names[0]}"
+    for value, frequency, name in zip(found.values, found.frequencies, names[1:], strict=True):
+        yield f"  {name} above {written(value, found.unit)} (oscillating at {frequency:.4g} Hz)"
+
+
+def written(value: float, unit: str) -> str:
+    """Return a value in SI with its unit; an angle in degrees."""
+    if unit == "rad":
+        return f"{degrees(value):.6g} deg"
+    return f"{value:.6g} {unit}".strip()
+
+
+FORMER = (
+    "Critical",
+    "Linearisation",
+    "boundary",
+    "critical",
+    "growth_rate",
+    "modes_over",
+    "steady_sliding",
+)
+old_attributes(stability, {name: f"stiction.linear_stability.{name}" for name in FORMER})

@@ -1,0 +1,37 @@
+"""One function that draws whatever it is given."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from stiction.errors import StictionError
+from stiction.trajectory import load
+
+
+def plot(source: Any, axes: Any = None, *, trust: bool = False) -> Any:
+    """Draw a run, an analysis, a comparison, an audit, a map or anything else with a figure.
+
+    Parameters
+    ----------
+    source : object with a ``plot`` method, str or Path
+        What to draw, or the file of a run.
+    axes : Axes, or several, optional
+        Drawn on; a new figure, which pyplot shows, when left out.
+    trust : bool, optional
+        Of a file, see `stiction.load`.
+
+    Returns
+    -------
+    Axes, or several
+        What was drawn on.
+
+    Raises
+    ------
+    StictionError
+        If there is nothing to draw.
+    """
+    found = load(source, trust=trust) if isinstance(source, str | Path) else source
+    if not hasattr(found, "plot"):
+        raise StictionError(f"{type(found).__name__} has no figure; give a run or an analysis")
+    return found.plot(axes)
