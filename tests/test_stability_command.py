@@ -24,7 +24,7 @@ def test_modes_and_critical_values_are_printed_and_drawn(config, tmp_path, capsy
     over = ["--over", "phi", "--over", "drive.velocity"]
     assert inside("stability", config, *over, *ranges, "-o", tmp_path / "map.png") == 0
     text = capsys.readouterr().out
-    assert "not stable: not every small disturbance decays" in text
+    assert "Steady sliding is unstable: not every disturbance decays." in text
     assert "152.35" in text  # the fastest growth rate
     assert "phi, from 1 deg to 30 deg: not stable" in text
     assert "stable above 8.65603 deg (oscillating at 10.25 Hz)" in text

@@ -65,7 +65,7 @@ def test_the_onset_shows_both_sweeps_and_the_hysteresis():
     assert found.kind == "hard"
     fig = drawn(onset_figure(found, critical=c))
     (ax,) = fig.axes
-    labels = {text.get_text() for legend in fig.legends for text in legend.get_texts()}
+    labels = {text.get_text() for legend in [ax.get_legend()] for text in legend.get_texts()}
     assert labels == {"swept up", "swept down", "hysteresis", "linear: $c_{x}$ = 10.57 N s/m"}
     assert ax.get_ylabel() == "amplitude along the drive (mm)"
 

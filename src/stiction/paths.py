@@ -60,7 +60,8 @@ def with_changes(raw: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str
 
 def keys_of(tables: Mapping[str, Any], name: str) -> list[str]:
     """Return the way to a parameter through a description's tables, table first."""
-    keys = canonical(name).split(".")
+    bare = name.strip()
+    keys = ALIASES.get(bare, bare).split(".")
     if len(keys) > 1 and keys[0] in TABLES:
         return keys
     if keys[0] in MECHANICAL:

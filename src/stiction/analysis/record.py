@@ -118,6 +118,12 @@ class Record(Described):
         """Samples per second, where they are equally spaced; their mean otherwise; 0 for none."""
         return (len(self) - 1) / self.duration if len(self) > 1 else 0.0
 
+    def plot(self, axes: Any = None) -> Any:
+        """Draw the force with its cycles; see `stiction.plotting.plot_cycles`."""
+        from stiction.plotting import plot_cycles
+
+        return plot_cycles(self, axes)
+
 
 def recorded(source: Trajectory | Record) -> Record:
     """Return what was recorded, of a run or of a measurement.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from typing import NoReturn
 
 import cyclopts
 from rich.console import Console
@@ -20,7 +21,10 @@ app = cyclopts.App(
         "Start with `stiction paper`, which reproduces the paper, or describe an apparatus of "
         "your own: `stiction init my.toml`, edit it, `stiction audit my.toml` to know what it will "
         "show, `stiction run my.toml --output my.nc` to simulate it, `stiction plot my.nc --output "
-        "my.png` to look, `stiction analyse my.nc` to understand."
+        "my.png` to look, `stiction analyse my.nc` to understand.\n\n"
+        "Wherever a description is read, `--set phi=3deg --set V=2mm/s` gives other values. "
+        "`stiction --install-completion` lets the shell complete commands and options. Each "
+        "command is a function of that name in Python: `import stiction as st; st.run(...)`."
     ),
     help_format="markdown",
     suppress_keyboard_interrupt=False,
@@ -39,19 +43,34 @@ COMMANDS = (
 )
 for _name in COMMANDS:  # light modules: what is heavy they import when they are called
     app.command(getattr(import_module(f"stiction.cli.{_name}"), _name))
+app.register_install_completion_command(
+    help="Let the shell (bash, zsh, fish or PowerShell) complete commands and options."
+)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line; whatever the user can mend ends in one message and exit status 2."""
     errors = Console(stderr=True, soft_wrap=True)
     try:
-        code = app(arguments, result_action="return_value", error_console=errors)
+        code = app(arguments, result_action="return_value", print_error=False, exit_on_error=False)
+    except cyclopts.CycloptsError as error:
+        refuse(errors, "command line", f"{error}\nsee {called(error)} --help")
     except StictionError as error:
-        errors.print(f"[red]error[/red] {type(error).__name__.removesuffix('Error').lower()}:")
-        for line in str(error).splitlines():
-            errors.print(f"  {line}", markup=False, highlight=False)
-        sys.exit(2)
+        refuse(errors, type(error).__name__.removesuffix("Error").lower(), str(error))
     except KeyboardInterrupt:
         errors.print("interrupted; what is written is whole, the rest was not begun")
         sys.exit(130)
     sys.exit(code if isinstance(code, int) else 0)
+
+
+def refuse(errors: Console, what: str, message: str) -> NoReturn:
+    """Say what is wrong, whole and without a frame that would cut it, and leave with status 2."""
+    errors.print(f"[red]error[/red] {what}:")
+    for line in message.splitlines():
+        errors.print(f"  {line}", markup=False, highlight=False)
+    sys.exit(2)
+
+
+def called(error: cyclopts.CycloptsError) -> str:
+    """Return the command that was called."""
+    return " ".join(["stiction", *(error.command_chain or ())])

@@ -42,8 +42,7 @@ class Stability:
 
     def __repr__(self) -> str:
         """Say whether it slides steadily, and what was varied."""
-        verdict = "stable" if self.sliding.stable else "not stable"
-        return f"<Stability: steady sliding is {verdict}; over {', '.join(self.over)}>"
+        return f"<Stability: {self.sliding.verdict}; over {', '.join(self.over)}>"
 
     def __str__(self) -> str:
         """Return the report as text."""
@@ -153,14 +152,14 @@ def ends(found: Critical) -> tuple[float | str, float | str]:
 
 def modes_section(linear: Linearisation) -> Section:
     """Return the verdict, and a row for each mode; of a conjugate pair one."""
-    verdict = "stable: every" if linear.stable else "not stable: not every"
+    decays = "every small disturbance decays" if linear.stable else "not every disturbance decays"
     modes = zip(linear.eigenvalues, linear.frequencies, linear.damping_ratios, strict=True)
     rows = [
         (f"{value.real:.6g}", f"{f:.6g}", f"{zeta:.4g}")
         for value, f, zeta in modes
         if value.imag >= 0.0
     ]
-    sentence = f"Steady sliding is {verdict} small disturbance decays."
+    sentence = f"Steady sliding is {linear.verdict}: {decays}."
     headings = ("growth rate (1/s)", "frequency (Hz)", "damping ratio")
     return Section("Steady sliding", [sentence], Table(headings, rows))
 

@@ -95,7 +95,9 @@ def critical(
     values, frequencies = np.array([along.value(at) for at in crossings]), np.array(leading)
     neutral = not any(growth(fraction) for fraction in (0.0, 0.5, 1.0)) and not any(stable)
     ends = along.low, along.high
-    return Critical(path, along.unit, ends, values, frequencies.astype(float), stable, neutral)
+    return Critical(
+        along.path, along.unit, ends, values, frequencies.astype(float), stable, neutral
+    )
 
 
 def signed_growth(slider: Slider) -> float:

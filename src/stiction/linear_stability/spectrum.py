@@ -58,7 +58,7 @@ def modes_over(
                 {"units": "Hz", "long_name": "frequency"},
             ),
         },
-        {"value": ("value", values, {"units": along.unit or "1", "long_name": path})},
+        {"value": ("value", values, {"units": along.unit or "1", "long_name": along.path})},
         {"scale": "log" if along.logarithmic else "linear"},
     )
 

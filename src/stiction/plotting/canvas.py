@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextvars import ContextVar
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from stiction.errors import StictionError
 from stiction.plotting.style import SHEET, new_figure
+from stiction.validation import unknown
+
+Drawing = TypeVar("Drawing", bound=Callable[..., Any])
 
 _alone: ContextVar[bool] = ContextVar("alone", default=False)
 
@@ -54,6 +58,19 @@ def fixed(axes: Sequence[Axes]) -> Sequence[Axes]:
             ax.tick_params(axis=way, which="major", **size)  # type: ignore[arg-type]
         ax.tick_params(which="both", top=True, right=True)
     return axes
+
+
+def named(drawings: Mapping[str, Drawing], name: str) -> Drawing:
+    """Return what draws a panel.
+
+    Raises
+    ------
+    StictionError
+        If there is no such panel.
+    """
+    if name not in drawings:
+        raise StictionError(unknown("panel", name, drawings))
+    return drawings[name]
 
 
 def figure_of(draw: Callable[..., Any], *arguments: Any, **values: Any) -> Figure:

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from stiction.friction import name_of
-from stiction.plotting.canvas import canvas, figure_of, fixed
+from stiction.plotting.canvas import canvas, figure_of, fixed, named
 from stiction.plotting.curves import Curve, curves_of, draw_over_time
 from stiction.plotting.slip_speeds import (
     draw_held,
@@ -74,7 +74,7 @@ def plot_comparison(
             "words": lambda ax: write_legend(ax, curves, legend),
         }
         for name, ax in panels.items():
-            draw[name](ax)
+            named(draw, name)(ax)
         for name in {"speed", "portrait"} & panels.keys():
             set_speed_limits(panels[name], curves)
         if axes is None:

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from stiction.plotting import time_series
-from stiction.plotting.canvas import canvas, figure_of, fixed
+from stiction.plotting.canvas import canvas, figure_of, fixed, named
 from stiction.plotting.law import draw_law
 from stiction.plotting.schematic import draw_schematic
 from stiction.plotting.style import BLACK, BLUE, ORANGE, PAGE, RED, style
@@ -66,7 +66,7 @@ def plot_run(run: Trajectory, axes: Mapping[str, Axes] | None = None) -> dict[st
         panels = dict(_panels(run) if axes is None else axes)
         drawings = {"system": _system, "words": _written, "law": _law, **_series(run)}
         for name, ax in panels.items():
-            drawings[name](ax, run)
+            named(drawings, name)(ax, run)
         series = [ax for name, ax in panels.items() if name not in ("system", "words", "law")]
         if axes is None:
             for ax in series[:-1]:
