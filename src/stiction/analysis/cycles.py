@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.decay import dies_out
+from stiction.analysis.hesitations import take_out
 from stiction.analysis.pieces import fitted
 from stiction.analysis.record import Record, recorded
-from stiction.analysis.turning_points import turning_points, without_spikes
+from stiction.analysis.turning_points import TurningPoints, turning_points, without_spikes
 from stiction.analysis.vertices import Vertices, vertices
 from stiction.trajectory import Trajectory
 
@@ -38,6 +39,8 @@ COLUMNS = {
     "creep_distance": ("m", "distance crept while loading, from trough to peak"),
     "slip_distance": ("m", "distance slipped, from peak to trough"),
     "peak_slip_speed": ("m/s", "largest slip speed"),
+    "hesitations": ("1", "number of hesitations, dips too small for a cycle of their own"),
+    "hesitation_depth": ("N", "depth of the deepest hesitation"),
 }
 UNSEEN = 0.25  # of a period without a sample: what happened there is not known
 LOADING = (0.1, 0.5)  # part of the rise that is straight: after the swing, before the creep
@@ -49,7 +52,8 @@ def find_cycles(source: Trajectory | Record) -> xr.Dataset:
 
     Nothing is to be tuned: a cycle is what stands apart from all smaller reversals of the force
     (`stiction.analysis.turning_points`), so noise, ripple, single wild samples and slow drift
-    make none; swings that die out are a transient, and none either. A cycle that the record's
+    make none; a dip that is small beside the fall of its cycle is a hesitation, which is counted
+    (`stiction.analysis.hesitations`); swings that die out are a transient, and none either. A cycle that the record's
     beginning or end cuts is left out, and one with a gap, a quarter of its period without a
     sample; so is the first loading of a run that starts unloaded, as
     no slip comes before it.
@@ -83,6 +87,9 @@ def find_cycles(source: Trajectory | Record) -> xr.Dataset:
         ``peak_slip_speed`` (m/s)
             The slip speed's, or V minus the rate of force over stiffness, smoothed over a
             quarter of the fall to each side.
+        ``hesitations``, ``hesitation_depth`` (N)
+            How often the force dips on its way up, or rises on its way down, without making a
+            cycle of it; and by how much at most.
 
         What needs a quantity that the record lacks is not a number.
 
@@ -131,13 +138,10 @@ def swings(record: Record) -> Swings:
 
     columns = dict.fromkeys(COLUMNS, np.zeros(0))
     points = turning_points(record.force)
-    first = 0 if points.trough[:1].all() else 1
-    if len(points.index) - first >= 3:
-        force = without_spikes(record.force)
-        found = vertices(record.time, points)
-        count = (len(points.index) - first - 1) // 2
-        corners = Vertices(*(each[first : first + 2 * count + 1] for each in found))
-        columns = _measured(record, force, corners)
+    corners, dips = _corners(record, points)
+    if len(corners.time) >= 3:
+        columns = _measured(record, without_spikes(record.force), corners)
+        columns |= _hesitated(corners, dips)
         seen = _longest_step(record.time, corners) < UNSEEN * columns["period"]
         columns = {name: values[seen] for name, values in columns.items()}
     table = xr.Dataset(
@@ -150,6 +154,35 @@ def swings(record: Record) -> Swings:
     rest = record.time[-1] - columns["trough_time"][-1] if len(columns["trough_time"]) else 0.0
     dying = dies_out(columns["drop"], columns["period"], rest)
     return Swings(table, dying, len(points.index), points.noise, points.clearness)
+
+
+def _corners(record: Record, points: TurningPoints) -> tuple[Vertices, Vertices]:
+    """Return troughs and peaks in turn, a trough first and last; and hesitations, by their depth.
+
+    Of each hesitation its first point is placed.
+    """
+    if len(points.index) < 3:
+        none = Vertices(np.zeros(0), np.zeros(0))
+        return none, none
+    found = vertices(record.time, points)
+    dips = take_out(np.concatenate([[points.before], found.value, [points.after]]))
+    kept = dips.kept - 1  # of which the first was before
+    kept = kept[0 if points.trough[kept[0]] else 1 :]
+    kept = kept[: (len(kept) - 1) // 2 * 2 + 1]
+    return Vertices(found.time[kept], found.value[kept]), Vertices(
+        found.time[dips.at - 1], dips.depth
+    )
+
+
+def _hesitated(corners: Vertices, dips: Vertices) -> dict[str, Floats]:
+    """Return how often each cycle hesitates, and how deeply."""
+    start = corners.time[:-1:2]
+    cycle = np.searchsorted(start, dips.time, side="right") - 1
+    inside = (cycle >= 0) & (dips.time < corners.time[-1])
+    number = np.bincount(cycle[inside], minlength=len(start)).astype(np.float64)
+    deepest = np.zeros(len(start))
+    np.maximum.at(deepest, cycle[inside], dips.value[inside])
+    return {"hesitations": number, "hesitation_depth": np.where(number > 0, deepest, np.nan)}
 
 
 def _measured(record: Record, force: Floats, corners: Vertices) -> dict[str, Floats]:

@@ -49,6 +49,18 @@ class TurningPoints(NamedTuple):
     noise: float
     clearness: float
 
+    @property
+    def before(self) -> float:
+        """The farthest that the signal is from the first point before it."""
+        values = self.values[: self.index[0] + 1]
+        return float(values.max() if self.trough[0] else values.min())
+
+    @property
+    def after(self) -> float:
+        """The farthest that the signal is from the last point after it."""
+        values = self.values[self.index[-1] :]
+        return float(values.max() if self.trough[-1] else values.min())
+
 
 def turning_points(values: Floats) -> TurningPoints:
     """Find the peaks and troughs of the movements that stand apart from all smaller ones.

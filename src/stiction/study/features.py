@@ -34,6 +34,8 @@ class Features(NamedTuple):
         (n,), where the force turns (s, N), peaks and troughs in turn.
     trough : bool
         Whether the first of them is a trough.
+    first, last : float
+        Force at the beginning and at the end, N.
     """
 
     peak: float
@@ -45,6 +47,8 @@ class Features(NamedTuple):
     turn_time: np.ndarray
     turn_value: np.ndarray
     trough: bool
+    first: float
+    last: float
 
 
 @compiled
@@ -90,8 +94,9 @@ def features(
     trough = len(index) > 0 and force[index[0]] < force[0]
     late_mean, late_span = total / (n - late), late_high - late_low
     return Features(
-        high, late_mean, late_span, fastest, slipped, means, turn_time, turn_value, trough
-    )
+        high, late_mean, late_span, fastest, slipped, means, turn_time, turn_value, trough,
+        force[0], force[n - 1],
+    )  # fmt: skip
 
 
 @compiled

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from stiction.analysis import regime
 from stiction.analysis.decay import QUIET, dies_out
+from stiction.analysis.hesitations import take_out
 from stiction.analysis.level import QUARTER
 from stiction.study.features import PARTS, Features
 
@@ -63,9 +64,10 @@ class Swings(NamedTuple):
 
 
 def swings(found: Features) -> Swings:
-    """Return the complete swings between turning points."""
-    first = 0 if found.trough else 1
-    time, value = found.turn_time[first:], found.turn_value[first:]
+    """Return the complete swings between turning points, hesitations taken out."""
+    kept = take_out(np.concatenate([[found.first], found.turn_value, [found.last]])).kept - 1
+    kept = kept[0 if len(kept) and (kept[0] % 2 == 0) == found.trough else 1 :]
+    time, value = found.turn_time[kept], found.turn_value[kept]
     last = 2 * max((len(time) - 1) // 2, 0)
     start, peak, trough = (time[i : i + last : 2] for i in range(3))
     period = trough - start
