@@ -53,10 +53,10 @@ def find_cycles(source: Trajectory | Record) -> xr.Dataset:
     Nothing is to be tuned: a cycle is what stands apart from all smaller reversals of the force
     (`stiction.analysis.turning_points`), so noise, ripple, single wild samples and slow drift
     make none; a dip that is small beside the fall of its cycle is a hesitation, which is counted
-    (`stiction.analysis.hesitations`); swings that die out are a transient, and none either. A cycle that the record's
-    beginning or end cuts is left out, and one with a gap, a quarter of its period without a
-    sample; so is the first loading of a run that starts unloaded, as
-    no slip comes before it.
+    (`stiction.analysis.hesitations`); swings that die out are a transient, and none
+    either. A cycle that the record's beginning or end cuts is left out, and one with a gap, a
+    quarter of its period without a sample; so is the first loading of a run that starts unloaded,
+    as no slip comes before it.
 
     Parameters
     ----------
@@ -169,9 +169,8 @@ def _corners(record: Record, points: TurningPoints) -> tuple[Vertices, Vertices]
     kept = dips.kept - 1  # of which the first was before
     kept = kept[0 if points.trough[kept[0]] else 1 :]
     kept = kept[: (len(kept) - 1) // 2 * 2 + 1]
-    return Vertices(found.time[kept], found.value[kept]), Vertices(
-        found.time[dips.at - 1], dips.depth
-    )
+    corners = Vertices(found.time[kept], found.value[kept])
+    return corners, Vertices(found.time[dips.at - 1], dips.depth)
 
 
 def _hesitated(corners: Vertices, dips: Vertices) -> dict[str, Floats]:

@@ -21,7 +21,7 @@ Indices = NDArray[np.intp]
 
 HALF = 0.5  # of the swing: a fall of so much is a cycle, where the falls are alike
 LEAST = 0.1  # of the swing: what is less is a hesitation, however much the falls differ
-AROUND = 12  # rises, or falls, to each side with which one is compared: amplitudes may grow and shrink
+AROUND = 12  # to each side with which a rise or fall is compared: amplitudes may grow, shrink
 OFTEN = 1.25  # times as many as falls: reversals that come with the falls belong to them
 FEW = 5  # falls: whether fewer are alike is not known
 # Falls spread evenly from half the swing to the whole of it have a standard deviation of 0.19 of

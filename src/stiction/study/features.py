@@ -55,6 +55,7 @@ class Features(NamedTuple):
 def features(
     time: np.ndarray,
     force: np.ndarray,
+    rate: np.ndarray,
     velocity: np.ndarray,
     drive: np.ndarray,
     reversal: float,
@@ -63,8 +64,8 @@ def features(
 
     Parameters
     ----------
-    time, force, velocity : ndarray
-        (n,), s, N, m/s; positive along the drive.
+    time, force, rate, velocity : ndarray
+        (n,), s, N, N/s, m/s; positive along the drive.
     drive : ndarray
         (n,) or (1,), speed of the drive along X, m/s.
     reversal : float
@@ -88,15 +89,34 @@ def features(
             means[part] += force[min(i, n - 1)] / (end - begin)
     index = zigzag(force, reversal * (high - low))
     turn_time, turn_value = np.empty(len(index)), np.empty(len(index))
-    for k, i in enumerate(index):
-        turn_time[k], turn_value[k] = vertex(time, force, i)
-        high = max(high, turn_value[k])
     trough = len(index) > 0 and force[index[0]] < force[0]
+    for k, i in enumerate(index):
+        if trough == (k % 2 == 0):
+            turn_time[k], turn_value[k] = bottom(time, force, rate, i)
+        else:
+            turn_time[k], turn_value[k] = vertex(time, force, i)
+        high = max(high, turn_value[k])
     late_mean, late_span = total / (n - late), late_high - late_low
     return Features(
         high, late_mean, late_span, fastest, slipped, means, turn_time, turn_value, trough,
         force[0], force[n - 1],
     )  # fmt: skip
+
+
+@compiled
+def bottom(time: np.ndarray, values: np.ndarray, rate: np.ndarray, i: int) -> tuple[float, float]:
+    """Return where a fall ends, and the value there.
+
+    The slip slows down evenly, and may stick before the next sample: from there on the rate is
+    constant. Rates and values at both samples then say when the rate was zero.
+    """
+    a = i if rate[i] < 0.0 else i - 1
+    before, after, step = rate[a], rate[a + 1], time[a + 1] - time[a]
+    short = after * step - (values[a + 1] - values[a])
+    if not (before < 0.0 < after and short > 0.0):
+        return vertex(time, values, i)
+    passed = min(-2.0 * before * short / (after - before) ** 2, step)
+    return time[a] + passed, values[a] + 0.5 * before * passed
 
 
 @compiled

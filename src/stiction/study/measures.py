@@ -50,11 +50,11 @@ MEASURES: dict[str, Measure] = {
         "half the span of the spring force along x in the last quarter",
         lambda run: 0.5 * run.features.late_span,
     ),
-    "cycles": Measure("1", "number of complete swings", lambda run: float(len(run.swings.drop))),
-    "period": Measure("s", "mean time from peak to peak", lambda run: _mean(run.peak_to_peak)),
-    "force_drop": Measure("N", "mean force drop of the swings", lambda run: _mean(run.swings.drop)),
+    "cycles": Measure("1", "number of complete cycles", lambda run: float(len(run.swings.drop))),
+    "period": Measure("s", "mean time from trough to trough", lambda run: _mean(run.swings.period)),
+    "force_drop": Measure("N", "mean force drop of the cycles", lambda run: _mean(run.swings.drop)),
     "rise_share": Measure(
-        "1", "share of a swing in which the force rises", lambda run: _mean(run.swings.rise_share)
+        "1", "share of a cycle in which the force rises", lambda run: _mean(run.swings.rise_share)
     ),
     "peak_velocity": Measure(
         "m/s", "largest velocity of the mass along X", lambda run: run.features.peak_velocity

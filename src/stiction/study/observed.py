@@ -86,6 +86,19 @@ class Observed:
         return self.way * self.description.slider.k_x * self.column(0)
 
     @cached_property
+    def drive(self) -> Floats:
+        """Velocity of the drive along X: one value if it is constant, else one a sample (m/s)."""
+        motion = self.description.slider.motion
+        constant = isinstance(motion, ConstantVelocity)
+        return np.array([motion.velocity]) if constant else np.asarray(motion.rate(self.time)[0])
+
+    @cached_property
+    def rate(self) -> Floats:
+        """Rate of the spring force, as the drive and the mass move its ends (N/s)."""
+        slider = self.description.slider
+        return self.way * slider.k_x * (slider.direction[0] * self.drive - self.column(2))
+
+    @cached_property
     def velocity(self) -> Floats:
         """Velocity of the mass along the drive, X', positive where it follows it (m/s)."""
         c, s = self.description.slider.direction
@@ -102,10 +115,9 @@ class Observed:
     @cached_property
     def features(self) -> Features:
         """What the evenly spaced samples show."""
-        motion = self.description.slider.motion
-        constant = isinstance(motion, ConstantVelocity)
-        rate = np.array([motion.velocity]) if constant else motion.rate(self.time)[0]
-        found: Features = features(self.time, self.force, self.velocity, np.abs(rate), REVERSAL)
+        found: Features = features(
+            self.time, self.force, self.rate, self.velocity, np.abs(self.drive), REVERSAL
+        )
         return found
 
     @cached_property
@@ -120,12 +132,6 @@ class Observed:
     def swings(self) -> Swings:
         """Complete swings of the force."""
         return swings(self.features)
-
-    @property
-    def peak_to_peak(self) -> Floats:
-        """Times from one peak of the force to the next, s; troughs are sharper than samples."""
-        found = self.features
-        return np.diff(found.turn_time[1 if found.trough else 0 :: 2])
 
     @cached_property
     def song(self) -> float:
