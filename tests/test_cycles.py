@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 from tests.measured import bare, measured
 
 import stiction as st
+from stiction.analysis.hesitations import take_out
 from stiction.analysis.reversals import all_heights, standing_out, taken_out
 from stiction.analysis.spread import TIMES
 from stiction.analysis.turning_points import turning_points
 from stiction.plotting.cycles import cycles_figure
+from stiction.study.observed import observe
 
 Floats = NDArray[np.float64]
 
@@ -142,6 +144,62 @@ def test_no_cycles_with_constant_friction(slider: st.Slider) -> None:
     law = st.ExponentialWeakening(mu_0=0.2, mu_inf=0.2, v_f="10 mm/s")
     run = st.simulate(slider.replace(friction=law), 10.0, sample_rate=10e3)
     assert st.find_cycles(st.record_of(run)).sizes["cycle"] == 0
+
+
+# --- hesitations ---
+
+
+@pytest.mark.parametrize("phi", ["2 deg", "3.5 deg", "5 deg", "6 deg"])
+def test_a_dip_before_a_slip_is_a_hesitation_and_no_cycle(phi: str) -> None:
+    """The force dips by 1 to 3 % of its swing before some slips of this pin on a plate."""
+    law = st.ExponentialWeakening(mu_0=0.6, mu_inf=0.45, v_f="10 mm/s")
+    rig = st.Slider(
+        mass=0.08, k_x=2.3e3, k_y=0.9e6, phi=phi, normal_load=4.0, friction=law,
+        drive=st.ConstantVelocity("0.5 mm/s"),
+    )  # fmt: skip
+    run = st.simulate(rig, 10.0, sample_rate=20e3)
+    cycles = st.find_cycles(run)
+    force = run.data["spring_x"].values
+    late = run.data["time"].values > 2.0
+    falls = walked(np.rint(1e6 * force).astype(np.int64), int(0.5e6 * np.ptp(force[late])))
+    assert abs(cycles.sizes["cycle"] - (len(falls) - 1) // 2) <= 1
+    assert ((cycles["period"] > 0.85) & (cycles["period"] < 1.05)).all()
+    assert cycles["hesitations"].sum() >= 1
+    deepest = float(cycles["hesitation_depth"].max() / cycles["drop"].median())
+    assert 0.01 < deepest < 0.04
+    assert st.classify(run).kind == "stick-slip"
+    seen = observe(st.Description(rig, st.Initial(), st.Settings(duration="10 s")), None)
+    assert len(seen.swings.period) == cycles.sizes["cycle"]
+    assert seen.swings.period.mean() == pytest.approx(float(cycles["period"].mean()), rel=1e-3)
+
+
+def corners(*legs: float) -> Floats:
+    """Return the turning points of rises and falls in turn."""
+    return np.concatenate([[0.0], np.cumsum(np.array(legs) * (-1.0) ** np.arange(len(legs)))])
+
+
+@pytest.mark.parametrize(
+    ("legs", "kept", "taken"),
+    [
+        ((2, 1) + (1, 1) * 8, 17, 0),  # a sawtooth
+        ((2, 1) + (0.97, 0.02, 0.05, 1) * 8, 17, 8),  # dips before each slip
+        ((2, 1) + (1, 0.5, 0.1, 0.6) * 8, 17, 8),  # falls in two steps
+        ((2, 1) + (0.5, 0.02, 0.1, 0.05, 0.47, 1) * 8, 17, 16),
+        ((2, 1) + (1, 0.6, 0.6, 1) * 8, 33, 0),  # two sizes of slips
+        (tuple(1.1 ** np.arange(60)), 59, 0),  # grows
+        (tuple(1.3 ** -np.arange(30.0)), 29, 0),  # dies out
+        ((2, 1) + (0.4, 1) * 8, 17, 0),  # on a baseline that falls fast
+        ((0.3, 0.02, 0.03, 1) + (1, 1) * 8, 17, 1),  # the record begins with a dip
+    ],
+)
+def test_what_is_a_cycle_and_what_a_hesitation(
+    legs: tuple[float, ...], kept: int, taken: int
+) -> None:
+    values = corners(*legs)
+    for factor in (1.0, 1e-9):
+        found = take_out(factor * values)
+        assert (len(found.kept), len(found.at)) == (kept, taken)
+        assert np.all(np.diff(np.sign(np.diff(values[found.kept]))) != 0)
 
 
 # --- measured ---
