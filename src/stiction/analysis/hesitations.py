@@ -88,7 +88,7 @@ def _alike(fall: Floats) -> bool:
         return False
     ratio = fall / typical(fall)
     spread = float(ratio.std() / ratio.mean())
-    return spread * (1.0 + (2.0 / len(fall)) ** 0.5) < ALIKE
+    return bool(spread * (1.0 + (2.0 / len(fall)) ** 0.5) < ALIKE)
 
 
 def swing(legs: Floats) -> Floats:
