@@ -19,12 +19,21 @@ SURE = 2.0  # standard errors that an angle must be away from nothing
 
 
 class Misalignment(NamedTuple):
-    """The misalignment that a creep curve implies (rad), F_0 (N), and their standard errors."""
+    """The misalignment that creep implies (rad), F_0 (N), and their standard errors.
+
+    `stiffness` (N/m) is that at which the force rises, where it was fitted with them.
+    """
 
     phi: float
     phi_error: float
     F_0: float
     F_0_error: float
+    stiffness: float = np.nan
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Two standard errors to each side of phi (rad), which hold it in 95 of 100 cases."""
+        return self.phi - SURE * self.phi_error, self.phi + SURE * self.phi_error
 
     @property
     def stands_out(self) -> bool:

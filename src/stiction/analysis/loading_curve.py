@@ -1,0 +1,128 @@
+"""The mean loading curve of a stick-slip force: how far the mass has crept at each force."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.analysis.record import Record
+from stiction.errors import ResultError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+
+LEVELS = 40  # of force, at which the curve is given
+FEWEST = 10  # bins in a rise, which has two samples a bin at least
+AFTER_TROUGH, BEFORE_SLIP = 0.1, 0.12  # of the drop: inertia is felt there
+MANY, FINE = 100_000, 1e-4  # samples that show in which steps a force is read; finer ones are none
+
+
+class LoadingCurve(NamedTuple):
+    """How far the mass has crept at each force, on the average over cycles.
+
+    Parameters
+    ----------
+    force : ndarray
+        (levels,), N; increasing.
+    crept : ndarray
+        (levels,), N: k_x times the distance crept, but for a constant; it is V t - F/k_x, times
+        the stiffness as it was stated.
+    apart : ndarray
+        (cycles, levels), N: by how much each cycle differs from the mean, its own constant taken
+        off.
+    error : ndarray
+        (levels,), N: standard error of the mean.
+    peak, drop : float
+        Largest force and fall of a typical cycle, N.
+    """
+
+    force: Floats
+    crept: Floats
+    apart: Floats
+    error: Floats
+    peak: float
+    drop: float
+
+
+def loading_curve(record: Record, cycles: xr.Dataset) -> LoadingCurve:
+    """Average the loading of all cycles at equal forces.
+
+    Quasistatic creep has no memory: how fast the mass creeps depends on the force alone. So
+    cycles that begin at different forces are averaged at equal ones. A cycle's force is scaled
+    with its peak: where friction varies from cycle to cycle, so does the whole curve.
+
+    Raises
+    ------
+    ResultError
+        If the record says neither stiffness nor drive velocity, or the rises are too coarse.
+    """
+    rate = (record.stiffness or 0.0) * (record.drive_velocity or 0.0)
+    if not rate:
+        raise ResultError("the record states no stiffness and drive_velocity; give both")
+    peak, drop = (float(np.median(cycles[name].values)) for name in ("peak", "drop"))
+    begin = float(np.quantile(cycles["start_force"].values, 0.8))
+    low, high = begin + AFTER_TROUGH * drop, peak - BEFORE_SLIP * drop
+    levels = np.linspace(low, high, LEVELS)
+    rows = []
+    columns = (cycles[name].values for name in ("start", "peak_time", "peak"))
+    for start, top, most in zip(*columns, strict=True):
+        row = _crept(record, start, top, peak / most if peak > 0.0 else 1.0, rate, levels)
+        if row is not None:
+            rows.append(row)
+    if not rows or high <= low:
+        raise ResultError(
+            f"no rise has {2 * FEWEST} samples between its trough and its peak; sample faster"
+        )
+    table = np.array(rows)
+    table -= table.mean(axis=1, keepdims=True)
+    middle = np.median(table, axis=0) if len(rows) >= 5 else table.mean(axis=0)
+    apart = table - middle
+    error = np.hypot(_scatter(apart, rows), _rounding(record.force, (high - low) / LEVELS))
+    return LoadingCurve(levels, middle, apart, np.full(LEVELS, error), peak, drop)
+
+
+def _crept(
+    record: Record, start: float, top: float, scale: float, rate: float, levels: Floats
+) -> Floats | None:
+    """Return k_x times the distance crept at each force, of one cycle; None if it is too coarse."""
+    first, last = np.searchsorted(record.time, [start, top], side="left")
+    count = min(LEVELS + 8, int(last - first) // 2)
+    if count < FEWEST:
+        return None
+    edges = np.linspace(first, last, count + 1).astype(np.intp)
+    size = np.diff(edges)
+    time, force = (
+        np.add.reduceat(each[:last], edges[:-1]) / size for each in (record.time, record.force)
+    )
+    force = scale * force
+    order = np.argsort(force)
+    if force[order[0]] > levels[0] or force[order[-1]] < levels[-1]:
+        return None
+    crept = scale * (rate * (time - time[0])) - force
+    return np.interp(levels, force[order], crept[order])
+
+
+def _scatter(apart: Floats, rows: list[Floats]) -> float:
+    """Return the standard error of the mean, from the cycles' scatter, or a single one's noise."""
+    count = len(rows)
+    if count == 1:
+        return float(np.std(np.diff(rows[0], 3))) / 20.0**0.5  # that of white noise, less a cubic
+    return float(np.sqrt((apart**2).sum(axis=0).mean() / (count - 1) / count))
+
+
+def _rounding(force: Floats, width: float) -> float:
+    """Return by how much a force that is read in steps is off, on the average over a width (N).
+
+    A ramp through many steps averages them out, and so does noise as large as they are.
+    """
+    some = force[:MANY]
+    step = float(np.diff(np.unique(some)).min(initial=np.inf))
+    if not np.isfinite(step) or step < FINE * float(np.ptp(some)):
+        return 0.0
+    noise = float(np.std(np.diff(some, 2))) / 6.0**0.5
+    dither = float(np.exp(-2.0 * (np.pi * noise / step) ** 2))  # what is left of the first harmonic
+    return step / 12.0**0.5 * min(1.0, step / width) * dither
