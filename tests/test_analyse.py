@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import stiction as st
+from stiction.analysis.creep_found import calibrated
 from stiction.analysis.export import write
-from stiction.analysis.report import calibrated
 from stiction.analysis.words import sections
 from stiction.cli import main
 from stiction.plotting.analysis import figures

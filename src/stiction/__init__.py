@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from stiction.analysis.cycles import find_cycles
     from stiction.analysis.divergence import fit_divergence
     from stiction.analysis.energy import energy_budget
+    from stiction.analysis.force_curve import misalignment_from_force
     from stiction.analysis.measured_line import strongest_line
     from stiction.analysis.misalignment import fit_misalignment
     from stiction.analysis.onset import find_onset
@@ -139,6 +140,7 @@ _HOME = {
     "load": "trajectory",
     "map": "study.mapping",
     "mean_creep": "analysis.creep_curve",
+    "misalignment_from_force": "analysis.force_curve",
     "open_study": "study.store",
     "oscillation_by_phase": "analysis.oscillation",
     "paper": "reproduction.reproduce",
@@ -221,6 +223,7 @@ __all__ = [
     "load",
     "map",
     "mean_creep",
+    "misalignment_from_force",
     "open_study",
     "oscillation_by_phase",
     "paper",

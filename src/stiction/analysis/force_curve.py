@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 GRID = 400  # angles at which the closed form is tabled
-MODEL = 2e-4  # of the drop: what Eq. (7), with the terms below, leaves out at the best
-MISSED = 3.0  # a misfit that all cycles share is as smooth as the curve: it counts this much
+MODEL = 5e-5  # of the drop: what Eq. (7), with the terms below, leaves out at the best
+MISSED = 4.0  # a misfit that all cycles share is as smooth as the curve: it counts this much
 WORST = 1e-3  # of the drop: with a larger misfit the rises do not have the shape
 # What a record leaves open: stated stiffness over the true one, less 1; logarithms of k_x/k_y and
 # of the weakening of friction at the drive velocity. What is assumed of each, and how widely.
@@ -86,9 +86,9 @@ def misalignment_from_force(record: Record, cycles: xr.Dataset | None = None) ->
     curve = loading_curve(record, table)
     best, covariance, gain, misfit, apart = _fitted(curve)
     phi, excess, off = float(best[0]), exp(best[1]), float(best[2])
-    error = max(float(covariance[0, 0]) ** 0.5, _over_cycles(curve, gain))
-    error = float(np.linalg.norm([error, apart, THEORY * phi]))
-    _refuse(phi, error, excess, misfit)
+    error = max(float(covariance[0, 0]) ** 0.5, apart, _over_cycles(curve, gain))
+    error = float(np.hypot(error, THEORY * phi))
+    _refuse(phi, error, excess, misfit, off)
     F_0 = curve.peak * (1.0 + excess)
     F_0_error = curve.peak * excess * float(covariance[1, 1]) ** 0.5
     stiffness = (record.stiffness or 0.0) / (1.0 + off)
@@ -125,7 +125,7 @@ def crept(
 class _Fit(NamedTuple):
     """Parameters, their covariance, how each level moves phi (rad/N), the misfit over the drop.
 
-    `apart` is how far phi (rad) lies with another k_x/k_y, a standard deviation to either side.
+    `apart` is how far off phi (rad) lies with k_x/k_y a standard deviation to either side.
     """
 
     best: Floats
@@ -152,9 +152,11 @@ def _fitted(curve: LoadingCurve) -> _Fit:
         assumed = (p[2:] - middle) / width
         return np.concatenate([missed(p) / error, assumed])
 
+    minimised: Any = least_squares
+
     def best_from(start: Floats) -> Any:
         inside = np.clip(start, np.add(LOWEST, 1e-9), np.subtract(HIGHEST, 1e-9))
-        return least_squares(
+        return minimised(
             weighted, inside, bounds=(LOWEST, HIGHEST), x_scale=SCALES, max_nfev=MOST, xtol=1e-6
         )
 
@@ -168,24 +170,31 @@ def _fitted(curve: LoadingCurve) -> _Fit:
     other = []
     width[1] = FIXED
     for side in (-1.0, 1.0):  # it is not linear in the logarithm of k_x/k_y
-        middle[1] = TAILS[1] + side * WIDTHS[1]
+        middle[1] = best.x[3] + side * float(covariance[3, 3]) ** 0.5
         other.append(float(best_from(np.array([*best.x[:3], middle[1], best.x[4]])).x[0]))
-    return _Fit(best.x, covariance, gain, misfit, float(np.abs(other - best.x[0]).max()))
+    return _Fit(
+        best.x, covariance, gain, misfit, float(np.mean(np.subtract(other, best.x[0]) ** 2) ** 0.5)
+    )
 
 
 def _over_cycles(curve: LoadingCurve, gain: Floats) -> float:
     """Return the standard error of phi from how far each cycle by itself would move it."""
-    from scipy.stats import t
+    from scipy.special import stdtrit  # the quantile of Student's t
 
     count = len(curve.apart)
     if count < 2:
         return 0.0
-    wide = max(1.0, 0.5 * float(t.ppf(0.975, count - 1)))
-    return wide * float((curve.apart @ gain).std(ddof=1)) / count**0.5
+    wide = max(1.0, 0.5 * float(stdtrit(count - 1, 0.975)))
+    return float(wide * (curve.apart @ gain).std(ddof=1) / count**0.5)
 
 
-def _refuse(phi: float, error: float, excess: float, misfit: float) -> None:
+def _refuse(phi: float, error: float, excess: float, misfit: float, off: float) -> None:
     """Raise where the record does not determine the angle, with the reason."""
+    if abs(off) > 2.0 * WIDTHS[0]:
+        raise ResultError(
+            f"not determined: the force rises at {1.0 / (1.0 + off):.3g} times stiffness times "
+            "drive velocity as they are stated; measure both again"
+        )
     if misfit > WORST:
         raise ResultError(
             "not determined: the rises do not have the shape that friction gives as it turns "

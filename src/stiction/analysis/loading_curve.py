@@ -103,14 +103,14 @@ def _crept(
     if force[order[0]] > levels[0] or force[order[-1]] < levels[-1]:
         return None
     crept = scale * (rate * (time - time[0])) - force
-    return np.interp(levels, force[order], crept[order])
+    return np.asarray(np.interp(levels, force[order], crept[order]))
 
 
 def _scatter(apart: Floats, rows: list[Floats]) -> float:
     """Return the standard error of the mean, from the cycles' scatter, or a single one's noise."""
     count = len(rows)
     if count == 1:
-        return float(np.std(np.diff(rows[0], 3))) / 20.0**0.5  # that of white noise, less a cubic
+        return float(np.std(np.diff(rows[0], 3)) / 20.0**0.5)  # that of white noise, less a cubic
     return float(np.sqrt((apart**2).sum(axis=0).mean() / (count - 1) / count))
 
 
@@ -125,4 +125,4 @@ def _rounding(force: Floats, width: float) -> float:
         return 0.0
     noise = float(np.std(np.diff(some, 2))) / 6.0**0.5
     dither = float(np.exp(-2.0 * (np.pi * noise / step) ** 2))  # what is left of the first harmonic
-    return step / 12.0**0.5 * min(1.0, step / width) * dither
+    return float(step / 12.0**0.5 * min(1.0, step / width) * dither)

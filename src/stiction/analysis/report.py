@@ -9,12 +9,12 @@ from warnings import warn
 
 import numpy as np
 
-from stiction.analysis.creep_curve import creep_curves, mean_creep
+from stiction.analysis.creep_found import find_creep
 from stiction.analysis.cycles import swings
-from stiction.analysis.divergence import Divergence, fit_divergence
+from stiction.analysis.divergence import Divergence
 from stiction.analysis.energy import energy_budget
 from stiction.analysis.measured_line import strongest_line
-from stiction.analysis.misalignment import Misalignment, fit_misalignment
+from stiction.analysis.misalignment import Misalignment
 from stiction.analysis.oscillation import oscillation_by_phase, transverse_oscillation
 from stiction.analysis.record import Record, recorded
 from stiction.analysis.regime import STICK_SLIP, TRANSITIONAL, Regime, regime_of
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 T = TypeVar("T")
-HARMONICS = 10.0  # of the stick-slip, which a oscillation is sought above
+HARMONICS = 10.0  # of the stick-slip, which an oscillation is sought above
 BINS = 20.0  # that a stick phase is to have at least, to be averaged over them
 
 
@@ -138,29 +138,21 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
         oscillation = tried("oscillation", lambda: strongest_line(record, _above(record, cycles)))
         energy, missing["energy"] = None, "of a measured record only the force is known"
         width = _free_of_hum(oscillation, sticking)
-    creeping = calibrated(record, sticking)
-    curves = tried("creep", lambda: creep_curves(run or creeping, sticking, width))
-    mean = None
-    if curves is not None:
-        if np.isfinite(curves["velocity"].values).any():
-            mean = mean_creep(curves)
-        else:
-            missing["creep"] = "there is no stick phase with samples enough to see it in"
-    aligned = run is not None and run.slider.phi == 0.0
-    divergence, misalignment = (None, None) if aligned else _fits(creeping, mean, tried)
+    creep = find_creep(source, record, sticking, width)
+    missing |= creep.missing
     phases = None
-    if run is not None and oscillation is not None and curves is not None:
-        phases = oscillation_by_phase(oscillation, run, _phases(run, curves, sticking))
+    if run is not None and oscillation is not None and creep.curves is not None:
+        phases = oscillation_by_phase(oscillation, run, _phases(run, creep.curves, sticking))
     return Analysis(
         source,
         record,
         regime,
         cycles,
         summary(cycles),
-        curves,
-        mean,
-        divergence,
-        misalignment,
+        creep.curves,
+        creep.mean,
+        creep.divergence,
+        creep.misalignment,
         oscillation,
         phases,
         energy,
@@ -171,20 +163,6 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
 analyze = analyse
 
 
-def calibrated(record: Record, cycles: xr.Dataset) -> Record:
-    """Return a record with the stiffness that its own loading shows, unless it has a position.
-
-    A few per cent between a stated stiffness and that at which the force rises would hide the
-    creep, V less the rate of force over stiffness; so creep is counted from the even loading in
-    the first half of each rise (the median over cycles).
-    """
-    shown = cycles["stiffness"].values
-    shown = shown[np.isfinite(shown)]
-    if record.position is not None or not len(shown) or not np.median(shown) > 0.0:
-        return record
-    return record.model_copy(update={"stiffness": float(np.median(shown))})
-
-
 def edges(run: Trajectory, cycles: xr.Dataset) -> np.ndarray:
     """Return times (s) at which a run begins, its cycles do, the last one ends, and it ends."""
     first, last = (float(run.data["time"][i]) for i in (0, -1))
@@ -192,18 +170,6 @@ def edges(run: Trajectory, cycles: xr.Dataset) -> np.ndarray:
         raise ResultError("the run has a single sample; run it longer than 1/sample_rate")
     inner = np.concatenate([cycles["start"].values, cycles["trough_time"].values[-1:]])
     return np.unique(np.concatenate([[first], inner, [last]]))
-
-
-def _fits(record: Record, mean: xr.Dataset | None, tried: Any) -> tuple[Any, Any]:
-    """Return the fits of the mean creep, None where they cannot be made."""
-    V, stiffness = record.drive_velocity, record.stiffness
-    if mean is None or V is None or stiffness is None:
-        return None, None
-    loading = float(np.nanmax(mean["force"].values)) / stiffness / V
-    return (
-        tried("divergence", lambda: fit_divergence(mean, loading)),
-        tried("misalignment", lambda: fit_misalignment(mean, V, stiffness)),
-    )
 
 
 def _free_of_hum(oscillation: xr.Dataset | None, cycles: xr.Dataset) -> float | None:
@@ -222,7 +188,7 @@ def _free_of_hum(oscillation: xr.Dataset | None, cycles: xr.Dataset) -> float | 
 
 
 def _above(record: Record, cycles: xr.Dataset) -> float:
-    """Return the frequency (Hz) above which a oscillation is sought."""
+    """Return the frequency (Hz) above which an oscillation is sought."""
     fastest = cycles["period"].values.min() if cycles.sizes["cycle"] else record.duration / 10.0
     return HARMONICS / max(float(fastest), 1e-300)
 

@@ -96,27 +96,23 @@ def creep(found: Analysis) -> Section:
         f"At {long} before {end} {_creeping(far)}, in the last {short} {_creeping(near)}; "
         f"{phases} stick phase{'s' * (phases != 1)}."
     ]
-    if found.record.position is None:
+    d, phi = found.divergence, found.misalignment
+    if found.record.position is None and phi is None:
         lines.append("Counted from the even loading in the first half of each rise.")
     if isinstance(found.source, Trajectory) and found.source.slider.phi == 0.0:
         lines.append("There is no misalignment, so friction does not turn.")
-    d, phi = found.divergence, found.misalignment
-    if d is not None and d.amplitude > SURE * d.amplitude_error and d.exponent > 0.0:
+    if d is not None:
         lines.append(
             f"It diverges towards slip with the exponent {d.exponent:.3f} ± {d.exponent_error:.3f} "
             "(1/2 by Eq. (8), corrected)."
         )
-    elif d is not None:
-        lines.append("No divergence towards slip stands out of its uncertainty.")
-    if phi is not None and phi.stands_out:
+    if phi is not None:
         angle, error = degrees(phi.phi), degrees(phi.phi_error)
         lines.append(
             f"By Eq. (7) it implies a misalignment of {angle:.3g} ± {error:.1g} deg{_true(found)}, "
             f"and F_0 = {in_words(phi.F_0, 'N')}."
         )
-    elif phi is not None:
-        lines.append("No misalignment that it implies stands out of its uncertainty.")
-    fits = {"divergence": "No exponent", "misalignment": "No implied misalignment"}
+    fits = {"divergence": "Exponent of its divergence", "misalignment": "Implied misalignment"}
     lines += [
         f"{what}: {found.missing[fit]}." for fit, what in fits.items() if fit in found.missing
     ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import Any
 
 from matplotlib.figure import Figure
@@ -28,7 +29,8 @@ def figures(found: Analysis) -> dict[str, Figure]:
         V, fit = found.record.drive_velocity, found.misalignment
         lines = {}
         if fit is not None and fit.stands_out and found.record.stiffness is not None:
-            l_x = fit.F_0 / found.record.stiffness
+            stiffness = fit.stiffness if isfinite(fit.stiffness) else found.record.stiffness
+            l_x = fit.F_0 / stiffness
             lines = {
                 f"{name}, fitted": line for name, line in creep_theory(V, fit.phi, l_x).items()
             }

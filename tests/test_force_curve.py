@@ -1,0 +1,71 @@
+"""The misalignment from a measured force alone: right where it is told, and not told otherwise."""
+
+from math import cos, degrees, radians
+
+import numpy as np
+import pytest
+
+import stiction as st
+
+RATE = 2e3
+PAPER = st.presets.nakano_popov_2020()
+
+
+def measured(phi: float, noise: float = 0.0, stiffness: float = 1.0) -> st.Record:
+    """Return what a load cell sees of the paper's rig at phi (deg), its stiffness misstated."""
+    slider = PAPER.replace(phi=f"{phi} deg")
+    run = st.simulate(slider, 6.0, sample_rate=RATE)
+    force = run.data["spring_x"].values
+    hiss = noise * np.random.default_rng(3).standard_normal(len(force))
+    return st.Record(
+        time=run.data["time"].values,
+        force=force + hiss,
+        stiffness=stiffness * slider.k_x,
+        drive_velocity=1e-3 * cos(slider.phi),
+    )
+
+
+@pytest.mark.parametrize(
+    ("phi", "noise", "stiffness"),
+    [(1.0, 0.0, 1.0), (1.0, 1e-4, 0.98), (2.0, 1e-3, 1.0), (2.0, 1e-3, 1.02), (4.0, 4e-3, 0.99)],
+)
+def test_a_force_alone_implies_the_misalignment(phi: float, noise: float, stiffness: float) -> None:
+    found = st.misalignment_from_force(measured(phi, noise, stiffness))
+    low, high = found.interval
+    assert low < radians(phi) < high
+    assert found.phi_error < 0.3 * found.phi
+    assert found.stiffness == pytest.approx(PAPER.k_x, rel=0.02)
+
+
+def test_what_noise_hides_is_not_determined() -> None:
+    with pytest.raises(st.ResultError, match="not determined: the bend of the rises"):
+        st.misalignment_from_force(measured(0.2, 0.03))
+
+
+def test_steps_of_an_eighth_of_the_drop_hide_it() -> None:
+    record = measured(1.0)
+    step = 0.1  # N, of a drop of 0.8 N
+    cycles = st.find_cycles(record)
+    coarse = record.model_copy(update={"force": step * np.round(record.force / step)})
+    with pytest.raises(st.ResultError, match="not determined"):
+        st.misalignment_from_force(coarse, cycles)
+
+
+def test_a_stiffness_that_cannot_be_is_named() -> None:
+    with pytest.raises(st.ResultError, match=r"0.9\d* times stiffness times drive velocity"):
+        st.misalignment_from_force(measured(1.0, 1e-4, 1.1))
+
+
+def test_an_analysis_takes_it_from_the_force() -> None:
+    found = st.analyse(measured(1.0))
+    assert degrees(found.misalignment.phi) == pytest.approx(1.0, abs=0.25)
+    late = found.creep.isel(bin=slice(1, 10))
+    assert (late["velocity"].values > 0.0).all()
+
+
+def test_an_even_sawtooth_has_no_bend() -> None:
+    time = np.arange(0.0, 20.0, 1e-3)
+    record = st.Record(time=time, force=1.0 + 0.4 * (time % 2.0), stiffness=0.4, drive_velocity=1.0)
+    found = st.analyse(record)
+    assert found.misalignment is None
+    assert "not determined" in found.missing["misalignment"]
