@@ -3,20 +3,9 @@
 import os
 
 import pytest
-from hypothesis import HealthCheck, settings
 
 import stiction as st
 
-# the same examples each time, whatever was found before and however slow the machine is; random
-# exploration has commands of its own, in benchmarks.explore
-settings.register_profile(
-    "fixed",
-    derandomize=True,
-    database=None,
-    deadline=None,
-    suppress_health_check=[HealthCheck.too_slow],
-)
-settings.load_profile("fixed")
 os.environ["DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT"] = "30m"  # not 30 s: the machine may be busy
 
 

@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as hyp
 from scipy.integrate import solve_ivp
 from scipy.optimize import minimize
 
 import stiction as st
+from drawn import inside
 from stiction.solver.problem import Elliptic, Problem
 from stiction.solver.surface import Tensor, flow, friction_along, takeoff
 
@@ -118,8 +117,9 @@ def problem_with(N):
     return Problem(nothing, st.Coulomb(1.0), Elliptic(N[0, 0], N[0, 1], N[1, 1]), None, None, 0.0)
 
 
-@given(hyp.floats(0.3, 3), hyp.floats(-3, 3), hyp.floats(-3, 3), hyp.floats(0.1, 3))
-@settings(max_examples=60, deadline=None)
+@pytest.mark.parametrize(
+    ("ratio", "angle", "pull_angle", "excess"), inside(60, (0.3, 3), (-3, 3), (-3, 3), (0.1, 3))
+)
 def test_slip_starts_towards_what_friction_leaves(ratio, angle, pull_angle, excess):
     """The friction is the point of the ellipse nearest to the pull, slip along the difference."""
     c, s = np.cos(angle), np.sin(angle)
@@ -141,8 +141,7 @@ def test_slip_starts_towards_what_friction_leaves(ratio, angle, pull_angle, exce
     assert rest @ rest == pytest.approx(nearest, rel=1e-6)
 
 
-@given(hyp.floats(0.3, 3), hyp.floats(-3, 3), hyp.floats(-2, 2))
-@settings(max_examples=60, deadline=None)
+@pytest.mark.parametrize(("ratio", "angle", "w"), inside(60, (0.3, 3), (-3, 3), (-2, 2)))
 def test_flow_and_its_derivatives(ratio, angle, w):
     c, s = np.cos(angle), np.sin(angle)
     turn = np.array([[c, s], [-s, c]])

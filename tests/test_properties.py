@@ -4,40 +4,43 @@ from math import pi
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st_
+from benchmarks.explore.draw import Draw
 
 import stiction as st
+from drawn import SEED
 from stiction.solver.integrate import tolerance
 
 
-def log(low: float, high: float) -> st_.SearchStrategy[float]:
-    return st_.floats(np.log(low), np.log(high)).map(lambda x: float(np.exp(x)))
-
-
-@st_.composite
-def sliders(draw, damped: bool = True) -> st.Slider:
-    """Sliders around the paper's, a decade or so each way, whose runs stay short."""
-    mu_0 = draw(st_.floats(0.05, 1.0))
+def slider_of(draw: Draw, damped: bool = True) -> st.Slider:
+    """A slider around the paper's, a decade or so each way, whose runs stay short."""
+    mu_0 = draw.between(0.05, 1.0)
     return st.Slider(
-        mass=draw(log(0.01, 10)),
-        k_x=draw(log(1e2, 1e4)),
-        k_y=draw(log(1e4, 1e8)),
-        phi=f"{draw(st_.floats(0.1, 80))} deg",
-        normal_load=draw(log(1, 100)),
-        c_x=draw(st_.sampled_from([0.0, 0.5])) if damped else 0.0,
-        c_y=draw(st_.sampled_from([0.0, 5.0])) if damped else 0.0,
-        friction=draw(
-            st_.sampled_from(
-                [
-                    st.Coulomb(mu_0=mu_0),
-                    st.ExponentialWeakening(mu_0=mu_0, mu_inf=0.7 * mu_0, v_f=0.01),
-                    st.ExponentialWeakening(mu_0=mu_0, mu_inf=1.2 * mu_0, v_f=0.01),
-                ]
-            )
+        mass=draw.decades(0.01, 10),
+        k_x=draw.decades(1e2, 1e4),
+        k_y=draw.decades(1e4, 1e8),
+        phi=f"{draw.between(0.1, 80)} deg",
+        normal_load=draw.decades(1, 100),
+        c_x=draw.among([0.0, 0.5]) if damped else 0.0,
+        c_y=draw.among([0.0, 5.0]) if damped else 0.0,
+        friction=draw.among(
+            [
+                st.Coulomb(mu_0=mu_0),
+                st.ExponentialWeakening(mu_0=mu_0, mu_inf=0.7 * mu_0, v_f=0.01),
+                st.ExponentialWeakening(mu_0=mu_0, mu_inf=1.2 * mu_0, v_f=0.01),
+            ]
         ),
-        drive=st.ConstantVelocity(draw(log(1e-4, 1e-1))),
+        drive=st.ConstantVelocity(draw.decades(1e-4, 1e-1)),
     )
+
+
+def drawn(count: int) -> pytest.MarkDecorator:
+    """Repeat a test with so many streams of random numbers, the same each time."""
+    return pytest.mark.parametrize("number", range(count))
+
+
+@pytest.fixture
+def draw(number: int) -> Draw:
+    return Draw(SEED, number)
 
 
 def shortest_period(slider: st.Slider) -> float:
@@ -80,9 +83,9 @@ def energy_residual(run: st.Trajectory, every: int) -> tuple[float, float]:
     return residual, abs(work) + friction + damper + np.ptp(stored)
 
 
-@given(sliders())
-@settings(max_examples=40, deadline=None)
-def test_energy_balance(slider):
+@drawn(40)
+def test_energy_balance(draw):
+    slider = slider_of(draw)
     # from the end of the first stick on, so that the samples resolve what happens
     stick, duration = first_stick(slider), 15 * shortest_period(slider)
     (c, s), V = slider.direction, slider.motion.rate(0.0)[0]
@@ -97,9 +100,9 @@ def test_energy_balance(slider):
     assert abs(fine) <= abs(coarse - fine) + 10 * 5e-7 * scale
 
 
-@given(sliders())
-@settings(max_examples=25, deadline=None)
-def test_mirror_symmetry(slider):
+@drawn(25)
+def test_mirror_symmetry(draw):
+    slider = slider_of(draw)
     """phi -> -phi mirrors the motion at the x axis, to the last bit."""
     duration = some_periods(slider)
     mirrored = slider.replace(phi=f"{-slider.phi!r} rad")
@@ -109,10 +112,11 @@ def test_mirror_symmetry(slider):
     assert np.array_equal(one.stick_intervals, other.stick_intervals)
 
 
-@given(sliders(damped=False), log(1e-2, 1e2), log(1e-2, 1e2), log(1e-2, 1e2))
-@settings(max_examples=25, deadline=None)
-def test_dimensional_scaling(slider, mass, length, time):
+@drawn(25)
+def test_dimensional_scaling(draw):
     """Other units of mass, length and time leave the dimensionless solution unchanged."""
+    slider = slider_of(draw, damped=False)
+    mass, length, time = (draw.decades(1e-2, 1e2) for _ in range(3))
     law, V = slider.law, slider.motion.rate(0.0)[0]
     speed, force = length / time, mass * length / time**2
     scaled = slider.replace(
@@ -137,9 +141,9 @@ def test_dimensional_scaling(slider, mass, length, time):
         assert got == pytest.approx(want[: len(got)], rel=1e-5, abs=1e-6 * np.abs(want).max())
 
 
-@given(sliders(), st_.integers(5, 195))
-@settings(max_examples=25, deadline=None)
-def test_restart_continues_the_trajectory(slider, k):
+@drawn(25)
+def test_restart_continues_the_trajectory(draw):
+    slider, k = slider_of(draw), int(draw.between(5, 196))
     duration = some_periods(slider, 3.0)
     rate = 200 / duration
     whole = st.simulate(slider, duration, sample_rate=rate, rtol=1e-9)
@@ -156,15 +160,10 @@ def test_restart_continues_the_trajectory(slider, k):
         assert got[:n] == pytest.approx(want[:n], rel=1e-4, abs=scale)
 
 
-@given(
-    phi=st_.sampled_from([0.0, 0.01, 1.0, 30.0, 89.0, 90.0]),
-    ratio=log(1.0, 1e6),
-    V=log(1e-7, 1.0),
-    mass=log(1e-4, 1e3),
-    mu_inf=st_.floats(0.0, 0.5),
-)
-@settings(max_examples=60, deadline=None)
-def test_far_from_the_paper_a_run_ends_and_is_finite(phi, ratio, V, mass, mu_inf):
+@drawn(60)
+def test_far_from_the_paper_a_run_ends_and_is_finite(draw):
+    phi, ratio = draw.among([0.0, 0.01, 1.0, 30.0, 89.0, 90.0]), draw.decades(1.0, 1e6)
+    V, mass, mu_inf = draw.decades(1e-7, 1.0), draw.decades(1e-4, 1e3), draw.between(0.0, 0.5)
     slider = st.Slider(
         mass=mass,
         k_x=1e3,

@@ -7,12 +7,11 @@ from math import atan, cos, inf, pi, sin, sqrt
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as hyp
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import stiction as st
+from drawn import inside
 from stiction.drive.signal import Signal, signal_at, signal_bounds, signal_change, signal_sum
 from stiction.solver.integrate import tolerance
 
@@ -287,16 +286,10 @@ def test_every_piece_against_the_smoothed_law(slider, driven):
 # --- signals -------------------------------------------------------------------------------------
 
 
-@given(
-    hyp.floats(-2, 2),
-    hyp.floats(-2, 2),
-    hyp.floats(0, 2),
-    hyp.floats(0.1, 30),
-    hyp.floats(-pi, pi),
-    hyp.floats(0, 2),
-    hyp.floats(0.1, 30),
+@pytest.mark.parametrize(
+    ("value", "slope", "a", "omega", "phase", "b", "nu"),
+    inside(50, (-2, 2), (-2, 2), (0, 2), (0.1, 30), (-pi, pi), (0, 2), (0.1, 30)),
 )
-@settings(max_examples=50, deadline=None)
 def test_a_signal_its_integral_derivative_and_bounds(value, slope, a, omega, phase, b, nu):
     signal = Signal(0.3, value, slope, a, omega, phase, b, nu, 0.7)
     t, dt = 0.4, 0.6

@@ -1,0 +1,1 @@
+"""Exploration at random: what a docstring promises, held on thousands of systems."""

@@ -1,0 +1,79 @@
+"""``python -m benchmarks.explore``: thousands of random systems against what `simulate` promises.
+
+Deterministic in its seed. With ``--keep FILE`` what was seen is kept, one line of JSON a system,
+and the same command goes on where it was stopped. Exit status 1 if a bound is broken.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import nullcontext
+from functools import partial
+from pathlib import Path
+
+from rich.console import Console
+
+import stiction as st
+
+from ..report import show
+from .accuracy import Seen, look, section
+from .systems import system
+
+EVERY = 500  # systems between two looks at how far it is
+CHUNK = 10  # systems handed to a process at a time
+
+
+def main() -> int:
+    """Look at the systems asked for; return the exit status."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.explore", description=__doc__)
+    parser.add_argument("--systems", type=int, default=1000, help="how many")
+    parser.add_argument("--seed", type=int, default=1, help="of all that is random")
+    parser.add_argument("--processes", type=int, default=2)
+    parser.add_argument("--keep", type=Path, help="file to keep what was seen in, or to go on with")
+    parser.add_argument("--only", type=int, metavar="NUMBER", help="one system, and what it is")
+    options = parser.parse_args()
+    if options.only is not None:
+        return one(options.seed, options.only)
+    console, seen = Console(), kept(options.keep)
+    wanted = sorted(set(range(options.systems)) - {each.number for each in seen})
+    with options.keep.open("a") if options.keep else nullcontext() as file:
+        for each in looked_at(options.seed, wanted, options.processes):
+            seen.append(each)
+            if file is not None:
+                print(json.dumps(each), file=file, flush=True)
+            if len(seen) % EVERY == 0 and len(seen) < options.systems:
+                show(console, section(seen)[0])
+    found, keeps = section(seen)
+    show(console, found)
+    return 0 if keeps else 1
+
+
+def kept(path: Path | None) -> list[Seen]:
+    """Return what was seen before."""
+    if path is None or not path.exists():
+        return []
+    rows = map(json.loads, path.read_text().splitlines())
+    return [Seen(*row)._replace(off=tuple(row[4])) for row in rows]
+
+
+def looked_at(seed: int, numbers: Iterable[int], processes: int) -> Iterator[Seen]:
+    """Yield what is seen of each system, in order."""
+    with ProcessPoolExecutor(processes) as pool:
+        yield from pool.map(partial(look, seed), numbers, chunksize=CHUNK)
+
+
+def one(seed: int, number: int) -> int:
+    """Print one system and what is seen of it."""
+    slider, duration, rtol = system(seed, number)
+    settings = st.Settings(duration=duration, rtol=rtol)
+    print(st.Description(slider, st.Initial(), settings).to_json())
+    print(look(seed, number))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,93 @@
+"""Does a run at `rtol`, in steps and by the multiscale mode, keep what `simulate` promises?
+
+The error is held against the response: what the apparatus itself would do if its mass, or its
+normal load, were greater by the share `rtol`. Where that alone changes everything, as it does where
+motion is chaotic, no tolerance could tell more.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..section import Section, Table
+from .deviation import FINER, FINEST, deviation, forces, response
+from .systems import system
+
+BOUNDS = {"in steps": 30.0, "multiscale": 30.0}  # of the error over the response
+PREDICTABLE = 0.1  # of the largest force: what responds by more is not known at this tolerance
+SHARES = (0.5, 0.9, 0.99, 0.999, 1.0)
+WORST = 10
+
+
+class Seen(NamedTuple):
+    """What was seen of one system.
+
+    `off` is the error over the response of a run in steps and of one by the multiscale mode;
+    `left_out` is why they do not count, empty if they do.
+    """
+
+    number: int
+    law: str
+    rtol: float
+    response: float
+    off: tuple[float, float]
+    mapped: int
+    left_out: str
+
+
+def look(seed: int, number: int) -> Seen:
+    """Run one system in both ways, and as it would be if it were a little other."""
+    slider, duration, rtol = system(seed, number)
+    sharp, reference = forces(slider, duration, max(FINER * rtol, FINEST))
+    moved = response(slider, duration, rtol, sharp)
+    runs = [forces(slider, duration, rtol, multiscale) for multiscale in (False, True)]
+    left_out = "not predictable at its tolerance" if moved > PREDICTABLE else ""
+    for run in (reference, *(run for _, run in runs)):
+        left_out = left_out if run.status.ok else run.status.value
+    steps, mapped = (deviation(found, sharp) / moved for found, _ in runs)
+    return Seen(
+        number=number,
+        law=type(slider.law).__name__,
+        rtol=rtol,
+        response=moved,
+        off=(steps, mapped),
+        mapped=runs[1][1].statistics.mapped,
+        left_out=left_out,
+    )
+
+
+def section(seen: list[Seen]) -> tuple[Section, bool]:
+    """Return what was seen of all systems, and whether every bound is kept."""
+    counted = [each for each in seen if not each.left_out]
+    tables, kept = [left_out(seen)], True
+    for place, (name, bound) in enumerate(BOUNDS.items()):
+        those = counted if name == "in steps" else [each for each in counted if each.mapped]
+        ratios = np.array([each.off[place] for each in those])
+        broken = int((ratios > bound).sum())
+        kept = kept and not broken
+        rows = [(f"{share:.1%} below", float(np.quantile(ratios, share))) for share in SHARES]
+        rows += [("bound", bound), ("systems", len(those)), ("above the bound", broken)]
+        tables.append(Table(f"Error over response: {name}", ("share of systems", "ratio"), rows))
+        worst = sorted(those, key=lambda each: -each.off[place])[:WORST]
+        headings = ("number", "ratio", "law", "rtol", "response/rtol")
+        tables.append(
+            Table(
+                f"Worst systems: {name}",
+                headings,
+                [
+                    (str(one.number), one.off[place], one.law, one.rtol, one.response / one.rtol)
+                    for one in worst
+                ],
+            )
+        )
+    note = "one system again, with its description: --only NUMBER"
+    return Section("Accuracy of random systems", tables, [note]), kept
+
+
+def left_out(seen: list[Seen]) -> Table:
+    """Return how many systems do not count, and why."""
+    reasons = sorted({each.left_out for each in seen})
+    rows = [(why or "counted", sum(each.left_out == why for each in seen)) for why in reasons]
+    return Table("Systems", ("", "number"), rows)

@@ -1,0 +1,36 @@
+"""How far a run is off, and how far the apparatus itself would be off if it were a little other."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import stiction as st
+
+SAMPLES = 1000
+FINER = 1e-3  # tolerance of the reference over that of the run on trial
+FINEST = 1e-12
+CHANGED = ("mass", "normal_load")  # the clock of the oscillation, and the size of friction
+
+
+def forces(
+    slider: st.Slider, duration: float, rtol: float, multiscale: bool = False
+) -> tuple[np.ndarray, st.Trajectory]:
+    """Return the force of the springs (N; 2 rows) at equal intervals of time, and the run."""
+    rate = (SAMPLES - 1) / duration
+    run = st.simulate(slider, duration, sample_rate=rate, rtol=rtol, multiscale=multiscale)
+    found = np.stack([run.data["spring_x"].values, run.data["spring_y"].values])
+    return found[:, : SAMPLES - 1], run
+
+
+def deviation(found: np.ndarray, reference: np.ndarray) -> float:
+    """Return the largest difference of two forces over the largest force."""
+    n = min(found.shape[1], reference.shape[1])
+    largest = float(np.hypot(*reference).max())
+    return float(np.hypot(*(found[:, :n] - reference[:, :n])).max()) / largest
+
+
+def response(slider: st.Slider, duration: float, share: float, reference: np.ndarray) -> float:
+    """Return by how much the forces change if a constant of the apparatus changes by a share."""
+    sharp = max(FINER * share, FINEST)
+    changed = (slider.replace(**{name: getattr(slider, name) * (1 + share)}) for name in CHANGED)
+    return max(deviation(forces(each, duration, sharp)[0], reference) for each in changed)
