@@ -29,8 +29,9 @@ def deviation(found: np.ndarray, reference: np.ndarray) -> float:
     return float(np.hypot(*(found[:, :n] - reference[:, :n])).max()) / largest
 
 
-def response(slider: st.Slider, duration: float, share: float, reference: np.ndarray) -> float:
+def response(
+    slider: st.Slider, duration: float, share: float, rtol: float, reference: np.ndarray
+) -> float:
     """Return by how much the forces change if a constant of the apparatus changes by a share."""
-    sharp = max(FINER * share, FINEST)
     changed = (slider.replace(**{name: getattr(slider, name) * (1 + share)}) for name in CHANGED)
-    return max(deviation(forces(each, duration, sharp)[0], reference) for each in changed)
+    return max(deviation(forces(each, duration, rtol)[0], reference) for each in changed)
