@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import inf, isfinite, nan, sqrt
+from math import copysign, inf, isfinite, nan, radians, sqrt
 from typing import Any, NamedTuple
 
-from stiction.analysis.regime import SETTLING, STEADY
-from stiction.auditing.observation import Observation, coarse_rate, observe
+from stiction.auditing.observation import SLIDES, Observation, coarse_rate, observe
 from stiction.auditing.prediction import predict
 from stiction.linear_stability import Critical, critical, growth_rate
 from stiction.parameter import changed, read, unit
@@ -16,8 +15,17 @@ from stiction.slider import Slider
 # How far beyond a critical value to go, of it: farther where an oscillation, once there, goes on
 # although steady sliding is stable
 BEYOND = (0.15, 0.5, 1.0, 2.0)
-CALM = (SETTLING, STEADY)
+# Where steady sliding is stable but not reached from rest, no critical value says how far to go:
+# degrees more, shares of critical damping more, factors
+MORE = {
+    "phi": (2.0, 5.0, 10.0, 20.0, 40.0),
+    "drive.velocity": (2.0, 4.0, 8.0, 16.0, 32.0),
+    "c_x": (0.02, 0.05, 0.1, 0.25, 0.6, 1.5),
+    "k_x": (2.0, 4.0, 8.0, 16.0, 32.0),
+}
 LEVERS = ("phi", "drive.velocity", "c_x", "k_x")
+NOT_TRIED = (nan, nan, nan, None)  # of an `Advice`: nothing better found so far
+MOST_TURNED = 80.0  # degrees: nearer to a right angle the soft spring is no spring of the drive's
 STRONGEST = 10.0  # times critical damping: as far as a damper is tried
 
 
@@ -52,23 +60,46 @@ class Advice(NamedTuple):
 
     @property
     def works(self) -> bool:
-        """Whether the simulation with it comes to slide steadily."""
-        return self.tried is not None and self.tried.regime.kind in CALM
+        """Whether the simulation with it, from rest, comes to slide steadily, and stays so."""
+        return self.tried is not None and self.tried.comes_to == SLIDES and self.growth < 0.0
 
 
-def advise(slider: Slider) -> Iterator[Advice]:
-    """Yield, for each lever, the nearest value at which sliding is steady, and try it."""
+def advise(slider: Slider, stable: bool) -> Iterator[Advice]:
+    """Yield, for each lever, the nearest value at which sliding is steady, and try it from rest.
+
+    Where steady sliding is `stable` already, and only not reached from rest, ever larger values
+    are tried.
+    """
     for path in LEVERS:
-        found, now = critical(slider, path, limits(slider, path)), read(slider, path)
-        advice = Advice(path, found.unit, now, found.between, nan, nan, nan, None)
-        for beyond in BEYOND:
-            edge, then = nearest(found, now, beyond)
+        if stable:
+            advice = Advice(path, unit(slider, path), read(slider, path), (nan, nan), *NOT_TRIED)
+            ways: Iterator[tuple[float, float]] = ((nan, then) for then in further(slider, path))
+        else:
+            found = critical(slider, path, limits(slider, path))
+            now = read(slider, path)
+            advice = Advice(path, found.unit, now, found.between, *NOT_TRIED)
+            ways = (nearest(found, now, beyond) for beyond in BEYOND)
+        for edge, then in ways:
             if isfinite(then):
                 better = changed(slider, path, written(slider, path, then))
                 advice = advice._replace(critical=edge, then=then, **tried(better))
             if advice.tried is None or advice.works:
                 break
         yield advice
+
+
+def further(slider: Slider, path: str) -> Iterator[float]:
+    """Yield ever larger values of a parameter."""
+    now = read(slider, path)
+    for more in MORE[path]:
+        if path == "phi":
+            then = copysign(abs(now) + radians(more), now)
+            if abs(then) <= radians(MOST_TURNED):
+                yield then
+        elif path == "c_x":
+            yield now + more * 2.0 * sqrt(slider.k_x * slider.mass)
+        else:
+            yield now * more
 
 
 def tried(slider: Slider) -> dict[str, Any]:

@@ -48,7 +48,7 @@ def trials(found: Audit) -> Figure | None:
     """Draw the force of the same test now and with each change."""
     tried = [
         Trial(
-            f"{NAMES[each.path]} = {in_words(each.then, each.unit)}: {each.tried.regime.kind}",
+            f"{NAMES[each.path]} = {in_words(each.then, each.unit)}: {each.tried.motion}",
             each.tried.record,
         )
         for each in found.advices

@@ -10,8 +10,10 @@ import numpy as np
 from stiction import theory
 from stiction.analysis.cycles import swings
 from stiction.analysis.record import Record, record_of
-from stiction.analysis.regime import Regime, regime_of
+from stiction.analysis.regime import SETTLING, STEADY, STUCK, Regime, regime_of
 from stiction.auditing.prediction import SEEN, Prediction
+from stiction.initial import Initial
+from stiction.linear_stability import Linearisation
 from stiction.simulation import simulate
 from stiction.slider import Slider
 from stiction.trajectory import Trajectory
@@ -30,6 +32,15 @@ MOST_STEPS = 5_000_000  # some 2 s
 MANY = 50_000  # transverse periods, from which on few cycles are to stand for many
 
 
+SMALL = "an oscillation too small for the load cell to tell"
+# what a run comes to in the end
+SLIDES, OSCILLATES, UNSETTLED = "slides", "oscillates", "unsettled"
+CALM = 0.02  # of the drive's speed: what deviates from it by less is steady sliding
+DECAYED, KEPT = 0.5, 0.8  # of a deviation after a quarter of the run: it dies out, or lasts
+LOADING = 0.5  # of the drive's speed: a mass that is never faster has not slipped
+KICK = 1e-2  # of the drive's speed: the disturbance that steady sliding is started with
+
+
 class Shares(NamedTuple):
     """What the time is spent on, as shares: at rest, creeping slower than the drive, slipping."""
 
@@ -39,13 +50,28 @@ class Shares(NamedTuple):
 
 
 class Observation(NamedTuple):
-    """A simulated test: the run, what its load cell records, what can be read from that."""
+    """A simulated test: the run, what its load cell records, what can be read from that.
+
+    `comes_to` is what the mass does in the end: it slides, oscillates, is stuck, or has come to
+    neither when the test ends ("unsettled").
+    """
 
     run: Trajectory
     record: Record
     cycles: xr.Dataset
     regime: Regime
     shares: Shares
+    comes_to: str
+
+    @property
+    def motion(self) -> str:
+        """The kind of motion by its name: what the load cell sees, if that is what it comes to."""
+        calm = self.regime.kind in (SETTLING, STEADY)
+        if self.comes_to == SLIDES:
+            return self.regime.kind if calm else SETTLING
+        if self.comes_to == OSCILLATES:
+            return SMALL if calm else self.regime.kind
+        return STUCK if self.comes_to == STUCK else self.regime.kind
 
     @property
     def coarse(self) -> bool:
@@ -61,9 +87,14 @@ class Observation(NamedTuple):
 
 
 def observe(
-    slider: Slider, prediction: Prediction, growth: float, *, sample_rate: float
+    slider: Slider,
+    prediction: Prediction,
+    growth: float,
+    *,
+    sample_rate: float,
+    start: Initial | None = None,
 ) -> Observation:
-    """Simulate a friction test from rest, and read its record.
+    """Simulate a friction test, and read its record.
 
     Parameters
     ----------
@@ -76,6 +107,8 @@ def observe(
         on until that has died out.
     sample_rate : float
         Hz; less if there would be too many samples.
+    start : Initial, optional
+        Where it starts; from rest, springs unloaded, when left out.
     """
     load_up = prediction.load_up
     slips = CYCLES * prediction.period if prediction.slips else 0.0
@@ -85,6 +118,7 @@ def observe(
     run = simulate(
         slider,
         duration,
+        initial=start,
         sample_rate=min(sample_rate, MOST_SAMPLES / duration),
         multiscale=duration * prediction.f_y > MANY,
         max_steps=MOST_STEPS,
@@ -92,7 +126,36 @@ def observe(
     record = record_of(run)
     found = swings(record)
     cycles = found.cycles
-    return Observation(run, record, cycles, regime_of(record, found), shares(run, cycles))
+    regime = regime_of(record, found)
+    return Observation(run, record, cycles, regime, shares(run, cycles), outcome(run))
+
+
+def from_sliding(linear: Linearisation, prediction: Prediction) -> Observation:
+    """Simulate the same test from steady sliding, disturbed by a hundredth of the speed."""
+    return observe(
+        linear.slider,
+        prediction,
+        linear.growth_rate,
+        sample_rate=coarse_rate(prediction),
+        start=linear.disturbed(KICK),
+    )
+
+
+def outcome(run: Trajectory) -> str:
+    """Return what a run comes to: by the deviation from the drive's speed in its last quarters.
+
+    A mass at rest deviates by all of it, and more in a slip does not count.
+    """
+    times, speed = run.data["time"].values, run.data["V_X"].values / run.slider.motion.rate(0.0)[0]
+    late = times - times[0] >= 0.5 * (times[-1] - times[0])
+    last = times - times[0] >= 0.75 * (times[-1] - times[0])
+    if speed[late].max() < LOADING:
+        return STUCK
+    deviation = np.minimum(np.abs(speed - 1.0), 1.0)
+    before, now = float(deviation[late & ~last].max()), float(deviation[last].max())
+    if now < CALM or now <= DECAYED * before:
+        return SLIDES
+    return OSCILLATES if now >= KEPT * before else UNSETTLED
 
 
 def coarse_rate(prediction: Prediction) -> float:
@@ -107,6 +170,8 @@ def shares(run: Trajectory, cycles: xr.Dataset) -> Shares:
     begin, end = times[0], times[np.argmax(speed > ALMOST)] if speed.max() > ALMOST else times[-1]
     if cycles.sizes["cycle"]:
         begin, end = float(cycles["start"][0]), float(cycles["trough_time"][-1])
+    if not end > begin:  # started sliding
+        return Shares(0.0, 0.0, 1.0)
     slip = float((speed[(times >= begin) & (times <= end)] > 1.0).mean())
     rest = float(np.diff(np.clip(run.stick_intervals, begin, end), axis=1).sum() / (end - begin))
     return Shares(rest, max(0.0, 1.0 - slip - rest), slip)

@@ -7,7 +7,14 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from stiction.auditing.advice import LEVERS, Advice, advise, limits
-from stiction.auditing.observation import Observation, coarse_rate, observe
+from stiction.auditing.observation import (
+    OSCILLATES,
+    SLIDES,
+    Observation,
+    coarse_rate,
+    from_sliding,
+    observe,
+)
 from stiction.auditing.prediction import Prediction, predict
 from stiction.deprecation import old_attributes
 from stiction.linear_stability import Critical, Linearisation, critical, steady_sliding
@@ -29,9 +36,11 @@ class Audit(NamedTuple):
     misalignment : Critical
         Where steady sliding changes between unstable and stable as phi grows.
     observation : Observation
-        The simulated test.
+        The simulated test, from rest.
+    sliding_on : Observation
+        The same, started from steady sliding with a small disturbance.
     advices : tuple of Advice
-        What would make it slide steadily, each tried; none if it does.
+        What would make it slide steadily, each tried from rest; none if it does.
     """
 
     slider: Slider
@@ -39,12 +48,19 @@ class Audit(NamedTuple):
     sliding: Linearisation
     misalignment: Critical
     observation: Observation
+    sliding_on: Observation
     advices: tuple[Advice, ...]
 
     def __repr__(self) -> str:
         """Say what was simulated, and whether steady sliding is stable."""
-        verdict = "stable" if self.sliding.stable else "not stable"
-        return f"<Audit: {self.observation.regime.kind}; steady sliding is {verdict}>"
+        both = ", bistable" if self.bistable else ""
+        return f"<Audit: {self.observation.motion}{both}; steady sliding is {self.sliding.verdict}>"
+
+    @property
+    def bistable(self) -> bool:
+        """Whether it oscillates from rest, and slides on if it has come to slide."""
+        rest, sliding = self.observation.comes_to, self.sliding_on.comes_to
+        return rest == OSCILLATES and sliding == SLIDES and self.sliding.stable
 
     def __str__(self) -> str:
         """Return the report as text."""
@@ -56,7 +72,8 @@ class Audit(NamedTuple):
     @property
     def ok(self) -> bool:
         """Whether every simulation reached its end."""
-        runs = [self.observation, *(each.tried for each in self.advices if each.tried)]
+        tried = (each.tried for each in self.advices if each.tried)
+        runs = [self.observation, self.sliding_on, *tried]
         return all(each.run.status.ok for each in runs)
 
     def tables(self) -> list[Section]:
@@ -125,13 +142,15 @@ def audit(slider: Slider | str | Path, progress: Callable[[float], None] | None 
     rate = max(prediction.sample_rate, coarse_rate(prediction))
     observation = observe(system, prediction, growth, sample_rate=rate)
     report(1)
+    sliding_on = from_sliding(sliding, prediction)
     advices = []
-    if not sliding.stable:
-        for advice in advise(system):
+    if not sliding.stable or observation.comes_to != SLIDES:
+        for advice in advise(system, sliding.stable):
             advices.append(advice)
             report(1 + len(advices))
     misalignment = critical(system, "phi", limits(system, "phi"))
-    return Audit(system, prediction, sliding, misalignment, observation, tuple(advices))
+    both = observation, sliding_on
+    return Audit(system, prediction, sliding, misalignment, *both, tuple(advices))
 
 
 FORMER = {"Audit": "stiction.auditing.Audit", "examine": "stiction.audit"}

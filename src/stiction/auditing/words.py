@@ -2,18 +2,29 @@
 
 from __future__ import annotations
 
-from math import degrees, hypot, isfinite, nan, tan
+from math import cos, degrees, hypot, isfinite, nan
 
 import numpy as np
 
 from stiction.analysis.creep import first_slip_time
-from stiction.analysis.regime import SETTLING, STICK_SLIP, STUCK, TRANSITIONAL, UNDETERMINED
+from stiction.analysis.regime import (
+    HARMONIC,
+    SETTLING,
+    STICK_SLIP,
+    STUCK,
+    TRANSITIONAL,
+    UNDETERMINED,
+)
 from stiction.auditing.advice import Advice
+from stiction.auditing.observation import OSCILLATES, SLIDES, UNSETTLED, Observation
+from stiction.auditing.prediction import suppositions
 from stiction.auditing.report import Audit
 from stiction.friction import has_state
+from stiction.linear_stability.linear import STABLE, UNSTABLE
 from stiction.sections import Section, Table
 from stiction.units import in_words
 
+SLIPPED = 1.5  # times the drive's speed: what is never faster has crept, and not slipped
 NAMES = {
     "phi": "misalignment φ",
     "drive.velocity": "drive velocity V",
@@ -24,12 +35,10 @@ NAMES = {
 
 SEEN = {  # kinds of motion, in a sentence
     TRANSITIONAL: f"a {TRANSITIONAL} between stick-slip and harmonic vibration",
-    SETTLING: f"a motion {SETTLING} to steady sliding",
-    STUCK: "a mass that is stuck",
+    SETTLING: "a transient that settles to steady sliding",
+    STUCK: "loading without a slip",
     UNDETERMINED: "a motion of no clear kind",
 }
-# of the time until the slip: a first stick that is longer is no short beginning, as in Eq. (7)
-SHORT = 0.1
 
 
 def sections(found: Audit) -> list[Section]:
@@ -38,33 +47,88 @@ def sections(found: Audit) -> list[Section]:
         Section("Verdict", verdict(found)),
         Section("Predicted and simulated", supposed(found), numbers(found)),
         Section("Is it stick?", stick(found)),
-        Section("Song", song(found)),
+        Section("Transverse oscillation", transverse(found)),
         Section("What to change", *changes(found)),
     ]
 
 
 def verdict(found: Audit) -> list[str]:
     """Return what the apparatus will do, and how far it is from doing otherwise."""
-    seen, growth = found.observation, found.sliding.growth_rate
-    if not seen.run.status.ok:
-        return [f"The simulation ended early: {seen.run.status.value}."]
-    kind = seen.regime.kind
-    lines = [
-        f"In the simulated test the load cell sees {SEEN.get(kind, kind)}"
-        f"{str(seen.regime).removeprefix(kind)}."
-    ]
-    if found.sliding.stable:
-        lines.append(f"Steady sliding is stable: disturbances decay at {-growth:.4g} per second.")
+    early = [each for each in (found.observation, found.sliding_on) if not each.run.status.ok]
+    if early:
+        return [f"The simulated test ended early: {early[0].run.status.value}.", stability(found)]
+    return [*motions(found), stability(found), margin(found)]
+
+
+def motions(found: Audit) -> list[str]:
+    """Return what the apparatus does from rest, and once it slides, as both were simulated."""
+    rest, sliding = found.observation, found.sliding_on
+    name = SEEN.get(rest.motion, rest.motion)
+    if found.bistable:
+        return [
+            f"Two motions are possible (it is bistable): from rest it comes to {name}; once it "
+            "slides steadily, it goes on sliding steadily.",
+            f"From rest, springs unloaded: {described(rest)}. From steady sliding, disturbed by "
+            f"1 % of the drive's speed: {sliding.motion}.",
+        ]
+    if rest.comes_to == SLIDES and sliding.comes_to == SLIDES:
+        what = "It slides steadily once it has settled, from rest as from a small disturbance."
+        if found.sliding.verdict == UNSTABLE:
+            what = (
+                "In the time of the test it slides steadily, but that does not last: small "
+                "disturbances grow, more slowly than the test shows."
+            )
+        return [what, f"From rest the load cell sees: {described(rest)}."]
+    if rest.comes_to == OSCILLATES and sliding.comes_to == OSCILLATES:
+        lines = [
+            "It does not slide steadily: from rest, and when it is started sliding, it comes to "
+            f"{name}."
+        ]
+        if rest.motion != sliding.motion:
+            other = SEEN.get(sliding.motion, sliding.motion)
+            lines = [
+                f"It does not slide steadily: from rest it comes to {name}; started sliding, to "
+                f"{other}."
+            ]
     else:
-        frequency = float(found.sliding.frequencies[0])
-        swing = f", swinging at {in_words(frequency, 'Hz')}" if frequency > 0.0 else ""
-        lines.append(
-            f"Steady sliding is unstable: disturbances grow by e in {in_words(1 / growth, 's')}"
-            f"{swing}."
-            if growth > 0.0
-            else "Steady sliding is on the border of stability."
+        lines = [
+            f"From rest it comes to {ended(rest)}; started from steady sliding, disturbed by 1 % "
+            f"of the drive's speed, to {ended(sliding)}."
+        ]
+    return [*lines, f"From rest the load cell sees: {described(rest)}."]
+
+
+def ended(seen: Observation) -> str:
+    """Return what a test comes to, in a sentence."""
+    if seen.comes_to == SLIDES:
+        return "steady sliding"
+    name = SEEN.get(seen.motion, seen.motion)
+    return f"{name} (not settled when the test ends)" if seen.comes_to == UNSETTLED else name
+
+
+def described(seen: Observation) -> str:
+    """Return a kind of motion with its cycles, in one line."""
+    count = seen.cycles.sizes["cycle"]
+    sure = f"{seen.motion} (confidence {seen.regime.confidence:.2f})"
+    if seen.motion != seen.regime.kind:
+        sure = seen.motion
+    if not count or seen.comes_to == SLIDES:
+        return sure
+    period, drop = in_words(seen.mean("period"), "s"), in_words(seen.mean("drop"), "N")
+    return f"{sure}, {count} cycles of {period} in which the force falls by {drop}"
+
+
+def stability(found: Audit) -> str:
+    """Return what becomes of a small disturbance of steady sliding."""
+    growth, frequency = found.sliding.growth_rate, float(found.sliding.frequencies[0])
+    if found.sliding.verdict not in (STABLE, UNSTABLE):
+        return (
+            "Steady sliding is on the boundary of stability: disturbances neither grow nor decay."
         )
-    return [*lines, margin(found)]
+    stable, time = found.sliding.stable, in_words(1.0 / abs(growth), "s")
+    swing = f", oscillating at {in_words(frequency, 'Hz')}" if frequency > 0.0 else ""
+    what = f"stable: small disturbances {'decay' if stable else 'grow'} by e in {time}"
+    return f"Steady sliding is {what if stable else 'un' + what}{swing}."
 
 
 def margin(found: Audit) -> str:
@@ -79,7 +143,7 @@ def margin(found: Audit) -> str:
             "deg on"
         )
         return (
-            f"No misalignment changes that: it is {always} at every φ{sign}"
+            f"No misalignment changes its stability: it is {always} at every φ{sign}"
             f"{rigid if always == 'unstable' and isfinite(closed) else ''}."
         )
     nearest = float(values[np.argmin(np.abs(values - phi))])
@@ -87,7 +151,7 @@ def margin(found: Audit) -> str:
     form = f" ({degrees(closed):.4f} deg in closed form)" if lowest and isfinite(closed) else ""
     way = "more" if abs(nearest) > abs(phi) else "less"
     return (
-        f"That changes at φ_c = {degrees(nearest):.4f} deg{form}: the margin is "
+        f"Its stability changes at φ_c = {degrees(nearest):.4f} deg{form}: the margin is "
         f"{abs(degrees(nearest - phi)):.4g} deg {way} misalignment than now, "
         f"{degrees(phi):.4g} deg."
     )
@@ -95,20 +159,13 @@ def margin(found: Audit) -> str:
 
 def supposed(found: Audit) -> list[str]:
     """Return what the theory supposes and this apparatus is not."""
-    p, s = found.prediction, found.slider
-    if has_state(s.law):
-        return [
-            "The theory is for friction without internal state: with this law the first column is "
-            f"an orientation, with F_0 taken at {in_words(hypot(*s.motion.rate(0.0)), 'm/s')}."
-        ]
-    if s.phi != 0.0 and p.first_stick > SHORT * p.load_up:
-        ratio, share = s.k_y * tan(abs(s.phi)) / s.k_x, p.first_stick / p.load_up
-        return [
-            f"Eqs. (7) and (10) suppose that the transverse spring is loaded at once, k_y tan φ ≫ "
-            f"k_x. Here it is only {ratio:.3g} k_x, and the first stick takes {share:.0%} of the "
-            "time until the slip that they give: they are an orientation."
-        ]
-    return []
+    unmet = suppositions(found.slider, found.prediction)
+    if not unmet:
+        return []
+    return [
+        f"Eqs. (7) and (10) suppose that {'; that '.join(unmet)}. So what follows from them, "
+        "marked ~, is an orientation."
+    ]
 
 
 def numbers(found: Audit) -> Table:
@@ -116,28 +173,37 @@ def numbers(found: Audit) -> Table:
     p, seen, s = found.prediction, found.observation, found.slider
     first = float(np.diff(seen.run.stick_intervals[:1]).sum())  # zero if it never sticks
     slip = first_slip_time(seen.run)
-    slip = slip if slip < seen.record.time[-1] else nan
+    data = seen.run.data
+    fastest = float(np.abs(data["V_X"].values).max()) / hypot(*s.motion.rate(0.0))
+    slip = slip if fastest > SLIPPED and slip < seen.record.time[-1] else nan
+    held = [("friction that holds at rest", p.F_static, None, "N", False)]
     rows = [
-        ("friction at vanishing slip F_0", p.F_0, None, "N"),
-        ("natural frequency along x", p.f_x, None, "Hz"),
-        ("natural frequency along y", p.f_y, None, "Hz"),
-        ("damping number A, Eq. (10)", p.A, None, ""),
-        ("damping ratio ζ at θ = φ, Eq. (10)", p.zeta, None, ""),
-        ("θ at which ζ = 1: slow slip turns fast", p.theta_c, None, "rad"),
-        ("first stick: true rest", p.first_stick, first, "s"),
-        ("time until the first slip, Eq. (7)", p.load_up if p.zeta < 1.0 else nan, slip, "s"),
-        ("creep velocity at first, V sin² φ", p.creep_at_start, None, "m/s"),
-        ("creep velocity when it slips, Eq. (7)", p.creep_at_slip, None, "m/s"),
-        ("creep before the first slip", p.creep_distance, crept(found, slip), "m"),
-        ("apparent static friction", p.mu_static, peak(found), ""),
-        ("apparent kinetic friction", p.mu_kinetic, seen.mean("mu_kinetic"), ""),
-        ("force drop", p.drop, seen.mean("drop"), "N"),
-        ("period", p.period, seen.mean("period"), "s"),
-        ("apparent stiffness", s.k_x, seen.mean("stiffness"), "N/m"),
+        ("friction at vanishing slip F_0", p.F_0, None, "N", False),
+        *(held if p.F_static > p.F_0 * (1.0 + 1e-9) else []),
+        ("natural frequency along x", p.f_x, None, "Hz", False),
+        ("natural frequency along y", p.f_y, None, "Hz", False),
+        ("damping number A, Eq. (10)", p.A, None, "", True),
+        ("damping ratio ζ at θ = φ, Eq. (10)", p.zeta, None, "", True),
+        ("θ at which ζ = 1: slow slip turns fast", p.theta_c, None, "rad", True),
+        ("first stick: true rest", p.first_stick, first, "s", has_state(s.law)),
+        ("time until the first slip", p.load_up if p.slips else nan, slip, "s", True),
+        ("creep velocity at first, V sin² φ", p.creep_at_start, None, "m/s", True),
+        ("creep velocity when it slips, Eq. (7)", p.creep_at_slip, None, "m/s", True),
+        ("creep before the first slip", p.creep_distance, crept(found, slip), "m", True),
+        ("apparent static friction", p.mu_static, peak(found), "", True),
+        ("apparent kinetic friction", p.mu_kinetic, seen.mean("mu_kinetic"), "", True),
+        ("force drop", p.drop, seen.mean("drop"), "N", True),
+        ("period", p.period, seen.mean("period"), "s", True),
+        ("apparent stiffness", s.k_x * cos(s.phi) ** 2, loading(seen), "N/m", True),
     ]
+    mark = "~ " if suppositions(s, p) else ""
     lines = [
-        (name, in_words(theory, unit), "" if shown is None else in_words(shown, unit))
-        for name, theory, shown, unit in rows
+        (
+            name,
+            (mark if rough and isfinite(theory) else "") + in_words(theory, unit),
+            "" if shown is None else in_words(shown, unit),
+        )
+        for name, theory, shown, unit, rough in rows
     ]
     return Table(("quantity", "theory", "simulated"), lines)
 
@@ -147,6 +213,11 @@ def crept(found: Audit, slip: float) -> float:
     data = found.observation.run.data
     along = abs(data["X"].values - float(data["X"][0]))
     return float(np.interp(slip, data["time"].values, along)) if isfinite(slip) else nan
+
+
+def loading(seen: Observation) -> float:
+    """Return the apparent stiffness, N/m; not a number where nothing sticks while it loads."""
+    return seen.mean("stiffness") if seen.motion in (STICK_SLIP, TRANSITIONAL) else nan
 
 
 def peak(found: Audit) -> float:
@@ -176,6 +247,8 @@ def stick(found: Audit) -> list[str]:
             if s.phi
             else "What creeps, creeps by the law of friction."
         )
+    elif s.phi and seen.regime.kind == HARMONIC:
+        lines.append("The mass vibrates about steady sliding; there is no stick in it.")
     elif s.phi and seen.shares.creep > seen.shares.rest:
         distance = seen.mean("creep_distance")
         far = (
@@ -196,7 +269,7 @@ def stick(found: Audit) -> list[str]:
     return lines
 
 
-def song(found: Audit) -> list[str]:
+def transverse(found: Audit) -> list[str]:
     """Return what the rig sings at, and what it takes to see it."""
     p, seen = found.prediction, found.observation
     if p.amplitude == 0.0:
@@ -205,15 +278,15 @@ def song(found: Audit) -> list[str]:
     if has_state(found.slider.law):
         return [
             f"The transverse natural frequency is {in_words(p.f_y, 'Hz')}. Whether friction with "
-            f"internal state lets it sing, a run sampled at {in_words(p.sample_rate, 'Hz')} shows: "
-            "stiction analyse."
+            "internal state lets it oscillate, a run sampled at "
+            f"{in_words(p.sample_rate, 'Hz')} shows: stiction analyse."
         ]
     lines = [
-        f"The transverse spring swings at {in_words(p.f_y, 'Hz')} at first, by "
-        f"{in_words(p.amplitude, 'm')} (V sin φ/ω_y), {force} of transverse force; towards slip "
-        f"the frequency falls, as sin θ, and the swing grows with its period. Sample at "
-        f"{in_words(p.sample_rate, 'Hz')} to see it; above {in_words(2.0 * p.f_y, 'Hz')} it is not "
-        f"mistaken for another frequency."
+        f"During creep the mass oscillates across the drive at {in_words(p.f_y, 'Hz')}, by "
+        f"{in_words(p.amplitude, 'm')} (V sin φ/ω_y) or {force}. Towards slip the frequency falls, "
+        "as sin θ, and the amplitude grows with its period.",
+        f"To see it, sample at {in_words(p.sample_rate, 'Hz')}; below "
+        f"{in_words(2.0 * p.f_y, 'Hz')} it appears at another frequency.",
     ]
     if seen.coarse:
         rate = in_words(seen.record.sample_rate, "Hz")
@@ -222,25 +295,31 @@ def song(found: Audit) -> list[str]:
 
 
 def changes(found: Audit) -> tuple[list[str], Table | None]:
-    """Return what would make it slide steadily, each with its simulation."""
-    if found.sliding.stable:
+    """Return what would make it slide steadily, each with its simulation from rest."""
+    if not found.advices:
         return ["Nothing: it slides steadily once it has settled."], None
     rows = [_change(found, advice) for advice in found.advices]
+    goal = "take away the oscillation from rest" if found.bistable else "slide steadily"
     works = any(advice.works for advice in found.advices)
-    what = "To slide steadily, one of these" if works else "None of these makes it slide steadily"
-    return [
-        f"{what}; each was simulated, and the last column says what the load cell shows then."
-    ], Table(("change", "now", "stable from", "tried", "simulated: force drop, motion"), rows)
+    what = f"To {goal}, change one of these" if works else f"None of these makes it {goal}"
+    lines = [f"{what}; each was simulated from rest, and the last column says what comes of it."]
+    if found.bistable:
+        lines.append(
+            "Nothing has to be changed for a test that is started from steady sliding, as long as "
+            "no disturbance stops the mass."
+        )
+    return lines, Table(("change", "now", "stable from", "tried", "simulated from rest"), rows)
 
 
 def _change(found: Audit, advice: Advice) -> tuple[str, ...]:
     name, now = NAMES[advice.path], in_words(advice.now, advice.unit)
     if advice.tried is None:
         low, high = (in_words(end, advice.unit) for end in advice.between)
-        return name, now, "nowhere", f"{low} to {high}", "no value in that range"
-    edge, then = in_words(advice.critical, advice.unit), in_words(advice.then, advice.unit)
-    before, after = found.observation.mean("drop"), advice.tried.mean("drop")
-    fall = f"{in_words(before, 'N')} → {in_words(after, 'N')}"
-    regime = advice.tried.regime
-    kind = regime.kind if advice.works else f"no remedy: {regime.kind}"
-    return name, now, edge, then, f"{fall}; {kind} ({regime.confidence:.2f})"
+        tried = f"{low} to {high}" if isfinite(advice.between[0]) else "none"
+        return name, now, "nowhere", tried, "no value in that range"
+    then, seen = in_words(advice.then, advice.unit), advice.tried
+    edge = in_words(advice.critical, advice.unit) if isfinite(advice.critical) else "now"
+    what = seen.motion if advice.works else f"no remedy: {ended(seen)}"
+    if seen.comes_to == OSCILLATES and seen.cycles.sizes["cycle"]:
+        what += f", force drop {in_words(seen.mean('drop'), 'N')}"
+    return name, now, edge, then, what
