@@ -229,7 +229,7 @@ STATIC_PEAK = st.Slider(
 
 
 def test_static_friction_above_kinetic_is_bistable():
-    """Steady sliding is stable, and never reached from rest: both are said, and no contradiction."""
+    """Steady sliding is stable, and not reached from rest: both are said, without contradiction."""
     found = examine(STATIC_PEAK)
     assert found.sliding.stable
     assert (found.observation.comes_to, found.sliding_on.comes_to) == (OSCILLATES, SLIDES)
