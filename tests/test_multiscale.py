@@ -4,10 +4,8 @@ from math import pi
 
 import numpy as np
 import pytest
-from benchmarks.explore.draw import Draw
 
 import stiction as st
-from drawn import SEED
 from stiction.solver.patch import POINTS, interpolated
 from stiction.solver.problem import Problem
 from stiction.solver.recall import remember, remembered
@@ -225,40 +223,6 @@ def test_a_stick_too_short_to_tell_is_none():
     """With 1e-6 s a turn of 0.01 before the edge, the bound of 3e-7 s is 0.0009 before it."""
     assert recalled(1.0 - 0.8e-3, 1.0, 1.004)[0]
     assert not recalled(1.0 - 1.0e-3, 1.0, 1.004)[0]
-
-
-def slider_of(draw: Draw) -> st.Slider:
-    """A slider around the paper's whose cycles of stick and slip are many."""
-    mu = draw.between(0.05, 0.5)
-    mu_static = mu * draw.among([1.0, 1.05])
-    law = draw.among(
-        [st.Coulomb(mu, mu_static), st.ExponentialWeakening(mu, 0.8 * mu, 0.01, mu_static)]
-    )
-    if draw.chance(0.5):
-        law = st.Anisotropic(law, draw.decades(0.5, 2.0), f"{draw.between(-90, 90)} deg")
-    return st.Slider(
-        mass=draw.decades(0.1, 1.0),
-        k_x=draw.decades(3e2, 3e3),
-        k_y=draw.decades(1e5, 1e8),
-        phi=f"{draw.between(0.3, 3)} deg",
-        normal_load=draw.decades(1, 30),
-        c_y=draw.among([0.0, 5.0]),
-        friction=law,
-        drive=st.ConstantVelocity(draw.decades(3e-4, 3e-3)),
-    )
-
-
-@pytest.mark.parametrize("number", range(25))
-def test_as_right_as_the_full_solver(number):
-    slider = slider_of(Draw(SEED, number))
-    duration = 400 * 2 * pi * np.sqrt(slider.mass / slider.k_y)
-    sharp, full, run = (
-        st.simulate(slider, duration, sample_rate=999 / duration, rtol=rtol, multiscale=multiscale)
-        for rtol, multiscale in ((1e-10, False), (1e-5, False), (1e-5, True))
-    )
-    for name in ("spring_x", "spring_y"):
-        allowed = max(3 * error(full, sharp, name), 1e-5 * slider.F_0)
-        assert error(run, sharp, name) <= allowed
 
 
 def test_pausing_changes_nothing(slider, monkeypatch):
