@@ -67,3 +67,40 @@ def test_a_run_is_read_like_its_record(paper_run: st.Trajectory) -> None:
     assert st.find_cycles(paper_run).identical(st.find_cycles(st.record_of(paper_run)))
     with pytest.raises(st.ResultError, match="a str is neither a run nor a record"):
         st.classify("run.nc")
+
+
+def test_units_of_arrays_are_honoured() -> None:
+    import pint
+    import xarray as xr
+
+    time, force = np.array([0.0, 1.0, 2.0]), np.array([1.0, 2.0, 3.0])
+    unit = pint.UnitRegistry()
+    for record in (
+        Record(time=time * unit.ms, force=force * unit.mN),
+        Record(time=time, force=force, time_unit="ms", force_unit="mN"),
+        Record(time=time.tolist(), force=force.tolist(), time_unit="ms", force_unit="mN"),
+        Record(
+            time=xr.DataArray(time, dims="i", attrs={"units": "ms"}),
+            force=xr.DataArray(force, dims="i", attrs={"units": "mN"}),
+        ),
+    ):
+        assert record.time == pytest.approx([0.0, 1e-3, 2e-3], rel=1e-15)
+        assert record.force == pytest.approx([1e-3, 2e-3, 3e-3], rel=1e-15)
+
+
+def test_a_unit_of_another_quantity_is_a_fault_by_name() -> None:
+    import pint
+
+    unit = pint.UnitRegistry()
+    with pytest.raises(st.DescriptionError) as error:
+        Record(time=np.arange(3.0) * unit.mm, force=np.ones(3), force_unit="ms")
+    assert "Record.time: '1 millimeter' is in mm, not a unit of a time" in str(error.value)
+    assert "Record.force_unit: '1 ms' is in ms, not a unit of a force" in str(error.value)
+    with pytest.raises(st.DescriptionError, match="carries 'millisecond'; give one"):
+        Record(time=np.arange(3.0) * unit.ms, force=np.ones(3), time_unit="s")
+
+
+def test_the_zero_of_a_load_cell_is_taken_off() -> None:
+    record = Record(time=[0.0, 1.0], force=[1.0, 2.0], zero="-250 mN")
+    assert record.force.tolist() == [1.25, 2.25]
+    assert not record.force.flags.writeable

@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 GRID = 400  # angles at which the closed form is tabled
-MODEL = 5e-5  # of the drop: what Eq. (7), with the terms below, leaves out at the best
+MODEL = 1e-4  # of the drop: what Eq. (7), with the terms below, leaves out at the best
 MISSED = 4.0  # a misfit that all cycles share is as smooth as the curve: it counts this much
 WORST = 1e-3  # of the drop: with a larger misfit the rises do not have the shape
 # What a record leaves open: stated stiffness over the true one, less 1; logarithms of k_x/k_y and
 # of the weakening of friction at the drive velocity. What is assumed of each, and how widely.
 TAILS = (0.0, log(1e-3), log(1e-2))
 WIDTHS = (0.02, 1.5, 1.3)
-THEORY = 0.03  # relative accuracy of phi at the best: transverse oscillation, inertia
+THEORY = 0.05  # relative accuracy of phi at the best: transverse oscillation, inertia
 KNOWN = 0.3  # relative standard error above which an angle is not determined
 EARLY = 0.5  # F_0 above the peak by this share
 SURELY = 20.0  # deg: what is known to be less is worth a word

@@ -7,16 +7,18 @@ from typing import Annotated, Any, Self
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, model_validator
+from pydantic_core import PydanticCustomError
 
-from stiction.errors import ResultError
+from stiction.errors import Fault, ResultError
 from stiction.trajectory import Trajectory
-from stiction.units import Force, Mass, PositiveSpeed, Stiffness
-from stiction.validation import Described
+from stiction.units import Force, Kind, Mass, PositiveSpeed, Stiffness, reader, to_si
+from stiction.validation import Described, faulty
 
 Floats = NDArray[np.float64]
 
 
 LARGEST = 1e100  # of any sample, in SI: the square of it is a number, too
+UNITS = {name: f"{name}_unit" for name in ("time", "force", "position", "slip_speed")}
 
 
 def _samples(values: Any) -> Floats:
@@ -41,6 +43,31 @@ def _samples(values: Any) -> Floats:
     return samples
 
 
+def _stated_unit(values: Any) -> str | None:
+    """Return the unit that an array carries itself, a pint quantity or one of xarray."""
+    if hasattr(values, "magnitude") and hasattr(values, "units"):
+        return str(values.units)
+    stated = getattr(values, "attrs", {}).get("units")
+    return None if stated is None else str(stated)
+
+
+def _in_si(values: Any, unit: str, kind: Kind) -> Any:
+    """Return samples in SI, from those in a unit."""
+    plain = getattr(values, "magnitude", values)
+    plain = getattr(plain, "values", plain)
+    factor = to_si(f"1 {unit}", kind)
+    if factor == 1.0 or np.asarray(plain).dtype.kind not in "iuf":
+        return plain
+    return plain * factor if isinstance(plain, np.ndarray) else np.asarray(plain) * factor
+
+
+KINDS = {
+    "time": Kind("a time", "s", "ms"),
+    "force": Kind("a force", "N", "mN"),
+    "position": Kind("a length", "m", "um"),
+    "slip_speed": Kind("a velocity", "m/s", "mm/s"),
+}
+SignedForce = Annotated[float, reader("a force", "N", "3 mN")]
 Samples = Annotated[Any, BeforeValidator(_samples)]
 
 
@@ -50,7 +77,8 @@ class Record(Described):
     Parameters
     ----------
     time : array
-        (n,), s, increasing; it need not be equally spaced.
+        (n,), s, increasing; it need not be equally spaced. This and every array may carry a unit,
+        as a pint quantity or as ``attrs["units"]`` of a DataArray.
     force : array
         (n,), N: the spring force, positive where the spring pulls the mass along the drive.
     normal_load : float or str, optional
@@ -63,6 +91,10 @@ class Record(Described):
         kg.
     position, slip_speed : array, optional
         (n,), m and m/s, along the drive and of the slip, where they are known otherwise.
+    zero : float or str, optional
+        N, what the load cell reads without load; it is taken off the force.
+    time_unit, force_unit, position_unit, slip_speed_unit : str, optional
+        Units of arrays that do not carry their own: ``time_unit="ms"``.
 
     Raises
     ------
@@ -86,6 +118,41 @@ class Record(Described):
     mass: Mass | None = None
     position: Samples = None
     slip_speed: Samples = None
+    zero: SignedForce | None = None
+    time_unit: str = "s"
+    force_unit: str = "N"
+    position_unit: str = "m"
+    slip_speed_unit: str = "m/s"
+
+    @model_validator(mode="before")
+    @classmethod
+    def _to_si(cls, given: Any) -> Any:
+        """Return what was given with every array in SI."""
+        read, wrong = dict(given), []
+        for name, key in UNITS.items():
+            values = given.get(name)
+            if values is None:
+                continue
+            unit, kind = _stated_unit(values), KINDS[name]
+            said = given.get(key)
+            if unit is not None and said is not None and said != unit:
+                wrong.append(Fault(key, f"is {said!r}, but {name} carries {unit!r}; give one"))
+                continue
+            try:
+                read[name] = _in_si(values, unit or str(said or kind.unit), kind)
+            except PydanticCustomError as error:
+                wrong.append(Fault(name if unit else key, error.message()))
+        if wrong:
+            raise faulty(wrong)
+        return read
+
+    @model_validator(mode="after")
+    def _without_zero(self) -> Self:
+        if self.zero:
+            force = self.force - self.zero
+            force.setflags(write=False)
+            self.__dict__["force"] = force
+        return self
 
     @model_validator(mode="after")
     def _of_one_length(self) -> Self:
