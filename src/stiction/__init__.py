@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from stiction.analysis.creep_curve import creep_curves, mean_creep
     from stiction.analysis.cycles import find_cycles
     from stiction.analysis.divergence import fit_divergence
+    from stiction.analysis.drift import detrended
     from stiction.analysis.energy import energy_budget
     from stiction.analysis.force_curve import misalignment_from_force
     from stiction.analysis.measured_line import strongest_line
@@ -130,6 +131,7 @@ _HOME = {
     "classify": "analysis.regime",
     "compare": "comparison",
     "creep_curves": "analysis.creep_curve",
+    "detrended": "analysis.drift",
     "energy_budget": "analysis.energy",
     "find_cycles": "analysis.cycles",
     "find_onset": "analysis.onset",
@@ -212,6 +214,7 @@ __all__ = [
     "classify",
     "compare",
     "creep_curves",
+    "detrended",
     "energy_budget",
     "find_cycles",
     "find_onset",

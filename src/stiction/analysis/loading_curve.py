@@ -66,6 +66,10 @@ def loading_curve(record: Record, cycles: xr.Dataset) -> LoadingCurve:
     peak, drop = (float(np.median(cycles[name].values)) for name in ("peak", "drop"))
     begin = float(np.quantile(cycles["start_force"].values, 0.8))
     low, high = begin + AFTER_TROUGH * drop, peak - BEFORE_SLIP * drop
+    if high <= low:
+        raise ResultError(
+            "not determined: the friction changes from cycle to cycle by as much as the force drops"
+        )
     levels = np.linspace(low, high, LEVELS)
     rows = []
     columns = (cycles[name].values for name in ("start", "peak_time", "peak"))
@@ -73,7 +77,7 @@ def loading_curve(record: Record, cycles: xr.Dataset) -> LoadingCurve:
         row = _crept(record, start, top, peak / most if peak > 0.0 else 1.0, rate, levels)
         if row is not None:
             rows.append(row)
-    if not rows or high <= low:
+    if not rows:
         raise ResultError(
             f"no rise has {2 * FEWEST} samples between its trough and its peak; sample faster"
         )

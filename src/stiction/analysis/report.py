@@ -12,7 +12,9 @@ import numpy as np
 from stiction.analysis.creep_found import find_creep
 from stiction.analysis.cycles import swings
 from stiction.analysis.divergence import Divergence
+from stiction.analysis.doubts import warnings
 from stiction.analysis.energy import energy_budget
+from stiction.analysis.friction_found import Friction, find_friction
 from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.misalignment import Misalignment
 from stiction.analysis.oscillation import oscillation_by_phase, transverse_oscillation
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 HARMONICS = 10.0  # of the stick-slip, which an oscillation is sought above
+OF_STICKING = ("mu_static", "stick_slope", "stiffness", "creep_distance")  # columns of cycles
 BINS = 20.0  # that a stick phase is to have at least, to be averaged over them
 
 
@@ -59,7 +62,11 @@ class Analysis(NamedTuple):
     energy : Dataset or None
         Where the work of the drive goes, in each cycle (`stiction.energy_budget`); of runs only.
     missing : dict
-        For each part that is None, why.
+        For each part that is None, and each column that is not given, why.
+    friction : Friction
+        Of the break-away, at rest and while it slides, in any motion.
+    warnings : tuple of str
+        What is not as it should be: drift, numbers that cannot be true. To be read first.
     """
 
     source: Trajectory | Record
@@ -75,6 +82,8 @@ class Analysis(NamedTuple):
     phases: xr.Dataset | None
     energy: xr.Dataset | None
     missing: dict[str, str]
+    friction: Friction
+    warnings: tuple[str, ...]
 
     @property
     def song(self) -> xr.Dataset | None:
@@ -138,6 +147,9 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
         oscillation = tried("oscillation", lambda: strongest_line(record, _above(record, cycles)))
         energy, missing["energy"] = None, "of a measured record only the force is known"
         width = _free_of_hum(oscillation, sticking)
+    friction = find_friction(record, regime.kind, cycles)
+    doubts = warnings(record, regime.kind, cycles, friction) if run is None else ()
+    cycles = _meant(cycles, regime.kind, missing)
     creep = find_creep(source, record, sticking, width)
     missing |= creep.missing
     phases = None
@@ -157,10 +169,21 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
         phases,
         energy,
         missing,
+        friction,
+        doubts,
     )
 
 
 analyze = analyse
+
+
+def _meant(cycles: xr.Dataset, kind: str, missing: dict[str, str]) -> xr.Dataset:
+    """Return the table without the values of columns that mean nothing for a kind of motion."""
+    if kind in (STICK_SLIP, TRANSITIONAL) or not cycles.sizes["cycle"]:
+        return cycles
+    why = f"the mass does not stick: this is {kind}"
+    missing |= dict.fromkeys(OF_STICKING, why)
+    return cycles.assign({name: cycles[name].where(False) for name in OF_STICKING})
 
 
 def edges(run: Trajectory, cycles: xr.Dataset) -> np.ndarray:
