@@ -61,7 +61,7 @@ def test_short_and_constant_records_are_no_error(count):
     found = st.analyse(record)
     assert found.cycles.sizes["cycle"] == 0
     assert [part.title for part in sections(found)] == [
-        "Motion", "Cycles", "Creep", "Oscillation", "Energy",
+        "Motion", "Friction", "Cycles", "Creep", "Oscillation", "Energy",
     ]  # fmt: skip
 
 
@@ -77,8 +77,8 @@ def test_a_run_without_samples_or_misalignment_is_no_error():
 def test_tables_and_numbers_as_files(found, tmp_path):
     names = [path.name for path in write(found, tmp_path)]
     assert names == [
-        "analysis.json", "cycles.csv", "summary.csv", "creep.csv", "creep-phases.csv",
-        "oscillation.csv", "oscillation-phases.csv", "energy.csv",
+        "analysis.json", "friction.csv", "cycles.csv", "summary.csv", "creep.csv",
+        "creep-phases.csv", "oscillation.csv", "oscillation-phases.csv", "energy.csv",
     ]  # fmt: skip
     with (tmp_path / "cycles.csv").open() as file:
         rows = list(csv.DictReader(file))

@@ -13,10 +13,22 @@ from stiction.files import placeable, whole
 if TYPE_CHECKING:
     import xarray as xr
 
+FRICTIONS = ("break_away", "static", "kinetic")
+# of each of them, with its unit
+FRICTION = {
+    "force": "N",
+    "error": "N",
+    "spread": "N",
+    "coefficient": "1",
+    "coefficient_error": "1",
+    "coefficient_spread": "1",
+}
+
 
 def tables(found: Analysis) -> dict[str, xr.Dataset]:
     """Return every table that there is, by its name."""
     named = {
+        "friction": friction_table(found),
         "cycles": found.cycles,
         "summary": found.summary,
         "creep": found.creep,
@@ -26,6 +38,20 @@ def tables(found: Analysis) -> dict[str, xr.Dataset]:
         "energy": found.energy,
     }
     return {name: table for name, table in named.items() if table is not None}
+
+
+def friction_table(found: Analysis) -> xr.Dataset | None:
+    """Return the frictions that are known, a row each; None if there is none."""
+    import xarray as xr
+
+    known = {name: each for name in FRICTIONS if (each := getattr(found.friction, name))}
+    if not known:
+        return None
+    columns = {
+        key: ("friction", [getattr(each, key) for each in known.values()], {"units": unit})
+        for key, unit in FRICTION.items()
+    }
+    return xr.Dataset(columns, {"friction": ("friction", list(known))})
 
 
 def write(found: Analysis, folder: Path) -> list[Path]:
@@ -76,8 +102,23 @@ def numbers(found: Analysis) -> dict[str, Any]:
             name: None if fit is None else {key: _number(v) for key, v in fit._asdict().items()}
             for name, fit in fits.items()
         },
+        "friction": _friction(found),
+        "warnings": list(found.warnings),
         "missing": found.missing,
     }
+
+
+def _friction(found: Analysis) -> dict[str, Any]:
+    """Return each friction as a table: force and coefficient with error and spread, or why not."""
+    shown: dict[str, Any] = {}
+    for name in FRICTIONS:
+        each = getattr(found.friction, name)
+        if each is None:
+            shown[name] = None
+            continue
+        values = {key: getattr(each, key) for key in FRICTION}
+        shown[name] = {key: _number(value) for key, value in values.items()}
+    return shown | {"missing": found.friction.missing}
 
 
 def _number(value: Any) -> float | None:

@@ -66,6 +66,8 @@ def loading_curve(record: Record, cycles: xr.Dataset) -> LoadingCurve:
     peak, drop = (float(np.median(cycles[name].values)) for name in ("peak", "drop"))
     begin = float(np.quantile(cycles["start_force"].values, 0.8))
     low, high = begin + AFTER_TROUGH * drop, peak - BEFORE_SLIP * drop
+    if high <= 0.0:
+        raise ResultError("not determined: the force is against the drive; its zero is off")
     if high <= low:
         raise ResultError(
             "not determined: the friction changes from cycle to cycle by as much as the force drops"

@@ -15,10 +15,14 @@ if TYPE_CHECKING:
     import xarray as xr
 
 PERIODS = 100.0  # of the lowest frequency, in a window
+AS_SAWTOOTH = 1.5  # times the amplitude that a sawtooth's harmonic has
+LOBE = 2.5  # lines to each side that a window of Hamming spreads a sine over
 STEPS = 5  # windows that overlap at any time
 
 
-def strongest_line(record: Record, low: float, *, width: float | None = None) -> xr.Dataset:
+def strongest_line(
+    record: Record, low: float, *, width: float | None = None, cycles: xr.Dataset | None = None
+) -> xr.Dataset:
     """Follow the strongest line of a measured force through time, if there is one.
 
     Parameters
@@ -31,12 +35,16 @@ def strongest_line(record: Record, low: float, *, width: float | None = None) ->
     width : float, optional
         Of the windows, s; by default a hundred periods of `low`, and a tenth of the record at
         most.
+    cycles : Dataset, optional
+        From `stiction.find_cycles`: harmonics of them are no line, see below.
 
     Returns
     -------
     Dataset
         As `stiction.follow_ridge`, with amplitudes in N. Where no line stands out of the noise,
-        the frequency is not a number; that it is so everywhere is an answer.
+        the frequency is not a number; that it is so everywhere is an answer. A sawtooth of drop D
+        has the amplitude D/(pi n) at n times its frequency: what is there of `cycles` and hardly
+        larger belongs to their shape.
 
     Raises
     ------
@@ -62,6 +70,21 @@ def strongest_line(record: Record, low: float, *, width: float | None = None) ->
         lines = spectrogram(
             record.force, rate, width=chosen, step=chosen / STEPS, start=float(record.time[0])
         )
+        if cycles is not None and cycles.sizes["cycle"]:
+            lines = _without_harmonics(lines, cycles, low)
         return follow_ridge(lines.assign_attrs(units="N"), low, 0.5 * rate)
     except ValueError as error:  # too few samples in a window, or lines above `low`
         raise ResultError(str(error)) from None
+
+
+def _without_harmonics(lines: xr.DataArray, cycles: xr.Dataset, low: float) -> xr.DataArray:
+    """Return a spectrogram in which harmonics of a sawtooth are as high as what lies beside."""
+    frequency = lines["frequency"].values
+    fundamental = 1.0 / float(cycles["period"].median())
+    number = frequency / fundamental
+    lobe = LOBE * (frequency[1] - frequency[0]) / fundamental
+    near = np.abs(number - np.round(number)) < lobe
+    bound = AS_SAWTOOTH * float(cycles["drop"].median()) / np.pi / np.maximum(number, 1.0)
+    harmonic = near[:, None] & (lines.values < bound[:, None])
+    beside = lines.where(~harmonic & (frequency >= low)[:, None]).median("frequency")
+    return lines.where(~harmonic, beside)

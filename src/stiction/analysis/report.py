@@ -144,7 +144,10 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
         energy = tried("energy", lambda: energy_budget(run, edges(run, cycles)))
         width = None
     else:
-        oscillation = tried("oscillation", lambda: strongest_line(record, _above(record, cycles)))
+        oscillation = tried(
+            "oscillation",
+            lambda: strongest_line(record, _above(record, cycles), cycles=cycles),
+        )
         energy, missing["energy"] = None, "of a measured record only the force is known"
         width = _free_of_hum(oscillation, sticking)
     friction = find_friction(record, regime.kind, cycles)
@@ -179,8 +182,15 @@ analyze = analyse
 
 def _meant(cycles: xr.Dataset, kind: str, missing: dict[str, str]) -> xr.Dataset:
     """Return the table without the values of columns that mean nothing for a kind of motion."""
-    if kind in (STICK_SLIP, TRANSITIONAL) or not cycles.sizes["cycle"]:
+    if not cycles.sizes["cycle"]:
         return cycles
+    if kind in (STICK_SLIP, TRANSITIONAL):
+        if not float(cycles["creep_distance"].median()) < 0.0:
+            return cycles
+        missing["creep_distance"] = (
+            "the force rises faster than stiffness and drive velocity, as stated, allow"
+        )
+        return cycles.assign(creep_distance=cycles["creep_distance"].where(False))
     why = f"the mass does not stick: this is {kind}"
     missing |= dict.fromkeys(OF_STICKING, why)
     return cycles.assign({name: cycles[name].where(False) for name in OF_STICKING})

@@ -8,6 +8,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stiction.analysis.columns import Quantity, grid
+from stiction.analysis.friction_found import Measured
+from stiction.analysis.regime import (
+    HARMONIC,
+    IRREGULAR,
+    SETTLING,
+    STEADY,
+    STICK_SLIP,
+    STUCK,
+    TRANSITIONAL,
+)
 from stiction.analysis.report import Analysis
 from stiction.sections import Section, Table
 from stiction.trajectory import Trajectory
@@ -38,21 +48,81 @@ ENERGIES = {
     "spring_y": "spring y",
     "kinetic": "kinetic",
 }
+UNLESS_NONE = ("hesitations",)
+SELDOM = 0.05  # of the time: a line that is seen no longer may be chance
 NOTHING = 1e-6  # of the work: what is less stands in the files, not in the terminal
+FRICTIONS = {
+    "break_away": "first break-away",
+    "static": "static, mean of the peaks",
+    "kinetic": "kinetic, mean while it slides",
+}
 SLIGHT = 1e-3  # of a velocity: an error that is less is not worth a word
 SURE = 2.0  # standard errors that a fit must be away from nothing
 
 
 def sections(found: Analysis) -> list[Section]:
-    """Return the analysis, part by part."""
+    """Return the analysis, part by part: warnings first, then what it is in plain words."""
     kind = str(found.regime)
+    doubts = [Section("Warnings", list(found.warnings))] if found.warnings else []
     return [
-        Section("Motion", [f"{kind[0].upper()}{kind[1:]}."]),
+        *doubts,
+        Section("Motion", [plainly(found), f"{kind[0].upper()}{kind[1:]}."]),
+        friction(found),
         cycles(found),
         creep(found),
         oscillation(found),
         energy(found),
     ]
+
+
+def plainly(found: Analysis) -> str:
+    """Return what the mass does, in a sentence that needs no theory."""
+    count, kind = found.cycles.sizes["cycle"], found.regime.kind
+    if count:
+        drop, period = (float(found.cycles[name].mean()) for name in ("drop", "period"))
+        times = "once" if count == 1 else f"{count} times"
+        every = f", every {in_words(period, 's')}" if count > 1 else ""
+        size = f"the force drops by {in_words(drop, 'N')}"
+        plain = {
+            STICK_SLIP: f"The mass sticks and slips {times}{every}; {size}",
+            TRANSITIONAL: f"The mass slips {times}{every}, and hardly rests in between; {size}",
+            HARMONIC: f"The mass swings {times}{every}, without sticking; {size}",
+        }
+        if kind in plain:
+            each = " each time" if count > 1 else ""
+            return f"{plain[kind]}{each}."
+    slides = found.friction.kinetic
+    at = f", at a force of {in_words(slides.force, 'N')}" if slides is not None else ""
+    plain = {
+        STEADY: f"The mass slides steadily{at}.",
+        SETTLING: f"The motion dies down, and the mass comes to slide steadily{at}.",
+        STUCK: "The mass sticks for the whole record: the force only rises.",
+        IRREGULAR: "The mass vibrates irregularly, without sticking.",
+    }
+    return plain.get(kind, "What the mass does cannot be told from this record.")
+
+
+def friction(found: Analysis) -> Section:
+    """Return the friction at the break-away, at rest and while it slides."""
+    rows, lines = [], []
+    for name, title in FRICTIONS.items():
+        each: Measured | None = getattr(found.friction, name)
+        if each is None:
+            lines.append(
+                f"{title[0].upper()}{title[1:]}: not known; {found.friction.missing[name]}."
+            )
+            continue
+        force = _with_error(in_words(each.force, "N"), each.error, "N")
+        spread = in_words(each.spread, "N") if isfinite(each.spread) else ""
+        mu = f"{each.coefficient:.4g}" if isfinite(each.coefficient) else ""
+        if mu and each.coefficient_error > SLIGHT * abs(each.coefficient):
+            mu += f" ± {each.coefficient_error:.1g}"
+        rows.append((title, mu, force, spread))
+    if not rows:
+        return Section("Friction", lines)
+    if not isinstance(found.source, Trajectory) and found.record.zero is None:
+        lines.append("The zero of the force is taken on trust: no reading without load is given.")
+    return Section("Friction", lines, Table(("friction", "µ", "force", "spread"), rows))
 
 
 def cycles(found: Analysis) -> Section:
@@ -65,11 +135,16 @@ def cycles(found: Analysis) -> Section:
         row = found.summary.sel(quantity=quantity)
         mean, spread = float(row["mean"]), float(row["standard_deviation"])
         unit = str(row["unit"].values)
-        if isfinite(mean):
+        if isfinite(mean) and (quantity not in UNLESS_NONE or mean):
             several = in_words(spread, unit) if isfinite(spread) else ""
             rows.append((str(row["meaning"].values), in_words(mean, unit), several))
     table = Table(("quantity", "mean", "standard deviation"), rows)
-    return Section("Cycles", [f"{count}, from trough to trough. Means over them:"], table)
+    lines = [f"{count}, from trough to trough. Means over them:"]
+    left_out = [name for name in COLUMNS if name in found.missing]
+    if left_out:
+        columns = ", ".join(COLUMNS[name] for name in left_out)
+        lines.append(f"Not given: {columns}; {found.missing[left_out[0]]}.")
+    return Section("Cycles", lines, table)
 
 
 def each_cycle(table: xr.Dataset) -> Table:
@@ -125,12 +200,12 @@ def oscillation(found: Analysis) -> Section:
         return Section("Oscillation", [f"Not seen: {found.missing['oscillation']}."])
     seen = found.oscillation["frequency"].values
     seen = seen[np.isfinite(seen)]
-    if not len(seen):
+    if len(seen) < SELDOM * found.oscillation.sizes["time"] or not len(seen):
         return Section("Oscillation", ["No line stands out of the noise."])
     low, high = (in_words(float(each), "Hz") for each in (seen.min(), seen.max()))
     share = 100.0 * len(seen) / found.oscillation.sizes["time"]
     pitch = f"between {low} and {high}" if low != high else f"at {low}"
-    lines = [f"Seen in {share:.2g}% of the time, {pitch}."]
+    lines = [f"Seen in {share:.3g}% of the time, {pitch}."]
     if found.phases is None:
         return Section("Oscillation", lines)
     natural = found.oscillation.attrs["natural_frequency"]
@@ -161,6 +236,11 @@ def energy(found: Analysis) -> Section:
     less = f" Less than {NOTHING:.0e} of it: {', '.join(small)}." if small and work > 0.0 else ""
     sentence = f"Where the work of the drive goes, from each time to the next. {closes}{less}"
     return Section("Energy", [sentence], grid(columns, SHOWN))
+
+
+def _with_error(value: str, error: float, unit: str) -> str:
+    """Return a value in words with its standard error, if that is known."""
+    return f"{value} ± {in_words(float(f'{error:.1g}'), unit)}" if error > 0.0 else value
 
 
 def _true(found: Analysis) -> str:

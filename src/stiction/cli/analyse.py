@@ -51,6 +51,7 @@ def analyse(result: Path, /, *, output: MaybeOutput = None, trust: bool = False)
         for name, figure in figures(found).items():
             paths.append(write(figure, drawable(folder / f"{name}.png")))
     if found.cycles.sizes["cycle"]:
-        parts.insert(2, Section("Cycle by cycle", [], each_cycle(found.cycles)))
+        at = [part.title for part in parts].index("Cycles") + 1
+        parts.insert(at, Section("Cycle by cycle", [], each_cycle(found.cycles)))
     printed(str(result), parts)
     print(f"\nwrote {', '.join(path.name for path in paths)} to {folder}")

@@ -1,0 +1,113 @@
+"""Friction of any motion, and doubts in words: what cannot be true, drift, a zero that is off."""
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.sections import as_text
+
+KNOWN = {
+    "normal_load": "10 N",
+    "stiffness": "1 N/mm",
+    "drive_velocity": "1 mm/s",
+    "mass": "250 g",
+}
+
+
+@pytest.fixture(scope="module")
+def force():
+    run = st.simulate(st.presets.nakano_popov_2020(), 7.0, sample_rate=2e3)
+    return run.data["time"].values, run.data["spring_x"].values
+
+
+def told(time: np.ndarray, force: np.ndarray, **changes: object) -> str:
+    return " ".join(st.analyse(st.Record(time=time, force=force, **KNOWN | changes)).warnings)
+
+
+def test_what_belongs_together_is_not_doubted(force) -> None:
+    assert told(*force) == ""
+
+
+@pytest.mark.parametrize(
+    ("stretch", "gain", "changes", "said"),
+    [
+        (1e3, 1.0, {}, "is the time in milliseconds? Give time_unit='ms'"),
+        (1.0, 1e3, {}, "is the force in millinewtons? Give force_unit='mN'"),
+        (1e3, 1e3, {}, "A friction coefficient of 199 is beyond belief"),
+        (1e3, 1e3, {}, "stiffness over mass is 7.3e-07 times"),
+        (1.0, 1.0, {"stiffness": "1 MN/m"}, "stated 1000 times too large"),
+        (1.0, 1.0, {"drive_velocity": "1 um/s"}, "stated 1000 times too small"),
+        (1.0, 1.0, {"mass": "1 kg"}, "stiffness over mass is 2.9 times 1e+03 1/s², as stated"),
+        (1.0, 1.0, {"stiffness": "700 N/m"}, "1.4 times stiffness times drive velocity"),
+    ],
+)
+def test_numbers_that_cannot_be_true_are_doubted(force, stretch, gain, changes, said) -> None:
+    time, newtons = force
+    assert said in told(stretch * time, gain * newtons, **changes)
+
+
+def test_drift_is_seen_and_taken_off(force) -> None:
+    time, newtons = force
+    record = st.Record(time=time, force=newtons + 0.05 * time, **KNOWN)
+    found = st.analyse(record)
+    assert "The force drifts by 50" in found.warnings[0]
+    assert as_text(found.tables()).startswith("Warnings")
+    mended = st.analyse(st.detrended(record))
+    assert mended.warnings == ()
+    assert mended.friction.static.coefficient == pytest.approx(0.1993, rel=2e-3)
+
+
+def test_a_zero_that_is_off_is_seen_and_taken_off(force) -> None:
+    time, newtons = force
+    assert "at 300 mN: if the spring was unloaded, give zero='0.3 N'" in told(time, newtons + 0.3)
+    assert told(time, newtons + 0.3, zero="0.3 N") == ""
+    assert "against the drive" in told(time, newtons - 2.5)
+
+
+def test_coarse_sampling_is_named() -> None:
+    time = np.arange(0.0, 60.0, 1e-3)
+    assert "Sample at" in told(time, 1.0 + 0.3 * (time % 1.1))
+
+
+def test_a_break_away_before_steady_sliding() -> None:
+    time = np.arange(0.0, 10.0, 1e-3)
+    noise = 0.01 * np.random.default_rng(2).standard_normal(len(time))
+    course = np.where(time < 2.0, 1.5 * time, 2.0 + np.exp(-8.0 * (time - 2.0)))
+    found = st.analyse(st.Record(time=time, force=course + noise, normal_load=10.0))
+    assert found.friction.break_away.coefficient == pytest.approx(0.3, abs=0.003)
+    assert found.friction.kinetic.coefficient == pytest.approx(0.2, abs=0.001)
+    assert found.friction.kinetic.coefficient_spread == pytest.approx(0.001, rel=0.1)
+    assert found.friction.static is None
+    assert "first break-away" in as_text(found.tables())
+
+
+def test_steady_sliding_has_its_mean_and_spread() -> None:
+    time = np.arange(0.0, 10.0, 1e-3)
+    noise = 0.05 * np.random.default_rng(2).standard_normal(len(time))
+    found = st.analyse(st.Record(time=time, force=2.0 + noise, normal_load=10.0))
+    kinetic = found.friction.kinetic
+    assert abs(kinetic.coefficient - 0.2) < 4.0 * kinetic.coefficient_error
+    assert kinetic.spread == pytest.approx(0.05, rel=0.05)
+    assert found.friction.missing["break_away"].startswith("the record does not begin")
+
+
+def test_columns_that_mean_nothing_are_not_given() -> None:
+    time = np.arange(0.0, 3.0, 1e-4)
+    swing = 1.0 + 0.3 * np.sin(2.0 * np.pi * 10.0 * time)
+    found = st.analyse(st.Record(time=time, force=swing, normal_load=5.0))
+    assert found.regime.kind == "harmonic vibration"
+    assert np.isnan(found.cycles["stick_slope"]).all()
+    assert "harmonic vibration" in found.missing["creep_distance"]
+    assert found.friction.kinetic.coefficient == pytest.approx(0.2, rel=1e-3)
+
+
+def test_a_harmonic_of_the_cycles_is_no_line() -> None:
+    time = np.arange(0.0, 60.0, 1e-3)
+    noise = 2e-4 * np.random.default_rng(0).standard_normal(len(time))
+    sawtooth = 1.0 + 0.3 * (time % 1.1)
+    found = st.analyse(st.Record(time=time, force=sawtooth + noise))
+    assert np.isfinite(found.oscillation["frequency"]).mean() < 0.05
+    assert "No line stands out" in as_text(found.tables())
+    hum = 0.005 * np.sin(2.0 * np.pi * 50.0 * time)
+    found = st.analyse(st.Record(time=time, force=sawtooth + hum + noise))
+    assert found.oscillation["frequency"].values == pytest.approx(50.0, abs=0.1)
