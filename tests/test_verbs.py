@@ -270,3 +270,16 @@ def test_the_output_option_has_one_name_and_help_an_example(name, capsys):
     assert "--output" in text
     assert "-o " in text
     assert text.count(f"stiction {name}") > 1  # in the usage, and as an example
+
+
+def test_a_table_breaks_between_words_on_a_narrow_terminal(capsys, monkeypatch):
+    from stiction.cli.tables import printed
+    from stiction.sections import Section, Table
+
+    headings = ("law", "sticks", "slowest in load-up (m/s)", "median in load-up (m/s)")
+    row = ("coulomb, mu_static = 0.2", "39", "3.58e-05", "1.25e-05")
+    monkeypatch.setenv("COLUMNS", "40")
+    printed("a title", [Section("a part", [], Table(headings, [row]))])
+    text = capsys.readouterr().out
+    assert {*row[1:], "coulomb,", "load-up"} <= set(text.split())
+    assert max(map(len, text.splitlines())) <= 40

@@ -19,7 +19,7 @@ from stiction.trajectory import Trajectory
 SAMPLES = 20_000  # where the description asks for none
 HEADINGS = (
     "law", "sticks", "stuck (s)", "largest k_x u_x/W", "fastest slip (m/s)",
-    "in first load-up: slowest (m/s)", "median (m/s)", "steps", "run",
+    "slowest in load-up (m/s)", "median in load-up (m/s)",
 )  # fmt: skip
 
 
@@ -66,9 +66,8 @@ def row(label: str, run: Trajectory) -> tuple[str, ...]:
     """Return the row of one law."""
     o = outcome(run)
     speeds = (f"{value:.3g}" for value in (o.fastest, o.slowest, o.creep))
-    ended = "completed" if o.status.ok else o.status.name.lower().replace("_", " ")
-    stuck = (str(o.sticks), f"{o.time_stuck:.4g}")
-    return label, *stuck, f"{o.peak:.4f}", *speeds, str(o.steps), ended
+    stuck = (str(o.sticks), f"{o.time_stuck:.3g}")
+    return label, *stuck, f"{o.peak:.4f}", *speeds
 
 
 def sampled(description: Description) -> Description:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -11,6 +11,8 @@ from rich.table import Table as Grid
 from rich.text import Text
 
 from stiction.sections import Section, Table
+
+LONGEST = 24  # letters of a word that is not broken
 
 
 def printed(title: str, parts: Iterable[Section]) -> None:
@@ -23,23 +25,43 @@ def printed(title: str, parts: Iterable[Section]) -> None:
         for sentence in part.sentences:
             console.print(Padding(Text(sentence), (0, 0, 0, 2)))
         if part.table is not None:
-            console.print(table(part.table))
+            console.print(table(part.table, console.width))
 
 
-def table(found: Table) -> Grid:
-    """Return a table for the terminal."""
+def table(found: Table, room: int = 80) -> Grid:
+    """Return a table for the terminal, as wide as its text or as the `room` that there is."""
     shown = Grid(box=SIMPLE_HEAD, header_style="bold", padding=(0, 1, 0, 0), pad_edge=False)
-    for at, heading in enumerate(found.headings):
-        numbers = all(number(row[at]) for row in found.rows)
+    columns = list(zip(found.headings, *found.rows, strict=True))
+    inside = room - 1 - 2 * len(columns)  # rules and padding take the rest
+    for cells, width in zip(columns, widths(columns, inside), strict=True):
+        numbers = all(number(cell) for cell in cells[1:])
         shown.add_column(
-            heading,
-            justify="right" if numbers else "left",
-            overflow="fold",
-            min_width=max(map(len, heading.split()), default=0),  # headings break between words
+            cells[0], justify="right" if numbers else "left", overflow="fold", width=width
         )
     for row in found.rows:
         shown.add_row(*(Text(cell) for cell in row))
     return shown
+
+
+def widths(columns: Sequence[Sequence[str]], room: int) -> list[int | None]:
+    """Return how many letters wide columns are: lines break between words where they must."""
+    least = [narrowest(cells) for cells in columns]
+    wanted = [max(map(len, cells), default=0) for cells in columns]
+    left = room - sum(least)
+    if left < 0:
+        return [None for _ in columns]  # words are broken as well
+    found: list[int | None] = []
+    for low, high in zip(least, wanted, strict=True):
+        more = max(0, min(high - low, left))
+        found.append(low + more)
+        left -= more
+    return found
+
+
+def narrowest(cells: Iterable[str]) -> int:
+    """Return the width at which cells break between words, or after many letters."""
+    words = (word for text in cells for word in text.split())
+    return min(max(map(len, words), default=0), LONGEST)
 
 
 def number(text: str) -> bool:

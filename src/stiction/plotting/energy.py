@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import MaxNLocator, NullFormatter
 from numpy.typing import NDArray
 
 from stiction.plotting.canvas import canvas, figure_of, fixed, listed
@@ -80,6 +80,11 @@ def draw_closure(ax: Axes, budget: xr.Dataset) -> None:
     )
     bound = budget["quadrature"].values / whole
     ax.semilogy(place, bound, "_", color=RED, ms=9, mew=1.2, label="bound of the quadrature")
+    shown = np.concatenate([np.abs(budget["residual"].values) / whole, np.ravel(bound)])
+    decades = np.log10(shown[np.isfinite(shown) & (shown > 0.0)])
+    if len(decades):  # whole ones: no other labels are needed
+        ax.set_ylim(10.0 ** np.floor(decades.min() - 0.1), 10.0 ** np.ceil(decades.max() + 0.1))
+    ax.yaxis.set_minor_formatter(NullFormatter())
     ax.set_ylabel("share of work (1)")
 
 
@@ -116,6 +121,6 @@ def plot_energy(budget: xr.Dataset, axes: Sequence[Axes] | None = None) -> NDArr
             panel_letter(ax, letter)
         panels[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
         panels[1].legend(loc="best")
-        panels[1].xaxis.set_major_locator(MaxNLocator(integer=True))
+        panels[1].xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
         panels[1].set_xlabel("interval")
     return np.array(panels, dtype=object)

@@ -76,7 +76,7 @@ def plot_modes(
             below.xaxis.set_major_formatter(PLAIN)
         below.set_xlabel(scale.label)
         above.legend(
-            loc="lower center", bbox_to_anchor=(0.5, 1.07 if len(marked) else 1.0), ncols=2
+            loc="lower center", bbox_to_anchor=(0.5, 1.07 if len(marked) else 1.0), ncols=3
         )
     return np.array([above, below], dtype=object)
 
@@ -89,7 +89,7 @@ def draw_growth_rates(ax: Axes, modes: xr.Dataset, scale: Scale) -> None:
     growth, oscillates = modes["growth_rate"].values, modes["frequency"].values > 0
     top = np.abs(growth.max(axis=1)).max()
     ax.set(ylim=(-2.5 * top, 1.25 * top), ylabel="growth rate (1/s)")
-    ax.axhspan(0.0, 1.25 * top, color=UNSTABLE, linewidth=0, zorder=0)
+    ax.axhspan(0.0, 1.25 * top, color=UNSTABLE, linewidth=0, zorder=0, label="unstable")
     ax.axhline(0.0, color=GREY, linewidth=0.6)
     at = scale.drawn(modes["value"].values)
     for rates, rings in zip(growth.T, oscillates.T, strict=True):
@@ -97,15 +97,26 @@ def draw_growth_rates(ax: Axes, modes: xr.Dataset, scale: Scale) -> None:
         ax.plot(at, np.where(rings, np.nan, rates), color=ORANGE, linewidth=1.2, dashes=(3, 1.5))
     ax.plot([], [], color=BLUE, linewidth=1.2, label="oscillates")
     ax.plot([], [], color=ORANGE, linewidth=1.2, dashes=(3, 1.5), label="does not")
-    ax.text(0.985, 0.97, "unstable", transform=ax.transAxes, ha="right", va="top")
 
 
 def draw_frequencies(ax: Axes, modes: xr.Dataset, scale: Scale) -> None:
-    """Draw the frequencies of the modes that oscillate, unstable ones broad."""
+    """Draw the frequencies of the modes that oscillate, unstable ones broad.
+
+    The axis is logarithmic where they span a decade or more.
+    """
     at, frequency = scale.drawn(modes["value"].values), modes["frequency"].values
-    ax.set(yscale="log", ylabel="frequency (Hz)")
+    ax.set_ylabel("frequency (Hz)")
+    ringing = frequency[frequency > 0.0]
+    if not len(ringing):
+        ax.set_yticks([])
+        ax.text(0.5, 0.5, "no mode oscillates", transform=ax.transAxes, ha="center", va="center")
+        return
     for f, rate in zip(frequency.T, modes["growth_rate"].values.T, strict=True):
         shown = np.where(f > 0, f, np.nan)
         ax.plot(at, shown, color=BLUE, linewidth=1.2)
         ax.plot(at, np.where(rate > 0, shown, np.nan), color=BLUE, linewidth=3.0, alpha=0.5)
-    ax.yaxis.set_major_formatter(PLAIN)
+    if ringing.max() < 10.0 * ringing.min():
+        ax.set_ylim(0.0, 1.1 * ringing.max())
+    else:
+        ax.set_yscale("log")
+        ax.yaxis.set_major_formatter(PLAIN)

@@ -117,7 +117,7 @@ def _name_sides(ax: Axes, curve: xr.Dataset) -> None:
         )
     edge = np.minimum.reduce([across / 1.6, (1 - across) / 1.6, up, 1 - up])  # words are wide
     for name, side in (("unstable", signed), ("stable", -signed)):
-        room = np.minimum(side, edge)
+        room = np.minimum(side / 1.6, edge)
         if room.max() > 0.03:
             at = np.unravel_index(np.argmax(room), room.shape)
             ax.text(

@@ -79,15 +79,15 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def panel_letter(ax: Axes, letter: str) -> None:
-    """Write ``(letter)`` beside the upper left corner of the axes."""
+    """Write ``(letter)`` above the labels at the upper left corner of the axes."""
     ax.annotate(
         f"({letter})",
         (0, 1),
-        (-17, 2),
+        (-6, 4),
         xycoords="axes fraction",
         textcoords="offset points",
         ha="right",
-        va="top",
+        va="bottom",
         fontweight="bold",
         fontsize=8,
     )
