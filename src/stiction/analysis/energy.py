@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stiction.analysis.quadrature import integrals, states_at
 from stiction.errors import ResultError
+from stiction.solver.integrate import tolerance
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ ENERGIES = {
     "kinetic": "change of the kinetic energy",
     "residual": "work less what became of it",
     "quadrature": "bound of the error of the quadrature in the residual",
+    "bound": "bound of the residual: of the quadrature, and of what the tolerance allows",
 }
 
 
@@ -42,7 +44,8 @@ def energy_budget(run: Trajectory, edges: ArrayLike | None = None) -> xr.Dataset
     Over a driven plate the drive works on the plate, P = F.v_d, and the mass has v = u'. Where
     the spring is driven it works on the spring's end, P = v_d.(K u + C u'), and v = s. At a
     steady drive both are the same run, seen from two frames. Each term is integrated by itself
-    from the run's states, and nothing is adjusted: the residual is what the solver errs by.
+    from the run's states, and nothing is adjusted: the residual is what the solver errs by. Each
+    step is held to a local tolerance, and so is what it gains or loses of the energy it exchanges.
 
     Friction does no work while the mass sticks, nor does the normal load in the plane. The
     friction of a law with internal state can give work back: what its bristles store is part of
@@ -62,9 +65,9 @@ def energy_budget(run: Trajectory, edges: ArrayLike | None = None) -> xr.Dataset
     Dataset
         Over ``interval``: ``start``, ``end`` (s), and in J ``work``, ``friction_x``,
         ``friction_y``, ``damper_x``, ``damper_y``, ``spring_x``, ``spring_y`` and ``kinetic``
-        (changes), ``residual`` (work less all others), and ``quadrature``, a bound of the part
-        of the residual that is not the solver's. Their sums over ``interval`` are those of the
-        whole.
+        (changes), ``residual`` (work less all others), ``quadrature``, a bound of the part of
+        the residual that is not the solver's, and ``bound``, one of the whole residual. Their
+        sums over ``interval`` are those of the whole.
 
     Raises
     ------
@@ -82,13 +85,14 @@ def energy_budget(run: Trajectory, edges: ArrayLike | None = None) -> xr.Dataset
     import xarray as xr
 
     borders = _edges(run, edges)
-    powers, off = integrals(
-        run, borders, lambda t, rows: _powers(run, t, rows), run.description.run.rtol
-    )
+    rtol = run.description.run.rtol
+    powers, off, sizes = integrals(run, borders, lambda t, rows: _powers(run, t, rows), rtol)
     stored = np.diff(_stored(run, borders, states_at(run, borders)), axis=1)
     spent = np.concatenate([powers[1:], stored])
     residual = powers[0] - spent.sum(axis=0)
-    values = [powers[0], *spent, residual, off.sum(axis=0)]
+    quadrature, exchanged = off.sum(axis=0), sizes.sum(axis=0) + np.abs(stored).sum(axis=0)
+    bound = quadrature + tolerance(rtol) * exchanged
+    values = [powers[0], *spent, residual, quadrature, bound]
     variables = {
         name: ("interval", value, {"units": "J", "long_name": ENERGIES[name]})
         for name, value in zip(ENERGIES, values, strict=True)

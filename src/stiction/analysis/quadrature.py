@@ -54,10 +54,11 @@ GAUSS[1::2] = 0.5 * np.polynomial.legendre.leggauss(7)[1]
 
 
 class Integral(NamedTuple):
-    """Integrals (quantity, interval) and bounds of what the quadrature is off by."""
+    """Integrals (quantity, interval), bounds of their error, and integrals of the magnitudes."""
 
     value: Floats
     error: Floats
+    size: Floats
 
 
 def integrals(run: Trajectory, edges: Floats, integrand: Integrand, accuracy: float) -> Integral:
@@ -85,29 +86,29 @@ def integrals(run: Trajectory, edges: Floats, integrand: Integrand, accuracy: fl
         Of shape (q, n).
     """
     starts, lengths = panels(run, edges)
-    value = error = np.zeros((0, 0))
+    value = error = sizes = np.zeros((0, 0))
     left = 0.0
     for turn in range(PASSES):
         t = starts[:, None] + lengths[:, None] * NODES
         found = integrand(t.ravel(), states_at(run, t.ravel())).reshape(-1, *t.shape)
         part, off = lengths * (found @ KRONROD), lengths * np.abs(found @ (KRONROD - GAUSS))
+        size = lengths * (np.abs(found) @ KRONROD)
         if turn == 0:
-            value, error = np.zeros((2, len(found), len(edges) - 1))
-            size = (lengths * (np.abs(found) @ KRONROD)).sum(axis=1).max()
-            left = max(accuracy, ROUNDING) * size
+            value, error, sizes = np.zeros((3, len(found), len(edges) - 1))
+            left = max(accuracy, ROUNDING) * size.sum(axis=1).max()
         worst = off.max(axis=0)
         poor = worst > _threshold(worst, left if turn == 0 else 0.5 * left)
         if turn == PASSES - 1 or poor.sum() > MOST:
             poor[:] = False
         which = np.searchsorted(edges, starts[~poor], side="right") - 1
-        for into, values in ((value, part), (error, off)):
+        for into, values in ((value, part), (error, off), (sizes, size)):
             for row, one in zip(into, values[:, ~poor], strict=True):
                 row += np.bincount(which, one, len(row))
         if not poor.any():
             break
         left -= worst[~poor].sum()
         starts, lengths = split(starts[poor], lengths[poor], np.full(poor.sum(), 4))
-    return Integral(value, error)
+    return Integral(value, error, sizes)
 
 
 def _threshold(errors: Floats, left: float) -> float:

@@ -50,8 +50,7 @@ def added(a: Counts, b: Counts) -> Counts:
 def finer(accuracy: Accuracy) -> Accuracy:
     """Return what the steps of a node's cycle are held to."""
     tolerance, newton = FINER * accuracy.tolerance, FINER * accuracy.newton
-    _, _, speed, free_x, free_y, longest, drive = accuracy
-    return Accuracy(tolerance, newton, speed, free_x, free_y, longest, drive)
+    return Accuracy(tolerance, newton, *accuracy[2:-1], accuracy.least / FINER)
 
 
 @inlined

@@ -35,6 +35,7 @@ def local_error(
     p: Triple,
     w: Triple,
     accuracy: Accuracy,
+    motion: float,
 ) -> float:
     """Return the largest relative error of the collocation cubic inside the step.
 
@@ -42,10 +43,10 @@ def local_error(
     which the cubic may run through anyhow, that can vanish by chance: there at two.
     """
     over = s.p_in, s.rest_in, s.slid_in
-    error = error_at(problem, frame, over, h, p, w, accuracy, INTERIOR, DEFECT_WEIGHT)
+    error = error_at(problem, frame, over, h, p, w, accuracy, motion, INTERIOR, DEFECT_WEIGHT)
     if frame.k_11 * h * h > MOST:
         over = 0.0, 0.0, 0.0
-        later = error_at(problem, frame, over, h, p, w, accuracy, LATER, LATER_WEIGHT)
+        later = error_at(problem, frame, over, h, p, w, accuracy, motion, LATER, LATER_WEIGHT)
         error = max(error, later)
     return error
 
@@ -59,6 +60,7 @@ def error_at(
     p: Triple,
     w: Triple,
     accuracy: Accuracy,
+    motion: float,
     c: float,
     weight: float,
 ) -> float:
@@ -67,7 +69,8 @@ def error_at(
     `over` is what the oscillation adds there (see `Swing`). The defect of w is divided by how
     stiffly w follows the force. Errors are held against the slip speed, but against no more than
     the drive's: a rapid slip is over in few steps, and its error shifts all that follows; for w
-    accordingly; and in each principal axis against what the elongation rate there can be.
+    accordingly; and in each principal axis against what the elongation rate there can be. None is
+    held against more than the motion about steady sliding (m/s; see `motion`).
     """
     r, dt, (p_over, rest_over, slid_over) = frame.r, c * h, over
     along, turn = (r, p[0], p[1], p[2]), (0.0, w[0], w[1], w[2])
@@ -91,11 +94,12 @@ def error_at(
     v_x, v_y = v_x - p_in * (e_x - w_in * e_y), v_y - p_in * (e_y + w_in * e_x)
     speed = accuracy.speed
     held = min(size, accuracy.drive)
-    scale_x = speed + min(held, abs(v_x) + accuracy.free_x)
-    scale_y = speed + min(held, abs(v_y) + accuracy.free_y)
+    scale = min(speed + held, motion)
+    scale_x = min(speed + min(held, abs(v_x) + accuracy.free_x), motion)
+    scale_y = min(speed + min(held, abs(v_y) + accuracy.free_y), motion)
     return weight * max(
-        abs(error_p) / (speed + held),
-        abs(error_w) * (speed + size) / (speed + held),
+        abs(error_p) / scale,
+        abs(error_w) * (speed + size) / scale,
         abs(error_p * e_x - error_q * e_y) / scale_x,
         abs(error_p * e_y + error_q * e_x) / scale_y,
     )

@@ -86,7 +86,9 @@ class Multiscale(Exact):
             return super().advance(problem, state, end, held, budget, out)
         if self.known is None or problem != self.problem:
             self.problem, self.known = problem, unknown(self.rtol)
-        fine = held._replace(tolerance=FINER * held.tolerance, newton=FINER * held.newton)
+        fine = held._replace(
+            tolerance=FINER * held.tolerance, newton=FINER * held.newton, least=held.least / FINER
+        )
         return advanced(stride, problem, state, end, fine, budget, out, self.known)
 
 

@@ -68,7 +68,8 @@ def sample_cycle(
     """
     start = landed(problem, state, hold)
     motion, memory, counts = start
-    k = sample_stick(problem, hold.start, motion.u_x, motion.u_y, hold.end, times, samples, k)
+    u_x, u_y = motion.u_x, motion.u_y
+    k = sample_stick(problem, hold.start, u_x, u_y, hold.end, True, times, samples, k)
     if k == len(times) or times[k] > landing:
         return COMPLETED, state, k
     until = k

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable
 from functools import lru_cache
-from math import inf, pi, sqrt
+from math import hypot, inf, pi, sqrt
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy as np
 from stiction.description import Description
 from stiction.drive import jump
 from stiction.friction import has_state
+from stiction.initial import Initial
 from stiction.slider import Slider
 from stiction.solver.exact import Exact, Multiscale
 from stiction.solver.output import Output
@@ -27,6 +28,9 @@ from stiction.solver.state import (
 )
 from stiction.solver.stretch import Stretch, fastest_swing, load_bounds, speeds, stretches
 
+LEAST = 1e-15  # of the speeds at the start: slower slip than this is none
+ROUNDING = 1e-13  # of velocities: what a step may err by in any case, well above a float's
+TINY = float(np.finfo(np.float64).tiny)
 BUDGET = 100_000  # turns of the loop between two looks at the clock: some 30 ms
 
 
@@ -55,14 +59,16 @@ def tolerance(rtol: float) -> float:
     return 0.8 * float(rtol**0.8)
 
 
-def accuracy(slider: Slider, stretch: Stretch, start: float, rtol: float) -> Accuracy:
+def accuracy(
+    slider: Slider, initial: Initial, stretch: Stretch, start: float, rtol: float
+) -> Accuracy:
     """Return what each step in a stretch is held to.
 
     Its speed: V sin(phi) is what the transverse motion slips at; without it, V; without a
     drive, a millionth of what friction can do to the mass on its spring, and never more than
-    that whole. Friction that weakens at the rate g = -F'(0)/m per second makes slip grow out
-    of its first k V/(m g^2), which must then be resolved; k is the stiffness that acts, and g
-    the steepest up to some V.
+    that whole; without either, next to nothing of the speeds at the start. Friction that weakens
+    at the rate g = -F'(0)/m per second makes slip grow out of its first k V/(m g^2), which must
+    then be resolved; k is the stiffness that acts, and g the steepest up to some V.
     """
     along, across = speeds(slider, stretch.problem.drive, start, stretch.end)
     law: Any = slider.law
@@ -72,17 +78,23 @@ def accuracy(slider: Slider, stretch: Stretch, start: float, rtol: float) -> Acc
     free_x = mu * load * sqrt(surface.xx / (slider.mass * slider.k_x))
     free_y = mu * load * sqrt(surface.yy / (slider.mass * slider.k_y))
     free = min(free_x, free_y)
+    square_x, square_y = slider.mass / slider.k_x, slider.mass / slider.k_y
+    elastic = hypot(
+        *initial.slip(slider), initial.u_x / sqrt(square_x), initial.u_y / sqrt(square_y)
+    )
     speed, k = (across, slider.k_y) if across > 0.0 else (along or 1e-6 * free, slider.k_x)
     if free > 0.0:
         speed = min(speed, free)
     weakening = 0.0 if has_state(law) else steepest_weakening(law, speed) * load
-    speed = max(speed / (1.0 + weakening**2 / (k * slider.mass)), 1e-15)
+    speed = max(speed / (1.0 + weakening**2 / (k * slider.mass)), LEAST * elastic, TINY)
     local = tolerance(rtol)
     # Newton's error must not show in a step's end, which is better than its inside
     newton = min(0.2, 100.0 * sqrt(local)) * local
     rate = fastest_swing(stretch.problem)
     longest = 0.5 * pi / rate if rate > 0.0 else inf
-    return Accuracy(local, newton, speed, free_x, free_y, longest, along or across or inf)
+    drive = along or across or inf
+    least = ROUNDING * (along + across + free_x + free_y) / local
+    return Accuracy(local, newton, speed, free_x, free_y, longest, drive, square_x, square_y, least)
 
 
 @lru_cache(maxsize=256)
@@ -150,7 +162,7 @@ def integrate(
 
     for stretch in stretches(slider, t, end):
         state = method.entered(state, *slip_jump(slider, t))
-        held = accuracy(slider, stretch, t, settings.rtol)
+        held = accuracy(slider, initial, stretch, t, settings.rtol)
         code = RUNNING
         while code == RUNNING:
             budget = min(BUDGET, max_steps - out.used)

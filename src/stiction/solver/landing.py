@@ -24,6 +24,8 @@ from stiction.solver.problem import Problem, at, constant, drift, isotropic
 from stiction.solver.sampling import fill
 from stiction.solver.state import Accuracy, Motion, State, at_takeoff
 
+INSTANT = 1e-13  # of the time so far, and of what a spring takes for a radian
+
 
 @inlined
 def landing_time(r: float, a_along: float, a_squared: float, f: float) -> float:
@@ -100,7 +102,7 @@ def pursuit(
     """Return the time (s) to landing and the slip until then (m), in closed form.
 
     Infinite unless spring and friction stay constant until then, to a tenth of the tolerance,
-    or it is over before time resolves it.
+    or it is over before the clock, or either spring, resolves it.
     """
     r = frame.r
     a_1, a_2, da_1, da_2, f, gradient, _ = start
@@ -113,7 +115,9 @@ def pursuit(
     if not constant(problem.load):
         jerk += abs(drift(problem.load, frame.t)) * f / at(problem.load, frame.t)
     change = T * (T * jerk + relaxation * r)
-    if change > 0.1 * accuracy.tolerance * accuracy.speed and 1e-13 * (abs(frame.t) + 1e-2) < T:
+    square = min(accuracy.square_x, accuracy.square_y)
+    resolved = INSTANT * abs(frame.t) < T and INSTANT * INSTANT * square < T * T
+    if resolved and change > 0.1 * accuracy.tolerance * accuracy.speed:
         return inf, 0.0, 0.0
     slid_1, slid_2 = landing_slip(r, a_1, a_2, f)
     return T, slid_1, slid_2

@@ -86,7 +86,7 @@ def advance(
                 return RUNNING, state, k, turn
             motion = Motion(t, motion.u_x, motion.u_y, 0.0, motion.e_x, motion.e_y)
             state = State(motion, state.memory, state.counts)
-            ends, state, k = stick(problem, state, t_end, times, samples, k, sticks)
+            ends, state, k = stick(problem, state, t_end, accuracy, times, samples, k, sticks)
             motion = state.motion
             if not ends:
                 continue

@@ -24,6 +24,7 @@ def solve(
     p: Triple,
     w: Triple,
     accuracy: Accuracy,
+    motion: float,
 ) -> tuple[bool, Swing, Triple, Triple, float, int]:
     """Solve the collocation equations of one step.
 
@@ -37,6 +38,8 @@ def solve(
         First guess of the stages (m/s, 1).
     accuracy : Accuracy
         Corrections are relative to the slip speed plus ``accuracy.speed``, and for w to 1.
+    motion : float
+        About steady sliding, m/s: where it is less than that, to it.
 
     Returns
     -------
@@ -52,7 +55,7 @@ def solve(
     s2 = stage(problem, frame, s, h, 2, p, w, products(p, w))
     m = factors(frame, s, h, landing, p, w, s0, s1, s2)
     speed = accuracy.speed
-    enough = accuracy.newton
+    enough = accuracy.newton * min(1.0, motion / (speed + frame.r))
     last = 1.0
     for iteration in range(1, ITERATIONS + 1):
         dp, dw = solved(

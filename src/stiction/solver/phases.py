@@ -33,7 +33,7 @@ from stiction.solver.state import (
     size_to_try,
 )
 from stiction.solver.step import step
-from stiction.solver.stick import holding, stick_duration
+from stiction.solver.stick import holding, stick_duration, to_spare
 from stiction.solver.surface import takeoff
 
 GROWTH = 2.0
@@ -44,6 +44,7 @@ def stick(
     problem: Problem,
     state: State,
     t_stop: float,
+    accuracy: Accuracy,
     times: np.ndarray,
     samples: np.ndarray,
     k: int,
@@ -51,6 +52,7 @@ def stick(
 ) -> tuple[bool, State, int]:
     """Hold zero slip as long as friction can, then turn the slip direction to take-off.
 
+    A slip that only touches zero may be held for a moment by its error: that is no stick.
     Returns whether it takes off, the state, and the next row of the samples.
     """
     motion, memory, counts = state
@@ -59,23 +61,15 @@ def stick(
     ends = ends and t + duration < t_stop
     end = t_stop if t + duration >= t_stop else t + duration
     if end > t:
-        k = sample_stick(problem, t, u_x, u_y, end, times, samples, k)
+        row = counts.sticks
+        goes_on = row > 0 and sticks[row - 1, 1] == t  # the same stick, in another stretch
+        touch = to_spare(problem, t, u_x, u_y, duration) < accuracy.tolerance * accuracy.speed
+        held = goes_on or not touch
+        k = sample_stick(problem, t, u_x, u_y, end, held, times, samples, k)
         d_x, d_y = in_principal_axes(problem, travel(problem.drive, t, end - t))
         u_x, u_y = u_x + d_x, u_y + d_y
-        row = counts.sticks
-        if row > 0 and sticks[row - 1, 1] == t:  # the same stick goes on in another stretch
-            row -= 1
-        else:
-            sticks[row, 0] = t
-        sticks[row, 1] = end
-        counts = Counts(
-            counts.steps,
-            counts.rejected,
-            counts.iterations,
-            row + 1,
-            counts.stuck + (end - t),
-            counts.mapped,
-        )
+        if held:
+            counts = recorded(counts, t, end, goes_on, sticks)
     a_x, a_y = holding(problem, end, u_x, u_y)
     limit = coefficient(problem.law, 0.0) * at(problem.load, end) * problem.system.per_mass
     a_x, a_y = takeoff(problem, (a_x, a_y), limit)
@@ -87,6 +81,19 @@ def stick(
     e_x, e_y = (a_x / a, a_y / a) if a > 0.0 else (motion.e_x, motion.e_y)
     motion = Motion(end, u_x, u_y, 0.0, e_x, e_y)
     return ends, State(motion, at_takeoff(memory), counts), k
+
+
+@inlined
+def recorded(counts: Counts, t: float, end: float, goes_on: bool, sticks: np.ndarray) -> Counts:
+    """Write a stick interval, or make the last one longer; return the counts with it."""
+    row = counts.sticks
+    if goes_on:
+        row -= 1
+    else:
+        sticks[row, 0] = t
+    sticks[row, 1] = end
+    stuck = counts.stuck + (end - t)
+    return Counts(counts.steps, counts.rejected, counts.iterations, row + 1, stuck, counts.mapped)
 
 
 @inlined
@@ -110,7 +117,7 @@ def slip(
     counts = counted(counts, rejected, iterations)
     if not done:
         return False, State(motion, memory, counts), k
-    k = sample_slip(problem, frame, start, swing, h, p, w, times, samples, k)
+    k = sample_slip(problem, frame, start, swing, h, p, w, accuracy, times, samples, k)
     slid_1, slid_2 = h * (dot(A[2], p) + swing.slid[2]), h * dot(A[2], products(p, w))
     u_x, u_y = elongation(problem, frame, h, slid_1, slid_2)
     e_x, e_y = turned(frame, w[2])

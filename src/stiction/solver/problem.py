@@ -8,6 +8,7 @@ specialised for them and nothing is looked up while it runs.
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import inf
 from typing import Any, NamedTuple
 
 from numba.extending import overload, register_jitable
@@ -158,7 +159,7 @@ def isotropic(surface: Isotropic | Elliptic) -> bool:
     return surface.isotropic()
 
 
-EVERYWHERE = 1e6  # m/s: friction is smooth at any slip speed
+EVERYWHERE = inf  # friction is smooth at any slip speed
 
 
 def _by_type(function: Callable[..., Any]) -> None:

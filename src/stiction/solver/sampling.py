@@ -3,8 +3,7 @@
 A row is u_x, u_y (m), slip_x, slip_y (m/s), friction_x, friction_y (N; while stuck, the
 force that holds) and 1 while sticking, else 0.
 
-Inside a slip step distances are those of `dense`; the direction of slip, which must stay
-accurate where the slip vanishes, is the collocation cubic's.
+Inside a slip step they are the ends of shorter steps from its start; see `dense`.
 """
 
 from __future__ import annotations
@@ -14,12 +13,12 @@ from math import sqrt
 import numpy as np
 
 from stiction.solver.blocks import Triple
-from stiction.solver.compiled import inlined
-from stiction.solver.dense import ends_of, within
+from stiction.solver.compiled import inlined, piece
+from stiction.solver.dense import within
 from stiction.solver.frame import Frame, Outset, elongation, friction
-from stiction.solver.newton import products
+from stiction.solver.motion import moving
 from stiction.solver.problem import Problem, in_principal_axes, travel
-from stiction.solver.radau import cubic
+from stiction.solver.state import Accuracy
 from stiction.solver.stick import holding
 from stiction.solver.surface import friction_along
 from stiction.solver.swing import Swing
@@ -34,11 +33,15 @@ def sample_stick(
     u_x: float,
     u_y: float,
     end: float,
+    held: bool,
     times: np.ndarray,
     samples: np.ndarray,
     k: int,
 ) -> int:
-    """Fill the samples of a stick interval that starts at `t`; return the next index."""
+    """Fill the samples of an interval of zero slip from `t` on; return the next index.
+
+    It is a stick, or no more than a touch if not `held`.
+    """
     while k < len(times) and times[k] <= end:
         d_x, d_y = in_principal_axes(problem, travel(problem.drive, t, times[k] - t))
         a_x, a_y = holding(problem, times[k], u_x + d_x, u_y + d_y)
@@ -48,7 +51,7 @@ def sample_stick(
         samples[k, 3] = 0.0
         samples[k, 4] = a_x * problem.system.mass
         samples[k, 5] = a_y * problem.system.mass
-        samples[k, 6] = 1.0
+        samples[k, 6] = 1.0 if held else 0.0
         k += 1
     return k
 
@@ -62,22 +65,39 @@ def sample_slip(
     h: float,
     p: Triple,
     w: Triple,
+    accuracy: Accuracy,
     times: np.ndarray,
     samples: np.ndarray,
     k: int,
 ) -> int:
     """Fill the samples of an accepted slip step; return the next index."""
-    t = frame.t
-    if k >= len(times) or times[k] > t + h:
+    if k >= len(times) or times[k] > frame.t + h:
         return k
-    ends = ends_of(problem, frame, start, swing, h, p, w)
+    return sample_step(problem, frame, start, swing, h, p, w, accuracy, times, samples, k)
+
+
+@piece
+def sample_step(
+    problem: Problem,
+    frame: Frame,
+    start: Outset,
+    swing: Swing,
+    h: float,
+    p: Triple,
+    w: Triple,
+    accuracy: Accuracy,
+    times: np.ndarray,
+    samples: np.ndarray,
+    k: int,
+) -> int:
+    """Fill the samples of a step that has some, by itself: the loop is faster without."""
+    t, motion = frame.t, moving(problem, frame, start, accuracy)
     while k < len(times) and times[k] <= t + h:
-        dt = times[k] - t
-        z_1, z_2, s_1, s_2 = within(frame, swing, ends, h, p, products(p, w), dt)
-        turn = cubic((0.0, w[0], w[1], w[2]), dt / h)
+        dt = min(times[k] - t, h)
+        z_1, z_2, v, turn = within(problem, frame, start, swing, h, p, w, dt, accuracy, motion)
         u_x, u_y = elongation(problem, frame, dt, z_1, z_2)
-        speed = sqrt(s_1 * s_1 + s_2 * s_2)
-        g = 1.0 / sqrt(1.0 + turn * turn)
+        stretch = sqrt(1.0 + turn * turn)
+        g, speed = 1.0 / stretch, v * stretch
         force = friction(problem, times[k], speed)[0] * problem.system.mass
         k = fill(problem, frame, u_x, u_y, speed, g, turn * g, force, samples, k)
     return k

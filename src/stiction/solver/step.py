@@ -9,6 +9,7 @@ from stiction.solver.compiled import inlined
 from stiction.solver.defect import dips, local_error
 from stiction.solver.frame import Frame, Outset
 from stiction.solver.guess import passes, predicted, swung_to_rest, time_to_landing
+from stiction.solver.motion import moving
 from stiction.solver.newton import solve
 from stiction.solver.problem import Problem
 from stiction.solver.radau import step_factor
@@ -46,8 +47,8 @@ def step(
         Step size (s), stages, and error over tolerance.
     rejected, iterations : int
     """
-    o = oscillator(frame, start)
-    t, h = frame.t, within_reach(o, min(size_to_try(memory), accuracy.longest), accuracy)
+    o, motion = oscillator(frame, start), moving(problem, frame, start, accuracy)
+    t, h = frame.t, within_reach(o, min(size_to_try(memory), accuracy.longest), accuracy, motion)
     until = inf if frame.r == 0.0 else time_to_landing(frame, start, o, h)
     landing = False
     if EVEN * until < h:
@@ -73,7 +74,9 @@ def step(
         if landing:
             p = (p[0], p[1], 0.0)
         tried, warm = h, False
-        converged, s, p, w, h, count = solve(problem, frame, o, s, h, landing, p, w, accuracy)
+        converged, s, p, w, h, count = solve(
+            problem, frame, o, s, h, landing, p, w, accuracy, motion
+        )
         iterations += count
         if converged and landing and t + h > t_stop + ROUNDING * abs(t_stop):
             h, landing, may_land = t_stop - t, False, False
@@ -84,10 +87,10 @@ def step(
             continue
         factor = 0.3
         if converged and min(p) >= 0.0:
-            relative = local_error(problem, frame, s, h, p, w, accuracy)
+            relative = local_error(problem, frame, s, h, p, w, accuracy, motion)
             error = relative / accuracy.tolerance
             # a slip that is as small as its error may have been zero
-            least = 0.0 if landing else relative * (accuracy.speed + frame.r)
+            least = 0.0 if landing else relative * min(accuracy.speed + frame.r, motion)
             if error > 1.0:
                 factor = step_factor(error, 1.0)
             elif not dips(o, s, h, frame.r, p, least):

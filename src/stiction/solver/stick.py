@@ -99,6 +99,17 @@ def stick_duration(
 
 
 @inlined
+def to_spare(problem: Problem, t: float, u_x: float, u_y: float, duration: float) -> float:
+    """Return what slip speed friction could take away in a stick beside what it holds, m/s.
+
+    That is f - |a|, about linear in time and zero at its end, integrated over the stick. A slip
+    that comes in faster by as much does not stick.
+    """
+    excess, _, square = margin(problem, t, u_x, u_y)
+    return -0.25 * excess / sqrt(square) * duration
+
+
+@inlined
 def used_up(constant: float, linear: float, quadratic: float) -> float:
     """Return the positive root of constant + 2 linear x + quadratic x^2, constant <= 0."""
     if quadratic == 0.0:

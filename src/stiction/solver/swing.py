@@ -79,11 +79,14 @@ def weakly_damped(o: Oscillator) -> bool:
 
 
 @inlined
-def within_reach(o: Oscillator, h: float, accuracy: Accuracy) -> float:
-    """Return the step size `h`, cut where it is more of a swing than a step can be laid over."""
+def within_reach(o: Oscillator, h: float, accuracy: Accuracy, motion: float) -> float:
+    """Return the step size `h`, cut where it is more of a swing than a step can be laid over.
+
+    `motion` about steady sliding, m/s.
+    """
     if o.k * h * h < 0.99 * MOST or not weakly_damped(o):
         return h
-    size = accuracy.tolerance * (accuracy.speed + o.level + o.x)
+    size = accuracy.tolerance * min(accuracy.speed + o.level + o.x, motion)
     if o.x * o.x + o.v * o.v * o.per_k < size * size:  # nothing swings
         return h
     return sqrt(0.99 * MOST * o.per_k)

@@ -117,7 +117,10 @@ def balance(
 
 @piece
 def local_error(problem: Problem, start: Outset, h: float, w: Workspace, speed: float) -> float:
-    """Return the relative error of the step's cubic, and write the error itself."""
+    """Return the relative error of the step's cubic, and write the error itself.
+
+    Where the motion about steady sliding is slower than the slip, relative to that.
+    """
     n = w.y.shape[1]
     fit(w)
     for k in range(n):
@@ -131,4 +134,4 @@ def local_error(problem: Problem, start: Outset, h: float, w: Workspace, speed: 
     error = np.sqrt(e_x * e_x + e_y * e_y) / (speed + np.sqrt(s_x * s_x + s_y * s_y))
     for k in range(2, n):
         error = max(error, abs(w.error[k]) / w.size[k])
-    return float(error)
+    return float(error) / start.share

@@ -102,6 +102,18 @@ def grain_at(law: Any, values: np.ndarray, i: int) -> float:
     return max(grain(law, tuple(values[i, 2:])), FINEST)
 
 
+def unitless(law: Any, k: int) -> bool:
+    """Return whether the internal state in column `k` of a row has no unit."""
+    return bool(law.states()[k - 2].unit == "1")
+
+
+@overload(unitless, strict=False)
+def _unitless(law: Any, k: Any) -> Callable[..., Any]:
+    given: tuple[Any, ...] = getattr(law.instance_class, "states", tuple)()
+    plain = np.array([True, True, *(state[1] == "1" for state in given)])
+    return lambda law, k: plain[k]
+
+
 @overload(grain_at, strict=False)
 def _grain_at(law: Any, values: Any, i: Any) -> Callable[..., float]:
     states = _states(len(getattr(law.instance_class, "states", tuple)()))

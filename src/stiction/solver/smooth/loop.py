@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from math import hypot, isfinite
 
 import numpy as np
 
@@ -10,9 +10,9 @@ from stiction.solver.compiled import compiled, piece
 from stiction.solver.problem import Problem, in_principal_axes, travel
 from stiction.solver.radau import step_factor
 from stiction.solver.smooth.coordinate import coordinate
-from stiction.solver.smooth.law import grain_at
+from stiction.solver.smooth.law import flow, grain_at
 from stiction.solver.smooth.newton import A
-from stiction.solver.smooth.rates import Outset, measure
+from stiction.solver.smooth.rates import Outset, measure, moving, prepare
 from stiction.solver.smooth.sampling import sample
 from stiction.solver.smooth.state import Memory, Motion, State
 from stiction.solver.smooth.step import remember, step
@@ -27,20 +27,31 @@ from stiction.solver.state import (
 )
 
 GROWTH = 2.0
+COARSEST = 1e12  # of the slip speed that is resolved: a slip coordinate that is linear in effect
 
 
 @piece
-def begin(problem: Problem, motion: Motion, z: np.ndarray, w: Workspace, speed: float) -> Outset:
+def begin(
+    problem: Problem, motion: Motion, z: np.ndarray, w: Workspace, accuracy: Accuracy
+) -> Outset:
     """Write the first row of a step, and return where it starts."""
-    w.values[START, 0] = motion.s_x
-    w.values[START, 1] = motion.s_y
+    t, u_x, u_y, s_x, s_y = motion
+    speed = accuracy.speed
+    w.values[START, 0] = s_x
+    w.values[START, 1] = s_y
     for k in range(len(z)):
         w.values[START, 2 + k] = w.y[START, 2 + k] = z[k]
-    eps = grain_at(problem.law, w.values, START)
-    w.y[START, 0], w.y[START, 1] = coordinate(eps, motion.s_x, motion.s_y)
-    start = Outset(motion.t, motion.u_x, motion.u_y, eps, min(1.0, speed / eps))
-    measure(problem, start, w)
-    return start
+    eps = min(grain_at(problem.law, w.values, START), COARSEST * speed)
+    w.y[START, 0], w.y[START, 1] = coordinate(eps, s_x, s_y)
+    start = Outset(t, u_x, u_y, eps, min(1.0, speed / eps), 1.0)
+    prepare(problem, start, 0.0, w, START)
+    if len(z) > 0:
+        measure(problem, start, w)
+    else:
+        slip, weight, per_mass = (s_x, s_y), w.weight[START], problem.system.per_mass
+        flow(problem.law, slip, weight, per_mass, w.values, START, w.flow)
+    share = min(1.0, moving(problem, t, w, accuracy) / (speed + hypot(s_x, s_y)))
+    return Outset(t, u_x, u_y, eps, start.unit, share)
 
 
 @piece
@@ -83,7 +94,7 @@ def advance(
     z = internal.copy()
     past = memory.past.copy()
     h, h_last, warm = min(memory.h, accuracy.longest), memory.h_last, memory.warm
-    w = workspace(len(z))
+    w, inner = workspace(len(z)), workspace(len(z))
     code, turns = RUNNING, 0
     while turns < budget:
         if motion.t >= t_end:
@@ -92,7 +103,7 @@ def advance(
         if not finite(motion, z):
             code = NON_FINITE
             break
-        start = begin(problem, motion, z, w, accuracy.speed)
+        start = begin(problem, motion, z, w, accuracy)
         w.past[:, :] = past
         remember(w, start.eps)
         done, taken, error, rejected, iterations = step(
@@ -103,7 +114,7 @@ def advance(
         if not done:
             code = STEP_UNDERFLOW
             break
-        k = sample(problem, start, taken, w, accuracy.newton, times, samples, k)
+        k = sample(problem, start, taken, w, inner, accuracy, times, samples, k)
         end = t_end if start.t + taken >= t_end else start.t + taken
         motion = ended(problem, start, taken, end, w)
         for i in range(len(z)):

@@ -16,6 +16,7 @@ from stiction.solver.smooth.workspace import Workspace
 from stiction.solver.state import Accuracy
 
 ITERATIONS = 14
+CLOSEST = 1e-14  # relative: corrections below are rounding
 A, D, C = np.array(radau.A), np.array(radau.D), radau.C
 
 
@@ -106,7 +107,8 @@ def solve(
     for i in range(1, 4):
         prepare(problem, start, C[i - 1] * h, w, i)
         evaluate(problem, start.eps, w, i)
-    enough, last, fresh = min(accuracy.newton, 0.01 * accuracy.tolerance), 1.0, True
+    enough = max(min(accuracy.newton, 0.01 * accuracy.tolerance) * start.share, CLOSEST)
+    last, fresh = 1.0, True
     n = w.y.shape[1]
     if not assemble(problem, start, h, w):
         return False, 0

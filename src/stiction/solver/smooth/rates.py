@@ -6,10 +6,11 @@ from math import sqrt
 from typing import NamedTuple
 
 from stiction.solver.compiled import piece
-from stiction.solver.problem import Problem, at, in_principal_axes, travel
+from stiction.solver.problem import Problem, at, in_principal_axes, rate, rate_change, travel
 from stiction.solver.smooth.coordinate import slip_at, slip_slope
-from stiction.solver.smooth.law import flow
+from stiction.solver.smooth.law import flow, unitless
 from stiction.solver.smooth.workspace import START, TRIAL, Workspace
+from stiction.solver.state import Accuracy
 from stiction.solver.stick import holding
 
 INCREMENT = 1.5e-8  # of a difference: the root of the rounding error
@@ -18,13 +19,15 @@ NOTICED = 0.01  # change of the friction coefficient by which the size of a stat
 
 class Outset(NamedTuple):
     """A step's start: time (s), elongation (m), the speed eps of the slip coordinate (m/s) and
-    the unit in which q counts, where it is smaller."""
+    the unit in which q counts, where it is smaller; by what errors are held against less than the
+    slip speed, where the motion about steady sliding is slower."""
 
     t: float
     u_x: float
     u_y: float
     eps: float
     unit: float
+    share: float
 
 
 @piece
@@ -87,16 +90,29 @@ def weigh(problem: Problem, start: Outset, h: float, a: float, w: Workspace, i: 
 
 
 @piece
+def moving(problem: Problem, t: float, w: Workspace, accuracy: Accuracy) -> float:
+    """Return how fast the system moves about steady sliding at a step's start, m/s.
+
+    As `stiction.solver.motion.moving`; row `START` must be known with its flow.
+    """
+    system, (s_x, s_y) = problem.system, (w.values[START, 0], w.values[START, 1])
+    v_x, v_y = in_principal_axes(problem, rate(problem.drive, t))
+    g_x, g_y = in_principal_axes(problem, rate_change(problem.drive, t))
+    by_x = g_x - (w.pull[START, 0] - system.c_x * s_x * system.per_mass - w.flow[START, 0])
+    by_y = g_y - (w.pull[START, 1] - system.c_y * s_y * system.per_mass - w.flow[START, 1])
+    x, y = v_x - s_x, v_y - s_y
+    square = by_x * by_x * accuracy.square_x + by_y * by_y * accuracy.square_y
+    return max(sqrt(x * x + y * y + square), accuracy.least)
+
+
+@piece
 def measure(problem: Problem, start: Outset, w: Workspace) -> None:
     """Write what errors of the internal states are held against.
 
     Each is relative to the state itself; near zero, to what changes the friction coefficient
-    by `NOTICED`, or to one of the state's unit if that is less.
+    by `NOTICED`, or to 1 if that is less and the state has no unit.
     """
     n = w.y.shape[1]
-    if n == 2:
-        return
-    prepare(problem, start, 0.0, w, START)
     for k in range(2, n):
         w.size[k] = 1.0
     evaluate(problem, start.eps, w, START)
@@ -105,5 +121,7 @@ def measure(problem: Problem, start: Outset, w: Workspace) -> None:
     for k in range(2, n):
         x, y = w.jacobian[START, 0, k], w.jacobian[START, 1, k]
         effect = sqrt(x * x + y * y)
-        least = min(1.0, enough / effect) if effect > 0.0 else 1.0
+        least = enough / effect if effect > 0.0 else 1.0
+        if unitless(problem.law, k):
+            least = min(1.0, least)
         w.size[k] = least + abs(w.y[START, k])
