@@ -20,6 +20,7 @@ DECAYED, GROWN = 0.3, 3.0  # times the kick: below it rests, above it can be an 
 PERIODS = 10.0  # of the leading mode, in a block of time
 SAMPLES = 64  # a period: a peak between two is missed by 0.1 %
 EVEN = 0.01  # how far amplitudes of settled blocks may differ
+TOLD = 3.0  # times that a small disturbance must change by meanwhile
 FEWEST = 6  # blocks, of which the later half must be even
 REST, OSCILLATING, UNDECIDED = range(3)
 
@@ -35,6 +36,7 @@ class Found(NamedTuple):
 def settled(slider: Slider, start: Initial, most_blocks: int, rtol: float) -> Found:
     """Run a slider in blocks of time until it rests, or oscillates evenly."""
     period, block, small = scales(slider)
+    growth = steady_sliding(slider).growth_rate
     state, amplitudes = start, []
     for count in range(1, most_blocks + 1):
         run = simulate(slider, block, initial=state, sample_rate=SAMPLES / period, rtol=rtol)
@@ -44,7 +46,13 @@ def settled(slider: Slider, start: Initial, most_blocks: int, rtol: float) -> Fo
         if amplitudes[-1] < DECAYED * small:
             return Found(amplitudes[-1], REST, state)
         late = amplitudes[count // 2 :]
-        if count >= FEWEST and min(late) > GROWN * small and max(late) < (1 + EVEN) * min(late):
+        told = abs(growth) * block * len(late) > TOLD * EVEN  # else a slow change looks even
+        if (
+            told
+            and count >= FEWEST
+            and min(late) > GROWN * small
+            and max(late) < (1 + EVEN) * min(late)
+        ):
             return Found(float(np.mean(late)), OSCILLATING, state)
     return Found(amplitudes[-1], UNDECIDED, state)
 

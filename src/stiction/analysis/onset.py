@@ -10,7 +10,8 @@ the last one ended.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import inf, nan
+from itertools import pairwise, takewhile
+from math import nan
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
@@ -19,13 +20,21 @@ from numpy.typing import NDArray
 from stiction.analysis.limit_cycle import KICK, OSCILLATING, REST, UNDECIDED, Found, settled
 from stiction.errors import DescriptionError, Fault
 from stiction.linear_stability import steady_sliding
-from stiction.parameter import changed, read, unit
+from stiction.parameter import changed, placed, read, unit
 from stiction.slider import Slider
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
+Kind = Literal["soft", "hard", "not determined", "none"]
+
+MOST_ADDED = 14  # values near the onset, beside those given
+SHARP = 0.01  # of the least distance of two given values: so uncertain the onset may be
+APART = 1.4  # ratio of squared amplitudes, which have errors of 2 %
+FAR = 8.0  # times the nearest squared amplitude: beyond, the next says nothing of it
+ALIKE = 3.0  # ratio of two slopes of the squared amplitude: beyond, it is far from linear
+ROUGH = 0.05  # of the distance to the nearest oscillation: an error of 1 % in two amplitudes
 
 
 class Onset(NamedTuple):
@@ -33,25 +42,62 @@ class Onset(NamedTuple):
 
     Parameters
     ----------
-    kind : {"soft", "hard", "none"}
-        Soft if both sweeps change between rest and oscillation at the same value, and the
-        amplitude extrapolates to zero there; hard if not; none if nothing changes.
+    kind : {"soft", "hard", "not determined", "none"}
+        Soft if runs from rest and runs from an oscillation change at the same value, and the
+        amplitude goes to zero there; hard if at some value the one rests and the other
+        oscillates; not determined if neither is seen; none if nothing changes.
     threshold : float
-        Of a soft onset: where the squared amplitude, which is linear in the parameter near a
-        Hopf bifurcation, extrapolates to zero, SI; NaN otherwise.
+        Where it sets in, SI. Of a soft onset where the squared amplitude, which is linear in the
+        parameter near a Hopf bifurcation, extrapolates to zero; of one that is not determined
+        the middle of the interval in which it is; NaN otherwise.
     hysteresis : tuple of float
         First and last of the values (SI) at which one sweep rests and the other oscillates; NaN
         if there is none.
     data : Dataset
-        Over ``sweep`` ("up", "down") and ``value`` (the parameter, SI): ``amplitude`` (m), half
-        of the range of the spring's elongation along the drive; ``outcome`` (0 rest, 1
-        oscillation, 2 undecided when the time was over). Over ``value``: ``growth_rate`` (1/s).
+        Over ``sweep`` ("up", "down") and ``value`` (the parameter, SI; those given and those
+        added near the onset): ``amplitude`` (m), half of the range of the spring's elongation
+        along the drive; ``outcome`` (0 rest, 1 oscillation, 2 undecided when the time was over).
+        Over ``value``: ``growth_rate`` (1/s).
+    uncertainty : float
+        Of `threshold`, SI: the onset lies within it.
     """
 
-    kind: Literal["soft", "hard", "none"]
+    kind: Kind
     threshold: float
     hysteresis: tuple[float, float]
     data: xr.Dataset
+    uncertainty: float = nan
+
+
+class Trial(NamedTuple):
+    """What a slider comes to at one value of the parameter, swept up and swept down."""
+
+    value: float
+    up: Found
+    down: Found
+
+    @property
+    def rests(self) -> bool:
+        """Whether both rest."""
+        return self.up.outcome == REST and self.down.outcome == REST
+
+    @property
+    def moves(self) -> bool:
+        """Whether both oscillate."""
+        return self.up.outcome == OSCILLATING and self.down.outcome == OSCILLATING
+
+    @property
+    def differs(self) -> bool:
+        """Whether one rests and the other oscillates."""
+        return {self.up.outcome, self.down.outcome} == {REST, OSCILLATING}
+
+
+class Estimate(NamedTuple):
+    """A threshold, what it may be wrong by, and whether the amplitude goes to zero there."""
+
+    threshold: float
+    uncertainty: float
+    soft: bool
 
 
 def find_onset(
@@ -72,7 +118,7 @@ def find_onset(
         The parameter, see `stiction.linear_stability.critical`.
     values : sequence of float or str
         Its values, ascending, with their units if it is an angle; from well on the stable side
-        to well on the other.
+        to well on the other. Where the onset is between two of them more are added.
     most_blocks : int, optional
         How long each run may last until its amplitude has settled. A block is ten periods of
         the leading mode, and the time in which the drive loads the spring with the friction.
@@ -82,7 +128,7 @@ def find_onset(
     Returns
     -------
     Onset
-        The kind of onset, its hysteresis, and the amplitudes.
+        The kind of onset, its place and hysteresis, and the amplitudes.
 
     Raises
     ------
@@ -93,8 +139,9 @@ def find_onset(
     -----
     A run that rests is disturbed by a hundredth of the drive's speed for the next value. It counts
     as resting when the amplitude has fallen to a third of that, as oscillating when it is above
-    three times that and has not changed by more than 1 % over the later half of the time so far;
-    else as undecided. Close to the boundary the changes are so slow that it remains so.
+    three times that and has not changed by more than 1 % over the later half of the time so far,
+    in which a small disturbance would have changed by three times as much; else as undecided.
+    Close to the boundary the changes are so slow that it remains so.
     """
     sliders = [changed(slider, path, value) for value in values]
     numbers = np.array([read(each, path) for each in sliders])
@@ -103,11 +150,17 @@ def find_onset(
         raise DescriptionError([Fault(path, message)])
     up = swept(sliders, most_blocks, rtol)
     down = swept(sliders[::-1], most_blocks, rtol)[::-1]
-    amplitude = np.array([[found.amplitude for found in sweep] for sweep in (up, down)])
-    outcome = np.array([[found.outcome for found in sweep] for sweep in (up, down)])
-    growth = [steady_sliding(each).growth_rate for each in sliders]
-    data = table(path, unit(slider, path), numbers, amplitude, outcome, np.array(growth))
-    return judged(data)
+    trials = [Trial(*each) for each in zip(map(float, numbers), up, down, strict=True)]
+    fine = SHARP * float(np.diff(numbers).min())
+    for _ in range(MOST_ADDED):
+        value = next_value(trials, fine)
+        if value is None:
+            break
+        at = placed(slider, path, value)
+        trials.append(tried(at, value, trials, most_blocks, rtol))
+        trials.sort(key=lambda each: each.value)
+    growth = [steady_sliding(placed(slider, path, each.value)).growth_rate for each in trials]
+    return judged(trials, table(path, unit(slider, path), trials, np.array(growth)))
 
 
 def swept(sliders: Sequence[Slider], most_blocks: int, rtol: float) -> list[Found]:
@@ -120,45 +173,131 @@ def swept(sliders: Sequence[Slider], most_blocks: int, rtol: float) -> list[Foun
     return found
 
 
-def judged(data: xr.Dataset) -> Onset:
-    """Return the kind of onset that the sweeps show."""
-    values, outcome = data["value"].values, data["outcome"].values
-    rests, moves = outcome == REST, outcome == OSCILLATING
-    both = (rests[0] & moves[1]) | (moves[0] & rests[1])
-    if both.any():
-        between = float(values[both].min()), float(values[both].max())
-        return Onset("hard", nan, between, data)
-    if not (rests.any() and moves.any()):
-        return Onset("none", nan, (nan, nan), data)
-    threshold = vanishing(values, data["amplitude"].values[0], rests[0], moves[0])
-    kind: Literal["soft", "hard"] = "hard" if np.isnan(threshold) else "soft"
-    return Onset(kind, threshold, (nan, nan), data)
+def tried(
+    slider: Slider, value: float, trials: Sequence[Trial], most_blocks: int, rtol: float
+) -> Trial:
+    """Return what a slider comes to from rest, and from the oscillation at the nearest value."""
+    moving = min((each for each in trials if each.moves), key=lambda each: abs(each.value - value))
+    rest = steady_sliding(slider).disturbed(KICK)
+    found = [settled(slider, start, most_blocks, rtol) for start in (rest, moving.up.state)]
+    upward = moving.value < value  # swept up is what comes from lower values
+    return Trial(value, *(found[::-1] if upward else found))
 
 
-def vanishing(values: Floats, amplitude: Floats, rests: Floats, moves: Floats) -> float:
-    """Return where the squared amplitude, extrapolated from the two values next to rest, is zero.
+def change(trials: Sequence[Trial]) -> tuple[Trial, list[Trial]] | None:
+    """Return the rest beside the first change, and the oscillations beyond it, nearest first."""
+    known = [each for each in trials if each.rests or each.moves]
+    for one, other in pairwise(known):
+        if one.rests and other.moves:
+            return one, list(takewhile(lambda each: each.moves, known[known.index(other) :]))
+        if one.moves and other.rests:
+            before = known[: known.index(other)][::-1]
+            return other, list(takewhile(lambda each: each.moves, before))
+    return None
 
-    NaN if that is not between rest and oscillation, give or take the distance of two values.
+
+def next_value(trials: Sequence[Trial], fine: float) -> float | None:
+    """Return the value at which another trial says most; None if nothing more is to be learned.
+
+    Between rest and oscillation, where a trial can be decided: there in the middle, or, once the
+    place is known, to either side of it. Where it cannot, among the oscillations next to it.
     """
-    way = 1 if np.flatnonzero(rests)[0] < np.flatnonzero(moves)[0] else -1
-    last = np.flatnonzero(rests)[::way][-1]
-    beyond = [i for i in np.flatnonzero(moves)[::way] if (i - last) * way > 0][:2]
-    if len(beyond) < 2:
-        return nan
-    first, second = beyond
-    squares = amplitude[first] ** 2, amplitude[second] ** 2
-    rise = (squares[1] - squares[0]) / (values[second] - values[first])
-    found = float(values[first] - squares[0] / rise) if rise != 0.0 else inf
-    spacing = abs(values[second] - values[first])
-    inside = -spacing <= way * (found - values[last]) and way * (found - values[first]) <= 0.0
-    return found if inside else nan
+    found = change(trials)
+    if found is None or any(each.differs for each in trials):
+        return None
+    rest, moving = found
+    first, estimate = moving[0].value, extrapolated(rest, moving)
+    low, high = sorted((rest.value, first))
+    unsure = [each.value for each in trials if low < each.value < high]
+    limit = min(unsure, key=lambda value: abs(value - first)) if unsure else rest.value
+    if estimate.soft and estimate.uncertainty < fine:
+        return None
+    if estimate.soft and not unsure:
+        at = estimate.threshold
+        far = first if abs(first - at) >= abs(rest.value - at) else rest.value
+        return at + (far - at) / 3.0
+    if not unsure:
+        return 0.5 * (first + limit) if high - low > 0.1 * fine else None
+    if estimate.soft:
+        return 0.5 * (first + limit) if abs(limit - first) > 0.3 * (high - low) else None
+    known = {each.value for each in trials}
+    middles = (0.5 * (one.value + other.value) for one, other in pairwise(apart(moving)))
+    return next((each for each in middles if each not in known), None)
 
 
-def table(
-    path: str, unit: str, values: Floats, amplitude: Floats, outcome: Floats, growth: Floats
-) -> xr.Dataset:
+def apart(moving: Sequence[Trial]) -> list[Trial]:
+    """Return up to three oscillations, the nearest first, that differ by more than their errors."""
+    found = [moving[0]]
+    for each in moving:
+        if len(found) < 3 and size(each) ** 2 > APART * size(found[-1]) ** 2:
+            found.append(each)
+    return found
+
+
+def size(trial: Trial) -> float:
+    """Return the amplitude of an oscillation, the mean of both sweeps (m)."""
+    return 0.5 * (trial.up.amplitude + trial.down.amplitude)
+
+
+def extrapolated(rest: Trial, moving: Sequence[Trial]) -> Estimate:
+    """Return where the squared amplitude is zero, by a parabola through three of its values.
+
+    What it may be wrong by: its difference from a straight line through two of them, and what
+    an error of 1 % in an amplitude comes to. It is between rest and oscillation in any case; if
+    the extrapolation is not, or the slopes to both sides of the middle value are not alike, it has
+    no ground.
+    """
+    first = moving[0].value
+    middle, half = 0.5 * (rest.value + first), 0.5 * abs(first - rest.value)
+    unknown = Estimate(middle, half, soft=False)
+    three = apart(moving)
+    if len(three) < 3:
+        return unknown
+    x = np.array([each.value - first for each in three])
+    squares = np.array([size(each) ** 2 for each in three])
+    if squares[1] > FAR * squares[0]:
+        return unknown
+    slope = (squares[1] - squares[0]) / x[1]
+    beyond = (squares[2] - squares[1]) / (x[2] - x[1])
+    bend = (beyond - slope) / x[2]
+    if slope * x[1] <= 0.0 or not 1.0 / ALIKE < beyond / slope < ALIKE:
+        return unknown
+    straight = -squares[0] / slope
+    # the parabola through all three: squares[0] + b x + bend x^2
+    b = slope - bend * x[1]
+    root = b * b - 4.0 * bend * squares[0]
+    if root < 0.0 or b * slope <= 0.0:
+        return unknown
+    curved = -2.0 * squares[0] / (b + np.copysign(np.sqrt(root), b))
+    uncertainty = float(abs(curved - straight) + ROUGH * abs(curved))
+    reach = rest.value - first
+    if not 0.0 <= curved / reach <= 1.0 or uncertainty > half:
+        return unknown
+    return Estimate(float(first + curved), uncertainty, soft=True)
+
+
+def judged(trials: Sequence[Trial], data: xr.Dataset) -> Onset:
+    """Return the kind of onset that the trials show."""
+    both = [each.value for each in trials if each.differs]
+    if both:
+        return Onset("hard", nan, (min(both), max(both)), data)
+    found = change(trials)
+    if found is None:
+        alike = all(each.rests for each in trials) or all(each.moves for each in trials)
+        return Onset("none" if alike else "not determined", nan, (nan, nan), data)
+    estimate = extrapolated(*found)
+    kind: Kind = "soft" if estimate.soft else "not determined"
+    return Onset(kind, estimate.threshold, (nan, nan), data, estimate.uncertainty)
+
+
+def table(path: str, unit: str, trials: Sequence[Trial], growth: Floats) -> xr.Dataset:
     """Return the sweeps as labelled arrays."""
     import xarray as xr
+
+    values = np.array([each.value for each in trials])
+    sweeps = [[each.up for each in trials], [each.down for each in trials]]
+    amplitude = np.array([[found.amplitude for found in sweep] for sweep in sweeps])
+    outcome = np.array([[found.outcome for found in sweep] for sweep in sweeps])
 
     along = {"units": "m", "long_name": "amplitude of the elongation along the drive"}
     meanings = {"flag_values": [REST, OSCILLATING, UNDECIDED]}
