@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from stiction.analysis.decay import dies_out
 from stiction.analysis.hesitations import take_out
+from stiction.analysis.hum import Line, narrow_lines
 from stiction.analysis.pieces import fitted
 from stiction.analysis.record import Record, recorded
 from stiction.analysis.turning_points import TurningPoints, turning_points, without_spikes
@@ -44,6 +45,8 @@ COLUMNS = {
 }
 UNSEEN = 0.25  # of a period without a sample: what happened there is not known
 LOADING = (0.1, 0.5)  # part of the rise that is straight: after the swing, before the creep
+# A line beside the motion: swings without it have so many of its periods, and are as high
+SLOWER, HIGHER = 2.0, 0.75
 QUARTER = 4  # of a fall, to each side: cubics through so much of half a sine are 0.2 % too flat
 
 
@@ -118,6 +121,8 @@ class Swings(NamedTuple):
     noise, clearness : float
         How far noise reaches (N), and how clearly the swings stand apart from it; see
         `stiction.analysis.turning_points`.
+    line : Line or None
+        What was taken off the force before, such as mains hum.
     """
 
     table: xr.Dataset
@@ -125,6 +130,7 @@ class Swings(NamedTuple):
     turns: int
     noise: float
     clearness: float
+    line: Line | None = None
 
     @property
     def cycles(self) -> xr.Dataset:
@@ -133,7 +139,21 @@ class Swings(NamedTuple):
 
 
 def swings(record: Record) -> Swings:
-    """Return all swings of the force that stand apart from smaller reversals."""
+    """Return all swings of the force that stand apart from smaller reversals.
+
+    A narrow line is taken off before if what is left shows larger and slower swings: then these
+    are the motion, and the line is beside it.
+    """
+    for line in narrow_lines(record.time, record.force):
+        without = _swings(record.model_copy(update={"force": record.force - line.values}))
+        slow = without.table["period"].values * line.frequency > SLOWER
+        high = without.table["drop"].values > HIGHER * line.height
+        if len(slow) >= 2 and np.median(slow & high) == 1.0:
+            return without._replace(line=line)
+    return _swings(record)
+
+
+def _swings(record: Record) -> Swings:
     import xarray as xr
 
     columns = dict.fromkeys(COLUMNS, np.zeros(0))
