@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from stiction.analysis.decay import dies_out
 from stiction.analysis.hesitations import take_out
 from stiction.analysis.hum import Line, narrow_lines
+from stiction.analysis.outliers import without_outliers
 from stiction.analysis.pieces import fitted
 from stiction.analysis.record import Record, recorded
 from stiction.analysis.turning_points import TurningPoints, turning_points, without_spikes
@@ -144,13 +145,24 @@ def swings(record: Record) -> Swings:
     A narrow line is taken off before if what is left shows larger and slower swings: then these
     are the motion, and the line is beside it.
     """
+    force = without_outliers(record.force)
+    if force is not record.force:
+        record = record.model_copy(update={"force": force})
+    found = _swings(record)
     for line in narrow_lines(record.time, record.force):
         without = _swings(record.model_copy(update={"force": record.force - line.values}))
-        slow = without.table["period"].values * line.frequency > SLOWER
-        high = without.table["drop"].values > HIGHER * line.height
-        if len(slow) >= 2 and np.median(slow & high) == 1.0:
-            return without._replace(line=line)
-    return _swings(record)
+        if _beside(line, without):
+            count = without.table.sizes["cycle"]
+            harmless = abs(found.table.sizes["cycle"] - count) <= 1  # its own harmonic, it may be
+            return found if harmless else without._replace(line=line)
+    return found
+
+
+def _beside(line: Line, without: Swings) -> bool:
+    """Return whether a line is beside the motion: swings without it are larger and slower."""
+    period, drop = (without.table[name].values for name in ("period", "drop"))
+    aside = (period * line.frequency > SLOWER) & (drop > HIGHER * line.height)
+    return len(aside) >= 2 and bool(np.median(aside) == 1.0)
 
 
 def _swings(record: Record) -> Swings:

@@ -96,7 +96,8 @@ class Regime(NamedTuple):
     kind : str
         "stick-slip" (at rest, or in creep, for three quarters of a cycle or more),
         "transitional oscillation" (for half of it or more), "harmonic vibration" (for less or
-        not at all), "settling" (a transient that decays), "steady sliding" (no swings stand
+        not at all), "irregular vibration" (swings that stand out, of changing period), "settling"
+        (a transient that decays), "steady sliding" (no swings stand
         apart from the noise: what is smaller is not seen), "stuck" (it loads and never slips)
         or "undetermined".
     confidence : float
@@ -176,7 +177,7 @@ def _by_shape(record: Record, found: Swings) -> Regime:
     others = sorted(set(kinds) - {kind, UNDETERMINED}, key=kinds.count)
     confidence = (alike + 1) / (count + 3)
     if kind == HARMONIC and not _swings_freely(evidence):
-        return Regime(STEADY, confidence, evidence, HARMONIC)
+        return Regime(IRREGULAR, confidence, evidence, HARMONIC)
     return Regime(kind, confidence, evidence, others[-1] if others else "")
 
 
@@ -196,7 +197,7 @@ def _natural_period(record: Record, table: xr.Dataset) -> dict[str, float]:
 
 
 def _swings_freely(evidence: dict[str, float]) -> bool:
-    """Return whether swings are regular, or as long as the mass's own; else they are noise."""
+    """Return whether swings are regular, or as long as the mass's own."""
     own = abs(evidence.get("natural_period", np.inf) - 1.0) <= NEAR
     return own or evidence["period_spread"] <= REGULAR
 

@@ -9,13 +9,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.gap import widest_gap
-from stiction.analysis.reversals import Counts, Indices, all_heights, standing_out, taken_out
+from stiction.analysis.reversals import (
+    Counts,
+    Indices,
+    all_heights,
+    extrema,
+    standing_out,
+    taken_out,
+)
 
 Floats = NDArray[np.float64]
 Number = TypeVar("Number", np.int64, np.float64)
 
 FINE = 2**26  # counts over a signal's range; sums over 2^30 samples still fit into 64 bits
 FEWEST = 8  # samples a cycle has at least; with fewer, no shape can be seen
+COARSE_TURNS = 12  # turning points of cycles of few samples, which are needed at least
+ALIKE = 0.5  # the smaller legs over the larger ones, the tenths beyond left out; 0.08 for noise
+EVEN = 0.3  # standard deviation of the periods over their mean
 AS_GOOD = 0.9  # of the clearest gap: of two levels as good, the finer one places points better
 PLACING = 1 / 16  # of a leg: with noise below this the finest level places a corner best
 # A gap found by chance: some 20 levels times 20 octaves are tried, so that exp(-12) each leaves
@@ -86,6 +96,9 @@ def turning_points(values: Floats) -> TurningPoints:
         for level, each in enumerate(levels)
     ]
     clearest = max((gap.clearness for gap in gaps), default=0.0)
+    if clearest < CLEAR and len(few := coarse_points(counts)):
+        rising = np.diff(counts[few], prepend=counts[0]) < 0
+        return TurningPoints(few, rising, values, 1, 0.0, CLEAR)
     if clearest < CLEAR:
         none = np.zeros(0, np.intp)
         return TurningPoints(none, none.astype(bool), values, 1, 0.0, clearest)
@@ -102,6 +115,22 @@ def turning_points(values: Floats) -> TurningPoints:
     unit = float(np.ptp(values)) / FINE
     means = values.min() + unit / 2**quiet * levels[quiet] if quiet else without_spikes(values)
     return TurningPoints(index, trough, means, 2**quiet, unit * reach[quiet], gap.clearness)
+
+
+def coarse_points(counts: Counts) -> Indices:
+    """Return the turning points of cycles of few samples each; none unless nearly all are alike.
+
+    Of so few samples no smaller reversal can be seen to stand apart from. But noise makes
+    reversals of every height, and cycles make them of one.
+    """
+    found = extrema(counts)[1:-1]
+    if len(found) < COARSE_TURNS:
+        return found[:0]
+    legs = np.abs(np.diff(counts[found]))
+    small, large = np.percentile(legs, (10.0, 90.0))
+    period = found[2:] - found[:-2]
+    alike = small > ALIKE * large and period.std() < EVEN * period.mean()
+    return found if alike else found[:0]
 
 
 def _placed(counts: Counts, index: Indices, trough: NDArray[np.bool_]) -> Indices:
