@@ -45,6 +45,7 @@ COLUMNS = {
     "hesitation_depth": ("N", "depth of the deepest hesitation"),
 }
 UNSEEN = 0.25  # of a period without a sample: what happened there is not known
+JUMP = 1.5  # times the step from sample to sample: less is no gap, but few samples
 LOADING = (0.1, 0.5)  # part of the rise that is straight: after the swing, before the creep
 # A line beside the motion: swings without it have so many of its periods, and are as high
 SLOWER, HIGHER = 2.0, 0.75
@@ -172,9 +173,13 @@ def _swings(record: Record) -> Swings:
     points = turning_points(record.force)
     corners, dips = _corners(record, points)
     if len(corners.time) >= 3:
-        columns = _measured(record, without_spikes(record.force), corners)
+        with np.errstate(divide="ignore", invalid="ignore"):  # of corners that fall together
+            columns = _measured(record, without_spikes(record.force), corners)
         columns |= _hesitated(corners, dips)
-        seen = _longest_step(record.time, corners) < UNSEEN * columns["period"]
+        longest = _longest_step(record.time, corners)
+        gap = longest > UNSEEN * columns["period"]
+        seen = ~gap | (longest < JUMP * np.median(np.diff(record.time)))
+        seen &= (columns["rise_share"] > 0.0) & (columns["rise_share"] < 1.0)
         columns = {name: values[seen] for name, values in columns.items()}
     table = xr.Dataset(
         {

@@ -6,6 +6,7 @@ from math import pi, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stiction.analysis.cycles import Swings, swings
 from stiction.analysis.decay import MANY, ORDERED, order
@@ -18,6 +19,8 @@ from stiction.units import in_words
 
 if TYPE_CHECKING:
     import xarray as xr
+
+Floats = NDArray[np.float64]
 
 STICK_SLIP = "stick-slip"
 TRANSITIONAL = "transitional oscillation"
@@ -39,6 +42,10 @@ ONE_WAY = 0.8  # of all ups and downs is change: a drift or a load, no wandering
 SETTLED = 0.1  # of the force's span is passed in the last quarter; of an even load it is 0.25
 LOADING = 0.5  # of the early rate, or of stiffness times drive velocity: it still sticks
 SLOW = 0.1  # of stiffness times drive velocity: the mass goes at 9/10 of the drive's speed or more
+FEWEST, ENOUGH = 3.5, 8.0  # samples a cycle: below the first it is not known, nor what it is
+# Samples that a quick fall seems to take at most, and that a fall takes which may be quick: a sine
+# of four samples falls for two
+QUICK, SLOWEST = 1.6, 3.0
 GROWN = 0.1  # of a force drop: less is not worth a word
 NOISE_SHOWS = 1e-3  # of a force drop; what is less is no noise of a load cell
 
@@ -57,6 +64,10 @@ def _rounded(value: float) -> str:
 
 def _force(value: float) -> str:
     return in_words(value, "N")
+
+
+def _frequency(value: float) -> str:
+    return in_words(value, "Hz")
 
 
 WORDS = {
@@ -84,6 +95,8 @@ WORDS = {
         "at the end its rate is {} times stiffness times drive velocity",
         _rounded,
     ),
+    "samples_per_cycle": ("a cycle has {} samples, too few to show it", _rounded),
+    "rate_needed": ("sample at {} or more", _frequency),
     "samples": ("there are {} samples, too few", _whole),
 }
 
@@ -142,6 +155,10 @@ def regime_of(record: Record, found: Swings) -> Regime:
     """Tell which kind of motion a record shows, of which the swings are known: see `classify`."""
     if len(record) < PARTS:
         return Regime(UNDETERMINED, 0.0, {"samples": len(record)})
+    per_cycle = 2.0 * len(record) / max(found.turns, 1)
+    if per_cycle < FEWEST:
+        needed = ENOUGH / per_cycle * record.sample_rate
+        return Regime(UNDETERMINED, 0.0, {"samples_per_cycle": per_cycle, "rate_needed": needed})
     if found.dying:
         drop = found.table["drop"].values
         sure = (len(drop) + 1) / (len(drop) + 3)
@@ -153,7 +170,13 @@ def regime_of(record: Record, found: Swings) -> Regime:
 
 def _by_shape(record: Record, found: Swings) -> Regime:
     table, count = found.table, found.table.sizes["cycle"]
+    step = float(np.median(np.diff(record.time)))
     shares = table["rise_share"].values
+    other = ""
+    if float(table["period"].mean()) < ENOUGH * step:
+        share, as_well = _coarse_shares(table, step)
+        shares = np.full(count, share)
+        other = shape(as_well) if shape(as_well) != shape(share) else ""
     kinds = [shape(share) for share in shares]
     typical = float(np.median(shares))
     kind = shape(typical)
@@ -176,9 +199,25 @@ def _by_shape(record: Record, found: Swings) -> Regime:
         evidence["last_over_first"] = grown
     others = sorted(set(kinds) - {kind, UNDETERMINED}, key=kinds.count)
     confidence = (alike + 1) / (count + 3)
+    if other:  # as likely
+        return Regime(kind, 0.5 * confidence, evidence, other)
     if kind == HARMONIC and not _swings_freely(evidence):
         return Regime(IRREGULAR, confidence, evidence, HARMONIC)
     return Regime(kind, confidence, evidence, others[-1] if others else "")
+
+
+def _coarse_shares(table: xr.Dataset, step: float) -> tuple[float, float]:
+    """Return the mean share of the rise in cycles of few samples, and what it can be as well.
+
+    A fall quicker than a sample is seen from the last sample before it to the first after it:
+    one sample longer than it is, on average. A fall of some samples may be so or not.
+    """
+    period = float(table["period"].mean())
+    fall = float((table["trough_time"] - table["peak_time"]).mean())
+    slow, quick = 1.0 - fall / period, 1.0 - max(fall - step, 0.0) / period
+    if fall < QUICK * step:
+        return quick, quick
+    return slow, quick if fall < SLOWEST * step else slow
 
 
 def shape(rise_share: float) -> str:
