@@ -11,6 +11,7 @@ from tests.measured import bare, measured
 
 import stiction as st
 from stiction.analysis.hesitations import take_out
+from stiction.analysis.outliers import without_outliers
 from stiction.analysis.reversals import all_heights, standing_out, taken_out
 from stiction.analysis.spread import TIMES
 from stiction.analysis.turning_points import turning_points
@@ -200,6 +201,113 @@ def test_what_is_a_cycle_and_what_a_hesitation(
         found = take_out(factor * values)
         assert (len(found.kept), len(found.at)) == (kept, taken)
         assert np.all(np.diff(np.sign(np.diff(values[found.kept]))) != 0)
+
+
+# --- what is beside the motion, and what is sampled too coarsely ---
+
+
+def irregular_saw(random: np.random.Generator, count: int, period: float) -> tuple[Floats, Floats]:
+    """Corners of a sawtooth, periods and drops of which differ by 5 % each way."""
+    lengths = period * random.uniform(0.95, 1.05, count)
+    ends = np.cumsum(lengths)
+    time = np.stack([ends - 0.06 * lengths, ends], axis=1).ravel()
+    force = np.stack([np.ones(count), 1.0 - random.uniform(0.95, 1.05, count)], axis=1).ravel()
+    return time, force
+
+
+@pytest.mark.parametrize(
+    ("mains", "height", "rate", "period"),
+    [
+        (50.0, 0.1, 1e3, 0.8),
+        (49.95, 0.5, 2e3, 0.3),
+        (60.02, 0.3, 500.0, 1.5),
+        (50.03, 0.9, 5e3, 0.5),
+        (59.9, 0.2, 1e4, 0.15),
+    ],
+)
+def test_mains_hum_makes_no_cycles_and_hides_none(
+    mains: float, height: float, rate: float, period: float
+) -> None:
+    random = np.random.default_rng(11)
+    corners = irregular_saw(random, 20, period)
+    time = np.arange(corners[0][1] + 0.2 * period, corners[0][-1] - 0.3 * period, 1.0 / rate)
+    hum = np.sin(2 * pi * mains * time) + 0.2 * np.sin(4 * pi * mains * time + 1.0)
+    noise = 0.01 * random.normal(size=len(time))
+    force = np.interp(time, *corners) + 0.5 * height * hum + noise
+    record = st.Record(time=time, force=2.0 + force)
+    cycles, regime = st.find_cycles(record), st.classify(record)
+    assert abs(cycles.sizes["cycle"] - 17) <= 1  # from the second trough to the last but one
+    assert float(cycles["period"].mean()) == pytest.approx(period, rel=0.03)
+    assert float(cycles["drop"].mean()) == pytest.approx(1.0, abs=0.1)
+    assert regime.kind == "stick-slip"
+
+
+def test_a_vibration_is_not_taken_for_hum() -> None:
+    time = np.arange(20_000) * 1e-3
+    wave = np.sin(2 * pi * 50.0 * time) + 0.02 * np.random.default_rng(1).normal(size=20_000)
+    record = st.Record(time=time, force=wave + 0.3 * time)
+    assert st.classify(record).kind == "harmonic vibration"
+    assert abs(st.find_cycles(record).sizes["cycle"] - 999) <= 1
+
+
+@pytest.mark.parametrize("samples", [4.0, 4.4, 5.0, 6.3, 7.0])
+def test_few_samples_a_cycle_are_enough(samples: float) -> None:
+    time = np.arange(int(61.5 * samples)) * 1e-2
+    phase = (time / (1e-2 * samples) + 0.37) % 1.0
+    force = np.where(phase < 0.92, phase / 0.92, (1.0 - phase) / 0.08)
+    record = st.Record(time=time, force=1.0 + force)
+    cycles = st.find_cycles(record)
+    assert abs(cycles.sizes["cycle"] - 60) <= 1
+    assert float(cycles["period"].mean()) == pytest.approx(1e-2 * samples, rel=0.01)
+    regime = st.classify(record)
+    if samples % 1.0:
+        assert regime.kind == "stick-slip"
+    else:  # each cycle is sampled at the same phases: a fall of two samples can be a quick one
+        assert "stick-slip" in (regime.kind, regime.runner_up)
+        assert regime.confidence < 0.5 or regime.kind == "stick-slip"
+
+
+@pytest.mark.parametrize("samples", [2.4, 2.7, 3.1])
+def test_fewer_samples_a_cycle_determine_nothing(samples: float) -> None:
+    time = np.arange(int(61.5 * samples)) * 1e-2
+    force = (time / (1e-2 * samples) + 0.37) % 1.0
+    regime = st.classify(st.Record(time=time, force=force))
+    assert (regime.kind, regime.confidence) == ("undetermined", 0.0)
+    assert "too few to show it; sample at" in str(regime)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_wild_samples_make_no_cycles(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    time = np.arange(20_000) * 1e-3
+    wild = np.zeros(20_000)
+    at = random.choice(19_990, 200, replace=False) + 5
+    wild[at] = random.choice([-1.0, 1.0], 200) * random.uniform(0.3, 3.0, 200)
+    wild[at[::3] + 1] = wild[at[::3]]  # a third of them in pairs
+    noise = 0.01 * random.normal(size=20_000)
+    slides = st.Record(time=time, force=1.0 + noise + wild)
+    assert st.find_cycles(slides).sizes["cycle"] == 0
+    assert st.classify(slides).kind == "steady sliding"
+    slips = st.Record(time=time, force=saw(time) + noise + wild)
+    assert st.find_cycles(slips).sizes["cycle"] == 8
+    assert st.classify(slips).kind == "stick-slip"
+    assert np.array_equal(without_outliers(saw(time)), saw(time))
+
+
+def test_irregular_vibration_beside_slow_motion_is_no_steady_sliding() -> None:
+    random = np.random.default_rng(3)
+    lengths = random.gamma(6.0, 1.0 / 6.0, 196) / 48.0
+    ends = np.concatenate([[0.0], np.cumsum(lengths)])
+    time = np.arange(0.0, ends[-1], 1.0 / 2000.0)
+    phase = np.interp(time, ends, np.arange(197))
+    height = np.interp(phase, np.arange(197), random.gamma(6.0, 1.0 / 6.0, 197))
+    slow = 5.0 * np.sin(2 * pi * time / ends[-1])
+    noise = random.normal(size=len(time)) / 65.0
+    regime = st.classify(
+        st.Record(time=time, force=20.0 + height * np.sin(2 * pi * phase) + slow + noise)
+    )
+    assert regime.kind == "irregular vibration"
+    assert regime.evidence["cycles"] == pytest.approx(196, abs=6)
 
 
 # --- measured ---

@@ -24,6 +24,7 @@ LOBE = 4  # samples to each side that a line takes: the window's lobe, and wande
 ALONE = 9.0  # times the largest power within half an octave
 HARMONICS = 8
 LEAST = 1e-12  # of the largest power: what is less is nothing
+MUCH = 0.3  # of the power; the first harmonic of a sawtooth has 0.6
 TRIED = 20  # of the strongest
 BLOCK = 5  # periods in each mean of amplitude and phase
 LONGEST = 250  # periods over which amplitude and phase are taken for constant
@@ -84,6 +85,20 @@ def _measured(
             values += _line(quick - values, k * cycles, cycles)
     height = float(np.subtract(*np.percentile(values, (99.0, 1.0))))
     return Line(cycles / step, height, values)
+
+
+def samples_per_period(force: Floats) -> float:
+    """Return how many samples the strongest line has a period; infinity if none makes the force.
+
+    A line makes the force if it is narrow and bears much of what varies.
+    """
+    if len(force) < 4 * PERIODS or np.ptp(force) == 0.0:
+        return np.inf
+    power, width = spectrum(force)
+    at = int(np.argmax(power))
+    line = float(power[max(at - LOBE, 0) : at + LOBE + 1].sum())
+    makes = power[at] > ABOVE * beside(power)[at] and line > MUCH * float(power.sum())
+    return 1.0 / (at * width) if makes and at > 0 else np.inf
 
 
 def spectrum(force: Floats) -> tuple[Floats, float]:

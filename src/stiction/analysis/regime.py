@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from stiction.analysis.cycles import Swings, swings
 from stiction.analysis.decay import MANY, ORDERED, order
+from stiction.analysis.hum import samples_per_period
 from stiction.analysis.level import PARTS, course
 from stiction.analysis.record import Record, recorded
 from stiction.analysis.rest import rest_share
@@ -42,6 +43,7 @@ ONE_WAY = 0.8  # of all ups and downs is change: a drift or a load, no wandering
 SETTLED = 0.1  # of the force's span is passed in the last quarter; of an even load it is 0.25
 LOADING = 0.5  # of the early rate, or of stiffness times drive velocity: it still sticks
 SLOW = 0.1  # of stiffness times drive velocity: the mass goes at 9/10 of the drive's speed or more
+MANY_SAMPLES = 64.0  # a cycle: no quicker line has been folded back to it
 FEWEST, ENOUGH = 3.5, 8.0  # samples a cycle: below the first it is not known, nor what it is
 # Samples that a quick fall seems to take at most, and that a fall takes which may be quick: a sine
 # of four samples falls for two
@@ -156,6 +158,8 @@ def regime_of(record: Record, found: Swings) -> Regime:
     if len(record) < PARTS:
         return Regime(UNDETERMINED, 0.0, {"samples": len(record)})
     per_cycle = 2.0 * len(record) / max(found.turns, 1)
+    if not found.table.sizes["cycle"] or per_cycle < MANY_SAMPLES:
+        per_cycle = min(per_cycle, samples_per_period(record.force))
     if per_cycle < FEWEST:
         needed = ENOUGH / per_cycle * record.sample_rate
         return Regime(UNDETERMINED, 0.0, {"samples_per_cycle": per_cycle, "rate_needed": needed})
