@@ -49,6 +49,7 @@ JUMP = 1.5  # times the step from sample to sample: less is no gap, but few samp
 LOADING = (0.1, 0.5)  # part of the rise that is straight: after the swing, before the creep
 # A line beside the motion: swings without it have so many of its periods, and are as high
 SLOWER, HIGHER = 2.0, 0.75
+REGULAR = 0.02  # standard deviation of the periods over their mean
 QUARTER = 4  # of a fall, to each side: cubics through so much of half a sine are 0.2 % too flat
 
 
@@ -153,9 +154,10 @@ def swings(record: Record) -> Swings:
     for line in narrow_lines(record.time, record.force):
         without = _swings(record.model_copy(update={"force": record.force - line.values}))
         if _beside(line, without):
-            count = without.table.sizes["cycle"]
-            harmless = abs(found.table.sizes["cycle"] - count) <= 1  # its own harmonic, it may be
-            return found if harmless else without._replace(line=line)
+            same = abs(found.table.sizes["cycle"] - without.table.sizes["cycle"]) <= 1
+            period = found.table["period"].values
+            harmonic = same and period.std() < REGULAR * period.mean()  # of the cycles themselves
+            return found if harmonic else without._replace(line=line)
     return found
 
 

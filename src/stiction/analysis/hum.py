@@ -71,7 +71,7 @@ def _measured(
     force: Floats, step: float, power: Floats, floor: Floats, width: float, at: int
 ) -> Line:
     """Return the line at a sample of the spectrum, with its harmonics."""
-    from scipy.ndimage import uniform_filter1d
+    from scipy.ndimage import uniform_filter1d  # type: ignore[attr-defined]
 
     cycles = _refined(power, at) * width  # per sample
     quick = force - uniform_filter1d(force, round(1.0 / cycles), mode="nearest")
@@ -108,7 +108,7 @@ def spectrum(force: Floats) -> tuple[Floats, float]:
     n = len(force)
     ramp = np.linspace(0.0, 1.0, n)
     level = force - force[0] - (force[-1] - force[0]) * ramp
-    size = next_fast_len(n, real=True)
+    size = next_fast_len(n, real=True)  # type: ignore[no-untyped-call]
     window = 0.5 - 0.5 * np.cos(2.0 * np.pi * ramp)
     return np.abs(rfft((level - level.mean()) * window, size)) ** 2, 1.0 / size
 
