@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 PERIODS = 100.0  # of the lowest frequency, in a window
 AS_SAWTOOTH = 1.5  # times the amplitude that a sawtooth's harmonic has
+APART = 0.35  # of the cycles' frequency: wider lines of harmonics leave nothing between them
 LOBE = 2.5  # lines to each side that a window of Hamming spreads a sine over
 STEPS = 5  # windows that overlap at any time
 
@@ -83,8 +84,9 @@ def _without_harmonics(lines: xr.DataArray, cycles: xr.Dataset, low: float) -> x
     fundamental = 1.0 / float(cycles["period"].median())
     number = frequency / fundamental
     lobe = LOBE * (frequency[1] - frequency[0]) / fundamental
-    near = np.abs(number - np.round(number)) < lobe
+    near = np.abs(number - np.round(number)) < (lobe if lobe < APART else 1.0)
     bound = AS_SAWTOOTH * float(cycles["drop"].median()) / np.pi / np.maximum(number, 1.0)
     harmonic = near[:, None] & (lines.values < bound[:, None])
-    beside = lines.where(~harmonic & (frequency >= low)[:, None]).median("frequency")
-    return lines.where(~harmonic, beside)
+    band = lines.sel(frequency=slice(low, None))
+    beside = lines.where(~harmonic).sel(frequency=band["frequency"]).median("frequency")
+    return lines.where(~harmonic, beside.fillna(band.median("frequency")))
