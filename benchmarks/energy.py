@@ -55,9 +55,9 @@ class Balance(NamedTuple):
 
 def balance(slider: st.Slider, duration: float, rtol: float, panels: int = PANELS) -> Balance:
     """Run a slider at a steady drive, and integrate its energies."""
-    settings = st.Settings(duration=duration, rtol=rtol)
+    settings = st.Settings(duration=duration, sample_rate=0, rtol=rtol)
     description = st.Description(slider, st.Initial(), settings)
-    sticks = st.simulate(slider, duration, rtol=rtol).stick_intervals
+    sticks = st.simulate(slider, duration, sample_rate=0, rtol=rtol).stick_intervals
     period = 2.0 * np.pi * np.sqrt(slider.mass / slider.k_y)
     t, weights, marks = quadrature(sticks, duration, period, panels)
     u_x, u_y, s_x, s_y, f_x, f_y = integrate(description, t, 10**9, None).samples[:, :6].T

@@ -126,7 +126,7 @@ def _ratio(times: list[float], plain: list[float]) -> float:
     return median(a / b for a, b in zip(times, plain, strict=True))
 
 
-def _simulation(slider: st.Slider, rate: float | None = None) -> Callable[[], st.Trajectory]:
+def _simulation(slider: st.Slider, rate: float = 0.0) -> Callable[[], st.Trajectory]:
     return lambda: st.simulate(slider, DURATION, sample_rate=rate)
 
 
@@ -140,4 +140,4 @@ def _compile(progress: Progress, known: Sequence[str]) -> None:
 
 
 def _once(name: str) -> None:
-    st.simulate(sliders()[name], 1e-3)
+    st.simulate(sliders()[name], 1e-3, sample_rate=0)

@@ -17,7 +17,7 @@ import sys
 import stiction as st
 from benchmarks.peak import peak
 
-duration, rate = float(sys.argv[1]), float(sys.argv[2]) or None
+duration, rate = float(sys.argv[1]), float(sys.argv[2])
 slider = st.presets.nakano_popov_2020()
 st.simulate(slider, 1e-2, sample_rate=1e3)
 before = peak()

@@ -106,7 +106,7 @@ SWEEPS = (
 
 def run(progress: Progress, quick: bool) -> Section:
     """Return how time, steps and memory grow, and what laws, protocols and samples cost."""
-    st.simulate(PAPER, 1e-3)
+    st.simulate(PAPER, 1e-3, sample_rate=0)
     fixed = min(_time(Setting(PAPER, duration=1e-6))[0] for _ in range(20))
     sweeps = [sweep._replace(values=sweep.values[:3]) for sweep in SWEEPS] if quick else SWEEPS
     task = progress.add_task("scaling", total=sum(len(sweep.values) for sweep in sweeps))
@@ -138,7 +138,7 @@ def run(progress: Progress, quick: bool) -> Section:
 def _time(setting: Setting) -> tuple[float, st.Trajectory]:
     slider, duration, rtol = setting
     begin = perf_counter()
-    found = st.simulate(slider, duration, rtol=rtol)
+    found = st.simulate(slider, duration, sample_rate=0, rtol=rtol)
     return perf_counter() - begin, found
 
 

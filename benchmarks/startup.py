@@ -27,7 +27,7 @@ COLD_NOTE = (
     "Cold: new environment, empty caches of packages and of compiled code; the download depends on"
     " the connection."
 )
-RUN = "import stiction as st; st.simulate(st.presets.nakano_popov_2020(), 5.0)"
+RUN = "import stiction as st; st.simulate(st.presets.nakano_popov_2020(), 5.0, sample_rate=0)"
 
 
 class Failed(RuntimeError):

@@ -6,6 +6,7 @@ import pytest
 
 import stiction as st
 from stiction.labels import VARIABLES
+from stiction.simulation import automatic_times
 
 
 @pytest.fixture(scope="module")
@@ -154,7 +155,7 @@ def test_save_and_load_refuse(run, tmp_path):
 
 
 def test_without_sampling(slider):
-    run = st.simulate(slider, 0.05)
+    run = st.simulate(slider, 0.05, sample_rate=0)
     assert run.data["time"].values.tolist() == [0.0, 0.05]
     assert len(run.stick_intervals) > 10
 
@@ -179,3 +180,52 @@ def test_pausing_changes_nothing(slider, monkeypatch):
     assert paused.data.identical(whole.data)
     assert fractions == sorted(fractions)
     assert fractions[-1] == 1.0
+
+
+def largest_change(run):
+    """Of u_y between samples, over its span: small where the transverse motion is resolved."""
+    u_y = run.data["u_y"].values
+    return np.abs(np.diff(u_y)).max() / np.ptp(u_y)
+
+
+def test_without_a_rate_the_motion_is_resolved(slider):
+    run = st.simulate(slider, 0.05)
+    time = run.data["time"].values
+    assert time[0] == 0.0
+    assert time[-1] == 0.05
+    wanted = 20 * slider.natural_frequencies[1] * 0.05
+    assert wanted <= len(time) - 1 < wanted + 1
+    assert largest_change(run) < 0.2
+    # samples influence nothing
+    same = st.simulate(slider, 0.05, sample_rate=20e3)
+    assert np.array_equal(run.stick_intervals, same.stick_intervals)
+
+
+@pytest.mark.parametrize(
+    ("changes", "duration", "samples"),
+    [
+        ({}, 1e-6, 1_000),  # however short
+        ({}, 100.0, 200_000),  # the transverse motion only in part
+        ({"k_y": 1e3}, 10.0, 3_222),
+        ({"k_x": 1e7}, 100.0, 1_000_000),  # the slow motion, but not for ever
+        ({"k_x": 1e6}, 30.0, 305_578),  # the slow motion, at 32 a period
+    ],
+)
+def test_automatic_samples_are_limited(slider, changes, duration, samples):
+    settings = st.Settings(duration=duration)
+    description = st.Description(slider.replace(**changes), st.Initial(), settings)
+    assert len(automatic_times(description)) == samples + 1
+
+
+def test_automatic_samples_show_what_is_shaken_and_not_the_multiscale_mode(slider):
+    modulation = st.Modulation("0.1 mm/s", "50 kHz")
+    shaken = slider.replace(drive=st.DriveProgram(velocity="1 mm/s", along=modulation))
+    settings = st.Settings(duration=0.01)
+    assert len(automatic_times(st.Description(shaken, st.Initial(), settings))) == 10_001
+    assert st.simulate(slider, 0.2, multiscale=True).data.sizes["time"] == 2
+
+
+def test_samples_far_from_zero_are_apart(slider):
+    settings = st.Settings(duration=1e-9)
+    late = st.Description(slider, st.Initial(time=1e6), settings)
+    assert (np.diff(automatic_times(late)) > 0).all()

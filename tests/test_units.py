@@ -4,6 +4,7 @@ import numpy as np
 import pint
 import pytest
 
+from stiction.quantity_text import quantity_text
 from stiction.unit_text import LONGEST
 from stiction.units import FORCE, VELOCITY, Kind, PydanticCustomError, in_words, to_si
 
@@ -94,3 +95,44 @@ def test_what_is_said_in_words_is_read_again():
         for value in (1.0, 0.0123, 4.5e-7, 6.7e5):
             text = in_words(value, unit)
             assert to_si(text, Kind("such a quantity", unit, "")) == pytest.approx(value, rel=1e-12)
+
+
+SYSTEM = ("kg", "N/m", "N*s/m", "N", "m", "m/s", "s", "Hz", "rad", "s/m")
+
+
+def test_what_is_written_is_read_again_to_the_last_digit():
+    random = np.random.default_rng(1)
+    for unit in SYSTEM:
+        kind = Kind("such a quantity", unit, "")
+        for value in (*10.0 ** random.uniform(-9, 9, 300), *np.arange(-5.0, 5.0), 1e-300, 1e300):
+            assert to_si(quantity_text(float(value), unit), kind) == value
+        for digits in range(1, 1000):
+            assert to_si(quantity_text(digits / 1e4, unit), kind) == digits / 1e4
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (0.001, "m/s", "1 mm/s"),
+        (0.01, "m/s", "10 mm/s"),
+        (1e3, "N/m", "1 kN/m"),
+        (1e7, "N/m", "10 MN/m"),
+        (10.0, "N", "10 N"),
+        (0.08, "kg", "80 g"),
+        (1e-11, "kg", "10 ng"),
+        (40.0, "N*s/m", "40 N s/m"),
+        (0.0, "N*s/m", "0 N s/m"),
+        (5.0, "s", "5 s"),
+        (np.radians(3.5), "rad", "3.5 deg"),
+        (-np.radians(90), "rad", "-90 deg"),
+        (0.1, "rad", "0.1 rad"),
+        (0.5, "s/m", "0.5 s/m"),
+    ],
+)
+def test_quantities_are_written_as_people_write_them(value, unit, text):
+    assert quantity_text(value, unit) == text
+
+
+def test_degrees_need_no_registry():
+    for degrees in np.arange(-90, 90.1, 0.37):
+        assert to_si(f"{degrees} deg", ANGLE) == to_si(f"{degrees}°", ANGLE)

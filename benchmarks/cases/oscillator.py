@@ -26,7 +26,7 @@ def den_hartog(r: float, S: float, wanted: float, rtol: float) -> list[Number]:
     swinging = st.DriveProgram(along=st.Modulation(-amplitude * r, r / (2 * pi)))
     slider = block(friction=st.Coulomb(mu_0=S), drive=swinging)
     period = 2 * pi / r
-    settled = st.simulate(slider, 100 * period, rtol=rtol)
+    settled = st.simulate(slider, 100 * period, sample_rate=0, rtol=rtol)
     last = st.simulate(
         slider,
         period,
@@ -52,11 +52,11 @@ def free(rtol: float) -> list[Number]:
     first, radius = atan(6 / 13), sqrt(13**2 + 6**2) - 1
     numbers = []
     for n in range(7):
-        run = st.simulate(slider, first + n * pi, initial=start, rtol=rtol)
+        run = st.simulate(slider, first + n * pi, initial=start, sample_rate=0, rtol=rtol)
         turn = (-1) ** n * (radius - 2 * n)
         found = float(run.final["u_x"])
         numbers.append(Number("Siconos", f"turning point {n + 1}", turn, found, 5e-7))
-    run = st.simulate(slider, 30.0, initial=start, rtol=rtol)
+    run = st.simulate(slider, 30.0, initial=start, sample_rate=0, rtol=rtol)
     rest = float(run.stick_intervals[0, 0])
     return [
         *numbers,

@@ -18,7 +18,7 @@ import stiction as st
 def paper(rtol: float) -> Callable[[], object]:
     """Fig. 3 over 5 s: sticks, slips and landings, nothing else."""
     slider = st.presets.nakano_popov_2020()
-    return lambda: st.simulate(slider, 5.0, rtol=rtol)
+    return lambda: st.simulate(slider, 5.0, sample_rate=0.2, rtol=rtol)
 
 
 def sampled() -> Callable[[], object]:
@@ -31,7 +31,7 @@ def law_with_state() -> Callable[[], object]:
     """Rate and state friction on the same apparatus."""
     law = st.RateStateAgeing(a=0.01, b=0.015, D_c=1e-5, mu_star=0.2, V_star=1e-3)
     slider = st.presets.nakano_popov_2020().replace(friction=law)
-    return lambda: st.simulate(slider, 5.0)
+    return lambda: st.simulate(slider, 5.0, sample_rate=0.2)
 
 
 def program() -> Callable[[], object]:
@@ -41,14 +41,14 @@ def program() -> Callable[[], object]:
         velocity="1 mm/s", program=pieces, repeat=5, across=st.Modulation("0.1 mm/s", "50 Hz")
     )
     slider = st.presets.nakano_popov_2020().replace(drive=drive)
-    return lambda: st.simulate(slider, 2.0)
+    return lambda: st.simulate(slider, 2.0, sample_rate=0.5)
 
 
 def many() -> Callable[[], object]:
     """64 short runs, phi from 0.5 to 10 deg: what a call costs by itself."""
     base = st.presets.nakano_popov_2020()
     sliders = [base.replace(phi=f"{0.5 + 9.5 * i / 63} deg") for i in range(64)]
-    return lambda: [st.simulate(slider, 0.02) for slider in sliders]
+    return lambda: [st.simulate(slider, 0.02, sample_rate=50.0) for slider in sliders]
 
 
 def start() -> Callable[[], object]:

@@ -72,7 +72,7 @@ def row(label: str, run: Trajectory) -> tuple[str, ...]:
 
 def sampled(description: Description) -> Description:
     """Return the description with a sample rate, which a figure over time needs."""
-    if description.run.sample_rate is not None:
+    if description.run.sample_rate:
         return description
     settings = description.run.model_dump(exclude_none=True)
     rate = SAMPLES / description.run.duration

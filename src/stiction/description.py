@@ -14,9 +14,10 @@ from stiction.friction import law_table, read_law
 from stiction.friction.own import Find, kept, named, trusted
 from stiction.initial import Initial
 from stiction.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider
-from stiction.tables import Reader, gather, read_toml
-from stiction.units import Duration, Number, Rate, Velocity
+from stiction.tables import Reader, folder_of, gather, read_toml, toml_text
+from stiction.units import Duration, Number, SampleRate, Velocity
 from stiction.validation import Described
+from stiction.writing import described, slider_tables
 
 MOST_SAMPLES = 2e7  # 5 GB in memory, 3 GB on disk
 Smoothing = Annotated[Velocity, Field(ge=1e-11)]  # below, each step is a boundary layer
@@ -30,7 +31,8 @@ class Settings(Described):
     duration : float or str
         s.
     sample_rate : float or str, optional
-        Output samples per second; only the first and last state when left out.
+        Output samples per second, Hz; 0 for the first and last state only. When left out, a
+        rate that suits the system, see `stiction.simulate`.
     rtol : float, optional
         Relative tolerance; see `stiction.simulate`.
     regularisation : float or str, optional
@@ -41,7 +43,7 @@ class Settings(Described):
     """
 
     duration: Duration
-    sample_rate: Rate | None = None
+    sample_rate: SampleRate | None = None
     rtol: Number = Field(default=1e-6, ge=1e-13, le=1e-2)
     regularisation: Smoothing | None = None
     multiscale: StrictBool = False
@@ -66,7 +68,7 @@ class Description(NamedTuple):
 
     @classmethod
     def from_toml(cls, path: str | Path, changes: Mapping[str, Any] | None = None) -> Self:
-        """Read a description file.
+        """Read a description file, or a text of several lines as `to_toml` writes it.
 
         Parameters
         ----------
@@ -81,7 +83,7 @@ class Description(NamedTuple):
         DescriptionError
             Naming every fault with its path, or why the file cannot be read.
         """
-        return cls.from_dict(read_toml(path, changes), find=named(Path(path).parent, Path()))
+        return cls.from_dict(read_toml(path, changes), find=named(folder_of(path), Path()))
 
     @classmethod
     def from_dict(cls, raw: Mapping[str, Any], *, find: Find | None = None) -> Self:
@@ -104,6 +106,15 @@ class Description(NamedTuple):
         """
         find = (trusted if trust else kept)(*folders, Path())
         return cls.from_dict(json.loads(text), find=find)
+
+    def to_toml(self) -> str:
+        """Return the description as TOML, with units; `from_toml` reads the same again."""
+        tables = {
+            **slider_tables(self.slider),
+            "initial": described(self.initial, type(self.initial).model_fields),
+            "run": described(self.run, type(self.run).model_fields),
+        }
+        return toml_text({name: table for name, table in tables.items() if table})
 
     def to_dict(self) -> dict[str, dict[str, Any]]:
         """Return nested tables of SI numbers, as `from_dict` reads them."""

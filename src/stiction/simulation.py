@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from importlib.metadata import version
+from math import ceil
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -52,8 +53,12 @@ def simulate(
         How long to simulate, s.
     sample_rate : float or str, optional
         Output samples per second, at start, start + 1/rate, ... up to and including the
-        end; only the first and last state when left out. Samples never influence the
-        steps, and stick intervals are all recorded anyway.
+        end; 0 for the first and last state only. When left out, 20 in each period of the
+        faster natural oscillation, or of what shakes drive or load if that is faster still,
+        while these are no more than 200 000; then so many, but 32 in each period of the slower
+        natural oscillation at least, up to a million in all; with `multiscale`, which samples
+        would slow down a hundred times, the first and last state only. Samples never influence
+        the steps, and stick intervals are all recorded anyway.
     rtol : float, optional
         Relative tolerance, 1e-13 to 1e-2; for the paper's Fig. 3 over 5 s the relative error
         of u_x is below it. Each step is kept to a share of 0.8 rtol^0.8 (1.3e-5 at the
@@ -138,8 +143,12 @@ def run(
         Whatever happens; ``run.status`` says how the run ended.
     """
     description = description_of(description)
-    _, initial, settings = description
-    times = sample_times(initial.time, settings.duration, settings.sample_rate)
+    initial, settings = description.initial, description.run
+    rate = 0.0 if settings.multiscale and settings.sample_rate is None else settings.sample_rate
+    if rate is None:
+        times = automatic_times(description)
+    else:
+        times = sample_times(initial.time, settings.duration, rate)
     solution = solve(description, times, max_steps=max_steps, progress=progress)
     status, statistics = STATUSES[solution.code], Statistics(*solution.counts)
     arrays = partial(labelled, description, solution, status, statistics)
@@ -206,11 +215,29 @@ def kind(description: Description) -> str:
     return f"set-valued friction{', multiscale' if description.run.multiscale else ''}"
 
 
-def sample_times(start: float, duration: float, rate: float | None) -> np.ndarray:
-    """Return the output times; the end belongs to them if it is on the grid, within rounding."""
+def sample_times(start: float, duration: float, rate: float) -> np.ndarray:
+    """Return the output times; the end belongs to them if it is on the grid, within rounding.
+
+    At a rate of zero they are start and end.
+    """
     end = start + duration
-    if rate is None:
+    if rate == 0.0:
         return np.array([start, end])
     times: np.ndarray = start + np.arange(int(duration * rate * (1 + 1e-12)) + 1) / rate
     clipped: np.ndarray = np.minimum(times, end)
     return clipped
+
+
+PER_FAST_PERIOD, PER_SLOW_PERIOD = 20, 32  # samples
+FEWEST, MANY, MOST = 1_000, 200_000, 1_000_000  # samples of one run
+
+
+def automatic_times(description: Description) -> np.ndarray:
+    """Return output times that show the motion of a system, from start to end; see `simulate`."""
+    slider, duration = description.slider, description.run.duration
+    slow, fast = slider.natural_frequencies
+    fine = PER_FAST_PERIOD * duration * max((fast, *slider.shaken))
+    wanted = max(min(fine, MANY), PER_SLOW_PERIOD * duration * slow, FEWEST)
+    start = description.initial.time
+    times: np.ndarray = np.linspace(start, start + duration, ceil(min(wanted, MOST)) + 1)
+    return np.unique(times)  # some may be the same to rounding

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from math import cos, pi, sin
+from math import cos, pi, sin, sqrt
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -23,9 +23,10 @@ from stiction.errors import DescriptionError
 from stiction.friction import Law, has_state, read_law
 from stiction.friction.kinds import is_law
 from stiction.friction.own import named
-from stiction.tables import Reader, gather, read_toml
+from stiction.tables import Reader, folder_of, gather, read_toml, toml_text
 from stiction.units import Angle, Damping, Force, Mass, Stiffness
 from stiction.validation import Described
+from stiction.writing import slider_tables
 
 
 def _within_a_right_angle(phi: float) -> float:
@@ -64,6 +65,9 @@ def _is_load(value: Any) -> Any:
     return value
 
 
+DRIVE = "ConstantVelocity | DriveProgram"
+
+
 class Apparatus(Described):
     """The mechanical part: mass, springs, dampers, misalignment, load (see `Slider`)."""
 
@@ -78,7 +82,7 @@ class Apparatus(Described):
 
 
 class Slider(Apparatus):
-    """A mass in frictional contact with a plane, pulled through an anisotropic spring.
+    r"""A mass in frictional contact with a plane, pulled through an anisotropic spring.
 
     The axes x and y are the principal axes of the spring; the drive moves along X, which
     lies at the misalignment angle phi from x (Nakano & Popov, Figs. 1 and 2). Each
@@ -91,7 +95,7 @@ class Slider(Apparatus):
     k_x, k_y : float or str
         Principal stiffnesses, N/m.
     phi : str
-        Misalignment angle between x and X, within 90 degrees of zero.
+        Misalignment angle between x and X, within 90 degrees of zero; ``slider.phi`` is in rad.
     normal_load : float or str
         W, N; what a program of the load starts from.
     friction : FrictionLaw
@@ -124,8 +128,10 @@ class Slider(Apparatus):
     u_x, u_y   spring elongations along the principal axes             m     1
     v_x, v_y   elongation rates du_x/dt, du_y/dt                       m/s   2
     v_slip     slip speed, magnitude of drive velocity minus (v_x,v_y) m/s   3
-    theta      angle of the friction force (and slip) to x             rad   1
-    psi        angle of the friction force to X, theta - phi           rad   1
+    theta      friction angle to x, that of the slip velocity          deg   1
+    psi        friction angle to X, theta - phi                        deg   1
+    F          friction force; on the mass it points at theta + 180    N     1
+    mu         spring force along X over W, as a test reports it       1     \-
     X, Y       position of the mass in the laboratory                  m     6
     V          drive velocity                                          m/s   2
     F_0        friction force at vanishing slip, mu_0 W                N     7
@@ -135,11 +141,22 @@ class Slider(Apparatus):
     A          mu_0 W/(2 V sin(phi) sqrt(m k_x))                       1     10
     zeta       instantaneous damping ratio A sin^3(theta)              1     10
     ========== ======================================================= ===== =====
+
+    The spring pulls the mass along its elongation; the friction on the mass points against its
+    slip over the plate: m u'' + K u = F s/\|s\|, with s the slip velocity. Results hold the
+    magnitude ``friction`` and the angle ``theta`` at which s lies; on the mass the force has the
+    components -F cos(theta) and -F sin(theta) along x and y, and so it is drawn in every figure.
+    While the mass sticks, theta is the angle of the force that friction holds. On an
+    `Anisotropic` surface the force and the slip differ in direction; theta is that of the force.
+
+    Angles are in degrees wherever they are data: results, tables and figures, as their
+    ``attrs["units"]`` say. What you write carries its unit. As numbers in Python, ``slider.phi``
+    and the arguments of `stiction.theory`, they are in rad, the unit of SI.
     """
 
-    friction: Annotated[Any, AfterValidator(_is_law)]
-    drive: Annotated[Any, AfterValidator(_is_drive)] = ConstantVelocity(0.0)
-    load: Annotated[Any, AfterValidator(_is_load)] = None
+    friction: Annotated[Any, AfterValidator(_is_law), "friction law"]
+    drive: Annotated[Any, AfterValidator(_is_drive), DRIVE] = ConstantVelocity(0.0)
+    load: Annotated[Any, AfterValidator(_is_load), "LoadProgram | None"] = None
 
     @property
     def law(self) -> Law:
@@ -166,6 +183,21 @@ class Slider(Apparatus):
         speed = abs(self.motion.rate(0.0)[0]) if has_state(self.law) else 0.0
         return self.law.coefficient(speed) * self.normal_load
 
+    @property
+    def natural_frequencies(self) -> tuple[float, float]:
+        """Natural frequencies of the mass on its spring, the slower first, in Hz."""
+        low, high = sorted((self.k_x, self.k_y))
+        return sqrt(low / self.mass) / (2 * pi), sqrt(high / self.mass) / (2 * pi)
+
+    @property
+    def shaken(self) -> tuple[float, ...]:
+        """Frequencies of the harmonics in the programs of drive and load, in Hz."""
+        drive, load = self.drive, self.load
+        parts = [*getattr(drive, "program", ()), *getattr(load, "program", ())]
+        parts += [getattr(drive, name, None) for name in ("along", "across")]
+        parts.append(getattr(load, "modulation", None))
+        return tuple(part.frequency for part in parts if hasattr(part, "frequency"))
+
     def weight(self, t: Any) -> Any:
         """Return the normal load at time `t` (float or array, s), in N; W until it changes."""
         return load_at(self.normal_load, self.load, t)
@@ -178,11 +210,16 @@ class Slider(Apparatus):
 
     @classmethod
     def from_toml(cls, path: str | Path, changes: Mapping[str, Any] | None = None) -> Slider:
-        """Read the slider of a description file; `Description` reads the whole of it.
+        """Read the slider of a description; `Description` reads the whole of it.
 
-        With `changes`, other values of some parameters by their paths, as `Description.from_toml`.
+        Parameters
+        ----------
+        path : str or Path
+            A file, or a text of several lines as `to_toml` writes it.
+        changes : mapping, optional
+            Other values of some parameters by their paths, as `Description.from_toml`.
         """
-        raw, find = read_toml(path, changes), named(Path(path).parent, Path())
+        raw, find = read_toml(path, changes), named(folder_of(path), Path())
         return cls.from_parts(
             gather(
                 {name: raw[name] for name in raw if name in SLIDER_TABLES},
@@ -190,6 +227,34 @@ class Slider(Apparatus):
                 absent=OPTIONAL_TABLES,
             )
         )
+
+    def to_toml(self) -> str:
+        """Return the slider as a description, with units; `from_toml` reads the same again.
+
+        A friction law of one's own is named by its file and class.
+
+        Examples
+        --------
+        >>> import stiction as st
+        >>> print(st.presets.nakano_popov_2020().to_toml())
+        [slider]
+        mass = "250 g"
+        k_x = "1 kN/m"
+        k_y = "10 MN/m"
+        phi = "1 deg"
+        normal_load = "10 N"
+        <BLANKLINE>
+        [friction]
+        law = "exponential-weakening"
+        mu_0 = 0.2
+        mu_inf = 0.15
+        v_f = "10 mm/s"
+        <BLANKLINE>
+        [drive]
+        velocity = "1 mm/s"
+        <BLANKLINE>
+        """
+        return toml_text(slider_tables(self))
 
     @classmethod
     def from_parts(cls, parts: Mapping[str, Any]) -> Slider:

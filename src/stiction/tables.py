@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import tomllib
 from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
@@ -15,12 +16,12 @@ Reader = Callable[[dict[str, Any]], Any]
 
 
 def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """Read a TOML file, with other values of some parameters.
+    """Read a TOML file, or a text of several lines in TOML, with other values of some parameters.
 
     Parameters
     ----------
     path : str or Path
-        The file.
+        The file, or the text.
     changes : mapping, optional
         For the path of a parameter (see `stiction.paths`) its value.
 
@@ -29,8 +30,10 @@ def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dic
     DescriptionError
         Saying why the file cannot be read, or which parameter is none.
     """
+    written = isinstance(path, str) and "\n" in path
     try:
-        raw = tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
+        text = str(path) if written else Path(path).read_text(encoding="utf-8-sig")
+        raw = tomllib.loads(text)
         return with_changes(raw, changes) if changes else raw
     except OSError as error:
         message = f"{error.strerror or 'cannot be read'}; write a description with 'stiction init'"
@@ -41,7 +44,34 @@ def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dic
             "; a value with a unit goes in quotes" if "Expected newline" in str(error) else ""
         )
         message = f"is not TOML: {error}{unquoted}"
-    raise DescriptionError([Fault(str(path), message)])
+    raise DescriptionError([Fault("the text" if written else str(path), message)])
+
+
+def folder_of(path: str | Path) -> Path:
+    """Return the folder of what `read_toml` reads: the working one for a text."""
+    return Path() if isinstance(path, str) and "\n" in path else Path(path).parent
+
+
+def toml_text(tables: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return tables of numbers, texts, lists and tables of these as TOML."""
+    parts = []
+    for name, table in tables.items():
+        lines = [f"{key} = {_value(value)}" for key, value in table.items()]
+        parts.append("\n".join([f"[{name}]", *lines]) + "\n")
+    return "\n".join(parts)
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return f"{{ {', '.join(f'{key} = {_value(each)}' for key, each in value.items())} }}"
+    if isinstance(value, list | tuple):
+        items = [_value(each) for each in value]
+        if any(isinstance(each, Mapping) for each in value):
+            return "[\n" + "".join(f"    {item},\n" for item in items) + "]"
+        return f"[{', '.join(items)}]"
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    return str(value).lower() if isinstance(value, bool) else repr(value)
 
 
 def gather(

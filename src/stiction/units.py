@@ -8,13 +8,16 @@ does not say whether it is in degrees or radians.
 from __future__ import annotations
 
 import re
+from fractions import Fraction
 from functools import partial
-from math import isfinite, isinf, isnan, pi
-from typing import Annotated, Any, NamedTuple
+from math import isfinite, isinf, isnan, pi, radians
+from types import UnionType
+from typing import Annotated, Any, NamedTuple, Union, get_args, get_origin
 
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
 from pydantic_core import PydanticCustomError
 
+from stiction.quantity_text import angle_text
 from stiction.unit_text import UnitError, factor, registry, short
 
 
@@ -83,6 +86,8 @@ def _parse(text: str, kind: Kind) -> float:
     number, unit = float(found[1].replace("−", "-")), found[2].strip()
     if unit == kind.unit:
         return number  # many runs are described in SI
+    if unit == "deg" and kind.unit == "rad":
+        return number * radians(1.0)
     if not unit:
         raise fault(f"{text!r} has no unit; write for example {kind.example!r}")
     if not kind.unit:
@@ -98,9 +103,20 @@ def _parse(text: str, kind: Kind) -> float:
             f"{text!r} is in {short(unit) or 'no unit'}, not a unit of {kind.name}; "
             f"write for example {kind.example!r}"
         )
-    parts = round(1.0 / size)
-    # a division by a whole number gives the float nearest to what was written
-    return number / parts if size < 1.0 and abs(parts * size - 1.0) < 1e-14 else number * size
+    return _times(found[1].replace("−", "-"), size)
+
+
+def _times(text: str, size: float) -> float:
+    """Return a number times a factor: where that is a decimal prefix, the float nearest to it."""
+    number = float(text)
+    up, down = round(size), round(1.0 / size)
+    if number == 0.0 or not isfinite(number):
+        return number
+    if up and abs(size - up) < 1e-14 * size:
+        return float(Fraction(text) * up)
+    if down and abs(1.0 - down * size) < 1e-14:
+        return float(Fraction(text) / down)
+    return number * size
 
 
 def fault(message: str) -> PydanticCustomError:
@@ -109,13 +125,25 @@ def fault(message: str) -> PydanticCustomError:
     return PydanticCustomError("unit", message.replace("{", "(").replace("}", ")"))
 
 
-def unit_of(hint: Any) -> str:
-    """Return the SI unit of a field annotated with one of the types below, '' for others."""
+def kind_of(hint: Any) -> Kind | None:
+    """Return the quantity of a field annotated with one of the types below, None for others.
+
+    A field that may be left out, ``Velocity | None``, is one of them.
+    """
+    inner = [each for each in get_args(hint) if each is not type(None)]
+    if get_origin(hint) in (Union, UnionType) and len(inner) == 1:
+        return kind_of(inner[0])
     for item in getattr(hint, "__metadata__", ()):
         kind = getattr(getattr(item, "func", None), "keywords", {}).get("kind")
-        if kind is not None:
-            return str(kind.unit)
-    return ""
+        if isinstance(kind, Kind):
+            return kind
+    return None
+
+
+def unit_of(hint: Any) -> str:
+    """Return the SI unit of a field annotated with one of the types below, '' for others."""
+    kind = kind_of(hint)
+    return "" if kind is None else kind.unit
 
 
 def reader(name: str, unit: str, example: str) -> BeforeValidator:
@@ -140,11 +168,7 @@ def _not_below_one(value: float) -> float:
     return value
 
 
-def _radians(value: float) -> str:
-    return f"{value!r} rad"
-
-
-Angle = Annotated[float, reader("an angle", "rad", "1 deg"), PlainSerializer(_radians)]
+Angle = Annotated[float, reader("an angle", "rad", "1 deg"), PlainSerializer(angle_text)]
 Coefficient = Annotated[float, reader("a number", "", "0.20"), Field(ge=0)]
 Number = Annotated[float, reader("a number", "", "1e-6")]
 Exponent = Annotated[float, reader("a number", "", "2"), AfterValidator(_not_below_one)]
@@ -159,11 +183,12 @@ Velocity = Annotated[float, reader("a velocity", "m/s", "1 mm/s")]
 Speed = Annotated[float, reader("a velocity", "m/s", "1 mm/s"), Field(ge=0)]
 PositiveSpeed = Annotated[float, reader("a velocity", "m/s", "10 mm/s"), Field(gt=0)]
 PerSpeed = Annotated[float, reader("friction per slip speed", "s/m", "0.5 s/m"), Field(ge=0)]
-Speeds = Annotated[tuple[Speed, ...], BeforeValidator(_listed)]
-Coefficients = Annotated[tuple[Coefficient, ...], BeforeValidator(_listed)]
+Speeds = Annotated[tuple[Speed, ...], BeforeValidator(_listed), "sequence of float (m/s) | str"]
+Coefficients = Annotated[tuple[Coefficient, ...], BeforeValidator(_listed), "sequence of float"]
 Time = Annotated[float, reader("a time", "s", "5 s")]
 Duration = Annotated[float, reader("a time", "s", "5 s"), Field(gt=0)]
 Rate = Annotated[float, reader("a frequency", "Hz", "10 kHz"), Field(gt=0)]
+SampleRate = Annotated[float, reader("a frequency", "Hz", "10 kHz"), Field(ge=0)]
 
 
 def in_words(value: float, unit: str) -> str:

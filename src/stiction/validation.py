@@ -7,30 +7,47 @@ from difflib import get_close_matches
 from functools import cache
 from inspect import Parameter, Signature, signature
 from numbers import Real
-from typing import Annotated, Any, TypeVar, cast, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, cast, get_args, get_type_hints
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, create_model
+from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from stiction.errors import DescriptionError, Fault
+from stiction.quantity_text import angle_text
+from stiction.units import kind_of, unit_of
+
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass
+else:
+    ModelMetaclass = type(BaseModel)
 
 T = TypeVar("T")
 READS = "reads_parameters"  # marks the constructors that `validated` makes
 
 
-class Described(BaseModel):
+class _Presented(ModelMetaclass):
+    """Lists a class without what it inherits from the library: `dir` and `help` ask this."""
+
+    def __dir__(cls) -> list[str]:
+        return _own_names(cls, super().__dir__())
+
+
+class Described(BaseModel, metaclass=_Presented):
     """A frozen piece of a description; a bad one raises `DescriptionError` with every fault."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
-        """Show names and defaults as the signature, not how each is read."""
+        """Show names, units and defaults as the signature, not how each is read."""
+        hints, plain = get_type_hints(cls, include_extras=True), get_type_hints(cls)
         parameters = [
             Parameter(
                 name,
                 Parameter.KEYWORD_ONLY,
                 default=Parameter.empty if field.is_required() else field.default,
+                annotation=_shown(hints.get(name), plain.get(name)),
             )
             for name, field in cls.model_fields.items()
         ]
@@ -40,6 +57,75 @@ class Described(BaseModel):
     def __init__(self, **values: Any) -> None:
         """Validate, or raise every fault at once."""
         collect(type(self).__name__, super().__init__, type(self).model_fields, values)
+
+    def __dir__(self) -> list[str]:
+        """List the fields, and what the class adds."""
+        return _own_names(type(self), super().__dir__())
+
+    def __repr__(self) -> str:
+        """Return what makes it again, exactly."""
+        hints = get_type_hints(type(self), include_extras=True)
+        fields = type(self).model_fields
+        return _call(self, {name: hints.get(name) for name in fields}, _defaults(fields))
+
+
+def _own_names(cls: Any, names: Iterable[str]) -> list[str]:
+    """Return the names without those of the library that reads descriptions."""
+    own = {name for kind in cls.__mro__ if kind is not BaseModel for name in vars(kind)}
+    inherited = {name for name in dir(BaseModel) if name.startswith("_") or name not in own}
+    plain = {*dir(object), *(name for name in names if not name.startswith(("__", "model_")))}
+    return sorted(plain - inherited | plain & {*dir(object)})
+
+
+def _defaults(fields: Mapping[str, FieldInfo]) -> dict[str, Any]:
+    return {name: field.default for name, field in fields.items() if not field.is_required()}
+
+
+def _call(value: Any, hints: Mapping[str, Any], defaults: Mapping[str, Any]) -> str:
+    """Return the text that makes a value again: its fields that differ from their defaults."""
+    written = []
+    for name, hint in hints.items():
+        its = getattr(value, name)
+        default = defaults.get(name)
+        same = type(its) is type(default) and its == default  # no array is a default
+        if name not in defaults or not same:
+            written.append(f"{name}={quoted(its, hint)}")
+    return f"{type(value).__name__}({', '.join(written)})"
+
+
+def quoted(value: Any, hint: Any) -> str:
+    """Return a field's value as Python has it: an angle with its unit."""
+    if isinstance(value, float) and unit_of(hint) == "rad":
+        return repr(angle_text(value))
+    if getattr(value, "shape", None) == ():  # a number of NumPy
+        value = value.tolist()
+    return repr(value)
+
+
+class _Annotation(str):
+    """Stands for a type in a signature, where it is shown as it is."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+def _shown(hint: Any, plain: Any) -> Any:
+    """Return how a parameter is annotated for a reader: what may be given, and its unit.
+
+    `plain` is its type without what reads it; a text beside that goes before.
+    """
+    texts = [item for item in getattr(hint, "__metadata__", ()) if isinstance(item, str)]
+    kind = kind_of(hint)
+    if texts:
+        return _Annotation(texts[0])
+    if kind is None or not kind.unit:
+        return Parameter.empty if plain in (None, Any) else plain
+    if kind.unit == "rad":
+        return _Annotation("str (deg or rad)")
+    none = " | None" if type(None) in get_args(plain) else ""
+    return _Annotation(f"float ({kind.unit}) | str{none}")
 
 
 def faulty(found: Sequence[Fault]) -> PydanticCustomError:
@@ -182,9 +268,28 @@ def validated(kind: type[T]) -> type[T]:
 
     new.__doc__ = plain.__doc__
     setattr(new, READS, True)
+    setattr(new, "__signature__", _signature(plain, kind))  # noqa: B010
+    setattr(kind, "__repr__", _written)  # noqa: B010
     kind.__new__ = staticmethod(new)  # type: ignore[method-assign,assignment]
     setattr(kind, "__reduce__", _reduced)  # noqa: B010
     return kind
+
+
+def _signature(constructor: Any, kind: Any) -> Signature:
+    """Return the signature of a NamedTuple with what may be given, and units."""
+    hints, plain = get_type_hints(kind, include_extras=True), get_type_hints(kind)
+    return Signature(
+        [
+            each.replace(annotation=_shown(hints[name], plain[name])) if name in hints else each
+            for name, each in signature(constructor).parameters.items()
+        ]
+    )
+
+
+def _written(value: Any) -> str:
+    """Return what makes a NamedTuple again, exactly."""
+    hints = get_type_hints(type(value), include_extras=True)
+    return _call(value, {name: hints.get(name) for name in value._fields}, value._field_defaults)
 
 
 def _reduced(value: Any) -> tuple[Any, ...]:

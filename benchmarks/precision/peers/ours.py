@@ -45,10 +45,10 @@ def solve(times, phi=PHI, **settings):
     """
     import stiction as st
 
-    rate = round(1.0 / (times[1] - times[0])) if len(times) > 2 else None
+    rate = round(1.0 / (times[1] - times[0])) if len(times) > 2 else 0
     run = st.simulate(slider(phi), duration=float(times[-1]), sample_rate=rate, **settings)
     if not run.status.ok:
         raise Failed(str(run.status.value))
-    if rate is None:
+    if rate == 0:
         return np.empty((0, 2))
     return np.stack([run.data["u_x"].values, run.data["u_y"].values], axis=1)

@@ -59,7 +59,7 @@ def said(result: Trajectory, output: Path) -> list[str]:
     peak = float(abs(result.data["spring_x"]).max())
     mapped = f", {statistics.mapped} intervals without any" if statistics.mapped else ""
     few = result.data.sizes["time"] <= 2
-    sampled = " at start and end (no sample_rate)" if few else ""
+    sampled = " at start and end (sample_rate = 0)" if few else ""
     lines += [
         f"{output}: {result.data.sizes['time']} samples, stick intervals: "
         f"{statistics.stick_count}, {statistics.time_stuck:.6g} s in all; "

@@ -24,7 +24,7 @@ def _level(value: Any) -> Any:
 
 
 # a velocity or a force: which one is known to the program that the piece stands in
-Level = Annotated[Any, AfterValidator(_level)]
+Level = Annotated[Any, AfterValidator(_level), "float (m/s or N) | str"]
 Phase = Annotated[float, reader("an angle", "rad", "90 deg")]
 
 

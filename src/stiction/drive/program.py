@@ -21,6 +21,9 @@ Times = Any  # a float or an array
 Repeat = Annotated[int, Field(ge=1, le=100_000)]
 
 
+PIECES = "sequence of pieces"
+
+
 class DriveProgram(Described):
     """A drive whose velocity is composed of pieces in time, with harmonics on top.
 
@@ -39,10 +42,10 @@ class DriveProgram(Described):
     """
 
     velocity: Velocity = 0.0
-    program: Annotated[tuple[Any, ...], as_pieces(Reading(DRIVE_PIECES, VELOCITY))] = ()
+    program: Annotated[tuple[Any, ...], as_pieces(Reading(DRIVE_PIECES, VELOCITY)), PIECES] = ()
     repeat: Repeat = 1
-    along: Annotated[Any, as_modulation(VELOCITY)] = None
-    across: Annotated[Any, as_modulation(VELOCITY)] = None
+    along: Annotated[Any, as_modulation(VELOCITY), "Modulation | None"] = None
+    across: Annotated[Any, as_modulation(VELOCITY), "Modulation | None"] = None
 
     @model_validator(mode="after")
     def _can_be_repeated(self) -> Self:
@@ -108,9 +111,9 @@ class LoadProgram(Described):
         A harmonic force added from t = 0 on.
     """
 
-    program: Annotated[tuple[Any, ...], as_pieces(Reading(LOAD_PIECES, FORCE))] = ()
+    program: Annotated[tuple[Any, ...], as_pieces(Reading(LOAD_PIECES, FORCE)), PIECES] = ()
     repeat: Repeat = 1
-    modulation: Annotated[Any, as_modulation(FORCE)] = None
+    modulation: Annotated[Any, as_modulation(FORCE), "Modulation | None"] = None
 
     @model_validator(mode="after")
     def _can_be_repeated(self) -> Self:

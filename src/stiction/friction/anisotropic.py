@@ -47,7 +47,7 @@ class Anisotropic(NamedTuple):
         From the drive direction X to the surface's axis, towards Y, with its unit.
     """
 
-    law: Annotated[Any, AfterValidator(_is_set_valued)]
+    law: Annotated[Any, AfterValidator(_is_set_valued), "set-valued friction law"]
     ratio: Ratio
     angle: Angle = 0.0
 

@@ -13,14 +13,14 @@ from stiction.trajectory import Trajectory
 
 
 def friction_vector(data: xr.Dataset) -> shapes.Points:
-    """Return the friction force (X, Y) that balances the spring, shape (n, 2), in N."""
-    psi = np.radians(data["psi"].values)
+    """Return the friction force (X, Y) on the mass, against its slip, shape (n, 2), in N."""
+    psi = np.radians(data["psi"].values) + np.pi
     direction: shapes.Points = np.column_stack([np.cos(psi), np.sin(psi)])
     return direction * np.asarray(data["friction"].values, dtype=np.float64)[:, None]
 
 
 def draw_friction_circle(ax: Axes, run: Trajectory, window: tuple[float, float]) -> Line2D:
-    """Draw the circle mu_0 W, the friction vector, and the path of its tip.
+    """Draw the circle mu_0 W, the friction vector on the mass, and the path of its tip.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def draw_friction_arc(
     near = stuck.copy()  # join each stick to the slip at its ends
     near[1:] |= stuck[:-1]
     near[:-1] |= stuck[1:]
-    psi = np.radians(part["psi"].values)
+    psi = np.radians(part["psi"].values) + np.pi
     low, high = np.nanmin(psi), np.nanmax(psi)
     reach = 0.25 * (high - low)
     slip = shapes.line(ax, np.where(stuck[:, None], np.nan, vector), GREEN, 1.0)

@@ -44,7 +44,8 @@ def draw_schematic(ax: Axes, slider: Slider) -> Axes:
 
     Blue is the drive direction X, red are the principal axes x and y of the spring; the far
     end of the spring is a bracket that moves with the drive. The friction F on the block is
-    opposite to its slip velocity; psi is its angle to X, theta its angle to x. Lengths are
+    opposite to its slip velocity; psi and theta are the angles of the slip to X and x, and so
+    those of F to -X and -x, where they are drawn. Lengths are
     not to scale; the misalignment is, where it is large enough to be seen.
 
     Parameters

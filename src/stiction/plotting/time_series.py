@@ -107,7 +107,7 @@ def draw_friction(ax: Axes, run: Trajectory) -> Line2D:
 
 
 def draw_direction(ax: Axes, run: Trajectory) -> Line2D:
-    """Draw the angle psi (deg) of the friction force to the drive direction over time."""
+    """Draw the friction angle psi (deg) to the drive direction over time."""
     ax.yaxis.set_major_locator(MaxNLocator(nbins=4, steps=[1, 1.5, 3, 4.5, 9, 10]))
     ax.set_ylabel(r"$\psi$ (deg)")
     return draw_line(ax, run.data["time"].values, cut_open(run.data["psi"].values), PURPLE)

@@ -68,7 +68,7 @@ def zero_slip(run: Trajectory, window: tuple[float, float]) -> Figure:
         for ax, title in (
             (speed, "(a) Slip speed"),
             (force, "(b) Friction"),
-            (circle, "(c) Friction vector"),
+            (circle, "(c) Friction on the mass"),
             (arc, "(d) Its tip, magnified"),
         ):
             ax.set_title(title)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from math import ceil, nan, pi, sqrt
+from math import ceil, nan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -159,7 +159,7 @@ class Observed:
 def observe(description: Description, report: Callable[[float], None] | None) -> Observed:
     """Run a description, sampled as measures need it: as it says, or by its slow period."""
     start, duration = description.initial.time, description.run.duration
-    slow, fast = frequencies(description)
+    slow, fast = description.slider.natural_frequencies
     wanted = description.run.sample_rate or max(PER_SLOW_PERIOD * slow, LEAST_SAMPLES / duration)
     rate = min(wanted, MOST_SAMPLES / duration)
     even = sample_times(start, duration, rate)
@@ -174,11 +174,4 @@ def observe(description: Description, report: Callable[[float], None] | None) ->
 
 def seconds_of(description: Description) -> float:
     """Return about what a run takes (s), by what the paper's takes in each fast period."""
-    return 1e-4 + 1.6e-6 * frequencies(description)[1] * description.run.duration
-
-
-def frequencies(description: Description) -> tuple[float, float]:
-    """Return the two natural frequencies, the slower first (Hz)."""
-    slider = description.slider
-    low, high = sorted((slider.k_x, slider.k_y))
-    return sqrt(low / slider.mass) / (2.0 * pi), sqrt(high / slider.mass) / (2.0 * pi)
+    return 1e-4 + 1.6e-6 * description.slider.natural_frequencies[1] * description.run.duration

@@ -81,7 +81,7 @@ def simulated(law: Any, speeds: Sequence[float]) -> Iterator[str]:
     from stiction.simulation import simulate
 
     try:
-        run = simulate(_preset(law), duration=0.02)
+        run = simulate(_preset(law), duration=0.02, sample_rate=0)
     except Exception as error:
         yield f"the paper's system cannot be simulated with it, {said(error)}"
         return
