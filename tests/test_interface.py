@@ -150,3 +150,21 @@ def test_angles_are_in_degrees_wherever_they_are_data(slider):
         assert next(line for line in lines if line and line[0] == symbol)[-2] == "deg"
     assert slider.phi == np.radians(1.0)
     assert "``slider.phi`` is in rad" in st.Slider.__doc__
+
+
+def test_what_one_looks_at_has_a_short_text_and_a_table_for_notebooks(slider):
+    run = st.simulate(slider, "50 ms", sample_rate="10 kHz")
+    base = st.Description(slider, st.Initial(), st.Settings(duration=5))
+    study = st.Study(base=base, axes={"phi": st.Grid("1 deg", "3 deg", 3), "mass": st.Values([1])})
+    assert repr(study) == "<Study of 3 runs: phi (3) x mass (1)>"
+    record = st.Record(time=np.arange(3000.0), force=np.ones(3000), normal_load="1 N")
+    assert repr(record).startswith("Record(time=<3000 values>, force=<3000 values>, normal_load=")
+    shown = (slider, run, st.analyse(run), study)
+    for each in shown:
+        assert len(repr(each)) < 250
+        page = each._repr_html_()
+        assert page.startswith("<h4>")
+        assert "<table>" in page
+        assert "<script" not in page
+    assert "<td>slider.phi</td><td>1 deg</td>" in slider._repr_html_()
+    assert "COMPLETED" in run._repr_html_() or "completed" in run._repr_html_()

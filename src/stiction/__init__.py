@@ -75,7 +75,7 @@ if TYPE_CHECKING:
     from stiction.study.sweeping import sweep
     from stiction.template import init
     from stiction.testing import check_law
-    from stiction.trajectory import Trajectory, load
+    from stiction.trajectory import Trajectory, export, load
 
 __version__ = "0.4.0"
 
@@ -133,6 +133,7 @@ _HOME = {
     "creep_curves": "analysis.creep_curve",
     "detrended": "analysis.drift",
     "energy_budget": "analysis.energy",
+    "export": "trajectory",
     "find_cycles": "analysis.cycles",
     "find_onset": "analysis.onset",
     "fit_divergence": "analysis.divergence",
@@ -216,6 +217,7 @@ __all__ = [
     "creep_curves",
     "detrended",
     "energy_budget",
+    "export",
     "find_cycles",
     "find_onset",
     "fit_divergence",

@@ -23,10 +23,11 @@ from stiction.errors import DescriptionError
 from stiction.friction import Law, has_state, read_law
 from stiction.friction.kinds import is_law
 from stiction.friction.own import named
+from stiction.sections import Section, as_html
 from stiction.tables import Reader, folder_of, gather, read_toml, toml_text
 from stiction.units import Angle, Damping, Force, Mass, Stiffness
 from stiction.validation import Described
-from stiction.writing import slider_tables
+from stiction.writing import parameter_table, slider_tables
 
 
 def _within_a_right_angle(phi: float) -> float:
@@ -227,6 +228,9 @@ class Slider(Apparatus):
                 absent=OPTIONAL_TABLES,
             )
         )
+
+    def _repr_html_(self) -> str:
+        return as_html([Section("Slider", [], parameter_table(slider_tables(self)))])
 
     def to_toml(self) -> str:
         """Return the slider as a description, with units; `from_toml` reads the same again.

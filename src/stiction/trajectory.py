@@ -16,7 +16,10 @@ from stiction.files import placeable, whole
 from stiction.friction import states
 from stiction.initial import Initial
 from stiction.labels import VARIABLES, apparent_friction, described, stick_table
+from stiction.sections import Section, as_html
 from stiction.slider import Slider
+from stiction.table_files import exportable, write_tables
+from stiction.writing import parameter_table, slider_tables
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -81,6 +84,10 @@ class Trajectory:
         sticks = self.statistics.stick_count
         return f"<Trajectory to {end:g} s, {n} samples, {sticks} sticks, {self.status.name}>"
 
+    def _repr_html_(self) -> str:
+        head = Section("Run", [str(self), f"Status: {self.status.value}."])
+        return as_html([head, Section("Slider", [], parameter_table(slider_tables(self.slider)))])
+
     @cached_property
     def data(self) -> xr.Dataset:
         """The samples: variables over ``time``, with units (see `stiction.labels`)."""
@@ -117,6 +124,10 @@ class Trajectory:
     def final(self) -> xr.Dataset:
         """The last sample."""
         return self.data.isel(time=-1)
+
+    def export(self, path: str | Path) -> list[Path]:
+        """Write samples and sticks as CSV, Parquet or MATLAB, see `stiction.export`."""
+        return export(self, path)
 
     def plot(self, axes: Any = None) -> Any:
         """Draw the run, all of it or on given axes; see `stiction.plotting.plot_run`."""
@@ -155,6 +166,43 @@ class Trajectory:
             self.data.to_netcdf(part, engine="h5netcdf")
             self.sticks.to_netcdf(part, mode="a", group=STICK_GROUP, engine="h5netcdf")
         return target
+
+
+def export(result: Trajectory | str | Path, path: str | Path, *, trust: bool = False) -> list[Path]:
+    """Write a run for another program: CSV, Parquet or MATLAB; return the paths.
+
+    Parameters
+    ----------
+    result : Trajectory, str or Path
+        A run, or its file.
+    path : str or Path
+        With the suffix .csv or .parquet: the samples, and beside them the stick intervals
+        (``run-sticks.csv``). With .mat: all in one file, as the structs ``samples``, ``sticks``
+        and ``units``. Units stand in the heads of CSV columns and in Parquet's metadata.
+    trust : bool, optional
+        Of a file, see `load`.
+
+    Raises
+    ------
+    ResultError
+        If the format is not known, needs what is not installed (Parquet needs pyarrow: install
+        ``stiction[parquet]``), or cannot be written there.
+
+    Examples
+    --------
+    >>> import stiction as st, tempfile
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "20 ms", sample_rate="1 kHz")
+    >>> [path.name for path in st.export(run, tempfile.mkdtemp() + "/run.csv")]
+    ['run.csv', 'run-sticks.csv']
+    """
+    exportable(path)
+    run = result if isinstance(result, Trajectory) else load(result, trust=trust)
+    about = {
+        "description": run.description.to_toml(),
+        "stiction_version": str(run.data.attrs["stiction_version"]),
+        "status": run.status.name,
+    }
+    return write_tables({"samples": run.data, "sticks": run.sticks}, path, about)
 
 
 def writable(path: str | Path) -> Path:

@@ -94,12 +94,12 @@ def _call(value: Any, hints: Mapping[str, Any], defaults: Mapping[str, Any]) -> 
 
 
 def quoted(value: Any, hint: Any) -> str:
-    """Return a field's value as Python has it: an angle with its unit."""
+    """Return a field's value as Python has it: an angle with its unit, of an array its size."""
     if isinstance(value, float) and unit_of(hint) == "rad":
         return repr(angle_text(value))
     if getattr(value, "shape", None) == ():  # a number of NumPy
         value = value.tolist()
-    return repr(value)
+    return f"<{value.size} values>" if hasattr(value, "size") else repr(value)
 
 
 class _Annotation(str):

@@ -9,6 +9,7 @@ from stiction.drive import ConstantVelocity
 from stiction.drive.pieces import DRIVE_PIECES, LEVELS, LOAD_PIECES
 from stiction.friction import Anisotropic, law_table
 from stiction.quantity_text import quantity_text
+from stiction.sections import Table as Rows
 from stiction.units import FORCE, VELOCITY, Kind, kind_of
 
 if TYPE_CHECKING:
@@ -27,6 +28,16 @@ def slider_tables(slider: Slider) -> dict[str, Table]:
         "drive": _drive(slider.motion),
         **({} if slider.load is None else {"load": _program(slider.load, LOAD_PIECES, FORCE)}),
     }
+
+
+def parameter_table(tables: Mapping[str, Table]) -> Rows:
+    """Return a description's tables as one: a row for each parameter, as it is written."""
+    rows = [
+        (f"{name}.{key}", str(value))
+        for name, table in tables.items()
+        for key, value in table.items()
+    ]
+    return Rows(("parameter", "value"), rows)
 
 
 def described(value: Any, names: Iterable[str]) -> Table:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from stiction.analysis.report import Analysis
 from stiction.files import placeable, whole
+from stiction.table_files import with_units
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -65,17 +66,6 @@ def write(found: Analysis, folder: Path) -> list[Path]:
             with_units(table).to_csv(part, float_format="%.12g")
         paths.append(path)
     return paths
-
-
-def with_units(table: xr.Dataset) -> Any:
-    """Return a table as a data frame, its columns named with their units: ``peak [N]``."""
-    units = {
-        str(name): f"{name} [{values.attrs['units']}]"
-        for name, values in table.variables.items()
-        if values.attrs.get("units", "1") != "1"
-    }
-    frame = table.to_dataframe()
-    return frame.rename(columns=units).rename_axis(index=units)
 
 
 def numbers(found: Analysis) -> dict[str, Any]:

@@ -22,7 +22,7 @@ from stiction.analysis.record import Record, recorded
 from stiction.analysis.regime import STICK_SLIP, TRANSITIONAL, Regime, regime_of
 from stiction.analysis.spread import summary
 from stiction.errors import ResultError, StictionError
-from stiction.sections import Section
+from stiction.sections import Section, as_html
 from stiction.trajectory import Trajectory, load
 
 if TYPE_CHECKING:
@@ -90,6 +90,15 @@ class Analysis(NamedTuple):
         """The old name of `oscillation`, which goes with the next version."""
         warn("Analysis.song is now called Analysis.oscillation", DeprecationWarning, stacklevel=2)
         return self.oscillation
+
+    def __repr__(self) -> str:
+        """Say what was found, and what is missing."""
+        found = f"{self.regime.kind}, {self.cycles.sizes['cycle']} cycles"
+        missing = f"; missing: {', '.join(self.missing)}" if self.missing else ""
+        return f"<Analysis: {found}{missing}>"
+
+    def _repr_html_(self) -> str:
+        return as_html(self.tables())
 
     def tables(self) -> list[Section]:
         """Return the report in sentences and tables, part by part."""

@@ -36,6 +36,7 @@ COMMANDS = (
     "run",
     "plot",
     "analyse",
+    "export",
     "compare",
     "stability",
     "sweep",

@@ -15,6 +15,7 @@ from stiction.deprecation import warn_renamed
 from stiction.description import Description
 from stiction.errors import DescriptionError, Fault
 from stiction.friction.own import Find, kept, named, trusted
+from stiction.sections import Section, Table, as_html
 from stiction.study.axis_table import axis_table
 from stiction.study.coordinates import Coordinate, coordinate_faults, coordinates, zip_faults
 from stiction.study.layout import Index, Layout, laid_out
@@ -24,6 +25,7 @@ from stiction.study.parameters import varied
 from stiction.study.reading import axes_of, is_description, measures_of, traces_of
 from stiction.tables import read_toml
 from stiction.validation import Described, faulty
+from stiction.writing import parameter_table, slider_tables
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -130,6 +132,21 @@ class Study(Described):
             for path, (dim, values, its) in self.coordinates.items()
         }
         return varied(self.base, changes)
+
+    def __repr__(self) -> str:
+        """Say how many runs there are, and along which axes."""
+        axes = " x ".join(f"{path} ({axis.count})" for path, axis in self.axes.items())
+        return f"<Study of {self.layout.runs} runs: {axes}>"
+
+    def _repr_html_(self) -> str:
+        axes = [(path, f"{axis.count} values: {axis!r}") for path, axis in self.axes.items()]
+        kept = f"Keeps of each run: {', '.join([*self.measures, *self.traces])}."
+        return as_html(
+            [
+                Section(f"Study of {self.layout.runs} runs", [kept], Table(("axis", ""), axes)),
+                Section("Base", [], parameter_table(slider_tables(self.base.slider))),
+            ]
+        )
 
     def run(
         self,
