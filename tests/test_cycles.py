@@ -238,7 +238,7 @@ def test_mains_hum_makes_no_cycles_and_hides_none(
     cycles, regime = st.find_cycles(record), st.classify(record)
     assert abs(cycles.sizes["cycle"] - 17) <= 1  # from the second trough to the last but one
     assert float(cycles["period"].mean()) == pytest.approx(period, rel=0.03)
-    assert float(cycles["drop"].mean()) == pytest.approx(1.0, abs=0.1)
+    assert float(cycles["drop"].mean()) == pytest.approx(1.0, abs=0.15)
     assert regime.kind == "stick-slip"
 
 
