@@ -26,9 +26,9 @@ def test_modes_and_critical_values_are_printed_and_drawn(config, tmp_path, capsy
     text = capsys.readouterr().out
     assert "Steady sliding is unstable: not every disturbance decays." in text
     assert "152.35" in text  # the fastest growth rate
-    assert "phi, from 1 deg to 30 deg: not stable" in text
+    assert "phi, from 1 deg to 30 deg: unstable" in text
     assert "stable above 8.65603 deg (oscillating at 10.25 Hz)" in text
-    assert "drive.velocity, from 0.0001 m/s to 0.1 m/s: not stable" in text
+    assert "drive.velocity, from 0.0001 m/s to 0.1 m/s: unstable" in text
     assert "stable above 0.0921886 m/s" in text
     assert (tmp_path / "map.png").stat().st_size > 10_000
 
@@ -52,7 +52,7 @@ def test_what_is_wrong_is_said_in_one_line(config, capsys):
 def test_a_range_may_begin_below_zero(config, capsys):
     assert inside("stability", config, "--over", "phi", "--between", "-10 deg", "10 deg") == 0
     text = capsys.readouterr().out
-    assert "not stable above -8.65603 deg" in text
+    assert "unstable above -8.65603 deg" in text
     assert "stable above 8.65603 deg" in text
 
 
@@ -63,3 +63,27 @@ def test_a_usual_range_that_is_not_allowed_says_so(config, capsys):
     config.write_text(text)
     assert inside("stability", config, "--over", "friction.a") == 2
     assert "the usual range, 1e-05 to 10.0, is not allowed; give another" in capsys.readouterr().err
+
+
+def test_the_verdict_and_the_ranges_agree(tmp_path, capsys):
+    """Of a rock whose fastest modes decay at 3e8 per second, and slowest at 0.06."""
+    path = tmp_path / "rock.toml"
+    path.write_text(
+        '[slider]\nmass = 1\nk_x = 2e5\nk_y = 2e7\nphi = "1 deg"\nnormal_load = 5e3\n'
+        '[friction]\nlaw = "rate-and-state-ageing"\na = 0.008\nb = 0.006\nD_c = 1e-5\n'
+        "mu_star = 0.6\nV_star = 1e-6\n[drive]\nvelocity = 1e-5\n"
+    )
+    assert inside("stability", path, "--over", "friction.b", "--between", "0.005", "0.007") == 0
+    text = capsys.readouterr().out
+    assert "Steady sliding is stable: every small disturbance decays." in text
+    assert "friction.b: stable from 0.005 to 0.007" in text
+
+
+def test_what_neither_grows_nor_decays_is_said(config, capsys):
+    text = config.read_text().replace('law = "exponential-weakening"', 'law = "coulomb"')
+    lines = [line for line in text.splitlines() if not line.startswith(("mu_inf", "v_f"))]
+    config.write_text("\n".join(lines).replace('phi = "1 deg"', 'phi = "0 deg"'))
+    assert inside("stability", config, "--over", "mass") == 0
+    text = capsys.readouterr().out
+    assert "on the boundary of stability" in text
+    assert "mass: small disturbances keep their size from" in text

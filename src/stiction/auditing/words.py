@@ -93,7 +93,8 @@ def motions(found: Audit) -> list[str]:
     else:
         lines = [
             f"From rest it comes to {ended(rest)}; started from steady sliding, disturbed by 1 % "
-            f"of the drive's speed, to {ended(sliding)}."
+            f"of the drive's speed, to {ended(sliding)}"
+            f"{' in the time of the test' if sliding.comes_to == SLIDES else ''}."
         ]
     return [*lines, f"From rest the load cell sees: {described(rest)}."]
 
@@ -127,6 +128,11 @@ def stability(found: Audit) -> str:
         )
     stable, time = found.sliding.stable, in_words(1.0 / abs(growth), "s")
     swing = f", oscillating at {in_words(frequency, 'Hz')}" if frequency > 0.0 else ""
+    if stable and found.sliding_on.comes_to == OSCILLATES:
+        return (
+            f"Steady sliding is stable only to disturbances far below 1 % of the drive's speed, "
+            f"which decay by e in {time}{swing}: in a test it does not last."
+        )
     what = f"stable: small disturbances {'decay' if stable else 'grow'} by e in {time}"
     return f"Steady sliding is {what if stable else 'un' + what}{swing}."
 

@@ -172,13 +172,17 @@ def critical_section(found: Sequence[Critical]) -> Section:
 def changes(found: Critical) -> Iterator[str]:
     """Yield where stability changes along a parameter."""
     low, high = (written(end, found.unit) for end in found.between)
-    names = ["stable" if each else "not stable" for each in found.stable]
+    names = ["stable" if each else "unstable" for each in found.stable]
+    if found.neutral:
+        yield f"{found.path}: small disturbances keep their size from {low} to {high}"
+        return
     if not len(found.values):
         yield f"{found.path}: {names[0]} from {low} to {high}"
         return
     yield f"{found.path}, from {low} to {high}: {names[0]}"
     for value, frequency, name in zip(found.values, found.frequencies, names[1:], strict=True):
-        yield f"  {name} above {written(value, found.unit)} (oscillating at {frequency:.4g} Hz)"
+        way = f"oscillating at {frequency:.4g} Hz" if frequency > 0.0 else "without oscillation"
+        yield f"  {name} above {written(value, found.unit)} ({way})"
 
 
 def written(value: float, unit: str) -> str:
