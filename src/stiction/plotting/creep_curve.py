@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
 
 from stiction import theory
 from stiction.plotting.canvas import figure_of, panel
+from stiction.plotting.parameter import PLAIN
 from stiction.plotting.style import BLACK, BLUE, COLUMN, GREEN, GREY, RED, style
 
 if TYPE_CHECKING:
@@ -118,12 +120,20 @@ def plot_creep(
         ax.set(xscale="log", xlim=(to_slip[-1] * 1.05, to_slip[0]))
         if (value > 2.0 * error).all():
             ax.set(yscale="log", ylim=(0.5 * value.min() / V, 1.5))
+            if 0.5 * value.min() / V > 0.05:  # not two decades: each label is written out
+                ax.yaxis.set_major_formatter(PLAIN)
+                ax.yaxis.set_minor_formatter(PLAIN)
+                ax.yaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
         else:
             ax.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
             ax.set_ylim(-0.4, 1.3)
         ax.set_xlabel("time to slip (s)")
         ax.set_ylabel(r"creep velocity $\dot{X}/V$ (1)")
-        logarithmic = ax.get_yscale() == "log"  # then the curve leaves the lower right free
-        legend = ax.legend(loc="lower right" if logarithmic else "upper left")
+        low, high = ax.get_ylim()
+        for each in ax.get_lines():  # what lies outside is not in the legend
+            seen = np.asarray(each.get_ydata(), dtype=np.float64)
+            if not ((seen > low) & (seen < high)).any():
+                each.set_label("_outside")
+        legend = ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
         legend.get_lines()[0].set_alpha(0.5)
     return ax

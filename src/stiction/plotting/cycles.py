@@ -94,11 +94,10 @@ def draw_cycles(ax: Axes, record: Record, cycles: xr.Dataset) -> None:
     if cycles.sizes["cycle"]:
         ax.legend(
             loc="lower right",
+            bbox_to_anchor=(1.0, 1.0),  # above: it would hide troughs
+            borderaxespad=0.2,
             ncols=2,
             markerscale=4.0 / size,
-            frameon=True,
-            framealpha=0.8,
-            edgecolor="none",
         )
     ax.margins(y=0.08)
     ax.set_ylabel(f"spring force ({prefix}N)")

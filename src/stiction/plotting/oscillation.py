@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from stiction.analysis.oscillation import oscillation_spectrogram
 from stiction.plotting.canvas import canvas, figure_of, fixed, listed
-from stiction.plotting.spectrogram import draw_spectrogram
+from stiction.plotting.spectrogram import draw_spectrogram, frequency_unit
 from stiction.plotting.style import (
     BLACK,
     BLUE,
@@ -32,15 +32,21 @@ HIGHEST = 1.5  # of omega_y, drawn
 
 
 def draw_ridge(ax: Axes, oscillation: xr.Dataset) -> None:
-    """Draw over a spectrogram (kHz) the frequency followed, and omega_y sin(theta) in theory."""
+    """Draw over a spectrogram the frequency followed, and omega_y sin(theta) in theory."""
     time = oscillation["time"].values
-    natural = oscillation.attrs["natural_frequency"] / 1e3
+    factor, _ = frequency_unit(HIGHEST * oscillation.attrs["natural_frequency"])
+    natural = oscillation.attrs["natural_frequency"] * factor
     ax.axhline(natural, color="white", linewidth=0.8, dashes=(5, 3), label=r"$\omega_y/2\pi$")
     expected = r"$\omega_y \sin\theta/2\pi$"
     ax.plot(
-        time, oscillation["expected"].values / 1e3, color="white", lw=1.6, alpha=0.6, label=expected
+        time,
+        oscillation["expected"].values * factor,
+        color="white",
+        lw=1.6,
+        alpha=0.6,
+        label=expected,
     )
-    ax.plot(time, oscillation["frequency"].values / 1e3, color=RED, lw=0.9, label="ridge")
+    ax.plot(time, oscillation["frequency"].values * factor, color=RED, lw=0.9, label="ridge")
 
 
 def draw_amplitudes(ax: Axes, oscillation: xr.Dataset) -> None:
@@ -100,7 +106,11 @@ def plot_oscillation(
             fig.align_ylabels(panels)
         else:
             panels = listed(axes)
-        mesh = draw_spectrogram(panels[0], oscillation_spectrogram(run), highest=HIGHEST * natural)
+        amplitude = oscillation_spectrogram(run)
+        top = max(40.0, 10.0 * np.ceil(2.0 * np.log10(float(amplitude.max()) / 1e-6)))
+        mesh = draw_spectrogram(
+            panels[0], amplitude, decibels=(top - 70.0, top), highest=HIGHEST * natural
+        )
         draw_ridge(panels[0], oscillation)
         draw_amplitudes(panels[1], oscillation)
         draw_share_stuck(panels[2], oscillation)
@@ -109,7 +119,9 @@ def plot_oscillation(
         panels[0].legend(loc="upper right", ncols=3, labelcolor="white", handlelength=1.4)
         panels[1].set_ylim(0.0, 1.5 * panels[1].get_ylim()[1])  # room for the legend
         panels[1].legend(loc="upper left", ncols=2, columnspacing=1.0)
-        panels[-1].set_xlim(float(oscillation["time"][0]), float(oscillation["time"][-1]))
+        begin, end = (float(oscillation["time"][at]) for at in (0, -1))
+        if end > begin:
+            panels[-1].set_xlim(begin, end)
         panels[-1].set_xlabel("time $t$ (s)")
         bar = panels[0].figure.colorbar(
             mesh, ax=panels, location="bottom", extend="both", aspect=35, pad=0.01

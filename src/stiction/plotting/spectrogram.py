@@ -41,6 +41,11 @@ def plot_spectrogram(
     return ax
 
 
+def frequency_unit(highest: float) -> tuple[float, str]:
+    """Return factor and unit in which frequencies up to `highest` (Hz) are drawn."""
+    return (1e-3, "kHz") if highest >= 500.0 else (1.0, "Hz")
+
+
 def draw_spectrogram(
     ax: Axes,
     amplitude: xr.DataArray,
@@ -70,10 +75,11 @@ def draw_spectrogram(
         For the colour bar.
     """
     shown = amplitude.sel(frequency=slice(0.0, highest))
+    factor, unit = frequency_unit(highest)
     level = 20.0 * np.log10(np.fmax(shown.values / reference, 1e-30))
     mesh = ax.pcolormesh(
         shown["time"],
-        shown["frequency"] / 1e3,
+        shown["frequency"] * factor,
         level,
         shading="nearest",
         cmap="viridis",
@@ -81,8 +87,8 @@ def draw_spectrogram(
         vmax=decibels[1],
         rasterized=True,
     )
-    ax.set_ylim(0, min(highest, float(shown["frequency"].max())) / 1e3)
-    ax.set_ylabel("frequency (kHz)")
+    ax.set_ylim(0, min(highest, float(shown["frequency"].max())) * factor)
+    ax.set_ylabel(f"frequency ({unit})")
     return mesh
 
 
