@@ -62,13 +62,13 @@ def simulate(
     rtol : float, optional
         Relative tolerance, 1e-13 to 1e-2; for the paper's Fig. 3 over 5 s the relative error
         of u_x is below it. Each step is kept to a share of 0.8 rtol^0.8 (1.3e-5 at the
-        default), relative to the slip, but to no more than the drive's speed. The promise for
-        the whole run: its forces are off by no more than 40 times what the apparatus itself
-        would do if its mass, or its normal load, were greater by that share. Of 10 000 random
-        systems half are off by less than 0.02 times that, 99 % by less than 4 times, the
-        worst by 26 times. A tenth of `rtol` divides the error by ten where steps resolve the
-        fastest oscillation, by six where that has died out, and both on average only: the
-        steps then lie elsewhere, so that a neighbouring tolerance may gain nothing.
+        default), relative to the slip, but to no more than the drive's speed, nor than the motion
+        about steady sliding. The promise for the whole run: its forces are off by no more than 40
+        times what the apparatus itself would do if its mass, or its normal load, were greater by
+        that share. Of 10 000 random systems half are off by less than 0.02 times that, 99 % by less
+        than 4 times, the worst by 26 times. A tenth of `rtol` divides the error by ten where steps
+        resolve the fastest oscillation, by six where that has died out, and both on average only:
+        the steps then lie elsewhere, so that a neighbouring tolerance may gain nothing.
     initial : Initial, optional
         The state to start from; by default the paper's.
     regularisation : float or str, optional

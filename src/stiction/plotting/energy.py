@@ -78,8 +78,8 @@ def draw_closure(ax: Axes, budget: xr.Dataset) -> None:
     ax.semilogy(
         place, np.abs(budget["residual"].values) / whole, "o", color=BLACK, ms=3, label="residual"
     )
-    bound = budget["quadrature"].values / whole
-    ax.semilogy(place, bound, "_", color=RED, ms=9, mew=1.2, label="bound of the quadrature")
+    bound = budget["bound"].values / whole
+    ax.semilogy(place, bound, "_", color=RED, ms=9, mew=1.2, label="its bound")
     shown = np.concatenate([np.abs(budget["residual"].values) / whole, np.ravel(bound)])
     decades = np.log10(shown[np.isfinite(shown) & (shown > 0.0)])
     if len(decades):  # whole ones: no other labels are needed
