@@ -35,7 +35,8 @@ def figures(found: Analysis) -> dict[str, Figure]:
                 f"{name}, fitted": line for name, line in creep_theory(V, fit.phi, l_x).items()
             }
         drawn["creep"] = creep_figure(found.curves, found.creep, V, lines)
-    if isinstance(found.source, Trajectory) and found.oscillation is not None:
+    seen = 0 if found.oscillation is None else found.oscillation.sizes.get("time", 0)
+    if isinstance(found.source, Trajectory) and found.oscillation is not None and seen > 1:
         drawn["oscillation"] = oscillation_figure(found.source, found.oscillation)
     if found.energy is not None:
         drawn["energy"] = energy_figure(found.energy)

@@ -119,7 +119,7 @@ def plot_energy(budget: xr.Dataset, axes: Sequence[Axes] | None = None) -> NDArr
         draw_closure(panels[1], budget)
         for ax, letter in zip(panels, "ab", strict=True):
             panel_letter(ax, letter)
-        panels[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
+        panels[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.07), ncols=3)
         panels[1].legend(loc="best")
         panels[1].xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
         panels[1].set_xlabel("interval")
