@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from stiction.analysis.creep_curve import creep_curves, mean_creep
+from stiction.analysis.regime import HARMONIC, IRREGULAR
 from stiction.auditing.report import Audit
 from stiction.auditing.words import NAMES
 from stiction.linear_stability import boundary
@@ -18,6 +19,8 @@ from stiction.plotting.trials import Trial, trials_figure
 from stiction.reproduction.figure5 import figure5
 from stiction.units import in_words
 
+HARDLY = 0.05  # of the time: so little creep is no curve to compare with
+
 
 def test(found: Audit) -> Figure | None:
     """Draw the simulated test as its load cell records it."""
@@ -25,8 +28,10 @@ def test(found: Audit) -> Figure | None:
 
 
 def creep(found: Audit) -> Figure | None:
-    """Draw the creep before slip, and Eqs. (7) and (8)."""
+    """Draw the creep before slip, and Eqs. (7) and (8); none where the mass hardly creeps."""
     seen, slider = found.observation, found.slider
+    if seen.motion in (HARMONIC, IRREGULAR) or seen.shares.creep < HARDLY:
+        return None
     curves = creep_curves(seen.run, seen.cycles)
     if slider.phi == 0.0 or not np.isfinite(curves["velocity"].values).any():
         return None

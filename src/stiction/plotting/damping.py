@@ -8,6 +8,7 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.contour import QuadContourSet
 from matplotlib.lines import Line2D
 from matplotlib.markers import CARETDOWN
+from matplotlib.text import Annotation
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from stiction import theory
@@ -17,6 +18,7 @@ from stiction.plotting.style import BLACK, COLUMN, GREEN, style
 SHADES = LinearSegmentedColormap.from_list("damping", ["#E9BE8B", "#FFFFFF", "#9DBDD3"])
 CLEAR = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 1.0}
 DECADES = np.arange(-7, 7)
+CLOSE = 30.0  # ratio of the damping numbers of two paths whose labels would meet
 
 
 def draw_damping_map(
@@ -105,13 +107,17 @@ def draw_force_path(ax: Axes, A: float, phi: float, color: str, label: str) -> L
     crossing = float(np.degrees(theory.critical_angle(A)))
     if crossing > end:
         ax.plot([A], [crossing], color=BLACK, marker="x", markersize=7, mew=1.8, zorder=5)
+        # beside a path close to the right the label stands on the left
+        others = [text.xy[0] / A for text in ax.texts if isinstance(text, Annotation)]
+        left = any(1.0 <= ratio < CLOSE for ratio in others)
         ax.annotate(
             rf"$\theta$ = {crossing:.1f}°",
             (A, crossing),
-            (7, 3),
+            (-7, -3) if left else (7, 3),
             textcoords="offset points",
             fontsize=7,
-            va="bottom",
+            ha="right" if left else "left",
+            va="top" if left else "bottom",
             bbox=CLEAR,
             zorder=6,
         )
