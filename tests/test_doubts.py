@@ -108,6 +108,6 @@ def test_a_harmonic_of_the_cycles_is_no_line() -> None:
     found = st.analyse(st.Record(time=time, force=sawtooth + noise))
     assert np.isfinite(found.oscillation["frequency"]).mean() < 0.05
     assert "No line stands out" in as_text(found.tables())
-    hum = 0.005 * np.sin(2.0 * np.pi * 47.0 * time)
+    hum = 0.01 * np.sin(2.0 * np.pi * 47.0 * time)
     found = st.analyse(st.Record(time=time, force=sawtooth + hum + noise))
     assert found.oscillation["frequency"].values == pytest.approx(47.0, abs=0.1)

@@ -27,7 +27,9 @@ WORST = 1e-3  # of the drop: with a larger misfit the rises do not have the shap
 # of the weakening of friction at the drive velocity. What is assumed of each, and how widely.
 TAILS = (0.0, log(1e-3), log(1e-2))
 WIDTHS = (0.02, 1.5, 1.3)
-THEORY = 0.05  # relative accuracy of phi at the best: transverse oscillation, inertia
+THEORY = (
+    0.1  # relative accuracy of phi at the best: the transverse oscillation lowers friction, too
+)
 KNOWN = 0.3  # relative standard error above which an angle is not determined
 EARLY = 0.5  # F_0 above the peak by this share
 SURELY = 20.0  # deg: what is known to be less is worth a word

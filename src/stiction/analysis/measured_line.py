@@ -88,5 +88,4 @@ def _without_harmonics(lines: xr.DataArray, cycles: xr.Dataset, low: float) -> x
     bound = AS_SAWTOOTH * float(cycles["drop"].median()) / np.pi / np.maximum(number, 1.0)
     harmonic = near[:, None] & (lines.values < bound[:, None])
     band = lines.sel(frequency=slice(low, None))
-    beside = lines.where(~harmonic).sel(frequency=band["frequency"]).median("frequency")
-    return lines.where(~harmonic, beside.fillna(band.median("frequency")))
+    return lines.where(~harmonic, band.median("frequency"))

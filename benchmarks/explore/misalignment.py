@@ -1,0 +1,125 @@
+"""``python -m benchmarks.explore.misalignment``: the angle that a force alone implies.
+
+Each rig is simulated, its force given noise up to a hundredth of the drop and a stiffness that is
+off by up to 2 %, and the angle found is held against the true one. Of the intervals that are told,
+95 % should hold it; 90 % are asked for, and no angle off by a factor of three.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections import Counter
+from math import cos, degrees, exp, log, pi, radians, sqrt
+from typing import NamedTuple
+
+import numpy as np
+from rich.console import Console
+
+import stiction as st
+
+COVERED, FACTOR = 0.9, 3.0
+LONGEST = 2e5  # transverse periods in a run
+STICKING = ("stick-slip", "transitional oscillation")
+Generator = np.random.Generator
+
+
+class Seen(NamedTuple):
+    """True and found angle, its standard error (rad), or the reason for which there is none."""
+
+    true: float
+    found: float
+    error: float
+    reason: str
+
+
+def rig(rng: Generator) -> st.Slider:
+    """Return a random rig that is driven slowly enough to stick."""
+
+    def between(low: float, high: float) -> float:
+        return exp(rng.uniform(log(low), log(high)))
+
+    k_x = between(100.0, 4e5)
+    mu_0, v_f = rng.uniform(0.15, 0.7), between(2e-3, 2e-2)
+    return st.Slider(
+        mass=between(0.05, 1.0) * (k_x / 1e3) ** 0.5,
+        k_x=k_x,
+        k_y=k_x * between(100.0, 1e4),
+        phi=f"{radians(rng.uniform(0.5, 5.0))!r} rad",
+        normal_load=between(2.0, 40.0) * (k_x / 1e3) ** 0.7,
+        friction=st.ExponentialWeakening(mu_0=mu_0, mu_inf=mu_0 * rng.uniform(0.5, 0.85), v_f=v_f),
+        drive=st.ConstantVelocity(v_f * between(0.005, 0.3)),
+    )
+
+
+def look(rng: Generator, noise: float, off: float) -> Seen | None:
+    """Return what is seen of one rig; None if it does not stick and slip at least three times."""
+    slider = rig(rng)
+    V, F_0 = slider.motion.velocity, slider.F_0
+    weakens = 1.0 - slider.friction.mu_inf / slider.friction.mu_0
+    period = 2.0 * weakens * F_0 / slider.k_x / V
+    duration = F_0 / slider.k_x / V + rng.uniform(4.0, 9.0) * period
+    rate = rng.uniform(300.0, 3000.0) / period
+    if duration * sqrt(slider.k_y / slider.mass) / (2.0 * pi) > LONGEST:
+        return None
+    run = st.simulate(slider, duration, sample_rate=rate)
+    cycles = st.find_cycles(run)
+    if cycles.sizes["cycle"] < 3 or st.classify(run).kind not in STICKING:
+        return None
+    force = run.data["spring_x"].values
+    hiss = rng.uniform(0.0, noise) * float(cycles["drop"].median())
+    record = st.Record(
+        time=run.data["time"].values,
+        force=force + hiss * rng.standard_normal(len(force)),
+        stiffness=slider.k_x * (1.0 + rng.uniform(-off, off)),
+        drive_velocity=V * cos(slider.phi),
+    )
+    try:
+        found = st.misalignment_from_force(record)
+    except st.ResultError as error:
+        return Seen(slider.phi, np.nan, np.nan, str(error))
+    return Seen(slider.phi, found.phi, found.phi_error, "")
+
+
+def main() -> int:
+    """Look at as many rigs as are asked for; return 1 if a bound is broken."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.explore.misalignment")
+    parser.add_argument("--rigs", type=int, default=100, help="that stick and slip")
+    parser.add_argument("--seed", type=int, default=7)
+    parser.add_argument("--noise", type=float, default=0.01, help="of the drop, at most")
+    parser.add_argument("--off", type=float, default=0.02, help="of the stiffness, at most")
+    options = parser.parse_args()
+    rng, seen = np.random.default_rng(options.seed), list[Seen]()
+    while len(seen) < options.rigs:
+        one = look(rng, options.noise, options.off)
+        if one is not None:
+            seen.append(one)
+    return told(Console(), seen)
+
+
+def told(console: Console, seen: list[Seen]) -> int:
+    """Say what was seen; return 1 if a bound is broken."""
+    known = [each for each in seen if not each.reason]
+    if not known:
+        console.print(f"{len(seen)} rigs, none determined")
+        return 1
+    z = np.array([(each.found - each.true) / each.error for each in known])
+    ratio = np.array([each.found / each.true for each in known])
+    covered, worst = float(np.mean(np.abs(z) < 2.0)), float(np.exp(np.abs(np.log(ratio)).max()))
+    console.print(
+        f"{len(seen)} rigs, {len(known)} determined; intervals hold {covered:.1%} of them; off by "
+        f"a factor of {worst:.2f} at most; median standard error "
+        f"{np.median([each.error / each.found for each in known]):.1%}"
+    )
+    for each, sigma in zip(known, z, strict=True):
+        if abs(sigma) > 2.0:
+            pair = f"{degrees(each.true):.2f} deg, found {degrees(each.found):.2f}"
+            console.print(f"  outside: {pair} ± {degrees(each.error):.2f}")
+    reasons = Counter(each.reason.split(";")[0][:70] for each in seen if each.reason)
+    for reason, count in reasons.most_common(5):
+        console.print(f"  {count} {reason}")
+    return int(covered < COVERED or worst > FACTOR)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
