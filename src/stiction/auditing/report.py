@@ -155,4 +155,3 @@ def audit(slider: Slider | str | Path, progress: Callable[[float], None] | None 
 
 FORMER = {"Audit": "stiction.auditing.Audit", "examine": "stiction.audit"}
 old_attributes(audit, FORMER)
-examine = audit
