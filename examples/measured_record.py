@@ -21,7 +21,10 @@ record = st.Record(
     drive_velocity="1 mm/s",
     mass="250 g",
 )
-found = st.analyse(record)
+for doubt in st.analyse(record).warnings:
+    print(doubt)  # it drifts
+found = st.analyse(st.detrended(record))
 print(found.regime)
+print(f"static friction coefficient {found.friction.static.coefficient:.4f}")
 print(found.cycles[["peak_time", "period", "drop", "mu_static", "mu_kinetic"]].to_dataframe())
 print(found.summary["mean"].sel(quantity="period").item(), "s is the mean period")
