@@ -131,20 +131,23 @@ import stiction as st
 slider, simulate = st.presets.nakano_popov_2020(), st.simulate  # what is imported late is there
 bristles = slider.replace(friction=st.LuGre(0.15, 0.2, 1e-2, 1e5, 300.0, 0.4))
 runs = [(slider, {}), (slider, {"multiscale": True}), (bristles, {})]
-wanted = threading.Semaphore(0)
+wanted, sent = threading.Semaphore(0), []
 
 def pester():
     for gap in itertools.cycle([3e-3, 5e-3, 7e-3, 11e-3, 13e-3]):
         wanted.acquire()
         time.sleep(gap)
         os.kill(os.getpid(), signal.SIGINT)
+        sent.append(gap)
 
 threading.Thread(target=pester, daemon=True).start()
-for _ in range(300):
+for count in range(300):
     try:
         wanted.release()  # one each time: none arrives where it is not waited for
         for system, how in itertools.cycle(runs):
             simulate(system, 0.02, **how)
+            if len(sent) > count:
+                break  # lost on the way, as in a finaliser
     except KeyboardInterrupt:
         pass
 assert all(simulate(system, 0.02, **how).status.ok for system, how in runs)
