@@ -10,7 +10,7 @@ import pytest
 
 import stiction as st
 from stiction.cli import COMMANDS, main
-from waiting import PATIENCE
+from waiting import INTERRUPTIBLE, PATIENCE
 
 # runs the command, and says so once the simulation is on its way
 TOLD = """
@@ -147,7 +147,7 @@ def test_run_does_not_write_over_what_is_no_result(config, tmp_path, monkeypatch
 def test_ctrl_c_ends_a_long_run_cleanly(config, tmp_path):
     config.write_text(config.read_text().replace('"50 ms"', '"1e5 s"').replace("10 kHz", "1 Hz"))
     process = subprocess.Popen(
-        [sys.executable, "-c", TOLD, "run", str(config), "--output", "long.nc"],
+        [sys.executable, "-c", INTERRUPTIBLE + TOLD, "run", str(config), "--output", "long.nc"],
         cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
     assert process.stdout.readline() == "on its way\n"

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import stiction as st
-from waiting import PATIENCE
+from waiting import INTERRUPTIBLE, PATIENCE
 
 
 def slider(**changes) -> st.Slider:
@@ -157,6 +157,9 @@ assert all(simulate(system, 0.02, **how).status.ok for system, how in runs)
 def test_interrupts_do_no_harm():
     """From the first run on, which is compiled or loaded: they arrive, and nothing crashes."""
     done = subprocess.run(
-        [sys.executable, "-c", PESTERED], capture_output=True, text=True, timeout=PATIENCE
+        [sys.executable, "-c", INTERRUPTIBLE + PESTERED],
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
     )
     assert done.returncode == 0, done.stderr

@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 from stiction.cli import main
-from waiting import PATIENCE
+from waiting import INTERRUPTIBLE, PATIENCE
 
 STUDY = """
 [study]
@@ -111,7 +111,7 @@ def test_an_interrupt_leaves_a_store_to_go_on_with(config, tmp_path):
     """Long runs, interrupted once the first are done: the others are left, and it says how."""
     text = config.read_text().replace('duration = "50 ms"', 'duration = "20 s"')
     config.write_text(text.replace("count = 4", "count = 400"))
-    command = "from stiction.cli import main; main()"
+    command = INTERRUPTIBLE + "from stiction.cli import main; main()"
     arguments = ["sweep", str(config), "-o", "a.zarr", "--json-lines"]
     sweep = subprocess.Popen(
         [sys.executable, "-c", command, *arguments],

@@ -3,6 +3,8 @@
 import time
 from collections.abc import Callable
 
+# a shell has what it runs in the background ignore interrupts, and so do its children
+INTERRUPTIBLE = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
 PATIENCE = 1800.0  # s; ends what would hang for ever, and decides nothing else
 
 
