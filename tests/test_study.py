@@ -107,12 +107,12 @@ def test_what_was_stopped_goes_on_and_comes_out_the_same(tmp_path, study, finish
 def test_another_study_s_store_is_refused(finished, tmp_path):
     other = st.Study(base=BASE, axes={"phi": AXES["phi"]}, measures=MEASURES)
     with pytest.raises(st.ResultError, match="another study"):
-        other.run(finished[0])
+        st.sweep(other, finished[0])
     (tmp_path / "empty").mkdir()
     with pytest.raises(st.ResultError, match="not the store of a study"):
-        other.run(tmp_path / "empty")
+        st.sweep(other, tmp_path / "empty")
     with pytest.raises(st.ResultError, match="make it first"):
-        other.run(tmp_path / "no" / "a.zarr")
+        st.sweep(other, tmp_path / "no" / "a.zarr")
     with pytest.raises(st.ResultError, match="no such store"):
         st.open_study(tmp_path / "a.zarr")
 
