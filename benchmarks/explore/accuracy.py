@@ -18,7 +18,7 @@ from ..section import Section, Table
 from .deviation import FINER, FINEST, deviation, forces, response
 from .systems import system
 
-BOUNDS = {"in steps": 40.0, "multiscale": 2.0}  # of the error over the response
+BOUNDS = {"in steps": 30.0, "multiscale": 2.0}  # of the error over the response
 SHARES = (0.5, 0.9, 0.99, 0.999, 1.0)
 WORST = 10
 

@@ -63,10 +63,10 @@ def simulate(
         Relative tolerance, 1e-13 to 1e-2; for the paper's Fig. 3 over 5 s the relative error
         of u_x is below it. Each step is kept to a share of 0.8 rtol^0.8 (1.3e-5 at the
         default), relative to the slip, but to no more than the drive's speed, nor than the motion
-        about steady sliding. The promise for the whole run: its forces are off by no more than 40
+        about steady sliding. The promise for the whole run: its forces are off by no more than 30
         times what the apparatus itself would do if its mass, or its normal load, were greater by
         that share. Of 10 000 random systems half are off by less than 0.02 times that, 99 % by less
-        than 4 times, the worst by 26 times. A tenth of `rtol` divides the error by ten where steps
+        than 3 times, the worst by 16 times. A tenth of `rtol` divides the error by ten where steps
         resolve the fastest oscillation, by six where that has died out, and both on average only:
         the steps then lie elsewhere, so that a neighbouring tolerance may gain nothing.
     initial : Initial, optional
@@ -80,9 +80,9 @@ def simulate(
         friction and a steady drive and load, all that follows the end of a stick depends on one
         angle; few cycles are solved, others interpolated, which is checked by fresh cycles to
         0.03 rtol, and what does not agree is solved in steps, as is everything else. What is
-        promised of the error, as at `rtol`, is 2 times in place of 40 for a run with cycles that
-        were interpolated: its steps are held to 0.3 of the tolerance. Of 3500 random systems
-        the worst is off by 0.9 times. Every stick is recorded. Samples inside a cycle
+        promised of the error, as at `rtol`, is 2 times in place of 30 for a run with cycles that
+        were interpolated: its steps are held to 0.3 of the tolerance. Of 3400 random systems
+        the worst is off by 0.8 times. Every stick is recorded. Samples inside a cycle
         are solved for: it does not pay for a run sampled faster than it sticks.
     max_steps : int, optional
         Give up after so many steps.
