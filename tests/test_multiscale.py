@@ -54,6 +54,13 @@ def test_every_stick_is_there(slider, sharp_run):
     np.testing.assert_allclose(run.stick_intervals, sharp_run.stick_intervals, rtol=0, atol=1e-7)
 
 
+def test_none_is_lost_at_loose_tolerances(slider):
+    """A slip that all but touches zero ends a cycle of the map, a stick or not."""
+    run = st.simulate(slider, 5.0, rtol=1e-4, multiscale=True)
+    assert len(run.stick_intervals) == 2959
+    assert run.statistics.time_stuck == pytest.approx(0.323110, rel=1e-4)
+
+
 def test_samples_do_not_influence_the_motion(slider):
     coarse, fine = (
         st.simulate(slider, 2.2, sample_rate=rate, multiscale=True) for rate in (None, 2e3)

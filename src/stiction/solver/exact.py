@@ -87,7 +87,10 @@ class Multiscale(Exact):
         if self.known is None or problem != self.problem:
             self.problem, self.known = problem, unknown(self.rtol)
         fine = held._replace(
-            tolerance=FINER * held.tolerance, newton=FINER * held.newton, least=held.least / FINER
+            tolerance=FINER * held.tolerance,
+            newton=FINER * held.newton,
+            least=held.least / FINER,
+            touch=0.0,  # cycles are counted from one stick to the next, however short
         )
         return advanced(stride, problem, state, end, fine, budget, out, self.known)
 

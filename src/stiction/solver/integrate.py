@@ -93,8 +93,11 @@ def accuracy(
     rate = fastest_swing(stretch.problem)
     longest = 0.5 * pi / rate if rate > 0.0 else inf
     drive = along or across or inf
+    touch = local * speed
     least = ROUNDING * (along + across + free_x + free_y) / local
-    return Accuracy(local, newton, speed, free_x, free_y, longest, drive, square_x, square_y, least)
+    return Accuracy(
+        local, newton, speed, free_x, free_y, longest, drive, square_x, square_y, touch, least
+    )
 
 
 @lru_cache(maxsize=256)

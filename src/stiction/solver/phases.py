@@ -63,7 +63,7 @@ def stick(
     if end > t:
         row = counts.sticks
         goes_on = row > 0 and sticks[row - 1, 1] == t  # the same stick, in another stretch
-        touch = to_spare(problem, t, u_x, u_y, duration) < accuracy.tolerance * accuracy.speed
+        touch = to_spare(problem, t, u_x, u_y, duration) < accuracy.touch
         held = goes_on or not touch
         k = sample_stick(problem, t, u_x, u_y, end, held, times, samples, k)
         d_x, d_y = in_principal_axes(problem, travel(problem.drive, t, end - t))

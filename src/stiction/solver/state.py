@@ -21,7 +21,8 @@ class Accuracy(NamedTuple):
     itself, but not so that the springs' own motion is lost; longest : step size that still sees
     what drive and load do, s; drive : its speed, m/s, up to which a slip is held to itself;
     square_x, square_y : of the time in which each spring swings by a radian, m/k, s^2;
-    least : motion about steady sliding that is still told from rounding, m/s.
+    touch : what friction must have to spare in a stick that is one, m/s; least : motion about
+    steady sliding that is still told from rounding, m/s.
     """
 
     tolerance: float
@@ -33,6 +34,7 @@ class Accuracy(NamedTuple):
     drive: float
     square_x: float
     square_y: float
+    touch: float
     least: float
 
 
