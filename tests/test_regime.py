@@ -131,13 +131,24 @@ def test_one_cut_slip_determines_nothing(paper_run: st.Trajectory) -> None:
     assert "make no complete cycle" in str(regime)
 
 
-def test_few_cycles_say_less_than_many() -> None:
+def test_cycles_that_are_alike_are_sure_however_few() -> None:
     time = np.arange(40_000) * 1e-3
-    confidence = [
-        st.classify(st.Record(time=time[:n], force=time[:n] % 2.0)).confidence
-        for n in (6500, 12_500, 40_000)
-    ]
-    assert confidence == pytest.approx([3 / 5, 6 / 8, 19 / 21])  # (n + 1)/(n + 3) of n cycles
+    for samples in (6500, 12_500, 40_000):
+        regime = st.classify(st.Record(time=time[:samples], force=time[:samples] % 2.0))
+        assert regime.confidence > 0.98
+    assert st.classify(st.Record(time=time[:4500], force=time[:4500] % 2.0)).confidence == 0.5
+
+
+def test_few_cycles_that_differ_say_less_than_many() -> None:
+    def confidence(count: int) -> float:
+        rises = 0.85 + 0.06 * np.resize([1.0, -1.0], count + 2)  # either side of 0.777 is near
+        start = np.arange(count + 2.0)
+        corners = np.stack([start, start + rises], axis=1).ravel()
+        time = np.arange(0.05, count + 1.95, 1e-3)
+        force = np.interp(time, corners, np.resize([0.0, 1.0], len(corners)))
+        return st.classify(st.Record(time=time, force=force)).confidence
+
+    assert 0.5 < confidence(2) < confidence(4) < confidence(16) < 0.98
 
 
 def test_what_dies_out() -> None:

@@ -77,7 +77,7 @@ if TYPE_CHECKING:
     from stiction.testing import check_law
     from stiction.trajectory import Trajectory, export, load
 
-__version__ = "0.4.0"
+__version__ = "0.5.0"
 
 # where each public name lives; imported when first used, so that `import stiction` is light
 _HOME = {

@@ -13,7 +13,7 @@ from stiction.analysis.decay import MANY, ORDERED, order
 from stiction.analysis.hum import samples_per_period
 from stiction.analysis.level import PARTS, course
 from stiction.analysis.record import Record, recorded
-from stiction.analysis.rest import rest_share
+from stiction.analysis.rest import rest_share, rise_share
 from stiction.analysis.turning_points import CLEAR
 from stiction.trajectory import Trajectory
 from stiction.units import in_words
@@ -116,8 +116,9 @@ class Regime(NamedTuple):
         apart from the noise: what is smaller is not seen), "stuck" (it loads and never slips)
         or "undetermined".
     confidence : float
-        0 to 1. With cycles: the share of them that have the kind's shape themselves, counted
-        with one more of either, so that three cycles say less than thirty.
+        0 to 1. With cycles: how likely one more of them has the kind's shape, from how they
+        scatter about their own or, where some have another shape, from how many do; so cycles
+        that are all alike are surer than cycles that differ, and thirty than three.
     evidence : dict
         Numbers that say why; ``str(regime)`` puts them into words.
     runner_up : str
@@ -202,12 +203,39 @@ def _by_shape(record: Record, found: Swings) -> Regime:
     if count >= MANY and abs(order(drop)) >= -ORDERED and abs(grown - 1.0) > GROWN:
         evidence["last_over_first"] = grown
     others = sorted(set(kinds) - {kind, UNDETERMINED}, key=kinds.count)
-    confidence = (alike + 1) / (count + 3)
+    counted = (alike + 1) / (count + 3)
+    confidence = max(counted, _chance(shares, kind, step / float(table["period"].mean())))
     if other:  # as likely
         return Regime(kind, 0.5 * confidence, evidence, other)
     if kind == HARMONIC and not _swings_freely(evidence):
         return Regime(IRREGULAR, confidence, evidence, HARMONIC)
     return Regime(kind, confidence, evidence, others[-1] if others else "")
+
+
+def _chance(shares: Floats, kind: str, resolution: float) -> float:
+    """Return how likely one cycle more has a kind's shape, where all scatter about one shape.
+
+    Student's distribution of the next of n values, about their median, whose standard deviation
+    is seen with n - 1 degrees of freedom and is no less than the resolution, one sample.
+    """
+    from scipy.special import stdtr
+
+    count = len(shares)
+    if count < 2:
+        return 0.0
+    low, high = _bounds(kind)
+    scale = np.hypot(shares.std(ddof=1), resolution) * sqrt(1.0 + 1.0 / count)
+    below = stdtr(count - 1, (np.array([low, high]) - np.median(shares)) / scale)
+    return float(below[1] - below[0])
+
+
+def _bounds(kind: str) -> tuple[float, float]:
+    """Return between which shares of the rise a cycle is of a kind."""
+    if kind == UNDETERMINED:
+        return -np.inf, BACKWARD
+    ends = [np.inf, *(float(rise_share(rests)) for rests, _ in SHAPES[:-1]), BACKWARD]
+    place = [name for _, name in SHAPES].index(kind)
+    return ends[place + 1], ends[place]
 
 
 def _coarse_shares(table: xr.Dataset, step: float) -> tuple[float, float]:

@@ -35,3 +35,8 @@ def rest_share(rise_share: ArrayLike) -> Floats:
     """
     found: Floats = np.interp(np.asarray(rise_share, float), RISES, RESTS)
     return np.maximum(found, 0.0)
+
+
+def rise_share(rest_share: ArrayLike) -> Floats:
+    """Return for which share of a cycle the force rises, where the mass rests for `rest_share`."""
+    return np.asarray(np.interp(np.asarray(rest_share, float), RESTS, RISES))
