@@ -111,3 +111,23 @@ def test_a_harmonic_of_the_cycles_is_no_line() -> None:
     hum = 0.01 * np.sin(2.0 * np.pi * 47.0 * time)
     found = st.analyse(st.Record(time=time, force=sawtooth + hum + noise))
     assert found.oscillation["frequency"].values == pytest.approx(47.0, abs=0.1)
+
+
+def test_a_report_prints_itself_and_no_creep_goes_backwards() -> None:
+    random = np.random.default_rng(7)
+    time = np.arange(0.0, 60.0, 0.01)
+    force = 0.45 + 0.17 * (time / 2.5 % 1.0) + 0.002 * time + 0.002 * random.normal(size=len(time))
+    hum = 0.02 * np.sin(2 * np.pi * 49.99 * np.arange(0.0, 60.0, 0.001))
+    known = {"stiffness": "150 N/m", "drive_velocity": "0.4 mm/s", "normal_load": "2 N"}
+    text = str(st.analyse(st.Record(time=time, force=force, **known)))
+    assert text.startswith("Warnings\n")
+    assert "creeps at -" not in text
+    fast = np.arange(0.0, 60.0, 0.001)
+    humming = st.Record(time=fast, force=np.interp(fast, time, force) + hum)
+    assert "frequency of the mains" in str(st.analyse(humming))
+
+
+def test_a_record_too_slow_for_a_fast_line_is_told_the_rate() -> None:
+    time = np.arange(0.0, 33.0, 0.1)
+    found = st.analyse(st.Record(time=time, force=1.0 + (time / 0.75) % 1.0))
+    assert "samples a second or more" in found.missing["oscillation"]

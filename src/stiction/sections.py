@@ -16,11 +16,11 @@ class Table(NamedTuple):
     headings: tuple[str, ...]
     rows: Sequence[tuple[str, ...]]
 
-    def to_dataframe(table) -> pd.DataFrame:
+    def to_dataframe(self) -> pd.DataFrame:
         """Return the table as a pandas data frame, its cells as text."""
         import pandas as pd
 
-        return pd.DataFrame(list(table.rows), columns=list(table.headings))
+        return pd.DataFrame(list(self.rows), columns=list(self.headings))
 
 
 class Section(NamedTuple):
@@ -30,10 +30,10 @@ class Section(NamedTuple):
     sentences: list[str]
     table: Table | None = None
 
-    def __str__(section) -> str:
+    def __str__(self) -> str:
         """Return the section as plain text."""
-        lines = [section.title, *(f"  {sentence}" for sentence in section.sentences)]
-        return "\n".join([*lines, *(table_lines(section.table) if section.table else ())])
+        lines = [self.title, *(f"  {sentence}" for sentence in self.sentences)]
+        return "\n".join([*lines, *(table_lines(self.table) if self.table else ())])
 
 
 def table_lines(table: Table) -> list[str]:

@@ -60,7 +60,8 @@ def strongest_line(
         )
     if not 0.0 < low < 0.5 * rate:
         raise ResultError(
-            f"low must lie between 0 and half the sample rate, {0.5 * rate:g} Hz, is {low:g}"
+            f"a line above {low:.3g} Hz is seen at {2.0 * low:.3g} samples a second or more, of "
+            f"which there are {rate:.3g}; low must lie between 0 and half the sample rate"
         )
     chosen = min(PERIODS / low, 0.1 * record.duration) if width is None else width
     if not 0.0 < chosen <= record.duration:

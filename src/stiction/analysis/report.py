@@ -22,7 +22,7 @@ from stiction.analysis.record import Record, recorded
 from stiction.analysis.regime import STICK_SLIP, TRANSITIONAL, Regime, regime_of
 from stiction.analysis.spread import summary
 from stiction.errors import ResultError, StictionError
-from stiction.sections import Section, as_html
+from stiction.sections import Section, as_html, as_text
 from stiction.trajectory import Trajectory, load
 
 if TYPE_CHECKING:
@@ -96,6 +96,10 @@ class Analysis(NamedTuple):
         found = f"{self.regime.kind}, {self.cycles.sizes['cycle']} cycles"
         missing = f"; missing: {', '.join(self.missing)}" if self.missing else ""
         return f"<Analysis: {found}{missing}>"
+
+    def __str__(self) -> str:
+        """Return the whole report as plain text."""
+        return as_text(self.tables())
 
     def _repr_html_(self) -> str:
         return as_html(self.tables())

@@ -50,6 +50,7 @@ ENERGIES = {
 }
 UNLESS_NONE = ("hesitations",)
 SELDOM = 0.05  # of the time: a line that is seen no longer may be chance
+MAINS, MAINS_VARIES = (50.0, 60.0, 100.0, 120.0), 0.004  # Hz; a grid keeps its frequency to 0.4 %
 NOTHING = 1e-6  # of the work: what is less stands in the files, not in the terminal
 FRICTIONS = {
     "break_away": "first break-away",
@@ -206,6 +207,10 @@ def oscillation(found: Analysis) -> Section:
     share = 100.0 * len(seen) / found.oscillation.sizes["time"]
     pitch = f"between {low} and {high}" if low != high else f"at {low}"
     lines = [f"Seen in {share:.3g}% of the time, {pitch}."]
+    if any(abs(np.median(seen) / line - 1.0) < MAINS_VARIES for line in MAINS):
+        lines[0] += (
+            " That is the frequency of the mains, or twice it: it is hum, in all likelihood."
+        )
     if found.phases is None:
         return Section("Oscillation", lines)
     natural = found.oscillation.attrs["natural_frequency"]
@@ -258,7 +263,8 @@ def _slips(found: Analysis) -> bool:
 def _creeping(row: xr.Dataset) -> str:
     """Say how fast it creeps in a bin, and to how much that is known if it is worth a word."""
     value, error = float(row["velocity"]), float(row["velocity_error"])
-    if abs(value) <= SURE * error:
-        return f"it creeps no faster than {in_words(SURE * error, 'm/s')} (two standard errors)"
+    if value <= SURE * error:
+        most = max(value, 0.0) + SURE * error
+        return f"it creeps no faster than {in_words(most, 'm/s')} (two standard errors)"
     spread = f" ± {in_words(error, 'm/s')}" if error > SLIGHT * abs(value) else ""
     return f"it creeps at {in_words(value, 'm/s')}{spread}"

@@ -20,7 +20,7 @@ from stiction.reproduction.numbers import numbers
 from stiction.reproduction.schematic import schematic
 from stiction.reproduction.table import Table
 from stiction.reproduction.zero_slip import zero_slip
-from stiction.sections import Section
+from stiction.sections import Section, as_text
 from stiction.simulation import simulate
 from stiction.trajectory import Trajectory
 
@@ -48,6 +48,10 @@ class Reproduction(NamedTuple):
     def agrees(self) -> bool:
         """Whether no number is wrong."""
         return self.table is None or self.table.agrees
+
+    def __str__(self) -> str:
+        """Return the numbers as text."""
+        return as_text(self.tables())
 
     def tables(self) -> list[Section]:
         """Return the numbers as a table, with a sentence that counts the verdicts."""

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.sections import Section
+from stiction.sections import Section, as_text
 from stiction.study.plan import Study
 from stiction.study.store import COMPLETED, ENDS, PENDING, Store
 
@@ -53,6 +53,10 @@ class Summary(NamedTuple):
         """Say how many runs are done and failed."""
         failed = sum(self.failed.values())
         return f"<Sweep {self.store}: {self.runs - self.pending} of {self.runs}, {failed} failed>"
+
+    def __str__(self) -> str:
+        """Return the same as text."""
+        return as_text(self.tables())
 
     def tables(self) -> list[Section]:
         """Return in a sentence how the runs ended, and the first that failed."""
