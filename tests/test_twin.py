@@ -13,7 +13,6 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import stiction as st
-from stiction.solver.dense import End, quintic
 from stiction.solver.integrate import tolerance
 from stiction.solver.landing import landing_slip, landing_time
 from stiction.solver.radau import (
@@ -317,20 +316,3 @@ def test_defect_weight():
     worst = max(abs(error(x)) for x in np.linspace(0.0, 1.0, 1001))
     assert worst / abs(defect) == pytest.approx(DEFECT_WEIGHT, rel=0.05)
     assert worst / abs(nodes(LATER)) == pytest.approx(LATER_WEIGHT, rel=0.05)
-
-
-def test_quintic_is_of_sixth_order():
-    """Value and slope of sin(t0 + t) - sin(t0) inside a step: errors fall with h^6 and h^5."""
-
-    def errors(h, t0=0.4):
-        end = t0 + h
-        worst = np.zeros(2)
-        for x in np.linspace(0.0, 1.0, 41):
-            t = t0 + x * h
-            last = End(np.cos(end), -np.sin(end), np.sin(end) - np.sin(t0))
-            y, v = quintic(h, x, End(np.cos(t0), -np.sin(t0), 0.0), last)
-            worst = np.maximum(worst, np.abs([y - np.sin(t) + np.sin(t0), v - np.cos(t)]))
-        return worst
-
-    orders = np.log2(errors(0.2) / errors(0.1))
-    assert orders == pytest.approx([6.0, 5.0], abs=0.2)
