@@ -4,6 +4,7 @@ import doctest
 import os
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ import stiction as st
 from waiting import PATIENCE
 
 ROOT = Path(__file__).parent.parent
+SOURCE = ROOT / "src/stiction"
 HEAVY = {"numba", "scipy", "xarray", "matplotlib", "pint", "pandas"}
 
 
@@ -49,13 +51,15 @@ def test_names_survive_their_modules():
     assert run_python(f"{code}; print(callable(st.simulate), callable(st.load))") == "True True\n"
 
 
-def test_every_docstring_example_runs():
-    import stiction.simulation
-
-    for module in (st, stiction.simulation):
-        result = doctest.testmod(module)
-        assert result.attempted > 0
-        assert result.failed == 0
+@pytest.mark.parametrize(
+    "path", [path for path in sorted(SOURCE.rglob("*.py")) if ">>> " in path.read_text("utf-8")]
+)
+def test_every_docstring_example_runs(path, monkeypatch):
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    name = ".".join(path.relative_to(SOURCE.parent).with_suffix("").parts)
+    result = doctest.testmod(import_module(name.removesuffix(".__init__")))
+    assert result.attempted > 0
+    assert result.failed == 0
 
 
 def test_readme_example_runs(tmp_path, monkeypatch):

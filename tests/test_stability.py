@@ -1,8 +1,6 @@
 """Linearised steady sliding: against closed forms, analytic derivatives, and simulation."""
 
-import doctest
 import math
-from importlib import import_module
 
 import numpy as np
 import pytest
@@ -429,13 +427,3 @@ def test_a_range_that_is_none_is_refused():
         critical(PAPER, "phi", ("0 deg", "100 deg"))
     with pytest.raises(st.DescriptionError, match="degree or radian"):
         critical(PAPER, "phi", (0.0, 0.3))
-
-
-@pytest.mark.parametrize(
-    "module",
-    ["parameter", "linear_stability", "linear_stability.linear", "linear_stability.roots"],
-)
-def test_every_docstring_example_runs(module):
-    result = doctest.testmod(import_module(f"stiction.{module}"))
-    assert result.attempted > 0
-    assert result.failed == 0

@@ -128,7 +128,7 @@ def audit(slider: Slider | str | Path, progress: Callable[[float], None] | None 
     --------
     >>> import stiction as st
     >>> st.audit(st.presets.nakano_popov_2020().replace(phi="9.5 deg"))
-    <Audit: damped approach; steady sliding is stable>
+    <Audit: settling; steady sliding is stable>
     """
 
     system = slider if isinstance(slider, Slider) else Slider.from_toml(slider)

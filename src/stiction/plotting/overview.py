@@ -60,7 +60,7 @@ def plot_run(run: Trajectory, axes: Mapping[str, Axes] | None = None) -> dict[st
     >>> import stiction as st
     >>> run = st.simulate(st.presets.nakano_popov_2020(), "20 ms", sample_rate="10 kHz")
     >>> run.plot()["force"].get_ylabel()
-    'spring force (mN)'
+    'spring force (N)'
     """
     with style():
         panels = dict(_panels(run) if axes is None else axes)
