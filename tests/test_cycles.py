@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from tests.measured import bare, measured
 
 import stiction as st
+from stiction.analysis.friction_found import find_friction
 from stiction.analysis.hesitations import take_out
 from stiction.analysis.outliers import without_outliers
 from stiction.analysis.reversals import all_heights, standing_out, taken_out
@@ -303,9 +304,11 @@ def test_irregular_vibration_beside_slow_motion_is_no_steady_sliding() -> None:
     height = np.interp(phase, np.arange(197), random.gamma(6.0, 1.0 / 6.0, 197))
     slow = 5.0 * np.sin(2 * pi * time / ends[-1])
     noise = random.normal(size=len(time)) / 65.0
-    regime = st.classify(
-        st.Record(time=time, force=20.0 + height * np.sin(2 * pi * phase) + slow + noise)
-    )
+    record = st.Record(time=time, force=20.0 + height * np.sin(2 * pi * phase) + slow + noise)
+    regime = st.classify(record)
+    sliding = find_friction(record, regime.kind, st.find_cycles(record)).kinetic
+    assert sliding is not None
+    assert sliding.force == pytest.approx(20.0, abs=0.5)  # about which it vibrates
     assert regime.kind == "irregular vibration"
     assert regime.evidence["cycles"] == pytest.approx(196, abs=6)
 

@@ -67,7 +67,7 @@ def _loading_too_fast(record: Record, kind: str, cycles: xr.Dataset) -> Iterator
 
 def _remedy(ratio: float) -> str:
     """Return what is likely wrong with a rate that is so many times as large as stated."""
-    power = log10(ratio) / 3.0
+    power = log10(ratio) / 3.0 if ratio > 0.0 else 0.0
     if abs(power) > 0.5 and abs(power - round(power)) < 0.1:
         if power < 0.0:
             return (

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from stiction.analysis.record import Record
 from stiction.analysis.regime import (
     HARMONIC,
+    IRREGULAR,
     SETTLING,
     STEADY,
     STICK_SLIP,
@@ -112,7 +113,7 @@ def find_friction(record: Record, kind: str, cycles: xr.Dataset) -> Friction:
     else:
         missing["static"] = "the mass does not stick again and again; see the break-away"
     kinetic = None
-    if kind in (STICK_SLIP, TRANSITIONAL, HARMONIC) and count:
+    if kind in (STICK_SLIP, TRANSITIONAL, HARMONIC, IRREGULAR) and count:
         kinetic = _over(0.5 * (cycles["peak"].values + cycles["trough"].values), load)
     elif kind in (STEADY, SETTLING, UNDETERMINED) and (at is not None or kind != UNDETERMINED):
         kinetic = _sliding(record, times, at, kind, load)
