@@ -64,6 +64,8 @@ def test_what_is_written_in_decimals_becomes_the_nearest_float():
         ("1 m", FORCE, "is in m, not a unit of a force"),
         ("1 m/m", LENGTH, "no unit, not a unit of a length"),
         ("1 n", FORCE, "capitals matter"),
+        ("1 dBm m", LENGTH, "'dBm m' is no unit that can be converted"),
+        ("1 nan", LENGTH, "'nan' is no unit that can be converted"),
         ("1 N**9999999", FORCE, "not one number and its unit"),
         ("1 N^" + "9" * 40, FORCE, "not one number and its unit"),
         ("1 " + "m*" * LONGEST + "m", LENGTH, "longer than"),

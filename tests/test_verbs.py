@@ -155,6 +155,17 @@ def test_one_panel_figures_draw_on_given_axes(run):
     assert all(isinstance(each, Axes) for each in whole)
 
 
+@pytest.mark.parametrize("verb", [st.run, st.audit, st.stability, st.Study.from_toml])
+def test_what_is_no_description_is_refused(verb):
+    with pytest.raises(st.DescriptionError, match="int is no description; give its file"):
+        verb(3)
+
+
+def test_a_figure_that_the_paper_has_not_is_refused(tmp_path):
+    with pytest.raises(st.StictionError, match="figure must be 3, 4 or 5, is 7"):
+        st.paper(tmp_path, figure=7)
+
+
 def test_what_has_no_figure_says_so():
     with pytest.raises(st.StictionError, match="float has no figure"):
         st.plot(3.0)

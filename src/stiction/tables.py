@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import tomllib
 from collections.abc import Callable, Collection, Mapping
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -28,8 +29,11 @@ def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dic
     Raises
     ------
     DescriptionError
-        Saying why the file cannot be read, or which parameter is none.
+        Saying why the file cannot be read, or which parameter is none; or that it is no path.
     """
+    if not isinstance(path, str | PathLike):
+        message = f"{type(path).__name__} is no description; give its file, or its text in TOML"
+        raise DescriptionError([Fault("path", message)])
     written = isinstance(path, str) and "\n" in path
     try:
         text = str(path) if written else Path(path).read_text(encoding="utf-8-sig")

@@ -52,7 +52,14 @@ def factor(text: str, wanted: str) -> float | None:
     >>> factor("N s/m", "N*s/m"), factor("mm s^-1", "m/s"), factor("rad/s", "Hz")
     (1.0, 0.001, None)
     """
-    one, other = (registry().Quantity(1.0, plain(each)).to_root_units() for each in (text, wanted))
+    try:
+        one, other = (
+            registry().Quantity(1.0, plain(each)).to_root_units() for each in (text, wanted)
+        )
+    except Exception as error:  # whatever the registry raises: logarithmic units, "nan"
+        if isinstance(error, UnitError):
+            raise
+        raise UnitError(f"{text!r} is no unit that can be converted") from error
     return float(one.magnitude / other.magnitude) if one.units == other.units else None
 
 

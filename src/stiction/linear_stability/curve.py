@@ -70,7 +70,7 @@ def boundary(
     Continuation with a spherical constraint: Yamamura, IEEE Trans. Circuits Syst. I 40 (1993), 448.
     """
     across, up = axis(slider, x, x_between), axis(slider, y, y_between)
-    if x == y:
+    if across.path == up.path:
         raise DescriptionError([Fault(x, "spans no plane with itself; name two parameters")])
 
     def at(point: Point) -> Slider:

@@ -96,6 +96,8 @@ def reproduce(
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise StictionError(f"{folder}: cannot be made: {error.strerror}") from None
+    if figure not in (None, 3, 4, 5):
+        raise StictionError(f"figure must be 3, 4 or 5, is {figure!r}")
     slider = presets.nakano_popov_2020()
     if figure == 5:
         return save(figure5(slider), folder / "figure-5"), None

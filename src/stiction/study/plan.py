@@ -23,7 +23,7 @@ from stiction.study.measures import DEFAULT
 from stiction.study.observed import seconds_of
 from stiction.study.parameters import varied
 from stiction.study.reading import axes_of, is_description, measures_of, traces_of
-from stiction.tables import read_toml
+from stiction.tables import folder_of, read_toml
 from stiction.validation import Described, faulty
 from stiction.writing import parameter_table, slider_tables
 
@@ -190,7 +190,7 @@ class Study(Described):
         DescriptionError
             Naming every fault with its path, or why the file cannot be read.
         """
-        return cls.from_dict(read_toml(path, changes), find=named(Path(path).parent, Path()))
+        return cls.from_dict(read_toml(path, changes), find=named(folder_of(path), Path()))
 
     @classmethod
     def from_dict(cls, raw: Mapping[str, Any], *, find: Find | None = None) -> Self:
