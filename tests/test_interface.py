@@ -66,6 +66,7 @@ def test_any_slider_is_written_and_read_again_exactly():
         slider = system(random)
         assert st.Slider.from_toml(slider.to_toml()) == slider
         assert eval(repr(slider), dict(EVERYTHING)) == slider
+        assert str(slider) == repr(slider)
         start = st.Initial(u_x=random.uniform(-1, 1), v_x="1 mm/s", v_y=0, time=0.25)
         settings = st.Settings(duration=random.uniform(0, 1e3), sample_rate="20 kHz", rtol=1e-8)
         whole = st.Description(slider, start, settings)

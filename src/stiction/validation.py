@@ -68,6 +68,10 @@ class Described(BaseModel, metaclass=_Presented):
         fields = type(self).model_fields
         return _call(self, {name: hints.get(name) for name in fields}, _defaults(fields))
 
+    def __str__(self) -> str:
+        """Return the same, angles with their unit; the library would give bare numbers."""
+        return repr(self)
+
 
 def _own_names(cls: Any, names: Iterable[str]) -> list[str]:
     """Return the names without those of the library that reads descriptions."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
-from warnings import warn
 
 import numpy as np
 
@@ -21,6 +20,7 @@ from stiction.analysis.oscillation import oscillation_by_phase, transverse_oscil
 from stiction.analysis.record import Record, recorded
 from stiction.analysis.regime import STICK_SLIP, TRANSITIONAL, Regime, regime_of
 from stiction.analysis.spread import summary
+from stiction.deprecation import warn_renamed
 from stiction.errors import ResultError, StictionError
 from stiction.sections import Section, as_html, as_text
 from stiction.trajectory import Trajectory, load
@@ -88,7 +88,7 @@ class Analysis(NamedTuple):
     @property
     def song(self) -> xr.Dataset | None:
         """The old name of `oscillation`, which goes with the next version."""
-        warn("Analysis.song is now called Analysis.oscillation", DeprecationWarning, stacklevel=2)
+        warn_renamed("Analysis.song", "Analysis.oscillation")
         return self.oscillation
 
     def __repr__(self) -> str:
