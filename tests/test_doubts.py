@@ -81,6 +81,14 @@ def test_a_break_away_before_steady_sliding() -> None:
     assert "first break-away" in as_text(found.tables())
 
 
+@pytest.mark.parametrize("count", [100, 399, 600, 1000, 10_000, 30_001])
+def test_a_late_break_away_is_read_where_it_is(count) -> None:
+    time = np.linspace(0.0, 10.0, count)
+    force = np.where(time < 7.0, time / 7.0, 0.8) + 0.05 * np.exp(-((time - 6.9) ** 2) / 0.04)
+    found = st.analyse(st.Record(time=time, force=force, position=None))
+    assert found.friction.break_away.force == pytest.approx(force.max(), rel=1e-4)
+
+
 def test_steady_sliding_has_its_mean_and_spread() -> None:
     time = np.arange(0.0, 10.0, 1e-3)
     noise = 0.05 * np.random.default_rng(2).standard_normal(len(time))

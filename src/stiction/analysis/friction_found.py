@@ -150,8 +150,8 @@ def _first_peak(forces: Floats, noise: float) -> tuple[int | None, str]:
 
 def _break_away(record: Record, forces: Floats, at: int, noise: float) -> Measured:
     """Return the largest force about a mean that is a maximum, averaged as far as noise asks."""
-    size = len(record) // len(forces) + 1
-    near = without_spikes(record.force)[max(0, (at - 1) * size - size) : (at + 2) * size]
+    size, first = -(-len(record) // len(forces)), at * len(record) // len(forces)
+    near = without_spikes(record.force)[max(0, first - 2 * size) : first + 3 * size]
     rough = noise * size**0.5  # of a sample
     wanted = (rough / max(SHARP * float(np.ptp(forces)), 1e-300)) ** 2
     width = int(min(max(wanted, 1.0), size))

@@ -132,6 +132,7 @@ class Record(Described):
         for name, key in UNITS.items():
             values = given.get(name)
             if values is None:
+                read.pop(name, None)  # as if left out
                 continue
             unit, kind = _stated_unit(values), KINDS[name]
             said = given.get(key)
