@@ -74,6 +74,22 @@ def test_the_budget_closes_to_the_tolerance(slider, driven, changes):
     assert off[1] < 0.1 * off[0]
 
 
+def test_friction_that_turns_over_between_two_points_in_time_is_not_missed():
+    """Slip all but vanishes and comes back within a thousandth of a panel, beside its end."""
+    slider = st.Slider(
+        mass=1.0,
+        k_x=5788.940616492286,
+        k_y=680766.6468494682,
+        phi="0.0685 deg",
+        normal_load=10.0,
+        friction=st.Coulomb(0.2),
+        drive=st.ConstantVelocity(0.1),
+    )
+    start = st.Initial(u_x=0.0023521650501143734, v_x=0.0, v_y=0.0)
+    budget = st.energy_budget(st.simulate(slider, 0.4954862093524758, initial=start, rtol=1e-7))
+    assert abs(float(budget["residual"][0])) < float(budget["bound"][0])
+
+
 def test_a_changing_load_does_no_work(slider):
     load = st.LoadProgram(modulation=st.Modulation(1.0, 7.0))
     run = st.simulate(slider.replace(load=load), 0.4)

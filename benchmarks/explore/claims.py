@@ -17,6 +17,7 @@ import numpy as np
 from scipy.linalg import expm
 
 import stiction as st
+from stiction.solver.integrate import tolerance
 
 from .draw import Draw
 from .systems import System, system
@@ -51,7 +52,7 @@ def look(seed: int, number: int) -> Claim:
 
 
 def sample(of: System, draw: Draw) -> float:
-    """Return how far samples are from runs that end there: slip, over rtol of slip and drive."""
+    """Return how far samples are from runs that end there, over what a step may err by."""
     rate = draw.between(37.0, 97.0) / of.duration
     run = st.simulate(of.slider, of.duration, sample_rate=rate, rtol=of.rtol)
     V, worst = of.slider.motion.rate(0.0)[0], 0.0
@@ -59,7 +60,9 @@ def sample(of: System, draw: Draw) -> float:
     for k in moving:
         end = st.simulate(of.slider, float(run.data["time"][k]), rtol=of.rtol).final
         off = [float(run.data[name][k]) - float(end[name]) for name in ("slip_x", "slip_y")]
-        worst = max(worst, float(np.hypot(*off)) / (of.rtol * (V + float(end["slip_speed"]))))
+        worst = max(
+            worst, float(np.hypot(*off)) / (tolerance(of.rtol) * (V + float(end["slip_speed"])))
+        )
     return worst
 
 
@@ -114,8 +117,8 @@ def vibration(slider: st.Slider, draw: Draw) -> float:
     omega = np.sqrt(np.diag(K) / slider.mass)
     steady = np.linalg.solve(K, F * along)
     # so small that what is quadratic in it does not show, and well above rounding
-    speed = min(V, F / max(abs(slope), 1e-300)) * draw.decades(1e-6, 1e-5)
-    if speed < 1e-10 * np.abs(omega * steady).max():
+    speed = min(V, F / max(abs(slope), 1e-300)) * draw.decades(1e-7, 1e-6)
+    if speed < 1e-8 * (V + np.abs(F / (slider.mass * omega)).sum()):
         return 0.0
     start = st.Initial(
         u_x=steady[0] + speed / omega[0], u_y=steady[1] + speed / omega[1], v_x=0.0, v_y=0.0
