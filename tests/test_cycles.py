@@ -153,7 +153,10 @@ def test_no_cycles_with_constant_friction(slider: st.Slider) -> None:
 
 @pytest.mark.parametrize("phi", ["2 deg", "3.5 deg", "5 deg", "6 deg"])
 def test_a_dip_before_a_slip_is_a_hesitation_and_no_cycle(phi: str) -> None:
-    """The force dips by 1 to 3 % of its swing before some slips of this pin on a plate."""
+    """The force dips by up to 3 % of its swing before some slips of this pin on a plate.
+
+    Before which ones is chaotic: it depends on the last digits of the run.
+    """
     law = st.ExponentialWeakening(mu_0=0.6, mu_inf=0.45, v_f="10 mm/s")
     rig = st.Slider(
         mass=0.08, k_x=2.3e3, k_y=0.9e6, phi=phi, normal_load=4.0, friction=law,
@@ -166,13 +169,28 @@ def test_a_dip_before_a_slip_is_a_hesitation_and_no_cycle(phi: str) -> None:
     falls = walked(np.rint(1e6 * force).astype(np.int64), int(0.5e6 * np.ptp(force[late])))
     assert abs(cycles.sizes["cycle"] - (len(falls) - 1) // 2) <= 1
     assert ((cycles["period"] > 0.85) & (cycles["period"] < 1.05)).all()
-    assert cycles["hesitations"].sum() >= 1
-    deepest = float(cycles["hesitation_depth"].max() / cycles["drop"].median())
-    assert 0.01 < deepest < 0.04
     assert st.classify(run).kind == "stick-slip"
     seen = observe(st.Description(rig, st.Initial(), st.Settings(duration="10 s")), None)
     assert len(seen.swings.period) == cycles.sizes["cycle"]
     assert seen.swings.period.mean() == pytest.approx(float(cycles["period"].mean()), rel=1e-3)
+
+
+def test_hesitations_are_counted_and_measured() -> None:
+    """A sawtooth that dips by a tenth of its drop before each second slip."""
+    time, force = [0.0], [0.0]
+    for cycle in range(12):
+        dip = ((0.90, 0.98), (0.92, 0.88)) if cycle % 2 == 0 else ()
+        for at, value in (*dip, (0.96, 1.0), (1.0, 0.0)):
+            time.append(cycle + at)
+            force.append(value)
+    samples = np.arange(0.3, 11.7, 1e-3)
+    noise = 0.003 * np.random.default_rng(1).normal(size=len(samples))
+    for disturbed in (0.0, noise):  # which reaches to 0.012 each way
+        measured = np.interp(samples, time, force) + disturbed
+        cycles = st.find_cycles(st.Record(time=samples, force=measured))
+        assert cycles["hesitations"].values.tolist() == [0.0, 1.0] * 5
+        assert cycles["hesitation_depth"].values[1::2] == pytest.approx(0.1, abs=0.024)
+        assert cycles["period"].values == pytest.approx(1.0, abs=5e-3)
 
 
 def corners(*legs: float) -> Floats:

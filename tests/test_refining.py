@@ -94,7 +94,7 @@ def test_what_cannot_be_refined(found, along, to, says):
 def test_a_kind_s_former_name_goes_on_and_a_strange_one_does_not(found, tmp_path):
     study, path, changes = found
     with pytest.warns(DeprecationWarning, match="now called 'settling'"):
-        again = study.refine(path, "phi", "0.01 deg", apart=["damped approach", *CALM[1:]])
+        again = st.refine(study, path, "phi", "0.01 deg", apart=["damped approach", *CALM[1:]])
     np.testing.assert_array_equal(again["above"], changes["above"])
     with pytest.raises(st.DescriptionError, match="did you mean 'settling'"):
-        study.refine(path, "phi", "0.01 deg", apart=["setling"])
+        st.refine(study, path, "phi", "0.01 deg", apart=["setling"])
