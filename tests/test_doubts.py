@@ -139,3 +139,9 @@ def test_a_record_too_slow_for_a_fast_line_is_told_the_rate() -> None:
     time = np.arange(0.0, 33.0, 0.1)
     found = st.analyse(st.Record(time=time, force=1.0 + (time / 0.75) % 1.0))
     assert "samples a second or more" in found.missing["oscillation"]
+
+
+def test_a_coefficient_of_five_is_doubted_but_is_no_factor_of_a_thousand() -> None:
+    time = np.arange(0.0, 20.0, 0.01)
+    found = st.analyse(st.Record(time=time, force=5.0 + time % 1.0, normal_load="1 N"))
+    assert "beyond belief: check the normal load, 1 N." in " ".join(found.warnings)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import log10, pi
+from math import isfinite, log10, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 LARGEST_MU = 3.0
+LEAST_MU = 0.01  # of dry friction: superlubricity aside
 FASTER, SLOWER = 1.1, 0.5  # rate of loading over stiffness times drive velocity
 LIGHTER, HEAVIER = 1.4, 0.7  # k/m by the swing over that stated; a slip is slower than a swing
 SLOW_SLIP = 0.1
@@ -44,10 +45,12 @@ def _friction_too_large(record: Record, friction: Friction) -> Iterator[str]:
     known = [each for each in friction[:3] if each is not None]
     mu = max((abs(each.coefficient) for each in known), default=np.nan)
     if mu > LARGEST_MU:
+        load = in_words(record.normal_load or 0.0, "N")
+        thousandfold = mu * 1e-3 > LEAST_MU
+        milli = "is the force in millinewtons? Give force_unit='mN'; or " if thousandfold else ""
         yield (
-            f"A friction coefficient of {mu:.3g} is beyond belief: is the force in millinewtons? "
-            "Give force_unit='mN'; or check the normal load, "
-            f"{in_words(record.normal_load or 0.0, 'N')}."
+            f"A friction coefficient of {mu:.3g} is beyond belief: {milli}check the normal load, "
+            f"{load}."
         )
 
 
@@ -57,7 +60,7 @@ def _loading_too_fast(record: Record, kind: str, cycles: xr.Dataset) -> Iterator
     stated = record.stiffness * record.drive_velocity
     seen = float(np.median(cycles["stick_slope"].values))
     ratio = seen / stated
-    if SLOWER <= ratio <= FASTER:
+    if not isfinite(ratio) or SLOWER <= ratio <= FASTER:
         return
     yield (
         f"The force rises at {in_words(seen, 'N/s')}, {ratio:.3g} times stiffness times drive "

@@ -9,6 +9,7 @@ import numpy as np
 from stiction.analysis.creep import first_slip_time
 from stiction.analysis.regime import (
     HARMONIC,
+    IRREGULAR,
     SETTLING,
     STICK_SLIP,
     STUCK,
@@ -253,7 +254,7 @@ def stick(found: Audit) -> list[str]:
             if s.phi
             else "What creeps, creeps by the law of friction."
         )
-    elif s.phi and seen.regime.kind == HARMONIC:
+    elif s.phi and seen.regime.kind in (HARMONIC, IRREGULAR):
         lines.append("The mass vibrates about steady sliding; there is no stick in it.")
     elif s.phi and seen.shares.creep > seen.shares.rest:
         distance = seen.mean("creep_distance")
@@ -276,7 +277,7 @@ def stick(found: Audit) -> list[str]:
 
 
 def transverse(found: Audit) -> list[str]:
-    """Return what the rig sings at, and what it takes to see it."""
+    """Return how the mass oscillates across the drive, and what it takes to see it."""
     p, seen = found.prediction, found.observation
     if p.amplitude == 0.0:
         return ["Without misalignment the transverse spring is not excited."]
