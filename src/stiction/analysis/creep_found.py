@@ -39,6 +39,15 @@ class CreepFound(NamedTuple):
     missing: dict[str, str]
 
 
+def tried(missing: dict[str, str], name: str, find: Callable[[], T]) -> T | None:
+    """Return what is found; or None, and note under its name in `missing` why it is not."""
+    try:
+        return find()
+    except StictionError as error:
+        missing[name] = str(error)
+        return None
+
+
 def find_creep(
     source: Trajectory | Record, record: Record, cycles: xr.Dataset, width: float | None
 ) -> CreepFound:
@@ -49,21 +58,13 @@ def find_creep(
     the even loading in the first half of each rise.
     """
     missing: dict[str, str] = {}
-
-    def tried(name: str, find: Callable[[], T]) -> T | None:
-        try:
-            return find()
-        except StictionError as error:
-            missing[name] = str(error)
-            return None
-
     run = source if isinstance(source, Trajectory) else None
     by_force = None
     if record.position is None:
-        by_force = tried("misalignment", lambda: misalignment_from_force(record, cycles))
+        by_force = tried(missing, "misalignment", lambda: misalignment_from_force(record, cycles))
     known = calibrated(record, cycles, by_force)
-    curves = tried("creep", lambda: creep_curves(run or known, cycles, width))
-    mean = tried("creep", lambda: _mean(curves, known)) if curves is not None else None
+    curves = tried(missing, "creep", lambda: creep_curves(run or known, cycles, width))
+    mean = tried(missing, "creep", lambda: _mean(curves, known)) if curves is not None else None
     if run is not None and run.slider.phi == 0.0:
         return CreepFound(curves, mean, None, None, missing)
     V, stiffness = known.drive_velocity, known.stiffness
@@ -75,11 +76,11 @@ def find_creep(
             missing["divergence"] = "not determined: without the misalignment, creep is not known"
         else:
             loading = by_force.F_0 / stiffness / V
-            divergence = tried("divergence", lambda: _determined(fit_divergence(mean, loading)))
+            divergence = tried(missing, "divergence", lambda: _divergence(mean, loading))
         return CreepFound(curves, mean, divergence, by_force, missing)
     loading = float(np.nanmax(mean["force"].values)) / stiffness / V
-    divergence = tried("divergence", lambda: _determined(fit_divergence(mean, loading)))
-    by_creep = tried("misalignment", lambda: _certain(fit_misalignment(mean, V, stiffness)))
+    divergence = tried(missing, "divergence", lambda: _divergence(mean, loading))
+    by_creep = tried(missing, "misalignment", lambda: _misalignment(mean, V, stiffness))
     return CreepFound(curves, mean, divergence, by_creep, missing)
 
 
@@ -118,14 +119,18 @@ def _mean(curves: xr.Dataset, record: Record) -> xr.Dataset:
     return mean
 
 
-def _determined(found: Divergence) -> Divergence:
+def _divergence(mean: xr.Dataset, loading: float) -> Divergence:
+    """Return how creep diverges, if that stands out of its uncertainty."""
+    found = fit_divergence(mean, loading)
     n, error = found.exponent, found.exponent_error
     if not error < KNOWN or not found.amplitude > SURE * found.amplitude_error or n <= 0.0:
         raise ResultError("not determined: no divergence stands out of its uncertainty")
     return found
 
 
-def _certain(found: Misalignment) -> Misalignment:
+def _misalignment(mean: xr.Dataset, V: float, stiffness: float) -> Misalignment:
+    """Return the misalignment that creep implies, if it stands out of its uncertainty."""
+    found = fit_misalignment(mean, V, stiffness)
     if not found.phi_error < KNOWN * abs(found.phi):
         most = degrees(abs(found.phi) + SURE * found.phi_error)
         limit = f"; it is below {most:.2g} deg" if most < 45.0 else ""

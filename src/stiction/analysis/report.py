@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from stiction.analysis.creep_found import find_creep
+from stiction.analysis.creep_found import find_creep, tried
 from stiction.analysis.cycles import swings
 from stiction.analysis.divergence import Divergence
 from stiction.analysis.doubts import warnings
@@ -21,14 +20,13 @@ from stiction.analysis.record import Record, recorded
 from stiction.analysis.regime import STICK_SLIP, TRANSITIONAL, Regime, regime_of
 from stiction.analysis.spread import summary
 from stiction.deprecation import warn_renamed
-from stiction.errors import ResultError, StictionError
+from stiction.errors import ResultError
 from stiction.sections import Section, as_html, as_text
 from stiction.trajectory import Trajectory, load
 
 if TYPE_CHECKING:
     import xarray as xr
 
-T = TypeVar("T")
 HARMONICS = 10.0  # of the stick-slip, which an oscillation is sought above
 OF_STICKING = ("mu_static", "stick_slope", "stiffness", "creep_distance")  # columns of cycles
 BINS = 20.0  # that a stick phase is to have at least, to be averaged over them
@@ -138,13 +136,6 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     """
     missing: dict[str, str] = {}
 
-    def tried(name: str, find: Callable[[], T]) -> T | None:
-        try:
-            return find()
-        except StictionError as error:
-            missing[name] = str(error)
-            return None
-
     if isinstance(source, str | Path):
         source = load(source, trust=trust)
     run = source if isinstance(source, Trajectory) else None
@@ -153,11 +144,12 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     cycles, regime = found.cycles, regime_of(record, found)
     sticking = cycles if regime.kind in (STICK_SLIP, TRANSITIONAL) else cycles.isel(cycle=slice(0))
     if run is not None:
-        oscillation = tried("oscillation", lambda: transverse_oscillation(run))
-        energy = tried("energy", lambda: energy_budget(run, edges(run, cycles)))
+        oscillation = tried(missing, "oscillation", lambda: transverse_oscillation(run))
+        energy = tried(missing, "energy", lambda: energy_budget(run, edges(run, cycles)))
         width = None
     else:
         oscillation = tried(
+            missing,
             "oscillation",
             lambda: strongest_line(record, _above(record, cycles), cycles=cycles),
         )
