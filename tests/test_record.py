@@ -104,3 +104,13 @@ def test_the_zero_of_a_load_cell_is_taken_off() -> None:
     record = Record(time=[0.0, 1.0], force=[1.0, 2.0], zero="-250 mN")
     assert record.force.tolist() == [1.25, 2.25]
     assert not record.force.flags.writeable
+
+
+def test_a_record_made_again_of_its_own_fields_is_the_same() -> None:
+    record = Record(
+        time=[0.0, 1.0], force=[500.0, 800.0], time_unit="ms", force_unit="mN", zero="100 mN"
+    )
+    again = Record(**{name: getattr(record, name) for name in Record.model_fields})
+    assert again.force.tolist() == record.force.tolist() == [0.4, 0.7000000000000001]
+    assert again.time.tolist() == record.time.tolist() == [0.0, 1e-3]
+    assert again.zero == 0.0  # known, and taken off

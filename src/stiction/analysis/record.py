@@ -92,9 +92,10 @@ class Record(Described):
     position, slip_speed : array, optional
         (n,), m and m/s, along the drive and of the slip, where they are known otherwise.
     zero : float or str, optional
-        N, what the load cell reads without load; it is taken off the force.
+        N, what the load cell reads without load; it is taken off the force, and 0 from then on.
     time_unit, force_unit, position_unit, slip_speed_unit : str, optional
-        Units of arrays that do not carry their own: ``time_unit="ms"``.
+        Units of arrays that do not carry their own: ``time_unit="ms"``. A record holds SI, and
+        says so here.
 
     Raises
     ------
@@ -131,6 +132,7 @@ class Record(Described):
         read, wrong = dict(given), []
         for name, key in UNITS.items():
             values = given.get(name)
+            read.pop(key, None)  # a record holds SI: made again of its fields, it is the same
             if values is None:
                 read.pop(name, None)  # as if left out
                 continue
@@ -152,7 +154,7 @@ class Record(Described):
         if self.zero:
             force = self.force - self.zero
             force.setflags(write=False)
-            self.__dict__["force"] = force
+            self.__dict__.update(force=force, zero=0.0)
         return self
 
     @model_validator(mode="after")
