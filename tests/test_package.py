@@ -152,3 +152,19 @@ def test_old_names_go_on_working_with_a_warning():
         assert find("older") is st.Status
     with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
         find("nonsense")
+
+
+def test_what_a_module_held_answers_where_a_function_took_its_place() -> None:
+    slider = st.presets.nakano_popov_2020()
+    with pytest.warns(DeprecationWarning, match=r"st\w+.stability.growth_rate is now called"):
+        assert st.stability.growth_rate(slider) == st.linear_stability.growth_rate(slider)
+    sliding = st.linear_stability.steady_sliding(slider)
+    renamed = r"stiction.stability.Linearisation is now called stiction.linear_stability.Lin"
+    with pytest.warns(DeprecationWarning, match=renamed) as warned:
+        assert isinstance(sliding, st.stability.Linearisation)
+        assert not isinstance(slider, st.stability.Linearisation)
+        assert issubclass(type(sliding), st.stability.Linearisation)
+        assert st.stability.Linearisation.verdict is type(sliding).verdict
+    assert {warning.filename for warning in warned} == {__file__}
+    with pytest.warns(DeprecationWarning, match=r"stiction.audit.Audit is now called"):
+        assert not isinstance(slider, st.audit.Audit)

@@ -48,6 +48,32 @@ def old_names(
     return find
 
 
+class _Moved:
+    """Stands where a function or class was: called, asked for or tested against, it warns."""
+
+    def __init__(self, old: str, new: str) -> None:
+        self._old, self._new = old, new
+
+    def _found(self) -> Any:
+        warn_renamed(self._old, self._new, stacklevel=4)
+        home, _, name = self._new.rpartition(".")
+        return getattr(import_module(home), name)
+
+    def __call__(self, *args: Any, **values: Any) -> Any:
+        return self._found()(*args, **values)
+
+    def __instancecheck__(self, value: Any) -> bool:
+        return isinstance(value, self._found())
+
+    def __subclasscheck__(self, kind: type) -> bool:
+        return issubclass(kind, self._found())
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):  # pytest, doctest and the like ask functions for these
+            raise AttributeError(name)
+        return getattr(self._found(), name)
+
+
 def old_attributes(function: Callable[..., Any], renamed: Mapping[str, str]) -> None:
     """Let a function that took the place of a module answer to what the module held.
 
@@ -58,14 +84,5 @@ def old_attributes(function: Callable[..., Any], renamed: Mapping[str, str]) -> 
     renamed : mapping
         From each old name in the module to the new one, written from the package on.
     """
-
-    def forwarding(old: str, new: str) -> Callable[..., Any]:
-        def forward(*args: Any, **values: Any) -> Any:
-            warn_renamed(f"stiction.{function.__name__}.{old}", new)
-            home, _, name = new.rpartition(".")
-            return getattr(import_module(home), name)(*args, **values)
-
-        return forward
-
     for old, new in renamed.items():
-        setattr(function, old, forwarding(old, new))
+        setattr(function, old, _Moved(f"stiction.{function.__name__}.{old}", new))
