@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import stiction as st
+from stiction.analysis.friction_found import find_friction
 from stiction.sections import as_text
 
 KNOWN = {
@@ -87,6 +88,29 @@ def test_a_late_break_away_is_read_where_it_is(count) -> None:
     force = np.where(time < 7.0, time / 7.0, 0.8) + 0.05 * np.exp(-((time - 6.9) ** 2) / 0.04)
     found = st.analyse(st.Record(time=time, force=force, position=None))
     assert found.friction.break_away.force == pytest.approx(force.max(), rel=1e-4)
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.013, 0.05, 0.09, 0.16, 0.19])
+def test_coarse_samples_of_a_break_away_state_by_how_much_they_can_miss_it(shift) -> None:
+    time = np.arange(shift, 20.0, 0.2)
+    late = np.maximum(time - 6.0, 0.0)
+    courses = {  # each with its largest force, at 6 s
+        "rounded": 2.0 * np.sin(np.pi * np.minimum(time, 9.0) / 12.0),
+        "corner": np.where(time < 6.0, time / 3.0, 1.4 + 0.6 * np.exp(-8.0 * late)),
+    }
+    for name, force in courses.items():
+        peak = st.analyse(st.Record(time=time, force=force)).friction.break_away
+        assert 0.0 <= 2.0 - peak.force <= peak.error + 1e-12, name
+        assert peak.error < 2.0 * 0.2 / 3.0, name  # two samples of the steepest rise
+
+
+def test_one_sample_of_sliding_has_a_mean_and_no_error() -> None:
+    time = np.append(np.arange(0.0, 4.0, 0.1), 100.0)
+    force = np.append(np.minimum(time[:-1], 6.9 - time[:-1]), 2.0)
+    record = st.Record(time=time, force=force)
+    kinetic = find_friction(record, "steady sliding", st.find_cycles(record)).kinetic
+    assert kinetic.force == 2.0
+    assert np.isnan([kinetic.error, kinetic.spread]).all()
 
 
 def test_steady_sliding_has_its_mean_and_spread() -> None:

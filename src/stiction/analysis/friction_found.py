@@ -156,11 +156,28 @@ def _break_away(record: Record, forces: Floats, at: int, noise: float) -> Measur
     wanted = (rough / max(SHARP * float(np.ptp(forces)), 1e-300)) ** 2
     width = int(min(max(wanted, 1.0), size))
     smooth = np.convolve(near, np.full(width, 1.0 / width), "valid")
-    return Measured(float(smooth.max()), rough / width**0.5, np.nan, record.normal_load or np.nan)
+    error = float(np.hypot(rough / width**0.5, _missed(smooth, width)))
+    return Measured(float(smooth.max()), error, np.nan, record.normal_load or np.nan)
+
+
+def _missed(values: Floats, step: int) -> float:
+    """Return by how much a peak can exceed its largest value, from the values a step apart.
+
+    A rounded peak, bent much the same on all of it, lies below the lines that continue its sides:
+    below where they meet. A corner bends more than twice as much as a side of it; it lies below
+    the rise, continued by a step.
+    """
+    top = int(np.argmax(values))
+    at = np.clip(top + step * np.arange(-2, 3), 0, len(values) - 1)
+    before, rise, fall, after = np.diff(values[at]) * (1.0, 1.0, -1.0, -1.0)
+    if rise + fall > 2.0 * min(before - rise, after - fall):
+        return float(max(rise, before - rise))  # it lies after the largest value, or before
+    meet = rise * (after - fall) / (rise + after), fall * (before - rise) / (fall + before)
+    return float(max(meet))
 
 
 def _over(values: Floats, load: float) -> Measured:
-    """Return mean, standard error and spread over cycles."""
+    """Return mean, standard error and spread of values that do not depend on each other."""
     spread = float(values.std(ddof=1)) if len(values) > 1 else np.nan
     return Measured(float(values.mean()), spread / len(values) ** 0.5, spread, load)
 
@@ -172,5 +189,4 @@ def _sliding(record: Record, times: Floats, at: int | None, kind: str, load: flo
     begin += share * (float(record.time[-1]) - begin)
     force = record.force[record.time >= begin]
     blocks = np.array([part.mean() for part in np.array_split(force, min(BLOCKS, len(force)))])
-    error = float(blocks.std(ddof=1)) / len(blocks) ** 0.5
-    return Measured(float(force.mean()), error, float(force.std()), load)
+    return _over(force, load)._replace(error=_over(blocks, load).error)
