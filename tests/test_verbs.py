@@ -54,6 +54,20 @@ def test_a_run_from_its_file_is_that_of_its_description(config):
     assert run.data.equals(st.run(st.Description.from_toml(config)).data)
 
 
+def test_what_is_unambiguous_is_taken_and_else_the_remedy_is_named(tmp_path):
+    description = st.Description(PAPER, st.Initial(), st.Settings(duration="20 ms"))
+    assert st.stability(description, "phi").stable == st.stability(PAPER, "phi").stable
+    assert st.audit(description._replace(slider=PAPER.replace(phi="9.5 deg"))).sliding.stable
+    for verb in (st.run, lambda slider: st.compare(slider, ["coulomb"])):
+        with pytest.raises(st.DescriptionError, match=r"no duration; .*st\.Description\(slider"):
+            verb(PAPER)
+    with pytest.raises(st.DescriptionError, match=r"st\.run\(description\) simulates a whole"):
+        st.simulate(description, "20 ms")
+    (tmp_path / "study.zarr").mkdir()
+    with pytest.raises(st.ResultError, match=r"is a folder.*st\.map\(path\) draws a map"):
+        st.plot(tmp_path / "study.zarr")
+
+
 def test_rooms_keep_their_old_names_with_a_warning():
     with pytest.warns(DeprecationWarning, match=r"stiction\.linear_stability\.growth_rate"):
         rate = st.stability.growth_rate(PAPER)

@@ -10,6 +10,7 @@ from typing import Annotated, Any, NamedTuple, Self
 
 from pydantic import Field, StrictBool, model_validator
 
+from stiction.errors import DescriptionError, Fault
 from stiction.friction import law_table, read_law
 from stiction.friction.own import Find, kept, named, trusted
 from stiction.initial import Initial
@@ -133,7 +134,16 @@ class Description(NamedTuple):
 
 
 def description_of(source: Description | str | Path) -> Description:
-    """Return a description, or that in a file."""
+    """Return a description, or that in a file.
+
+    Raises
+    ------
+    DescriptionError
+        If it is neither.
+    """
+    if isinstance(source, Slider):
+        remedy = "make it one: st.Description(slider, st.Initial(), st.Settings(duration='5 s'))"
+        raise DescriptionError([Fault("description", f"a Slider has no duration; {remedy}")])
     return source if isinstance(source, Description) else Description.from_toml(source)
 
 

@@ -272,6 +272,18 @@ class Slider(Apparatus):
         )
 
 
+def slider_of(source: Any) -> Slider:
+    """Return a slider: as given, of a description or a run, or that in a file.
+
+    Raises
+    ------
+    DescriptionError
+        If it is none of these.
+    """
+    found = getattr(source, "slider", source)
+    return found if isinstance(found, Slider) else Slider.from_toml(source)
+
+
 SLIDER_TABLES: dict[str, Reader] = {
     "slider": lambda table: Apparatus(**table),
     "friction": read_law,

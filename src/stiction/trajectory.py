@@ -236,6 +236,9 @@ def load(path: str | Path, *, trust: bool = False) -> Trajectory:
     ResultError
         If there is no such file, or it is not a result of this package.
     """
+    if Path(path).is_dir():
+        remedy = "of a study, st.map(path) draws a map and st.open_study(path) reads the data"
+        raise ResultError(f"{path}: is a folder, not the file of one run; {remedy}")
     if not Path(path).is_file():
         raise ResultError(f"{path}: no such file; write one with 'stiction run'")
     data, sticks = _read(path)

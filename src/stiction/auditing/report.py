@@ -17,9 +17,10 @@ from stiction.auditing.observation import (
 )
 from stiction.auditing.prediction import Prediction, predict
 from stiction.deprecation import old_attributes
+from stiction.description import Description
 from stiction.linear_stability import Critical, Linearisation, critical, steady_sliding
 from stiction.sections import Section, as_html, as_text
-from stiction.slider import Slider
+from stiction.slider import Slider, slider_of
 
 
 class Audit(NamedTuple):
@@ -101,13 +102,16 @@ class Audit(NamedTuple):
         return write(self, path, name)
 
 
-def audit(slider: Slider | str | Path, progress: Callable[[float], None] | None = None) -> Audit:
+def audit(
+    slider: Slider | Description | str | Path, progress: Callable[[float], None] | None = None
+) -> Audit:
     """Audit an apparatus: is what it will show friction, or itself?
 
     Parameters
     ----------
-    slider : Slider, str or Path
-        The apparatus, or the file of its description; with a steady drive and load.
+    slider : Slider, Description, str or Path
+        The apparatus, or the file of its description; with a steady drive and load. Its own
+        start and settings are not used.
     progress : callable, optional
         Called with the fraction done.
 
@@ -131,7 +135,7 @@ def audit(slider: Slider | str | Path, progress: Callable[[float], None] | None 
     <Audit: settling; steady sliding is stable>
     """
 
-    system = slider if isinstance(slider, Slider) else Slider.from_toml(slider)
+    system = slider_of(slider)
 
     def report(done: int) -> None:
         if progress is not None:

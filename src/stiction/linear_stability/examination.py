@@ -16,10 +16,12 @@ from stiction.linear_stability.linear import Linearisation, steady_sliding
 from stiction.linear_stability.roots import Critical, critical
 from stiction.linear_stability.spectrum import modes_over
 from stiction.sections import Section, Table, as_html, as_text
-from stiction.slider import Slider
+from stiction.slider import Slider, slider_of
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from stiction.description import Description
 
 OVER = ("phi", "drive.velocity")
 Ends = Sequence[float | str]
@@ -95,7 +97,7 @@ class Stability:
 
 
 def stability(
-    slider: Slider | str | Path,
+    slider: Slider | Description | str | Path,
     over: str | Sequence[str] = OVER,
     between: Ends | Sequence[Ends | None] | None = None,
 ) -> Stability:
@@ -105,7 +107,7 @@ def stability(
 
     Parameters
     ----------
-    slider : Slider, str or Path
+    slider : Slider, Description, str or Path
         The system, or the file of its description; with a steady drive and a constant load.
     over : str or two of them, optional
         The parameters to vary, for example ``"c_x"``; see `stiction.linear_stability.critical`.
@@ -130,7 +132,7 @@ def stability(
     >>> found.stable, np.degrees(found.criticals[0].values).round(2)
     (False, array([ 8.66, 76.26]))
     """
-    system = slider if isinstance(slider, Slider) else Slider.from_toml(slider)
+    system = slider_of(slider)
     paths = [over] if isinstance(over, str) else list(over)
     ranges: list[Any] = [None] * len(paths) if between is None else list(between)
     if isinstance(over, str) and between is not None:
