@@ -22,6 +22,7 @@ from stiction.plotting.comparison import comparison as draw
 from stiction.plotting.comparison import legend_text
 from stiction.plotting.curves import curves_of
 from stiction.plotting.words import wrapped
+from stiction.simulation import automatic_times
 
 WEAKENING = st.ExponentialWeakening(mu_0=0.20, mu_inf=0.15, v_f=0.01)
 PANELS = {"force", "words", "X", "speed", "portrait", "rest", "held"}
@@ -368,7 +369,8 @@ def test_compare_samples_where_the_description_does_not(
     whole = comparison.run
     monkeypatch.setattr(comparison, "run", lambda d, **more: given.append(d) or whole(d, **more))
     assert command(config, "--law", "coulomb", "-o", "a.png") == 0
-    assert [d.run.sample_rate for d in given] == [20_000 / 0.05] * 2
+    samples = len(automatic_times(st.Description.from_toml(config))) - 1  # as of `simulate`
+    assert [d.run.sample_rate for d in given] == [samples / 0.05] * 2
 
 
 def test_compare_says_when_a_run_ended_early(

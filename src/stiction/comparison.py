@@ -13,10 +13,9 @@ from stiction.errors import DescriptionError, Fault
 from stiction.friction import Law, name_of, parameters
 from stiction.laws import exchanged, read_laws
 from stiction.sections import Section, Table, as_html, as_text
-from stiction.simulation import run
+from stiction.simulation import automatic_times, run
 from stiction.trajectory import Trajectory
 
-SAMPLES = 20_000  # where the description asks for none
 HEADINGS = (
     "law", "sticks", "stuck (s)", "largest k_x u_x/W", "fastest slip (m/s)",
     "slowest in load-up (m/s)", "median in load-up (m/s)",
@@ -71,11 +70,14 @@ def row(label: str, run: Trajectory) -> tuple[str, ...]:
 
 
 def sampled(description: Description) -> Description:
-    """Return the description with a sample rate, which a figure over time needs."""
+    """Return the description with a sample rate, which a figure over time needs.
+
+    Where it asks for none it is that of `simulate`, of the description's own law for all.
+    """
     if description.run.sample_rate:
         return description
     settings = description.run.model_dump(exclude_none=True)
-    rate = SAMPLES / description.run.duration
+    rate = (len(automatic_times(description)) - 1) / description.run.duration
     return description._replace(run=type(description.run)(**(settings | {"sample_rate": rate})))
 
 

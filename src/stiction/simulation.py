@@ -56,9 +56,9 @@ def simulate(
         end; 0 for the first and last state only. When left out, 20 in each period of the
         faster natural oscillation, or of what shakes drive or load if that is faster still,
         while these are no more than 200 000; then so many, but 32 in each period of the slower
-        natural oscillation at least, up to a million in all; with `multiscale`, which samples
-        would slow down a hundred times, the first and last state only. Samples never influence
-        the steps, and stick intervals are all recorded anyway.
+        natural oscillation at least, up to a million in all; and 1000 in the shortest run. With
+        `multiscale`, which samples would slow down a hundred times, the first and last state
+        only. Samples never influence the steps, and stick intervals are all recorded anyway.
     rtol : float, optional
         Relative tolerance, 1e-13 to 1e-2; for the paper's Fig. 3 over 5 s the relative error
         of u_x is below it. Each step is kept to a share of 0.8 rtol^0.8 (1.3e-5 at the
@@ -108,6 +108,8 @@ def simulate(
     """
     if not isinstance(slider, Slider):
         remedy = "make one with st.Slider(...) or read one with st.Slider.from_toml(path)"
+        if isinstance(slider, Description):
+            remedy = "st.run(description) simulates a whole description, duration and all"
         raise DescriptionError([Fault("slider", f"{slider!r} is not a Slider; {remedy}")])
     given: dict[str, Any] = {
         "duration": duration,
