@@ -23,7 +23,7 @@ from stiction.plotting.overview import overview
 from stiction.plotting.save import save, write
 from stiction.plotting.schematic import draw_schematic
 from stiction.plotting.shapes import Points
-from stiction.plotting.style import BLUE, PURPLE, new_figure, quantity, style
+from stiction.plotting.style import BLUE, PURPLE, new_figure, style
 from stiction.plotting.time_series import cut_open, envelope, prefixed
 from stiction.reproduction.creep import creep
 from stiction.reproduction.figure3 import figure3
@@ -277,8 +277,6 @@ def test_time_stuck_counts_parts_of_intervals() -> None:
 def test_units_suit_the_size() -> None:
     assert prefixed([2e-3, -4e-3]) == (1e3, "m")
     assert prefixed([np.nan, 0.0]) == (1.0, "")
-    assert quantity(1e7, "N/m") == "10 MN/m"
-    assert quantity(0.25, "kg") == "0.25 kg"
 
 
 def test_drawing_leaves_no_trace(slider: st.Slider) -> None:

@@ -28,7 +28,7 @@ def test_modes_and_critical_values_are_printed_and_drawn(config, tmp_path, capsy
     assert "152.35" in text  # the fastest growth rate
     assert "phi, from 1 deg to 30 deg: unstable" in text
     assert "stable above 8.65603 deg (oscillating at 10.25 Hz)" in text
-    assert "drive.velocity, from 0.0001 m/s to 0.1 m/s: unstable" in text
+    assert "drive.velocity, from 100 µm/s to 100 mm/s: unstable" in text
     assert "stable above 0.0921886 m/s" in text
     assert (tmp_path / "map.png").stat().st_size > 10_000
 

@@ -99,6 +99,23 @@ def test_what_is_said_in_words_is_read_again():
             assert to_si(text, Kind("such a quantity", unit, "")) == pytest.approx(value, rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (1.5e-3, "1/s", "0.0015 1/s"),  # not 1.5 1/ks
+        (2e4, "%", "2e+04 %"),
+        (0.25, "kg", "250 g"),
+        (999.97, "N", "1 kN"),
+        (40.0, "N*s/m", "40 N s/m"),
+        (-3e-7, "m", "-300 nm"),
+        (0.0, "kg", "0 kg"),
+        (0.25, "1", "0.25"),
+    ],
+)
+def test_words_have_a_prefix_where_the_unit_can(value, unit, text):
+    assert in_words(value, unit) == text
+
+
 SYSTEM = ("kg", "N/m", "N*s/m", "N", "m", "m/s", "s", "Hz", "rad", "s/m")
 
 

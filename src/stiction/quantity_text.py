@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from decimal import Decimal
-from math import pi, radians
+from math import floor, log10, pi, radians
 
+SI = dict(zip(range(-10, 11), [*"qryzafpnµm", "", *"kMGTPEZYRQ"], strict=True))  # of thousands
+BARE = ("", "1", "%", "1/s", "deg")  # units that take no prefix
+DIGITS = 4  # of a number in words
+PREFIXES = {3 * power: "u" if letter == "µ" else letter for power, letter in SI.items()}
 # unit: what stands in its place with a prefix, and the powers of ten that it may have
-PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n", -12: "p"}
 SMALL, BOTH = (0, -3, -6, -9), (9, 6, 3, 0, -3, -6, -9)
 PREFIXED = {
     "kg": ("g", (3, 0, -3, -6, -9, -12)),  # of a gram
@@ -39,6 +42,21 @@ def quantity_text(value: float, unit: str) -> str:
     texts = [f"{_plain(exact.scaleb(-power))} {PREFIXES[power]}{name}" for power in powers]
     # among the shortest the one with the number nearest to one
     return min(texts, key=lambda text: (len(text.split()[0]), not 1 <= abs(_number(text)) < 1000))
+
+
+def thousands(value: float, unit: str, digits: int = DIGITS) -> int:
+    """Return the power of a thousand of which a value is 1 to 1000; 0 for a unit without prefix.
+
+    The value is taken as it is written, so that 999.97 is 1 of the next prefix.
+
+    Examples
+    --------
+    >>> thousands(0.0123, "m"), SI[thousands(999.97, "N")], thousands(1e-3, "1/s")
+    (-1, 'k', 0)
+    """
+    if value == 0.0 or unit in BARE:
+        return 0
+    return min(max(floor(log10(float(f"{abs(value):.{digits - 1}e}"))) // 3, -10), 10)
 
 
 def angle_text(value: float) -> str:

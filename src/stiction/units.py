@@ -17,8 +17,8 @@ from typing import Annotated, Any, NamedTuple, Union, get_args, get_origin
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
 from pydantic_core import PydanticCustomError
 
-from stiction.quantity_text import angle_text
-from stiction.unit_text import UnitError, factor, registry, short
+from stiction.quantity_text import DIGITS, SI, angle_text, thousands
+from stiction.unit_text import UnitError, factor, short
 
 
 class Kind(NamedTuple):
@@ -191,21 +191,24 @@ Rate = Annotated[float, reader("a frequency", "Hz", "10 kHz"), Field(gt=0)]
 SampleRate = Annotated[float, reader("a frequency", "Hz", "10 kHz"), Field(ge=0)]
 
 
-def in_words(value: float, unit: str) -> str:
+def in_words(value: float, unit: str, digits: int = DIGITS) -> str:
     """Return a value in an SI unit as text, with a prefix that suits it; an angle in degrees.
 
     Examples
     --------
     >>> in_words(3.49e-5, "m"), in_words(0.0174533, "rad"), in_words(float("nan"), "N")
     ('34.9 µm', '1 deg', 'none')
+    >>> in_words(0.0123456, "kg", 6), in_words(0.02, "1/s")
+    ('12.3456 g', '0.02 1/s')
     """
     if isnan(value):
         return "none"
     if isinf(value):
         return "∞" if value > 0.0 else "-∞"
-    if unit in ("", "1"):
-        return f"{value:.4g}"
     if unit == "rad":
-        return f"{value * 180.0 / pi:.4g} deg"
-    quantity = registry().Quantity(float(f"{value:.4g}"), unit)
-    return f"{quantity.to_compact() if value else quantity:.4g~P}"
+        return f"{value * 180.0 / pi:.{digits}g} deg"
+    if unit == "kg" and value != 0.0:
+        value, unit = 1e3 * value, "g"
+    power = thousands(value, unit, digits)
+    name = "" if unit == "1" else unit.replace("*", " ")
+    return f"{value / 1000.0**power:.{digits}g} {SI[power]}{name}".rstrip()

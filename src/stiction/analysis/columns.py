@@ -9,11 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from stiction.quantity_text import DIGITS, SI, thousands
 from stiction.sections import Table
-
-PREFIXES = "qryzafpnµm kMGTPEZYRQ"  # of the SI, 10^-30 to 10^30
-DIGITS = 4  # of the largest number in a column
-PLAIN = ("1", "%", "1/s")  # units that take no prefix
 
 
 class Quantity(NamedTuple):
@@ -35,8 +32,7 @@ def grid(quantities: Mapping[str, Quantity], rows: int) -> Table:
     for name, (values, unit) in quantities.items():
         numbers = np.asarray(values, dtype=np.float64)[:rows]
         power, decimals = scale(numbers.tolist(), unit)
-        prefixed = PREFIXES[power + 10].strip() + unit
-        headings.append(name if unit == "1" else f"{name} ({prefixed})")
+        headings.append(name if unit == "1" else f"{name} ({SI[power]}{unit})")
         columns.append([cell(value / 1000.0**power, decimals) for value in numbers.tolist()])
     return Table(tuple(headings), list(zip(*columns, strict=True)))
 
@@ -46,7 +42,7 @@ def scale(values: Sequence[float], unit: str) -> tuple[int, int]:
     largest = max((abs(value) for value in values if isfinite(value)), default=0.0)
     # as the largest is written, so that 999.97 is 1000.0 of the next prefix
     size = floor(log10(float(f"{largest:.{DIGITS - 1}e}"))) if largest > 0.0 else 0
-    power = 0 if unit in PLAIN else min(max(size // 3, -10), 10)
+    power = thousands(largest, unit)
     return power, max(0, DIGITS - 1 - (size - 3 * power))
 
 

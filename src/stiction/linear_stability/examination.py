@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import degrees
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +16,7 @@ from stiction.linear_stability.roots import Critical, critical
 from stiction.linear_stability.spectrum import modes_over
 from stiction.sections import Section, Table, as_html, as_text
 from stiction.slider import Slider, slider_of
+from stiction.units import in_words
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -173,7 +173,7 @@ def critical_section(found: Sequence[Critical]) -> Section:
 
 def changes(found: Critical) -> Iterator[str]:
     """Yield where stability changes along a parameter."""
-    low, high = (written(end, found.unit) for end in found.between)
+    low, high = (in_words(end, found.unit, 6) for end in found.between)
     names = ["stable" if each else "unstable" for each in found.stable]
     if found.neutral:
         yield f"{found.path}: small disturbances keep their size from {low} to {high}"
@@ -184,14 +184,7 @@ def changes(found: Critical) -> Iterator[str]:
     yield f"{found.path}, from {low} to {high}: {names[0]}"
     for value, frequency, name in zip(found.values, found.frequencies, names[1:], strict=True):
         way = f"oscillating at {frequency:.4g} Hz" if frequency > 0.0 else "without oscillation"
-        yield f"  {name} above {written(value, found.unit)} ({way})"
-
-
-def written(value: float, unit: str) -> str:
-    """Return a value in SI with its unit; an angle in degrees."""
-    if unit == "rad":
-        return f"{degrees(value):.6g} deg"
-    return f"{value:.6g} {unit}".strip()
+        yield f"  {name} above {in_words(value, found.unit, 6)} ({way})"
 
 
 FORMER = (

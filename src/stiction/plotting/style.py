@@ -9,7 +9,6 @@ from typing import Any
 import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import EngFormatter
 
 # Okabe & Ito, "Color Universal Design" (2008): told apart with any colour vision
 BLACK = "#000000"
@@ -91,10 +90,3 @@ def panel_letter(ax: Axes, letter: str) -> None:
         fontweight="bold",
         fontsize=8,
     )
-
-
-def quantity(value: float, unit: str) -> str:
-    """Return a value in an SI unit in words, e.g. ``10 MN/m``; masses in kg keep their unit."""
-    if unit in ("kg", "") or value == 0:
-        return f"{value:.4g} {unit}".rstrip()
-    return EngFormatter(unit=unit)(float(f"{value:.4g}"))

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stiction.analysis.stuck import stuck_until
 from stiction.plotting.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED
+from stiction.quantity_text import SI, thousands
 from stiction.trajectory import Trajectory
 
 Floats = NDArray[np.float64]
@@ -92,8 +93,8 @@ def prefixed(values: ArrayLike) -> tuple[float, str]:
     largest = np.fmax.reduce(np.abs(np.asarray(values, dtype=np.float64)), initial=0.0)
     if not 0 < largest < np.inf:
         return 1.0, ""
-    thousands = int(np.clip(np.floor(np.log10(5 * largest) / 3), -3, 1))
-    return 1000.0**-thousands, {-3: "n", -2: "µ", -1: "m", 0: "", 1: "k"}[thousands]
+    power = min(max(thousands(5.0 * largest, "m"), -3), 1)
+    return 1000.0**-power, SI[power]
 
 
 def draw_spring_force(ax: Axes, run: Trajectory, axis: str, color: str = RED) -> Line2D:

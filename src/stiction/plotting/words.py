@@ -11,10 +11,9 @@ from typing import Any, get_type_hints
 from stiction import theory
 from stiction.drive import ConstantVelocity, Modulation
 from stiction.friction import Anisotropic, name_of
-from stiction.plotting.style import quantity
 from stiction.slider import Slider
 from stiction.trajectory import Trajectory
-from stiction.units import unit_of
+from stiction.units import in_words, unit_of
 
 LETTERS = {"mu": r"\mu", "sigma": r"\sigma", "omega": r"\omega", "theta": r"\theta"}
 SUBSCRIPTS = {"inf": r"\infty", "star": "*", "static": r"\mathrm{static}"}
@@ -34,12 +33,12 @@ def system_in_words(slider: Slider) -> list[str]:
     """Return the mechanical parameters of a slider and its drive, in a few lines."""
     misalignment = f"{degrees(slider.phi):.4g}°".replace("-", "−")
     lines = [
-        f"$m$ = {quantity(slider.mass, 'kg')}, $W$ = {quantity(slider.normal_load, 'N')}",
-        f"$k_x$ = {quantity(slider.k_x, 'N/m')}, $k_y$ = {quantity(slider.k_y, 'N/m')}",
-        rf"$\varphi$ = {misalignment}, $V$ = {quantity(base_velocity(slider), 'm/s')}",
+        f"$m$ = {in_words(slider.mass, 'kg')}, $W$ = {in_words(slider.normal_load, 'N')}",
+        f"$k_x$ = {in_words(slider.k_x, 'N/m')}, $k_y$ = {in_words(slider.k_y, 'N/m')}",
+        rf"$\varphi$ = {misalignment}, $V$ = {in_words(base_velocity(slider), 'm/s')}",
     ]
     if slider.c_x > 0 or slider.c_y > 0:
-        c_x, c_y = (quantity(c, "N s/m") for c in (slider.c_x, slider.c_y))
+        c_x, c_y = (in_words(c, "N s/m") for c in (slider.c_x, slider.c_y))
         lines.insert(2, f"$c_x$ = {c_x}, $c_y$ = {c_y}")
     return lines + protocol_in_words(slider)
 
@@ -76,7 +75,7 @@ def program_in_words(what: str, program: Sequence[Any], repeat: int) -> list[str
 
 def harmonic_in_words(harmonic: Modulation, unit: str) -> str:
     """Return amplitude and frequency of a modulation."""
-    return f"{quantity(harmonic.amplitude, unit)} at {quantity(harmonic.frequency, 'Hz')}"
+    return f"{in_words(harmonic.amplitude, unit)} at {in_words(harmonic.frequency, 'Hz')}"
 
 
 def law_in_words(slider: Slider) -> list[str]:
@@ -96,8 +95,8 @@ def parameters_in_words(law: Any) -> list[str]:
         if isinstance(value, tuple):
             words.append(f"{len(value)} values of {symbol(name)}")
         elif value != 0 or name not in left_out:
-            unit = unit_of(hints[name]).replace("*", " ")
-            words.append(f"{symbol(name)} = {quantity(value, unit)}")
+            unit = unit_of(hints[name])
+            words.append(f"{symbol(name)} = {in_words(value, unit)}")
     return words
 
 
@@ -126,8 +125,8 @@ def scales_in_words(slider: Slider) -> list[str]:
         float(theory.natural_frequency(k, slider.mass)) / (2 * pi) for k in (slider.k_x, slider.k_y)
     )
     lines = [
-        rf"$F_0 = \mu_0 W$ = {quantity(slider.F_0, 'N')}",
-        rf"$\omega_x/2\pi$ = {quantity(f_x, 'Hz')}, $\omega_y/2\pi$ = {quantity(f_y, 'Hz')}",
+        rf"$F_0 = \mu_0 W$ = {in_words(slider.F_0, 'N')}",
+        rf"$\omega_x/2\pi$ = {in_words(f_x, 'Hz')}, $\omega_y/2\pi$ = {in_words(f_y, 'Hz')}",
     ]
     V, phi = abs(base_velocity(slider)), abs(slider.phi)
     if V > 0 and sin(phi) > 0:
@@ -142,5 +141,5 @@ def outcome_in_words(run: Trajectory, width: int = 38) -> list[str]:
     lasted, stuck = float(times[-1] - times[0]), run.stick_intervals
     share = 100 * float((stuck[:, 1] - stuck[:, 0]).sum()) / lasted if lasted > 0 else 0.0
     count = f"{len(stuck)} stick{'s' * (len(stuck) != 1)}, {share:.3g} % of the time"
-    simulated = f"{quantity(lasted, 's')} simulated"
+    simulated = f"{in_words(lasted, 's')} simulated"
     return [*wrap(run.status.value, width), simulated, count if len(stuck) else "no stick"]
