@@ -18,8 +18,8 @@ from stiction.analysis.slip import averaged_slip, outcome
 from stiction.cli import main
 from stiction.friction.likeness import like, traits
 from stiction.laws import exchanged, read_laws, shared_traits
-from stiction.plotting.comparison import comparison as draw
-from stiction.plotting.comparison import legend_text
+from stiction.plotting.canvas import figure_of
+from stiction.plotting.comparison import legend_text, plot_comparison
 from stiction.plotting.curves import curves_of
 from stiction.plotting.words import wrapped
 from stiction.simulation import automatic_times
@@ -262,7 +262,7 @@ def panels(fig: Figure) -> dict[str, Axes]:
 
 
 def test_the_figure_has_units_on_every_axis(runs: dict[str, st.Trajectory]) -> None:
-    ax = panels(draw(runs))
+    ax = panels(figure_of(plot_comparison, runs))
     assert set(ax) == PANELS
     assert ax["force"].get_ylabel() == "$k_x u_x$ (N)"
     assert ax["X"].get_ylabel() == "$X$ (µm)"
@@ -276,7 +276,7 @@ def test_the_figure_has_units_on_every_axis(runs: dict[str, st.Trajectory]) -> N
 
 
 def test_zero_slip_is_shown_as_such(runs: dict[str, st.Trajectory]) -> None:
-    ax = panels(draw(runs))
+    ax = panels(figure_of(plot_comparison, runs))
     heights = [patch.get_data() for patch in ax["rest"].patches]
     shares = [stairs.values - stairs.baseline for stairs in heights]
     assert shares[3] == pytest.approx(0.8)  # held all the time: a full row
@@ -292,7 +292,7 @@ def test_speeds_over_many_decades_have_a_readable_axis(runs: dict[str, st.Trajec
     data = run.data.copy(deep=True)
     data["slip_speed"].values[:] = np.geomspace(1e-20, 1e-1, data.sizes["time"])
     wide = dataclasses.replace(run, arrays=lambda: data)
-    ax = panels(draw(runs | {"wide": wide}))["speed"]
+    ax = panels(figure_of(plot_comparison, runs | {"wide": wide}))["speed"]
     low, high = ax.get_ylim()
     assert low < 2e-20
     assert high > 0.1
@@ -307,7 +307,7 @@ def test_a_run_that_ended_early_is_marked(described: st.Description) -> None:
     assert ended
     assert "× ended early at" in legend_text(ended[0])
     assert "too many steps" in legend_text(ended[0])
-    ax = panels(draw(runs))
+    ax = panels(figure_of(plot_comparison, runs))
     for name in ("force", "X", "speed", "portrait"):
         crosses = [line for line in ax[name].lines if line.get_marker() == "x"]
         assert len(crosses) == len(ended)
@@ -317,7 +317,8 @@ def test_a_run_that_ended_early_is_marked(described: st.Description) -> None:
 def test_few_samples_and_no_drive_are_drawn(described: st.Description, rate: str | None) -> None:
     still = described.slider.replace(drive=st.ConstantVelocity(0.0))
     settings = st.Settings(duration=0.2, **({} if rate is None else {"sample_rate": rate}))
-    panels(draw(st.compare(st.Description(still, st.Initial(), settings), ["coulomb"])))
+    runs = st.compare(st.Description(still, st.Initial(), settings), ["coulomb"])
+    panels(figure_of(plot_comparison, runs))
 
 
 def test_legends_are_broken_between_parameters() -> None:

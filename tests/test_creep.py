@@ -11,7 +11,8 @@ import stiction as st
 from stiction import theory
 from stiction.analysis.creep_bins import bin_edges
 from stiction.analysis.trimmed import trimmed_mean
-from stiction.plotting.creep_curve import creep_figure, creep_theory
+from stiction.plotting.canvas import figure_of
+from stiction.plotting.creep_curve import creep_theory, plot_creep
 
 V, K, F_0 = 1e-3, 1e3, 2.0
 L_X = F_0 / K
@@ -209,10 +210,10 @@ def test_the_figure_says_what_is_drawn(curves):
     mean = st.mean_creep(curves)
     found = st.fit_divergence(mean, L_X / V)
     lines = creep_theory(V, radians(1), L_X, 2.0321) | {"fit": found.velocity}
-    ax = creep_figure(curves, mean, V, lines).axes[0]
+    ax = figure_of(plot_creep, curves, mean, V, lines).axes[0]
     assert ax.get_xlabel() == "time to slip (s)"
     assert ax.get_yscale() == "log"
     _, labels = ax.get_legend_handles_labels()
     assert labels[-4:] == [*creep_theory(V, 0.1, L_X), "fit"]
     noisy = st.mean_creep(st.creep_curves(*noisy_record(3, 0.0), 0.01))
-    assert creep_figure(curves, noisy, V).axes[0].get_yscale() == "linear"
+    assert figure_of(plot_creep, curves, noisy, V).axes[0].get_yscale() == "linear"

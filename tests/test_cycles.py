@@ -16,7 +16,8 @@ from stiction.analysis.outliers import without_outliers
 from stiction.analysis.reversals import all_heights, standing_out, taken_out
 from stiction.analysis.spread import TIMES
 from stiction.analysis.turning_points import turning_points
-from stiction.plotting.cycles import cycles_figure
+from stiction.plotting.canvas import figure_of
+from stiction.plotting.cycles import plot_cycles
 from stiction.study.observed import observe
 
 Floats = NDArray[np.float64]
@@ -438,7 +439,7 @@ def test_the_figure_marks_every_cycle_and_names_the_regime(paper: st.Record) -> 
         (st.Record(time=time, force=saw(time)), 28, 2),
         (st.Record(time=time, force=np.ones(60_000)), 0, 1),
     ):
-        fig = cycles_figure(record)
+        fig = figure_of(plot_cycles, record)
         fig.set_dpi(60)
         fig.draw_without_rendering()
         assert len(fig.axes) == panels

@@ -9,7 +9,8 @@ from benchmarks.energy import balance
 
 import stiction as st
 from stiction.analysis.quadrature import GAUSS, KRONROD, NODES, integrals, panels
-from stiction.plotting.energy import PARTS, energy_figure
+from stiction.plotting.canvas import figure_of
+from stiction.plotting.energy import PARTS, plot_energy
 from stiction.solver.integrate import tolerance
 
 PROGRAM = st.DriveProgram(
@@ -168,7 +169,7 @@ def test_edges_outside_the_run_or_out_of_order_are_refused(slider):
 
 def test_the_figure_says_what_is_drawn(slider):
     budget = st.energy_budget(st.simulate(slider.replace(c_x=1.0), 0.1), [0.0, 0.05, 0.1])
-    upper, lower = energy_figure(budget).axes
+    upper, lower = figure_of(plot_energy, budget).axes
     assert upper.get_ylabel() == "energy (µJ)"
     assert lower.get_xlabel() == "interval"
     _, labels = upper.get_legend_handles_labels()

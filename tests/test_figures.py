@@ -17,9 +17,10 @@ from stiction import theory
 from stiction.analysis.creep import first_slip_time, mean_creep_velocity
 from stiction.analysis.spectrum import rate_spectrogram, ridge, spectrogram
 from stiction.analysis.stuck import stuck_until
+from stiction.plotting.canvas import figure_of
 from stiction.plotting.damping import draw_damping_map
 from stiction.plotting.misalignment import drawn_misalignment
-from stiction.plotting.overview import overview
+from stiction.plotting.overview import plot_run
 from stiction.plotting.save import save, write
 from stiction.plotting.schematic import draw_schematic
 from stiction.plotting.shapes import Points
@@ -216,7 +217,7 @@ def test_overview_of_any_system(
     slider: st.Slider, changes: dict[str, object], rate: str | None
 ) -> None:
     run = st.simulate(slider.replace(**changes), 0.1, sample_rate=rate)
-    fig = drawn(overview(run))
+    fig = drawn(figure_of(plot_run, run))
     text = " ".join(words(ax) for ax in fig.axes)
     assert run.status.value in text
     for ax in fig.axes[2:]:
@@ -224,7 +225,7 @@ def test_overview_of_any_system(
 
 
 def test_overview_of_the_paper_shows_every_stick(paper_run: st.Trajectory) -> None:
-    fig = drawn(overview(paper_run))
+    fig = drawn(figure_of(plot_run, paper_run))
     assert "2959 sticks" in words(fig.axes[1])
     stairs = fig.axes[-1].patches[0].get_data()
     share = (stairs.values * np.diff(stairs.edges)).sum() / 100
@@ -234,7 +235,7 @@ def test_overview_of_the_paper_shows_every_stick(paper_run: st.Trajectory) -> No
 def test_overview_of_a_run_that_broke_off_says_why(slider: st.Slider) -> None:
     run = st.simulate(slider, 1.0, sample_rate=1e3, max_steps=50)
     assert not run.status.ok
-    assert "max_steps" in words(drawn(overview(run)).axes[1])
+    assert "max_steps" in words(drawn(figure_of(plot_run, run)).axes[1])
 
 
 # --- what they are made of ---

@@ -11,7 +11,8 @@ from tests.measured import measured
 
 import stiction as st
 from stiction.analysis.ridge import best_path
-from stiction.plotting.oscillation import oscillation_figure
+from stiction.plotting.canvas import figure_of
+from stiction.plotting.oscillation import plot_oscillation
 
 RATE = 2000.0
 NOISE = np.random.default_rng(5).normal(size=40_000)
@@ -217,6 +218,6 @@ def test_too_short_a_stream_is_refused():
 
 
 def test_the_figure_says_what_is_drawn(paper_run, oscillation):
-    axes = oscillation_figure(paper_run, oscillation).axes
+    axes = figure_of(plot_oscillation, paper_run, oscillation).axes
     assert [ax.get_ylabel() for ax in axes[:3]] == ["frequency (kHz)", "amplitude (1)", "stuck (%)"]
     assert axes[2].get_xlabel() == "time $t$ (s)"

@@ -8,10 +8,11 @@ import stiction as st
 from stiction import theory
 from stiction.linear_stability import boundary, critical, modes_over
 from stiction.linear_stability.axis import axis
-from stiction.plotting.modes import modes_figure
-from stiction.plotting.onset import onset_figure
+from stiction.plotting.canvas import figure_of
+from stiction.plotting.modes import plot_modes
+from stiction.plotting.onset import plot_onset
 from stiction.plotting.parameter import parameter_symbol, scale_of
-from stiction.plotting.stability import signed_distance, stability_map
+from stiction.plotting.stability import plot_boundary, signed_distance
 
 PAPER = st.presets.nakano_popov_2020()
 PLANE = {"x_between": ("0 deg", "25 deg"), "y_between": ("0.1 mm/s", "100 mm/s")}
@@ -28,7 +29,7 @@ def test_the_map_names_both_sides_and_marks_the_slider():
     mu, slope = ([f(v) for v in speeds] for f in (PAPER.law.coefficient, PAPER.law.slope))
     known = theory.critical_misalignment(speeds, mu, slope)
     curve = boundary(PAPER, "phi", "drive.velocity", **PLANE)
-    (ax,) = drawn(stability_map(curve, (known, speeds))).axes
+    (ax,) = drawn(figure_of(plot_boundary, curve, (known, speeds))).axes
     places = {text.get_text(): text.get_position() for text in ax.texts}
     assert places.keys() == {"stable", "unstable"}
     for name, (x, y) in places.items():  # fractions of the axes: is it so there?
@@ -44,14 +45,14 @@ def test_the_map_names_both_sides_and_marks_the_slider():
 def test_a_plane_without_a_boundary_is_named_as_a_whole():
     slider = PAPER.replace(friction=st.Coulomb(mu_0=0.2))
     curve = boundary(slider, "phi", "mass", x_between=("1 deg", "89 deg"))
-    (ax,) = drawn(stability_map(curve)).axes
+    (ax,) = drawn(figure_of(plot_boundary, curve)).axes
     assert [text.get_text() for text in ax.texts] == ["stable"]
 
 
 def test_modes_have_the_critical_value_marked():
     between = ("1 deg", "30 deg")
     found = critical(PAPER, "phi", between)
-    above, below = drawn(modes_figure(modes_over(PAPER, "phi", between), found)).axes
+    above, below = drawn(figure_of(plot_modes, modes_over(PAPER, "phi", between), found)).axes
     assert "8.656" in [text.get_text() for text in above.texts]
     assert (above.get_ylabel(), below.get_ylabel()) == ("growth rate (1/s)", "frequency (Hz)")
     assert below.get_xlabel() == r"$\varphi$ (deg)"
@@ -63,7 +64,7 @@ def test_the_onset_shows_both_sweeps_and_the_hysteresis():
     c = -law.slope(0.036) * slider.normal_load
     found = st.find_onset(slider, "c_x", [0.8 * c, 1.2 * c, 2.2 * c])
     assert found.kind == "hard"
-    fig = drawn(onset_figure(found, critical=c))
+    fig = drawn(figure_of(plot_onset, found, critical=c))
     (ax,) = fig.axes
     labels = {text.get_text() for legend in [ax.get_legend()] for text in legend.get_texts()}
     assert labels == {"swept up", "swept down", "hysteresis", "linear: $c_{x}$ = 10.57 N s/m"}

@@ -7,9 +7,9 @@ import xarray as xr
 import stiction as st
 from stiction import theory
 from stiction.cli import main
+from stiction.plotting.canvas import figure_of
 from stiction.plotting.maps import Side
 from stiction.study.boundaries import PHI_C, ZETA, plane
-from stiction.study.mapping import map_figure
 from stiction.study.presets import PRESETS, preset
 
 PAPER = st.presets.nakano_popov_2020()
@@ -33,7 +33,7 @@ def drawn(fig):
 
 
 def test_a_map_of_regimes_with_both_boundaries(store):
-    fig = map_figure(store, cut={"friction.mu_inf": 0.15})
+    fig = figure_of(st.map(store, at={"friction.mu_inf": 0.15}).plot)
     found = drawn(fig)
     assert {PHI_C, ZETA, "stick-slip", "settling"} <= found
     (ax,) = fig.axes
@@ -47,10 +47,10 @@ def test_a_map_of_regimes_with_both_boundaries(store):
 
 
 def test_measures_and_slices(store):
-    fig = map_figure(store, ["amplitude", "period"], {"friction.mu_inf": 0.149})
+    fig = figure_of(st.map(store, ["amplitude", "period"], {"friction.mu_inf": 0.149}).plot)
     assert [ax.get_ylabel() for ax in fig.axes[2:]] == ["amplitude (N)", "period (s)"]
     cut = {"friction.mu_inf": 0.15, "drive.velocity": "1.1 mm/s"}
-    fig = map_figure(store, cut=cut)
+    fig = figure_of(st.map(store, at=cut).plot)
     (ax,) = fig.axes
     data = xr.open_zarr(store)["peak_force"].isel({"drive.velocity": 0, "friction.mu_inf": 0})
     x, y = ax.lines[0].get_data()
@@ -84,7 +84,7 @@ def test_theory_over_the_plane(store):
 )
 def test_what_cannot_be_drawn(store, measures, cut, says):
     with pytest.raises(st.DescriptionError) as error:
-        map_figure(store, measures, cut)
+        st.map(store, measures, cut).plot()
     assert says in str(error.value)
 
 
@@ -96,7 +96,7 @@ def test_failed_and_missing_runs_are_hatched(tmp_path):
     }
     base = st.Description(shaken, st.Initial(), st.Settings(duration="0.5 s"))
     st.sweep(st.Study(base=base, axes=axes), tmp_path / "a.zarr")
-    fig = map_figure(tmp_path / "a.zarr")
+    fig = figure_of(st.map(tmp_path / "a.zarr").plot)
     assert "no result" in drawn(fig)
 
 

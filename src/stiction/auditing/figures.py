@@ -12,10 +12,11 @@ from stiction.analysis.regime import HARMONIC, IRREGULAR
 from stiction.auditing.report import Audit
 from stiction.auditing.words import NAMES
 from stiction.linear_stability import boundary
-from stiction.plotting.creep_curve import creep_figure, creep_theory
-from stiction.plotting.cycles import cycles_figure
-from stiction.plotting.stability import stability_map
-from stiction.plotting.trials import Trial, trials_figure
+from stiction.plotting.canvas import figure_of
+from stiction.plotting.creep_curve import creep_theory, plot_creep
+from stiction.plotting.cycles import plot_cycles
+from stiction.plotting.stability import plot_boundary
+from stiction.plotting.trials import Trial, plot_trials
 from stiction.reproduction.figure5 import figure5
 from stiction.units import in_words
 
@@ -24,7 +25,7 @@ HARDLY = 0.05  # of the time: so little creep is no curve to compare with
 
 def test(found: Audit) -> Figure | None:
     """Draw the simulated test as its load cell records it."""
-    return cycles_figure(found.observation.record)
+    return figure_of(plot_cycles, found.observation.record)
 
 
 def creep(found: Audit) -> Figure | None:
@@ -37,7 +38,7 @@ def creep(found: Audit) -> Figure | None:
         return None
     V, phi = hypot(*slider.motion.rate(0.0)), abs(slider.phi)
     lines = creep_theory(V, phi, slider.F_0 / slider.k_x)
-    return creep_figure(curves, mean_creep(curves), V, lines)
+    return figure_of(plot_creep, curves, mean_creep(curves), V, lines)
 
 
 def damping(found: Audit) -> Figure | None:
@@ -59,10 +60,10 @@ def trials(found: Audit) -> Figure | None:
         for each in found.advices
         if each.tried is not None
     ]
-    return trials_figure(found.observation.record, tried) if tried else None
+    return figure_of(plot_trials, found.observation.record, tried) if tried else None
 
 
 def stability(found: Audit) -> Figure | None:
     """Draw where steady sliding is stable, over misalignment and drive velocity."""
     curve = boundary(found.slider, "phi", "drive.velocity")
-    return stability_map(curve) if curve.sizes["point"] else None
+    return figure_of(plot_boundary, curve) if curve.sizes["point"] else None

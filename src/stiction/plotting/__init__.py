@@ -30,25 +30,27 @@ if TYPE_CHECKING:
     from stiction.plotting.spectrogram import plot_spectrogram
     from stiction.plotting.stability import plot_boundary, plot_stability
     from stiction.plotting.trials import plot_trials
+    from stiction.study.mapping import plot_map
 
 # where each public name lives; imported when first used
 _HOME = {
-    "plot_analysis": "analysis",
-    "plot_boundary": "stability",
-    "plot_comparison": "comparison",
-    "plot_creep": "creep_curve",
-    "plot_cycles": "cycles",
-    "plot_damping": "damping",
-    "plot_energy": "energy",
-    "plot_law": "law",
-    "plot_modes": "modes",
-    "plot_onset": "onset",
-    "plot_oscillation": "oscillation",
-    "plot_run": "overview",
-    "plot_slider": "schematic",
-    "plot_spectrogram": "spectrogram",
-    "plot_stability": "stability",
-    "plot_trials": "trials",
+    "plot_analysis": "plotting.analysis",
+    "plot_boundary": "plotting.stability",
+    "plot_comparison": "plotting.comparison",
+    "plot_creep": "plotting.creep_curve",
+    "plot_cycles": "plotting.cycles",
+    "plot_damping": "plotting.damping",
+    "plot_energy": "plotting.energy",
+    "plot_law": "plotting.law",
+    "plot_map": "study.mapping",  # what it draws lies above the figures
+    "plot_modes": "plotting.modes",
+    "plot_onset": "plotting.onset",
+    "plot_oscillation": "plotting.oscillation",
+    "plot_run": "plotting.overview",
+    "plot_slider": "plotting.schematic",
+    "plot_spectrogram": "plotting.spectrogram",
+    "plot_stability": "plotting.stability",
+    "plot_trials": "plotting.trials",
 }
 
 __all__ = [
@@ -60,6 +62,7 @@ __all__ = [
     "plot_damping",
     "plot_energy",
     "plot_law",
+    "plot_map",
     "plot_modes",
     "plot_onset",
     "plot_oscillation",
@@ -73,7 +76,7 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     if name in _HOME:
-        return getattr(import_module(f"stiction.plotting.{_HOME[name]}"), name)
+        return getattr(import_module(f"stiction.{_HOME[name]}"), name)
     raise AttributeError(f"module 'stiction.plotting' has no attribute {name!r}")
 
 

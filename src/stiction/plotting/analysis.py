@@ -8,10 +8,11 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from stiction.analysis.report import Analysis
-from stiction.plotting.creep_curve import creep_figure, creep_theory
-from stiction.plotting.cycles import cycles_figure, plot_cycles
-from stiction.plotting.energy import energy_figure
-from stiction.plotting.oscillation import oscillation_figure
+from stiction.plotting.canvas import figure_of
+from stiction.plotting.creep_curve import creep_theory, plot_creep
+from stiction.plotting.cycles import plot_cycles
+from stiction.plotting.energy import plot_energy
+from stiction.plotting.oscillation import plot_oscillation
 from stiction.trajectory import Trajectory
 
 
@@ -24,7 +25,7 @@ def figures(found: Analysis) -> dict[str, Figure]:
     """Return the figure of every part of an analysis that there is, by its name."""
     drawn = {}
     if len(found.record):
-        drawn["cycles"] = cycles_figure(found.record)
+        drawn["cycles"] = figure_of(plot_cycles, found.record)
     if found.curves is not None and found.creep is not None and found.record.drive_velocity:
         V, fit = found.record.drive_velocity, found.misalignment
         lines = {}
@@ -34,10 +35,10 @@ def figures(found: Analysis) -> dict[str, Figure]:
             lines = {
                 f"{name}, fitted": line for name, line in creep_theory(V, fit.phi, l_x).items()
             }
-        drawn["creep"] = creep_figure(found.curves, found.creep, V, lines)
+        drawn["creep"] = figure_of(plot_creep, found.curves, found.creep, V, lines)
     seen = 0 if found.oscillation is None else found.oscillation.sizes.get("time", 0)
     if isinstance(found.source, Trajectory) and found.oscillation is not None and seen > 1:
-        drawn["oscillation"] = oscillation_figure(found.source, found.oscillation)
+        drawn["oscillation"] = figure_of(plot_oscillation, found.source, found.oscillation)
     if found.energy is not None:
-        drawn["energy"] = energy_figure(found.energy)
+        drawn["energy"] = figure_of(plot_energy, found.energy)
     return drawn

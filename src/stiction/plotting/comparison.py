@@ -6,11 +6,10 @@ from collections.abc import Callable, Mapping
 from textwrap import wrap
 
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from stiction.friction import name_of
-from stiction.plotting.canvas import canvas, figure_of, fixed, named
+from stiction.plotting.canvas import canvas, fixed, named
 from stiction.plotting.curves import Curve, curves_of, draw_over_time
 from stiction.plotting.slip_speeds import (
     draw_held,
@@ -30,11 +29,6 @@ NOTE = (
     "Slip speed: mean (line), up to the maximum (band);",
     "rows below: share of time at zero slip.",
 )
-
-
-def comparison(runs: Mapping[str, Trajectory]) -> Figure:
-    """Return the figure of `plot_comparison`, as wide as a page."""
-    return figure_of(plot_comparison, runs)
 
 
 def plot_comparison(

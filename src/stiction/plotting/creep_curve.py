@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
 
 from stiction import theory
-from stiction.plotting.canvas import figure_of, panel
+from stiction.plotting.canvas import panel
 from stiction.plotting.parameter import PLAIN
 from stiction.plotting.style import BLACK, BLUE, COLUMN, GREEN, GREY, RED, style
 
@@ -74,13 +73,6 @@ def draw_mean(ax: Axes, mean: xr.Dataset, V: float) -> None:
     band = "two standard errors"
     ax.fill_between(middle, value - error, value + error, color=BLACK, alpha=0.2, lw=0, label=band)
     ax.plot(middle, value, "o", color=BLACK, markersize=2.6, label="their mean", zorder=3)
-
-
-def creep_figure(
-    curves: xr.Dataset, mean: xr.Dataset, V: float, lines: Mapping[str, Line] | None = None
-) -> Figure:
-    """Return the figure of `plot_creep`, as wide as a column."""
-    return figure_of(plot_creep, curves, mean, V, lines)
 
 
 def plot_creep(

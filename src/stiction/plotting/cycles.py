@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from stiction.analysis.cycles import swings
 from stiction.analysis.record import Record, recorded
 from stiction.analysis.regime import regime_of
-from stiction.plotting.canvas import canvas, figure_of, fixed, listed
+from stiction.plotting.canvas import canvas, fixed, listed
 from stiction.plotting.style import BLUE, GREY, PAGE, PALE, RED, style
 from stiction.plotting.time_series import draw_line, prefixed
 from stiction.trajectory import Trajectory
@@ -23,11 +22,6 @@ if TYPE_CHECKING:
 
 FEW = 12  # cycles that are seen one by one on a page's width
 SHOWN = 6  # cycles in the close-up
-
-
-def cycles_figure(record: Record) -> Figure:
-    """Return the figure of `plot_cycles`, as wide as a page."""
-    return figure_of(plot_cycles, record)
 
 
 def plot_cycles(

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, NullFormatter
 from numpy.typing import NDArray
 
-from stiction.plotting.canvas import canvas, figure_of, fixed, listed
+from stiction.plotting.canvas import canvas, fixed, listed
 from stiction.plotting.style import (
     BLACK,
     BLUE,
@@ -86,11 +85,6 @@ def draw_closure(ax: Axes, budget: xr.Dataset) -> None:
         ax.set_ylim(10.0 ** np.floor(decades.min() - 0.1), 10.0 ** np.ceil(decades.max() + 0.1))
     ax.yaxis.set_minor_formatter(NullFormatter())
     ax.set_ylabel("share of work (1)")
-
-
-def energy_figure(budget: xr.Dataset) -> Figure:
-    """Return the figure of `plot_energy`, as wide as a column."""
-    return figure_of(plot_energy, budget)
 
 
 def plot_energy(budget: xr.Dataset, axes: Sequence[Axes] | None = None) -> NDArray[np.object_]:

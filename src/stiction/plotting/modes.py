@@ -7,22 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from stiction.linear_stability import Critical
-from stiction.plotting.canvas import canvas, figure_of, fixed, listed
+from stiction.plotting.canvas import canvas, fixed, listed
 from stiction.plotting.parameter import PLAIN, Scale, scale_of
 from stiction.plotting.stability import UNSTABLE
 from stiction.plotting.style import BLUE, COLUMN, GREY, ORANGE, style
 
 if TYPE_CHECKING:
     import xarray as xr
-
-
-def modes_figure(modes: xr.Dataset, critical: Critical | None = None) -> Figure:
-    """Return the figure of `plot_modes`, as wide as a column."""
-    return figure_of(plot_modes, modes, critical)
 
 
 def plot_modes(

@@ -6,12 +6,11 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from stiction.analysis.limit_cycle import OSCILLATING, REST, UNDECIDED
 from stiction.analysis.onset import Onset
-from stiction.plotting.canvas import figure_of, panel
+from stiction.plotting.canvas import panel
 from stiction.plotting.parameter import PLAIN, scale_of
 from stiction.plotting.style import BLUE, COLUMN, GREY, PALE, RED, style
 from stiction.plotting.time_series import prefixed
@@ -21,11 +20,6 @@ LOOKS: dict[str, dict[str, Any]] = {
     "down": {"color": RED, "marker": "v", "markersize": 4.0, "markerfacecolor": "white"},
 }
 SPREAD = 30.0  # ratio of amplitudes beyond which their axis is logarithmic
-
-
-def onset_figure(onset: Onset, critical: float | None = None) -> Figure:
-    """Return the figure of `plot_onset`, as wide as a column."""
-    return figure_of(plot_onset, onset, critical)
 
 
 def plot_onset(onset: Onset, critical: float | None = None, ax: Axes | None = None) -> Axes:

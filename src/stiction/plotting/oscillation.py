@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from stiction.analysis.oscillation import oscillation_spectrogram
-from stiction.plotting.canvas import canvas, figure_of, fixed, listed
+from stiction.plotting.canvas import canvas, fixed, listed
 from stiction.plotting.spectrogram import draw_spectrogram, frequency_unit
 from stiction.plotting.style import (
     BLACK,
@@ -69,11 +68,6 @@ def draw_share_stuck(ax: Axes, oscillation: xr.Dataset) -> None:
     ax.fill_between(oscillation["time"].values, share, color=ORANGE, linewidth=0)
     ax.set_ylim(0.0, None)
     ax.set_ylabel("stuck (%)")
-
-
-def oscillation_figure(run: Trajectory, oscillation: xr.Dataset) -> Figure:
-    """Return the figure of `plot_oscillation`, as wide as a column."""
-    return figure_of(plot_oscillation, run, oscillation)
 
 
 def plot_oscillation(

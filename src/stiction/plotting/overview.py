@@ -6,10 +6,9 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from stiction.plotting import time_series
-from stiction.plotting.canvas import canvas, figure_of, fixed, named
+from stiction.plotting.canvas import canvas, fixed, named
 from stiction.plotting.law import draw_law
 from stiction.plotting.schematic import draw_schematic
 from stiction.plotting.style import BLACK, BLUE, ORANGE, PAGE, RED, style
@@ -28,11 +27,6 @@ DRAWING, LAW = 2.1, 1.7  # heights of the system's drawing and of the law, in
 
 
 SERIES = ("force", "friction", "direction", "position", "speed", "stuck")
-
-
-def overview(run: Trajectory) -> Figure:
-    """Return the figure of `plot_run`, as wide as a page."""
-    return figure_of(plot_run, run)
 
 
 def plot_run(run: Trajectory, axes: Mapping[str, Axes] | None = None) -> dict[str, Axes]:

@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
 from stiction.linear_stability import Stability
-from stiction.plotting.canvas import figure_of, panel
+from stiction.plotting.canvas import panel
 from stiction.plotting.parameter import PLAIN, Scale, scale_of
 from stiction.plotting.style import BLACK, BLUE, COLUMN, style
 
@@ -38,13 +37,6 @@ def plot_stability(found: Stability, axes: Any = None) -> Any:
     from stiction.plotting.modes import plot_modes
 
     return plot_modes(found.modes, found.criticals[0], axes)
-
-
-def stability_map(
-    curve: xr.Dataset, closed_form: tuple[ArrayLike, ArrayLike] | None = None
-) -> Figure:
-    """Return the figure of `plot_boundary`, as wide as a column."""
-    return figure_of(plot_boundary, curve, closed_form)
 
 
 def plot_boundary(

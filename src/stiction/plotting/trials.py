@@ -7,11 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from stiction.analysis.record import Record
-from stiction.plotting.canvas import canvas, figure_of, fixed, listed
+from stiction.plotting.canvas import canvas, fixed, listed
 from stiction.plotting.style import BLUE, GREY, PAGE, style
 from stiction.plotting.time_series import draw_line, prefixed
 
@@ -24,11 +23,6 @@ class Trial(NamedTuple):
 
     title: str
     record: Record
-
-
-def trials_figure(before: Record, trials: Sequence[Trial]) -> Figure:
-    """Return the figure of `plot_trials`, as wide as a page."""
-    return figure_of(plot_trials, before, trials)
 
 
 def plot_trials(

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.errors import DescriptionError, Fault
-from stiction.plotting.canvas import canvas, figure_of, fixed, listed, panel
+from stiction.plotting.canvas import canvas, fixed, listed, panel
 from stiction.plotting.damping import draw_damping_map
 from stiction.plotting.maps import (
     Side,
@@ -30,7 +30,6 @@ from stiction.study.view import REGIME, View, chosen, kinds, label, viewed
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 DAMPING = ("phi", "drive.velocity")  # coordinates that place a run in the damping diagram
 
@@ -128,17 +127,6 @@ def plot_map(found: Map, axes: Any = None) -> NDArray[np.object_]:
         draw = _points
     with style():
         return np.array(draw(view, found.measures, axes), dtype=object)
-
-
-def map_figure(
-    path: str | Path,
-    measures: Sequence[str] = (),
-    cut: Mapping[str, str | float] | None = None,
-    *,
-    trust: bool = False,
-) -> Figure:
-    """Return the figure of `plot_map`."""
-    return figure_of(plot_map, map(path, measures, cut, trust=trust))
 
 
 def side(view: View, dim: str, values: np.ndarray | None = None) -> Side:
