@@ -77,3 +77,16 @@ def test_the_command(run, tmp_path, capsys):
     assert end.value.code == 0
     assert "run-sticks.csv" in capsys.readouterr().out
     assert (tmp_path / "run.csv").exists()
+
+
+def test_an_analysis_is_exported_table_by_table(tmp_path):
+    time = np.arange(0.0, 12.0, 1e-2)
+    found = st.analyse(st.Record(time=time, force=1.0 + 0.3 * (time % 1.1), normal_load="10 N"))
+    paths = found.export(tmp_path / "test.csv")
+    assert [path.name for path in paths[:2]] == ["test.csv", "test-friction.csv"]
+    assert np.array_equal(pd.read_csv(paths[0])["peak [N]"], found.cycles["peak"])
+    found.export(tmp_path / "test.mat")
+    contents = loadmat(tmp_path / "test.mat", simplify_cells=True)
+    assert np.array_equal(contents["cycles"]["peak"], found.cycles["peak"])
+    assert contents["kind_of_motion"] == found.regime.kind
+    assert contents["units"]["friction"]["force"] == "N"

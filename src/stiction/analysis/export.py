@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from stiction.analysis.report import Analysis
 from stiction.files import placeable, whole
-from stiction.table_files import with_units
+from stiction.table_files import with_units, write_tables
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -66,6 +66,27 @@ def write(found: Analysis, folder: Path) -> list[Path]:
             with_units(table).to_csv(part, float_format="%.12g")
         paths.append(path)
     return paths
+
+
+def export(found: Analysis, path: str | Path) -> list[Path]:
+    """Write all tables for another program: CSV, Parquet or MATLAB; return the paths.
+
+    Parameters
+    ----------
+    found : Analysis
+        From `stiction.analyse`.
+    path : str or Path
+        With the suffix .csv or .parquet: the cycles, and beside them each other table
+        (``test-creep.csv``). With .mat: all in one file, a struct each. Units as of
+        `stiction.export`.
+
+    Raises
+    ------
+    ResultError
+        As of `stiction.export`.
+    """
+    named = {"cycles": found.cycles, **tables(found)}
+    return write_tables(named, path, {"kind_of_motion": found.regime.kind})
 
 
 def numbers(found: Analysis) -> dict[str, Any]:

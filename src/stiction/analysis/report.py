@@ -108,6 +108,12 @@ class Analysis(NamedTuple):
 
         return sections(self)
 
+    def export(self, path: str | Path) -> list[Path]:
+        """Write its tables for another program, see `stiction.analysis.export.export`."""
+        from stiction.analysis.export import export
+
+        return export(self, path)
+
     def plot(self, axes: Any = None) -> Any:
         """Draw the force with its cycles; see `stiction.plotting.plot_analysis`."""
         from stiction.plotting import plot_analysis
