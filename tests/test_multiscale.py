@@ -4,6 +4,7 @@ from math import pi
 
 import numpy as np
 import pytest
+from tests.entry import entry
 
 import stiction as st
 from stiction.solver.patch import POINTS, interpolated
@@ -12,6 +13,9 @@ from stiction.solver.recall import remember, remembered
 from stiction.solver.returns import Cycle, unknown
 from stiction.solver.stretch import stretches
 from stiction.solver.takeoff import angle, elongation_held, lead, wrapped
+
+angle, elongation_held, lead, wrapped = map(entry, (angle, elongation_held, lead, wrapped))
+interpolated, remember, remembered = map(entry, (interpolated, remember, remembered))
 
 
 def error(run: st.Trajectory, reference: st.Trajectory, name: str) -> float:

@@ -333,11 +333,11 @@ print(run(d).stick_intervals[0, 1])
 open("law.pickle", "wb").write(pickle.dumps(d.slider))
 """
     one = python(code, tmp_path, **cache)
-    kept = sorted((tmp_path / "cache").rglob("*.nbc"))
+    kept = sorted((tmp_path / "cache").rglob("*.code"))
     assert len(kept) == 1
     stamp = kept[0].stat().st_mtime_ns
     assert python(code, tmp_path, **cache) == one
-    assert sorted((tmp_path / "cache").rglob("*.nbc")) == kept
+    assert sorted((tmp_path / "cache").rglob("*.code")) == kept
     assert kept[0].stat().st_mtime_ns == stamp
     # another process makes the law of its pickle, as a pool of processes needs
     load = "import pickle; print(pickle.load(open('law.pickle', 'rb')).law)"

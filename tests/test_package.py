@@ -84,26 +84,6 @@ def test_examples_run(path, tmp_path):
     assert done.returncode == 0, done.stderr
 
 
-def test_cache_is_named_after_the_sources(tmp_path, monkeypatch):
-    """An edit in any compiled file must not meet machine code of the old one."""
-    from stiction.solver import compiled
-
-    before = compiled._fingerprint()
-    copy = tmp_path / "stiction"
-    for folder in ("solver", "solver/smooth", "friction", "drive"):
-        (copy / folder).mkdir(parents=True)
-        for file in (Path(st.__file__).parent / folder).glob("*.py"):
-            (copy / folder / file.name).write_bytes(file.read_bytes())
-    monkeypatch.setattr(compiled, "__file__", str(copy / "solver" / "compiled.py"))
-    compiled._fingerprint.cache_clear()
-    assert compiled._fingerprint() == before
-    law = copy / "friction" / "coulomb.py"
-    law.write_text(law.read_text() + "\n# edited\n")
-    compiled._fingerprint.cache_clear()
-    assert compiled._fingerprint() != before
-    compiled._fingerprint.cache_clear()
-
-
 LAW = """
 from typing import NamedTuple
 import stiction as st

@@ -11,6 +11,7 @@ import stiction as st
 from stiction.solver.defect import dips
 from stiction.solver.radau import A, C, D, cubic
 from stiction.solver.swing import MOST, Oscillator, after, swing
+from tests.entry import entry
 
 OSCILLATORS = [
     Oscillator(4e7, 1 / 4e7, -50.0, 1.7e-5, -1e-5, 0.02),  # friction that weakens
@@ -19,9 +20,13 @@ OSCILLATORS = [
 ]
 
 
-@numba.njit
+_at = entry(after)
+
+
 def _after(o, t):
-    return after(o, t)
+    if np.ndim(t) == 0:
+        return _at(o, t)
+    return tuple(np.transpose([_at(o, each) for each in t]))
 
 
 @numba.njit

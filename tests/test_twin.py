@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
+from tests.entry import entry
 
 import stiction as st
 from stiction.solver.integrate import tolerance
@@ -34,6 +35,8 @@ from stiction.solver.stretch import stretches
 from stiction.solver.twin import twin
 
 EPS = np.finfo(float).eps
+cubic, cubic_slope, stick_duration = map(entry, (cubic, cubic_slope, stick_duration))
+landing_slip, landing_time = map(entry, (landing_slip, landing_time))
 NAMES = ("u_x", "u_y", "slip_x", "slip_y")
 PAPER = st.presets.nakano_popov_2020()
 

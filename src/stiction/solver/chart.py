@@ -55,7 +55,12 @@ def finer(accuracy: Accuracy) -> Accuracy:
 
 @inlined
 def solved(
-    problem: Problem, accuracy: Accuracy, memory: Memory, theta: float, longest: float
+    problem: Problem,
+    accuracy: Accuracy,
+    memory: Memory,
+    known: Returns,
+    theta: float,
+    longest: float,
 ) -> tuple[bool, Cycle, float, State]:
     """Solve the cycle from an angle.
 
@@ -67,9 +72,9 @@ def solved(
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, 0.0))
     motion = Motion(0.0, u_x - v_x * early, u_y - v_y * early, 0.0, 1.0, 0.0)
     state = State(motion, at_takeoff(memory), NOTHING)
-    stick, never, nowhere = np.empty((1, 2)), np.empty(0), np.empty((0, 0))
+    times, samples, stick = known.never, known.nowhere, known.stick
     code, state, _, _ = advance(
-        problem, state, early + longest, fine, NODE_STEPS, never, nowhere, 0, stick
+        problem, state, early + longest, fine, NODE_STEPS, times, samples, 0, stick
     )
     end = state.motion
     held, _ = stick_duration(problem, end.t, end.u_x, end.u_y, inf)
@@ -123,7 +128,7 @@ def chart(
     patch[0] = theta
     for n in range(first, NODES):
         there = theta + 0.5 * (POINTS[n] + 1.0) * reach
-        returns, cycle, swing, end = solved(problem, accuracy, memory, there, longest)
+        returns, cycle, swing, end = solved(problem, accuracy, memory, known, there, longest)
         memory, counts = end.memory, added(counts, end.counts)
         known.sizes[3] += 1
         if not returns:

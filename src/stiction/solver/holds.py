@@ -60,11 +60,13 @@ def sample_cycle(
     times: np.ndarray,
     samples: np.ndarray,
     k: int,
+    room: np.ndarray,
 ) -> tuple[int, State, int]:
     """Fill the samples of a stick and the slip until `landing` (s), by steps.
 
     These find a landing of their own; where it is does not count, since samples do not
-    influence the motion. Samples after it are those of the stick that follows.
+    influence the motion. `room` is for one of their sticks. Samples after it are those of the
+    stick that follows.
     """
     start = landed(problem, state, hold)
     motion, memory, counts = start
@@ -75,7 +77,7 @@ def sample_cycle(
     until = k
     while until < len(times) and times[until] <= landing:
         until += 1
-    slip, room, counts = landing - hold.end, np.empty((1, 2)), state.counts
+    slip, counts = landing - hold.end, state.counts
     code, alone = RUNNING, State(motion, memory, NOTHING)
     # it may stick for a moment where the map has it just not
     while code == RUNNING and k < until and alone.motion.t < landing - SAME * slip:

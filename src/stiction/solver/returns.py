@@ -51,7 +51,8 @@ class Returns(NamedTuple):
     coefficients : of their polynomials for turn, time and the square of the time held; edges :
     angles beyond which there is no return; past : angle, turn, time and time held of cycles;
     width : of patches to try; sizes : of patches, edges and past, nodes in vain, cycles solved;
-    last : angle and time (s) of the last take-off; closing : relative error.
+    last : angle and time (s) of the last take-off; stick, never, nowhere : room for the one stick
+    of a cycle that is solved, and for no samples of it; closing : relative error.
     """
 
     patches: np.ndarray
@@ -61,6 +62,9 @@ class Returns(NamedTuple):
     width: np.ndarray
     sizes: np.ndarray
     last: np.ndarray
+    stick: np.ndarray
+    never: np.ndarray
+    nowhere: np.ndarray
     closing: float
 
 
@@ -74,5 +78,8 @@ def unknown(rtol: float) -> Returns:
         np.array([WIDEST]),
         np.zeros(5, dtype=np.int64),
         np.array([nan, nan]),
+        np.empty((1, 2)),
+        np.empty(0),
+        np.empty((0, 0)),
         CLOSING * rtol,
     )

@@ -128,7 +128,7 @@ def mapped(
             break
         if k < len(times) and times[k] <= end:
             code, state, k = sample_cycle(
-                problem, state, hold, landing, accuracy, times, samples, k
+                problem, state, hold, landing, accuracy, times, samples, k, known.stick
             )
             if code > COMPLETED:
                 return code, state, k

@@ -10,7 +10,7 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from stiction.solver.compiled import inlined
+from stiction.solver.compiled import allocating
 
 ROWS = 6
 # stages: 1, 2, 3; numbers of numpy, or numba would compile for each of them anew
@@ -45,7 +45,7 @@ class Workspace(NamedTuple):
     scale: np.ndarray
 
 
-@inlined
+@allocating
 def workspace(n: int) -> Workspace:
     """Return the arrays for `n` internal states."""
     n += 2

@@ -1,0 +1,163 @@
+"""Machine code kept on disk from one process to the next.
+
+numba keeps it too, but by the path and the date of each source file, in an index that it unpickles
+without a look: two copies of the package compile everything twice, and a damaged file stops every
+run. Here a file is named after all that its code follows from, and is read only where its checksum
+holds and nobody else can have written it. Whatever goes wrong, the code is compiled anew.
+"""
+
+from __future__ import annotations
+
+import atexit
+import hashlib
+import os
+import pickle
+import shutil
+import stat
+import sys
+import tempfile
+from collections.abc import Callable, Iterable
+from functools import cache
+from inspect import getfile
+from pathlib import Path
+from typing import Any, cast
+
+import numba
+from numba.core import compiler, types
+from numba.core.serialize import dumps as _dumps
+from numba.core.sigutils import normalize_signature as _normalize
+from platformdirs import user_cache_path
+
+rebuild: Any = compiler.CompileResult._rebuild
+dumps: Any = _dumps
+normalize_signature: Any = _normalize
+
+CHECKSUM = 32  # bytes of a SHA-256 digest, before the code itself
+FOLDERS = 6  # versions of the package whose code stays, the last one used first
+
+
+class Shelf:
+    """The machine code of one function: what numba's dispatcher asks of its cache.
+
+    Parameters
+    ----------
+    function
+        The Python function.
+    own
+        Digest of the user's law or drive for which it is compiled; "" for the package's own.
+    """
+
+    def __init__(self, function: Callable[..., Any], own: str = "") -> None:
+        """Take a function, and what it is compiled for."""
+        self._name = f"{function.__module__}.{function.__qualname__}"
+        text = Path(getfile(function)).read_bytes()
+        self._made_from = hashlib.sha256(text).hexdigest() + own
+
+    @property
+    def cache_path(self) -> str:
+        """Return the folder, as numba's statistics show it."""
+        return str(folder())
+
+    def load_overload(self, signature: Any, context: Any) -> Any:
+        """Return what was compiled for a signature, or None if it is not there or damaged."""
+        context.refresh()
+        path = self._path(signature, context.codegen())
+        try:
+            content = path.read_bytes()
+        except OSError:
+            return None
+        checksum, code = content[:CHECKSUM], content[CHECKSUM:]
+        if hashlib.sha256(code).digest() != checksum:
+            path.unlink(missing_ok=True)
+            return None
+        return rebuild(context, *pickle.loads(code))
+
+    def save_overload(self, signature: Any, result: Any) -> None:
+        """Keep what was compiled; where it cannot be written, the next process compiles anew."""
+        if result.lifted or result.library.has_dynamic_globals:
+            return  # it points into this process
+        code = dumps(result._reduce())
+        path = self._path(signature, result.codegen)
+        try:
+            handle, part = tempfile.mkstemp(dir=path.parent, suffix=".part")
+        except OSError:
+            return
+        try:
+            with open(handle, "wb") as file:
+                file.write(hashlib.sha256(code).digest() + code)
+            os.replace(part, path)
+        except OSError:
+            Path(part).unlink(missing_ok=True)
+
+    def flush(self) -> None:
+        """Forget nothing: code that is named after its origin is never out of date."""
+
+    def _path(self, signature: Any, codegen: Any) -> Path:
+        arguments, _ = normalize_signature(signature)
+        origin = (self._name, self._made_from, [*map(_told, arguments)], codegen.magic_tuple())
+        return folder() / f"{self._name}-{hashlib.sha256(repr(origin).encode()).hexdigest()}.code"
+
+
+def _told(kind: Any) -> str:
+    """Return a type in full: numba names a tuple by its class, without the module."""
+    if not isinstance(kind, types.BaseTuple):
+        return str(kind)
+    made_by, parts = getattr(kind, "instance_class", tuple), cast(Iterable[Any], kind)
+    return f"{made_by.__module__}.{made_by.__qualname__}({', '.join(map(_told, parts))})"
+
+
+@cache
+def folder() -> Path:
+    """Return the folder for this version of the package: a private one.
+
+    Below ``NUMBA_CACHE_DIR`` if that is set, else below the user's cache. What lies there is run:
+    where others may write to it, or nobody may, this process has a folder to itself, until its end.
+    """
+    chosen = os.environ.get("NUMBA_CACHE_DIR")
+    root = Path(chosen) if chosen else user_cache_path("stiction")
+    place = root / f"compiled-{fingerprint()}"
+    try:
+        if not place.exists():
+            root.mkdir(parents=True, exist_ok=True)
+            _prune(root)
+            place.mkdir(mode=0o700, exist_ok=True)
+        if _private(place):
+            os.utime(place)  # the one used last goes last
+            return place
+    except OSError:
+        pass
+    alone = tempfile.mkdtemp(prefix="stiction-")
+    atexit.register(shutil.rmtree, alone, ignore_errors=True)
+    return Path(alone)
+
+
+def _private(place: Path) -> bool:
+    """Return whether a folder is this user's, and only this user may write to it."""
+    if not hasattr(os, "getuid"):  # Windows: a user's folders are private
+        return os.access(place, os.W_OK)
+    found = place.lstat()
+    own = stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid()
+    return own and not found.st_mode & 0o022 and os.access(place, os.W_OK)
+
+
+def _prune(root: Path) -> None:
+    """Remove the machine code of all versions but the last ones used, to make room for one more."""
+    versions = sorted(root.glob("compiled-*"), key=lambda each: each.lstat().st_mtime)
+    for old in versions[: len(versions) - FOLDERS + 1]:
+        shutil.rmtree(old, ignore_errors=True)
+
+
+@cache
+def fingerprint() -> str:
+    """Return a hash of every source file that is compiled, and of what compiles it.
+
+    An edit in any of them leads to a fresh folder: what is compiled into one function stands in
+    many files.
+    """
+    package = Path(__file__).parent.parent
+    digest = hashlib.sha256(f"{sys.implementation.cache_tag} {numba.__version__}".encode())
+    for room in ("drive", "friction", "solver"):
+        for file in sorted((package / room).rglob("*.py")):
+            if file.stem != "twin":  # plain Python
+                digest.update(file.read_bytes())
+    return digest.hexdigest()[:16]

@@ -1,0 +1,134 @@
+"""Machine code on disk: named after what it follows from, and never trusted blindly."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+import stiction as st
+from stiction.solver import compiled, machine_code
+from stiction.solver.machine_code import Shelf
+
+
+def twice(x):
+    """Return a number that is compiled quickly."""
+    return 2.0 * x
+
+
+def fresh():
+    """Return `twice` as the first process, or a later one, would compile it."""
+    return compiled._entry(twice, Shelf(twice))
+
+
+@pytest.fixture
+def root(tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    machine_code.folder.cache_clear()
+    yield tmp_path
+    machine_code.folder.cache_clear()
+
+
+def hits(function):
+    return sum(function.stats.cache_hits.values())
+
+
+def test_a_later_process_loads_it(root):
+    first, later = fresh(), fresh()
+    assert first(1.5) == 3.0
+    assert hits(first) == 0
+    assert later(1.5) == 3.0
+    assert hits(later) == 1
+    assert later(2) == 4.0  # other arguments, other code
+    assert hits(later) == 1
+    assert len(list(root.glob("*/*.code"))) == 2
+    assert Path(later.stats.cache_path).parent == root
+
+
+@pytest.mark.parametrize("damage", ["cut", "flipped", "emptied"])
+def test_damaged_code_is_discarded_and_compiled_anew(root, damage):
+    fresh()(1.5)
+    (path,) = root.glob("*/*.code")
+    whole = path.read_bytes()
+    middle = len(whole) // 2
+    path.write_bytes(
+        {
+            "cut": whole[:middle],
+            "flipped": whole[:middle] + bytes([whole[middle] ^ 1]) + whole[middle + 1 :],
+            "emptied": b"",
+        }[damage]
+    )
+    later = fresh()
+    assert later(1.5) == 3.0
+    assert hits(later) == 0
+    again = fresh()
+    assert again(1.5) == 3.0
+    assert hits(again) == 1
+
+
+@pytest.mark.parametrize("mode", [0o777, 0o770])
+def test_a_folder_that_others_may_write_to_is_not_used(root, mode):
+    place = machine_code.folder()
+    fresh()(1.5)
+    place.chmod(mode)
+    machine_code.folder.cache_clear()
+    alone = machine_code.folder()
+    assert alone != place
+    assert alone.stat().st_mode & 0o777 == 0o700
+    function = fresh()
+    assert function(1.5) == 3.0
+    assert hits(function) == 0
+
+
+def test_a_folder_of_somebody_else_is_not_used(root, monkeypatch):
+    place = machine_code.folder()
+    machine_code.folder.cache_clear()
+    monkeypatch.setattr(os, "getuid", lambda: place.stat().st_uid + 1)
+    assert machine_code.folder() != place
+
+
+def test_a_link_is_not_followed(root):
+    place = machine_code.folder()
+    elsewhere = root / "elsewhere"
+    place.rename(elsewhere)
+    place.symlink_to(elsewhere)
+    machine_code.folder.cache_clear()
+    assert machine_code.folder().parent != root
+
+
+def test_without_room_nothing_is_kept_and_all_is_computed(root, monkeypatch):
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "replace", full)
+    assert fresh()(1.5) == 3.0
+    assert not list(root.glob("*/*"))  # no half file either
+
+
+def test_the_folder_is_named_after_the_sources(tmp_path, monkeypatch):
+    """An edit in any compiled file must not meet machine code of the old one."""
+    before = machine_code.fingerprint()
+    package, copy = Path(st.__file__).parent, tmp_path / "stiction"
+    for room in ("solver", "friction", "drive"):
+        for file in (package / room).rglob("*.py"):
+            to = copy / file.relative_to(package)
+            to.parent.mkdir(parents=True, exist_ok=True)
+            to.write_bytes(file.read_bytes())
+    monkeypatch.setattr(machine_code, "__file__", str(copy / "solver" / "machine_code.py"))
+    machine_code.fingerprint.cache_clear()
+    assert machine_code.fingerprint() == before  # wherever the package lies
+    law = copy / "friction" / "coulomb.py"
+    law.write_text(law.read_text() + "\n# edited\n")
+    machine_code.fingerprint.cache_clear()
+    assert machine_code.fingerprint() != before
+    machine_code.fingerprint.cache_clear()
+
+
+def test_the_versions_used_last_stay(root):
+    names = [f"compiled-{n}" for n in range(10)]
+    for n, name in enumerate(names):
+        (root / name).mkdir()
+        (root / name / "old.code").touch()
+        os.utime(root / name, (n, n))
+    place = machine_code.folder()
+    left = sorted(each.name for each in root.glob("compiled-*"))
+    assert left == sorted([*names[-(machine_code.FOLDERS - 1) :], place.name])
