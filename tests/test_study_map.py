@@ -144,3 +144,24 @@ def test_edges_of_cells_lie_between_the_values():
     side = Side(None, np.array([1.0, 10.0, 100.0]), True)
     np.testing.assert_allclose(side.edges, 10.0 ** np.array([-0.5, 0.5, 1.5, 2.5]))
     assert len(Side(None, np.array([3.0]), False).edges) == 2
+
+
+def test_a_measure_by_its_old_name_is_that_by_its_new_one(tmp_path):
+    base = st.Description(
+        st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="5 ms")
+    )
+    renamed = "the measure 'song' is now called 'transverse_oscillation'"
+    with pytest.warns(DeprecationWarning, match=renamed):
+        study = st.Study(base=base, axes={"phi": st.Values(["1 deg", "2 deg"])}, measures=["song"])
+    assert study.measures == ("transverse_oscillation",)
+    store = tmp_path / "a.zarr"
+    st.sweep(study, store)
+    assert (st.open_study(store)["transverse_oscillation"] > 0.0).all()
+    with pytest.warns(DeprecationWarning, match=renamed):
+        found = st.map(store, "song")
+    assert found.measures == ("transverse_oscillation",)
+    (store / "transverse_oscillation").rename(store / "song")  # as an older version wrote it
+    (store / "zarr.json").write_text(
+        (store / "zarr.json").read_text().replace("transverse_oscillation", "song")
+    )
+    assert "transverse_oscillation" in st.open_study(store)

@@ -8,7 +8,7 @@ from stiction.analysis.regime import shape
 from stiction.study.features import features, zigzag
 from stiction.study.measures import MEASURES
 from stiction.study.observed import observe
-from stiction.study.regimes import KINDS, SONG
+from stiction.study.regimes import KINDS, TRANSVERSE
 
 PAPER = st.presets.nakano_popov_2020()
 
@@ -93,15 +93,16 @@ def test_regimes_are_those_of_records(phi, V):
     assert run.regime in KINDS
 
 
-def test_a_song_goes_on_when_the_slow_motion_has_settled():
+def test_a_transverse_oscillation_goes_on_when_the_slow_motion_has_settled():
     """Drawn nearly along the stiff axis, the fast oscillation is the one that weakening drives."""
     slider = PAPER.replace(phi="80 deg")
     run = seen(slider, "5 s")
-    assert run.regime == SONG
+    assert run.regime == TRANSVERSE
     late = st.simulate(slider, "5 s", sample_rate="100 kHz").data.sel(time=slice(4.97, None))
     rate = 0.5 * float(np.ptp(late["v_y"].values)) / (1e-3 * np.sin(np.radians(80.0)))
-    assert run.song == pytest.approx(rate, rel=0.05)  # 16 samples a period
-    assert seen(PAPER.replace(phi="30 deg"), "5 s").song == pytest.approx(0.0, abs=1e-3)
+    assert run.transverse_oscillation == pytest.approx(rate, rel=0.05)  # 16 samples a period
+    slow = seen(PAPER.replace(phi="30 deg"), "5 s")
+    assert slow.transverse_oscillation == pytest.approx(0.0, abs=1e-3)
 
 
 def test_turning_points_of_a_known_signal():

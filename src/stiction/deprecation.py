@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from importlib import import_module
 from typing import Any
 
@@ -12,6 +12,25 @@ def warn_renamed(old: str, new: str, *, stacklevel: int = 3) -> None:
     """Warn the caller's caller that `old` is called `new` now."""
     message = f"{old} is now called {new}; the old name goes with the next version"
     warnings.warn(message, DeprecationWarning, stacklevel=stacklevel)
+
+
+def by_new_names(names: Iterable[str], formerly: Mapping[str, str], what: str) -> list[str]:
+    """Return names of data, old ones replaced; warn who called the public function of each.
+
+    Parameters
+    ----------
+    names : iterable of str
+        As they were given.
+    formerly : mapping
+        From each old name to the new one.
+    what : str
+        What they name, for example "measure".
+    """
+    given = list(names)
+    for name in dict.fromkeys(given):
+        if name in formerly:
+            warn_renamed(f"the {what} {name!r}", repr(formerly[name]), stacklevel=5)
+    return [formerly.get(name, name) for name in given]
 
 
 def old_names(

@@ -75,10 +75,10 @@ class Observation(NamedTuple):
 
     @property
     def coarse(self) -> bool:
-        """Whether it is sampled too coarsely to see the song."""
+        """Whether it is sampled too coarsely to see the transverse oscillation."""
         slider = self.run.slider
-        song = theory.natural_frequency(slider.k_y, slider.mass) / (2.0 * pi)
-        return bool(self.record.sample_rate < 0.9 * SEEN * song)
+        f_y = theory.natural_frequency(slider.k_y, slider.mass) / (2.0 * pi)
+        return bool(self.record.sample_rate < 0.9 * SEEN * f_y)
 
     def mean(self, name: str) -> float:
         """Return the mean of a quantity over the cycles, not a number if there are none."""
@@ -159,7 +159,7 @@ def outcome(run: Trajectory) -> str:
 
 
 def coarse_rate(prediction: Prediction) -> float:
-    """Return the sample rate (Hz) that shows the slow motion, but not the song."""
+    """Return the sample rate (Hz) that shows the slow motion, but not the transverse one."""
     return COARSE * prediction.f_x
 
 

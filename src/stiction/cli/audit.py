@@ -12,9 +12,9 @@ def audit(config: Path, /, *, output: MaybeOutput = None, set: Changes = None) -
 
     Prints what theory predicts from the description alone beside what a simulated test shows:
     damping number, critical misalignment and the margin to it, true rest and creep in what looks
-    like stick, apparent friction coefficients, period, the frequency that the rig sings at and
-    the sampling rate that it takes to see it; and, if it does not slide steadily, what to change,
-    each advice tried in a simulation.
+    like stick, apparent friction coefficients, period, the frequency of the transverse
+    oscillation and the sampling rate that it takes to see it; and, if it does not slide steadily,
+    what to change, each advice tried in a simulation.
 
     For example, with what `stiction init my.toml` writes:
 

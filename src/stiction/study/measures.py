@@ -69,8 +69,10 @@ MEASURES: dict[str, Measure] = {
         "distance along X that the mass creeps before its first slip",
         lambda run: run.first_slip[1],
     ),
-    "song": Measure(
-        "1", "amplitude of the fast oscillation's rate over the drive's", lambda run: run.song
+    "transverse_oscillation": Measure(
+        "1",
+        "amplitude of the fast oscillation's rate over the drive's",
+        lambda run: run.transverse_oscillation,
     ),
     "time_stuck": Measure("s", "sum of all stick intervals", lambda run: run.solution.counts.stuck),
     "stick_count": Measure(
@@ -78,4 +80,5 @@ MEASURES: dict[str, Measure] = {
     ),
     "steps": Measure("1", "slip steps of the solver", lambda run: float(run.solution.counts.steps)),
 }
+FORMERLY = {"song": "transverse_oscillation"}  # old names, which go with the next version
 DEFAULT = ("regime", "peak_force", "amplitude", "period", "creep_distance", "time_stuck")

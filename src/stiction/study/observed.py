@@ -134,7 +134,7 @@ class Observed:
         return swings(self.features)
 
     @cached_property
-    def song(self) -> float:
+    def transverse_oscillation(self) -> float:
         """Amplitude of the fast oscillation's rate at the end, over the drive's velocity along it.
 
         Half the span of the elongation rate along the stiffer axis. It is 1 at most while the
@@ -153,7 +153,8 @@ class Observed:
             return STUCK
         slider = self.description.slider
         drive = slider.k_x * abs(slider.motion.velocity * slider.direction[0])
-        return kind_of(self.features, self.swings, self.start, self.end, drive, self.song)
+        oscillation = self.transverse_oscillation
+        return kind_of(self.features, self.swings, self.start, self.end, drive, oscillation)
 
 
 def observe(description: Description, report: Callable[[float], None] | None) -> Observed:

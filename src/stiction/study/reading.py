@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import Any
 
+from stiction.deprecation import by_new_names
 from stiction.description import Description
 from stiction.errors import DescriptionError, Fault
 from stiction.paths import canonical_path
 from stiction.study.axes import Axis
 from stiction.study.axis_table import read_axis
-from stiction.study.measures import MEASURES
+from stiction.study.measures import FORMERLY, MEASURES
 from stiction.study.traces import TRACES
 from stiction.validation import faulty, unknown
 
@@ -52,8 +53,9 @@ def named_ones(value: Any, what: str, known: Collection[str]) -> tuple[str, ...]
 
 
 def measures_of(value: Any) -> tuple[str, ...]:
-    """Return names of measures."""
-    return named_ones(value, "measure", MEASURES)
+    """Return names of measures, by the names that they have now."""
+    known = named_ones(value, "measure", {**MEASURES, **FORMERLY})
+    return tuple(dict.fromkeys(by_new_names(known, FORMERLY, "measure")))
 
 
 def traces_of(value: Any) -> tuple[str, ...]:

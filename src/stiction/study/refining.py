@@ -7,7 +7,6 @@ that lies inside the store: what was stopped goes on.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pydantic_core import PydanticCustomError
 
+from stiction.deprecation import by_new_names
 from stiction.errors import DescriptionError, Fault
 from stiction.paths import canonical_path
 from stiction.study.axes import Floats, Values
@@ -117,10 +117,7 @@ def _kinds(apart: Sequence[str] | None) -> list[str] | None:
     """Return kinds of motion by the names that they have now."""
     if apart is None:
         return None
-    for name in FORMERLY.keys() & set(apart):
-        text = f"the kind of motion {name!r} is now called {FORMERLY[name]!r}"
-        warnings.warn(text, DeprecationWarning, stacklevel=3)
-    now = [FORMERLY.get(name, name) for name in apart]
+    now = by_new_names(apart, FORMERLY, "kind of motion")
     if strange := [name for name in now if name not in KINDS]:
         raise DescriptionError(
             [Fault("apart", unknown("kind of motion", name, KINDS)) for name in strange]

@@ -21,7 +21,7 @@ from stiction.study.features import PARTS, Features
 
 Floats = NDArray[np.float64]
 
-SONG = "transverse oscillation"
+TRANSVERSE = "transverse oscillation"
 KINDS = (
     regime.UNDETERMINED,
     regime.STUCK,
@@ -30,16 +30,16 @@ KINDS = (
     regime.HARMONIC,
     regime.SETTLING,
     regime.STEADY,
-    SONG,
+    TRANSVERSE,
     regime.IRREGULAR,
 )  # stores hold their places: a new one goes to the end
 FORMERLY = {
     "between stick-slip and harmonic vibration": regime.TRANSITIONAL,
     "damped approach": regime.SETTLING,
-    "song": SONG,
+    "song": TRANSVERSE,
 }
 FEWEST = 2  # swings that tell a kind: one may be the end of a transient
-SINGS = 0.1  # of the largest that the fast oscillation can be before the slip reverses
+OSCILLATES = 0.1  # of the largest that the fast oscillation can be before the slip reverses
 
 
 class Swings(NamedTuple):
@@ -76,7 +76,7 @@ def swings(found: Features) -> Swings:
 
 
 def kind_of(
-    found: Features, cycles: Swings, start: float, end: float, drive: float, song: float
+    found: Features, cycles: Swings, start: float, end: float, drive: float, oscillation: float
 ) -> str:
     """Return the kind of motion.
 
@@ -90,7 +90,7 @@ def kind_of(
         Of the run, s.
     drive : float
         Rate of the force while the mass sticks: stiffness times drive velocity, N/s.
-    song : float
+    oscillation : float
         How strong the fast oscillation is at the end, in units of the drive's velocity along it.
     """
     count = len(cycles.drop)
@@ -101,7 +101,8 @@ def kind_of(
     if count >= FEWEST and not dying and not over:
         return regime.shape(float(np.sort(cycles.rise_share)[count // 2]))
     kind = regime.SETTLING if dying else course(found, start, end, drive)
-    return SONG if kind in (regime.SETTLING, regime.STEADY) and song > SINGS else kind
+    calm = kind in (regime.SETTLING, regime.STEADY)
+    return TRANSVERSE if calm and oscillation > OSCILLATES else kind
 
 
 def course(found: Features, start: float, end: float, drive: float) -> str:

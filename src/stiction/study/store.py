@@ -19,6 +19,7 @@ from stiction import errors
 from stiction.errors import ResultError
 from stiction.study.kept import Kept
 from stiction.study.layout import Index, Layout, Region
+from stiction.study.measures import FORMERLY
 from stiction.study.plan import Study
 
 if TYPE_CHECKING:
@@ -180,7 +181,8 @@ def group_at(path: str | Path, mode: Literal["r", "r+"]) -> zarr.Group:
 def open_study(path: str | Path) -> xr.Dataset:
     """Return a study's store, its values read when they are asked for.
 
-    It is ``xarray.open_zarr(path)`` after a look at whether it is one.
+    It is ``xarray.open_zarr(path)`` after a look at whether it is one; measures of older stores
+    have the names that they have now.
 
     Raises
     ------
@@ -191,7 +193,7 @@ def open_study(path: str | Path) -> xr.Dataset:
 
     group_at(path, "r")
     data: xr.Dataset = xr.open_zarr(path)
-    return data
+    return data.rename({old: new for old, new in FORMERLY.items() if old in data})
 
 
 def version() -> str:

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from pydantic_core import PydanticCustomError
 
+from stiction.deprecation import by_new_names
 from stiction.errors import DescriptionError, Fault
 from stiction.paths import canonical_path
+from stiction.study.measures import FORMERLY
 from stiction.study.parameters import number
 from stiction.study.plan import Study
 from stiction.study.regimes import KINDS
@@ -87,6 +89,7 @@ def chosen(view: View, measures: Sequence[str]) -> list[str]:
         for name, each in view.data.data_vars.items()
         if name not in RUNS and each.dims == runs
     ]
+    measures = by_new_names(measures, FORMERLY, "measure")
     strange = [name for name in measures if name not in kept]
     if strange:
         raise DescriptionError([Fault(name, unknown("measure", name, kept)) for name in strange])
