@@ -15,7 +15,7 @@ from stiction.analysis.hesitations import take_out
 from stiction.analysis.outliers import without_outliers
 from stiction.analysis.reversals import all_heights, standing_out, taken_out
 from stiction.analysis.spread import TIMES
-from stiction.analysis.turning_points import turning_points
+from stiction.analysis.turning_points import _placed, turning_points
 from stiction.plotting.canvas import figure_of
 from stiction.plotting.cycles import plot_cycles
 from stiction.study.observed import observe
@@ -66,6 +66,12 @@ def walked(values: NDArray[np.int64], height: int) -> list[int]:
         elif way <= 0 and value - values[low] >= height:
             found, way, high = [*found, low], 1, i
     return found[1:]  # before the first there is no leg as high
+
+
+def test_turning_points_keep_their_order_where_they_are_placed() -> None:
+    counts = np.array([0, 0, 0, 0, 5, 6, 1, 8, 7, 9, 2, 3])  # sums of two: 0, 0, 11, 9, 16, 5
+    placed = _placed(counts, np.array([2, 3, 4, 5]), np.array([False, True, False, True]))
+    assert placed.tolist() == [5, 6, 9, 10]
 
 
 @pytest.mark.parametrize("kind", ["white", "walk", "smooth and white"])
@@ -260,6 +266,33 @@ def test_mains_hum_makes_no_cycles_and_hides_none(
     assert float(cycles["period"].mean()) == pytest.approx(period, rel=0.03)
     assert float(cycles["drop"].mean()) == pytest.approx(1.0, abs=0.15)
     assert regime.kind == "stick-slip"
+
+
+@pytest.mark.parametrize(
+    ("height", "second", "wanders"),
+    [(1.4, 0.0, 0.0), (3.0, 0.3, 0.0), (0.3, 0.6, 0.0), (1.0, 0.2, 0.08)],
+)
+def test_hum_as_large_as_the_drops_is_taken_off(
+    height: float, second: float, wanders: float
+) -> None:
+    """Larger than the drops, with a second harmonic alone in its octave, or over ten minutes."""
+    random = np.random.default_rng(5)
+    period, rate = (0.4, 1500.0) if not wanders else (4.0, 400.0)
+    corners = irregular_saw(random, 150 if wanders else 20, period)
+    time = np.arange(corners[0][1] + 0.2 * period, corners[0][-1] - 0.3 * period, 1.0 / rate)
+    turns = 50.01 * time - wanders * 60.0 * np.cos(2 * pi * time / 380.0)  # Hz: by 0.08 at most
+    hum = np.sin(2 * pi * turns) + second * np.sin(4 * pi * turns + 1.0)
+    noise = 0.03 * random.normal(size=len(time))
+    record = st.Record(
+        time=time, force=2.0 + np.interp(time, *corners) + 0.5 * height * hum + noise
+    )
+    found = st.analyse(record)
+    assert abs(found.cycles.sizes["cycle"] - (147 if wanders else 17)) <= 1
+    assert float(found.cycles["drop"].mean()) == pytest.approx(1.0, abs=0.1)
+    assert found.regime.kind == "stick-slip"
+    said = [warning for warning in found.warnings if "was taken off" in warning]
+    assert "the mains' hum in all likelihood, was taken off the force" in said[0]
+    assert "was taken off the force before" in str(found.regime)
 
 
 def test_a_vibration_is_not_taken_for_hum() -> None:

@@ -92,14 +92,16 @@ def between(corners: tuple[Floats, Floats], rate: float) -> tuple[Floats, Floats
 
 
 def hum(random: np.random.Generator) -> Labelled:
-    """Return stick-slip with mains hum of 0.05 to 0.5 of the drop."""
+    """Return stick-slip with mains hum of 0.1 to 2 times the drop, crest to trough."""
     period, rate = 10 ** random.uniform(-1, 0.3), 10 ** random.uniform(np.log10(500), 4)
     time, force, count = between(sawtooth(random, int(random.integers(12, 40)), period), rate)
-    mains = random.choice([50.0, 60.0]) + random.uniform(-0.1, 0.1)
-    line = np.sin(2 * pi * mains * time + random.uniform(0, 6))
-    line += random.uniform(0, 0.3) * np.sin(4 * pi * mains * time + random.uniform(0, 6))
-    noise = 10 ** random.uniform(-3, -1.5) * random.normal(size=len(time))
-    force = 2.0 + force + random.uniform(0.05, 0.5) * line + noise
+    mains, wander = random.choice([50.0, 60.0]) + random.uniform(-0.1, 0.1), random.uniform(0, 0.05)
+    turns = mains * time + wander * time[-1] / 8.0 * np.sin(8.0 * time / time[-1])
+    line = np.sin(2 * pi * turns + random.uniform(0, 6))
+    for harmonic in (2, 3):
+        line += random.uniform(0, 0.4) * np.sin(2 * pi * harmonic * turns + random.uniform(0, 6))
+    noise = 10 ** random.uniform(-3, -1) * random.normal(size=len(time))
+    force = 2.0 + force + 10 ** random.uniform(-1.3, 0) * line + noise
     return st.Record(time=time, force=force), count, (STICK_SLIP,)
 
 

@@ -13,6 +13,7 @@ from stiction.analysis.hum import Line, narrow_lines
 from stiction.analysis.outliers import without_outliers
 from stiction.analysis.pieces import fitted
 from stiction.analysis.record import Record, recorded
+from stiction.analysis.rest import STICKING, rest_share
 from stiction.analysis.turning_points import TurningPoints, turning_points, without_spikes
 from stiction.analysis.vertices import Vertices, vertices
 from stiction.trajectory import Trajectory
@@ -47,9 +48,10 @@ COLUMNS = {
 UNSEEN = 0.25  # of a period without a sample: what happened there is not known
 JUMP = 1.5  # times the step from sample to sample: less is no gap, but few samples
 LOADING = (0.1, 0.5)  # part of the rise that is straight: after the swing, before the creep
-# A line beside the motion: swings without it have so many of its periods, and are as high
+# A line beside the motion: swings without it have so many of its periods, and are as high or stick
 SLOWER, HIGHER = 2.0, 0.75
-REGULAR = 0.02  # standard deviation of the periods over their mean
+LINES = 4  # taken off at most
+OWN = 10.0  # harmonics of the cycles below this can be lines as well; they make no cycles more
 QUARTER = 4  # of a fall, to each side: cubics through so much of half a sine are 0.2 % too flat
 
 
@@ -124,7 +126,7 @@ class Swings(NamedTuple):
     noise, clearness : float
         How far noise reaches (N), and how clearly the swings stand apart from it; see
         `stiction.analysis.turning_points`.
-    line : Line or None
+    lines : tuple of Line
         What was taken off the force before, such as mains hum.
     """
 
@@ -133,7 +135,7 @@ class Swings(NamedTuple):
     turns: int
     noise: float
     clearness: float
-    line: Line | None = None
+    lines: tuple[Line, ...] = ()
 
     @property
     def cycles(self) -> xr.Dataset:
@@ -144,27 +146,44 @@ class Swings(NamedTuple):
 def swings(record: Record) -> Swings:
     """Return all swings of the force that stand apart from smaller reversals.
 
-    A narrow line is taken off before if what is left shows larger and slower swings: then these
-    are the motion, and the line is beside it.
+    A narrow line is taken off before if what is left shows slower swings that are larger, or of a
+    mass that sticks: then these are the motion, and the line is beside it.
     """
     force = without_outliers(record.force)
     if force is not record.force:
         record = record.model_copy(update={"force": force})
     found = _swings(record)
-    for line in narrow_lines(record.time, record.force):
-        without = _swings(record.model_copy(update={"force": record.force - line.values}))
-        if _beside(line, without):
-            same = abs(found.table.sizes["cycle"] - without.table.sizes["cycle"]) <= 1
-            period = found.table["period"].values
-            harmonic = same and period.std() < REGULAR * period.mean()  # of the cycles themselves
-            return found if harmonic else without._replace(line=line)
+    for _ in range(LINES):
+        without = _without_line(record, found)
+        if without is None:
+            break
+        record, found = without
     return found
 
 
+def _without_line(record: Record, found: Swings) -> tuple[Record, Swings] | None:
+    """Return record and swings without a line beside the motion, if there is one."""
+    for line in narrow_lines(record.time, record.force):
+        rest = record.model_copy(update={"force": record.force - line.values})
+        without = _swings(rest)
+        if _beside(line, without):
+            number = line.frequency * float(without.table["period"].median())
+            count, left = (each.table.sizes["cycle"] for each in (found, without))
+            own = number < OWN and 0 < count <= left + 1
+            if not own:
+                return rest, without._replace(lines=(*found.lines, line))
+    return None
+
+
 def _beside(line: Line, without: Swings) -> bool:
-    """Return whether a line is beside the motion: swings without it are larger and slower."""
-    period, drop = (without.table[name].values for name in ("period", "drop"))
-    aside = (period * line.frequency > SLOWER) & (drop > HIGHER * line.height)
+    """Return whether a line is beside the motion.
+
+    Then swings without it are slower, and larger; or, however large it is, those of a mass that
+    sticks: such a mass does not vibrate as well.
+    """
+    period, drop, rise = (without.table[name].values for name in ("period", "drop", "rise_share"))
+    motion = (drop > HIGHER * line.height) | (rest_share(rise) >= STICKING)
+    aside = (period * line.frequency > SLOWER) & motion
     return len(aside) >= 2 and bool(np.median(aside) == 1.0)
 
 

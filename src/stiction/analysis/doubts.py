@@ -10,6 +10,7 @@ import numpy as np
 
 from stiction.analysis.drift import Drift, find_drift
 from stiction.analysis.friction_found import Friction
+from stiction.analysis.hum import Line, of_mains
 from stiction.analysis.record import Record
 from stiction.analysis.regime import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.units import in_words
@@ -38,6 +39,19 @@ def warnings(record: Record, kind: str, cycles: xr.Dataset, friction: Friction) 
         *_drift(record, kind, cycles),
         *_zero(record, friction, cycles),
     ]
+    return tuple(found)
+
+
+def taken_off(lines: tuple[Line, ...]) -> tuple[str, ...]:
+    """Return a sentence for each line that was taken off a force before its cycles were sought."""
+    found = []
+    for line in lines:
+        hum = ", the mains' hum in all likelihood," if of_mains(line.frequency) else ""
+        found.append(
+            f"A line at {in_words(line.frequency, 'Hz')} with an amplitude of "
+            f"{in_words(0.5 * line.height, 'N')}{hum} was taken off the force before its cycles "
+            "were sought."
+        )
     return tuple(found)
 
 

@@ -13,7 +13,7 @@ from stiction.analysis.decay import MANY, ORDERED, order
 from stiction.analysis.hum import samples_per_period
 from stiction.analysis.level import PARTS, course
 from stiction.analysis.record import Record, recorded
-from stiction.analysis.rest import rest_share, rise_share
+from stiction.analysis.rest import STICKING, rest_share, rise_share
 from stiction.analysis.turning_points import CLEAR
 from stiction.trajectory import Trajectory
 from stiction.units import in_words
@@ -33,7 +33,7 @@ STUCK = "stuck"
 UNDETERMINED = "undetermined"
 
 # Bounds of the share of a cycle for which the mass rests, or creeps, by the cycle's shape
-SHAPES = ((0.75, STICK_SLIP), (0.5, TRANSITIONAL), (0.0, HARMONIC))
+SHAPES = ((STICKING, STICK_SLIP), (0.5, TRANSITIONAL), (0.0, HARMONIC))
 BACKWARD = 0.4  # share of the rise, below which the force falls slowly and rises fast
 # Standard deviation of the periods over their mean. Noise through a narrow filter, which rings,
 # has 0.15, through a wide one, which does not, 0.37 and more.
@@ -84,6 +84,7 @@ WORDS = {
     "period_spread": ("periods differ by {} of their mean", _percent),
     "natural_period": ("a period is {} times the mass's own on its spring", _rounded),
     "drop_over_noise": ("force drops are {} times as high as noise reaches", _rounded),
+    "line_taken_off": ("a line at {} was taken off the force before", _frequency),
     "swings": ("{} swings, each smaller than the last but for noise", _whole),
     "last_over_first": ("the last force drop is {} times the first", _rounded),
     "turns": ("{} peaks and troughs make no complete cycle", _whole),
@@ -202,6 +203,8 @@ def _by_shape(record: Record, found: Swings) -> Regime:
     grown = float(drop[-1] / drop[0])
     if count >= MANY and abs(order(drop)) >= -ORDERED and abs(grown - 1.0) > GROWN:
         evidence["last_over_first"] = grown
+    if found.lines:
+        evidence["line_taken_off"] = found.lines[0].frequency
     others = sorted(set(kinds) - {kind, UNDETERMINED}, key=kinds.count)
     counted = (alike + 1) / (count + 3)
     confidence = max(counted, _chance(shares, kind, step / float(table["period"].mean())))

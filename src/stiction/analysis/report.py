@@ -10,7 +10,7 @@ import numpy as np
 from stiction.analysis.creep_found import find_creep, tried
 from stiction.analysis.cycles import swings
 from stiction.analysis.divergence import Divergence
-from stiction.analysis.doubts import warnings
+from stiction.analysis.doubts import taken_off, warnings
 from stiction.analysis.energy import energy_budget
 from stiction.analysis.friction_found import Friction, find_friction
 from stiction.analysis.measured_line import strongest_line
@@ -64,7 +64,8 @@ class Analysis(NamedTuple):
     friction : Friction
         Of the break-away, at rest and while it slides, in any motion.
     warnings : tuple of str
-        What is not as it should be: drift, numbers that cannot be true. To be read first.
+        What is not as it should be: drift, numbers that cannot be true, hum that was taken off.
+        To be read first.
     """
 
     source: Trajectory | Record
@@ -163,6 +164,7 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
         width = _free_of_hum(oscillation, sticking)
     friction = find_friction(record, regime.kind, cycles)
     doubts = warnings(record, regime.kind, cycles, friction) if run is None else ()
+    doubts += taken_off(found.lines)
     cycles = _meant(cycles, regime.kind, missing)
     creep = find_creep(source, record, sticking, width)
     missing |= creep.missing

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
 
+STICKING = 0.75  # of a cycle at rest, or in creep: stick-slip; a vibration rests for less
 ANGLES = np.geomspace(1e-4, np.pi / 2, 2000)[::-1]  # beta; linear between them, to 1e-5 in share
 _GAINED = 2.0 / np.tan(ANGLES)
 _CYCLE = np.pi + 2.0 * ANGLES + _GAINED  # omega times the period

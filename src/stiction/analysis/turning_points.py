@@ -134,8 +134,13 @@ def coarse_points(counts: Counts) -> Indices:
 
 
 def _placed(counts: Counts, index: Indices, trough: NDArray[np.bool_]) -> Indices:
-    """Return where the turning points of the sums of two are in `counts`: among six samples."""
-    around = np.clip(2 * index[:, None] + np.arange(-2, 4), 0, len(counts) - 1)
+    """Return where the turning points of the sums of two are in `counts`, in the same order.
+
+    Each is sought among six samples, those nearer to the next point left out.
+    """
+    middle = index[:-1] + index[1:]
+    first, last = np.append(0, middle + 1), np.append(middle, len(counts) - 1)
+    around = np.clip(2 * index[:, None] + np.arange(-2, 4), first[:, None], last[:, None])
     upward = np.where(trough, -1, 1)[:, None] * counts[around]
     return np.take_along_axis(around, np.argmax(upward, axis=1)[:, None], axis=1)[:, 0]
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from stiction.analysis.columns import Quantity, grid
 from stiction.analysis.friction_found import Measured
+from stiction.analysis.hum import of_mains
 from stiction.analysis.regime import (
     HARMONIC,
     IRREGULAR,
@@ -50,7 +51,6 @@ ENERGIES = {
 }
 UNLESS_NONE = ("hesitations",)
 SELDOM = 0.05  # of the time: a line that is seen no longer may be chance
-MAINS, MAINS_VARIES = (50.0, 60.0, 100.0, 120.0), 0.004  # Hz; a grid keeps its frequency to 0.4 %
 NOTHING = 1e-6  # of the work: what is less stands in the files, not in the terminal
 FRICTIONS = {
     "break_away": "first break-away",
@@ -207,7 +207,7 @@ def oscillation(found: Analysis) -> Section:
     share = 100.0 * len(seen) / found.oscillation.sizes["time"]
     pitch = f"between {low} and {high}" if low != high else f"at {low}"
     lines = [f"Seen in {share:.3g}% of the time, {pitch}."]
-    if any(abs(np.median(seen) / line - 1.0) < MAINS_VARIES for line in MAINS):
+    if of_mains(float(np.median(seen))):
         lines[0] += (
             " That is the frequency of the mains, or twice it: it is hum, in all likelihood."
         )
