@@ -6,7 +6,7 @@ from math import nan, sqrt
 from typing import Any
 
 from stiction.description import Description
-from stiction.solver.compiled import called
+from stiction.solver.compiled import called, compiled
 from stiction.solver.frame import friction
 from stiction.solver.loop import steps
 from stiction.solver.output import Output
@@ -53,14 +53,22 @@ class Exact:
 
     def last_row(self, problem: Problem, state: State) -> list[float]:
         """Return the sample of a state between two steps."""
-        motion, m = state.motion, problem.system.mass
+        motion = state.motion
         slip = [motion.r * motion.e_x, motion.r * motion.e_y]
-        if motion.r == 0.0:
-            a_x, a_y = holding(problem, motion.t, motion.u_x, motion.u_y)
-            return [motion.u_x, motion.u_y, *slip, m * a_x, m * a_y, 1.0]
-        f = m * friction(problem, motion.t, motion.r)[0]
-        f_x, f_y = friction_along(problem, motion.e_x, motion.e_y)
-        return [motion.u_x, motion.u_y, *slip, f * f_x, f * f_y, 0.0]
+        force = called(force_between, kinds_of(problem), problem, motion)
+        return [motion.u_x, motion.u_y, *slip, *force, float(motion.r == 0.0)]
+
+
+@compiled
+def force_between(problem: Problem, motion: Motion) -> tuple[float, float]:
+    """Return the friction force (x, y; N) between two steps, at zero slip that which holds."""
+    m = problem.system.mass
+    if motion.r == 0.0:
+        a_x, a_y = holding(problem, motion.t, motion.u_x, motion.u_y)
+        return m * a_x, m * a_y
+    f = m * friction(problem, motion.t, motion.r)[0]
+    f_x, f_y = friction_along(problem, motion.e_x, motion.e_y)
+    return f * f_x, f * f_y
 
 
 class Multiscale(Exact):
