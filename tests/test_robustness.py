@@ -163,3 +163,33 @@ def test_interrupts_do_no_harm():
         timeout=PATIENCE,
     )
     assert done.returncode == 0, done.stderr
+
+
+HELD_BACK = """
+import signal
+from stiction.solver.interrupt import uninterrupted
+
+def interrupted():
+    try:
+        with uninterrupted():
+            signal.raise_signal(signal.SIGINT)
+            print("goes on", end=", ")
+        print("and on")
+    except KeyboardInterrupt:
+        print("ends")
+
+interrupted()
+signal.signal(signal.SIGINT, signal.SIG_IGN)
+interrupted()
+signal.signal(signal.SIGINT, lambda *_: print("told", end=", "))
+interrupted()
+"""
+
+
+def test_an_interrupt_that_is_held_back_does_what_it_is_to_do():
+    """In a new process: a test may run in a thread that is never interrupted."""
+    reset = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
+    done = subprocess.run(
+        [sys.executable, "-c", reset + HELD_BACK], capture_output=True, text=True, timeout=PATIENCE
+    )
+    assert done.stdout == "goes on, ends\ngoes on, and on\ngoes on, told, and on\n", done.stderr

@@ -15,7 +15,8 @@ def uninterrupted() -> Iterator[None]:
 
     An interrupt that arrives while numba turns a result into Python objects, and runs Python's
     code for it, would crash the interpreter. Only the main thread is ever interrupted; elsewhere
-    nothing is done.
+    nothing is done. What interrupts are to do otherwise, at the end they do it: nothing, where
+    they are ignored, as under nohup.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -30,5 +31,5 @@ def uninterrupted() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGINT, before if before is not None else signal.SIG_DFL)
-    if arrived:
-        raise KeyboardInterrupt
+        if arrived:
+            signal.raise_signal(signal.SIGINT)
