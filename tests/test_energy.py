@@ -75,7 +75,8 @@ def test_the_budget_closes_to_the_tolerance(slider, driven, changes):
     assert off[1] < 0.1 * off[0]
 
 
-def test_friction_that_turns_over_between_two_points_in_time_is_not_missed():
+@pytest.mark.parametrize("shaken", [None, st.Modulation(1e-10, 1.0)])
+def test_friction_that_turns_over_between_two_points_in_time_is_not_missed(shaken):
     """Slip all but vanishes and comes back within a thousandth of a panel, beside its end."""
     slider = st.Slider(
         mass=1.0,
@@ -84,11 +85,22 @@ def test_friction_that_turns_over_between_two_points_in_time_is_not_missed():
         phi="0.0685 deg",
         normal_load=10.0,
         friction=st.Coulomb(0.2),
-        drive=st.ConstantVelocity(0.1),
+        drive=st.DriveProgram(velocity=0.1, along=shaken),
     )
     start = st.Initial(u_x=0.0023521650501143734, v_x=0.0, v_y=0.0)
     budget = st.energy_budget(st.simulate(slider, 0.4954862093524758, initial=start, rtol=1e-7))
     assert abs(float(budget["residual"][0])) < float(budget["bound"][0])
+
+
+def test_a_plate_that_jumps_and_is_shaken_works_on_each_interval(slider):
+    """Jumps lie on edges of intervals, between them, and at the end of the last."""
+    program = [st.Step(3e-3, 0.02), st.Step(-1e-3, 0.03), st.Ramp(2e-3, 0.05), st.Step(1e-3)]
+    drive = st.DriveProgram(program=program, along=st.Modulation(5e-4, 40.0))
+    run = st.simulate(slider.replace(drive=drive, c_x=1.0), 0.12)
+    for edges in ([0.0, 0.02, 0.04, 0.1], [0.01, 0.05, 0.07, 0.1, 0.12]):
+        budget = st.energy_budget(run, edges)
+        assert (np.abs(budget["residual"]) <= budget["bound"]).all()
+        assert (budget["bound"] < 1e-3 * np.abs(budget["work"])).all()
 
 
 def test_a_changing_load_does_no_work(slider):

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stiction.analysis.quadrature import integrals, states_at
-from stiction.drive import drive_stretches
+from stiction.drive import drive_stretches, jump
+from stiction.drive.program import pick
 from stiction.errors import ResultError
 from stiction.slider import Slider
 from stiction.solver.integrate import tolerance
@@ -45,12 +46,14 @@ def energy_budget(run: Trajectory, edges: ArrayLike | None = None) -> xr.Dataset
 
     Over a driven plate the drive works on the plate, P = F.v_d, and the mass has v = u'. Where
     the spring is driven it works on the spring's end, P = v_d.(K u + C u'), and v = s. At a
-    steady drive both are the same run, seen from two frames: the work on the plate is that on the
-    spring's end would be, and what speeds up the mass. (Friction itself turns over within no time
-    where the slip all but vanishes, which a sum over points in time may miss; the spring does not.)
-    Each term is integrated by itself
-    from the run's states, and nothing is adjusted: the residual is what the solver errs by. Each
-    step is held to a local tolerance, and so is what it gains or loses of the energy it exchanges.
+    steady drive both are the same run, seen from two frames. Friction turns over within no time
+    where the slip all but vanishes, which a sum over points in time may miss; so the work on the
+    plate is found from the spring's force, which does not: P = v_d.(m u'' + C u' + K u), its first
+    part integrated by parts.
+
+    Each term is integrated by itself from the run's states, and nothing is adjusted: the residual
+    is what the solver errs by. Each step is held to a local tolerance, and so is what it gains or
+    loses of the energy it exchanges.
 
     Friction does no work while the mass sticks, nor does the normal load in the plane. The
     friction of a law with internal state can give work back: what its bristles store is part of
@@ -94,7 +97,8 @@ def energy_budget(run: Trajectory, edges: ArrayLike | None = None) -> xr.Dataset
     powers, off, sizes = integrals(run, borders, lambda t, rows: _powers(run, t, rows), rtol)
     rows = states_at(run, borders)
     stored = np.diff(_stored(run, borders, rows), axis=1)
-    powers[0] += np.diff(_carried(run, borders, rows))
+    if run.slider.driven == "plate":
+        powers[0] += _carried(run, borders)
     spent = np.concatenate([powers[1:], stored])
     residual = powers[0] - spent.sum(axis=0)
     quadrature, exchanged = off.sum(axis=0), sizes.sum(axis=0) + np.abs(stored).sum(axis=0)
@@ -132,44 +136,49 @@ def _edges(run: Trajectory, edges: ArrayLike | None) -> Floats:
 
 def _powers(run: Trajectory, t: Floats, rows: Floats) -> Floats:
     """Return the power of the drive, of friction and of the dampers (W), each along x and y."""
-    s, (c, n) = run.slider, run.slider.direction
+    s = run.slider
     u_x, u_y, s_x, s_y, f_x, f_y = rows[:, :6].T
-    X, Y = s.motion.rate(t)
-    d_x, d_y = X * c - Y * n, X * n + Y * c
+    d_x, d_y = _on_axes(s, s.motion.rate(t))
     v_x, v_y = d_x - s_x, d_y - s_y
-    if s.driven == "plate" and not _steady(s):
-        work = f_x * d_x + f_y * d_y
-    else:
-        work = (s.k_x * u_x + s.c_x * v_x) * d_x + (s.k_y * u_y + s.c_y * v_y) * d_y
+    work = (s.k_x * u_x + s.c_x * v_x) * d_x + (s.k_y * u_y + s.c_y * v_y) * d_y
+    if s.driven == "plate":
+        changes = pick(drive_stretches(s.motion), t, lambda course, at, _: course.rate_change(at))
+        a_x, a_y = _on_axes(s, changes)
+        work = work - s.mass * (v_x * a_x + v_y * a_y)
     return np.stack([work, f_x * s_x, f_y * s_y, s.c_x * v_x**2, s.c_y * v_y**2])
 
 
-def _steady(slider: Slider) -> bool:
-    """Return whether the drive's velocity never changes."""
-    return all(drive.steady() for _, drive in drive_stretches(slider.motion))
+def _carried(run: Trajectory, borders: Floats) -> Floats:
+    """Return m u'.v_d over the smooth stretches of a plate's drive, end less start, J.
 
-
-def _carried(run: Trajectory, t: Floats, rows: Floats) -> Floats:
-    """Return the momentum times the velocity of a steadily driven plate, J; zero for others.
-
-    From m u'' + C u' + K u = F: the work F.v_d on the plate is that of the spring and dampers on
-    it, and the change of m u'.v_d.
+    With the work of the spring and dampers on the plate, less the integral of m u'.a_d, it is the
+    integral of F.v_d = v_d.(m u'' + C u' + K u). The mass goes on where the plate's velocity jumps.
     """
-    s, (c, n) = run.slider, run.slider.direction
-    if s.driven != "plate" or not _steady(s):
-        return np.zeros(len(t))
-    X, Y = s.motion.rate(t)
-    d_x, d_y = X * c - Y * n, X * n + Y * c
-    found: Floats = s.mass * ((d_x - rows[:, 2]) * d_x + (d_y - rows[:, 3]) * d_y)
+    s = run.slider
+    jumps = [end for end, _ in drive_stretches(s.motion) if borders[0] <= end < borders[-1]]
+    times = np.union1d(borders, jumps)
+    d = np.reshape(_on_axes(s, s.motion.rate(times)), (2, -1))  # of a steady drive one for all
+    momentum = s.mass * (d - states_at(run, times)[:, 2:4].T)
+    carried = (momentum * d).sum(axis=0)
+    leaps = np.array([_on_axes(s, jump(s.motion, t)) for t in times[:-1].tolist()]).T
+    inside = np.searchsorted(times, borders)
+    gained = np.add.reduceat((momentum[:, :-1] * leaps).sum(axis=0), inside[:-1])
+    found: Floats = np.diff(carried[inside]) - gained
     return found
+
+
+def _on_axes(slider: Slider, vector: tuple[Any, ...]) -> tuple[Any, Any]:
+    """Return a vector (X, Y) by its components along the principal axes x and y."""
+    (X, Y), (c, n) = vector, slider.direction
+    return X * c - Y * n, X * n + Y * c
 
 
 def _stored(run: Trajectory, t: Floats, rows: Floats) -> Floats:
     """Return the energies (J) of the springs along x and y, and of the moving mass."""
-    s, (c, n) = run.slider, run.slider.direction
+    s = run.slider
     u_x, u_y, v_x, v_y = rows[:, :4].T
     if s.driven == "plate":
-        X, Y = s.motion.rate(t)
-        v_x, v_y = X * c - Y * n - v_x, X * n + Y * c - v_y
+        d_x, d_y = _on_axes(s, s.motion.rate(t))
+        v_x, v_y = d_x - v_x, d_y - v_y
     kinetic = 0.5 * s.mass * (v_x**2 + v_y**2)
     return np.stack([0.5 * s.k_x * u_x**2, 0.5 * s.k_y * u_y**2, kinetic])
