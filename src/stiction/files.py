@@ -1,14 +1,30 @@
-"""Files that are written whole or not at all."""
+"""Files and folders that are written whole or not at all, and that a power cut does not take.
+
+What is new is made in a workshop, a hidden folder beside its place. It takes its name when the
+disk has all of it. A process that is killed leaves its workshop: the next one takes it away.
+"""
 
 from __future__ import annotations
 
+import errno
 import os
+import shutil
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from stiction.errors import ResultError
+
+try:
+    import fcntl
+except ImportError:  # Windows: no process can tell whether another one is alive
+    fcntl = None  # type: ignore[assignment]
+
+WORKSHOP = ".stiction-"  # how the names of workshops begin
+AT_ONCE = 32  # files synced side by side: the disk takes hardly longer for them than for one
+UNSYNCABLE = (errno.EINVAL, errno.ENOTSUP)  # what some file systems say of a folder
 
 
 def placeable(path: str | Path) -> Path:
@@ -58,25 +74,110 @@ def make_folder(folder: Path) -> Path:
 
 @contextmanager
 def whole(target: Path) -> Iterator[Path]:
-    """Yield a path to write to, beside `target`, which takes its place when all is written.
+    """Yield a path to write to, which takes the place of `target` when all is written.
 
     Raises
     ------
     ResultError
         If it cannot be written there.
     """
-    part = None
     try:
-        handle, name = tempfile.mkstemp(dir=target.parent, suffix=".part")
-        os.close(handle)
-        part = Path(name)
-        yield part
-        mask = os.umask(0)
-        os.umask(mask)
-        part.chmod(0o666 & ~mask)
-        part.replace(target)
+        with workshop(target.parent) as room:
+            part = room / f"part{target.suffix}"
+            yield part
+            place({part: target})
     except OSError as error:
         raise ResultError(f"{target}: cannot be written: {error.strerror or error}") from None
+
+
+def place(made: Mapping[Path, Path]) -> None:
+    """Give files and folders of a workshop their names: the disk has first the one, then the other.
+
+    Parameters
+    ----------
+    made : mapping of Path to Path
+        What was made, and the path that it takes; a file that is there is replaced.
+    """
+    sync(each for part in made for each in (part, *part.rglob("*")))
+    changed = {target.parent for target in made.values()}
+    for part, target in made.items():
+        changed |= {folder.parent for folder in make_folders(target.parent)}
+        part.replace(target)
+    sync(changed)
+
+
+def make_folders(folder: Path) -> list[Path]:
+    """Make a folder, and those that it lies in; return the ones that were not there."""
+    new = [each for each in (folder, *folder.parents) if not each.exists()]
+    folder.mkdir(parents=True, exist_ok=True)
+    return new
+
+
+def sync(paths: Iterable[Path]) -> None:
+    """Wait until the disk has the content of files, and the names in folders."""
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        for _ in pool.map(_sync, paths):
+            pass
+
+
+def _sync(path: Path) -> None:
+    folder = path.is_dir()
+    if folder and os.name == "nt":  # it cannot be opened there
+        return
+    handle = os.open(path, os.O_RDWR if os.name == "nt" else os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    except OSError as error:
+        if not folder or error.errno not in UNSYNCABLE:
+            raise
     finally:
-        if part is not None:
-            part.unlink(missing_ok=True)
+        os.close(handle)
+
+
+@contextmanager
+def workshop(folder: Path) -> Iterator[Path]:
+    """Yield a hidden folder inside `folder` to make something in; it is gone afterwards.
+
+    Those of processes that were killed are taken away first.
+    """
+    for left in folder.glob(f"{WORKSHOP}*"):
+        with held(left, alone=True) as mine:
+            if mine:
+                shutil.rmtree(left, ignore_errors=True)
+    while True:
+        room = Path(tempfile.mkdtemp(dir=folder, prefix=WORKSHOP))
+        with held(room):
+            if not room.exists():  # another process took it for one that was left
+                continue
+            try:
+                yield room
+            finally:
+                shutil.rmtree(room, ignore_errors=True)
+            return
+
+
+@contextmanager
+def held(folder: Path, *, alone: bool = False) -> Iterator[bool]:
+    """Hold a folder, together with others or alone; yield whether it could be held.
+
+    What others hold is not waited for. The system lets go of a folder when the process ends,
+    however it does. Where folders cannot be held, as on Windows, nobody holds one alone.
+    """
+    handle = None
+    with suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY)
+    try:
+        yield handle is not None and _lock(handle, alone)
+    finally:
+        if handle is not None:
+            os.close(handle)
+
+
+def _lock(handle: int, alone: bool) -> bool:
+    if fcntl is None:
+        return not alone
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB if alone else fcntl.LOCK_SH)
+    except OSError:
+        return False
+    return True

@@ -6,6 +6,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from stiction.errors import StictionError
+from stiction.files import whole
 
 
 def init(path: str | Path = "slider.toml", *, force: bool = False) -> Path:
@@ -31,8 +32,6 @@ def init(path: str | Path = "slider.toml", *, force: bool = False) -> Path:
     if target.exists() and not force:
         raise StictionError(f"{target} is there already; choose another name, or force it")
     text = files("stiction").joinpath("template.toml").read_text(encoding="utf-8")
-    try:
-        target.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise StictionError(f"{target}: cannot be written: {error.strerror}") from None
+    with whole(target) as part:
+        part.write_text(text, encoding="utf-8")
     return target

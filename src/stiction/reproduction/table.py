@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from stiction.files import whole
 from stiction.reproduction.numbers import Number
 from stiction.sections import Section
 from stiction.sections import Table as Rows
@@ -101,7 +102,6 @@ class Table:
         ]
         texts = {".txt": self.text, ".md": self.markdown, ".json": json.dumps(entries, indent=2)}
         for suffix, text in texts.items():
-            part = folder / f"numbers{suffix}.part"
-            part.write_text(text + "\n", encoding="utf-8")
-            part.replace(folder / f"numbers{suffix}")
+            with whole(folder / f"numbers{suffix}") as part:
+                part.write_text(text + "\n", encoding="utf-8")
         return [folder / f"numbers{suffix}" for suffix in texts]
