@@ -4,6 +4,7 @@ import os
 from pathlib import Path
 
 import pytest
+from tests.entry import entry
 
 import stiction as st
 from stiction.solver import compiled, machine_code
@@ -132,3 +133,12 @@ def test_the_versions_used_last_stay(root):
     place = machine_code.folder()
     left = sorted(each.name for each in root.glob("compiled-*"))
     assert left == sorted([*names[-(machine_code.FOLDERS - 1) :], place.name])
+
+
+def test_a_part_is_not_called_from_python():
+    """Where numba would call code that is not there."""
+    part = compiled.inlined(twice)
+    for _ in range(2):
+        with pytest.raises(TypeError, match="twice is called by compiled code only"):
+            part(1.5)
+        assert entry(part)(1.5) == 3.0

@@ -36,20 +36,32 @@ def inlined(function: F) -> F:
     Without this the compiler keeps the larger parts apart and passes their many numbers
     through memory, which takes 1.7 times as long.
     """
-    made: Any = njit(nogil=True, forceinline=True, _nrt=False, **ARITHMETIC, **PART)(function)
-    return cast(F, made)
+    return _part(function, forceinline=True, _nrt=False)
 
 
 def allocating(function: F) -> F:
     """Compile a part of the loop that makes arrays, which are counted."""
-    made: Any = njit(nogil=True, **ARITHMETIC, **PART)(function)
-    return cast(F, made)
+    return _part(function)
 
 
 def piece(function: F) -> F:
     """Compile a part of the loop that is called from several places or is large, by itself."""
-    made: Any = njit(nogil=True, _nrt=False, **ARITHMETIC, **PART)(function)
+    return _part(function, _nrt=False)
+
+
+def _part(function: F, **options: bool) -> F:
+    made: Any = njit(nogil=True, **options, **ARITHMETIC, **PART)(function)
+
+    def refuse(*_: Any, **__: Any) -> Any:
+        raise TypeError(f"{function.__name__} is called by compiled code only")
+
+    # numba would call code that is not there, and Python would crash
+    made._insert, made._compile_for_args = _nowhere, refuse
     return cast(F, made)
+
+
+def _nowhere(*_: Any, **__: Any) -> None:
+    """Enter a compiled part among what Python can call: not at all."""
 
 
 def _entry(function: F, shelf: Shelf | None) -> F:
