@@ -63,7 +63,14 @@ def config(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path / "work")
     (tmp_path / "mylaw.py").write_text(LAW)
     (tmp_path / "a.toml").write_text(TABLE)
-    return tmp_path / "a.toml"
+    yield tmp_path / "a.toml"
+    forget_laws()
+
+
+def forget_laws():
+    """Take every law out of this process, as in a new one."""
+    for name in [name for name in sys.modules if name.startswith("stiction_law_")]:
+        del sys.modules[name]
 
 
 def python(code, cwd, **environment):
@@ -99,13 +106,47 @@ def test_a_description_names_a_file_and_a_class(config):
     assert st.Slider.from_toml(config) == run.slider
 
 
-def test_the_folder_of_the_description_comes_first(config):
-    working = config.parent / "work"
-    (working / "mylaw.py").write_text(LAW.replace("= 0.05", "= 0.07"))
-    config.write_text(TABLE.replace('v_h = "50 mm/s"', ""))
-    assert st.Slider.from_toml(config).law.v_h == 0.05
-    (config.parent / "mylaw.py").unlink()
-    assert st.Slider.from_toml(config).law.v_h == 0.07  # and it is not the one run before
+@pytest.mark.parametrize(
+    "to", ["../work/mylaw.py", "{work}/mylaw.py", "link.py", "linked/mylaw.py"]
+)
+def test_a_law_lies_in_the_folder_of_its_description(config, to):
+    """Not where its writer chose a path to, nor in the working folder, nor behind a link."""
+    folder, working = config.parent / "of", config.parent / "work"
+    folder.mkdir()
+    (working / "mylaw.py").write_text(LAW)
+    (folder / "link.py").symlink_to(working / "mylaw.py")
+    (folder / "linked").symlink_to(working)
+    text = TABLE.replace("mylaw.py", to.format(work=working))
+    (folder / "a.toml").write_text(text)
+    with pytest.raises(st.DescriptionError, match=r"lies outside the folder .* --trust"):
+        st.Description.from_toml(folder / "a.toml")
+    assert not (working / "ran").exists()
+    allowed = st.Description.from_toml(folder / "a.toml", trust=True)
+    assert allowed.slider.law == (0.2, 0.05)
+    (folder / "a.toml").write_text(TABLE)
+    with pytest.raises(st.DescriptionError, match=r"no file 'mylaw.py' in .*of"):
+        st.Description.from_toml(folder / "a.toml")
+
+
+def test_a_law_is_not_run_before_all_else_is_right(config):
+    folder = config.parent / "work"
+    wrong = [TABLE.replace("0.25 kg", "-0.25 kg"), TABLE.replace("50 ms", "50 m"), TABLE + "[x]\n"]
+    for text in wrong:
+        config.write_text(text)
+        with pytest.raises(st.DescriptionError) as error:
+            st.Description.from_toml(config)
+        assert len(error.value.faults) == 1
+    study = "[study]\nmeasures = ['pig']\nseed = -1\n[axes.phi]\nfrom = '1 deg'\ncount = 0\n"
+    config.write_text(TABLE.replace("0.25 kg", "-0.25 kg") + study)
+    with pytest.raises(st.DescriptionError) as error:
+        st.Study.from_toml(config)
+    assert [fault.path for fault in error.value.faults] == [
+        *("axes.phi.to", "axes.phi.count", "study.measures", "study.seed", "slider.mass")
+    ]
+    assert not (folder / "ran").exists()
+    config.write_text(TABLE)
+    st.Slider.from_toml(config)
+    assert (folder / "ran").exists()
 
 
 @pytest.mark.parametrize(
@@ -137,6 +178,10 @@ def test_faults_of_the_description(config, old, new, path, words):
         ("from numba", "from nunba", "cannot be run: ModuleNotFoundError: No module named"),
         ("class Mine", "class Mine Mine", "cannot be run: SyntaxError"),
         ("@njit", "import sys; sys.exit(3)", "cannot be run: SystemExit: 3"),
+        ("@njit", "raise BaseException('no')", "cannot be run: BaseException: no"),
+        ("mu_0 / ratio", "mu_0.exit() / ratio", "raises AttributeError"),
+        ("return law.mu_0", "raise GeneratorExit; return law.mu_0", "raises GeneratorExit"),
+        ("mu_0: float", "mu_0: 'Flot'", "Mine' cannot be made: NameError: name 'Flot'"),
         ("def slope", "def slop", "is not a friction law, it lacks slope; write class Mine("),
         ("mu_0 / ratio", "nu / ratio", "raises AttributeError"),
         ("mu_0 / ratio", "mu_0 / v / ratio", "raises ZeroDivisionError"),
@@ -215,21 +260,23 @@ except st.ResultError as error:
 """
 
 
-def test_another_process_runs_nothing_but_the_same_file(config, tmp_path):
+def test_another_process_runs_nothing(config, tmp_path):
     path = str(simulated(config).save(tmp_path / "a.nc"))
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
-    # the file beside the result says what was run
-    assert "Mine(mu_0=0.2" in python(LOAD.format(path=path, trust=""), elsewhere)
-    (elsewhere / "ran").unlink()
-    # another text there, or none
-    (tmp_path / "mylaw.py").write_text(LAW + "# edited\n")
+    # the same text beside the result, and in the working folder: the sender may have put it there
+    (elsewhere / "mylaw.py").write_text(LAW)
     said = python(REFUSED.format(path=path), elsewhere)
     assert "friction.law: 'mylaw.py:Mine' is a law of one's own" in said
-    assert "st.load(path, trust=True)" in said
-    (tmp_path / "mylaw.py").unlink()
-    assert "trust=True" in python(REFUSED.format(path=path), elsewhere)
-    assert list(elsewhere.iterdir()) == []  # nothing was run
+    assert "trust=True" in said
+    assert not (elsewhere / "ran").exists()  # nothing was run
+    # a module that was imported from the same text is the user's own choice
+    assert "Mine(mu_0=0.2" in python("import mylaw; " + LOAD.format(path=path, trust=""), elsewhere)
+    (elsewhere / "ran").unlink()
+    (elsewhere / "mylaw.py").write_text(LAW + "# edited\n")
+    assert "trust=True" in python("import mylaw" + REFUSED.format(path=path), elsewhere)
+    (elsewhere / "mylaw.py").unlink()
+    (elsewhere / "ran").unlink()
     assert "Mine(mu_0=0.2" in python(LOAD.format(path=path, trust=", trust=True"), elsewhere)
     assert (elsewhere / "ran").exists()
     # what was computed can be read anyway
@@ -344,9 +391,7 @@ open("law.pickle", "wb").write(pickle.dumps(d.slider))
     assert "Mine(mu_0=0.2" in python(load, tmp_path, **cache)
 
 
-def test_the_command_line(config, tmp_path, monkeypatch, capsys):
-    from stiction.friction import source
-
+def test_the_command_line(config, tmp_path, capsys):
     def inside(*arguments):
         with pytest.raises(SystemExit) as end:
             main([str(argument) for argument in arguments])
@@ -355,10 +400,9 @@ def test_the_command_line(config, tmp_path, monkeypatch, capsys):
     assert inside("run", config, "--output", tmp_path / "a.nc") == 0
     assert inside("plot", tmp_path / "a.nc", "--output", tmp_path / "a.svg") == 0
     (tmp_path / "mylaw.py").unlink()
-    name = source.module_name(source.Text("mylaw.py", LAW))
-    monkeypatch.delitem(sys.modules, name)  # as in a new process
+    forget_laws()
     capsys.readouterr()
     assert inside("plot", tmp_path / "a.nc", "--output", tmp_path / "b.png") == 2
-    assert "stiction plot --trust" in capsys.readouterr().err
+    assert "on the command line --trust" in capsys.readouterr().err
     assert not (tmp_path / "b.png").exists()
     assert inside("plot", tmp_path / "a.nc", "--output", tmp_path / "b.png", "--trust") == 0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, Self
@@ -12,10 +12,10 @@ from pydantic import Field, StrictBool, model_validator
 
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import law_table, read_law
-from stiction.friction.own import Find, kept, named, trusted
+from stiction.friction.own import Find, held, is_own, named
 from stiction.initial import Initial
 from stiction.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider
-from stiction.tables import Reader, folder_of, gather, read_toml, toml_text
+from stiction.tables import Reader, folder_of, gather, read_json, read_toml, toml_text
 from stiction.units import Duration, Number, SampleRate, Velocity
 from stiction.validation import Described
 from stiction.writing import described, slider_tables
@@ -68,8 +68,16 @@ class Description(NamedTuple):
     run: Settings
 
     @classmethod
-    def from_toml(cls, path: str | Path, changes: Mapping[str, Any] | None = None) -> Self:
+    def from_toml(
+        cls,
+        path: str | Path,
+        changes: Mapping[str, Any] | None = None,
+        *,
+        trust: bool = False,
+    ) -> Self:
         """Read a description file, or a text of several lines as `to_toml` writes it.
+
+        A friction law of the user's own is run from its file, after all else was found right.
 
         Parameters
         ----------
@@ -78,35 +86,41 @@ class Description(NamedTuple):
         changes : mapping, optional
             Other values of some parameters, by their paths: ``{"drive.velocity": "2 mm/s"}``;
             see `stiction.paths`.
+        trust : bool, optional
+            Whether the file of a law may lie outside the description's folder (of a text: the
+            working one).
 
         Raises
         ------
         DescriptionError
             Naming every fault with its path, or why the file cannot be read.
         """
-        return cls.from_dict(read_toml(path, changes), find=named(folder_of(path), Path()))
+        return cls.from_dict(read_toml(path, changes), find=named(folder_of(path), trust))
 
     @classmethod
-    def from_dict(cls, raw: Mapping[str, Any], *, find: Find | None = None) -> Self:
+    def from_dict(
+        cls, raw: Mapping[str, Any], *, find: Find | None = None, known: Sequence[Fault] = ()
+    ) -> Self:
         """Read a description from nested tables, as in the TOML file.
 
         `find` says where the file of a law of the user's own is looked for, see
-        `stiction.friction.own`; in the working folder when left out.
+        `stiction.friction.own`; in the working folder when left out. It is not run where there
+        are other faults, the `known` ones among them, which are told with those found.
         """
         tables: dict[str, Reader] = {**TABLES, "friction": partial(read_law, find=find)}
-        parts = gather(raw, tables, optional=("initial",), absent=OPTIONAL_TABLES)
+        last = ("friction",) if is_own(raw.get("friction")) else ()
+        absent = OPTIONAL_TABLES
+        parts = gather(raw, tables, optional=("initial",), absent=absent, last=last, known=known)
         return cls(Slider.from_parts(parts), parts["initial"], parts["run"])
 
     @classmethod
-    def from_json(cls, text: str, *folders: Path, trust: bool = False) -> Self:
+    def from_json(cls, text: str, *, trust: bool = False) -> Self:
         """Read back what `to_json` wrote.
 
-        The file of a law of the user's own is looked for in `folders` and in the working one,
-        and must say what it said when it was run; with `trust`, what the JSON text holds of it
-        is run otherwise.
+        A law of the user's own is one that this process has loaded already, from the same text;
+        with `trust`, the text that the JSON holds is run otherwise.
         """
-        find = (trusted if trust else kept)(*folders, Path())
-        return cls.from_dict(json.loads(text), find=find)
+        return cls.from_dict(read_json(text), find=held(trust))
 
     def to_toml(self) -> str:
         """Return the description as TOML, with units; `from_toml` reads the same again."""

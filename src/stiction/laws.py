@@ -15,6 +15,7 @@ from stiction.errors import DescriptionError, Fault
 from stiction.friction import LAWS, Law, has_state, read_law
 from stiction.friction.law import static_coefficient
 from stiction.friction.likeness import Traits, like, traits
+from stiction.friction.own import named
 from stiction.initial import Initial
 from stiction.tables import read_toml
 from stiction.validation import unknown
@@ -68,9 +69,9 @@ def read(description: Description, value: Any) -> Law:
     if text.startswith("{"):
         return read_law(inline(text))
     if text.endswith(".toml"):
-        return read_law(friction_table(text))
-    if ":" in text:
-        return read_law({"law": text})
+        return read_law(friction_table(text), named(Path(text).parent))
+    if ":" in text:  # not from a file: the user says so
+        return read_law({"law": text}, named(Path(), trust=True))
     if text in LAWS:
         return like(LAWS[text], shared_traits(description))
     other = f"(or a table {EXAMPLE}, a .toml file, file.py:Class)"
@@ -81,7 +82,7 @@ def inline(text: str) -> dict[str, Any]:
     """Return the inline TOML table that a text holds."""
     try:
         table: dict[str, Any] = tomllib.loads(f"law = {text}")["law"]
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:
         message = f"is not a TOML table: {error}; write for example {EXAMPLE}"
         raise DescriptionError([Fault("law", message)]) from None
     return table

@@ -22,7 +22,7 @@ from stiction.drive import (
 from stiction.errors import DescriptionError
 from stiction.friction import Law, has_state, read_law
 from stiction.friction.kinds import is_law
-from stiction.friction.own import named
+from stiction.friction.own import is_own, named
 from stiction.sections import Section, as_html
 from stiction.tables import Reader, folder_of, gather, read_toml, toml_text
 from stiction.units import Angle, Damping, Force, Mass, Stiffness
@@ -210,7 +210,13 @@ class Slider(Apparatus):
         return type(self)(**(values | changes))
 
     @classmethod
-    def from_toml(cls, path: str | Path, changes: Mapping[str, Any] | None = None) -> Slider:
+    def from_toml(
+        cls,
+        path: str | Path,
+        changes: Mapping[str, Any] | None = None,
+        *,
+        trust: bool = False,
+    ) -> Slider:
         """Read the slider of a description; `Description` reads the whole of it.
 
         Parameters
@@ -219,13 +225,16 @@ class Slider(Apparatus):
             A file, or a text of several lines as `to_toml` writes it.
         changes : mapping, optional
             Other values of some parameters by their paths, as `Description.from_toml`.
+        trust : bool, optional
+            Whether the file of a friction law may lie outside the description's folder.
         """
-        raw, find = read_toml(path, changes), named(folder_of(path), Path())
+        raw, find = read_toml(path, changes), named(folder_of(path), trust)
         return cls.from_parts(
             gather(
                 {name: raw[name] for name in raw if name in SLIDER_TABLES},
                 {**SLIDER_TABLES, "friction": partial(read_law, find=find)},
                 absent=OPTIONAL_TABLES,
+                last=("friction",) if is_own(raw.get("friction")) else (),
             )
         )
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import tomllib
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,8 @@ from stiction.paths import with_changes
 from stiction.validation import unknown
 
 Reader = Callable[[dict[str, Any]], Any]
+LARGEST = 2**24  # bytes of a description: a table of a million values
+DEEPEST = 16  # tables and lists inside one another; descriptions have five
 
 
 def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dict[str, Any]:
@@ -35,20 +38,66 @@ def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dic
         message = f"{type(path).__name__} is no description; give its file, or its text in TOML"
         raise DescriptionError([Fault("path", message)])
     written = isinstance(path, str) and "\n" in path
+    where = "the text" if written else str(path)
     try:
-        text = str(path) if written else Path(path).read_text(encoding="utf-8-sig")
-        raw = tomllib.loads(text)
-        return with_changes(raw, changes) if changes else raw
+        raw = tomllib.loads(str(path) if written else _text_of(Path(path)))
+    except RecursionError:
+        message = f"is nested more deeply than {DEEPEST} levels; no description is"
     except OSError as error:
         message = f"{error.strerror or 'cannot be read'}; write a description with 'stiction init'"
     except UnicodeDecodeError:
         message = "is not text in UTF-8; write a description with 'stiction init'"
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:  # what is not TOML, and integers of thousands of digits
         unquoted = (
             "; a value with a unit goes in quotes" if "Expected newline" in str(error) else ""
         )
         message = f"is not TOML: {error}{unquoted}"
-    raise DescriptionError([Fault("the text" if written else str(path), message)])
+    else:
+        shallow(raw, where)
+        return with_changes(raw, changes) if changes else raw
+    raise DescriptionError([Fault(where, message)])
+
+
+def read_json(text: str) -> dict[str, Any]:
+    """Return the tables that a text in JSON holds.
+
+    Raises
+    ------
+    DescriptionError
+        If it holds none.
+    """
+    try:
+        raw = json.loads(text)
+    except (ValueError, RecursionError, TypeError) as error:
+        raise DescriptionError([Fault("description", f"is not JSON: {error}")]) from None
+    if not isinstance(raw, dict):
+        raise DescriptionError([Fault("description", f"must be tables, is {raw!r:.60}")])
+    shallow(raw, "description")
+    return raw
+
+
+def shallow(raw: Any, where: str) -> None:
+    """Refuse tables nested so deeply that following them would exhaust the stack."""
+    level = [raw]
+    for _ in range(DEEPEST):
+        inside = (each.values() if isinstance(each, dict) else each for each in level)
+        level = [each for values in inside for each in values if isinstance(each, dict | list)]
+        if not level:
+            return
+    message = f"is nested more deeply than {DEEPEST} levels; no description is"
+    raise DescriptionError([Fault(where, message)])
+
+
+def _text_of(path: Path) -> str:
+    """Return the text of a file, of which no more is read than a description may have."""
+    try:
+        with path.open("rb") as file:
+            content = file.read(LARGEST + 1)
+    except ValueError as error:  # a name with a zero in it
+        raise OSError(str(error)) from None
+    if len(content) > LARGEST:
+        raise OSError(errno.EFBIG, f"has more than {LARGEST:,} bytes")
+    return content.decode("utf-8-sig")
 
 
 def folder_of(path: str | Path) -> Path:
@@ -83,21 +132,25 @@ def gather(
     readers: Mapping[str, Reader],
     optional: Collection[str] = (),
     absent: Collection[str] = (),
+    last: Collection[str] = (),
+    known: Sequence[Fault] = (),
 ) -> dict[str, Any]:
     """Read every table with its reader.
 
     A table that is not there is an error, or read as an empty one if it is `optional`, or
-    left out of what is returned if it may be `absent`.
+    left out of what is returned if it may be `absent`. Those that come `last`, which run what
+    they name, are read only where there is no fault in any other, nor a `known` one.
 
     Raises
     ------
     DescriptionError
-        With every fault in every table, each below the table's name.
+        With every fault in every table, each below the table's name, after the known ones.
     """
-    found = [Fault(name, unknown("table", name, readers)) for name in raw if name not in readers]
+    found = [*known]
+    found += [Fault(name, unknown("table", name, readers)) for name in raw if name not in readers]
     parts: dict[str, Any] = {}
-    for name, read in readers.items():
-        if name in absent and name not in raw:
+    for name, read in sorted(readers.items(), key=lambda item: item[0] in last):
+        if (name in absent and name not in raw) or (name in last and found):
             continue
         table = raw.get(name, {} if name in optional else None)
         if table is None:

@@ -228,8 +228,8 @@ def load(path: str | Path, *, trust: bool = False) -> Trajectory:
         Written by ``run.save`` or ``stiction run``.
     trust : bool, optional
         Whether the text of a friction law that stands in the file may be run. It is needed
-        only for a law of one's own whose file is neither beside the result nor in the working
-        folder, or has changed: a result by itself never has anything run.
+        only for a law of one's own that this process has not loaded already, from the same
+        text: a result by itself never has anything run.
 
     Raises
     ------
@@ -248,9 +248,7 @@ def load(path: str | Path, *, trust: bool = False) -> Trajectory:
         what = ", ".join(missing) or "its description"
         raise ResultError(f"{path}: not a result of 'stiction run'; it lacks {what}")
     try:
-        description = Description.from_json(
-            data.attrs["description"], Path(path).parent, trust=trust
-        )
+        description = Description.from_json(data.attrs["description"], trust=trust)
         statistics = Statistics(
             **{
                 name: data.attrs[name].item()

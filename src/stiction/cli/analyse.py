@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from stiction.cli.options import MaybeOutput
+from stiction.cli.options import MaybeOutput, Trust
 
 
-def analyse(result: Path, /, *, output: MaybeOutput = None, trust: bool = False) -> None:
+def analyse(result: Path, /, *, output: MaybeOutput = None, trust: Trust = False) -> None:
     """Analyse a result: kind of motion, cycles, creep before slip, oscillation, energy.
 
     Prints what was found and writes all of it: cycles.csv (a row a cycle), summary.csv,
@@ -26,8 +26,6 @@ def analyse(result: Path, /, *, output: MaybeOutput = None, trust: bool = False)
         A file written by `stiction run`.
     output
         The folder to write to, RESULT-analysis unless told; made if it is not there.
-    trust
-        Run the friction law of one's own that the result holds, where its file is not found.
     """
     from stiction.analysis.export import write as write_tables
     from stiction.analysis.report import analyse as understand

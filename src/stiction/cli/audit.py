@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from stiction.cli.options import Changes, MaybeOutput, changes
+from stiction.cli.options import Changes, MaybeOutput, Trust, changes
 
 
-def audit(config: Path, /, *, output: MaybeOutput = None, set: Changes = None) -> int:
+def audit(
+    config: Path, /, *, output: MaybeOutput = None, trust: Trust = False, set: Changes = None
+) -> int:
     """Audit the apparatus that CONFIG describes: is what it will show friction, or itself?
 
     Prints what theory predicts from the description alone beside what a simulated test shows:
@@ -37,7 +39,7 @@ def audit(config: Path, /, *, output: MaybeOutput = None, set: Changes = None) -
     from stiction.cli.tables import printed
     from stiction.slider import Slider
 
-    slider = Slider.from_toml(config, changes(set))
+    slider = Slider.from_toml(config, changes(set), trust=trust)
     if output is not None:
         from stiction.auditing.page import writable
 

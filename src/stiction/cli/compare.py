@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from stiction.cli.options import Changes, Output, changes
+from stiction.cli.options import Changes, Output, Trust, changes
 
 if TYPE_CHECKING:
     from stiction.trajectory import Trajectory
@@ -22,6 +22,7 @@ def compare(
     law: Annotated[list[str], Parameter(negative=())],
     output: Output,
     data: Path | None = None,
+    trust: Trust = False,
     set: Changes = None,
 ) -> int:
     """Run the apparatus of CONFIG under its own friction law and others, and draw them together.
@@ -61,7 +62,7 @@ def compare(
     from stiction.plotting.canvas import figure_of
     from stiction.plotting.save import drawable, write
 
-    description = Description.from_toml(config, changes(set))
+    description = Description.from_toml(config, changes(set), trust=trust)
     drawable(output)
     if data is not None:
         usable_folder(data)

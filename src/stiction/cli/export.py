@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from stiction.cli.options import Output
+from stiction.cli.options import Output, Trust
 
 
-def export(result: Path, /, *, output: Output, trust: bool = False) -> None:
+def export(result: Path, /, *, output: Output, trust: Trust = False) -> None:
     """Write a result as CSV, Parquet or MATLAB.
 
     For example, after `stiction run my.toml -o my.nc`:
@@ -21,8 +21,6 @@ def export(result: Path, /, *, output: Output, trust: bool = False) -> None:
     output
         The file to write: .csv or .parquet for the samples, with the stick intervals in a second
         file beside it (my-sticks.csv); .mat for all in one.
-    trust
-        Run the friction law of one's own that the result holds, where its file is not found.
     """
     from stiction import trajectory
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from stiction.cli.options import MaybeOutput, named
+from stiction.cli.options import MaybeOutput, Trust, named
 
 
 def map(
@@ -17,7 +17,7 @@ def map(
     of: Annotated[list[str] | None, Parameter(negative=())] = None,
     at: Annotated[list[str] | None, Parameter(negative=())] = None,
     output: MaybeOutput = None,
-    trust: Annotated[bool, Parameter(negative=())] = False,
+    trust: Trust = False,
 ) -> None:
     """Draw what the study in the store STUDY found, finished or not.
 
@@ -45,9 +45,6 @@ def map(
         taken. Repeat it for several.
     output
         The figure to write (.png, .pdf or .svg); STUDY.png beside the store when left out.
-    trust
-        Run the text of a friction law of one's own that stands in the store, if its file is not
-        here.
     """
     from stiction.plotting.canvas import figure_of
     from stiction.plotting.save import drawable, write

@@ -12,6 +12,16 @@ from stiction.errors import StictionError
 
 Output = Annotated[Path, Parameter(name=("--output", "-o"))]
 MaybeOutput = Annotated[Path | None, Parameter(name=("--output", "-o"))]
+Trust = Annotated[
+    bool,
+    Parameter(
+        negative=(),
+        help=(
+            "Run a friction law of one's own that nothing vouches for: the text that a result or a "
+            "store holds, or a file outside the folder of CONFIG."
+        ),
+    ),
+]
 Changes = Annotated[
     list[str] | None,
     Parameter(
@@ -43,5 +53,5 @@ def value(text: str) -> Any:
     """Return a value as TOML has it; what is none is text, as a number with its unit."""
     try:
         return tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):
         return text

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from stiction.cli.options import Output
+from stiction.cli.options import Output, Trust
 
 
-def plot(result: Path, /, *, output: Output, trust: bool = False) -> None:
+def plot(result: Path, /, *, output: Output, trust: Trust = False) -> None:
     """Draw the overview of a result: the system, forces, direction, position, slip speed.
 
     For example, after `stiction run my.toml -o my.nc`:
@@ -20,8 +20,6 @@ def plot(result: Path, /, *, output: Output, trust: bool = False) -> None:
         A file written by `stiction run`.
     output
         The figure to write: .png, .pdf or .svg.
-    trust
-        Run the friction law of one's own that the result holds, where its file is not found.
     """
     from stiction.plotting.canvas import figure_of
     from stiction.plotting.door import plot as draw

@@ -5,13 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from stiction.cli.options import Changes, Output, changes
+from stiction.cli.options import Changes, Output, Trust, changes
 
 if TYPE_CHECKING:
     from stiction.trajectory import Trajectory
 
 
-def run(config: Path, /, *, output: Output, set: Changes = None) -> int:
+def run(config: Path, /, *, output: Output, trust: Trust = False, set: Changes = None) -> int:
     """Simulate the apparatus that CONFIG describes and write the result as NetCDF.
 
     For example, with what `stiction init my.toml` writes, and then with another misalignment
@@ -38,7 +38,7 @@ def run(config: Path, /, *, output: Output, set: Changes = None) -> int:
     from stiction.description import Description
     from stiction.trajectory import writable
 
-    description = Description.from_toml(config, changes(set))
+    description = Description.from_toml(config, changes(set), trust=trust)
     writable(output)
     with progress("simulating") as report:
         result = simulation.run(description, progress=report)

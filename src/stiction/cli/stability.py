@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
-from stiction.cli.options import Changes, MaybeOutput, changes
+from stiction.cli.options import Changes, MaybeOutput, Trust, changes
 
 
 def stability(
@@ -19,6 +19,7 @@ def stability(
         list[tuple[str, str]] | None, Parameter(negative=(), allow_leading_hyphen=True)
     ] = None,
     output: MaybeOutput = None,
+    trust: Trust = False,
     set: Changes = None,
 ) -> None:
     """Say whether the apparatus of CONFIG slides steadily, and at which parameters that changes.
@@ -59,7 +60,7 @@ def stability(
     from stiction.plotting.save import drawable, write
     from stiction.slider import Slider
 
-    slider = Slider.from_toml(config, changes(set))
+    slider = Slider.from_toml(config, changes(set), trust=trust)
     paths, ranges = over or OVER, [tuple(map(number, each)) for each in between or []]
     if len(paths) > 2 or len(ranges) not in (0, len(paths)):
         counts = f"{len(paths)} and {len(ranges)}"

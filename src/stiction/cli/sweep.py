@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from stiction.cli.options import Changes, Output, changes, named
+from stiction.cli.options import Changes, Output, Trust, changes, named
 
 if TYPE_CHECKING:
     from stiction.study.engines import Engine
@@ -29,6 +29,7 @@ def sweep(
     scheduler: str | None = None,
     quiet: Annotated[bool, Parameter(negative=())] = False,
     json_lines: Annotated[bool, Parameter(negative=())] = False,
+    trust: Trust = False,
     set: Changes = None,
 ) -> int:
     """Do the study that CONFIG describes: many runs, kept in a zarr store.
@@ -91,7 +92,8 @@ def sweep(
     from stiction.study.sweeping import sweep as do
 
     found = None
-    study, means = described(config, preset, changes(set)), engine(threads, workers, scheduler)
+    study = described(config, preset, changes(set), trust)
+    means = engine(threads, workers, scheduler)
     try:
         with shown(quiet, json_lines) as (report, conclude):
             result = do(study, output, engine=means, progress=report)
@@ -107,7 +109,9 @@ def sweep(
     return 1 if result.failed else 0
 
 
-def described(config: Path | None, preset: str | None, given: Mapping[str, Any]) -> Study:
+def described(
+    config: Path | None, preset: str | None, given: Mapping[str, Any], trust: bool = False
+) -> Study:
     """Return the study that is asked for, with other values of some parameters."""
     from stiction.errors import StictionError
     from stiction.paths import with_changes
@@ -118,7 +122,7 @@ def described(config: Path | None, preset: str | None, given: Mapping[str, Any])
         known = ", ".join(presets.PRESETS)
         raise StictionError(f"give a study's file or --preset NAME, one of both; known: {known}")
     if config is not None:
-        return Study.from_toml(config, given)
+        return Study.from_toml(config, given, trust=trust)
     study = presets.preset(str(preset))
     return Study.from_dict(with_changes(study.to_dict(), given)) if given else study
 

@@ -17,7 +17,7 @@ from stiction.friction.exponential_weakening import ExponentialWeakening
 from stiction.friction.hyperbolic_weakening import HyperbolicWeakening
 from stiction.friction.law import FrictionLaw, Internal, Law, StateLaw, has_state, states
 from stiction.friction.lugre import LuGre, bending
-from stiction.friction.own import Find, named, own_table, read_own
+from stiction.friction.own import Find, is_own, named, own_table, read_own
 from stiction.friction.rate_and_state import FUNCTIONS as _RATE_AND_STATE
 from stiction.friction.rate_and_state_one import RateStateAgeing, RateStateSlip
 from stiction.friction.rate_and_state_two import RateStateAgeing2, RateStateSlip2
@@ -47,8 +47,7 @@ def read_law(table: dict[str, Any], find: Find | None = None) -> Law:
 
     `find` finds a law of the user's own.
     """
-    name, surface = table.get("law"), table.pop("anisotropy", None)
-    own = isinstance(name, str) and ":" in name
+    surface, own = table.pop("anisotropy", None), is_own(table)
     law: Law = read_own(table, find or named(Path())) if own else choose(table, "law", LAWS)
     return law if surface is None else read_anisotropy(law, surface)
 

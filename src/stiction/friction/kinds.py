@@ -59,12 +59,19 @@ def tried(law: Any, name: str) -> Any:
     for method, v in [("coefficient", PROBED[1])] if has_state(law) else probes:
         try:
             value = float(getattr(law, method)(v))
-        except Exception as error:  # whatever the user's law raises
-            what = f"raises {type(error).__name__}: {error}".splitlines()[0]
-            raise fault(f"{method}(law, {v:g}) of {name!r} {what}; correct it there") from None
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # whatever the user's law raises
+            what = f"{method}(law, {v:g}) of {name!r} raises {raised(error)}; correct it there"
+            raise fault(what) from None
         if not isfinite(value):
             raise fault(f"{method}(law, {v:g}) of {name!r} is {value}; it must be finite")
     return law
+
+
+def raised(error: BaseException) -> str:
+    """Return an error in one line."""
+    return " ".join(f"{type(error).__name__}: {error}".split("\n", 1)[0].split())
 
 
 def _is_its_own(value: Any, module: ModuleType) -> bool:

@@ -1,45 +1,49 @@
 """A law of the user's own, named by file and class: ``mylaw.py:MyLaw``.
 
-A description runs the file that it names, as a script would be run. A result is data: reading
-it back runs nothing but what this process has run already, or a file that is there and says
-the same as what the result holds. Only one who trusts a result has the text in it run.
+A description runs the file that it names, as a script would be run: one in its own folder, unless
+more is allowed. A result is data: reading it back runs nothing. Its law is one that this process
+has loaded already, from the same text; only one who trusts a result has the text in it run.
 """
 
 from __future__ import annotations
 
 import inspect
+import os
 import sys
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 from stiction.errors import DescriptionError
-from stiction.friction.kinds import fault, law_in, tried
+from stiction.friction.kinds import fault, law_in, raised, tried
 from stiction.friction.source import Text, member, module_name, module_of, read, text_of
 from stiction.validation import made
 
 # from a law's name and the text kept with it, if any, to the class
 Find = Callable[[str, str | None], type[Any]]
+LARGEST = 2**20  # bytes of a law's file
 
 
-def named(*folders: Path) -> Find:
-    """Return how a description's law is found: its file is looked for in folders, and run."""
+def named(folder: Path, trust: bool = False) -> Find:
+    """Return how a description's law is found: its file is run, if it lies in the `folder`.
+
+    With `trust` it may lie anywhere.
+    """
 
     def find(name: str, text: str | None) -> type[Any]:
         if text is not None:  # not written by hand
-            return kept(*folders)(name, text)
+            return held(trust)(name, text)
         file, kind = split(name)
-        for path in places(file, folders):
-            return law_in(run(Text(_relative(file), _read(path)), str(path)), kind, name)
-        looked = ", ".join(dict.fromkeys(str(folder) for folder in folders)) or "no folder"
-        raise fault(f"no file {file!r} in {looked}; write its path from there")
+        path = _there(folder, file, trust)
+        return law_in(run(Text(_relative(file), _read(path)), str(path)), kind, name)
 
     return find
 
 
-def kept(*folders: Path) -> Find:
-    """Return how the law of a result is found: nothing is run that is not there already."""
+def held(trust: bool = False) -> Find:
+    """Return how the law of a result is found: nothing is run, unless its text is trusted."""
 
     def find(name: str, text: str | None) -> type[Any]:
         file, kind = split(name)
@@ -51,31 +55,14 @@ def kept(*folders: Path) -> Find:
             )
         for candidate in loaded(file, kind, text):
             return candidate
-        there = [path for path in places(file, folders) if _read(path) == text]
-        for path in there:
-            return law_in(run(Text(_relative(file), text), str(path)), kind, name)
-        raise fault(
-            f"{name!r} is a law of one's own, and no {file} with the text that was run is here; "
-            "put it beside the result or in the working folder, or import its module first; or, "
-            "if you trust where this comes from, run the text kept in it: "
-            "st.load(path, trust=True), stiction plot --trust; the arrays can be read without "
-            "it: xarray.open_dataset"
-        )
-
-    return find
-
-
-def trusted(*folders: Path) -> Find:
-    """Return how the law of a trusted result is found: if need be, the text in it is run."""
-
-    def find(name: str, text: str | None) -> type[Any]:
-        file, kind = split(name)
-        try:
-            return kept(*folders)(name, text)
-        except DescriptionError:
-            if text is None:
-                raise
+        if trust:
             return law_in(run(Text(_relative(file), text), f"<{file}>"), kind, name)
+        raise fault(
+            f"{name!r} is a law of one's own, and nothing that came with it is run unasked: "
+            "import its module first; or, if you trust where this comes from, run the text kept "
+            "in it: trust=True, on the command line --trust; the arrays can be read without it: "
+            "xarray.open_dataset"
+        )
 
     return find
 
@@ -85,7 +72,15 @@ def read_own(table: dict[str, Any], find: Find) -> Any:
     name, text = table.pop("law"), table.pop("source", None)
     if not isinstance(text, str | None):
         raise fault(f"must be text, is {text!r}; leave it out", "source")
-    return tried(made(find(name, text), table), name)
+    kind = find(name, text)
+    with told(f"{name!r} cannot be made"):
+        return tried(made(kind, table), name)
+
+
+def is_own(table: Any) -> bool:
+    """Return whether a table [friction] names a file, which has to be run."""
+    name = table.get("law") if isinstance(table, dict) else None
+    return isinstance(name, str) and ":" in name
 
 
 def own_table(law: Any) -> dict[str, Any]:
@@ -105,11 +100,17 @@ def split(name: str) -> tuple[str, str]:
     return file, kind
 
 
-def places(file: str, folders: tuple[Path, ...]) -> Iterator[Path]:
-    """Yield the files of that name that are there."""
-    for folder in dict.fromkeys(folders):
-        if (folder / file).is_file():
-            yield (folder / file).absolute()
+def _there(folder: Path, file: str, trust: bool) -> Path:
+    """Return the file of a law, links resolved, if it is there and may be run."""
+    home, path = os.path.realpath(folder), os.path.realpath(folder / file)
+    if not trust and not Path(path).is_relative_to(home):
+        raise fault(
+            f"{file!r} lies outside the folder of the description, {folder}: put the law into it; "
+            "or, if you trust who wrote this, allow it: trust=True, on the command line --trust"
+        )
+    if not os.path.isfile(path):
+        raise fault(f"no file {file!r} in {folder}; write its path from there")
+    return Path(path)
 
 
 def loaded(file: str, kind: str, text: str) -> Iterator[type[Any]]:
@@ -126,15 +127,25 @@ def loaded(file: str, kind: str, text: str) -> Iterator[type[Any]]:
 
 def run(text: Text, path: str) -> ModuleType:
     """Run a text; what it raises becomes one line."""
-    try:
+    with told(f"{path} cannot be run"):
         return module_of(text, path)
-    except (Exception, SystemExit) as error:
-        what = f"{type(error).__name__}: {error}".splitlines()[0]
-        raise fault(f"{path} cannot be run: {what}") from None
+
+
+@contextmanager
+def told(what: str) -> Iterator[None]:
+    """Turn whatever a user's text raises into a fault; an interrupt is the user's own."""
+    try:
+        yield
+    except (DescriptionError, KeyboardInterrupt):
+        raise
+    except BaseException as error:
+        raise fault(f"{what}: {raised(error)}") from None
 
 
 def _read(path: Path) -> str:
     try:
+        if path.stat().st_size > LARGEST:
+            raise fault(f"{path} is no friction law: it has more than {LARGEST} bytes")
         return read(path)
     except (OSError, SyntaxError, UnicodeDecodeError) as error:
         raise fault(f"{path} cannot be read: {error}") from None

@@ -100,10 +100,10 @@ def _remade(text: Text, path: str, name: str, values: tuple[Any, ...]) -> Any:
 
 
 def member(module: ModuleType, name: str) -> Any:
-    """Return what a module calls by a name, or None."""
+    """Return what a module calls by a name, or None; nothing of the module is run for it."""
     found: Any = module
     for part in name.split("."):
-        found = getattr(found, part, None)
+        found = inspect.getattr_static(found, part, None)
     return found
 
 

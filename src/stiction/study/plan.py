@@ -14,7 +14,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 from stiction.deprecation import warn_renamed
 from stiction.description import Description
 from stiction.errors import DescriptionError, Fault
-from stiction.friction.own import Find, kept, named, trusted
+from stiction.friction.own import Find, held, named
 from stiction.sections import Section, Table, as_html
 from stiction.study.axis_table import axis_table
 from stiction.study.coordinates import Coordinate, coordinate_faults, coordinates, zip_faults
@@ -23,7 +23,7 @@ from stiction.study.measures import DEFAULT
 from stiction.study.observed import seconds_of
 from stiction.study.parameters import varied
 from stiction.study.reading import axes_of, is_description, measures_of, traces_of
-from stiction.tables import folder_of, read_toml
+from stiction.tables import folder_of, read_json, read_toml
 from stiction.validation import Described, faulty
 from stiction.writing import parameter_table, slider_tables
 
@@ -180,17 +180,24 @@ class Study(Described):
         return refine(self, path, along, to, apart=apart, engine=engine, progress=progress)
 
     @classmethod
-    def from_toml(cls, path: str | Path, changes: Mapping[str, Any] | None = None) -> Self:
+    def from_toml(
+        cls,
+        path: str | Path,
+        changes: Mapping[str, Any] | None = None,
+        *,
+        trust: bool = False,
+    ) -> Self:
         """Read a study's file: a description with the tables [study] and [axes] beside it.
 
-        With `changes`, other values of some parameters by their paths, as `Description.from_toml`.
+        With `changes`, other values of some parameters by their paths; this and `trust` as of
+        `Description.from_toml`.
 
         Raises
         ------
         DescriptionError
             Naming every fault with its path, or why the file cannot be read.
         """
-        return cls.from_dict(read_toml(path, changes), find=named(folder_of(path), Path()))
+        return cls.from_dict(read_toml(path, changes), find=named(folder_of(path), trust))
 
     @classmethod
     def from_dict(cls, raw: Mapping[str, Any], *, find: Find | None = None) -> Self:
@@ -199,25 +206,36 @@ class Study(Described):
         own, axes = raw.get("study", {}), raw.get("axes")
         if not isinstance(own, Mapping):
             found.append(Fault("study", f"must be a table [study], is {own!r}"))
-        if axes is None:
+        elif strange := sorted({"base", "axes"} & own.keys()):
+            found += [Fault(f"study.{key}", "is no key here; leave it out") for key in strange]
+        elif axes is None:
             found.append(Fault("axes", "missing; write for example a table [axes.phi]"))
+        else:
+            found += [each for each in cls._faults(own, axes, None) if each.path != "study.base"]
+        rest = {key: value for key, value in raw.items() if key not in ("study", "axes")}
+        base = Description.from_dict(rest, find=find, known=found)
+        return cls._made(own, axes, base)
+
+    @classmethod
+    def _faults(cls, own: Mapping[str, Any], axes: Any, base: Any) -> Sequence[Fault]:
+        """Return what is wrong with a study's own tables, whatever its base is."""
         try:
-            rest = {key: value for key, value in raw.items() if key not in ("study", "axes")}
-            base = Description.from_dict(rest, find=find)
+            cls._made(own, axes, base)
         except DescriptionError as error:
-            raise DescriptionError([*found, *error.faults]) from None
-        if found:
-            raise DescriptionError(found)
+            return error.faults
+        return ()
+
+    @classmethod
+    def _made(cls, own: Mapping[str, Any], axes: Any, base: Any) -> Self:
         try:
             return cls(**{**own, "base": base, "axes": axes})
         except DescriptionError as error:
             raise DescriptionError([_in_file(fault) for fault in error.faults]) from None
 
     @classmethod
-    def from_json(cls, text: str, *folders: Path, trust: bool = False) -> Self:
-        """Read back what `to_json` wrote; `folders` and `trust` as of `Description.from_json`."""
-        find = (trusted if trust else kept)(*folders, Path())
-        return cls.from_dict(json.loads(text), find=find)
+    def from_json(cls, text: str, *, trust: bool = False) -> Self:
+        """Read back what `to_json` wrote; `trust` as of `Description.from_json`."""
+        return cls.from_dict(read_json(text), find=held(trust))
 
     def to_dict(self) -> dict[str, Any]:
         """Return nested tables, as `from_dict` reads them."""

@@ -51,7 +51,7 @@ class View(NamedTuple):
 def viewed(path: str | Path, cut: Mapping[str, str | float], trust: bool = False) -> View:
     """Return what is left of a study when some of its dimensions are cut."""
     data = open_study(path)
-    study = Study.from_json(data.attrs["description"], Path(path).parent, trust=trust)
+    study = Study.from_json(data.attrs["description"], trust=trust)
     dims, at, found = study.layout.dims, {}, []
     for name, value in cut.items():
         dim = canonical_path(name)
