@@ -27,6 +27,7 @@ def sweep(
     threads: int | None = None,
     workers: int | None = None,
     scheduler: str | None = None,
+    dashboard: Annotated[bool, Parameter(negative=())] = False,
     quiet: Annotated[bool, Parameter(negative=())] = False,
     json_lines: Annotated[bool, Parameter(negative=())] = False,
     trust: Trust = False,
@@ -82,6 +83,8 @@ def sweep(
     scheduler
         A dask scheduler to hand the runs to, as tcp://host:port; its workers write the store
         themselves, so that all must see the same files.
+    dashboard
+        With --workers, dask's dashboard at http://localhost:8787, for every user of this machine.
     quiet
         Say nothing but what went wrong.
     json_lines
@@ -93,7 +96,7 @@ def sweep(
 
     found = None
     study = described(config, preset, changes(set), trust)
-    means = engine(threads, workers, scheduler)
+    means = engine(threads, workers, scheduler, dashboard)
     try:
         with shown(quiet, json_lines) as (report, conclude):
             result = do(study, output, engine=means, progress=report)
@@ -127,7 +130,9 @@ def described(
     return Study.from_dict(with_changes(study.to_dict(), given)) if given else study
 
 
-def engine(threads: int | None, workers: int | None, scheduler: str | None) -> Engine:
+def engine(
+    threads: int | None, workers: int | None, scheduler: str | None, dashboard: bool = False
+) -> Engine:
     """Return the engine that is asked for."""
     from stiction.errors import StictionError
     from stiction.study.engines import Threads
@@ -137,8 +142,10 @@ def engine(threads: int | None, workers: int | None, scheduler: str | None) -> E
     for name, count in (("threads", threads), ("workers", workers)):
         if count is not None and count < 1:
             raise StictionError(f"--{name} must be 1 at least, is {count}")
+    if dashboard and workers is None:
+        raise StictionError("--dashboard is of --workers; give both")
     if workers is None and scheduler is None:
         return Threads() if threads is None else Threads(threads)
     from stiction.study.cluster import Processes, Scheduler
 
-    return Processes(workers) if workers is not None else Scheduler(str(scheduler))
+    return Processes(workers, dashboard) if workers is not None else Scheduler(str(scheduler))

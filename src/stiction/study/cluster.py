@@ -18,36 +18,46 @@ T = TypeVar("T")
 AGAIN = "what is written is whole, and the same command goes on"
 # an interrupt in a terminal reaches all its processes: the client alone is to act on it
 UNINTERRUPTED = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
+LOOPBACK = "127.0.0.1"
 DEATHS = 10  # of workers, that a task may see before it is taken for their cause
 
 
 class Processes(NamedTuple):
     """Processes of this machine, started for the study and ended with it.
 
-    While they run, dask's dashboard is at http://localhost:8787 if that is free.
+    Whoever can talk to a scheduler can have its workers run anything. These listen to this
+    machine alone, and to nobody without the certificate that is made for the study.
 
     Parameters
     ----------
     workers : int
         How many; each does one run at a time, and is started anew if it dies.
+    dashboard : bool, optional
+        Whether dask's dashboard is shown, at http://localhost:8787 if that is free, to every user
+        of this machine.
     """
 
     workers: int
+    dashboard: bool = False
 
     def results(self, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
         """Yield what comes of each task."""
         dask = distributed()
         from dask import config
 
-        with (
-            config.set({"distributed.scheduler.allowed-failures": DEATHS}),
-            warnings.catch_warnings(),
-        ):
+        settings: dict[str, Any] = {"distributed.scheduler.allowed-failures": DEATHS}
+        if not self.dashboard:
+            settings |= {f"distributed.{who}.http.routes": [] for who in ("scheduler", "worker")}
+        with config.set(settings), warnings.catch_warnings():
             warnings.filterwarnings("ignore", "Port .* is already in use")
             cluster = dask.LocalCluster(
                 n_workers=self.workers,
                 threads_per_worker=1,
                 preload=[UNINTERRUPTED],
+                host=LOOPBACK,
+                protocol="tls://",
+                security=temporary_certificate(),
+                dashboard_address=f"{LOOPBACK}:8787" if self.dashboard else None,
                 silence_logs=logging.ERROR,  # of tasks that are cancelled
             )
             with lost_and_told(), cluster, dask.Client(cluster) as client:
@@ -60,7 +70,8 @@ class Scheduler(NamedTuple):
     Parameters
     ----------
     address : str
-        As tcp://host:port.
+        As tcp://host:port, or tls://host:port with the certificates of dask's own settings. It and
+        its workers run what this process asks for, and this process believes what they answer.
     """
 
     address: str
@@ -77,6 +88,17 @@ class Scheduler(NamedTuple):
             ) from None
         with lost_and_told(), client:
             yield from handed_out(client, work, tasks)
+
+
+def temporary_certificate() -> Any:
+    """Return a certificate that only this process and its workers have."""
+    try:
+        return distributed().Security.temporary()
+    except ImportError:
+        raise StictionError(
+            "processes need a certificate, and cryptography to make it, which is not installed; "
+            "write: pip install 'stiction[cluster]'"
+        ) from None
 
 
 def distributed() -> ModuleType:
