@@ -5,15 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import isfinite, nan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from stiction.deprecation import old_attributes
-from stiction.errors import StictionError
+from stiction.errors import DescriptionError, StictionError
 from stiction.linear_stability.curve import boundary
-from stiction.linear_stability.linear import Linearisation, steady_sliding
+from stiction.linear_stability.linear import (
+    BOUNDARY,
+    STABLE,
+    UNSTABLE,
+    Linearisation,
+    steady_sliding,
+)
 from stiction.linear_stability.roots import Critical, critical
 from stiction.linear_stability.spectrum import modes_over
+from stiction.parameter import read
 from stiction.sections import Section, Table, as_html, as_text
 from stiction.slider import Slider, slider_of
 from stiction.units import in_words
@@ -24,6 +34,7 @@ if TYPE_CHECKING:
     from stiction.description import Description
 
 OVER = ("phi", "drive.velocity")
+DIGITS = 6  # of a critical value
 Ends = Sequence[float | str]
 
 
@@ -84,7 +95,7 @@ class Stability:
 
     def tables(self) -> list[Section]:
         """Return the modes and the critical values, in sentences and tables."""
-        return [modes_section(self.sliding), critical_section(self.criticals)]
+        return [modes_section(self.sliding), critical_section(self.slider, self.criticals)]
 
     def plot(self, axes: Any = None) -> Any:
         """Draw the modes over one parameter, or the boundary in the plane of two.
@@ -166,25 +177,41 @@ def modes_section(linear: Linearisation) -> Section:
     return Section("Steady sliding", [sentence], Table(headings, rows))
 
 
-def critical_section(found: Sequence[Critical]) -> Section:
-    """Return where stability changes along each parameter."""
-    return Section("Where that changes", [line for each in found for line in changes(each)])
+def critical_section(slider: Slider, found: Sequence[Critical]) -> Section:
+    """Return, for each parameter, where steady sliding is stable and where it is not."""
+    own = {each.path: present(slider, each.path) for each in found}
+    now = ", ".join(
+        f"{each.path} = {in_words(own[each.path], each.unit, DIGITS)}"
+        for each in found
+        if isfinite(own[each.path])
+    )
+    rows = [row for each in found for row in stretches(each, own[each.path])]
+    headings = ("parameter", "from", "to", "steady sliding", "oscillation at its end")
+    return Section("Where that changes", [f"Now: {now}."] if now else [], Table(headings, rows))
 
 
-def changes(found: Critical) -> Iterator[str]:
-    """Yield where stability changes along a parameter."""
-    low, high = (in_words(end, found.unit, 6) for end in found.between)
-    names = ["stable" if each else "unstable" for each in found.stable]
-    if found.neutral:
-        yield f"{found.path}: small disturbances keep their size from {low} to {high}"
-        return
-    if not len(found.values):
-        yield f"{found.path}: {names[0]} from {low} to {high}"
-        return
-    yield f"{found.path}, from {low} to {high}: {names[0]}"
-    for value, frequency, name in zip(found.values, found.frequencies, names[1:], strict=True):
-        way = f"oscillating at {frequency:.4g} Hz" if frequency > 0.0 else "without oscillation"
-        yield f"  {name} above {in_words(value, found.unit, 6)} ({way})"
+def present(slider: Slider, path: str) -> float:
+    """Return the value of a parameter; not a number where joined ones have no one value."""
+    try:
+        return read(slider, path)
+    except DescriptionError:
+        return nan
+
+
+def stretches(found: Critical, now: float) -> Iterator[tuple[str, ...]]:
+    """Yield a row for each stretch of a parameter: its ends, what sliding is, what sets in.
+
+    The stretch in which the parameter is `now` is marked.
+    """
+    borders = [found.between[0], *map(float, found.values), found.between[1]]
+    sets_in = [in_words(f, "Hz") if f > 0.0 else "none" for f in map(float, found.frequencies)]
+    here = int(np.searchsorted(found.values, now, side="right"))
+    here = here if borders[0] <= now <= borders[-1] else -1
+    for at, stable in enumerate(found.stable):
+        kind = BOUNDARY if found.neutral else STABLE if stable else UNSTABLE
+        ends = (in_words(end, found.unit, DIGITS) for end in borders[at : at + 2])
+        mode = sets_in[at] if at < len(sets_in) else ""
+        yield found.path if at == 0 else "", *ends, kind + " (now)" * (at == here), mode
 
 
 FORMER = (

@@ -1,0 +1,246 @@
+"""``python -m benchmarks.explore.audits``: whether audits of random rigs contradict themselves.
+
+Each rig is audited, its page written, and what words, numbers, advice and linear theory say is held
+against each other. Deterministic in its seed; exit status 1 if a rule is broken.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from math import isfinite, pi, sqrt
+from time import perf_counter
+from typing import Any, NamedTuple
+
+import stiction as st
+from stiction.analysis.regime import HARMONIC, IRREGULAR
+from stiction.auditing import Audit
+from stiction.auditing.observation import OSCILLATES, SLIDES
+from stiction.auditing.page import page
+from stiction.linear_stability.linear import STABLE, UNSTABLE
+from stiction.units import in_words
+
+from .draw import Draw
+
+LAWS = (
+    "exponential", "stribeck", "coulomb", "hyperbolic", "anisotropic", "table",
+    "ageing", "slip", "two states", "lugre",
+)  # fmt: skip
+OFF = 0.5  # of a number that theory states without a doubt, by which the simulation may differ
+NO_NUMBER = re.compile(r"\b(nan|inf|None)\b")
+
+
+class Seen(NamedTuple):
+    """What came of one audit: in a line, how long it took (s), and the rules that it breaks."""
+
+    number: int
+    what: str
+    seconds: float
+    broken: tuple[str, ...]
+
+
+def rig(seed: int, number: int) -> st.Slider:
+    """Return a rig; its slip and its drive are drawn over decades, in units of a free swing."""
+    draw = Draw(seed, number)
+    mass, k_x, load = draw.decades(1e-2, 20.0), draw.decades(1e2, 1e6), draw.decades(0.5, 2e3)
+    k_y, mu = k_x * draw.decades(0.5, 1e4), draw.between(0.1, 0.8)
+    # a rig is loaded until the spring carries friction: 0.3 to 3000 swings later
+    V = mu * load / sqrt(k_x * mass) / (2.0 * pi * draw.decades(0.3, 3000.0))
+    angle = 0.0 if draw.chance(0.1) else draw.decades(0.1, 60.0) * draw.among((-1.0, 1.0, 1.0))
+    dampers = [
+        draw.decades(1e-3, 0.3) * 2.0 * sqrt(k * mass) if draw.chance(0.3) else 0.0
+        for k in (k_x, k_y)
+    ]
+    return st.Slider(
+        mass=mass,
+        k_x=k_x,
+        k_y=k_y,
+        phi=f"{angle!r} deg",
+        normal_load=load,
+        c_x=dampers[0],
+        c_y=dampers[1],
+        friction=law(draw, mu, V, load),
+        drive=st.ConstantVelocity(V),
+    )
+
+
+def law(draw: Draw, mu: float, V: float, load: float) -> Any:
+    """Return a law of friction: weaker or stronger at speed, some with a peak at rest."""
+    name = draw.among(LAWS)
+    kinetic = mu * (draw.between(1.0, 1.3) if draw.chance(0.1) else draw.between(0.5, 1.0))
+    speed = V * draw.decades(0.3, 100.0)
+    peak = mu * draw.between(1.01, 1.4) if draw.chance(0.2) else 0.0
+    if name == "coulomb":
+        return st.Coulomb(mu, peak)
+    if name == "stribeck":
+        return st.Stribeck(mu, kinetic, speed, d=draw.between(1.0, 3.0), mu_static=peak)
+    if name == "hyperbolic":
+        return st.HyperbolicWeakening(mu, speed, mu_static=peak)
+    simple = st.ExponentialWeakening(mu, kinetic, speed, mu_static=peak)
+    if name == "exponential":
+        return simple
+    if name == "anisotropic":
+        return st.Anisotropic(simple, draw.decades(0.5, 2.0), f"{draw.between(-90.0, 90.0)!r} deg")
+    if name == "table":
+        v = [0.0, *(speed * 10.0 ** (at / 4.0) for at in range(-8, 9))]
+        return st.Table(v=v, mu=[simple.coefficient(each) for each in v])
+    if name == "lugre":
+        sigma_0 = mu * load / draw.decades(1e-7, 1e-4)
+        return st.LuGre(kinetic, mu, speed, sigma_0, draw.decades(0.01, 1.0) * sqrt(sigma_0))
+    a, D = draw.decades(2e-3, 2e-2), draw.decades(1e-6, 1e-4)
+    b = a * draw.between(0.3, 2.0)
+    if name == "two states":
+        return st.RateStateAgeing2(a, 0.5 * b, D, 0.5 * b, 10.0 * D, mu, V)
+    kind = st.RateStateAgeing if name == "ageing" else st.RateStateSlip
+    return kind(a, b, D, mu, V)
+
+
+# --- what must not contradict -------------------------------------------------------------------
+
+
+def said(found: Audit, title: str) -> str:
+    """Return the sentences of a part of the report."""
+    part = next(each for each in found.tables() if each.title == title)
+    return " ".join(part.sentences)
+
+
+def verdict_and_margin(found: Audit) -> bool:
+    """The stretch of misalignments that holds its own has the verdict of linear theory."""
+    of = found.misalignment
+    if found.sliding.verdict not in (STABLE, UNSTABLE) or of.neutral:
+        return True
+    place = sum(float(value) < found.slider.phi for value in of.values)
+    return of.stable[place] == found.sliding.stable
+
+
+def verdict_and_motion(found: Audit) -> bool:
+    """Where a test shows other than linear theory says, the words say so."""
+    words, slides = said(found, "Verdict"), found.sliding_on.comes_to
+    if found.sliding.verdict == STABLE and slides == OSCILLATES:
+        return "stable only to disturbances far below" in words
+    if found.sliding.verdict == UNSTABLE and slides == SLIDES:
+        return "does not last" in words or "in the time of the test" in words
+    return True
+
+
+def nothing_to_change(found: Audit) -> bool:
+    """Nothing is to be changed only where it comes to slide from rest, and sliding is stable."""
+    nothing = said(found, "What to change").startswith("Nothing: it slides steadily")
+    calm = found.observation.comes_to == SLIDES and found.sliding.stable
+    return nothing == (calm and not found.advices)
+
+
+def numbers_in_words(found: Audit) -> bool:
+    """The period in words is that of the table."""
+    shown = dict((row[0], row[2]) for row in found.tables()[1].table.rows)
+    told = re.search(r"cycles of (.+?) in which the force falls by (.+?)\.(?: |$)", said(found, "Verdict"))
+    return told is None or (told[1], told[2]) == (shown["period"], shown["force drop"])
+
+
+def vibration_is_no_creep(found: Audit) -> bool:
+    """What vibrates about steady sliding does not creep."""
+    words = said(found, "Is it stick?") + said(found, "Transverse oscillation")
+    vibrates = found.observation.motion in (HARMONIC, IRREGULAR)
+    return not (vibrates and ("creeping" in words or "During creep" in words))
+
+
+def advice_works(found: Audit) -> bool:
+    """What is advised slides steadily, by linear theory and from rest; words count it."""
+    words = said(found, "What to change")
+    works = [each for each in found.advices if each.works]
+    none = words.startswith("None of these")
+    stable = all(each.growth < 0.0 and each.tried.comes_to == SLIDES for each in works)
+    return stable and none == bool(found.advices and not works)
+
+
+def theory_without_doubt(found: Audit) -> bool:
+    """A number that theory states without a mark is about what the simulation shows."""
+    names = {"first stick: true rest", "time until the first slip", "force drop", "period"}
+    p, seen = found.prediction, found.tables()[1].table.rows
+    pairs = {
+        "time until the first slip": p.load_up if p.slips else None,
+        "period": p.period if p.slips else None,
+    }
+    for name, theory, shown in seen:
+        value = pairs.get(name)
+        if name not in names or value is None or theory.startswith("~") or shown == "none":
+            continue
+        ratio = st_value(shown) / value
+        if not 1.0 - OFF < ratio < 1.0 / (1.0 - OFF):
+            return False
+    return True
+
+
+def st_value(text: str) -> float:
+    """Return a time in words in seconds."""
+    from stiction.units import registry
+
+    return float(registry().Quantity(text).to("s").magnitude)
+
+
+def reads_well(found: Audit) -> bool:
+    """No sentence and no cell holds what is no number."""
+    text = " ".join(
+        " ".join(part.sentences) + " ".join(c for row in (part.table.rows if part.table else ()) for c in row)
+        for part in found.tables()
+    )
+    return NO_NUMBER.search(text) is None
+
+
+RULES: tuple[Callable[[Audit], bool], ...] = (
+    verdict_and_margin,
+    verdict_and_motion,
+    nothing_to_change,
+    numbers_in_words,
+    vibration_is_no_creep,
+    advice_works,
+    theory_without_doubt,
+    reads_well,
+)
+
+
+def look(seed: int, number: int) -> Seen:
+    """Audit one rig, write its page, and hold it against the rules."""
+    slider, begin = rig(seed, number), perf_counter()
+    name = type(slider.law).__name__
+    fractions: list[float] = []
+    try:
+        found = st.audit(slider, fractions.append)
+        page(found, f"rig {number}")
+    except Exception as error:
+        return Seen(number, name, perf_counter() - begin, (f"{type(error).__name__}: {error}",))
+    broken = [rule.__name__ for rule in RULES if not rule(found)]
+    if fractions != sorted(fractions) or fractions[-1:] != [1.0]:
+        broken.append("progress ends elsewhere than at 1")
+    return Seen(number, f"{name}: {found!r}", perf_counter() - begin, tuple(broken))
+
+
+def main() -> int:
+    """Look at the rigs asked for; return the exit status."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.explore.audits")
+    parser.add_argument("--rigs", type=int, default=40, help="how many")
+    parser.add_argument("--seed", type=int, default=1, help="of all that is random")
+    parser.add_argument("--processes", type=int, default=2)
+    parser.add_argument("--only", type=int, metavar="NUMBER", help="print the audit of one rig")
+    options = parser.parse_args()
+    if options.only is not None:
+        slider = rig(options.seed, options.only)
+        print(slider.to_toml())
+        print(st.audit(slider))
+        return 0
+    broken = 0
+    with ProcessPoolExecutor(options.processes) as pool:
+        for each in pool.map(partial(look, options.seed), range(options.rigs)):
+            broken += len(each.broken)
+            rules = "; ".join(each.broken)
+            print(f"{each.number:4d} {each.seconds:6.1f} s  {each.what}  {rules}", flush=True)
+    print(f"{options.rigs} rigs, {broken} rules broken")
+    return 1 if broken else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
