@@ -427,3 +427,11 @@ def test_a_range_that_is_none_is_refused():
         critical(PAPER, "phi", ("0 deg", "100 deg"))
     with pytest.raises(st.DescriptionError, match="degree or radian"):
         critical(PAPER, "phi", (0.0, 0.3))
+
+
+def test_states_of_rounding_have_derivatives():
+    """At V = V* both states are ln 1, and what rounding leaves of it is no scale of theirs."""
+    law = st.RateStateAgeing2(0.008, 0.003, 1e-5, 0.003, 1e-4, 0.6, 1e-5)
+    rock = {"mass": 1, "k_x": 2e5, "k_y": 2e7, "phi": "1 deg", "normal_load": 5e3}
+    block = st.Slider(**rock, friction=law, drive=st.ConstantVelocity(1e-5))
+    assert critical(block, "phi").stable == (True,)  # it strengthens: b_1 + b_2 < a

@@ -89,9 +89,11 @@ def with_state(slider: Slider, slip: Floats, state: Floats) -> Response:
     speed = hypot(*slip)
     columns = [derivative(response, at, i, 0.5 * speed, 2.0**-9 * speed) for i in range(2)]
     for i in range(2, len(at)):
-        # a state is a number of any size: from about one, or its own size if larger, to far below
+        # a state is a number of any size: from about one, or its own size if larger, to far below;
+        # what rounding leaves of a logarithm, ln 1, is no size
         size = abs(float(at[i]))
-        columns.append(derivative(response, at, i, 0.5 * max(size, 1.0), 2.0**-13 * (size or 1e-4)))
+        least = size if size > SMALL else 1e-4
+        columns.append(derivative(response, at, i, 0.5 * max(size, 1.0), 2.0**-13 * least))
     slopes, error = (np.column_stack(part) for part in zip(*columns, strict=True))
     return Response(response(at), slopes, error)
 
