@@ -7,15 +7,17 @@ from scipy.integrate import quad, solve_ivp
 
 import stiction as st
 from stiction import theory
-from stiction.analysis.regime import SETTLING, STICK_SLIP
-from stiction.auditing.advice import nearest
-from stiction.auditing.observation import OSCILLATES, SLIDES
+from stiction.analysis.regime import HARMONIC, SETTLING, STICK_SLIP
+from stiction.auditing import advice, figures, words
+from stiction.auditing.advice import advise, nearest
+from stiction.auditing.observation import OSCILLATES, SLIDES, coarse_rate, from_sliding, observe
 from stiction.auditing.page import page
 from stiction.auditing.prediction import predict
+from stiction.auditing.report import Audit
 from stiction.auditing.report import audit as examine
 from stiction.auditing.words import sections
 from stiction.cli import main
-from stiction.linear_stability import Critical
+from stiction.linear_stability import Critical, critical, steady_sliding
 
 PAPER = st.presets.nakano_popov_2020()
 
@@ -110,6 +112,39 @@ def test_what_slides_steadily_needs_nothing():
     assert found.advices == ()
     assert found.observation.regime.kind == SETTLING
     assert sections(found)[-1].sentences == ["Nothing: it slides steadily once it has settled."]
+    shown = {row[0]: row[1:] for row in sections(found)[1].table.rows}
+    assert shown["creep before the first slip"] == ("none", "none")  # nothing slips
+    law = PAPER.friction
+    assert float(shown["apparent kinetic friction"][1]) == pytest.approx(
+        law.coefficient(1e-3) * cos(found.slider.phi), rel=1e-3
+    )
+    assert figures.creep(found) is None
+
+
+def test_progress_is_told_to_its_end():
+    fractions = []
+    examine(PAPER.replace(phi="10 deg"), fractions.append)
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1.0
+
+
+def test_the_remedies_are_named_with_their_values(found):
+    first = sections(found)[-1].sentences[0]
+    assert first.startswith("To slide steadily: misalignment φ of 9.954 deg, or damping c_x of 51.")
+
+
+def test_no_value_is_tried_twice(monkeypatch):
+    """Where the stretch of stable values is short, all ways end in its middle."""
+    law = st.ExponentialWeakening(mu_0=0.35, mu_inf=0.22, v_f="5 mm/s")
+    rig = {"mass": 0.2, "k_x": 150, "k_y": 6e4, "phi": "0.5 deg", "normal_load": 2}
+    soft = st.Slider(**rig, friction=law, drive=st.ConstantVelocity("2 mm/s"))
+    tried = []
+    monkeypatch.setattr(advice, "tried", lambda slider: tried.append(slider) or {"tried": None})
+    monkeypatch.setattr(advice, "LEVERS", ("phi",))
+    monkeypatch.setattr(advice.Advice, "works", False)
+    (found,) = [each._replace() for each in advise(soft, False)]
+    assert found.then == tried[-1].phi
+    assert len({each.phi for each in tried}) == len(tried)
 
 
 @pytest.mark.parametrize(
@@ -268,3 +303,58 @@ def test_a_hard_onset_is_bistable():
     assert found.sliding.stable
     assert found.bistable
     assert len(found.advices) == 4
+
+
+# --- what words say ------------------------------------------------------------------------------
+
+
+def short(slider: st.Slider) -> Audit:
+    """Return an audit without advice."""
+    prediction, sliding = predict(slider), steady_sliding(slider)
+    rate = coarse_rate(prediction)
+    rest = observe(slider, prediction, sliding.growth_rate, sample_rate=rate)
+    both = rest, from_sliding(sliding, prediction)
+    return Audit(slider, prediction, sliding, critical(slider, "phi"), *both, ())
+
+
+def test_what_vibrates_does_not_creep():
+    found = short(PAPER.replace(drive=st.ConstantVelocity("30 mm/s")))
+    assert found.observation.motion == HARMONIC
+    text = " ".join(words.stick(found) + words.transverse(found))
+    assert "no stick in it" in text
+    assert "creeping" not in text
+    assert "During creep" not in text
+
+
+def test_what_mostly_rests_is_said_to():
+    text = " ".join(words.stick(short(PAPER.replace(phi="0 deg"))))
+    assert "mostly true rest" in text
+    assert "artefact" not in text
+
+
+def test_a_stability_that_lasts_no_test_is_said_to():
+    """Where a disturbance of 1 % oscillates in the test, "stable" says which are meant."""
+    found = short(PAPER.replace(phi="10 deg"))
+    assert words.stability(found).startswith("Steady sliding is stable: small disturbances decay")
+    kicked = found._replace(sliding_on=found.sliding_on._replace(comes_to=OSCILLATES))
+    assert not kicked.bistable
+    assert "stable only to disturbances far below 1 %" in words.stability(kicked)
+    assert "in a test it does not last" in words.stability(kicked)
+
+
+def test_a_sliding_that_lasts_a_test_only_is_said_to():
+    """Just below the critical speed disturbances grow in hours."""
+    found = short(PAPER.replace(drive=st.ConstantVelocity("92.1 mm/s")))
+    assert found.sliding.verdict == "unstable"
+    assert (found.observation.comes_to, found.sliding_on.comes_to) == (OSCILLATES, SLIDES)
+    assert "to steady sliding in the time of the test" in words.motions(found)[0]
+
+
+def test_a_change_that_leaves_little_is_no_failure(found):
+    """Where the force still falls, by a hundredth of what it did, that is nearly a remedy."""
+    rest = found.observation
+    small = rest._replace(cycles=rest.cycles.assign(drop=0.01 * rest.cycles["drop"]))
+    tried = found.advices[0]._replace(tried=small)
+    assert words._change(found, tried)[-1].startswith("almost: stick-slip, force drop ")
+    again = found.advices[0]._replace(tried=rest)
+    assert words._change(found, again)[-1].startswith("no remedy: stick-slip, force drop ")

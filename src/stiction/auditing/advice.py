@@ -61,7 +61,9 @@ class Advice(NamedTuple):
     @property
     def works(self) -> bool:
         """Whether the simulation with it, from rest, comes to slide steadily, and stays so."""
-        return self.tried is not None and self.tried.comes_to == SLIDES and self.growth < 0.0
+        seen = self.tried
+        slides = seen is not None and seen.run.status.ok and seen.comes_to == SLIDES
+        return slides and self.growth < 0.0
 
 
 def advise(slider: Slider, stable: bool) -> Iterator[Advice]:
@@ -80,6 +82,8 @@ def advise(slider: Slider, stable: bool) -> Iterator[Advice]:
             advice = Advice(path, found.unit, now, found.between, *NOT_TRIED)
             ways = (nearest(found, now, beyond) for beyond in BEYOND)
         for edge, then in ways:
+            if then == advice.then:  # the middle of the stretch, from where there is no farther
+                break
             if isfinite(then):
                 better = changed(slider, path, written(slider, path, then))
                 advice = advice._replace(critical=edge, then=then, **tried(better))

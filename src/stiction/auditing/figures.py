@@ -8,9 +8,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from stiction.analysis.creep_curve import creep_curves, mean_creep
-from stiction.analysis.regime import HARMONIC, IRREGULAR
 from stiction.auditing.report import Audit
-from stiction.auditing.words import NAMES
+from stiction.auditing.words import HARDLY, NAMES, VIBRATES
+from stiction.friction import has_state
 from stiction.linear_stability import boundary
 from stiction.plotting.canvas import figure_of
 from stiction.plotting.creep_curve import creep_theory, plot_creep
@@ -20,8 +20,6 @@ from stiction.plotting.trials import Trial, plot_trials
 from stiction.reproduction.figure5 import figure5
 from stiction.units import in_words
 
-HARDLY = 0.05  # of the time: so little creep is no curve to compare with
-
 
 def test(found: Audit) -> Figure | None:
     """Draw the simulated test as its load cell records it."""
@@ -29,9 +27,9 @@ def test(found: Audit) -> Figure | None:
 
 
 def creep(found: Audit) -> Figure | None:
-    """Draw the creep before slip, and Eqs. (7) and (8); none where the mass hardly creeps."""
+    """Draw the creep before slip, and Eqs. (7) and (8); none where it hardly creeps, or slips."""
     seen, slider = found.observation, found.slider
-    if seen.motion in (HARMONIC, IRREGULAR) or seen.shares.creep < HARDLY:
+    if seen.motion in VIBRATES or seen.shares.creep < HARDLY or not seen.cycles.sizes["cycle"]:
         return None
     curves = creep_curves(seen.run, seen.cycles)
     if slider.phi == 0.0 or not np.isfinite(curves["velocity"].values).any():
@@ -42,12 +40,14 @@ def creep(found: Audit) -> Figure | None:
 
 
 def damping(found: Audit) -> Figure | None:
-    """Draw the damping diagram, with the way of the friction force now and as is advised."""
-    others = [each.then for each in found.advices if each.path == "phi" and each.works]
-    others += [float(value) for value in found.misalignment.values]
-    if found.slider.phi == 0.0 or not others:
+    """Draw the damping diagram, with the way of the friction force now and as is advised.
+
+    None for friction with internal state, for which there is no Eq. (10).
+    """
+    if found.slider.phi == 0.0 or has_state(found.slider.law):
         return None
-    return figure5(found.slider, others[0])
+    advised = (each.then for each in found.advices if each.path == "phi" and each.works)
+    return figure5(found.slider, next(advised, None))
 
 
 def trials(found: Audit) -> Figure | None:

@@ -27,7 +27,7 @@ DECAYS = 8.0  # e-folds of a disturbance to wait for: it is a thousandth then
 LONGEST = 2000.0  # swings on the soft spring to wait for that at most
 COARSE = 40.0  # samples in each swing on the soft spring
 ALMOST = 0.99  # of the drive's speed: it has come to slide
-MOST_SAMPLES = 1_000_000
+MOST_SAMPLES = 200_000
 MOST_STEPS = 5_000_000  # some 2 s
 MANY = 50_000  # transverse periods, from which on few cycles are to stand for many
 

@@ -22,6 +22,8 @@ from stiction.linear_stability import Critical, Linearisation, critical, steady_
 from stiction.sections import Section, as_html, as_text
 from stiction.slider import Slider, slider_of
 
+PARTS = 3 + len(LEVERS)  # of the work: two tests, an advice a lever, the critical misalignments
+
 
 class Audit(NamedTuple):
     """All that an experimenter wants to know before a friction test is trusted.
@@ -139,7 +141,7 @@ def audit(
 
     def report(done: int) -> None:
         if progress is not None:
-            progress(done / (len(LEVERS) + 1))
+            progress(done / PARTS)
 
     sliding, prediction = steady_sliding(system), predict(system)
     growth = sliding.growth_rate
@@ -147,12 +149,14 @@ def audit(
     observation = observe(system, prediction, growth, sample_rate=rate)
     report(1)
     sliding_on = from_sliding(sliding, prediction)
+    report(2)
     advices = []
     if not sliding.stable or observation.comes_to != SLIDES:
         for advice in advise(system, sliding.stable):
             advices.append(advice)
-            report(1 + len(advices))
+            report(2 + len(advices))
     misalignment = critical(system, "phi", limits(system, "phi"))
+    report(PARTS)
     both = observation, sliding_on
     return Audit(system, prediction, sliding, misalignment, *both, tuple(advices))
 

@@ -7,6 +7,7 @@ from math import cos, degrees, hypot, isfinite, nan
 import numpy as np
 
 from stiction.analysis.creep import first_slip_time
+from stiction.analysis.friction_found import find_friction
 from stiction.analysis.regime import (
     HARMONIC,
     IRREGULAR,
@@ -25,6 +26,9 @@ from stiction.linear_stability.linear import STABLE, UNSTABLE
 from stiction.sections import Section, Table
 from stiction.units import in_words
 
+VIBRATES = (HARMONIC, IRREGULAR)  # about steady sliding: nothing sticks or creeps
+HARDLY = 0.05  # of the time: what creeps or rests less than that hardly does
+ALMOST = 0.1  # of the force drop now: a change that leaves less is nearly a remedy
 SLIPPED = 1.5  # times the drive's speed: what is never faster has crept, and not slipped
 NAMES = {
     "phi": "misalignment φ",
@@ -157,8 +161,10 @@ def margin(found: Audit) -> str:
     lowest = abs(nearest) == np.min(np.abs(values))
     form = f" ({degrees(closed):.4f} deg in closed form)" if lowest and isfinite(closed) else ""
     way = "more" if abs(nearest) > abs(phi) else "less"
+    changes = {STABLE: "It becomes unstable", UNSTABLE: "It becomes stable"}
+    what = changes.get(found.sliding.verdict, "Its stability changes")
     return (
-        f"Its stability changes at φ_c = {degrees(nearest):.4f} deg{form}: the margin is "
+        f"{what} at φ_c = {degrees(nearest):.4f} deg{form}: the margin is "
         f"{abs(degrees(nearest - phi)):.4g} deg {way} misalignment than now, "
         f"{degrees(phi):.4g} deg."
     )
@@ -183,6 +189,7 @@ def numbers(found: Audit) -> Table:
     data = seen.run.data
     fastest = float(np.abs(data["V_X"].values).max()) / hypot(*s.motion.rate(0.0))
     slip = slip if fastest > SLIPPED and slip < seen.record.time[-1] else nan
+    creep_at_slip, creep_distance = (p.creep_at_slip, p.creep_distance) if p.slips else (nan, nan)
     held = [("friction that holds at rest", p.F_static, None, "N", False)]
     rows = [
         ("friction at vanishing slip F_0", p.F_0, None, "N", False),
@@ -195,10 +202,10 @@ def numbers(found: Audit) -> Table:
         ("first stick: true rest", p.first_stick, first, "s", has_state(s.law)),
         ("time until the first slip", p.load_up if p.slips else nan, slip, "s", True),
         ("creep velocity at first, V sin² φ", p.creep_at_start, None, "m/s", True),
-        ("creep velocity when it slips, Eq. (7)", p.creep_at_slip, None, "m/s", True),
-        ("creep before the first slip", p.creep_distance, crept(found, slip), "m", True),
+        ("creep velocity when it slips, Eq. (7)", creep_at_slip, None, "m/s", True),
+        ("creep before the first slip", creep_distance, crept(found, slip), "m", True),
         ("apparent static friction", p.mu_static, peak(found), "", True),
-        ("apparent kinetic friction", p.mu_kinetic, seen.mean("mu_kinetic"), "", True),
+        ("apparent kinetic friction", p.mu_kinetic, kinetic(seen), "", True),
         ("force drop", p.drop, seen.mean("drop"), "N", True),
         ("period", p.period, seen.mean("period"), "s", True),
         ("apparent stiffness", s.k_x * cos(s.phi) ** 2, loading(seen), "N/m", True),
@@ -207,7 +214,7 @@ def numbers(found: Audit) -> Table:
     lines = [
         (
             name,
-            (mark if rough and isfinite(theory) else "") + in_words(theory, unit),
+            (mark if rough else "") + in_words(theory, unit),
             "" if shown is None else in_words(shown, unit),
         )
         for name, theory, shown, unit, rough in rows
@@ -220,6 +227,12 @@ def crept(found: Audit, slip: float) -> float:
     data = found.observation.run.data
     along = abs(data["X"].values - float(data["X"][0]))
     return float(np.interp(slip, data["time"].values, along)) if isfinite(slip) else nan
+
+
+def kinetic(seen: Observation) -> float:
+    """Return what would be read as the coefficient of kinetic friction."""
+    found = find_friction(seen.record, seen.motion, seen.cycles).kinetic
+    return nan if found is None else found.coefficient
 
 
 def loading(seen: Observation) -> float:
@@ -238,8 +251,8 @@ def stick(found: Audit) -> list[str]:
     seen, s = found.observation, found.slider
     rest, creep, slip = (f"{100.0 * share:.3g} %" for share in seen.shares)
     whole = "of each cycle" if seen.cycles.sizes["cycle"] else "of the time until it slides"
-    state = has_state(s.law)
-    slowly = "creeping" if s.phi or state else "sliding slowly"
+    vibrates, state = seen.motion in VIBRATES, has_state(s.law)
+    slowly = "sliding" if vibrates else "creeping" if s.phi or state else "sliding slowly"
     lines = [
         f"Moving slower than the drive, which a load cell shows as a rising force, takes "
         f"{100.0 * (seen.shares.rest + seen.shares.creep):.3g} % {whole}: at rest {rest}, "
@@ -247,15 +260,15 @@ def stick(found: Audit) -> list[str]:
     ]
     if s.phi == 0.0:
         lines.append("There is no misalignment, so friction does not turn.")
-    if state and seen.shares.creep > 0.0:
+    if vibrates:
+        lines.append("The mass vibrates about steady sliding; there is no stick in it.")
+    elif state and seen.shares.creep > 0.0:
         lines.append(
             "Friction with internal state creeps by itself. What the misalignment adds to it, an "
             "audit of the same apparatus with phi = 0 shows."
             if s.phi
             else "What creeps, creeps by the law of friction."
         )
-    elif s.phi and seen.regime.kind in (HARMONIC, IRREGULAR):
-        lines.append("The mass vibrates about steady sliding; there is no stick in it.")
     elif s.phi and seen.shares.creep > seen.shares.rest:
         distance = seen.mean("creep_distance")
         far = (
@@ -268,7 +281,9 @@ def stick(found: Audit) -> list[str]:
             f"of the misalignment. The mass covers {far}. The largest force says how friction "
             f"turned, not that the interface has static friction."
         )
-    if seen.regime.kind == STICK_SLIP:
+    elif seen.shares.rest > HARDLY:
+        lines.append("What looks like stick is mostly true rest.")
+    if seen.motion == STICK_SLIP:
         lines.append(
             "The kinetic coefficient is the mean of peak and trough; the trough is where the mass "
             "swings to, and no property of the interface either."
@@ -281,19 +296,24 @@ def transverse(found: Audit) -> list[str]:
     p, seen = found.prediction, found.observation
     if p.amplitude == 0.0:
         return ["Without misalignment the transverse spring is not excited."]
-    force = in_words(p.amplitude * found.slider.k_y, "N")
+    frequency, rate = in_words(p.f_y, "Hz"), in_words(p.sample_rate, "Hz")
     if has_state(found.slider.law):
         return [
-            f"The transverse natural frequency is {in_words(p.f_y, 'Hz')}. Whether friction with "
-            "internal state lets it oscillate, a run sampled at "
-            f"{in_words(p.sample_rate, 'Hz')} shows: stiction analyse."
+            f"The transverse natural frequency is {frequency}. Whether friction with internal "
+            f"state lets it oscillate, a run sampled at {rate} shows: stiction analyse."
         ]
+    if seen.motion in VIBRATES or seen.shares.creep < HARDLY:
+        return [
+            f"The transverse natural frequency is {frequency}. The oscillation with it belongs to "
+            f"creep, and this mass hardly creeps; a run sampled at {rate} shows what is left of it."
+        ]
+    force = in_words(p.amplitude * found.slider.k_y, "N")
     lines = [
-        f"During creep the mass oscillates across the drive at {in_words(p.f_y, 'Hz')}, by "
+        f"During creep the mass oscillates across the drive at {frequency}, by "
         f"{in_words(p.amplitude, 'm')} (V sin φ/ω_y) or {force}. Towards slip the frequency falls, "
         "as sin θ, and the amplitude grows with its period.",
-        f"To see it, sample at {in_words(p.sample_rate, 'Hz')}; below "
-        f"{in_words(2.0 * p.f_y, 'Hz')} it appears at another frequency.",
+        f"To see it, sample at {rate}; below {in_words(2.0 * p.f_y, 'Hz')} it appears at another "
+        "frequency.",
     ]
     if seen.coarse:
         rate = in_words(seen.record.sample_rate, "Hz")
@@ -307,15 +327,19 @@ def changes(found: Audit) -> tuple[list[str], Table | None]:
         return ["Nothing: it slides steadily once it has settled."], None
     rows = [_change(found, advice) for advice in found.advices]
     goal = "take away the oscillation from rest" if found.bistable else "slide steadily"
-    works = any(advice.works for advice in found.advices)
-    what = f"To {goal}, change one of these" if works else f"None of these makes it {goal}"
-    lines = [f"{what}; each was simulated from rest, and the last column says what comes of it."]
+    remedies = [
+        f"{NAMES[each.path]} of {in_words(each.then, each.unit)}"
+        for each in found.advices
+        if each.works
+    ]
+    what = f"To {goal}: {', or '.join(remedies)}" if remedies else f"None of these makes it {goal}"
+    lines = [f"{what}. Each was simulated from rest, and the last column says what comes of it."]
     if found.bistable:
         lines.append(
             "Nothing has to be changed for a test that is started from steady sliding, as long as "
             "no disturbance stops the mass."
         )
-    return lines, Table(("change", "now", "stable from", "tried", "simulated from rest"), rows)
+    return lines, Table(("change", "now", "stable", "tried", "simulated from rest"), rows)
 
 
 def _change(found: Audit, advice: Advice) -> tuple[str, ...]:
@@ -325,8 +349,18 @@ def _change(found: Audit, advice: Advice) -> tuple[str, ...]:
         tried = f"{low} to {high}" if isfinite(advice.between[0]) else "none"
         return name, now, "nowhere", tried, "no value in that range"
     then, seen = in_words(advice.then, advice.unit), advice.tried
-    edge = in_words(advice.critical, advice.unit) if isfinite(advice.critical) else "now"
-    what = seen.motion if advice.works else f"no remedy: {ended(seen)}"
-    if seen.comes_to == OSCILLATES and seen.cycles.sizes["cycle"]:
-        what += f", force drop {in_words(seen.mean('drop'), 'N')}"
+    side = "above" if advice.critical > advice.now else "below"
+    edge = (
+        f"{side} {in_words(advice.critical, advice.unit)}" if isfinite(advice.critical) else "now"
+    )
+    if advice.works:
+        return name, now, edge, then, seen.motion
+    if not seen.run.status.ok:
+        until = in_words(float(seen.record.time[-1]), "s")
+        return name, now, edge, then, f"not known: the simulation was cut at {until}"
+    what, drop = f"no remedy: {ended(seen)}", seen.mean("drop")
+    if seen.comes_to == OSCILLATES and isfinite(drop):
+        if drop < ALMOST * found.observation.mean("drop"):
+            what = f"almost: {ended(seen)}"
+        what += f", force drop {in_words(drop, 'N')}"
     return name, now, edge, then, what

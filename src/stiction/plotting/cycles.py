@@ -14,7 +14,7 @@ from stiction.analysis.record import Record, recorded
 from stiction.analysis.regime import regime_of
 from stiction.plotting.canvas import canvas, fixed, listed
 from stiction.plotting.style import BLUE, GREY, PAGE, PALE, RED, style
-from stiction.plotting.time_series import draw_line, prefixed
+from stiction.plotting.time_series import draw_line, name_time, prefixed
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -58,7 +58,8 @@ def plot_cycles(
         panels[0].set_title(regime.kind.capitalize())
         if many and len(panels) > 1:
             _zoom(panels[0], panels[1], record, cycles)
-        panels[-1].set_xlabel("time $t$ (s)")
+        for ax in panels:
+            name_time(ax)
     return np.array(panels, dtype=object)
 
 

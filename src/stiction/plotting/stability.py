@@ -66,6 +66,7 @@ def plot_boundary(
         ax.plot(
             x.drawn(curve.attrs["x_own"]), y.drawn(curve.attrs["y_own"]), color=BLACK,
             marker="o", markersize=4.5, linestyle="none", label="this slider", zorder=5,
+            clip_on=False,
         )  # fmt: skip
         ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
     return ax

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import StepPatch
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FuncFormatter, MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 
 from stiction.analysis.stuck import stuck_until
@@ -95,6 +95,14 @@ def prefixed(values: ArrayLike) -> tuple[float, str]:
         return 1.0, ""
     power = min(max(thousands(5.0 * largest, "m"), -3), 1)
     return 1000.0**-power, SI[power]
+
+
+def name_time(ax: Axes) -> None:
+    """Write a time axis, whose values are in s, in the unit that suits what it shows: s, ms, ..."""
+    factor, prefix = prefixed(ax.get_xlim())
+    factor, prefix = (factor, prefix) if factor > 1.0 else (1.0, "")
+    ax.xaxis.set_major_formatter(FuncFormatter(lambda t, _: f"{factor * t:.10g}"))
+    ax.set_xlabel(f"time $t$ ({prefix}s)")
 
 
 def draw_spring_force(ax: Axes, run: Trajectory, axis: str, color: str = RED) -> Line2D:

@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from stiction.analysis.record import Record
 from stiction.plotting.canvas import canvas, fixed, listed
 from stiction.plotting.style import BLUE, GREY, PAGE, style
-from stiction.plotting.time_series import draw_line, prefixed
+from stiction.plotting.time_series import draw_line, name_time, prefixed
 
 PANEL = 1.35  # height of a row, in
 ACROSS = 2
+ROOM = 0.4  # of what is shown, above and below it
 
 
 class Trial(NamedTuple):
@@ -30,8 +31,9 @@ def plot_trials(
 ) -> NDArray[np.object_]:
     """Draw the force of each trial over that of the test before, a panel a trial.
 
-    Each panel has its own range of forces. Time runs as long as the trial does; where the test
-    before is longer, it is cut, where it is shorter, it ends.
+    Time runs as long as the trial does; where the test before is longer, it is cut, where it is
+    shorter, it ends. Forces are shown about what both come to, the loading from nothing is cut
+    off: an oscillation may be small beside it.
 
     Parameters
     ----------
@@ -63,13 +65,19 @@ def plot_trials(
             line.set_label("now")
             line = draw_line(ax, record.time, factor * record.force, BLUE, 1.0)
             line.set_label("changed")
-            ax.set_xlim(start, end)
-            ax.set_title(title)
-            ax.set_xlabel("time $t$ (s)")
-            ax.margins(y=0.08)
+            ax.set(xlim=(start, end), title=title, ylim=later(factor, before, record))
+            name_time(ax)
         for ax in panels[len(trials) :]:
             ax.set_axis_off()
         for ax in panels[::ACROSS]:
             ax.set_ylabel(f"spring force ({prefix}N)")
-        panels[0].legend(loc="lower right", ncols=2)
+        panels[0].legend(loc="upper right", ncols=2)
     return np.array(panels[: len(trials)], dtype=object)
+
+
+def later(factor: float, *records: Record) -> tuple[float, float]:
+    """Return a range of force about the second halves of records, with room for their beginning."""
+    halves = [factor * each.force[len(each) // 2 :] for each in records]
+    low, high = min(each.min() for each in halves), max(each.max() for each in halves)
+    room = ROOM * (high - low) or 0.1 * abs(high) or 1.0
+    return low - room, high + room

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from math import degrees, radians, sin
+from collections.abc import Sequence
+from math import degrees, log, radians, sin
 
 from matplotlib.figure import Figure
 
@@ -11,16 +12,20 @@ from stiction.plotting.damping import CLEAR, draw_damping_map, draw_force_path
 from stiction.plotting.style import BLUE, COLUMN, GREEN, RED, new_figure, style
 from stiction.slider import Slider
 
+PLACES = (0.41, 0.6, 0.75, 0.25)  # of a word in the diagram, the best first
+HALF = 0.17  # of its width, and some room
 
-def figure5(slider: Slider, other_phi: float = radians(10)) -> Figure:
+
+def figure5(slider: Slider, other_phi: float | None = radians(10)) -> Figure:
     """Draw Fig. 5 of Nakano & Popov: the damping ratio along the way of the friction force.
 
     Parameters
     ----------
     slider : Slider
         The system, misaligned and driven; its path is red.
-    other_phi : float
-        Misalignment of the path drawn in blue, rad; everything else is the slider's.
+    other_phi : float or None
+        Misalignment of the path drawn in blue, rad; everything else is the slider's. None for no
+        such path.
 
     Returns
     -------
@@ -35,15 +40,17 @@ def figure5(slider: Slider, other_phi: float = radians(10)) -> Figure:
     with style():
         fig = new_figure(COLUMN, 2.9)
         ax = fig.subplots()
-        paths = [(damping_number(slider, phi), phi) for phi in (slider.phi, other_phi)]
+        angles = [slider.phi] if other_phi is None else [slider.phi, other_phi]
+        paths = [(damping_number(slider, phi), phi) for phi in angles]
         low = min(1e-1, *(A / 10 for A, _ in paths))
         high = max(1e5, *(A * 10 for A, _ in paths))
         lowest = min(0.5, degrees(abs(slider.phi)) / 2)
         draw_damping_map(ax, (low, high), (lowest, 90.0))
-        for (A, phi), color in zip(paths, (RED, BLUE), strict=True):
+        for (A, phi), color in zip(paths, (RED, BLUE), strict=False):
             draw_force_path(ax, A, phi, color, _label(A, phi))
+        middle = clear_of([A for A, _ in paths], low, high)
         for place, text in (
-            ((0.41, 0.93), "overdamped:\nslow creep"),
+            ((middle, 0.93), "overdamped:\nslow creep"),
             ((0.29, 0.15), "underdamped:\nrapid slip"),
         ):
             ax.text(*place, text, transform=ax.transAxes, ha="center", va="center", bbox=CLEAR)
@@ -52,6 +59,12 @@ def figure5(slider: Slider, other_phi: float = radians(10)) -> Figure:
         ax.text(at, 0.88 * boundary, r"$\zeta$ = 1", color=GREEN, ha="right", va="top", bbox=CLEAR)
         fig.legend(loc="outside upper center", ncols=2)
     return fig
+
+
+def clear_of(numbers: Sequence[float], low: float, high: float) -> float:
+    """Return a place for a word above, as a share of the axis of A: the first clear of paths."""
+    taken = [log(A / low) / log(high / low) for A in numbers]
+    return max(PLACES, key=lambda place: min(HALF, *(abs(place - at) for at in taken)))
 
 
 def damping_number(slider: Slider, phi: float) -> float:
@@ -65,4 +78,5 @@ def damping_number(slider: Slider, phi: float) -> float:
 def _label(A: float, phi: float) -> str:
     digits, power = f"{A:.1e}".split("e")
     misalignment = f"{degrees(phi):.4g}".replace("-", "−")
-    return rf"$\varphi$ = {misalignment}°, $A$ = {digits}$\times$10$^{{{int(power)}}}$"
+    number = rf"{digits}$\times$10$^{{{int(power)}}}$" if abs(int(power)) > 1 else f"{A:.2g}"
+    return rf"$\varphi$ = {misalignment}°, $A$ = {number}"
