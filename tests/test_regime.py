@@ -6,9 +6,11 @@ from math import pi
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 from tests.measured import bare, measured
 
 import stiction as st
+from stiction.analysis.band import highest_hump
 from stiction.analysis.decay import dies_out
 from stiction.analysis.rest import rest_share
 
@@ -91,6 +93,42 @@ def test_a_vibration_is_no_stick_slip(noise: float, per_cycle: int) -> None:
     regime = st.classify(st.Record(time=time, force=wave))
     assert regime.kind == "harmonic vibration"
     assert regime.evidence["period_spread"] < 0.25
+
+
+@pytest.mark.parametrize("samples", [6.0, 20.0, 60.0])  # a period
+@pytest.mark.parametrize("bandwidth", [0.03, 0.08, 0.2])
+def test_noise_through_a_narrow_filter_is_an_irregular_vibration(
+    samples: float, bandwidth: float
+) -> None:
+    """Swings of every size beside slow motion, on a mass that could swing at that frequency."""
+    random, rate = np.random.default_rng(8), 48.0 * samples
+    size = int(5.0 * rate)
+    pole = np.exp((2j - bandwidth) * pi / samples)
+    rung = lfilter([1.0], [1.0, -2.0 * pole.real, abs(pole) ** 2], random.normal(size=2 * size))
+    time = np.arange(size) / rate
+    noise = random.normal(size=size) / 20.0
+    force = 20.0 + rung[size:] / rung.std() + 4.0 * np.sin(0.5 * time) + noise
+    record = st.Record(time=time, force=force, mass=1.0, stiffness=(2.0 * pi * 48.0) ** 2)
+    for known in (record, bare(record)):
+        assert st.classify(known).kind == "irregular vibration"
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_noise_of_any_colour_is_no_vibration(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    white, time = random.normal(size=6000), np.arange(4000) * 1e-3
+    smooth = lfilter([1.0], [1.0, -1.8, 0.81], white)[2000:]  # falls off beyond 17 Hz
+    for noise in (white[2000:], smooth, np.cumsum(white[2000:]), np.diff(white)[1999:]):
+        assert highest_hump(time, noise).height < 1.0
+    assert highest_hump(time, white[2000:] + 3.0 * np.sin(2 * pi * 30.0 * time)).height > 1.0
+
+
+def test_a_vibration_whose_size_changes_once_is_harmonic() -> None:
+    time = np.arange(8000) * 1e-3
+    for size in (1.0 + 2.0 * time / 8.0, 1.0 + 1.5 * np.exp(-3.0 * time)):
+        regime = st.classify(st.Record(time=time, force=size * np.sin(2 * pi * 12.0 * time)))
+        assert regime.kind == "harmonic vibration"
+        assert regime.confidence > 0.9
 
 
 def test_records_of_no_motion_in_particular() -> None:

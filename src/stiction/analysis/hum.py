@@ -60,11 +60,8 @@ def narrow_lines(time: Floats, force: Floats) -> list[Line]:
     time, force : ndarray
         (n,), s, evenly spaced, and N.
     """
-    n = len(time)
-    if n < 4 * PERIODS or np.ptp(force) == 0.0:
-        return []
-    step = (time[-1] - time[0]) / (n - 1)
-    if np.abs(time - time[0] - step * np.arange(n)).max() > EVEN * step:
+    step = even_step(time)
+    if step is None or len(time) < 4 * PERIODS or np.ptp(force) == 0.0:
         return []
     power, bin_width = spectrum(force)
     floor = beside(power)
@@ -114,6 +111,15 @@ def samples_per_period(force: Floats) -> float:
     line = float(power[_lobe(at)].sum())
     makes = power[at] > ABOVE * beside(power)[at] and line > MUCH * float(power.sum())
     return 1.0 / (at * width) if makes and at > 0 else np.inf
+
+
+def even_step(time: Floats) -> float | None:
+    """Return the time from sample to sample (s), None if they are not evenly spaced."""
+    n = len(time)
+    if n < 2:
+        return None
+    step = float(time[-1] - time[0]) / (n - 1)
+    return step if np.abs(time - time[0] - step * np.arange(n)).max() <= EVEN * step else None
 
 
 def spectrum(force: Floats) -> tuple[Floats, float]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.analysis.band import highest_hump
 from stiction.analysis.cycles import Swings, swings
 from stiction.analysis.decay import MANY, ORDERED, order
 from stiction.analysis.hum import samples_per_period
@@ -35,10 +36,13 @@ UNDETERMINED = "undetermined"
 # Bounds of the share of a cycle for which the mass rests, or creeps, by the cycle's shape
 SHAPES = ((STICKING, STICK_SLIP), (0.5, TRANSITIONAL), (0.0, HARMONIC))
 BACKWARD = 0.4  # share of the rise, below which the force falls slowly and rises fast
-# Standard deviation of the periods over their mean. Noise through a narrow filter, which rings,
-# has 0.15, through a wide one, which does not, 0.37 and more.
-REGULAR = 0.25
-NEAR = 0.3  # of its natural period: friction changes the period of a swinging mass, but not more
+# A vibration is irregular beyond either: the standard deviation of the periods over their mean,
+# which noise through a wide filter brings to 0.37 and more; and the span of the drops over their
+# median, a tenth left out at each end. Noise through any filter has 1.4 of it, as amplitudes of
+# Rayleigh's distribution have, 0.7 to 1.5 where records are short; a measured vibration of one size
+# has 0.57.
+REGULAR, EVEN = 0.25, 0.75
+SPREAD_ERROR = 2.0  # over the root of the number of swings: relative error of either
 ONE_WAY = 0.8  # of all ups and downs is change: a drift or a load, no wandering
 SETTLED = 0.1  # of the force's span is passed in the last quarter; of an even load it is 0.25
 LOADING = 0.5  # of the early rate, or of stiffness times drive velocity: it still sticks
@@ -48,6 +52,7 @@ FEWEST, ENOUGH = 3.5, 8.0  # samples a cycle: below the first it is not known, n
 # Samples that a quick fall seems to take at most, and that a fall takes which may be quick: a sine
 # of four samples falls for two
 QUICK, SLOWEST = 1.6, 3.0
+RIPPLE = 1e-3  # of the force's span: a vibration that is less is no motion of its own
 GROWN = 0.1  # of a force drop: less is not worth a word
 NOISE_SHOWS = 1e-3  # of a force drop; what is less is no noise of a load cell
 
@@ -82,6 +87,7 @@ WORDS = {
     ),
     "cycles_alike": ("{} of the cycles have this shape themselves", _percent),
     "period_spread": ("periods differ by {} of their mean", _percent),
+    "drop_spread": ("four fifths of the force drops differ by up to {} of their median", _percent),
     "natural_period": ("a period is {} times the mass's own on its spring", _rounded),
     "drop_over_noise": ("force drops are {} times as high as noise reaches", _rounded),
     "line_taken_off": ("a line at {} was taken off the force before", _frequency),
@@ -98,6 +104,8 @@ WORDS = {
         "at the end its rate is {} times stiffness times drive velocity",
         _rounded,
     ),
+    "hump": ("it vibrates at about {}, in swings of every size", _frequency),
+    "hump_height": ("in the spectrum these stand {} times as high as they must", _rounded),
     "samples_per_cycle": ("a cycle has {} samples, too few to show it", _rounded),
     "rate_needed": ("sample at {} or more", _frequency),
     "samples": ("there are {} samples, too few", _whole),
@@ -196,8 +204,11 @@ def _by_shape(record: Record, found: Swings) -> Regime:
         "cycles_alike": alike / count,
         "period_spread": float(table["period"].std() / table["period"].mean()),
     }
-    evidence |= _natural_period(record, table)
     drop = table["drop"].values
+    if kind == HARMONIC:
+        span = np.subtract(*np.percentile(drop, (90.0, 10.0)))
+        evidence["drop_spread"] = float(span / np.median(drop))
+    evidence |= _natural_period(record, table)
     if found.noise > NOISE_SHOWS * np.median(drop):
         evidence["drop_over_noise"] = float(np.median(drop)) / found.noise
     grown = float(drop[-1] / drop[0])
@@ -210,8 +221,12 @@ def _by_shape(record: Record, found: Swings) -> Regime:
     confidence = max(counted, _chance(shares, kind, step / float(table["period"].mean())))
     if other:  # as likely
         return Regime(kind, 0.5 * confidence, evidence, other)
-    if kind == HARMONIC and not _swings_freely(evidence):
-        return Regime(IRREGULAR, confidence, evidence, HARMONIC)
+    irregular = _irregular(evidence, drop) if kind == HARMONIC else 0.0
+    if irregular > 0.5:
+        return Regime(IRREGULAR, irregular * confidence, evidence, HARMONIC)
+    confidence *= 1.0 - irregular
+    if irregular > 1.0 - alike / count:
+        return Regime(kind, confidence, evidence, IRREGULAR)
     return Regime(kind, confidence, evidence, others[-1] if others else "")
 
 
@@ -230,6 +245,16 @@ def _chance(shares: Floats, kind: str, resolution: float) -> float:
     scale = np.hypot(shares.std(ddof=1), resolution) * sqrt(1.0 + 1.0 / count)
     below = stdtr(count - 1, (np.array([low, high]) - np.median(shares)) / scale)
     return float(below[1] - below[0])
+
+
+def _irregular(evidence: dict[str, float], drop: Floats) -> float:
+    """Return how likely swings are irregular, by how much their periods and drops differ."""
+    from scipy.special import ndtr
+
+    grows = abs(order(drop)) >= -ORDERED
+    drops = 0.0 if grows else evidence["drop_spread"] / EVEN
+    differ = max(drops, evidence["period_spread"] / REGULAR, 1e-9)
+    return float(ndtr(np.log(differ) * sqrt(len(drop)) / SPREAD_ERROR))
 
 
 def _bounds(kind: str) -> tuple[float, float]:
@@ -270,12 +295,6 @@ def _natural_period(record: Record, table: xr.Dataset) -> dict[str, float]:
     return {"natural_period": float(table["period"].median()) / own}
 
 
-def _swings_freely(evidence: dict[str, float]) -> bool:
-    """Return whether swings are regular, or as long as the mass's own."""
-    own = abs(evidence.get("natural_period", np.inf) - 1.0) <= NEAR
-    return own or evidence["period_spread"] <= REGULAR
-
-
 def _by_course(record: Record, found: Swings) -> Regime:
     way = course(record.time, record.force)
     drive = (record.stiffness or 0.0) * (record.drive_velocity or 0.0)
@@ -291,7 +310,13 @@ def _by_course(record: Record, found: Swings) -> Regime:
     rising = way.change > 0.0 and way.one_way >= ONE_WAY
     if not rising or 0.0 < max(abs(way.early_rate), abs(way.late_rate)) < SLOW * drive:
         # the nearer to cycles it came, the less sure it is that there are none
-        return Regime(STEADY, 1.0 - found.clearness / (2.0 * CLEAR), evidence)
+        hump = highest_hump(record.time, record.force)
+        height = hump.height if hump.rms > RIPPLE * way.span else 0.0
+        if height > 1.0:
+            evidence |= {"hump": hump.frequency, "hump_height": height}
+            return Regime(IRREGULAR, 1.0 - 0.5 / height, evidence, STEADY)
+        near = max(found.clearness / CLEAR, height)
+        return Regime(STEADY, 1.0 - 0.5 * near, evidence)
     kept = way.late_rate / way.early_rate
     evidence |= {"one_way": way.one_way, "rate_kept": kept}
     loading = way.late_rate / drive if drive else kept
