@@ -162,10 +162,20 @@ def test_a_report_prints_itself_and_no_creep_goes_backwards() -> None:
 def test_a_record_too_slow_for_a_fast_line_is_told_the_rate() -> None:
     time = np.arange(0.0, 33.0, 0.1)
     found = st.analyse(st.Record(time=time, force=1.0 + (time / 0.75) % 1.0))
-    assert "samples a second or more" in found.missing["oscillation"]
+    assert found.missing["oscillation"].endswith("of which there are 10")
 
 
 def test_a_coefficient_of_five_is_doubted_but_is_no_factor_of_a_thousand() -> None:
     time = np.arange(0.0, 20.0, 0.01)
     found = st.analyse(st.Record(time=time, force=5.0 + time % 1.0, normal_load="1 N"))
     assert "beyond belief: check the normal load, 1 N." in " ".join(found.warnings)
+
+
+@pytest.mark.parametrize(("frequency", "doubted"), [(50.0, True), (59.9, True), (55.0, False)])
+def test_a_vibration_of_the_mains_may_be_hum(frequency: float, doubted: bool) -> None:
+    """Of steady sliding with hum nothing but its frequency tells that it is no vibration."""
+    time = np.arange(0.0, 6.0, 0.001)
+    record = st.Record(time=time, force=1.5 + 0.08 * np.sin(2 * np.pi * frequency * time))
+    found = st.analyse(record)
+    assert found.regime.kind == "harmonic vibration"
+    assert ("with the drive at rest" in " ".join(found.warnings)) == doubted

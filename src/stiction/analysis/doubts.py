@@ -35,6 +35,7 @@ def warnings(record: Record, kind: str, cycles: xr.Dataset, friction: Friction) 
         *_friction_too_large(record, friction),
         *_loading_too_fast(record, kind, cycles),
         *_mass(record, kind, cycles),
+        *_mains(kind, cycles),
         *_coarse(record, cycles),
         *_drift(record, kind, cycles),
         *_zero(record, friction, cycles),
@@ -53,6 +54,19 @@ def taken_off(lines: tuple[Line, ...]) -> tuple[str, ...]:
             "were sought."
         )
     return tuple(found)
+
+
+def _mains(kind: str, cycles: xr.Dataset) -> Iterator[str]:
+    """Doubt a vibration with the frequency of the mains: nothing else is left to tell it from."""
+    if kind != HARMONIC:
+        return
+    lasts = float(cycles["trough_time"][-1] - cycles["start"][0])
+    frequency = cycles.sizes["cycle"] / lasts
+    if of_mains(frequency):
+        yield (
+            f"The force swings at {in_words(frequency, 'Hz')}, as the mains do. Record it with the "
+            "drive at rest: if it swings then, that is hum, and the mass slides steadily."
+        )
 
 
 def _friction_too_large(record: Record, friction: Friction) -> Iterator[str]:
