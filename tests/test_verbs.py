@@ -57,7 +57,9 @@ def test_a_run_from_its_file_is_that_of_its_description(config):
 def test_what_is_unambiguous_is_taken_and_else_the_remedy_is_named(tmp_path):
     description = st.Description(PAPER, st.Initial(), st.Settings(duration="20 ms"))
     assert st.stability(description, "phi").stable == st.stability(PAPER, "phi").stable
-    assert st.audit(description._replace(slider=PAPER.replace(phi="9.5 deg"))).sliding.stable
+    shaken = PAPER.replace(drive=st.DriveProgram(velocity=1e-3, along=st.Modulation(1e-3, 5.0)))
+    with pytest.raises(st.DescriptionError, match="drive"):  # it is read, and then refused
+        st.audit(description._replace(slider=shaken))
     for verb in (st.run, lambda slider: st.compare(slider, ["coulomb"])):
         with pytest.raises(st.DescriptionError, match=r"no duration; .*st\.Description\(slider"):
             verb(PAPER)
