@@ -19,6 +19,7 @@ from stiction.analysis.turning_points import _placed, turning_points
 from stiction.plotting.canvas import figure_of
 from stiction.plotting.cycles import plot_cycles
 from stiction.study.observed import observe
+from stiction.units import in_words
 
 Floats = NDArray[np.float64]
 
@@ -198,6 +199,11 @@ def test_hesitations_are_counted_and_measured() -> None:
         assert cycles["hesitations"].values.tolist() == [0.0, 1.0] * 5
         assert cycles["hesitation_depth"].values[1::2] == pytest.approx(0.1, abs=0.024)
         assert cycles["period"].values == pytest.approx(1.0, abs=5e-3)
+        least = cycles["hesitation_depth"].attrs["least"]
+        assert 0.0 < least < 0.1
+        said = str(st.analyse(st.Record(time=samples, force=measured)))
+        assert "In 5 of 10 cycles the force hesitates" in said
+        assert f"less than {in_words(least, 'N')}" in " ".join(said.split())
 
 
 def corners(*legs: float) -> Floats:

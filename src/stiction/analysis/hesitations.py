@@ -6,6 +6,9 @@ at least half the swing. Irregular stick-slip is the exception. It has small sli
 ones of every size; where falls differ so, and the small ones are fewer, only one that is far below
 the others is a hesitation.
 
+Only reversals that stand apart from noise and ripple come here: of a measured force those beyond
+about 5 % of a drop, 10 % under noise. Shallower ones are not counted.
+
 Whatever counts cycles asks here: `stiction.analysis.cycles`, an audit, and studies.
 """
 

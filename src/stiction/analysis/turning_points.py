@@ -50,6 +50,8 @@ class TurningPoints(NamedTuple):
         How far noise reaches in `values`, see `noise_reach`.
     clearness : float
         Of the gap between them and all smaller reversals, see `stiction.analysis.gap`.
+    least : float
+        Height of that gap's middle, in the unit of the values: smaller reversals are not seen.
     """
 
     index: Indices  # type: ignore[assignment]  # a tuple's index(), which nobody needs here
@@ -58,6 +60,7 @@ class TurningPoints(NamedTuple):
     width: int
     noise: float
     clearness: float
+    least: float = 0.0
 
     @property
     def before(self) -> float:
@@ -114,7 +117,8 @@ def turning_points(values: Floats) -> TurningPoints:
         index = _placed(levels[finer], index, trough)
     unit = float(np.ptp(values)) / FINE
     means = values.min() + unit / 2**quiet * levels[quiet] if quiet else without_spikes(values)
-    return TurningPoints(index, trough, means, 2**quiet, unit * reach[quiet], gap.clearness)
+    noise, least = unit * reach[quiet], unit * gap.middle
+    return TurningPoints(index, trough, means, 2**quiet, noise, gap.clearness, least)
 
 
 def coarse_points(counts: Counts) -> Indices:

@@ -140,12 +140,27 @@ def cycles(found: Analysis) -> Section:
             several = in_words(spread, unit) if isfinite(spread) else ""
             rows.append((str(row["meaning"].values), in_words(mean, unit), several))
     table = Table(("quantity", "mean", "standard deviation"), rows)
-    lines = [f"{count}, from trough to trough. Means over them:"]
+    lines = [*_hesitations(found.cycles), f"{count}, from trough to trough. Means over them:"]
     left_out = [name for name in COLUMNS if name in found.missing]
     if left_out:
         columns = ", ".join(COLUMNS[name] for name in left_out)
         lines.append(f"Not given: {columns}; {found.missing[left_out[0]]}.")
     return Section("Cycles", lines, table)
+
+
+def _hesitations(table: xr.Dataset) -> list[str]:
+    """Say in how many cycles the force hesitates, how much, and what is not seen of it."""
+    some = int((table["hesitations"] > 0).sum())
+    if not some:
+        return []
+    depth = table["hesitation_depth"]
+    most, least = 100.0 * float((depth / table["drop"]).max()), float(depth.attrs["least"])
+    cycles = f"{some} of {table.sizes['cycle']} cycles"
+    return [
+        f"In {cycles} the force hesitates: before or within its fall "
+        f"it turns back by up to {most:.2g}% of that fall. What turns back by less than "
+        f"{in_words(least, 'N')} does not stand apart from noise and ripple, and is not counted."
+    ]
 
 
 def each_cycle(table: xr.Dataset) -> Table:
