@@ -6,9 +6,28 @@ from collections.abc import Sequence
 from enum import Enum
 from typing import NamedTuple
 
+LONGEST = 2000  # characters of a message; more would hide what it says
+
+
+def one_line(error: BaseException) -> str:
+    """Return another's error in one line."""
+    return " ".join(f"{type(error).__name__}: {error}".split())[:LONGEST]
+
+
+def visible(text: str) -> str:
+    """Return a text with each character that a terminal would act on written out: ``\\x1b``.
+
+    Names and values in a file are its writer's choice.
+    """
+    return "".join(x if x.isprintable() or x == "\n" else ascii(x)[1:-1] for x in text)
+
 
 class StictionError(Exception):
     """Any error that this package raises on purpose; its text is meant for the user."""
+
+    def __str__(self) -> str:
+        """Return the text, of which nothing acts on a terminal."""
+        return visible(super().__str__())
 
 
 class Fault(NamedTuple):
@@ -18,8 +37,11 @@ class Fault(NamedTuple):
     message: str
 
     def __str__(self) -> str:
-        """Return ``path: message``."""
-        return f"{self.path}: {self.message}" if self.path else self.message
+        """Return ``path: message``, not longer than can be read."""
+        text = f"{self.path}: {self.message}" if self.path else self.message
+        return (
+            text if len(text) <= LONGEST else f"{text[: LONGEST // 2]} ... {text[-LONGEST // 2 :]}"
+        )
 
 
 class DescriptionError(StictionError, ValueError):

@@ -16,6 +16,7 @@ from stiction.files import placeable, whole
 from stiction.friction import states
 from stiction.initial import Initial
 from stiction.labels import VARIABLES, apparent_friction, described, stick_table
+from stiction.result_file import ENDS, STICK_GROUP, age, read_tables
 from stiction.sections import Section, as_html
 from stiction.slider import Slider
 from stiction.table_files import exportable, write_tables
@@ -24,8 +25,6 @@ from stiction.writing import parameter_table, slider_tables
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
-
-STICK_GROUP = "sticks"  # of a result file
 
 
 @dataclass(frozen=True)
@@ -236,17 +235,7 @@ def load(path: str | Path, *, trust: bool = False) -> Trajectory:
     ResultError
         If there is no such file, or it is not a result of this package.
     """
-    if Path(path).is_dir():
-        remedy = "of a study, st.map(path) draws a map and st.open_study(path) reads the data"
-        raise ResultError(f"{path}: is a folder, not the file of one run; {remedy}")
-    if not Path(path).is_file():
-        raise ResultError(f"{path}: no such file; write one with 'stiction run'")
-    data, sticks = _read(path)
-    missing = [name for name in VARIABLES if name not in data and name != "mu"]
-    missing += [name for name in _ENDS if name not in sticks]
-    if missing or "description" not in data.attrs:
-        what = ", ".join(missing) or "its description"
-        raise ResultError(f"{path}: not a result of 'stiction run'; it lacks {what}")
+    data, sticks = read_tables(path)
     try:
         description = Description.from_json(data.attrs["description"], trust=trust)
         statistics = Statistics(
@@ -257,30 +246,14 @@ def load(path: str | Path, *, trust: bool = False) -> Trajectory:
             }
         )
         status = Status[data.attrs["status"]]
+        for state in states(description.slider.law):
+            data[state.name]
     except (DescriptionError, KeyError, ValueError, AttributeError) as error:
-        raise ResultError(f"{path}: its attributes cannot be read: {error}") from None
-    intervals = np.column_stack([sticks[name].values for name in _ENDS])
+        told = f"its attributes cannot be read: {error}"
+        raise ResultError(f"{path}: {told}{age(data)}") from None
+    intervals = np.column_stack([sticks[name].values for name in ENDS])
     arrays = partial(_with_mu, data, description.slider)
     return Trajectory(description, arrays, intervals, status, statistics)
-
-
-_ENDS = ("stick_start", "stick_end")
-
-
-def _read(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
-    """Return the two tables of a file; up to version 0.4 both stood in the root group."""
-    import xarray as xr
-
-    try:
-        data = xr.load_dataset(path, engine="h5netcdf")
-        if "stick" in data.dims:
-            return data.drop_dims("stick"), data.drop_dims("time")
-    except (OSError, ValueError, KeyError) as error:
-        raise ResultError(f"{path}: not a NetCDF file that can be read: {error}") from None
-    try:
-        return data, xr.load_dataset(path, group=STICK_GROUP, engine="h5netcdf")
-    except (OSError, ValueError, KeyError):
-        return data, xr.Dataset()
 
 
 def _with_mu(data: xr.Dataset, slider: Slider) -> xr.Dataset:

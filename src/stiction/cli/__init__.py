@@ -11,7 +11,8 @@ import cyclopts
 from rich.console import Console
 
 import stiction
-from stiction.errors import StictionError
+from stiction.cli.terminal import give_up, spell_out
+from stiction.errors import StictionError, visible
 
 app = cyclopts.App(
     name="stiction",
@@ -51,9 +52,12 @@ app.register_install_completion_command(
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line; whatever the user can mend ends in one message and exit status 2."""
+    spell_out()
     errors = Console(stderr=True, soft_wrap=True)
     try:
         code = app(arguments, result_action="return_value", print_error=False, exit_on_error=False)
+        if sys.stdout is not None:
+            sys.stdout.flush()
     except cyclopts.CycloptsError as error:
         refuse(errors, "command line", f"{error}\nsee {called(error)} --help")
     except StictionError as error:
@@ -61,14 +65,26 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except KeyboardInterrupt:
         errors.print("interrupted; what is written is whole, the rest was not begun")
         sys.exit(130)
+    except BrokenPipeError:  # who reads has seen enough; rich ends tables so, too
+        give_up(sys.stdout)
+        sys.exit(1)
+    except OSError as error:
+        give_up(None if error.filename else sys.stdout)
+        what = error.filename or "standard output"
+        refuse(errors, "file", f"{what}: {error.strerror or error}; choose another, or make room")
+    except MemoryError as error:
+        refuse(errors, "memory", f"there is not enough: {error}")
     sys.exit(code if isinstance(code, int) else 0)
 
 
 def refuse(errors: Console, what: str, message: str) -> NoReturn:
     """Say what is wrong, whole and without a frame that would cut it, and leave with status 2."""
-    errors.print(f"[red]error[/red] {what}:")
-    for line in message.splitlines():
-        errors.print(f"  {line}", markup=False, highlight=False)
+    try:
+        errors.print(f"[red]error[/red] {what}:")
+        for line in visible(message).splitlines():
+            errors.print(f"  {line}", markup=False, highlight=False)
+    except OSError:  # nobody can be told
+        give_up(sys.stderr)
     sys.exit(2)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from stiction.cli.options import MaybeOutput, Trust
+from stiction.cli.terminal import say
 
 
 def analyse(result: Path, /, *, output: MaybeOutput = None, trust: Trust = False) -> None:
@@ -52,4 +53,4 @@ def analyse(result: Path, /, *, output: MaybeOutput = None, trust: Trust = False
         at = [part.title for part in parts].index("Cycles") + 1
         parts.insert(at, Section("Cycle by cycle", [], each_cycle(found.cycles)))
     printed(str(result), parts)
-    print(f"\nwrote {', '.join(path.name for path in paths)} to {folder}")
+    say(f"\nwrote {', '.join(path.name for path in paths)} to {folder}")

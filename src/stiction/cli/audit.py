@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from stiction.cli.options import Changes, MaybeOutput, Trust, changes
+from stiction.cli.terminal import say
 
 
 def audit(
@@ -48,5 +49,5 @@ def audit(
         found = examine(slider, report)
     printed(str(config), found.tables())
     if output is not None:
-        print(f"wrote {found.write_html(output, str(config))}")
+        say(f"wrote {found.write_html(output, str(config))}")
     return 0 if found.ok else 1

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from stiction.cli.options import Changes, Output, Trust, changes
+from stiction.cli.terminal import say
 
 if TYPE_CHECKING:
     from stiction.trajectory import Trajectory
@@ -72,7 +73,7 @@ def compare(
     write(figure, output)
     printed(str(config), found.tables())
     for path in (output, *([] if data is None else save(found, data))):
-        print(f"wrote {path}")
+        say(f"wrote {path}")
     return 0 if found.ok else 1
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from stiction.cli.options import Output, Trust
+from stiction.cli.terminal import say
 
 
 def export(result: Path, /, *, output: Output, trust: Trust = False) -> None:
@@ -25,4 +26,4 @@ def export(result: Path, /, *, output: Output, trust: Trust = False) -> None:
     from stiction import trajectory
 
     for path in trajectory.export(result, output, trust=trust):
-        print(f"wrote {path}")
+        say(f"wrote {path}")

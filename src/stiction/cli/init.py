@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from stiction.cli.terminal import say
+
 
 def init(path: Path = Path("slider.toml"), /, *, force: bool = False) -> None:
     """Write a commented description of the paper's apparatus, to be made yours.
@@ -22,4 +24,4 @@ def init(path: Path = Path("slider.toml"), /, *, force: bool = False) -> None:
     from stiction.template import init as write
 
     write(path, force=force)
-    print(f"wrote {path}; edit it, then: stiction run {path} --output {path.with_suffix('.nc')}")
+    say(f"wrote {path}; edit it, then: stiction run {path} --output {path.with_suffix('.nc')}")

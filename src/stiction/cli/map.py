@@ -8,6 +8,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from stiction.cli.options import MaybeOutput, Trust, named
+from stiction.cli.terminal import say
 
 
 def map(
@@ -53,4 +54,4 @@ def map(
     cut = dict(named(text, "--at") for text in at or ())
     target = drawable(output or study.with_suffix(".png"))
     found = look(study, of or (), cut, trust=trust)
-    print(f"wrote {write(figure_of(found.plot), target)}")
+    say(f"wrote {write(figure_of(found.plot), target)}")

@@ -7,6 +7,8 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
+from stiction.cli.terminal import say
+
 
 def paper(
     *,
@@ -37,8 +39,8 @@ def paper(
     with progress("simulating and drawing") as report:
         found = reproduce(output, figure, report)
     for path in found.files:
-        print(f"wrote {path}")
+        say(f"wrote {path}")
     if found.table is not None:
-        print()
-        print(found.table.text)
+        say("")
+        say(found.table.text)
     return 0 if found.agrees else 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from stiction.cli.options import Output, Trust
+from stiction.cli.terminal import say
 
 
 def plot(result: Path, /, *, output: Output, trust: Trust = False) -> None:
@@ -26,4 +27,4 @@ def plot(result: Path, /, *, output: Output, trust: Trust = False) -> None:
     from stiction.plotting.save import drawable, write
 
     drawable(output)
-    print(f"wrote {write(figure_of(draw, result, trust=trust), output)}")
+    say(f"wrote {write(figure_of(draw, result, trust=trust), output)}")

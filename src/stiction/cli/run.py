@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from stiction.cli.options import Changes, Output, Trust, changes
+from stiction.cli.terminal import say
 
 if TYPE_CHECKING:
     from stiction.trajectory import Trajectory
@@ -31,8 +32,6 @@ def run(config: Path, /, *, output: Output, trust: Trust = False, set: Changes =
     output
         The NetCDF file to write: samples over time, and every stick interval.
     """
-    from rich.console import Console
-
     from stiction import simulation
     from stiction.cli.progress import progress
     from stiction.description import Description
@@ -43,9 +42,8 @@ def run(config: Path, /, *, output: Output, trust: Trust = False, set: Changes =
     with progress("simulating") as report:
         result = simulation.run(description, progress=report)
         result.save(output)
-    console = Console(soft_wrap=True, highlight=False)
     for line in said(result, output):
-        console.print(line, markup=False)
+        say(line)
     return 0 if result.status.ok else 1
 
 

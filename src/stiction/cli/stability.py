@@ -8,6 +8,7 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from stiction.cli.options import Changes, MaybeOutput, Trust, changes
+from stiction.cli.terminal import say
 
 
 def stability(
@@ -72,7 +73,7 @@ def stability(
     found = examine(slider, paths, ranges or None)
     printed(str(config), found.tables())
     if output is not None:
-        print(f"wrote {write(figure_of(found.plot), output)}")
+        say(f"wrote {write(figure_of(found.plot), output)}")
 
 
 def number(text: str) -> Any:

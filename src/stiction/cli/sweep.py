@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from stiction.cli.options import Changes, Output, Trust, changes, named
+from stiction.cli.terminal import say
 
 if TYPE_CHECKING:
     from stiction.study.engines import Engine
@@ -104,11 +104,11 @@ def sweep(
                 along, to = named(refine, "--refine")
                 found = halve(study, output, along, to, apart=apart, engine=means, progress=report)
     except KeyboardInterrupt:
-        print(f"{output}: stopped; the same command goes on where it was", file=sys.stderr)
+        say(f"{output}: stopped; the same command goes on where it was", error=True)
         return 130
     conclude(output, result)
     if found is not None and not (quiet or json_lines):
-        print(f"{found.sizes['point']} changes along {along}, by {found.attrs['runs']} runs in all")
+        say(f"{found.sizes['point']} changes along {along}, by {found.attrs['runs']} runs in all")
     return 1 if result.failed else 0
 
 

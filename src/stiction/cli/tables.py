@@ -10,6 +10,7 @@ from rich.padding import Padding
 from rich.table import Table as Grid
 from rich.text import Text
 
+from stiction.errors import visible
 from stiction.sections import Section, Table
 
 LONGEST = 24  # letters of a word that is not broken
@@ -18,14 +19,19 @@ LONGEST = 24  # letters of a word that is not broken
 def printed(title: str, parts: Iterable[Section]) -> None:
     """Print sections below a title."""
     console = Console(highlight=False)
-    console.print(Text(title, style="bold"))
+    console.print(plain(title, style="bold"))
     for part in parts:
         console.print()
-        console.print(Text(part.title, style="bold"))
+        console.print(plain(part.title, style="bold"))
         for sentence in part.sentences:
-            console.print(Padding(Text(sentence), (0, 0, 0, 2)))
+            console.print(Padding(plain(sentence), (0, 0, 0, 2)))
         if part.table is not None:
             console.print(table(part.table, console.width))
+
+
+def plain(text: str, style: str = "") -> Text:
+    """Return a text of which nothing acts on the terminal."""
+    return Text(visible(text), style=style)
 
 
 def table(found: Table, room: int = 80) -> Grid:
@@ -36,10 +42,13 @@ def table(found: Table, room: int = 80) -> Grid:
     for cells, width in zip(columns, widths(columns, inside), strict=True):
         numbers = all(number(cell) for cell in cells[1:])
         shown.add_column(
-            cells[0], justify="right" if numbers else "left", overflow="fold", width=width
+            plain(cells[0]),
+            justify="right" if numbers else "left",
+            overflow="fold",
+            width=width,
         )
     for row in found.rows:
-        shown.add_row(*(Text(cell) for cell in row))
+        shown.add_row(*(plain(cell) for cell in row))
     return shown
 
 

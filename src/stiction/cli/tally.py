@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
+from stiction.cli.terminal import say
+
 if TYPE_CHECKING:
     from stiction.study.summary import Summary
     from stiction.study.sweeping import Tally
@@ -71,16 +73,14 @@ def _print_summary(output: Path, result: Summary) -> None:
 
 def _tell_failures(output: Path, result: Summary) -> None:
     if result.first is not None:
-        console = Console(stderr=True, soft_wrap=True, highlight=False)
-        console.print(f"{output}: {_failures(result)}", markup=False)
+        say(f"{output}: {_failures(result)}", error=True)
 
 
 def _tell(output: Path, result: Summary) -> None:
-    console = Console(soft_wrap=True, highlight=False)
-    console.print(f"{output}: {result.runs - result.pending} runs", markup=False)
+    say(f"{output}: {result.runs - result.pending} runs")
     if result.first is not None:
-        console.print(_failures(result), markup=False)
-    console.print(f"next: stiction map {output}", markup=False)
+        say(_failures(result))
+    say(f"next: stiction map {output}")
 
 
 def _failures(result: Summary) -> str:

@@ -7,7 +7,7 @@ from math import isfinite
 from types import ModuleType
 from typing import Any
 
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, one_line
 from stiction.friction.law import has_state
 from stiction.friction.source import member
 from stiction.validation import unknown
@@ -62,16 +62,11 @@ def tried(law: Any, name: str) -> Any:
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # whatever the user's law raises
-            what = f"{method}(law, {v:g}) of {name!r} raises {raised(error)}; correct it there"
+            what = f"{method}(law, {v:g}) of {name!r} raises {one_line(error)}; correct it there"
             raise fault(what) from None
         if not isfinite(value):
             raise fault(f"{method}(law, {v:g}) of {name!r} is {value}; it must be finite")
     return law
-
-
-def raised(error: BaseException) -> str:
-    """Return an error in one line."""
-    return " ".join(f"{type(error).__name__}: {error}".split("\n", 1)[0].split())
 
 
 def _is_its_own(value: Any, module: ModuleType) -> bool:

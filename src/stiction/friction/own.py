@@ -16,8 +16,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from stiction.errors import DescriptionError
-from stiction.friction.kinds import fault, law_in, raised, tried
+from stiction.errors import DescriptionError, one_line
+from stiction.friction.kinds import fault, law_in, tried
 from stiction.friction.source import Text, member, module_name, module_of, read, text_of
 from stiction.validation import made
 
@@ -139,7 +139,7 @@ def told(what: str) -> Iterator[None]:
     except (DescriptionError, KeyboardInterrupt):
         raise
     except BaseException as error:
-        raise fault(f"{what}: {raised(error)}") from None
+        raise fault(f"{what}: {one_line(error)}") from None
 
 
 def _read(path: Path) -> str:

@@ -6,6 +6,7 @@ all else of that block: it is the mark that the block is done.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from contextlib import contextmanager
 from functools import lru_cache
@@ -16,7 +17,8 @@ from uuid import uuid4
 import numpy as np
 
 from stiction import errors
-from stiction.errors import ResultError
+from stiction.errors import ResultError, one_line
+from stiction.foreign import refuse_links
 from stiction.study.kept import Kept
 from stiction.study.layout import Index, Layout, Region
 from stiction.study.measures import FORMERLY
@@ -165,15 +167,17 @@ def group_at(path: str | Path, mode: Literal["r", "r+"]) -> zarr.Group:
     """
     import zarr
 
-    if not Path(path).exists():
+    if not os.path.isdir(path):
         raise ResultError(f"{path}: no such store; write one with 'stiction sweep'")
-    try:
-        group = zarr.open_group(Path(path), mode=mode, use_consolidated=False)
+    refuse_links(path)
+    try:  # of format 2 of zarr, pickles were a part
+        group = zarr.open_group(Path(path), mode=mode, zarr_format=3, use_consolidated=False)
         known = group.attrs.get("format")
-    except (OSError, ValueError, KeyError) as error:
-        raise ResultError(f"{path}: is not the store of a study: {error}") from None
+    except Exception as error:  # whatever zarr raises of what is none
+        raise ResultError(f"{path}: is not the store of a study: {one_line(error)}") from None
     if known != FORMAT:
-        what = "is not the store of a study" if known is None else f"has format {known}"
+        by = f"stiction {group.attrs.get('stiction_version')!s:.20} wrote it, this is {version()}"
+        what = "is not the store of a study" if known is None else f"has format {known!s:.20}; {by}"
         raise ResultError(f"{path}: {what}; choose another name")
     return group
 
@@ -192,7 +196,7 @@ def open_study(path: str | Path) -> xr.Dataset:
     import xarray as xr
 
     group_at(path, "r")
-    data: xr.Dataset = xr.open_zarr(path)
+    data: xr.Dataset = xr.open_zarr(path, zarr_format=3)
     return data.rename({old: new for old, new in FORMERLY.items() if old in data})
 
 

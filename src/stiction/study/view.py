@@ -78,7 +78,7 @@ def refined(path: str | Path) -> list[xr.Dataset]:
     import xarray as xr
 
     folders = sorted(Path(path).glob(f"{REFINED}/*/{CHANGES}"))
-    return [xr.open_zarr(folder, consolidated=False).load() for folder in folders]
+    return [xr.open_zarr(folder, consolidated=False, zarr_format=3).load() for folder in folders]
 
 
 def chosen(view: View, measures: Sequence[str]) -> list[str]:

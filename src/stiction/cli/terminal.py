@@ -1,0 +1,43 @@
+"""What the command line prints: nothing in it may act on the terminal, or end in a traceback."""
+
+from __future__ import annotations
+
+import codecs
+import os
+import sys
+from contextlib import suppress
+from typing import TextIO
+
+from stiction.errors import visible
+
+# of letters that a terminal lacks
+PLAIN = {
+    "µ": "u", "φ": "phi", "θ": "theta", "ψ": "psi", "ζ": "zeta", "ω": "omega", "·": " ",
+    "°": " deg", "²": "^2", "³": "^3", "∞": "inf", "−": "-", "–": "-", "±": "+-", "×": "x",
+    "…": "...", "≥": ">=", "≤": "<=",
+}  # fmt: skip
+
+
+def say(text: str, *, error: bool = False) -> None:
+    """Print a text, to standard error if it is one; escape sequences in it are written out."""
+    print(visible(text), file=sys.stderr if error else sys.stdout)
+
+
+def spell_out() -> None:
+    """Have letters that the terminal's encoding lacks printed in others."""
+    codecs.register_error("spelled", _spelled)
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="spelled")
+
+
+def _spelled(error: UnicodeError) -> tuple[str, int]:
+    assert isinstance(error, UnicodeEncodeError)
+    letters = error.object[error.start : error.end]
+    return "".join(PLAIN.get(x, ascii(x)[1:-1]) for x in letters), error.end
+
+
+def give_up(stream: TextIO | None) -> None:
+    """Write no more to a stream that takes nothing; Python would try again as it ends."""
+    with suppress(OSError, ValueError, AttributeError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())  # type: ignore[union-attr]

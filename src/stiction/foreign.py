@@ -1,0 +1,61 @@
+"""What is looked at before a file from others is opened: does all of it lie where it says?"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from stiction.errors import ResultError
+
+
+def refuse_links(folder: str | Path) -> None:
+    """Refuse a store with links in it, which lead reading and writing elsewhere.
+
+    Raises
+    ------
+    ResultError
+        Naming the first.
+    """
+    for link in _links(folder):
+        raise ResultError(
+            f"{folder}: has a link in it, {os.path.relpath(link, folder)}, which leads elsewhere; "
+            "put the file itself in its place"
+        )
+
+
+def _links(folder: str | Path) -> Iterator[str]:
+    with os.scandir(folder) as entries:
+        for entry in entries:
+            if entry.is_symlink():
+                yield entry.path
+            elif entry.is_dir(follow_symlinks=False):
+                yield from _links(entry.path)
+
+
+def refuse_other_files(path: str | Path) -> None:
+    """Refuse an HDF5 file that has other files read with it, or calls one thing by two names.
+
+    Raises
+    ------
+    ResultError
+        Naming the first link, external or virtual dataset in it.
+    OSError
+        If it is no HDF5 file.
+    """
+    h5py: Any = import_module("h5py")  # slow to import
+    with h5py.File(path) as file:
+
+        def look(name: str, link: object) -> str | None:
+            if not isinstance(link, h5py.HardLink):
+                return f"{name} is a link"
+            member = file.get(name)
+            if isinstance(member, h5py.Dataset) and (member.external or member.is_virtual):
+                return f"{name} has its numbers in another file"
+            return None
+
+        found = file.visititems_links(look)
+    if found is not None:
+        raise ResultError(f"{path}: {found}, which no result has; it is not read")

@@ -1,0 +1,100 @@
+"""Reading the file of a run: nothing in it is believed before it was looked at."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from stiction.errors import ResultError, one_line
+from stiction.foreign import refuse_other_files
+from stiction.labels import STICKS, VARIABLES
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+STICK_GROUP = "sticks"  # of a result file
+ENDS = ("stick_start", "stick_end")
+TEXTS = ("description", "status", "stiction_version")
+LATER = {"mu", "stick_duration"}  # columns that older versions did not write
+
+
+def read_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
+    """Return samples and sticks of a result file.
+
+    Raises
+    ------
+    ResultError
+        If there is no such file, or it is not a result of this package.
+    """
+    if os.path.isdir(path):
+        remedy = "of a study, st.map(path) draws a map and st.open_study(path) reads the data"
+        raise ResultError(f"{path}: is a folder, not the file of one run; {remedy}")
+    if not os.path.isfile(path):
+        raise ResultError(f"{path}: no such file; write one with 'stiction run'")
+    try:
+        refuse_other_files(path)
+        data, sticks = _opened(path)
+    except ResultError:
+        raise
+    except Exception as error:  # whatever HDF5 and its readers raise of a file that is none
+        raise ResultError(
+            f"{path}: not a NetCDF file that can be read: {one_line(error)}"
+        ) from None
+    lacking = [*_lacking(data, VARIABLES), *_lacking(sticks, ENDS)]
+    lacking += ["its description"] if "description" not in data.attrs else []
+    if lacking:
+        what = f"it lacks {', '.join(lacking)}"
+        raise ResultError(f"{path}: not a result of 'stiction run'; {what}{age(data)}")
+    wrong = [*_wrong(data, "time", ["time", *VARIABLES]), *_wrong(sticks, "stick", STICKS)]
+    wrong += [f"{name} is no text" for name in TEXTS if not isinstance(data.attrs.get(name), str)]
+    if wrong:
+        raise ResultError(f"{path}: not a result of 'stiction run'; {'; '.join(wrong)}{age(data)}")
+    return data, sticks
+
+
+def age(data: xr.Dataset) -> str:
+    """Return what is to be said of a file that another version wrote, '' of this one's."""
+    wrote, this = data.attrs.get("stiction_version"), version("stiction")
+    if wrote is None or str(wrote) == this:
+        return ""
+    return f"; stiction {wrote!s:.20} wrote it, this is {this}"
+
+
+def _opened(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
+    """Return the two tables of a file; up to version 0.4 both stood in the root group."""
+    import xarray as xr
+
+    data = xr.load_dataset(path, engine="h5netcdf", decode_times=False)
+    if "stick" in data.dims:
+        return data.drop_dims("stick"), data.drop_dims("time", errors="ignore")
+    try:
+        sticks = xr.load_dataset(path, group=STICK_GROUP, engine="h5netcdf", decode_times=False)
+    except OSError:  # there is no such group
+        return data, xr.Dataset()
+    return data, sticks
+
+
+def _lacking(table: xr.Dataset, names: Iterable[str]) -> list[str]:
+    return [name for name in names if name not in table and name not in LATER]
+
+
+def _wrong(table: xr.Dataset, dim: str, names: Iterable[str]) -> Iterator[str]:
+    """Yield what is wrong with columns of numbers along one dimension."""
+    for name in names:
+        if name not in table:
+            continue
+        column = table[name]
+        if column.dtype.kind not in "fiu" or column.dims != (dim,):
+            along = ", ".join(map(str, column.dims)) or "nothing"
+            yield f"{name} is {column.dtype} along {along}, and must be numbers along {dim}"
+        elif name in ("time", *ENDS):
+            values = column.values.astype(np.float64)
+            if not np.isfinite(values).all() or (np.diff(values) < 0.0).any():
+                yield f"{name} must be finite and ascend"
+            elif name == "time" and not len(values):
+                yield "there are no samples in it"
