@@ -217,3 +217,28 @@ def test_the_figure_says_what_is_drawn(curves):
     assert labels[-4:] == [*creep_theory(V, 0.1, L_X), "fit"]
     noisy = st.mean_creep(st.creep_curves(*noisy_record(3, 0.0), 0.01))
     assert figure_of(plot_creep, curves, noisy, V).axes[0].get_yscale() == "linear"
+
+
+def test_far_turned_the_angle_is_that_of_the_run():
+    """Eq. (7) has the drive's own speed, not its part along the soft spring: 40 deg, not 47."""
+    rig = {"mass": 0.1, "k_x": 2e3, "k_y": 4e6, "phi": "40 deg", "normal_load": 6}
+    law = st.ExponentialWeakening(mu_0=0.25, mu_inf=0.15, v_f="10 mm/s")
+    slider = st.Slider(**rig, friction=law, drive=st.ConstantVelocity("1 mm/s"))
+    found = st.analyse(st.simulate(slider, 3.0, sample_rate=2e4))
+    low, high = (np.degrees(each) for each in found.misalignment.interval)
+    assert low < 40.0 < high
+    text = str(found)
+    assert "before slip" not in text  # it comes to slide without one
+    assert "before it first is faster than the drive" in text
+
+
+def test_what_rests_before_slip_implies_no_angle():
+    """Across hardly stiffer than along, the mass rests: no limit of an angle follows from that."""
+    rig = {"mass": 0.5, "k_x": 5e3, "k_y": 1.5e4, "phi": "12 deg", "normal_load": 15}
+    law = st.ExponentialWeakening(mu_0=0.3, mu_inf=0.2, v_f="20 mm/s")
+    slider = st.Slider(**rig, friction=law, drive=st.ConstantVelocity("5 mm/s"))
+    found = st.analyse(st.simulate(slider, 0.9, sample_rate=5e3))
+    assert found.missing["misalignment"] == (
+        "not determined: the mass rests, where Eq. (7) has it creep"
+    )
+    assert "before slip it rests" in str(found)

@@ -23,6 +23,7 @@ T = TypeVar("T")
 
 KNOWN = 0.25  # standard error of an exponent, or of an angle over it, that still says something
 SURE = 2.0  # standard errors
+RESTS = 1e-6  # of the drive velocity: what moves less for most of the time rests
 BACKWARD, SOME = 0.02, 0.25  # of the drive velocity; of the bins: creep the other way
 
 
@@ -67,7 +68,7 @@ def find_creep(
     mean = tried(missing, "creep", lambda: _mean(curves, known)) if curves is not None else None
     if run is not None and run.slider.phi == 0.0:
         return CreepFound(curves, mean, None, None, missing)
-    V, stiffness = known.drive_velocity, known.stiffness
+    V, stiffness = drive_speed(source, known), known.stiffness
     if mean is None or V is None or stiffness is None:
         return CreepFound(curves, mean, None, by_force, missing)
     if record.position is None:
@@ -82,6 +83,16 @@ def find_creep(
     divergence = tried(missing, "divergence", lambda: _divergence(mean, loading))
     by_creep = tried(missing, "misalignment", lambda: _misalignment(mean, V, stiffness))
     return CreepFound(curves, mean, divergence, by_creep, missing)
+
+
+def drive_speed(source: Trajectory | Record, record: Record) -> float | None:
+    """Return V of Eq. (7), m/s; None if it is not known.
+
+    Of a run it is the drive's own, where its record has that part which loads the soft spring.
+    """
+    if isinstance(source, Trajectory):
+        return abs(source.slider.motion.velocity) or None
+    return record.drive_velocity
 
 
 def calibrated(record: Record, cycles: xr.Dataset, found: Misalignment | None = None) -> Record:
@@ -130,6 +141,8 @@ def _divergence(mean: xr.Dataset, loading: float) -> Divergence:
 
 def _misalignment(mean: xr.Dataset, V: float, stiffness: float) -> Misalignment:
     """Return the misalignment that creep implies, if it stands out of its uncertainty."""
+    if np.nanmedian(np.abs(mean["velocity"].values)) < RESTS * V:
+        raise ResultError("not determined: the mass rests, where Eq. (7) has it creep")
     found = fit_misalignment(mean, V, stiffness)
     if not found.phi_error < KNOWN * abs(found.phi):
         most = degrees(abs(found.phi) + SURE * found.phi_error)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stiction.analysis.columns import Quantity, grid
+from stiction.analysis.creep_found import RESTS, drive_speed
 from stiction.analysis.friction_found import Measured
 from stiction.analysis.hum import of_mains
 from stiction.analysis.regime import (
@@ -182,9 +183,10 @@ def creep(found: Analysis) -> Section:
     far, near = (found.creep.isel(bin=at) for at in (-1, 0))
     long, short = (in_words(float(row["begin"]), "s") for row in (far, near))
     phases = int(found.creep["phases"].max())
-    end = "slip" if _slips(found) else "the end"
+    V = drive_speed(found.source, found.record) or 0.0
     lines = [
-        f"At {long} before {end} {_creeping(far)}, in the last {short} {_creeping(near)}; "
+        f"At {long} before {_end(found)} {_creeping(far, V)}, in the last {short} "
+        f"{_creeping(near, V)}; "
         f"{phases} stick phase{'s' * (phases != 1)}."
     ]
     d, phi = found.divergence, found.misalignment
@@ -270,14 +272,21 @@ def _true(found: Analysis) -> str:
     return f" (the run has {degrees(abs(found.source.slider.phi)):.3g} deg)"
 
 
-def _slips(found: Analysis) -> bool:
-    """Return whether the last stick phase ends before the record does."""
-    return found.curves is None or float(found.curves["slip_time"][-1]) < found.record.time[-1]
+def _end(found: Analysis) -> str:
+    """Return what the stick phases end with."""
+    last = np.inf if found.curves is None else float(found.curves["slip_time"][-1])
+    if found.curves is not None and last >= found.record.time[-1]:
+        return "the end"
+    if not found.cycles.sizes["cycle"] and found.friction.break_away is None:
+        return "it first is faster than the drive"  # it comes to slide without a slip
+    return "slip"
 
 
-def _creeping(row: xr.Dataset) -> str:
+def _creeping(row: xr.Dataset, V: float) -> str:
     """Say how fast it creeps in a bin, and to how much that is known if it is worth a word."""
     value, error = float(row["velocity"]), float(row["velocity_error"])
+    if abs(value) + SURE * np.nan_to_num(error) < RESTS * V:
+        return "it rests"
     if value <= SURE * error:
         most = max(value, 0.0) + SURE * error
         return f"it creeps no faster than {in_words(most, 'm/s')} (two standard errors)"

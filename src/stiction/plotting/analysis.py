@@ -7,6 +7,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from stiction.analysis.creep_found import drive_speed
 from stiction.analysis.report import Analysis
 from stiction.plotting.canvas import figure_of
 from stiction.plotting.creep_curve import creep_theory, plot_creep
@@ -26,15 +27,14 @@ def figures(found: Analysis) -> dict[str, Figure]:
     drawn = {}
     if len(found.record):
         drawn["cycles"] = figure_of(plot_cycles, found.record)
-    if found.curves is not None and found.creep is not None and found.record.drive_velocity:
-        V, fit = found.record.drive_velocity, found.misalignment
-        lines = {}
+    V = drive_speed(found.source, found.record)
+    if found.curves is not None and found.creep is not None and V is not None:
+        fit, lines = found.misalignment, {}
         if fit is not None and fit.stands_out and found.record.stiffness is not None:
             stiffness = fit.stiffness if isfinite(fit.stiffness) else found.record.stiffness
             l_x = fit.F_0 / stiffness
-            lines = {
-                f"{name}, fitted": line for name, line in creep_theory(V, fit.phi, l_x).items()
-            }
+            theory = creep_theory(V, fit.phi, l_x, _loading(found))
+            lines = {f"{name}, fitted": line for name, line in theory.items()}
         drawn["creep"] = figure_of(plot_creep, found.curves, found.creep, V, lines)
     seen = 0 if found.oscillation is None else found.oscillation.sizes.get("time", 0)
     if isinstance(found.source, Trajectory) and found.oscillation is not None and seen > 1:
@@ -42,3 +42,12 @@ def figures(found: Analysis) -> dict[str, Figure]:
     if found.energy is not None:
         drawn["energy"] = figure_of(plot_energy, found.energy)
     return drawn
+
+
+def _loading(found: Analysis) -> float | None:
+    """Return how long the one loading of a run lasted, s; None where there are others, or none."""
+    if found.curves is None or found.curves.sizes["phase"] != 1:
+        return None
+    if not isinstance(found.source, Trajectory):
+        return None
+    return float(found.curves["slip_time"][0] - found.record.time[0])
