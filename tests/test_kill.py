@@ -214,7 +214,7 @@ def test_workers_client_and_scheduler_killed(nursery, study, undisturbed, tmp_pa
 
     allow(gate, 0)
     with dask(*serve, "--scheduler-file", str(found)) as scheduler:
-        until(found.exists)
+        until(lambda: found.exists() and found.read_text())
         address = json.loads(found.read_text())["address"]
         preload = ("--preload", GATE.format(str(gate)))
         with dask("worker", address, *work, *preload):

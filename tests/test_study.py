@@ -8,9 +8,11 @@ import xarray as xr
 
 import stiction as st
 from stiction.study.cluster import Processes
+from stiction.study.creation import create
 from stiction.study.engines import Threads
 from stiction.study.layout import Layout, laid_out, places
 from stiction.study.parameters import unit, varied
+from stiction.study.sealing import seal
 
 PAPER = st.presets.nakano_popov_2020()
 BASE = st.Description(PAPER, st.Initial(), st.Settings(duration="30 ms"))
@@ -266,9 +268,10 @@ def test_traces_are_kept_decimated(tmp_path):
 def test_a_store_of_another_version_is_refused(study, tmp_path):
     import zarr
 
-    st.sweep(study, tmp_path / "a.zarr")
+    create(study, tmp_path / "a.zarr")
     group = zarr.open_group(tmp_path / "a.zarr", mode="r+", use_consolidated=False)
     group.attrs["stiction_version"] = "0.0.1"
+    seal(tmp_path / "a.zarr")
     with pytest.raises(st.ResultError, match=r"begun by stiction 0\.0\.1"):
         st.sweep(study, tmp_path / "a.zarr")
     group.attrs["format"] = 99

@@ -11,6 +11,7 @@ from stiction.plotting.canvas import figure_of
 from stiction.plotting.maps import Side
 from stiction.study.boundaries import PHI_C, ZETA, plane
 from stiction.study.presets import PRESETS, preset
+from stiction.study.sealing import seal
 
 PAPER = st.presets.nakano_popov_2020()
 BASE = st.Description(PAPER, st.Initial(), st.Settings(duration="4 s"))
@@ -164,4 +165,5 @@ def test_a_measure_by_its_old_name_is_that_by_its_new_one(tmp_path):
     (store / "zarr.json").write_text(
         (store / "zarr.json").read_text().replace("transverse_oscillation", "song")
     )
+    seal(store)
     assert "transverse_oscillation" in st.open_study(store)

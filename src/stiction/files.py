@@ -98,7 +98,7 @@ def place(made: Mapping[Path, Path]) -> None:
     made : mapping of Path to Path
         What was made, and the path that it takes; a file that is there is replaced.
     """
-    sync(each for part in made for each in (part, *part.rglob("*")))
+    sync(each for part in made for each in (part, *(part.rglob("*") if part.is_dir() else ())))
     changed = {target.parent for target in made.values()}
     for part, target in made.items():
         changed |= {folder.parent for folder in make_folders(target.parent)}

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
-import tempfile
 import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,43 +9,53 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stiction.errors import ResultError
+from stiction.files import place, workshop
 from stiction.study.kept import TIME, flagged, kept, trace_times
 from stiction.study.plan import Study
-from stiction.study.store import ENDS, FORMAT, PENDING, Store, opened, told, version
+from stiction.study.sealing import seal
+from stiction.study.store import CHECKED, ENDS, PENDING, Store, opened, told, version
 
 if TYPE_CHECKING:
     import zarr
 
 
 def create(study: Study, path: str | Path) -> Store:
-    """Make the store of a study that has not begun, whole or not at all."""
-    import zarr
-
+    """Make the store of a study that has not begun, whole or not at all; or join who is faster."""
     target = Path(path)
     if not target.parent.is_dir():
         raise ResultError(f"{target}: no folder {target.parent}; make it first")
-    with told(target):
-        part = Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{target.name}."))
+    with told(target), workshop(target.parent) as room:
+        part = lay_out(study, room / "store")
         try:
-            _lay_out(study, zarr.create_group(part, zarr_format=3))
-            with warnings.catch_warnings():  # of a convention that xarray and zarr share
-                warnings.simplefilter("ignore", UserWarning)
-                zarr.consolidate_metadata(part)
-            part.chmod(0o755)
-            os.replace(part, target)
-        finally:
-            shutil.rmtree(part, ignore_errors=True)
+            place({part: target})
+        except OSError:
+            if not target.exists():  # otherwise another sweep was faster: this one joins it
+                raise
     return opened(study, target)
 
 
-def _lay_out(study: Study, group: zarr.Group) -> None:
+def lay_out(study: Study, folder: Path) -> Path:
+    """Make a store without runs, sealed; return the folder."""
+    import zarr
+
+    _make_arrays(study, zarr.create_group(folder, zarr_format=3))
+    with warnings.catch_warnings():  # of a convention that xarray and zarr share
+        warnings.simplefilter("ignore", UserWarning)
+        zarr.consolidate_metadata(folder)
+    seal(folder)
+    return folder
+
+
+def _make_arrays(study: Study, group: zarr.Group) -> None:
     """Make the arrays of a study and write its coordinates."""
-    layout = study.layout
+    from zarr.codecs import Crc32cCodec
+
+    layout, codecs = study.layout, (Crc32cCodec(),)
     dims: dict[str, Any] = {"dimension_names": layout.dims}
-    grid: dict[str, Any] = {"shape": layout.shape, "chunks": layout.block, "compressors": None}
+    grid: dict[str, Any] = {"shape": layout.shape, "chunks": layout.block, "compressors": codecs}
     group.attrs.update(
         title="study by stiction",
-        format=FORMAT,
+        format=CHECKED,
         stiction_version=version(),
         description=study.to_json(),
         coordinates=" ".join([*study.coordinates, "message"]),  # as xarray reads it
@@ -57,7 +64,7 @@ def _lay_out(study: Study, group: zarr.Group) -> None:
         group.create_array(
             each.name, dtype=each.dtype, fill_value=each.unknown, attributes=each.labels,
             shape=(*layout.shape, *each.shape), chunks=(*layout.block, *each.shape),
-            dimension_names=(*layout.dims, *[TIME for _ in each.shape]), compressors=None,
+            dimension_names=(*layout.dims, *[TIME for _ in each.shape]), compressors=codecs,
         )  # fmt: skip
     flags: Any = {"long_name": "how the run ended", **flagged("pending", ENDS)}
     group.create_array(
@@ -77,8 +84,10 @@ def _write_along(
     group: zarr.Group, name: str, dim: str, values: np.ndarray, labels: dict[str, Any]
 ) -> None:
     """Write a coordinate."""
+    from zarr.codecs import Crc32cCodec
+
     array = group.create_array(
         name, shape=values.shape, chunks=values.shape, dtype=np.float64, attributes=labels,
-        dimension_names=(dim,), compressors=None,
+        dimension_names=(dim,), compressors=(Crc32cCodec(),),
     )  # fmt: skip
     array[:] = values

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import nan
 from typing import Any, NamedTuple
 
@@ -53,6 +53,15 @@ def kept(study: Study) -> list[Kept]:
     ]
 
 
+def names_kept(study: Mapping[str, Any]) -> list[str]:
+    """Return the names of what is kept of each run, from the table of a study's description."""
+    return [*study["measures"], *map(_trace_name, study["traces"])]
+
+
+def _trace_name(name: str) -> str:
+    return f"{name}_trace"
+
+
 def _measure(name: str) -> Kept:
     known = MEASURES[name]
     if known.flags:
@@ -70,7 +79,7 @@ def _trace(name: str, count: int) -> Kept:
         return np.interp(at, run.time, known.of(run))
 
     labels = {"units": known.unit, "long_name": known.long_name}
-    return Kept(f"{name}_trace", decimated, (count,), np.float64, nan, labels)
+    return Kept(_trace_name(name), decimated, (count,), np.float64, nan, labels)
 
 
 def trace_times(study: Study) -> tuple[Floats, dict[str, str]]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from time import perf_counter
 from typing import NamedTuple
 
+from stiction.files import held
 from stiction.study.creation import create
 from stiction.study.engines import Engine, Threads
 from stiction.study.layout import runs_of
@@ -64,7 +65,8 @@ def sweep(
 ) -> Summary:
     """Do all runs of a study that its store has not, and keep them there.
 
-    It may be stopped at any moment, and goes on where it was when it is called again.
+    It may be stopped at any moment, and goes on where it was when it is called again. Several may
+    do the same study at once, and share the work.
 
     Parameters
     ----------
@@ -89,11 +91,25 @@ def sweep(
     """
     store = opened(study, path) if Path(path).exists() else create(study, path)
     layout = store.layout
-    left = sum(runs_of(layout.region(task)) for task in tasks_left(store))
-    begun = perf_counter()
+    left = [task for task in range(layout.tasks) if not store.has(layout.region(task))]
+    with held(store.path, alone=True) as first:
+        # a second one begins at the other end
+        do(study, store, left if first else left[::-1], engine, progress)
+    return summary(study, store)
+
+
+def do(
+    study: Study,
+    store: Store,
+    tasks: Sequence[int],
+    engine: Engine | None,
+    progress: Report | None,
+) -> None:
+    """Have an engine do blocks of a study."""
+    layout, begun = store.layout, perf_counter()
+    left = sum(runs_of(layout.region(task)) for task in tasks)
     tally = Tally(layout.runs, layout.runs - left, 0, 0, 0.0)
-    work = partial(done, study, store)
-    for came in (engine or Threads()).results(work, tasks_left(store)):
+    for came in (engine or Threads()).results(partial(done, study, store), tasks):
         tally = tally._replace(
             now=tally.now + came.runs,
             failed=tally.failed + came.failed,
@@ -101,11 +117,3 @@ def sweep(
         )
         if progress is not None:
             progress(tally)
-    return summary(study, store)
-
-
-def tasks_left(store: Store) -> Iterator[int]:
-    """Yield the number of each block that is not done, one by one: there may be many."""
-    for task in range(store.layout.tasks):
-        if not store.has(store.layout.region(task)):
-            yield task

@@ -1,0 +1,44 @@
+"""The seal of a store: checksums of all that is written when it is made, in its own attributes.
+
+Values have checksums of their own, chunk by chunk. Names, units, the description and what says
+how chunks are to be read have none in zarr.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from stiction import checksums
+
+ROOT, SEAL = "zarr.json", "checksums"
+
+
+def seal(folder: Path) -> None:
+    """Seal all that is in a new store."""
+    parts = {str(each.relative_to(folder).as_posix()): each for each in sorted(folder.rglob("*"))}
+    files = {name: each.read_bytes() for name, each in parts.items() if each.is_file()}
+    root = json.loads(files[ROOT])
+    root["attributes"].pop(SEAL, None)
+    files[ROOT] = _plain(root)
+    root["attributes"][SEAL] = checksums.seal(files)
+    (folder / ROOT).write_text(json.dumps(root, indent=2), encoding="utf-8")
+
+
+def broken(folder: Path) -> list[str]:
+    """Return the files of a store that are not what they were when it was made, or are missing."""
+    try:
+        root = json.loads((folder / ROOT).read_bytes())
+        sealed = root["attributes"].pop(SEAL)
+        names = json.loads(sealed).keys() - {ROOT}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return [ROOT]
+    files = {name: folder / name for name in names}
+    parts = {name: each.read_bytes() for name, each in files.items() if each.is_file()}
+    return checksums.broken(sealed, {**parts, ROOT: _plain(root)})
+
+
+def _plain(root: Any) -> bytes:
+    """Return what stands in the store's own file, however it is laid out there."""
+    return json.dumps(root, sort_keys=True).encode()
