@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -27,7 +28,7 @@ def refuse_links(folder: str | Path) -> None:
 
 
 def _links(folder: str | Path) -> Iterator[str]:
-    with os.scandir(folder) as entries:
+    with suppress(FileNotFoundError), os.scandir(folder) as entries:  # others may work there
         for entry in entries:
             if entry.is_symlink():
                 yield entry.path
