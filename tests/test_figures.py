@@ -18,6 +18,7 @@ from stiction.analysis.creep import first_slip_time, mean_creep_velocity
 from stiction.analysis.spectrum import rate_spectrogram, ridge, spectrogram
 from stiction.analysis.stuck import stuck_until
 from stiction.plotting.canvas import figure_of
+from stiction.plotting.cycles import plot_cycles
 from stiction.plotting.damping import draw_damping_map
 from stiction.plotting.misalignment import drawn_misalignment
 from stiction.plotting.overview import plot_run
@@ -26,10 +27,11 @@ from stiction.plotting.schematic import draw_schematic
 from stiction.plotting.shapes import Points
 from stiction.plotting.style import BLUE, PURPLE, new_figure, style
 from stiction.plotting.time_series import cut_open, envelope, prefixed
+from stiction.plotting.trials import Trial, plot_trials
 from stiction.reproduction.creep import creep
 from stiction.reproduction.figure3 import figure3
 from stiction.reproduction.figure4 import figure4
-from stiction.reproduction.figure5 import figure5
+from stiction.reproduction.figure5 import HALF, clear_of, figure5
 from stiction.reproduction.schematic import schematic
 from stiction.reproduction.zero_slip import zero_slip
 
@@ -309,3 +311,28 @@ def test_angles_are_cut_where_none_lie():
     assert np.nanmax(opened) - np.nanmin(opened) == pytest.approx(193.0)  # no jump from -175 to 178
     forward = np.array([-90.0, 0.0, 89.0])
     assert cut_open(forward).tolist() == forward.tolist()
+
+
+def test_trials_show_what_is_small_beside_the_loading() -> None:
+    time = np.arange(0.0, 10.0, 0.01)
+    loading = np.minimum(time, 3.6)
+    before = st.Record(time=time, force=loading + 0.03 * np.sin(40.0 * time) * (time > 4.0))
+    (ax,) = plot_trials(before, [Trial("a damper", st.Record(time=time, force=loading))])
+    low, high = ax.get_ylim()
+    assert 3.5 < low < 3.57
+    assert 3.63 < high < 3.7
+
+
+def test_times_of_milliseconds_are_written_so() -> None:
+    time = np.arange(0.0, 8e-4, 1e-6)
+    record = st.Record(time=time, force=1.0 + np.sin(2 * np.pi * time / 5e-5))
+    ax = drawn(figure_of(plot_cycles, record)).axes[-1]
+    assert ax.get_xlabel() == "time $t$ (ms)"
+    labels = [float(text.get_text()) for text in ax.get_xticklabels() if text.get_text()]
+    assert 0.1 < max(labels) <= 0.8
+
+
+def test_words_in_the_damping_diagram_stand_beside_its_paths() -> None:
+    for A in (3.0, 100.0, 3000.0):
+        place = clear_of([A], 0.1, 1e5)
+        assert abs(place - np.log(A / 0.1) / np.log(1e6)) >= HALF

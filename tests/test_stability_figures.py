@@ -112,3 +112,13 @@ def test_no_piece_of_the_boundary_is_missing(name):
     for a, b, side in zip(across.flat, up.flat, signed.flat, strict=True):
         growth = st.linear_stability.growth_rate(y.on(x.on(slider, a), b))
         assert (growth > 0) == (side > 0) or abs(side) < 1e-3  # how far a chord may be off
+
+
+def test_numbers_of_close_critical_values_stand_apart():
+    law = st.ExponentialWeakening(mu_0=0.35, mu_inf=0.22, v_f="5 mm/s")
+    rig = {"mass": 0.2, "k_x": 150, "k_y": 6e4, "phi": "0.5 deg", "normal_load": 2}
+    soft = st.Slider(**rig, friction=law, drive=st.ConstantVelocity("2 mm/s"))
+    found = st.stability(soft, over="phi")
+    fig = drawn(figure_of(plot_modes, found.modes, found.criticals[0]))
+    first, second = (text.get_window_extent() for text in fig.axes[0].texts)
+    assert first.x1 < second.x0

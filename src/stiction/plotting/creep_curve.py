@@ -118,7 +118,8 @@ def plot_creep(
                 ax.yaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
         else:
             ax.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
-            ax.set_ylim(-0.4, 1.3)
+            lowest = float(np.nanmin(value - 2.0 * error, initial=0.0)) / V
+            ax.set_ylim(min(-0.05, max(-0.4, 1.1 * lowest)), 1.3)
         ax.set_xlabel("time to slip (s)")
         ax.set_ylabel(r"creep velocity $\dot{X}/V$ (1)")
         low, high = ax.get_ylim()

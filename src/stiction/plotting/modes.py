@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+CLOSE = 0.13  # of the axis: numbers so near to each other would overlap
+
+
 def plot_modes(
     modes: xr.Dataset, critical: Critical | None = None, axes: Sequence[Axes] | None = None
 ) -> NDArray[np.object_]:
@@ -55,14 +58,14 @@ def plot_modes(
             ax.set(xscale=modes.attrs["scale"], xlim=scale.drawn(ends))
             for value in marked:
                 ax.axvline(value, color=GREY, linewidth=0.8, dashes=(4, 2), zorder=1)
-        for value in marked:
+        for value, side in zip(marked, sides(above, marked), strict=True):
             above.annotate(
                 f"{value:.4g}",
                 (value, 1.0),
                 (0, 2),
                 xycoords=("data", "axes fraction"),
                 textcoords="offset points",
-                ha="center",
+                ha=side,
                 va="bottom",
                 fontsize=7,
             )
@@ -73,6 +76,20 @@ def plot_modes(
             loc="lower center", bbox_to_anchor=(0.5, 1.07 if len(marked) else 1.0), ncols=3
         )
     return np.array([above, below], dtype=object)
+
+
+def sides(ax: Axes, values: NDArray[np.float64]) -> list[str]:
+    """Return how numbers above values are aligned: those of close neighbours away from each other.
+
+    The axis has its scale and its limits already.
+    """
+    points = np.column_stack([values, np.zeros(len(values))])
+    gaps = np.diff(ax.transAxes.inverted().transform(ax.transData.transform(points))[:, 0])
+    before, after = (np.append(*pair) < CLOSE for pair in ((np.inf, gaps), (gaps, np.inf)))
+    return [
+        "right" if next_is and not last_is else "left" if last_is and not next_is else "center"
+        for last_is, next_is in zip(before, after, strict=True)
+    ]
 
 
 def draw_growth_rates(ax: Axes, modes: xr.Dataset, scale: Scale) -> None:
