@@ -1,12 +1,15 @@
 """Machine code on disk: named after what it follows from, and never trusted blindly."""
 
+import logging
 import os
 from pathlib import Path
 
+import numba
 import pytest
 from tests.entry import entry
 
 import stiction as st
+from stiction.cli import main
 from stiction.solver import compiled, machine_code
 from stiction.solver.machine_code import Shelf
 
@@ -142,3 +145,24 @@ def test_a_part_is_not_called_from_python():
         with pytest.raises(TypeError, match="twice is called by compiled code only"):
             part(1.5)
         assert entry(part)(1.5) == 3.0
+
+
+def test_compiling_is_said_once(root, caplog):
+    with caplog.at_level(logging.INFO, logger="stiction"):
+        fresh()(1.5)
+        fresh()(1.5)
+    assert [each.getMessage() for each in caplog.records] == [f"compiling {__name__}.twice, once"]
+
+
+def test_it_is_said_for_which_law():
+    kind = numba.typeof((st.Coulomb(0.2), (1.0, st.Stribeck(0.2, 0.3, 1e-3))))
+    assert machine_code._in_words((kind, numba.float64)) == "the solver for Coulomb, Stribeck"
+
+
+def test_the_command_line_says_it_on_standard_error(capsys):
+    with pytest.raises(SystemExit):
+        main(["--version"])
+    logging.getLogger("stiction.solver").info("compiling [a law]")
+    found = capsys.readouterr()
+    assert found.err == "compiling [a law]\n"
+    assert "compiling" not in found.out

@@ -11,6 +11,7 @@ import cyclopts
 from rich.console import Console
 
 import stiction
+from stiction.cli.notices import show_notices
 from stiction.cli.terminal import give_up, spell_out
 from stiction.errors import StictionError, visible
 
@@ -53,6 +54,7 @@ app.register_install_completion_command(
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line; whatever the user can mend ends in one message and exit status 2."""
     spell_out()
+    show_notices()
     errors = Console(stderr=True, soft_wrap=True)
     try:
         code = app(arguments, result_action="return_value", print_error=False, exit_on_error=False)

@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import atexit
 import hashlib
+import logging
 import os
 import pickle
 import shutil
 import stat
 import sys
 import tempfile
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from inspect import getfile
 from pathlib import Path
@@ -31,6 +32,8 @@ from platformdirs import user_cache_path
 rebuild: Any = compiler.CompileResult._rebuild
 dumps: Any = _dumps
 normalize_signature: Any = _normalize
+
+log = logging.getLogger(__name__)
 
 CHECKSUM = 32  # bytes of a SHA-256 digest, before the code itself
 FOLDERS = 6  # versions of the package whose code stays, the last one used first
@@ -62,13 +65,9 @@ class Shelf:
         """Return what was compiled for a signature, or None if it is not there or damaged."""
         context.refresh()
         path = self._path(signature, context.codegen())
-        try:
-            content = path.read_bytes()
-        except OSError:
-            return None
-        checksum, code = content[:CHECKSUM], content[CHECKSUM:]
-        if hashlib.sha256(code).digest() != checksum:
-            path.unlink(missing_ok=True)
+        code = _undamaged(path)
+        if code is None:
+            log.info("compiling %s, once", _in_words(signature) or self._name)
             return None
         return rebuild(context, *pickle.loads(code))
 
@@ -96,6 +95,34 @@ class Shelf:
         arguments, _ = normalize_signature(signature)
         origin = (self._name, self._made_from, [*map(_told, arguments)], codegen.magic_tuple())
         return folder() / f"{self._name}-{hashlib.sha256(repr(origin).encode()).hexdigest()}.code"
+
+
+def _undamaged(path: Path) -> bytes | None:
+    """Return the code in a file; discard what is damaged."""
+    try:
+        content = path.read_bytes()
+    except OSError:
+        return None
+    checksum, code = content[:CHECKSUM], content[CHECKSUM:]
+    if hashlib.sha256(code).digest() == checksum:
+        return code
+    path.unlink(missing_ok=True)
+    return None
+
+
+def _in_words(signature: Any) -> str:
+    """Return what a solver is compiled for: its law, drive and load; "" for another function."""
+    names = dict.fromkeys(name for kind in signature for name in _chosen(kind))
+    return f"the solver for {', '.join(names)}" if names else ""
+
+
+def _chosen(kind: Any) -> Iterator[str]:
+    if isinstance(kind, types.BaseTuple):
+        made_by = getattr(kind, "instance_class", tuple)
+        if not made_by.__module__.startswith(("stiction.solver", "builtins")):
+            yield made_by.__name__
+        for part in cast(Iterable[Any], kind):
+            yield from _chosen(part)
 
 
 def _told(kind: Any) -> str:
