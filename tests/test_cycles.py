@@ -235,6 +235,18 @@ def test_what_is_a_cycle_and_what_a_hesitation(
         assert np.all(np.diff(np.sign(np.diff(values[found.kept]))) != 0)
 
 
+def test_ripple_that_only_some_can_see_changes_no_count() -> None:
+    """Falls of three sizes, with ripple on each rise or without."""
+    fall = np.random.default_rng(6).choice([1.0, 0.55, 0.3], 60)
+    plain, rippled = [1.0], [1.0]
+    for size in fall:
+        plain += [size, size]
+        rippled += [size, 0.4 * size, 0.02, 0.3 * size + 0.02, 0.03, 0.3 * size + 0.03]
+    smooth, rough = (take_out(corners(*legs)) for legs in (plain, rippled))
+    assert len(smooth.kept) == len(rough.kept) > 110
+    assert len(rough.at) == len(smooth.at) + 120
+
+
 # --- what is beside the motion, and what is sampled too coarsely ---
 
 

@@ -25,7 +25,9 @@ Indices = NDArray[np.intp]
 HALF = 0.5  # of the swing: a fall of so much is a cycle, where the falls are alike
 LEAST = 0.1  # of the swing: what is less is a hesitation, however much the falls differ
 AROUND = 12  # to each side with which a rise or fall is compared: amplitudes may grow, shrink
-OFTEN = 1.25  # times as many as falls: reversals that come with the falls belong to them
+# Times as many as falls: so many reversals come with the falls and belong to them. Those below
+# LEAST do not count, as how many of them are seen depends on noise and samples.
+OFTEN = 1.1
 FEW = 5  # falls: whether fewer are alike is not known
 # Falls spread evenly from half the swing to the whole of it have a standard deviation of 0.19 of
 # their mean; twice the standard error of that, 1/(2 n)^(1/2), is added.
@@ -59,11 +61,11 @@ def take_out(values: Floats) -> Hesitations:
         (n,) peaks and troughs in turn; first and last a value that the record reaches before and
         after them, which shows how far its cut movements went at least.
     """
-    found = _below(values, HALF)
+    found, shallow = _below(values, HALF), _below(values, LEAST)
     change = np.diff(values[found.kept])
     fall = -change[change < 0.0]
-    often = len(found.at) >= OFTEN * len(fall) > 0
-    return found if often or _alike(fall) else _below(values, LEAST)
+    deep = (len(shallow.kept) - len(found.kept)) // 2
+    return found if deep >= OFTEN * len(fall) > 0 or _alike(fall) else shallow
 
 
 def _below(values: Floats, share: float) -> Hesitations:
