@@ -185,9 +185,17 @@ STATIC = DAMPED.replace(friction=st.Coulomb(mu_0=0.2, mu_static=0.25))
 ELLIPSE = DAMPED.replace(
     friction=st.Anisotropic(st.ExponentialWeakening(0.2, 0.1, "10 mm/s"), 1.4, "30 deg")
 )
+# the errors of these are held against the motion about steady sliding, and against the soft
+# spring's rate while the other slips fast
+SETTLING = STRONGLY_DAMPED.replace(phi="30 deg", drive=st.ConstantVelocity("50 mm/s"))
+STIFF = PAPER.replace(
+    k_x="100 MN/m", k_y="1 kN/m", phi="70 deg", c_x=50.0, drive=st.ConstantVelocity("20 mm/s")
+)
 SLIDERS = {
     "damped": DAMPED,
     "strongly damped": STRONGLY_DAMPED,
+    "settling": SETTLING,
+    "stiff": STIFF,
     "static coefficient": STATIC,
     "ellipse": ELLIPSE,
 }
