@@ -8,4 +8,6 @@ is solved for, together with its stages, from p = 0 at its end. Where a landing 
 smooth, the classical pursuit curve ends it in closed form (`landing`). `loop` puts the
 pieces together; `twin` is all of it again, to be read. Laws with internal state, and
 set-valued laws made smooth, never stick and are integrated by `smooth`.
+
+The method is derived in docs/method.md; docstrings cite its equations as (M1), (M2), ...
 """

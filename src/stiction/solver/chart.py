@@ -86,7 +86,7 @@ def solved(
 
 @inlined
 def added_node(coefficients: np.ndarray, n: int, cycle: Cycle, swing: float) -> float:
-    """Add node `n` to the polynomials and return by how much they missed it before.
+    """Add node `n` to the polynomials and return by how much they missed it before (M57).
 
     Turns are relative to themselves and to the stick's: they may be nothing where cycles repeat.
     """

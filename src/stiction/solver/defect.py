@@ -39,8 +39,8 @@ def local_error(
 ) -> float:
     """Return the largest relative error of the collocation cubic inside the step.
 
-    Its defect at an interior point, times the step size. In a step longer than an oscillation,
-    which the cubic may run through anyhow, that can vanish by chance: there at two.
+    Its defect at an interior point, times the step size: (M35) to (M38). In a step longer than an
+    oscillation, which the cubic may run through anyhow, that can vanish by chance: there at two.
     """
     over = s.p_in, s.rest_in, s.slid_in
     error = error_at(problem, frame, over, h, p, w, accuracy, motion, INTERIOR, DEFECT_WEIGHT)
@@ -67,10 +67,10 @@ def error_at(
     """Return the relative error that follows from the defect at `c` (0 to 1), of this weight.
 
     `over` is what the oscillation adds there (see `Swing`). The defect of w is divided by how
-    stiffly w follows the force. Errors are held against the slip speed, but against no more than
-    the drive's: a rapid slip is over in few steps, and its error shifts all that follows; for w
-    accordingly; and in each principal axis against what the elongation rate there can be. None is
-    held against more than the motion about steady sliding (m/s; see `motion`).
+    stiffly w follows the force (M37). Errors are held against the slip speed, but against no more
+    than the drive's: a rapid slip is over in few steps, and its error shifts all that follows; for
+    w accordingly; and in each principal axis against what the elongation rate there can be. None is
+    held against more than the motion about steady sliding (m/s; see `motion`): (M38), (M41).
     """
     r, dt, (p_over, rest_over, slid_over) = frame.r, c * h, over
     along, turn = (r, p[0], p[1], p[2]), (0.0, w[0], w[1], w[2])

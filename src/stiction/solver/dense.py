@@ -1,4 +1,4 @@
-"""Values inside a step of slip.
+"""Values inside a step of slip: dense output.
 
 The collocation polynomial of a step is less exact inside than at the end, by two orders. So a
 value inside is the end of a shorter step from the same start, for which that polynomial is a first

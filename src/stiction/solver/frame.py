@@ -1,11 +1,11 @@
 """The axes in which one step of slip is computed.
 
 e is the slip direction at the step's start (at take-off: the direction of the force that
-held). In these axes the slip velocity is s = p (1, w), and with a = (K u + C du/dt)/m +
-dv_d/dt (the last only where the plate is driven) and f = F(|s|)/m, Eqs. (4) and (5) read
+held). In these axes the slip velocity is s = p (1, w) (M11), and with a = (K u + C du/dt)/m +
+dv_d/dt (M2) (the last only where the plate is driven) and f = F(|s|)/m, Eqs. (4) and (5) read
 
-    p'   = a_1 - f/sqrt(1 + w^2)
-    p w' = a_2 - w a_1
+    p'   = a_1 - f/sqrt(1 + w^2)        (M13)
+    p w' = a_2 - w a_1                  (M14)
 
 which is regular at p = 0: friction acts along the slip and cannot turn it.
 """
@@ -139,7 +139,7 @@ def in_frame(frame: Frame, vector: tuple[float, float]) -> tuple[float, float]:
 
 @inlined
 def pull(problem: Problem, frame: Frame, dt: float) -> tuple[float, float, float, float]:
-    """Return the acceleration that the drive alone gives after `dt`, and its rate of change.
+    """Return the acceleration that the drive alone gives after `dt`, b of (M17), and its change.
 
     The elongation there would be the one at the start plus the drive's travel; what slip
     takes away from it is added by the caller.
@@ -184,7 +184,7 @@ def friction(problem: Problem, t: float, r: float) -> tuple[float, float]:
 def elongation(
     problem: Problem, frame: Frame, dt: float, slid_1: float, slid_2: float
 ) -> tuple[float, float]:
-    """Return the elongation (x, y) after `dt`, having slid (slid_1, slid_2) in the step's axes."""
+    """Return the elongation after `dt`, having slid (slid_1, slid_2) in the step's axes (M30)."""
     d_x, d_y = in_principal_axes(problem, travel(problem.drive, frame.t, dt))
     e_x, e_y = frame.e_x, frame.e_y
     return (

@@ -25,7 +25,7 @@ def time_to_landing(frame: Frame, start: Outset, o: Oscillator, h: float) -> flo
 
 @inlined
 def landing_of_parabola(frame: Frame, start: Outset) -> float:
-    """Return when the slip speed would vanish, from its first two derivatives, in s."""
+    """Return when the slip speed would vanish, from its first two derivatives (M47), in s."""
     r = frame.r
     change = start.a_1 - start.f
     curvature = start.da_1 - frame.k_11 * r
@@ -76,7 +76,7 @@ def predicted(
     r = frame.r
     c = (C[0] * h, C[1] * h, C[2] * h)
     change = start.a_1 - start.f
-    if r == 0.0:  # take-off: |s| grows with t, or t^2, and turns with the force that held
+    if r == 0.0:  # take-off (M19): |s| grows with t, or t^2, and turns with the force that held
         a, excess = 0.5 * start.da_1, max(change, 0.0)
         x = start.da_2 / (start.a_1 + excess) if start.a_1 > 0.0 else 0.0
         return (

@@ -49,7 +49,7 @@ class Solution(NamedTuple):
 
 
 def tolerance(rtol: float) -> float:
-    """Return the local tolerance for a wanted relative error of the result.
+    """Return the local tolerance for a wanted relative error of the result (M39).
 
     The estimate of the local error falls with h^4 (the cubic inside a step), the error of
     the result with h^5 (the order of the method), hence the power 4/5: the result's error is
@@ -64,7 +64,7 @@ def accuracy(
 ) -> Accuracy:
     """Return what each step in a stretch is held to.
 
-    Its speed: V sin(phi) is what the transverse motion slips at; without it, V; without a
+    Its speed (M40): V sin(phi) is what the transverse motion slips at; without it, V; without a
     drive, a millionth of what friction can do to the mass on its spring, and never more than
     that whole; without either, next to nothing of the speeds at the start. Friction that weakens
     at the rate g = -F'(0)/m per second makes slip grow out of its first k V/(m g^2), which must
@@ -88,7 +88,7 @@ def accuracy(
     weakening = 0.0 if has_state(law) else steepest_weakening(law, speed) * load
     speed = max(speed / (1.0 + weakening**2 / (k * slider.mass)), LEAST * elastic, TINY)
     local = tolerance(rtol)
-    # Newton's error must not show in a step's end, which is better than its inside
+    # (M34): Newton's error must not show in a step's end, which is better than its inside
     newton = min(0.2, 100.0 * sqrt(local)) * local
     rate = fastest_swing(stretch.problem)
     longest = 0.5 * pi / rate if rate > 0.0 else inf

@@ -9,7 +9,7 @@ e.g. Bouguer 1732). The displacement is closed as well: with P = a.s and R = |s|
     d/dt (f R P + P^2/2)   = (|a|^2 - 2 f^2) P + f |a|^2 R,   d/dt R^2 = 2 P - 2 f R
     d/dt ((2 f R + P) b)   = (|a|^2 - 4 f^2) b,   b the slip across a
 
-integrate from the start to R = 0.
+integrate from the start to R = 0: (M48), (M49).
 """
 
 from __future__ import annotations
@@ -101,8 +101,8 @@ def pursuit(
 ) -> tuple[float, float, float]:
     """Return the time (s) to landing and the slip until then (m), in closed form.
 
-    Infinite unless spring and friction stay constant until then, to a tenth of the tolerance,
-    or it is over before the clock, or either spring, resolves it.
+    Infinite unless spring and friction stay constant until then, to a tenth of the tolerance
+    (M50), or it is over before the clock, or either spring, resolves it.
     """
     r = frame.r
     a_1, a_2, da_1, da_2, f, gradient, _ = start

@@ -17,7 +17,7 @@ from stiction.solver.state import Accuracy
 
 @inlined
 def moving(problem: Problem, frame: Frame, start: Outset, accuracy: Accuracy) -> float:
-    """Return the speed of the springs' ends against each other at a step's start, m/s.
+    """Return the speed of the springs' ends against each other at a step's start (M42), m/s.
 
     Of an oscillation, its amplitude: the elongation rate u', and u'' times what each spring takes
     for a radian. No less than what rounding leaves of it.

@@ -47,8 +47,9 @@ def solve(
 
     Notes
     -----
-    The first Jacobian is exact and kept while it contracts. One exact iteration squares
-    the (relative) error, hence the test on the first correction's square.
+    The first Jacobian is exact, but for a load that changes in a landing, and kept while it
+    contracts. One exact iteration squares the (relative) error, hence the test on the first
+    correction's square: (M32) and (M33).
     """
     s0 = stage(problem, frame, s, h, 0, p, w, products(p, w))
     s1 = stage(problem, frame, s, h, 1, p, w, products(p, w))

@@ -5,7 +5,8 @@ cycle, which tests the polynomial so far, about where it is worst; and none is i
 
 The third polynomial is the square of the time held. Where the map has an edge the stick that
 ends a cycle shrinks to nothing, as a grazing does: its length like a square root of the distance
-to the edge, while turn and time stay smooth. Its square is as smooth as they are.
+to the edge (M55), while turn and time have a slope there and then a term of the power 3/2. Its
+square is as smooth as they are.
 """
 
 from __future__ import annotations

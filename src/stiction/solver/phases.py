@@ -127,7 +127,7 @@ def slip(
     plan = memory.plan
     if memory.place < PLANNED and end < t_stop:
         plan = planned(plan, memory.place, h * step_factor(error, 4.0))
-    # Gustafsson's predictive control: errors that grow will grow on; not if the step was cut, as
+    # Gustafsson's predictive control (M43): errors that grow grow on; not if the step was cut, as
     # before a landing, which it would put off for ever
     if r > 0.0 and memory.warm and h > 0.9 * size_to_try(memory):
         trend = 0.9 * h / memory.h_last * at_ease * at_ease / memory.ease

@@ -1,4 +1,4 @@
-"""Radau IIA collocation with three stages: order 5, L-stable, stiffly accurate.
+"""Radau IIA collocation with three stages (M24): order 5, L-stable, stiffly accurate.
 
 Hairer & Wanner, Solving Ordinary Differential Equations II, section IV.5. The stage
 values with the start value define a cubic, which predicts the next step and gives
@@ -44,7 +44,7 @@ D: Matrix = _inverse(A)
 
 # an interior point at which the collocation cubic is held against the equations; its defect
 # goes as (c - c_1)(c - c_2)(c - 1), so its error as the integral of that, which is largest
-# at c_1; DEFECT_WEIGHT is the ratio of that error to the defect at the interior point
+# at c_1; DEFECT_WEIGHT is the ratio of that error to the defect at the interior point (M36)
 INTERIOR = 0.4
 _DEFECT = Polynomial.fromroots(C)
 DEFECT_WEIGHT = abs(float(_DEFECT.integ()(C[0]) / _DEFECT(INTERIOR)))
@@ -110,5 +110,5 @@ def ease(error: float) -> float:
 
 @inlined
 def step_factor(error: float, limit: float) -> float:
-    """Return the factor for the step size from the error over tolerance; 0.9 for safety."""
+    """Return the factor for the step size from the error over tolerance (M43)."""
     return min(limit, max(0.2, 0.9 * ease(error)))

@@ -59,7 +59,7 @@ def under_way(known: Returns, row: int, theta: float, last: Cycle) -> bool:
 
 @inlined
 def same_end(known: Returns, theta: float, last: Cycle) -> tuple[bool, Cycle]:
-    """Return the cycle from an angle if it ends as the two nearest long ones did.
+    """Return the cycle from an angle if it ends as the two nearest long ones did (M59).
 
     One of the two must have begun earlier: then the edge, up to which cycles are short, is behind.
     The nearest is taken, less what is behind, and not the line: that would extrapolate its noise.

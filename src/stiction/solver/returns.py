@@ -1,7 +1,7 @@
 """The return map: from the end of a stick to the end of the next.
 
 While drive and load are steady, the state at the end of a stick is one angle (see `takeoff`),
-so that all that follows, until the end of the next stick, is a function of it. Where that
+so that all that follows, until the end of the next stick, is a function of it (M53). Where that
 function is smooth, polynomials through a few cycles, each solved in full, stand for all the
 others between (`patch`, `chart`). Where it is not, or a cycle is too long to be solved so often,
 as a macroscopic slip is, a cycle that begins where an earlier one did ends as that one did
@@ -23,7 +23,7 @@ WIDEST = 1.0  # rad, of a patch
 NODES = 24  # of a patch at most
 PATCHES = 256
 PAST = 256  # cycles remembered
-CLOSING = 0.03  # relative error of a patch's turn and time, over rtol: they add up
+CLOSING = 0.03  # (M58): relative error of a patch's turn and time, over rtol: they add up
 NEAR = 10.0  # over this: what a cycle that is remembered may differ by, and times of landing
 FAR = 2.0  # a cycle that takes so many times what those before took is beyond an edge
 

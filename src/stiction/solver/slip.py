@@ -44,7 +44,7 @@ def stage(
     w: Triple,
     q: Triple,
 ) -> Stage:
-    """Evaluate stage `i`; q = p w."""
+    """Evaluate stage `i`, (M26) to (M29); q = p w."""
     cubic_1, slid_2 = dot(A[i], p), dot(A[i], q)
     slid_1, by_h = cubic_1 + swing.slid[i], cubic_1 + swing.slid_by_h[i]
     b_1, b_2, db_1, db_2 = pull(problem, frame, C[i] * h)
@@ -68,7 +68,7 @@ def stage(
 def jacobian_rows(
     frame: Frame, h: float, i: int, p: Triple, w: Triple, at_i: Stage
 ) -> tuple[Triple, Triple, Triple, Triple]:
-    """Return the derivatives of stage i's residuals: (p by p), (p by w), (w by p), (w by w)."""
+    """Return the derivatives of stage i's residuals (M31): p by p, p by w, w by p, w by w."""
     k_11, k_12, k_22 = frame.k_11, frame.k_12, frame.k_22
     c_11, c_12, c_22 = frame.c_11, frame.c_12, frame.c_22
     p_i, w_i, a, d, n = p[i], w[i], A[i], D[i], at_i.flow
@@ -136,7 +136,7 @@ def factors(
 def by_step_size(
     h: float, w: float, s: Stage, rest: float, pp: Triple, wp: Triple
 ) -> tuple[Triple, Triple]:
-    """Return the rows with the derivative by the step size as their last entry."""
+    """Return the rows with the derivative by the step size (M44), (M45) as their last entry."""
     dp = s.f * s.flow.n_1 - s.a_1 - h * s.da_1 + rest
     dw = w * s.a_1 - s.a_2 + s.f * s.flow.tau - h * (s.da_2 - w * s.da_1)
     return (pp[0], pp[1], dp), (wp[0], wp[1], dw)

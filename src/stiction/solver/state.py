@@ -19,7 +19,8 @@ class Accuracy(NamedTuple):
     speed : slip speed below which these are absolute, m/s; free_x, free_y : what friction alone
     can do to the elongation rates, mu_0 W/sqrt(m k), m/s: a vigorous slip may be relative to
     itself, but not so that the springs' own motion is lost; longest : step size that still sees
-    what drive and load do, s; drive : its speed, m/s, up to which a slip is held to itself;
+    what drive and load do, s; drive : its speed along x, or along y
+    if it has none there, m/s, up to which a slip is held to itself;
     square_x, square_y : of the time in which each spring swings by a radian, m/k, s^2;
     touch : what friction must have to spare in a stick that is one, m/s; least : motion about
     steady sliding that is still told from rounding, m/s.

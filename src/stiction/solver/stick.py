@@ -54,7 +54,7 @@ def holding_change(problem: Problem, t: float) -> tuple[float, float]:
 
 @inlined
 def margin(problem: Problem, t: float, u_x: float, u_y: float) -> tuple[float, float, float]:
-    """Return |a|^2 - f^2 and half its rate of change at zero slip, and f^2.
+    """Return |a|^2 - f^2 and half its rate of change at zero slip (M6), and f^2.
 
     a is the friction over mass that zero slip takes, f the most that friction can hold; on an
     elliptic surface |a|^2 is a.N^-1 a.
@@ -73,8 +73,8 @@ def stick_duration(
     """Return how long zero slip can be held from time `t` on, and whether it ends then.
 
     Zero if friction cannot hold even now, infinite if it can until `t_stop`. In closed form
-    for a steady drive and load; otherwise in steps, each as long as the bound of the margin's
-    curvature guarantees that it is not used up before, which end at its first zero.
+    for a steady drive and load (M7); otherwise in steps (M9), each as long as the bound of the
+    margin's curvature guarantees that it is not used up before, which end at its first zero.
     """
     excess, change, square = margin(problem, t, u_x, u_y)
     if excess > USED_UP * square or (excess >= 0.0 and change > 0.0):
@@ -100,7 +100,7 @@ def stick_duration(
 
 @inlined
 def to_spare(problem: Problem, t: float, u_x: float, u_y: float, duration: float) -> float:
-    """Return what slip speed friction could take away in a stick beside what it holds, m/s.
+    """Return what slip speed friction could take away in a stick beside what it holds (M10), m/s.
 
     That is f - |a|, about linear in time and zero at its end, integrated over the stick. A slip
     that comes in faster by as much does not stick.

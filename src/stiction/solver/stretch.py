@@ -99,7 +99,7 @@ def fastest_swing(problem: Problem) -> float:
 
 
 def bend(slider: Slider, inertia: float, drive: Any, load: Any, start: float, end: float) -> float:
-    """Return a bound of the second derivative of |a|^2 - f^2 while the slip is zero.
+    """Return a bound of the second derivative of |a|^2 - f^2 while the slip is zero (M8).
 
     a is the friction over mass that zero slip takes, f what friction can hold; |a| <= f.
     d^2/dt^2 = 2 |a'|^2 + 2 a.a'' - 2 f'^2 - 2 f f''. On an elliptic surface |a| is |M^-1 a|.

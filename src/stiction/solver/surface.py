@@ -1,10 +1,10 @@
 """How the friction vector follows from the slip direction: along it, or by an ellipse.
 
 With N = M^2 (see `stiction.friction.Anisotropic`) friction over mass is f N e/|M e| for slip
-along e, and at zero slip whatever a holds a.N^-1 a <= f^2. In a step's axes, with slip
+along e, and at zero slip whatever a holds a.N^-1 a <= f^2 (M4). In a step's axes, with slip
 along (1, w), the friction is f (n_1, n_2), and Eqs. (4) and (5) become
 
-    p' = a_1 - f n_1,   p w' = a_2 - w a_1 - f tau,   tau = n_2 - w n_1,
+    p' = a_1 - f n_1,   p w' = a_2 - w a_1 - f tau,   tau = n_2 - w n_1,    (M12) to (M14)
 
 of which the isotropic ones (N = 1, tau = 0) are a special case that costs nothing.
 """
@@ -37,7 +37,7 @@ class Tensor(NamedTuple):
 
 @inlined
 def flow(problem: Problem, tensor: Tensor, w: float) -> Flow:
-    """Return the friction for slip along (1, w); `tensor` is N in the step's axes."""
+    """Return (M12) and (M16) for slip along (1, w); `tensor` is N in the step's axes."""
     if isotropic(problem.surface):
         g = 1.0 / sqrt(1.0 + w * w)
         return Flow(g, 0.0, -w * g * g * g, 0.0)
@@ -84,7 +84,7 @@ def held_product(problem: Problem, a: tuple[float, float], b: tuple[float, float
 
 @inlined
 def takeoff(problem: Problem, a: tuple[float, float], f: float) -> tuple[float, float]:
-    """Return a vector along which slip starts when a is more than f can hold.
+    """Return a vector along which slip starts when a is more than f can hold (M18).
 
     What is left of a, a - f N e/|M e|, accelerates along e; so f N e/|M e| is the point of
     the ellipse nearest to a, and e is along y = (f^2 N + t)^-1 a with f^2 y.N y = 1. The left-

@@ -1,10 +1,11 @@
 """The oscillation along the slip in closed form, over which a step lays its cubic.
 
-While friction keeps its direction, the slip p along it obeys a linear equation,
+While friction keeps its direction, the slip p along it obeys a linear equation (M21),
 
     p'' + 2 beta p' + k (p - P) = 0,   k = k_11, 2 beta = c_11 + F'/m, P = (K v_d)_1/k,
 
-and its solution with the right p(0), p'(0) also has the right p''(0). A step that
+and its solution with the right p(0), p'(0) also has the right p''(0), unless the load changes
+or unequal dampers couple the turn. A step that
 approximates only what is left, p less this, by its collocation polynomial can be a large
 part of the oscillation's period: friction turns little in it (mixed collocation, e.g.
 Coleman & Duxbury 2000, doi:10.1016/S0377-0427(99)00340-4).
@@ -112,7 +113,7 @@ def then(o: Oscillator, a: tuple[float, float], b: tuple[float, float]) -> tuple
 
 @inlined
 def moved(o: Oscillator, u: tuple[float, float], t: float) -> tuple[float, float, float]:
-    """Return p, p' and the distance slipped after `t`, whose propagator is `u`."""
+    """Return p, p' and the distance slipped after `t` (M22), (M23); its propagator is `u`."""
     x = o.x * u[0] + (o.v + o.beta * o.x) * u[1]
     v = o.v * u[0] - (o.beta * o.v + o.k * o.x) * u[1]
     return o.level + x, v, o.level * t + (o.v - v + 2.0 * o.beta * (o.x - x)) * o.per_k
@@ -128,7 +129,7 @@ def after(o: Oscillator, t: float) -> tuple[float, float, float]:
 
 @inlined
 def swing(o: Oscillator, h: float, landing: bool) -> Swing:
-    """Return what the oscillation adds to the equations of a step of size `h`."""
+    """Return what the oscillation adds to the equations of a step of size `h` (M25), (M46)."""
     if not swings(o, h):
         nothing = (0.0, 0.0, 0.0)
         return Swing(nothing, nothing, nothing, nothing, nothing, nothing, 0.0, 0.0, 0.0)

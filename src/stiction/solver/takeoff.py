@@ -1,7 +1,8 @@
 """Where sticks end: with a steady drive and load, a closed curve, and one angle says where on it.
 
 There friction holds all it can, |a| = f with a = (K u + C v_d)/m and f = F(0)/m; on an
-elliptic surface a.N^-1 a = f^2 (see `surface`). With N = L L^T, a = f L (cos, sin) of the angle.
+elliptic surface a.N^-1 a = f^2 (see `surface`). With N = L L^T, a = f L (cos, sin) of the angle
+(M52).
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ def elongation_held(problem: Problem, theta: float) -> tuple[float, float]:
 def lead(problem: Problem, theta: float) -> float:
     """Return how long before its end at an angle a stick can be begun, 0 if none ends there.
 
-    Half of what the straight path of a has of the ellipse.
+    Half of what the straight path of a has of the ellipse (M54).
     """
     a, j = held(problem, theta), holding_change(problem, 0.0)
     rise, square = held_product(problem, a, j), held_product(problem, j, j)

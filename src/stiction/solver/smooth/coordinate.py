@@ -1,4 +1,4 @@
-"""The slip coordinate q, in which friction is nearly linear: s = eps sinh(|q|) q/|q|.
+"""The slip coordinate q, in which friction is nearly linear: s = eps sinh(|q|) q/|q| (M64).
 
 Rate-and-state friction is proportional to the slip velocity below a speed eps, which may
 be 1e-30 m/s, and to its logarithm above. With eps = 1e6 m/s, q is the slip velocity itself
@@ -38,7 +38,7 @@ def coordinate(eps: float, s_x: float, s_y: float) -> tuple[float, float]:
 
 @piece
 def slip_slope(eps: float, q_x: float, q_y: float) -> tuple[float, float, float]:
-    """Return ds/dq: xx, xy and yy (m/s)."""
+    """Return ds/dq (M65): xx, xy and yy (m/s)."""
     square = q_x * q_x + q_y * q_y
     if square < SMALL * SMALL:
         f, outer = eps * (1.0 + square / 6.0), eps / 3.0
@@ -51,7 +51,7 @@ def slip_slope(eps: float, q_x: float, q_y: float) -> tuple[float, float, float]
 
 @piece
 def risen(q: float, rise: float, share: float) -> float:
-    """Return |q| after an update by `rise` > 0 of which `share` is meant for s, not for q.
+    """Return |q| after an update by `rise` > 0 of which `share` is meant for s, not for q (M68).
 
     What resists in Newton's equations is inertia, exponential in q, and friction, about
     linear in it. The update would be right if both were linear; this solves

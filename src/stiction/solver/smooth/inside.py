@@ -2,7 +2,7 @@
 
 The cubic through the start and the stages misses the equations by a defect, which goes as
 pi(c) = (c - c_1)(c - c_2)(c - 1); so its error goes as the integral of pi. Where friction
-or a state is stiff the error is less, as an implicit step from the cubic shows.
+or a state is stiff the error is less, as an implicit step from the cubic shows (M69).
 """
 
 from __future__ import annotations

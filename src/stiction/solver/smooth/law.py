@@ -16,7 +16,7 @@ FINEST = 1e-300  # m/s
 
 
 class Smoothed(NamedTuple):
-    """F N s/sqrt(s.N s + delta^2): a set-valued law F without what happens at zero slip.
+    """F N s/sqrt(s.N s + delta^2) (M60): a set-valued law F without what happens at zero slip.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ A, D, C = np.array(radau.A), np.array(radau.D), radau.C
 
 @piece
 def residuals(problem: Problem, h: float, w: Workspace) -> None:
-    """Write the collocation equations' residuals, a stage after the other."""
+    """Write the collocation equations' residuals (M66), (M67), a stage after the other."""
     n, s = w.y.shape[1], problem.system
     for i in range(3):
         for k in range(n):
