@@ -3,6 +3,7 @@ from math import cos, degrees, isnan, pi, sin, sqrt
 
 import numpy as np
 import pytest
+from benchmarks.explore.audits import RULES, rig
 from scipy.integrate import quad, solve_ivp
 
 import stiction as st
@@ -358,3 +359,20 @@ def test_a_change_that_leaves_little_is_no_failure(found):
     assert words._change(found, tried)[-1].startswith("almost: stick-slip, force drop ")
     again = found.advices[0]._replace(tried=rest)
     assert words._change(found, again)[-1].startswith("no remedy: stick-slip, force drop ")
+
+
+@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.__name__)
+def test_the_paper_s_audit_breaks_no_rule(rule, found):
+    assert rule(found)
+
+
+def test_rules_see_what_contradicts(found):
+    """A rule that cannot be broken says nothing: an unstable rig, called one without advice."""
+    silent = found._replace(advices=())
+    broken = {rule.__name__ for rule in RULES if not rule(silent)}
+    assert "nothing_to_change" in broken
+
+
+def test_rigs_are_drawn_by_number_alone():
+    assert rig(3, 7) == rig(3, 7)
+    assert rig(3, 7) != rig(3, 8)

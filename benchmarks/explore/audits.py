@@ -22,7 +22,7 @@ from stiction.auditing.observation import OSCILLATES, SLIDES
 from stiction.auditing.page import page
 from stiction.auditing.words import VIBRATES
 from stiction.linear_stability.linear import STABLE, UNSTABLE
-from stiction.units import registry
+from stiction.unit_text import registry
 
 from .draw import Draw
 
