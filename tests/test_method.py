@@ -122,6 +122,58 @@ class Printed:
         across = p * (D @ w) - h * (a[1] - w * a[0] - f * tau)
         return np.concatenate([along, across]), h * np.abs(a).max(), z[:, 2]
 
+    def jacobian(self, h, p, w):
+        """(M31)."""
+        p, w, k, c = np.array(p), np.array(w), self.k, self.c
+        laid = self.oscillation(h)
+        Z = [
+            laid(each * h)[2] / h - row @ [laid(x * h)[0] for x in C]
+            for row, each in zip(A, C, strict=True)
+        ]
+        z_1, z_2 = h * (A @ p + Z), h * (A @ (p * w))
+        rows = np.zeros((6, 6))
+        for i in range(3):
+            f, n_1, tau, dtau = self.friction(p[i], w[i])
+            dn_1 = (
+                (self.N[0, 1] - n_1 * (tau + w[i] * n_1))
+                * n_1
+                / (self.N[0, 0] + self.N[0, 1] * w[i])
+            )
+            chi_p = sqrt(1 + w[i] ** 2)
+            chi_w = p[i] * w[i] / chi_p
+            slope = self.law.slope(p[i] * chi_p) * self.W / self.m
+            a_1 = (self.b(C[i] * h) - k @ [z_1[i], z_2[i]] - c @ [p[i], p[i] * w[i]])[0]
+            kappa_1, kappa_2 = k[0, 1] - w[i] * k[0, 0], k[1, 1] - w[i] * k[0, 1]
+            rows[i, :3] = D[i] + h * h * A[i] * (k[0, 0] + k[0, 1] * w)
+            rows[i, 3:] = h * h * A[i] * k[0, 1] * p
+            rows[3 + i, :3] = h * h * A[i] * (kappa_1 + kappa_2 * w)
+            rows[3 + i, 3:] = p[i] * D[i] + h * h * A[i] * kappa_2 * p
+            rows[i, i] += h * (slope * chi_p * n_1 + c[0, 0] + c[0, 1] * w[i])
+            rows[i, 3 + i] += h * (slope * chi_w * n_1 + f * dn_1 + c[0, 1] * p[i])
+            damping = c[0, 1] + c[1, 1] * w[i] - w[i] * (c[0, 0] + c[0, 1] * w[i])
+            rows[3 + i, i] += D[i] @ w + h * (damping + slope * chi_p * tau)
+            damping = (c[1, 1] - w[i] * c[0, 1]) * p[i]
+            rows[3 + i, 3 + i] += h * (a_1 + damping + slope * chi_w * tau + f * dtau)
+        return rows
+
+    def by_step_size(self, h, p, w):
+        """(M44) to (M46)."""
+        p, w, k = np.array(p), np.array(w), self.k
+        laid, change = self.oscillation(h), k @ self.axes @ self.v
+        below, rate, slid = np.array([laid(c * h) for c in C]).T
+        P = change[0] / k[0, 0]
+        slope = self.law.slope(self.r) * self.W / self.m * self.friction(self.r, 0.0)[1]
+        curve = -(self.c[0, 0] + slope) * rate - k[0, 0] * (below - P)
+        R = rate + h * C * curve - D @ (C * rate)
+        hZ = C * below - A @ (below + h * C * rate)
+        z = np.array([h * (A @ p) + slid - h * (A @ below), h * (A @ (p * w))])
+        by_h = np.array([A @ p + hZ, A @ (p * w)])
+        da_1, da_2 = np.outer(change, C) - k @ by_h
+        a_1, a_2 = np.array([self.b(c * h) for c in C]).T - k @ z - self.c @ [p, p * w]
+        f, n_1, tau, _ = np.array([self.friction(*each) for each in zip(p, w, strict=True)]).T
+        along = f * n_1 - a_1 - h * da_1 + R
+        return np.concatenate([along, w * a_1 - a_2 + f * tau - h * (da_2 - w * da_1)])
+
     def after(self, h, p, w):
         """Return u, r and e at the end of the step (M30)."""
         z, stretch = self.residuals(h, p, w)[2], sqrt(1 + w[2] ** 2)
@@ -305,6 +357,25 @@ def test_the_printed_residuals_vanish(name):
         found, forces, _ = Printed(problem, step.before).residuals(step.h, step.p, step.w)
         terms = forces + np.abs(D).max() * max(step.before.r, step.p.max())
         assert np.abs(found).max() < 10 * NEWTON * terms
+
+
+@pytest.mark.parametrize("name", ["damped", "ellipse"])
+def test_the_printed_jacobian_is_the_derivative_of_the_residuals(name):
+    """(M31) and (M44) to (M46); of differences about a step that is laid over the oscillation."""
+    problem, _, taken = walk(name)
+    for step in taken[4:8]:
+        printed, h = Printed(problem, step.before), step.h
+        x = np.concatenate([step.p + 1e-3 * step.p.max(), step.w])
+        scale = np.repeat([step.p.max(), 1e-2], 3)
+        found = printed.jacobian(h, *x.reshape(2, 3)) * scale
+        columns = []
+        for each in 1e-5 * np.diag(scale):
+            more, less = (printed.residuals(h, *y.reshape(2, 3))[0] for y in (x + each, x - each))
+            columns.append((more - less) / 2e-5)
+        assert found == pytest.approx(np.transpose(columns), abs=1e-7 * np.abs(found).max())
+        more, less = (printed.residuals(h * y, *x.reshape(2, 3))[0] for y in (1 + 1e-5, 1 - 1e-5))
+        found = h * printed.by_step_size(h, *x.reshape(2, 3))
+        assert found == pytest.approx((more - less) / 2e-5, abs=1e-7 * np.abs(found).max())
 
 
 @pytest.mark.parametrize("name", SLIDERS)
