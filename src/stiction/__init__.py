@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from stiction.analysis.spectrum import spectrogram, stream_spectrogram
     from stiction.analysis.spread import summary
     from stiction.auditing.report import Audit, audit
+    from stiction.checking import Check, check
     from stiction.comparison import Comparison, compare
     from stiction.description import Description, Settings
     from stiction.drive import (
@@ -84,6 +85,7 @@ _HOME = {
     "Analysis": "analysis.report",
     "Anisotropic": "friction",
     "Audit": "auditing.report",
+    "Check": "checking",
     "Comparison": "comparison",
     "Constant": "drive",
     "ConstantVelocity": "drive",
@@ -127,6 +129,7 @@ _HOME = {
     "analyse": "analysis.report",
     "analyze": "analysis.report",
     "audit": "auditing.report",
+    "check": "checking",
     "check_law": "testing",
     "classify": "analysis.regime",
     "compare": "comparison",
@@ -168,6 +171,7 @@ __all__ = [
     "Analysis",
     "Anisotropic",
     "Audit",
+    "Check",
     "Comparison",
     "Constant",
     "ConstantVelocity",
@@ -211,6 +215,7 @@ __all__ = [
     "analyse",
     "analyze",
     "audit",
+    "check",
     "check_law",
     "classify",
     "compare",

@@ -1,18 +1,20 @@
-"""Reading the file of a run: nothing in it is believed before it was looked at."""
+"""The file of a run: nothing in it is believed before it was looked at."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator
+from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from stiction.errors import ResultError, one_line
 from stiction.foreign import refuse_other_files
 from stiction.labels import STICKS, VARIABLES
+from stiction.result_checksums import SEAL, checked, damaged, intact, sealed
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -21,6 +23,14 @@ STICK_GROUP = "sticks"  # of a result file
 ENDS = ("stick_start", "stick_end")
 TEXTS = ("description", "status", "stiction_version")
 LATER = {"mu", "stick_duration"}  # columns that older versions did not write
+
+
+def write_result(data: xr.Dataset, sticks: xr.Dataset, path: Path) -> None:
+    """Write samples and sticks, with checksums of all that is in them."""
+    tables = {"samples": data, "sticks": sticks}
+    whole = data.assign_attrs({SEAL: sealed(tables)})
+    whole.to_netcdf(path, engine="h5netcdf", encoding=checked(data))
+    sticks.to_netcdf(path, mode="a", group=STICK_GROUP, engine="h5netcdf", encoding=checked(sticks))
 
 
 def read_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
@@ -45,6 +55,14 @@ def read_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
         raise ResultError(
             f"{path}: not a NetCDF file that can be read: {one_line(error)}"
         ) from None
+    lost = damaged(data.attrs.get(SEAL), {"samples": data, "sticks": sticks})
+    if lost:
+        raise ResultError(
+            f"{path}: is damaged, or was changed: {', '.join(lost[:3])}; compute it again with: "
+            f"stiction check {path} --repair"
+        )
+    data, sticks = data.drop_encoding(), sticks.drop_encoding()
+    data.attrs.pop(SEAL, None)
     lacking = [*_lacking(data, VARIABLES), *_lacking(sticks, ENDS)]
     lacking += ["its description"] if "description" not in data.attrs else []
     if lacking:
@@ -55,6 +73,26 @@ def read_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
     if wrong:
         raise ResultError(f"{path}: not a result of 'stiction run'; {'; '.join(wrong)}{age(data)}")
     return data, sticks
+
+
+def intact_description(path: str | Path) -> str:
+    """Return the description in a result file of which other parts are damaged.
+
+    Raises
+    ------
+    ResultError
+        If it is damaged itself, or has no checksum.
+    """
+    h5py: Any = import_module("h5py")  # slow to import
+    try:
+        with h5py.File(path) as file:
+            known, text = str(file.attrs[SEAL]), str(file.attrs["description"])
+    except Exception as error:  # whatever HDF5 raises of a file that is none
+        told = one_line(error)
+        raise ResultError(f"{path}: not a result that can be mended: {told}") from None
+    if not intact(known, text):
+        raise ResultError(f"{path}: is damaged, and so is its description; run that again")
+    return text
 
 
 def age(data: xr.Dataset) -> str:

@@ -16,7 +16,7 @@ from stiction.files import placeable, whole
 from stiction.friction import states
 from stiction.initial import Initial
 from stiction.labels import VARIABLES, apparent_friction, described, stick_table
-from stiction.result_file import ENDS, STICK_GROUP, age, read_tables
+from stiction.result_file import ENDS, age, read_tables, write_result
 from stiction.sections import Section, as_html
 from stiction.slider import Slider
 from stiction.table_files import exportable, write_tables
@@ -162,8 +162,7 @@ class Trajectory:
         """
         target = writable(path)
         with whole(target) as part:
-            self.data.to_netcdf(part, engine="h5netcdf")
-            self.sticks.to_netcdf(part, mode="a", group=STICK_GROUP, engine="h5netcdf")
+            write_result(self.data, self.sticks, part)
         return target
 
 

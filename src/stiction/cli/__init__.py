@@ -43,6 +43,7 @@ COMMANDS = (
     "stability",
     "sweep",
     "map",
+    "check",
 )
 for _name in COMMANDS:  # light modules: what is heavy they import when they are called
     app.command(getattr(import_module(f"stiction.cli.{_name}"), _name))

@@ -16,6 +16,7 @@ from pydantic_core import PydanticCustomError
 
 from stiction.deprecation import by_new_names
 from stiction.errors import DescriptionError, Fault
+from stiction.files import place, workshop
 from stiction.paths import canonical_path
 from stiction.study.axes import Floats, Values
 from stiction.study.engines import Engine
@@ -24,7 +25,8 @@ from stiction.study.kept import UNKNOWN, flagged
 from stiction.study.parameters import number
 from stiction.study.plan import Study
 from stiction.study.regimes import FORMERLY, KINDS
-from stiction.study.store import open_study
+from stiction.study.sealing import seal
+from stiction.study.store import open_study, told
 from stiction.study.sweeping import Tally, sweep
 from stiction.study.view import CHANGES, REFINED, REGIME, kinds
 from stiction.validation import unknown
@@ -91,8 +93,18 @@ def refine(
         at_middle = kinds(open_study(folder / f"{level}.zarr").load())
         found, runs = halved(found, middle, at_middle, apart), runs + part.layout.runs
     made = table(study, found, along, runs)
-    made.to_zarr(folder / CHANGES, mode="w", zarr_format=3, consolidated=False)
+    _keep(made, folder / CHANGES)
     return made
+
+
+def _keep(changes: xr.Dataset, target: Path) -> None:
+    """Write the changes in place of earlier ones, sealed."""
+    with told(target), workshop(target.parent) as room:
+        changes.to_zarr(room / CHANGES, zarr_format=3, consolidated=False)
+        seal(room / CHANGES)
+        if target.exists():
+            target.replace(room / "earlier")
+        place({room / CHANGES: target})
 
 
 def _asked(study: Study, along: str, to: float | str) -> float:

@@ -12,7 +12,7 @@ from typing import Any
 
 from stiction import checksums
 
-ROOT, SEAL = "zarr.json", "checksums"
+ROOT, SEAL, DESCRIPTION = "zarr.json", "checksums", "description"
 
 
 def seal(folder: Path) -> None:
@@ -21,7 +21,7 @@ def seal(folder: Path) -> None:
     files = {name: each.read_bytes() for name, each in parts.items() if each.is_file()}
     root = json.loads(files[ROOT])
     root["attributes"].pop(SEAL, None)
-    files[ROOT] = _plain(root)
+    files |= _own(root)
     root["attributes"][SEAL] = checksums.seal(files)
     (folder / ROOT).write_text(json.dumps(root, indent=2), encoding="utf-8")
 
@@ -31,14 +31,19 @@ def broken(folder: Path) -> list[str]:
     try:
         root = json.loads((folder / ROOT).read_bytes())
         sealed = root["attributes"].pop(SEAL)
-        names = json.loads(sealed).keys() - {ROOT}
+        own = _own(root)
+        names = json.loads(sealed).keys() - own.keys()
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
-        return [ROOT]
+        return [ROOT, DESCRIPTION]
     files = {name: folder / name for name in names}
     parts = {name: each.read_bytes() for name, each in files.items() if each.is_file()}
-    return checksums.broken(sealed, {**parts, ROOT: _plain(root)})
+    return checksums.broken(sealed, parts | own)
 
 
-def _plain(root: Any) -> bytes:
-    """Return what stands in the store's own file, however it is laid out there."""
-    return json.dumps(root, sort_keys=True).encode()
+def _own(root: Any) -> dict[str, bytes]:
+    """Return what stands in the store's own file, however it is laid out, and its description."""
+    description = str(root["attributes"].get(DESCRIPTION, ""))
+    return {
+        ROOT: json.dumps(root, sort_keys=True).encode(),
+        DESCRIPTION: description.encode(),
+    }

@@ -10,13 +10,14 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from stiction.deprecation import by_new_names
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, ResultError
 from stiction.paths import canonical_path
+from stiction.study import sealing
 from stiction.study.measures import FORMERLY
 from stiction.study.parameters import number
 from stiction.study.plan import Study
 from stiction.study.regimes import KINDS
-from stiction.study.store import open_study
+from stiction.study.store import CHECKED, group_at, open_study
 from stiction.validation import unknown
 
 if TYPE_CHECKING:
@@ -77,8 +78,19 @@ def refined(path: str | Path) -> list[xr.Dataset]:
     """Return the changes that were refined, along one axis each."""
     import xarray as xr
 
+    if lost := broken_changes(path):
+        remedy = "refine the study again, with the same command: its runs are kept"
+        raise ResultError(f"{path}: is damaged: {', '.join(lost)}; {remedy}")
     folders = sorted(Path(path).glob(f"{REFINED}/*/{CHANGES}"))
     return [xr.open_zarr(folder, consolidated=False, zarr_format=3).load() for folder in folders]
+
+
+def broken_changes(path: str | Path) -> list[str]:
+    """Return the tables of changes in a store that are damaged."""
+    if group_at(path, "r").attrs["format"] != CHECKED:
+        return []
+    tables = sorted(Path(path).glob(f"{REFINED}/*/{CHANGES}"))
+    return [each.relative_to(path).as_posix() for each in tables if sealing.broken(each)]
 
 
 def chosen(view: View, measures: Sequence[str]) -> list[str]:

@@ -1,0 +1,135 @@
+"""check(path): is a result, or a study's store, as it was written?"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from stiction.description import Description
+from stiction.errors import ResultError
+from stiction.result_file import intact_description, read_tables
+from stiction.sections import Section, as_text
+from stiction.simulation import run
+from stiction.study.restoring import damage_of, restore, stores_in
+from stiction.study.view import broken_changes
+
+
+class Check(NamedTuple):
+    """What a check found.
+
+    Parameters
+    ----------
+    path : Path
+        Of what.
+    damaged : sequence of str
+        What is, or was, not as it was written.
+    repaired : bool
+        Whether it was computed again.
+    pending : int
+        Blocks of a study that are not done yet.
+    """
+
+    path: Path
+    damaged: Sequence[str]
+    repaired: bool = False
+    pending: int = 0
+
+    @property
+    def ok(check) -> bool:
+        """Whether all is whole now."""
+        return check.repaired or not check.damaged
+
+    def __repr__(self) -> str:
+        """Say whether it is whole."""
+        state = "repaired" if self.repaired else "whole" if self.ok else "damaged"
+        return f"<Check {self.path}: {state}>"
+
+    def __str__(self) -> str:
+        """Return the same as text."""
+        return as_text(self.tables())
+
+    def tables(self) -> list[Section]:
+        """Return in sentences what is damaged, and what to do."""
+        lines = [f"damaged: {name}" for name in self.damaged] or ["All is as it was written."]
+        if self.repaired:
+            lines.append("It was computed again.")
+        elif self.damaged:
+            lines.append(f"Compute it again with: stiction check {self.path} --repair")
+        if self.pending:
+            lines.append(f"{self.pending} blocks of runs are not done yet.")
+        return [Section(str(self.path), lines)]
+
+
+def check(path: str | Path, *, repair: bool = False, trust: bool = False) -> Check:
+    """Look whether a result, or the store of a study, is as it was written.
+
+    What versions before 0.5 wrote has no checksums: of it only missing and cut parts are seen.
+
+    Parameters
+    ----------
+    path : str or Path
+        What `stiction.run` or `stiction.sweep` wrote.
+    repair : bool, optional
+        Whether to compute again what is damaged: a result, from the description in it; of a
+        study, the blocks that are damaged.
+    trust : bool, optional
+        Whether the text of a friction law that is kept there may be run for that; see
+        `stiction.load`.
+
+    Returns
+    -------
+    Check
+        What is damaged.
+
+    Raises
+    ------
+    ResultError
+        If it is neither a result nor a store, or its description, from which it would be
+        computed again, is damaged itself.
+
+    Examples
+    --------
+    >>> import stiction as st, tempfile
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "20 ms", sample_rate="1 kHz")
+    >>> st.check(run.save(tempfile.mkdtemp() + "/run.nc")).ok
+    True
+    """
+    target = Path(path)
+    if target.is_dir():
+        return _check_store(target, repair, trust)
+    return _check_result(target, repair, trust)
+
+
+def _check_result(path: Path, repair: bool, trust: bool) -> Check:
+    try:
+        read_tables(path)
+        return Check(path, [])
+    except ResultError as error:
+        if not os.path.isfile(path):
+            raise
+        told = str(error).removeprefix(f"{path}: ").partition("; compute it")[0]
+    if not repair:
+        intact_description(path)
+        return Check(path, [told])
+    run(Description.from_json(intact_description(path), trust=trust)).save(path)
+    return Check(path, [told], repaired=True)
+
+
+def _check_store(path: Path, repair: bool, trust: bool) -> Check:
+    files: list[str] = []
+    pending = 0
+    for store in stores_in(path):
+        found = damage_of(store)
+        own = restore(store, trust=trust) if repair else found.files
+        files += [(store / name).relative_to(path).as_posix() for name in own]
+        pending += found.pending
+    if changes := broken_changes(path):
+        if repair:
+            raise ResultError(
+                f"{path}: {', '.join(changes)} is damaged; refine the study again, with the same "
+                "command: its runs are kept"
+            )
+        files += changes
+    return Check(path, files, repair and bool(files), pending)

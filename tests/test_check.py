@@ -1,0 +1,187 @@
+"""What is damaged is never silent: it is refused, or computed again and then as it was."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+import xarray as xr
+from benchmarks.explore.draw import Draw
+
+import stiction as st
+from stiction import cli
+
+SEED, DAMAGES = 1, 50  # of a result, and as many of a store
+BASE = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="10 ms"))
+STUDY = st.Study(
+    base=BASE,
+    axes={"phi": st.Values(["1 deg", "95 deg", "3 deg"]), "drive.velocity": st.Values([1e-3])},
+    measures=["peak_force", "regime"],
+    traces=["force"],
+    trace_samples=3,
+)
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory):
+    path = tmp_path_factory.mktemp("result") / "a.nc"
+    return st.simulate(BASE.slider, "20 ms", sample_rate="1 kHz").save(path)
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory):
+    path = tmp_path_factory.mktemp("store") / "a.zarr"
+    st.sweep(STUDY, path)
+    return path
+
+
+def damage(file: Path, number: int) -> str:
+    """Flip a bit, cut the file, fill a part with zeros, or take it away; return which."""
+    draw, content = Draw(SEED, number), bytearray(file.read_bytes())
+    at = int(draw.between(0, len(content)))
+    kind = ("flip", "flip", "flip", "cut", "zeros", "gone")[int(draw.between(0, 6))]
+    if kind == "flip":
+        content[at] ^= 1 << int(draw.between(0, 8))
+    elif kind == "cut":
+        del content[at:]
+    elif kind == "zeros":
+        content[at : at + 64] = bytes(len(content[at : at + 64]))
+    file.unlink() if kind == "gone" else file.write_bytes(content)
+    return kind
+
+
+def same(one: st.Trajectory, other: st.Trajectory) -> bool:
+    """Return whether two runs are identical, attributes and all."""
+    return (
+        one.data.identical(other.data)
+        and one.sticks.identical(other.sticks)
+        and one.description.to_json() == other.description.to_json()
+    )
+
+
+def test_no_damage_of_a_result_is_silent(result, tmp_path):
+    right, seen, path = st.load(result), {"refused": 0, "repaired": 0, "same": 0}, tmp_path / "a.nc"
+    for number in range(DAMAGES):
+        shutil.copy(result, path)
+        if damage(path, number) == "gone":
+            continue
+        try:
+            found = st.load(path)
+        except st.ResultError:
+            if number % 5:  # to compute all again takes long
+                seen["refused"] += 1
+                continue
+            try:
+                st.check(path, repair=True)
+            except st.ResultError:
+                seen["refused"] += 1
+                continue
+            found = st.load(path)
+            seen["repaired"] += 1
+        else:
+            seen["same"] += 1  # where nothing is that is read
+        assert same(found, right), number
+    assert seen["refused"] > 0
+    assert seen["repaired"] > 0
+
+
+def test_no_damage_of_a_store_is_silent(store, tmp_path):
+    right, path = xr.open_zarr(store).load(), tmp_path / "a.zarr"
+    files = sorted(each.relative_to(store) for each in store.rglob("*") if each.is_file())
+    seen = {"refused": 0, "repaired": 0, "pending": 0}
+    for number in range(DAMAGES):
+        shutil.rmtree(path, ignore_errors=True)
+        shutil.copytree(store, path)
+        file = files[int(Draw(SEED, 1000 + number).between(0, len(files)))]
+        damage(path / file, number)
+        try:
+            found = st.open_study(path).load()
+        except (st.ResultError, ValueError):  # the latter is zarr's, of a checksum
+            try:
+                checked = st.check(path, repair=number % 5 == 0)  # to compute again takes long
+            except st.ResultError:
+                seen["refused"] += 1
+                continue
+            assert checked.damaged
+            if not checked.repaired:
+                continue
+            seen["repaired"] += 1
+        else:
+            if not found.identical(right):  # a mark that is gone: the block is done again
+                assert (found["status"] == -1).any()
+                st.sweep(STUDY, path)
+                seen["pending"] += 1
+        assert xr.open_zarr(path).load().identical(right), (number, file)
+    assert all(seen.values()), seen
+
+
+@pytest.mark.parametrize(
+    "gone", ["phi", "phi/c/0", "peak_force", "peak_force/zarr.json", "status/zarr.json"]
+)
+def test_what_is_taken_away_is_made_again(store, tmp_path, gone):
+    path = shutil.copytree(store, tmp_path / "a.zarr")
+    shutil.rmtree(path / gone) if (path / gone).is_dir() else (path / gone).unlink()
+    for door in (st.open_study, st.map, lambda path: st.sweep(STUDY, path)):
+        with pytest.raises(st.ResultError, match=r"is damaged: .*stiction check"):
+            door(path)
+    found = st.check(path)
+    assert not found.ok
+    assert any(name.startswith(gone) for name in found.damaged)
+    assert st.check(path, repair=True).repaired
+    assert st.check(path).ok
+    assert st.open_study(path).load().identical(xr.open_zarr(store).load())
+
+
+def test_without_its_consolidated_metadata_a_store_is_damaged(store, tmp_path):
+    import json
+
+    path = shutil.copytree(store, tmp_path / "a.zarr")
+    root = json.loads((path / "zarr.json").read_text())
+    del root["consolidated_metadata"]
+    (path / "zarr.json").write_text(json.dumps(root))
+    assert st.check(path).damaged == ["zarr.json"]
+    assert st.check(path, repair=True).repaired
+    assert st.open_study(path).load().identical(xr.open_zarr(store).load())
+
+
+def test_a_removed_variable_of_a_result_is_missed(result, tmp_path):
+    run = st.load(result)
+    with xr.open_dataset(result, engine="h5netcdf", decode_times=False) as data:
+        data.drop_vars("mu").to_netcdf(tmp_path / "a.nc", engine="h5netcdf")
+    run.sticks.to_netcdf(tmp_path / "a.nc", mode="a", group="sticks", engine="h5netcdf")
+    with pytest.raises(st.ResultError, match=r"is damaged, or was changed: samples\.mu,"):
+        st.load(tmp_path / "a.nc")
+    assert st.check(tmp_path / "a.nc", repair=True).repaired
+    assert same(st.load(tmp_path / "a.nc"), run)
+
+
+def test_results_without_checksums_load(result, tmp_path):
+    run = st.load(result)
+    run.data.to_netcdf(tmp_path / "a.nc", engine="h5netcdf")
+    run.sticks.to_netcdf(tmp_path / "a.nc", mode="a", group="sticks", engine="h5netcdf")
+    assert same(st.load(tmp_path / "a.nc"), run)
+
+
+def test_the_command_says_what_is_damaged(result, store, tmp_path, capsys):
+    path, whole = tmp_path / "a.nc", result.read_bytes()
+    at = whole.index(b"largest") if b"largest" in whole else whole.index(b"elongation")
+    path.write_bytes(whole[:at] + b"X" + whole[at + 1 :])
+
+    def said(code, *arguments):
+        with pytest.raises(SystemExit) as left:
+            cli.main(["check", *map(str, arguments)])
+        assert left.value.code == code
+        return capsys.readouterr().out
+
+    assert "All is as it was written" in said(0, result)
+    assert "All is as it was written" in said(0, store)
+    assert f"stiction check {path} --repair" in said(1, path)
+    assert "computed again" in said(0, path, "--repair")
+    assert "All is as it was written" in said(0, path)
+    said(2, tmp_path / "nothing")
+
+
+def test_a_study_that_is_not_done_is_no_damage(store, tmp_path):
+    path = shutil.copytree(store, tmp_path / "a.zarr")
+    (path / "status" / "c" / "0" / "0").unlink()
+    found = st.check(path)
+    assert (found.ok, found.pending) == (True, 1)
