@@ -110,6 +110,7 @@ def test_what_is_said_in_words_is_read_again():
         (-3e-7, "m", "-300 nm"),
         (0.0, "kg", "0 kg"),
         (0.25, "1", "0.25"),
+        (1500.0, "s", "1500 s"),  # not 1.5 ks
     ],
 )
 def test_words_have_a_prefix_where_the_unit_can(value, unit, text):

@@ -56,7 +56,8 @@ def thousands(value: float, unit: str, digits: int = DIGITS) -> int:
     """
     if value == 0.0 or unit in BARE:
         return 0
-    return min(max(floor(log10(float(f"{abs(value):.{digits - 1}e}"))) // 3, -10), 10)
+    most = 0 if unit == "s" else 10  # nobody counts in kiloseconds
+    return min(max(floor(log10(float(f"{abs(value):.{digits - 1}e}"))) // 3, -10), most)
 
 
 def angle_text(value: float) -> str:

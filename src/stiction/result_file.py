@@ -19,6 +19,7 @@ from stiction.result_checksums import SEAL, checked, damaged, intact, sealed
 if TYPE_CHECKING:
     import xarray as xr
 
+SIGNATURE = b"\x89HDF\r\n\x1a\n"  # of HDF5, in which NetCDF 4 is written
 STICK_GROUP = "sticks"  # of a result file
 ENDS = ("stick_start", "stick_end")
 TEXTS = ("description", "status", "stiction_version")
@@ -47,6 +48,12 @@ def read_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
     if not os.path.isfile(path):
         raise ResultError(f"{path}: no such file; write one with 'stiction run'")
     try:
+        with open(path, "rb") as file:
+            if file.read(len(SIGNATURE)) != SIGNATURE:
+                record = "a measured record is analysed in Python: st.analyse(st.Record(...))"
+                raise ResultError(
+                    f"{path}: not a NetCDF file; write one with 'stiction run'; {record}"
+                )
         refuse_other_files(path)
         data, sticks = _opened(path)
     except ResultError:
