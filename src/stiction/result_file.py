@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stiction.errors import ResultError, one_line
-from stiction.foreign import refuse_other_files
+from stiction.errors import ResultError
+from stiction.foreign import opening, refuse_other_files
 from stiction.labels import STICKS, VARIABLES
 from stiction.result_checksums import SEAL, checked, damaged, intact, sealed
 
@@ -23,6 +23,7 @@ SIGNATURE = b"\x89HDF\r\n\x1a\n"  # of HDF5, in which NetCDF 4 is written
 STICK_GROUP = "sticks"  # of a result file
 ENDS = ("stick_start", "stick_end")
 TEXTS = ("description", "status", "stiction_version")
+SHORTEST = 1e-100  # s, between two samples
 LATER = {"mu", "stick_duration"}  # columns that older versions did not write
 
 
@@ -47,22 +48,11 @@ def read_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
         raise ResultError(f"{path}: is a folder, not the file of one run; {remedy}")
     if not os.path.isfile(path):
         raise ResultError(f"{path}: no such file; write one with 'stiction run'")
-    try:
-        with open(path, "rb") as file:
-            if file.read(len(SIGNATURE)) != SIGNATURE:
-                record = "a measured record is analysed in Python: st.analyse(st.Record(...))"
-                raise ResultError(
-                    f"{path}: not a NetCDF file; write one with 'stiction run'; {record}"
-                )
+    with opening(path, "not a NetCDF file that can be read"):
+        _refuse_others(path)
         refuse_other_files(path)
         data, sticks = _opened(path)
-    except ResultError:
-        raise
-    except Exception as error:  # whatever HDF5 and its readers raise of a file that is none
-        raise ResultError(
-            f"{path}: not a NetCDF file that can be read: {one_line(error)}"
-        ) from None
-    lost = damaged(data.attrs.get(SEAL), {"samples": data, "sticks": sticks})
+        lost = damaged(data.attrs.get(SEAL), {"samples": data, "sticks": sticks})
     if lost:
         raise ResultError(
             f"{path}: is damaged, or was changed: {', '.join(lost[:3])}; compute it again with: "
@@ -91,15 +81,19 @@ def intact_description(path: str | Path) -> str:
         If it is damaged itself, or has no checksum.
     """
     h5py: Any = import_module("h5py")  # slow to import
-    try:
-        with h5py.File(path) as file:
-            known, text = str(file.attrs[SEAL]), str(file.attrs["description"])
-    except Exception as error:  # whatever HDF5 raises of a file that is none
-        told = one_line(error)
-        raise ResultError(f"{path}: not a result that can be mended: {told}") from None
+    with opening(path, "not a result that can be mended"), h5py.File(path) as file:
+        known, text = str(file.attrs[SEAL]), str(file.attrs["description"])
     if not intact(known, text):
         raise ResultError(f"{path}: is damaged, and so is its description; run that again")
     return text
+
+
+def _refuse_others(path: str | Path) -> None:
+    """Refuse a file that is none of NetCDF's, as a table of a measured record."""
+    with open(path, "rb") as file:
+        if file.read(len(SIGNATURE)) != SIGNATURE:
+            record = "a measured record is analysed in Python: st.analyse(st.Record(...))"
+            raise ResultError(f"{path}: not a NetCDF file; write one with 'stiction run'; {record}")
 
 
 def age(data: xr.Dataset) -> str:
@@ -114,11 +108,12 @@ def _opened(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
     """Return the two tables of a file; up to version 0.4 both stood in the root group."""
     import xarray as xr
 
-    data = xr.load_dataset(path, engine="h5netcdf", decode_times=False)
+    how: dict[str, Any] = {"engine": "h5netcdf", "decode_times": False, "phony_dims": "sort"}
+    data = xr.load_dataset(path, **how)
     if "stick" in data.dims:
         return data.drop_dims("stick"), data.drop_dims("time", errors="ignore")
     try:
-        sticks = xr.load_dataset(path, group=STICK_GROUP, engine="h5netcdf", decode_times=False)
+        sticks = xr.load_dataset(path, group=STICK_GROUP, **how)
     except OSError:  # there is no such group
         return data, xr.Dataset()
     return data, sticks
@@ -139,7 +134,8 @@ def _wrong(table: xr.Dataset, dim: str, names: Iterable[str]) -> Iterator[str]:
             yield f"{name} is {column.dtype} along {along}, and must be numbers along {dim}"
         elif name in ("time", *ENDS):
             values = column.values.astype(np.float64)
-            if not np.isfinite(values).all() or (np.diff(values) < 0.0).any():
+            least = SHORTEST if name == "time" else 0.0
+            if not np.isfinite(values).all() or (np.diff(values) < least).any():
                 yield f"{name} must be finite and ascend"
             elif name == "time" and not len(values):
                 yield "there are no samples in it"

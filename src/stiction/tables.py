@@ -17,6 +17,8 @@ from stiction.validation import unknown
 Reader = Callable[[dict[str, Any]], Any]
 LARGEST = 2**24  # bytes of a description: a table of a million values
 DEEPEST = 16  # tables and lists inside one another; descriptions have five
+TOO_DEEP = f"is nested more deeply than {DEEPEST} levels; no description is"
+BITS = 64  # of an integer, as TOML has it
 
 
 def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dict[str, Any]:
@@ -42,7 +44,7 @@ def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dic
     try:
         raw = tomllib.loads(str(path) if written else _text_of(Path(path)))
     except RecursionError:
-        message = f"is nested more deeply than {DEEPEST} levels; no description is"
+        message = TOO_DEEP
     except OSError as error:
         message = f"{error.strerror or 'cannot be read'}; write a description with 'stiction init'"
     except UnicodeDecodeError:
@@ -53,8 +55,8 @@ def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dic
         )
         message = f"is not TOML: {error}{unquoted}"
     else:
-        shallow(raw, where)
-        return with_changes(raw, changes) if changes else raw
+        tame(raw, where)
+        return tame(with_changes(raw, changes), where) if changes else raw
     raise DescriptionError([Fault(where, message)])
 
 
@@ -72,20 +74,33 @@ def read_json(text: str) -> dict[str, Any]:
         raise DescriptionError([Fault("description", f"is not JSON: {error}")]) from None
     if not isinstance(raw, dict):
         raise DescriptionError([Fault("description", f"must be tables, is {raw!r:.60}")])
-    shallow(raw, "description")
-    return raw
+    return tame(raw, "description")
 
 
-def shallow(raw: Any, where: str) -> None:
-    """Refuse tables nested so deeply that following them would exhaust the stack."""
-    level = [raw]
+def tame(raw: dict[str, Any], where: str) -> dict[str, Any]:
+    """Return tables, if they can be followed and written out without exhausting the machine.
+
+    Raises
+    ------
+    DescriptionError
+        If they are nested too deeply, or hold integers too long for any computer's.
+    """
+    level: list[tuple[str, Any]] = list(raw.items())
+    found = []
     for _ in range(DEEPEST):
-        inside = (each.values() if isinstance(each, dict) else each for each in level)
-        level = [each for values in inside for each in values if isinstance(each, dict | list)]
-        if not level:
-            return
-    message = f"is nested more deeply than {DEEPEST} levels; no description is"
-    raise DescriptionError([Fault(where, message)])
+        inside: list[tuple[str, Any]] = []
+        for path, value in level:
+            if isinstance(value, dict | list):
+                parts = value.items() if isinstance(value, dict) else enumerate(value, 1)
+                inside += [(f"{path}.{key}", each) for key, each in parts]
+            elif isinstance(value, int) and value.bit_length() > BITS:
+                found.append(Fault(path, f"an integer has {BITS} bits at most; write it as 1e30"))
+        level = inside
+    if level:
+        found.append(Fault(where, TOO_DEEP))
+    if found:
+        raise DescriptionError(found)
+    return raw
 
 
 def _text_of(path: Path) -> str:
@@ -147,7 +162,8 @@ def gather(
         With every fault in every table, each below the table's name, after the known ones.
     """
     found = [*known]
-    found += [Fault(name, unknown("table", name, readers)) for name in raw if name not in readers]
+    strange = [name for name in raw if name not in readers]
+    found += [Fault(name or '""', unknown("table", name, readers)) for name in strange]
     parts: dict[str, Any] = {}
     for name, read in sorted(readers.items(), key=lambda item: item[0] in last):
         if (name in absent and name not in raw) or (name in last and found):

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from fractions import Fraction
 from functools import partial
-from math import isfinite, isinf, isnan, pi, radians
+from math import inf, isfinite, isinf, isnan, pi, radians
 from types import UnionType
 from typing import Annotated, Any, NamedTuple, Union, get_args, get_origin
 
@@ -29,6 +29,8 @@ class Kind(NamedTuple):
     example: str
 
 
+LONGEST = 200  # characters of a number and its unit
+LARGEST, SMALLEST = 1e60, 1e-60  # in SI; what is smaller is zero. A product of five is a number
 VELOCITY = Kind("a velocity", "m/s", "1 mm/s")
 FORCE = Kind("a force", "N", "10 N")
 
@@ -39,7 +41,7 @@ QUANTITY = re.compile(
 
 
 def to_si(value: object, kind: Kind) -> float:
-    """Return `value` as a float in the SI unit of `kind`.
+    """Return `value` as a float in the SI unit of `kind`; below 1e-60 it is zero.
 
     Parameters
     ----------
@@ -63,10 +65,22 @@ def to_si(value: object, kind: Kind) -> float:
     elif angle:
         raise fault(f"degree or radian? write '{value} deg' or '{value} rad'")
     else:
-        number = float(value)
+        number = as_float(value)
     if not isfinite(number):
+        value = value if isinstance(value, str) else number  # an integer may have a million digits
         raise fault(f"{value!r} is not finite; write for example {kind.example!r}")
-    return number
+    if abs(number) > LARGEST:
+        unit = f" {kind.unit}".rstrip()
+        raise fault(f"{value!r} is beyond {LARGEST:g}{unit}; write for example {kind.example!r}")
+    return number if abs(number) >= SMALLEST else 0.0
+
+
+def as_float(value: Any) -> float:
+    """Return a number as a float, infinity for an integer that is too large for one."""
+    try:
+        return float(value)
+    except OverflowError:
+        return inf
 
 
 def _bare(value: object) -> object:
@@ -77,6 +91,8 @@ def _bare(value: object) -> object:
 
 
 def _parse(text: str, kind: Kind) -> float:
+    if len(text) > LONGEST:
+        raise fault(f"has {len(text)} characters, no quantity has more than {LONGEST}")
     found = QUANTITY.fullmatch(text)
     if not found:
         comma = " (the decimal sign is a point)" if "," in text else ""

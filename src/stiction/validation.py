@@ -15,7 +15,7 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 
 from stiction.errors import DescriptionError, Fault
 from stiction.quantity_text import angle_text
-from stiction.units import kind_of, unit_of
+from stiction.units import as_float, kind_of, unit_of
 
 if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass
@@ -245,7 +245,7 @@ def _number(value: object) -> object:
                 "}", ")"
             ),
         )
-    return float(value)
+    return as_float(value)
 
 
 Plain = Annotated[float, BeforeValidator(_number)]

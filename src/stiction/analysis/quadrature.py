@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from stiction.description import Description
 from stiction.drive import drive_stretches, load_stretches
+from stiction.errors import ResultError
 from stiction.solver.integrate import integrate
 from stiction.solver.stretch import fastest_swing, stretches
 from stiction.trajectory import Trajectory
@@ -25,6 +26,7 @@ Integrand = Callable[[Floats, Floats], Floats]
 
 PASSES = 6  # of splitting panels in four: down to a thousandth of the first
 MOST = 200_000  # panels that are split further at once, some 0.5 GB
+AGAIN = 100  # times the steps of a run it may take to make it once more, sampled
 ROUNDING = 1e-13  # of an integral; sums of so many numbers are not closer
 
 # R. Piessens et al., QUADPACK (Springer, 1983), routine qk15: nodes from the end of (-1, 1) to
@@ -149,8 +151,19 @@ def split(starts: Floats, lengths: Floats, counts: NDArray[np.intp]) -> tuple[Fl
 
 
 def states_at(run: Trajectory, times: Floats) -> Floats:
-    """Return rows as in `stiction.solver.sampling` at `times` (ascending, s) within the run."""
+    """Return rows as in `stiction.solver.sampling` at `times` (ascending, s) within the run.
+
+    Raises
+    ------
+    ResultError
+        If the run, made once more, does not come that far: it is not what its file says.
+    """
     slider, initial, settings = run.description
     span = {"duration": max(float(times[-1]) - initial.time, 1e-300)}
     until = settings.model_copy(update=span)
-    return integrate(Description(slider, initial, until), times, 2**62, None).samples
+    took = run.statistics
+    budget = AGAIN * (max(took.steps, 0) + max(took.mapped, 0) + 1000)
+    rows = integrate(Description(slider, initial, until), times, budget, None).samples
+    if len(rows) < len(times):
+        raise ResultError(f"the run, made once more, ends before {times[-1]:g} s; make it anew")
+    return rows

@@ -18,16 +18,20 @@ Floats = NDArray[np.float64]
 
 
 LARGEST = 1e100  # of any sample, in SI: the square of it is a number, too
+SMALLEST = 1e-100  # what is smaller is taken for zero, as its square would be
 UNITS = {name: f"{name}_unit" for name in ("time", "force", "position", "slip_speed")}
 
 
 def _samples(values: Any) -> Floats:
-    given = np.ma.asanyarray(values) if np.ma.isMaskedArray(values) else np.asarray(values)
+    try:
+        given = np.ma.asanyarray(values) if np.ma.isMaskedArray(values) else np.asarray(values)
+    except ValueError:  # lists of several lengths, or inside one another
+        raise ValueError("must be numbers, one a sample, in SI") from None
     if given.dtype.kind in "cmMSU":  # complex numbers, times of a calendar, text
         raise ValueError(f"must be numbers, one a sample, in SI, not of type {given.dtype}")
     try:
         samples = np.array(np.ma.filled(given.astype(np.float64), np.nan))
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ValueError("must be numbers, one a sample, in SI") from None
     if samples.ndim != 1:
         raise ValueError(f"must have one dimension, has {samples.ndim}; give one number a sample")
@@ -39,6 +43,7 @@ def _samples(values: Any) -> Floats:
         )
     if np.abs(samples).max(initial=0.0) > LARGEST:
         raise ValueError(f"must be in SI and below {LARGEST:g}, is {np.abs(samples).max():g}")
+    samples[np.abs(samples) < SMALLEST] = 0.0
     samples.setflags(write=False)
     return samples
 
@@ -224,6 +229,8 @@ def record_of(run: Trajectory) -> Record:
     way = -1.0 if along < 0.0 else 1.0
     columns = np.stack([data[name].values for name in ("time", "spring_x", "X", "slip_speed")])
     time, force, X, slip_speed = columns[:, np.isfinite(columns).all(axis=0)]
+    if not len(time):
+        raise ResultError("no sample of the run is a number; make it anew")
     return Record(
         time=time,
         force=way * force,

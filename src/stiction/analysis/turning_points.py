@@ -102,12 +102,15 @@ def turning_points(values: Floats) -> TurningPoints:
     if clearest < CLEAR and len(few := coarse_points(counts)):
         rising = np.diff(counts[few], prepend=counts[0]) < 0
         return TurningPoints(few, rising, values, 1, 0.0, CLEAR)
+    none = np.zeros(0, np.intp)
+    nothing = TurningPoints(none, none.astype(bool), values, 1, 0.0, clearest)
     if clearest < CLEAR:
-        none = np.zeros(0, np.intp)
-        return TurningPoints(none, none.astype(bool), values, 1, 0.0, clearest)
+        return nothing
     level = next(i for i, gap in enumerate(gaps) if gap.clearness >= AS_GOOD * clearest)
     gap, width = gaps[level], 2**level
     index = standing_out(levels[level], gap.middle * width, gap.low * width)
+    if len(index) < 2:  # one turn is no cycle
+        return nothing
     leg = float(np.median(np.abs(np.diff(levels[level][index])))) / width
     trough = np.diff(levels[level][index], append=0) > 0
     trough[-1:] = ~trough[-2:-1]

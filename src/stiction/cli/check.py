@@ -7,13 +7,16 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from stiction.cli.options import Trust
+from stiction.cli.terminal import say
+
 
 def check(
     path: Path,
     /,
     *,
     repair: Annotated[bool, Parameter(negative=())] = False,
-    trust: Annotated[bool, Parameter(negative=())] = False,
+    trust: Trust = False,
 ) -> int:
     """Look whether a result, or the store of a study, is as it was written.
 
@@ -33,11 +36,9 @@ def check(
     repair
         Compute again what is damaged: a result from the description in it, of a study the
         blocks of runs that are damaged.
-    trust
-        Run the friction law of one's own that is kept there, where it must be computed again.
     """
     from stiction import checking
 
     found = checking.check(path, repair=repair, trust=trust)
-    print(found)
+    say(str(found))
     return 0 if found.ok else 1

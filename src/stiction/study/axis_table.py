@@ -30,7 +30,7 @@ def read_axis(value: Any, name: str) -> Axis:
     fields = {written: name for name, written in WRITTEN.items()}
     table = {fields.get(str(key), str(key)): each for key, each in value.items()}
     sampling = table.pop("sampling", "grid")
-    if sampling not in SAMPLINGS:
+    if not isinstance(sampling, str) or sampling not in SAMPLINGS:
         message = unknown("sampling", str(sampling), SAMPLINGS)
         raise DescriptionError([Fault(f"{path}.sampling", message)])
     kind = Values if "values" in table else SAMPLINGS[sampling]

@@ -20,9 +20,9 @@ import numpy as np
 
 from stiction import errors
 from stiction.checksums import LENGTH, with_checksum, without_checksum
-from stiction.errors import ResultError, one_line
+from stiction.errors import ResultError
 from stiction.files import place, workshop
-from stiction.foreign import refuse_links
+from stiction.foreign import opening, refuse_links
 from stiction.study import sealing
 from stiction.study.kept import Kept, names_kept
 from stiction.study.layout import Index, Layout, Region
@@ -267,11 +267,9 @@ def group_at(path: str | Path, mode: Literal["r", "r+"]) -> zarr.Group:
     if not os.path.isdir(path):
         raise ResultError(f"{path}: no such store; write one with 'stiction sweep'")
     refuse_links(path)
-    try:  # of format 2 of zarr, pickles were a part
+    with opening(path, "is not the store of a study"):  # of zarr's format 2 pickles are a part
         group = zarr.open_group(Path(path), mode=mode, zarr_format=3, use_consolidated=False)
         known = group.attrs.get("format")
-    except Exception as error:  # whatever zarr raises of what is none
-        raise ResultError(f"{path}: is not the store of a study: {one_line(error)}") from None
     if known not in FORMATS:
         by = f"stiction {group.attrs.get('stiction_version')!s:.20} wrote it, this is {version()}"
         what = "is not the store of a study" if known is None else f"has format {known!s:.20}; {by}"
@@ -297,7 +295,8 @@ def open_study(path: str | Path) -> xr.Dataset:
     lost = [file for task in range(layout.tasks) for file in store.damaged(layout.region(task))]
     if lost:
         raise damage(path, [file.relative_to(path) for file in lost])
-    data: xr.Dataset = xr.open_zarr(path, zarr_format=3)
+    with opening(path, "is damaged"):
+        data: xr.Dataset = xr.open_zarr(path, zarr_format=3)
     return data.rename({old: new for old, new in FORMERLY.items() if old in data})
 
 

@@ -11,8 +11,10 @@ from pydantic_core import PydanticCustomError
 
 from stiction.deprecation import by_new_names
 from stiction.errors import DescriptionError, Fault, ResultError
+from stiction.foreign import opening
 from stiction.paths import canonical_path
 from stiction.study import sealing
+from stiction.study.kept import kept
 from stiction.study.measures import FORMERLY
 from stiction.study.parameters import number
 from stiction.study.plan import Study
@@ -51,8 +53,10 @@ class View(NamedTuple):
 
 def viewed(path: str | Path, cut: Mapping[str, str | float], trust: bool = False) -> View:
     """Return what is left of a study when some of its dimensions are cut."""
-    data = open_study(path)
-    study = Study.from_json(data.attrs["description"], trust=trust)
+    with opening(path, "is damaged"):
+        data = open_study(path)
+        study = Study.from_json(data.attrs["description"], trust=trust)
+    fitting(path, data, study)
     dims, at, found = study.layout.dims, {}, []
     for name, value in cut.items():
         dim = canonical_path(name)
@@ -71,7 +75,29 @@ def viewed(path: str | Path, cut: Mapping[str, str | float], trust: bool = False
         found.append(Fault(", ".join(dims), f"{len(left)} dimensions are left; {remedy}"))
     if found:
         raise DescriptionError(found)
-    return View(study, data.isel(at).load(), at, refined(path))
+    with opening(path, "is damaged"):
+        return View(study, data.isel(at).load(), at, refined(path))
+
+
+def fitting(path: str | Path, data: xr.Dataset, study: Study) -> None:
+    """Refuse a store that holds other arrays than its study describes.
+
+    Raises
+    ------
+    ResultError
+        Naming them.
+    """
+    runs = dict(zip(study.layout.dims, study.layout.shape, strict=True))
+    along = {name: {each.dim: runs[each.dim]} for name, each in study.coordinates.items()}
+    numbers = [each.name for each in kept(study) if not each.shape]
+    wanted = {**along, **dict.fromkeys(("status", *numbers), runs)}
+    wrong = [
+        name
+        for name, sizes in wanted.items()
+        if name not in data or data[name].sizes != sizes or data[name].dtype.kind not in "fiu"
+    ]
+    if wrong:
+        raise ResultError(f"{path}: is damaged: {', '.join(wrong)} not as the study has them")
 
 
 def refined(path: str | Path) -> list[xr.Dataset]:
