@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import nan
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -30,6 +32,11 @@ def dies_out(drop: ArrayLike, period: ArrayLike, rest: float) -> bool:
 
 
 def order(values: np.ndarray) -> float:
-    """Return the rank correlation (Spearman's) of the values with their number: -1 for falling."""
+    """Return the rank correlation (Spearman's) of the values with their number: -1 for falling.
+
+    NaN for a single value, which is in no order.
+    """
+    if len(values) < 2:
+        return nan
     ranks = np.argsort(np.argsort(values))
     return float(np.corrcoef(ranks, np.arange(len(values)))[0, 1])
