@@ -391,6 +391,20 @@ open("law.pickle", "wb").write(pickle.dumps(d.slider))
     assert "Mine(mu_0=0.2" in python(load, tmp_path, **cache)
 
 
+@pytest.mark.parametrize("raised", ["ValueError('no')", "BaseException('no')", "SystemExit(0)"])
+def test_what_a_law_raises_later_is_told_in_a_line(config, raised, capsys):
+    """Not in a traceback: it is the law that is to be corrected."""
+    body = f"if v > 2e-3: raise {raised}\n        return law.mu_0"
+    law = LAW.replace("return law.mu_0 / ratio(v, law.v_h)", body)
+    (config.parent / "mylaw.py").write_text(law)
+    with pytest.raises(SystemExit) as end:
+        main(["stability", str(config), "--set", "V=3mm/s"])
+    assert end.value.code == 2
+    said = capsys.readouterr().err
+    assert f"mylaw.py, line 18: {raised.partition('(')[0]}: " in said
+    assert "Traceback" not in said
+
+
 def test_the_command_line(config, tmp_path, capsys):
     def inside(*arguments):
         with pytest.raises(SystemExit) as end:

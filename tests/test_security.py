@@ -200,3 +200,15 @@ def test_letters_that_a_terminal_lacks_are_spelled_out(tmp_path):
     done = command("stability", tmp_path / "µ.toml", stdout=subprocess.PIPE, env=ascii_only)
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith(str(tmp_path / "u.toml"))
+
+
+def test_each_line_of_security_md_names_tests_that_are_there():
+    folder = Path(__file__).parent
+    lines = (folder.parent / "SECURITY.md").read_text().splitlines()
+    rows = [line.split(" | ")[-1] for line in lines if line.startswith("|")][2:]
+    assert rows
+    for row in rows:
+        file, *names = re.findall(r"`(\w+)`", row)
+        text = (folder / f"{file}.py").read_text()
+        assert names
+        assert [name for name in names if not re.search(rf"def test_\w*{name}", text)] == []

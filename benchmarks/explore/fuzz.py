@@ -332,7 +332,8 @@ def _put(attributes: Any, key: str, draw: Draw) -> None:
     try:
         attributes[key] = value
     except (TypeError, ValueError, OSError, OverflowError):
-        del attributes[key]
+        if key in attributes:
+            del attributes[key]
 
 
 def store(draw: Draw, folder: Path) -> None:

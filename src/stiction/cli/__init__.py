@@ -5,6 +5,8 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from traceback import extract_tb
+from types import ModuleType
 from typing import NoReturn
 
 import cyclopts
@@ -13,7 +15,7 @@ from rich.console import Console
 import stiction
 from stiction.cli.notices import show_notices
 from stiction.cli.terminal import give_up, spell_out
-from stiction.errors import StictionError, visible
+from stiction.errors import StictionError, one_line, visible
 
 app = cyclopts.App(
     name="stiction",
@@ -77,6 +79,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
         refuse(errors, "file", f"{what}: {error.strerror or error}; choose another, or make room")
     except MemoryError as error:
         refuse(errors, "memory", f"there is not enough: {error}")
+    except BaseException as error:
+        place = in_a_law(error)
+        if place is None:
+            raise
+        refuse(errors, "friction law", f"{place}: {one_line(error)}; correct it there")
     sys.exit(code if isinstance(code, int) else 0)
 
 
@@ -89,6 +96,16 @@ def refuse(errors: Console, what: str, message: str) -> NoReturn:
     except OSError:  # nobody can be told
         give_up(sys.stderr)
     sys.exit(2)
+
+
+def in_a_law(error: BaseException) -> str | None:
+    """Return where in a user's law something was raised, None if it was elsewhere."""
+    from stiction.friction.source import TextLoader
+
+    modules = [vars(each) for each in list(sys.modules.values()) if isinstance(each, ModuleType)]
+    laws = {m.get("__file__") for m in modules if isinstance(m.get("__loader__"), TextLoader)}
+    frames = [each for each in extract_tb(error.__traceback__) if each.filename in laws]
+    return f"{frames[-1].filename}, line {frames[-1].lineno}" if frames else None
 
 
 def called(error: cyclopts.CycloptsError) -> str:
