@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from stiction.analysis.slip import outcome
-from stiction.description import MOST_SAMPLES, Description, description_of
+from stiction.description import SAMPLE, Description, description_of
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import Law, name_of, parameters
 from stiction.laws import exchanged, read_laws
+from stiction.memory import shortage
 from stiction.sections import Section, Table, as_html, as_text
 from stiction.simulation import automatic_times, run
 from stiction.trajectory import Trajectory
@@ -121,8 +122,8 @@ def compare(
     all_laws = [own, *read_laws(description, [laws] if isinstance(laws, str | Path) else laws)]
     settings = description.run
     samples = len(all_laws) * settings.duration * (settings.sample_rate or 0.0)
-    if samples > MOST_SAMPLES:
-        message = f"makes {samples:.3g} samples in {len(all_laws)} runs, more than {MOST_SAMPLES:g}"
+    if short := shortage(SAMPLE * samples):
+        message = f"makes {samples:.3g} samples in {len(all_laws)} runs, which {short}"
         raise DescriptionError([Fault("run.sample_rate", f"{message}; lower it")])
     runs: dict[str, Trajectory] = {}
     for name, law in zip(labels(all_laws), all_laws, strict=True):

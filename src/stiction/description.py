@@ -14,13 +14,14 @@ from stiction.errors import DescriptionError, Fault
 from stiction.friction import law_table, read_law
 from stiction.friction.own import Find, held, is_own, named
 from stiction.initial import Initial
+from stiction.memory import shortage
 from stiction.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider
 from stiction.tables import Reader, folder_of, gather, read_json, read_toml, toml_text
 from stiction.units import Duration, Number, SampleRate, Velocity
-from stiction.validation import Described
+from stiction.validation import Described, faulty
 from stiction.writing import described, slider_tables
 
-MOST_SAMPLES = 2e7  # 5 GB in memory, 3 GB on disk
+SAMPLE = 300.0  # bytes of memory that a sample takes, in all its columns and on the way there
 Smoothing = Annotated[Velocity, Field(ge=1e-11)]  # below, each step is a boundary layer
 
 
@@ -51,12 +52,13 @@ class Settings(Described):
 
     @model_validator(mode="after")
     def _can_be_kept(self) -> Self:
-        if self.sample_rate is not None and self.duration * self.sample_rate > MOST_SAMPLES:
-            raise ValueError(
-                f"duration times sample_rate is {self.duration * self.sample_rate:.3g} samples, "
-                f"more than {MOST_SAMPLES:g}; lower the rate, or restart from a sample of a coarse "
-                "run and sample only a window finely"
+        samples = self.duration * (self.sample_rate or 0.0)
+        if short := shortage(SAMPLE * samples):
+            message = (
+                f"duration times sample_rate is {samples:.3g} samples, which {short}; lower the "
+                "rate, or restart from a sample of a coarse run and sample only a window finely"
             )
+            raise faulty([Fault("sample_rate", message)])
         return self
 
 

@@ -1,4 +1,4 @@
-"""What is looked at before a file from others is opened: does all of it lie where it says?"""
+"""What is looked at before a file from others is opened: where it lies, and how large it is."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from stiction.errors import ResultError, StictionError, one_line
+from stiction.memory import shortage
 
 
 @contextmanager
@@ -64,6 +65,7 @@ def refuse_other_files(path: str | Path) -> None:
         If it is no HDF5 file.
     """
     h5py: Any = import_module("h5py")  # slow to import
+    sizes: list[float] = []
     with h5py.File(path) as file:
 
         def look(name: str, link: object) -> str | None:
@@ -72,8 +74,23 @@ def refuse_other_files(path: str | Path) -> None:
             member = file.get(name)
             if isinstance(member, h5py.Dataset) and (member.external or member.is_virtual):
                 return f"{name} has its numbers in another file"
+            if isinstance(member, h5py.Dataset):
+                sizes.append(float(member.size or 0) * member.dtype.itemsize)
             return None
 
         found = file.visititems_links(look)
     if found is not None:
         raise ResultError(f"{path}: {found}, which no result has; it is not read")
+    refuse_size(path, sum(sizes))
+
+
+def refuse_size(path: str | Path, size: float) -> None:
+    """Refuse to read so many bytes of a file, if there is no memory for them.
+
+    Raises
+    ------
+    ResultError
+        If this machine does not lend as much.
+    """
+    if short := shortage(size):
+        raise ResultError(f"{path}: to read it {short}; read a part of it, with xarray")

@@ -6,6 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stiction.errors import DescriptionError, Fault
+from stiction.memory import shortage
+
+STICK = 80.0  # bytes of memory that a stick interval takes, in all tables and on the way there
+
 
 @dataclass
 class Output:
@@ -21,6 +26,18 @@ class Output:
     used: int = 0
 
     def make_room(self, sticks: int) -> None:
-        """Double the room for stick intervals if `sticks` fill it."""
-        if sticks == len(self.sticks):
-            self.sticks = np.concatenate([self.sticks, np.empty_like(self.sticks)])
+        """Double the room for stick intervals if `sticks` fill it.
+
+        Raises
+        ------
+        DescriptionError
+            If there is no memory for as many.
+        """
+        if sticks < len(self.sticks):
+            return
+        if short := shortage(STICK * 2.0 * sticks):
+            message = (
+                f"more than {sticks} sticks, of which each is recorded; room for twice as many"
+            )
+            raise DescriptionError([Fault("run.duration", f"{message} {short}; shorten it")])
+        self.sticks = np.concatenate([self.sticks, np.empty_like(self.sticks)])

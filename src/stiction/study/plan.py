@@ -23,6 +23,7 @@ from stiction.study.measures import DEFAULT
 from stiction.study.observed import seconds_of
 from stiction.study.parameters import varied
 from stiction.study.reading import axes_of, is_description, measures_of, traces_of
+from stiction.study.size import axis_faults, run_faults
 from stiction.tables import folder_of, read_json, read_toml
 from stiction.validation import Described, faulty
 from stiction.writing import parameter_table, slider_tables
@@ -80,10 +81,17 @@ class Study(Described):
     @model_validator(mode="after")
     def _can_be_laid_out(self) -> Self:
         found = [*coordinate_faults(self.base, self.axes, self.seed), *zip_faults(self.axes)]
+        found = [Fault(f"axes.{fault.path}", fault.message) for fault in found]
+        found += [] if found else self._too_large()
         found += [] if found else self._refused()
         if found:
-            raise faulty([Fault(f"axes.{fault.path}", fault.message) for fault in found])
+            raise faulty(found)
         return self
+
+    def _too_large(self) -> list[Fault]:
+        """Return what there is no memory for."""
+        kept = (len(self.measures), len(self.traces), self.trace_samples)
+        return [*axis_faults(self.axes), *run_faults(self.layout, *kept)]
 
     def _refused(self) -> list[Fault]:
         """Return what is wrong with an end of a dimension wherever the others are.
@@ -97,7 +105,7 @@ class Study(Described):
                 others = [*ends[:place], [end], *ends[place + 1 :]]
                 refusals = [self._refusal(index) for index in product(*others)]
                 if all(refusals):
-                    found.setdefault(dim, Fault(dim, "; ".join(map(str, refusals[0]))))
+                    found.setdefault(dim, Fault(f"axes.{dim}", "; ".join(map(str, refusals[0]))))
         return list(found.values())
 
     def _refusal(self, index: Index) -> tuple[Fault, ...]:

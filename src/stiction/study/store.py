@@ -22,7 +22,7 @@ from stiction import errors
 from stiction.checksums import LENGTH, with_checksum, without_checksum
 from stiction.errors import ResultError
 from stiction.files import place, workshop
-from stiction.foreign import opening, refuse_links
+from stiction.foreign import opening, refuse_links, refuse_size
 from stiction.study import sealing
 from stiction.study.kept import Kept, names_kept
 from stiction.study.layout import Index, Layout, Region
@@ -291,6 +291,8 @@ def open_study(path: str | Path) -> xr.Dataset:
     import xarray as xr
 
     store = store_at(path, "r")
+    arrays: Any = dict(store.group.arrays())
+    refuse_size(path, sum(float(each.nbytes) for each in arrays.values() if each.ndim == 1))
     layout = store.layout
     lost = [file for task in range(layout.tasks) for file in store.damaged(layout.region(task))]
     if lost:

@@ -11,7 +11,7 @@ from pydantic_core import PydanticCustomError
 
 from stiction.deprecation import by_new_names
 from stiction.errors import DescriptionError, Fault, ResultError
-from stiction.foreign import opening
+from stiction.foreign import opening, refuse_size
 from stiction.paths import canonical_path
 from stiction.study import sealing
 from stiction.study.kept import kept
@@ -75,8 +75,10 @@ def viewed(path: str | Path, cut: Mapping[str, str | float], trust: bool = False
         found.append(Fault(", ".join(dims), f"{len(left)} dimensions are left; {remedy}"))
     if found:
         raise DescriptionError(found)
-    with opening(path, "is damaged"):
-        return View(study, data.isel(at).load(), at, refined(path))
+    part = data.isel(at)
+    refuse_size(path, part.nbytes)
+    with opening(path, f"is damaged; compute it again with stiction check {path} --repair"):
+        return View(study, part.load(), at, refined(path))
 
 
 def fitting(path: str | Path, data: xr.Dataset, study: Study) -> None:

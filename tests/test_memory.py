@@ -1,0 +1,106 @@
+"""What takes more memory than the machine lends is refused before it is asked for."""
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction import memory
+from stiction.solver.output import Output
+
+BASE = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="5 ms"))
+
+
+@pytest.fixture(autouse=True)
+def small(monkeypatch):
+    """Any machine is one that lends 1 GB."""
+    monkeypatch.setattr(memory, "lent", lambda: 1e9)
+
+
+def told(make) -> str:
+    with pytest.raises(st.DescriptionError) as error:
+        make()
+    return str(error.value)
+
+
+def test_samples_are_refused_by_their_path(tmp_path):
+    text = BASE.to_toml().replace('duration = "5 ms"', 'duration = "5 s"\nsample_rate = "10 MHz"')
+    (tmp_path / "a.toml").write_text(text)
+    said = told(lambda: st.Description.from_toml(tmp_path / "a.toml"))
+    assert said.startswith(
+        "run.sample_rate: duration times sample_rate is 5e+07 samples, which takes"
+    )
+    assert "15 GB of memory, and this machine lends 1 GB; lower the rate" in said
+    assert "run.sample_rate: makes 5e+06 samples in 2 runs" in told(
+        lambda: st.compare(BASE._replace(run=st.Settings(duration=25, sample_rate=1e5)), "coulomb")
+    )
+
+
+@pytest.mark.parametrize("kind", [st.Grid, st.Random, st.Sobol])
+def test_an_axis_is_refused_before_it_is_made(kind):
+    said = told(lambda: st.Study(base=BASE, axes={"phi": kind("1 deg", "2 deg", 1_000_000_000)}))
+    assert "axes.phi.count: 1000000000 values: takes" in said
+
+
+def test_runs_and_traces_are_refused_before_they_are_laid_out():
+    def axes(count):
+        return {"phi": st.Grid("1 deg", "2 deg", count), "k_x": st.Grid(1e3, 2e3, count)}
+
+    assert "axes: 100000 x 100000 runs: to count them takes" in told(
+        lambda: st.Study(base=BASE, axes=axes(100_000))
+    )
+    assert "trace_samples: 1 measures, 1 traces of 100000 samples of each run: takes" in told(
+        lambda: st.Study(
+            base=BASE, axes=axes(10_000), measures=["regime"], traces=["force"],
+            trace_samples=100_000,
+        )
+    )  # fmt: skip
+
+
+def test_sticks_are_refused_before_there_is_room_for_them():
+    out = Output(np.zeros(1), np.zeros((1, 7)), np.zeros((4096, 2)))
+    out.make_room(4095)
+    out.make_room(4096)
+    assert len(out.sticks) == 8192
+    out.sticks = np.zeros((2**23, 2))
+    said = told(lambda: out.make_room(2**23))
+    assert said.startswith("run.duration: more than 8388608 sticks, of which each is recorded")
+    assert said.endswith("this machine lends 1 GB; shorten it")
+
+
+def test_a_multiscale_run_ends_before_it_fills_the_memory(monkeypatch):
+    monkeypatch.setattr(memory, "lent", lambda: 1e6)  # room for some thousand sticks
+    said = told(lambda: st.simulate(BASE.slider, 1e9, multiscale=True))
+    assert said.startswith("run.duration: more than 8192 sticks")
+
+
+def test_files_of_others_are_refused_before_they_are_read(tmp_path):
+    """They say that they hold 745 GiB: arrays without content take no place on a disk."""
+    import h5py
+
+    with h5py.File(tmp_path / "a.nc", "w") as file:
+        file.create_dataset("time", (10**11,), "f8", chunks=(10**6,))
+    with pytest.raises(st.ResultError, match="to read it takes 800 GB of memory"):
+        st.load(tmp_path / "a.nc")
+
+
+def test_a_store_of_others_is_refused_before_it_is_read(tmp_path):
+    import zarr
+
+    study = st.Study(base=BASE, axes={"phi": st.Values(["1 deg"])}, measures=["peak_force"])
+    st.sweep(study, tmp_path / "a.zarr")
+    group = zarr.open_group(tmp_path / "a.zarr", mode="r+", use_consolidated=False)
+    group["phi"].resize((10**11,))
+    group.attrs["format"] = 1  # without checksums
+    with pytest.raises(st.ResultError, match="to read it takes 800 GB of memory"):
+        st.open_study(tmp_path / "a.zarr")
+
+
+def test_what_the_machine_lends_is_half_of_the_least_it_says(monkeypatch, tmp_path):
+    monkeypatch.undo()
+    (tmp_path / "max").write_text("max\n")
+    (tmp_path / "some").write_text("2000000000\n")
+    monkeypatch.setattr(memory, "_physical", lambda: 3e9)
+    monkeypatch.setattr(memory, "_of_process", lambda: float("inf"))
+    for file, lent in (("max", 1.5e9), ("none", 1.5e9), ("some", 1e9)):
+        monkeypatch.setattr(memory, "LIMITS", (tmp_path / file,))
+        assert memory.lent.__wrapped__() == lent
