@@ -9,6 +9,7 @@ from contextlib import contextmanager
 import h5py
 import numpy as np
 import pytest
+import zarr
 from benchmarks.explore import fuzz
 
 import stiction as st
@@ -17,7 +18,7 @@ from stiction.simulation import run
 from stiction.tables import read_json
 
 SEED = 20  # any will do
-COUNTS = {"store": 12, "result": 25, "record": 60}  # of those that take longer
+COUNTS = {"store": 12, "result": 25, "record": 60, "command": 25}  # of those that take longer
 
 
 @pytest.fixture(scope="module")
@@ -171,3 +172,10 @@ def test_a_calendar_is_none_of_a_run(slider, tmp_path):
         file["time"].attrs["units"] = "days since 1900-01-01"
     fuzz.reseal(path)
     assert float(st.load(path).data["time"][-1]) == 0.02
+
+
+def test_a_store_of_another_format_says_so(tmp_path):
+    attributes = {"format": 99, "stiction_version": "9.0"}
+    zarr.create_group(tmp_path / "a.zarr", zarr_format=3, attributes=attributes)
+    with pytest.raises(st.ResultError, match=r"has format 99; stiction 9.0 wrote it, this is"):
+        st.open_study(tmp_path / "a.zarr")

@@ -14,8 +14,9 @@ import tempfile
 import traceback
 import warnings
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import chdir, redirect_stderr, redirect_stdout, suppress
 from copy import deepcopy
+from io import StringIO
 from pathlib import Path
 from time import perf_counter
 from typing import Any, NamedTuple
@@ -25,7 +26,9 @@ import numpy as np
 
 import stiction as st
 from stiction import result_checksums, result_file
+from stiction.cli import main as main_line
 from stiction.cli.options import value as option
+from stiction.laws import read_laws
 from stiction.study.sealing import seal
 from stiction.tables import toml_text
 
@@ -340,9 +343,7 @@ def store(draw: Draw, folder: Path) -> None:
     """A study's store, damaged inside: what its files say, and which are there."""
     import shutil
 
-    path, whole = folder / "a.zarr", folder / "whole.zarr"
-    if not whole.exists():
-        st.sweep(STUDY, whole)
+    path, whole = folder / "a.zarr", _whole_store(folder)
     shutil.rmtree(path, ignore_errors=True)
     shutil.copytree(whole, path)
     files = sorted(each for each in path.rglob("*") if each.is_file())
@@ -366,6 +367,13 @@ def store(draw: Draw, folder: Path) -> None:
     st.sweep(STUDY, path)
 
 
+def _whole_store(folder: Path) -> Path:
+    whole = folder / "whole.zarr"
+    if not whole.exists():
+        st.sweep(STUDY, whole)
+    return whole
+
+
 def quantity(draw: Draw, folder: Path) -> None:
     """A number with its unit."""
     text = "".join(draw.among(PARTS) for _ in range(int(draw.decades(1, 60))))
@@ -373,10 +381,59 @@ def quantity(draw: Draw, folder: Path) -> None:
     st.Settings(duration=text)
 
 
+def laws(draw: Draw, folder: Path) -> None:
+    """Laws that ``--law`` gives."""
+    inline = f"{{law = {draw.among(TEXTS)!r}, mu_0 = {draw.among(TOKENS)}}}"
+    text = draw.among(
+        [str(nonsense(draw)), draw.among(TOKENS), inline, f"{draw.among(TEXTS)}.toml"]
+    )
+    read_laws(DESCRIPTIONS[0], [text if draw.chance(0.7) else nonsense(draw)])
+
+
+LINES = (
+    ("stability", "{toml}", "--over", "phi", "--between", "1 deg", "5 deg"),
+    ("stability", "{toml}", "--over", "k_x, k_y"),
+    ("stability", "{toml}", "--set", "phi=2deg", "--set", "V=1"),
+    ("map", "{store}", "--of", "peak_force", "--at", "phi=1 deg", "-o", "{out}.png"),
+    ("sweep", "{toml}", "-o", "{out}.zarr", "--refine", "phi=1 deg", "--threads", "1"),
+    ("export", "{nc}", "-o", "{out}.csv"),
+    ("plot", "{nc}", "-o", "{out}.svg"),
+    ("init", "{out}.toml"),
+    ("analyse", "{nc}", "-o", "{out}"),
+)
+
+
+def command(draw: Draw, folder: Path) -> None:
+    """A command line with an argument that is none of its own."""
+    (folder / "whole.toml").write_text(DESCRIPTIONS[0].to_toml())
+    (folder / "whole.nc").write_bytes(_result(folder))
+    _whole_store(folder)
+    files = {kind: str(folder / f"whole.{kind}") for kind in ("toml", "nc")}
+    files |= {"store": str(folder / "whole.zarr"), "out": str(folder / "out")}
+    line = [part.format(**files) for part in draw.among(LINES)]
+    for _ in range(draw.among([1, 1, 2])):
+        at = int(draw.between(1, len(line)))
+        text = str(draw.among([nonsense(draw), draw.among(TOKENS), f"phi={draw.among(TEXTS)}"]))
+        line[at] = text.replace("\x00", "0").replace("/", "_")  # nothing outside the folder
+    with redirect_stdout(StringIO()), redirect_stderr(StringIO()), chdir(folder):
+        _called(line)
+    if left := [*folder.rglob("*.part")]:
+        raise ValueError(f"half a file is left behind: {left[0].name}")
+
+
+def _called(line: list[str]) -> None:
+    try:
+        main_line(line)
+    except SystemExit as end:
+        if end.code not in (0, 1, 2):
+            raise ValueError(f"exit status {end.code}") from end
+
+
 READERS: dict[str, Callable[[Draw, Path], None]] = {
     each.__name__: each
     for each in (
         description_text, description_json, study_text, changed, record, result, store, quantity,
+        laws, command,
     )
 }  # fmt: skip
 

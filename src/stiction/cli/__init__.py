@@ -77,6 +77,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         give_up(None if error.filename else sys.stdout)
         what = error.filename or "standard output"
         refuse(errors, "file", f"{what}: {error.strerror or error}; choose another, or make room")
+    except RecursionError:
+        refuse(errors, "command line", "an argument is nested too deeply to be read")
     except MemoryError as error:
         refuse(errors, "memory", f"there is not enough: {error}")
     except BaseException as error:
