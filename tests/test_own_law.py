@@ -1,5 +1,6 @@
 """A law of the user's own, in a file that a description names: read, kept, and read back."""
 
+import inspect
 import json
 import os
 import pickle
@@ -297,6 +298,17 @@ def test_a_result_without_the_text_runs_no_file(config, tmp_path):
         with pytest.raises(st.ResultError, match="was not kept"):
             st.load(tmp_path / "a.nc", trust=trust)
     assert not [name for name in sys.modules if name.startswith("stiction_law_other")]
+
+
+def test_a_result_names_no_class_but_a_law(config):
+    """Texts of modules that every process has loaded are known to all."""
+    table = st.Description.from_toml(config).to_dict()
+    ran = config.parent / "work" / "popped"
+    command = {"args": ["touch", str(ran)], "source": inspect.getsource(subprocess)}
+    table["friction"] = {"law": "subprocess.py:Popen", **command}
+    with pytest.raises(st.DescriptionError, match=r"'subprocess.py:Popen' is not a NamedTuple"):
+        st.Description.from_json(json.dumps(table))
+    assert not ran.exists()
 
 
 SCRIPT = """
