@@ -1,5 +1,6 @@
 """What is damaged is never silent: it is refused, or computed again and then as it was."""
 
+import json
 import shutil
 from pathlib import Path
 
@@ -132,8 +133,6 @@ def test_what_is_taken_away_is_made_again(store, tmp_path, gone):
 
 
 def test_without_its_consolidated_metadata_a_store_is_damaged(store, tmp_path):
-    import json
-
     path = shutil.copytree(store, tmp_path / "a.zarr")
     root = json.loads((path / "zarr.json").read_text())
     del root["consolidated_metadata"]
@@ -185,3 +184,39 @@ def test_a_study_that_is_not_done_is_no_damage(store, tmp_path):
     (path / "status" / "c" / "0" / "0").unlink()
     found = st.check(path)
     assert (found.ok, found.pending) == (True, 1)
+
+
+def unchecked(path: Path) -> Path:
+    """Make of a store one of format 1, as versions without checksums wrote it."""
+    for file in [each for each in path.rglob("*") if each.is_file()]:
+        if file.name != "zarr.json":
+            file.write_bytes(file.read_bytes()[:-4])
+            continue
+        root = json.loads(file.read_text(), object_hook=without_codec)
+        if "format" in root["attributes"]:
+            del root["attributes"]["checksums"]
+            root["attributes"]["format"] = 1
+        file.write_text(json.dumps(root))
+    return path
+
+
+def without_codec(table: dict) -> dict:
+    """Return metadata of an array without the codec that adds checksums."""
+    if "codecs" in table:
+        table["codecs"] = [each for each in table["codecs"] if each["name"] != "crc32c"]
+    return table
+
+
+def test_a_store_without_checksums_goes_on(store, tmp_path):
+    path = unchecked(shutil.copytree(store, tmp_path / "a.zarr"))
+    right = xr.open_zarr(store).load().drop_attrs(deep=False)
+    assert st.open_study(path).load().drop_attrs(deep=False).identical(right)
+    (path / "status" / "c" / "0" / "0").write_bytes(b"")  # as a power cut left it
+    (path / "regime" / "c" / "2" / "0").unlink()
+    with pytest.raises(st.ResultError, match="is damaged: status/c/0/0, regime/c/2/0"):
+        st.open_study(path)
+    done = []
+    st.sweep(STUDY, path, progress=done.append)
+    assert len(done) == 2
+    assert xr.open_zarr(path).load().drop_attrs(deep=False).identical(right)
+    assert st.check(path).ok
