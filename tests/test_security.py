@@ -1,5 +1,6 @@
 """What SECURITY.md promises, a test for each line; laws of files are in `test_own_law`."""
 
+import json
 import os
 import re
 import socket
@@ -20,6 +21,7 @@ from stiction.errors import StictionError
 from stiction.sections import Section, Table
 from stiction.study.cluster import Processes
 from stiction.study.creation import create
+from stiction.study.sealing import seal
 from waiting import PATIENCE
 
 
@@ -131,6 +133,17 @@ def test_a_store_leads_nowhere_else(store, tmp_path, name):
         with pytest.raises(st.ResultError, match=f"has a link in it, {name}"):
             act()
     assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_a_store_of_endless_blocks_is_none(store):
+    """Its blocks are looked at one by one."""
+    _, path = store
+    about = path / "status" / "zarr.json"
+    text = json.loads(about.read_text()) | {"shape": [10**12]}
+    about.write_text(json.dumps(text))
+    seal(path)  # as who makes it on purpose would
+    with pytest.raises(st.ResultError, match="no study has 1,000,000,000,000 blocks of runs"):
+        st.open_study(path)
 
 
 def test_a_store_of_zarr_s_old_format_is_none(tmp_path):

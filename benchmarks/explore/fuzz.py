@@ -37,8 +37,8 @@ from .draw import Draw
 STEPS = 200  # of a run; the solver's end is no part of what is looked at here
 SECONDS = 2.0  # an input that takes longer is listed
 NUMBERS = (
-    0, -1, 1, 10**400, -(10**4000), 0.0, -0.0, 1e-320, 5e-324, 1e300, -1e300, 1.8e308, 1e-9, 1e9,
-    float("inf"), float("nan"), True,
+    0, -1, 1, 10**6, 10**9, 10**400, -(10**4000), 0.0, -0.0, 1e-320, 5e-324, 1e300, -1e300,
+    1.8e308, 1e-9, 1e9, float("inf"), float("nan"), True,
 )  # fmt: skip
 TEXTS = (
     "", " ", "1", "1 N", "-1 mm/s", "1e400 N", "1e-400 m", "nan N", "inf s", "1 N**9999999",
@@ -46,7 +46,7 @@ TEXTS = (
     "9" * 5000 + " N", "0." + "0" * 400 + "1 kg", "1,5 mm", "1 degC", "1 dB", "1 m/s/s", "1 %",
     "١ N", "１ N", "1_0 N", "\x1b[2J", "\x00", "{0}", "[red]", "a" * 5000, "__import__('os')",
     "coulomb", "x.py:Y", ":", "a:", "../x.py:Y", "/dev/zero:Y", "𝟙 s", "1e 5 s", "+-1 s", "0x10 s",
-    "1 s\n", "deg", "1 deg", "π rad",
+    "1e12 s", "1 THz", "1 s\n", "deg", "1 deg", "π rad",
 )  # fmt: skip
 TOKENS = (
     "=", "[", "]", "{", "}", ".", ",", '"', '"""', "'", "#", "\n", "\\", "\\u0000", "\\ud800",

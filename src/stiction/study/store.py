@@ -25,7 +25,7 @@ from stiction.files import place, workshop
 from stiction.foreign import opening, refuse_links, refuse_size
 from stiction.study import sealing
 from stiction.study.kept import Kept, names_kept
-from stiction.study.layout import Index, Layout, Region
+from stiction.study.layout import MANY_TASKS, Index, Layout, Region
 from stiction.study.measures import FORMERLY
 from stiction.study.plan import Study
 
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 FORMATS = (1, 2)  # of stores that can be read
 CHECKED = 2  # from this one on all has checksums; it is the one that is written
 PENDING = -1
+MOST_TASKS = 256 * MANY_TASKS  # each is looked at: what a store says of itself is bounded
 # how a run can end: as every run, or refused before it began, or by an error of the program
 ENDS = (*(status.name.lower() for status in errors.Status), "refused", "error")
 COMPLETED, REFUSED, ERROR = 0, ENDS.index("refused"), ENDS.index("error")
@@ -239,10 +240,12 @@ def store_at(path: str | Path, mode: Literal["r", "r+"]) -> Store:
         status: Any = group[STATUS]
         layout = Layout(tuple(status.metadata.dimension_names), status.shape, status.chunks)
         arrays: dict[str, Any] = {name: group[name] for name in (*names_kept(study), STATUS)}
-    except (KeyError, ValueError, TypeError) as error:
+    except (KeyError, ValueError, TypeError, AttributeError) as error:
         raise damage(path, lost or [f"it lacks {error}"]) from None
     if lost:
         raise damage(path, lost)
+    if layout.tasks > MOST_TASKS:
+        raise ResultError(f"{path}: is damaged: no study has {layout.tasks:,} blocks of runs")
     return Store(Path(path), group, layout, {name: each.chunks for name, each in arrays.items()})
 
 
@@ -291,7 +294,8 @@ def open_study(path: str | Path) -> xr.Dataset:
     import xarray as xr
 
     store = store_at(path, "r")
-    arrays: Any = dict(store.group.arrays())
+    with opening(path, "is damaged"):
+        arrays: Any = dict(store.group.arrays())
     refuse_size(path, sum(float(each.nbytes) for each in arrays.values() if each.ndim == 1))
     layout = store.layout
     lost = [file for task in range(layout.tasks) for file in store.damaged(layout.region(task))]
