@@ -1,5 +1,7 @@
 """Refining a study where the kind of motion changes."""
 
+import shutil
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -98,3 +100,22 @@ def test_a_kind_s_former_name_goes_on_and_a_strange_one_does_not(found, tmp_path
     np.testing.assert_array_equal(again["above"], changes["above"])
     with pytest.raises(st.DescriptionError, match="did you mean 'settling'"):
         st.refine(study, path, "phi", "0.01 deg", apart=["setling"])
+
+
+@pytest.mark.parametrize("damaged", ["changes/half_width/c/0", "changes/zarr.json", "1.zarr/phi"])
+def test_damage_of_a_refinement_is_seen_and_mended(found, tmp_path, damaged):
+    study, path, changes = found
+    path = shutil.copytree(path, tmp_path / "a.zarr")
+    part = path / "refined" / "phi" / damaged
+    shutil.rmtree(part) if part.is_dir() else part.write_bytes(part.read_bytes()[:-9] + b" " * 9)
+    assert not st.check(path).ok
+    if damaged.startswith("changes"):
+        for door in (st.map, lambda path: st.check(path, repair=True)):
+            with pytest.raises(st.ResultError, match=r"is damaged.*refine the study again"):
+                door(path)
+        st.refine(study, path, "phi", "0.01 deg", apart=CALM)
+    else:
+        assert st.check(path, repair=True).repaired
+    assert st.check(path).ok
+    again = st.refine(study, path, "phi", "0.01 deg", apart=CALM)
+    assert again.identical(changes)

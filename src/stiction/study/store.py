@@ -295,8 +295,9 @@ def open_study(path: str | Path) -> xr.Dataset:
 
     store = store_at(path, "r")
     with opening(path, "is damaged"):
-        arrays: Any = dict(store.group.arrays())
-    refuse_size(path, sum(float(each.nbytes) for each in arrays.values() if each.ndim == 1))
+        found = [store.group[file.parent.name] for file in Path(path).glob("*/zarr.json")]
+    arrays: list[Any] = [each for each in found if hasattr(each, "nbytes")]
+    refuse_size(path, sum(float(each.nbytes) for each in arrays if each.ndim == 1))
     layout = store.layout
     lost = [file for task in range(layout.tasks) for file in store.damaged(layout.region(task))]
     if lost:
