@@ -506,3 +506,21 @@ def test_a_cycle_with_a_gap_is_none() -> None:
     cycles = st.find_cycles(st.Record(time=time[seen], force=0.1 * (time[seen] % 2.0)))
     assert cycles["start"].values.round(2).tolist() == [2.0, 4.0, 12.0, 14.0, 16.0]
     assert cycles["period"].values == pytest.approx(2.0, abs=2e-3)
+
+
+@pytest.mark.parametrize("rate", [5e3, 10e3, 26.6e3])
+def test_slips_of_two_sizes_are_no_hum(rate: float) -> None:
+    """Every second one is larger at first: the line that their period makes is not beside them."""
+    law = st.ExponentialWeakening(0.474, 0.332, 2.69e-3)
+    slider = st.Slider(
+        mass=0.0299,
+        k_x=5220.0,
+        k_y=502e3,
+        phi="1.9 deg",
+        normal_load=21.9,
+        friction=law,
+        drive=st.ConstantVelocity(0.0292),
+    )
+    run = st.simulate(slider, 0.64, sample_rate=rate)
+    assert st.find_cycles(run).sizes["cycle"] == pytest.approx(27, abs=1)  # crests, counted by eye
+    assert not [each for each in st.analyse(run).warnings if "taken off" in each]

@@ -67,12 +67,16 @@ class Counted(NamedTuple):
 def troughs(time: Floats, force: Floats, height: float) -> Floats:
     """Return the times of troughs between falls higher than that."""
     turns = zigzag(force, height)
+    if len(turns) < 2:  # no fall at all
+        return np.empty(0)
     turns = turns[0 if force[turns[0]] < force[turns[1]] else 1 :]
     return np.asarray(time[turns[: (len(turns) - 1) // 2 * 2 + 1 : 2]])
 
 
 def periods(edges: list[Floats]) -> list[float]:
     """Return mean periods between troughs, of several counts, in the time that they share."""
+    if any(len(each) < 2 for each in edges):
+        return [np.nan] * len(edges)
     near = 0.05 * float(np.median(np.diff(edges[0])))
     low, high = max(each[0] for each in edges) - near, min(each[-1] for each in edges) + near
     shared = [each[(each >= low) & (each <= high)] for each in edges]
@@ -92,7 +96,7 @@ def rigs(count: int, seed: int) -> Iterator[Counted]:
         if st.classify(record).kind != STICK_SLIP:
             continue
         done += 1
-        swing = float(np.ptp(record.force[len(record) // 3 :]))
+        swing = float(np.ptp(record.force[-len(record) // 3 :]))
         falls = [troughs(record.time, record.force, share * swing) for share in (0.4, 0.5, 0.6)]
         settings = st.Settings(duration=duration)
         seen = observe(st.Description(slider, st.Initial(), settings), None).swings

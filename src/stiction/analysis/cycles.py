@@ -51,6 +51,9 @@ LOADING = (0.1, 0.5)  # part of the rise that is straight: after the swing, befo
 # A line beside the motion: swings without it have so many of its periods, and are as high or stick
 SLOWER, HIGHER = 2.0, 0.75
 LINES = 4  # taken off at most
+# Median cosine of the line's phase from one swing to the next, where it returns to within 11 deg:
+# slips twice as long as a line's period, but irregular by 5 %, come to 0.95
+WHOLE = 0.98
 OWN = 10.0  # harmonics of the cycles below this can be lines as well; they make no cycles more
 QUARTER = 4  # of a fall, to each side: cubics through so much of half a sine are 0.2 % too flat
 
@@ -171,10 +174,21 @@ def _without_line(record: Record, found: Swings) -> tuple[Record, Swings] | None
         if _beside(line, without):
             number = line.frequency * float(without.table["period"].median())
             count, left = (each.table.sizes["cycle"] for each in (found, without))
-            own = number < OWN and 0 < count <= left + 1
-            if not own:
+            own = 0 < count <= left + 1 or _multiplied(line, without)
+            if number >= OWN or not own:
                 return rest, without._replace(lines=(*found.lines, line))
     return None
+
+
+def _multiplied(line: Line, without: Swings) -> bool:
+    """Return whether swings are the lesser ones of a motion of the line's own period.
+
+    Where every second slip is larger, what is left without the line has twice its period, or
+    another whole multiple; what is independent of the line has none.
+    """
+    period, drop = without.table["period"].values, without.table["drop"].values
+    whole = float(np.median(np.cos(2.0 * np.pi * line.frequency * period)))
+    return whole > WHOLE and float(np.median(drop)) < line.height
 
 
 def _beside(line: Line, without: Swings) -> bool:
