@@ -18,6 +18,7 @@ import stat
 import sys
 import tempfile
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from functools import cache
 from inspect import getfile
 from pathlib import Path
@@ -28,6 +29,9 @@ from numba.core import compiler, types
 from numba.core.serialize import dumps as _dumps
 from numba.core.sigutils import normalize_signature as _normalize
 from platformdirs import user_cache_path
+
+from stiction.errors import ResultError
+from stiction.files import whole
 
 rebuild: Any = compiler.CompileResult._rebuild
 dumps: Any = _dumps
@@ -77,16 +81,8 @@ class Shelf:
             return  # it points into this process
         code = dumps(result._reduce())
         path = self._path(signature, result.codegen)
-        try:
-            handle, part = tempfile.mkstemp(dir=path.parent, suffix=".part")
-        except OSError:
-            return
-        try:
-            with open(handle, "wb") as file:
-                file.write(hashlib.sha256(code).digest() + code)
-            os.replace(part, path)
-        except OSError:
-            Path(part).unlink(missing_ok=True)
+        with suppress(ResultError), whole(path) as part:
+            part.write_bytes(hashlib.sha256(code).digest() + code)
 
     def flush(self) -> None:
         """Forget nothing: code that is named after its origin is never out of date."""
