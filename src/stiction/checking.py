@@ -37,9 +37,9 @@ class Check(NamedTuple):
     pending: int = 0
 
     @property
-    def ok(check) -> bool:
+    def ok(self) -> bool:
         """Whether all is whole now."""
-        return check.repaired or not check.damaged
+        return self.repaired or not self.damaged
 
     def __repr__(self) -> str:
         """Say whether it is whole."""

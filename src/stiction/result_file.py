@@ -49,7 +49,7 @@ def read_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
     if not os.path.isfile(path):
         raise ResultError(f"{path}: no such file; write one with 'stiction run'")
     with opening(path, "not a NetCDF file that can be read"):
-        _refuse_others(path)
+        _refuse_what_is_no_netcdf(path)
         refuse_other_files(path)
         data, sticks = _opened(path)
         lost = damaged(data.attrs.get(SEAL), {"samples": data, "sticks": sticks})
@@ -88,7 +88,7 @@ def intact_description(path: str | Path) -> str:
     return text
 
 
-def _refuse_others(path: str | Path) -> None:
+def _refuse_what_is_no_netcdf(path: str | Path) -> None:
     """Refuse a file that is none of NetCDF's, as a table of a measured record."""
     with open(path, "rb") as file:
         if file.read(len(SIGNATURE)) != SIGNATURE:
