@@ -6,6 +6,7 @@ from math import pi
 
 import numpy as np
 import pytest
+from benchmarks.explore.cycles import sawtooth
 from numpy.typing import NDArray
 from tests.measured import bare, measured
 
@@ -250,15 +251,6 @@ def test_ripple_that_only_some_can_see_changes_no_count() -> None:
 # --- what is beside the motion, and what is sampled too coarsely ---
 
 
-def irregular_saw(random: np.random.Generator, count: int, period: float) -> tuple[Floats, Floats]:
-    """Corners of a sawtooth, periods and drops of which differ by 5 % each way."""
-    lengths = period * random.uniform(0.95, 1.05, count)
-    ends = np.cumsum(lengths)
-    time = np.stack([ends - 0.06 * lengths, ends], axis=1).ravel()
-    force = np.stack([np.ones(count), 1.0 - random.uniform(0.95, 1.05, count)], axis=1).ravel()
-    return time, force
-
-
 @pytest.mark.parametrize(
     ("mains", "height", "rate", "period"),
     [
@@ -273,7 +265,7 @@ def test_mains_hum_makes_no_cycles_and_hides_none(
     mains: float, height: float, rate: float, period: float
 ) -> None:
     random = np.random.default_rng(11)
-    corners = irregular_saw(random, 20, period)
+    corners = sawtooth(random, 20, period)
     time = np.arange(corners[0][1] + 0.2 * period, corners[0][-1] - 0.3 * period, 1.0 / rate)
     hum = np.sin(2 * pi * mains * time) + 0.2 * np.sin(4 * pi * mains * time + 1.0)
     noise = 0.01 * random.normal(size=len(time))
@@ -296,7 +288,7 @@ def test_hum_as_large_as_the_drops_is_taken_off(
     """Larger than the drops, with a second harmonic alone in its octave, or over ten minutes."""
     random = np.random.default_rng(5)
     period, rate = (0.4, 1500.0) if not wanders else (4.0, 400.0)
-    corners = irregular_saw(random, 150 if wanders else 20, period)
+    corners = sawtooth(random, 150 if wanders else 20, period)
     time = np.arange(corners[0][1] + 0.2 * period, corners[0][-1] - 0.3 * period, 1.0 / rate)
     turns = 50.01 * time - wanders * 60.0 * np.cos(2 * pi * time / 380.0)  # Hz: by 0.08 at most
     hum = np.sin(2 * pi * turns) + second * np.sin(4 * pi * turns + 1.0)

@@ -25,6 +25,8 @@ from stiction.linear_stability.linear import STABLE, UNSTABLE
 from stiction.unit_text import registry
 
 from .draw import Draw
+from .systems import LAWS as PLAIN
+from .systems import named_law
 
 LAWS = (
     "exponential", "stribeck", "coulomb", "hyperbolic", "anisotropic", "table",
@@ -76,18 +78,10 @@ def law(draw: Draw, mu: float, V: float, load: float) -> Any:
     kinetic = mu * (draw.between(1.0, 1.3) if draw.chance(0.1) else draw.between(0.5, 1.0))
     speed = V * draw.decades(0.3, 100.0)
     peak = mu * draw.between(1.01, 1.4) if draw.chance(0.2) else 0.0
-    if name == "coulomb":
-        return st.Coulomb(mu, peak)
-    if name == "stribeck":
-        return st.Stribeck(mu, kinetic, speed, d=draw.between(1.0, 3.0), mu_static=peak)
-    if name == "hyperbolic":
-        return st.HyperbolicWeakening(mu, speed, mu_static=peak)
-    simple = st.ExponentialWeakening(mu, kinetic, speed, mu_static=peak)
-    if name == "exponential":
-        return simple
-    if name == "anisotropic":
-        return st.Anisotropic(simple, draw.decades(0.5, 2.0), f"{draw.between(-90.0, 90.0)!r} deg")
+    if name in PLAIN:
+        return named_law(draw, name, mu, kinetic, speed, peak)
     if name == "table":
+        simple = st.ExponentialWeakening(mu, kinetic, speed, mu_static=peak)
         v = [0.0, *(speed * 10.0 ** (at / 4.0) for at in range(-8, 9))]
         return st.Table(v=v, mu=[simple.coefficient(each) for each in v])
     if name == "lugre":

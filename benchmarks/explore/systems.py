@@ -74,6 +74,11 @@ def law(draw: Draw, mu: float, V: float):
     speed = V * draw.decades(0.2, 60.0)
     kinetic = mu * (draw.between(1.0, 1.3) if draw.chance(0.1) else draw.between(0.5, 1.0))
     peak = mu * draw.between(1.01, 1.3) if draw.chance(0.2) else 0.0
+    return named_law(draw, name, mu, kinetic, speed, peak)
+
+
+def named_law(draw: Draw, name: str, mu: float, kinetic: float, speed: float, peak: float):
+    """Return a law without states by its name, of which the rest is drawn."""
     if name == "coulomb":
         return st.Coulomb(mu, peak)
     if name == "stribeck":
