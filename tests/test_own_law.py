@@ -60,8 +60,8 @@ sample_rate = "10 kHz"
 @pytest.fixture
 def config(tmp_path, monkeypatch):
     """A description beside its law, in another folder than the working one."""
-    (tmp_path / "work").mkdir()
-    monkeypatch.chdir(tmp_path / "work")
+    (tmp_path / "working").mkdir()
+    monkeypatch.chdir(tmp_path / "working")
     (tmp_path / "mylaw.py").write_text(LAW)
     (tmp_path / "a.toml").write_text(TABLE)
     yield tmp_path / "a.toml"
@@ -108,16 +108,16 @@ def test_a_description_names_a_file_and_a_class(config):
 
 
 @pytest.mark.parametrize(
-    "to", ["../work/mylaw.py", "{work}/mylaw.py", "link.py", "linked/mylaw.py"]
+    "to", ["../working/mylaw.py", "{working}/mylaw.py", "link.py", "linked/mylaw.py"]
 )
 def test_a_law_lies_in_the_folder_of_its_description(config, to):
     """Not where its writer chose a path to, nor in the working folder, nor behind a link."""
-    folder, working = config.parent / "of", config.parent / "work"
+    folder, working = config.parent / "of", config.parent / "working"
     folder.mkdir()
     (working / "mylaw.py").write_text(LAW)
     (folder / "link.py").symlink_to(working / "mylaw.py")
     (folder / "linked").symlink_to(working)
-    text = TABLE.replace("mylaw.py", to.format(work=working))
+    text = TABLE.replace("mylaw.py", to.format(working=working))
     (folder / "a.toml").write_text(text)
     with pytest.raises(st.DescriptionError, match=r"lies outside the folder .* --trust"):
         st.Description.from_toml(folder / "a.toml")
@@ -130,7 +130,7 @@ def test_a_law_lies_in_the_folder_of_its_description(config, to):
 
 
 def test_a_law_is_not_run_before_all_else_is_right(config):
-    folder = config.parent / "work"
+    folder = config.parent / "working"
     wrong = [TABLE.replace("0.25 kg", "-0.25 kg"), TABLE.replace("50 ms", "50 m"), TABLE + "[x]\n"]
     for text in wrong:
         config.write_text(text)
@@ -303,7 +303,7 @@ def test_a_result_without_the_text_runs_no_file(config, tmp_path):
 def test_a_result_names_no_class_but_a_law(config):
     """Texts of modules that every process has loaded are known to all."""
     table = st.Description.from_toml(config).to_dict()
-    ran = config.parent / "work" / "popped"
+    ran = config.parent / "working" / "popped"
     command = {"args": ["touch", str(ran)], "source": inspect.getsource(subprocess)}
     table["friction"] = {"law": "subprocess.py:Popen", **command}
     with pytest.raises(st.DescriptionError, match=r"'subprocess.py:Popen' is not a NamedTuple"):
