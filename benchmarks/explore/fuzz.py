@@ -278,9 +278,11 @@ def _plain(values: Any) -> bool:
 def result(draw: Draw, folder: Path) -> None:
     """The file of a run, damaged inside: numbers, types, attributes, names."""
     path = folder / "a.nc"
-    path.write_bytes(_result(folder))
+    whole = _result(folder)
+    path.write_bytes(whole)
     if draw.chance(0.25):
-        path.write_bytes(torn(draw, path.read_bytes()))
+        checksum = whole.rindex(result_checksums.MARK)  # of the whole file: others write none
+        path.write_bytes(torn(draw, whole[: draw.among([checksum, len(whole)])]))
     else:
         with h5py.File(path, "r+") as file:
             for _ in range(draw.among([1, 1, 2, 4])):
@@ -296,10 +298,11 @@ def result(draw: Draw, folder: Path) -> None:
 def reseal(path: Path) -> None:
     """Have a result's checksums fit what is in it, as who changes it on purpose would."""
     with suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
-        data, sticks = result_file._opened(path)
+        data, sticks = result_file.opened(path)
         seal = result_checksums.sealed({"samples": data, "sticks": sticks})
         with h5py.File(path, "r+") as file:
             file.attrs[result_checksums.SEAL] = seal
+    result_checksums.sign(path)
 
 
 def _result(folder: Path, kept: dict[str, bytes] = {}) -> bytes:  # noqa: B006

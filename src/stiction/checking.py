@@ -7,9 +7,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from stiction.apart import apart
 from stiction.description import Description
 from stiction.errors import ResultError
-from stiction.result_file import intact_description, read_tables
+from stiction.result_checksums import intact_description
+from stiction.result_file import read_tables
 from stiction.sections import Section, as_text
 from stiction.simulation import run
 from stiction.study.restoring import damage_of, restore, stores_in
@@ -110,10 +112,10 @@ def _check_result(path: Path, repair: bool, trust: bool) -> Check:
         if not os.path.isfile(path):
             raise
         told = str(error).removeprefix(f"{path}: ").partition("; compute it")[0]
+    description = apart(intact_description, path)
     if not repair:
-        intact_description(path)
         return Check(path, [told])
-    run(Description.from_json(intact_description(path), trust=trust)).save(path)
+    run(Description.from_json(description, trust=trust)).save(path)
     return Check(path, [told], repaired=True)
 
 

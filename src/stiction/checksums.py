@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from math import inf
+from pathlib import Path
 from typing import Any
 
 import google_crc32c
 import numpy as np
 
 LENGTH = 4  # bytes that a checksum adds to a chunk
+BLOCK = 2**20  # bytes of a file that are read at a time
 
 
 def crc(content: Any) -> int:
@@ -20,6 +23,15 @@ def crc(content: Any) -> int:
 def with_checksum(content: bytes) -> bytes:
     """Return bytes with their checksum behind them."""
     return content + crc(content).to_bytes(LENGTH, "little")
+
+
+def crc_of_file(path: str | Path, size: float = inf) -> bytes:
+    """Return the checksum of a file, or of its first bytes."""
+    found, left = 0, size
+    with open(path, "rb") as file:
+        while left > 0 and (block := file.read(int(min(left, BLOCK)))):
+            found, left = google_crc32c.extend(found, block), left - len(block)
+    return int(found).to_bytes(LENGTH, "little")
 
 
 def without_checksum(content: bytes) -> bytes | None:

@@ -12,6 +12,8 @@ from typing import Any
 from stiction.errors import ResultError, StictionError, one_line
 from stiction.memory import shortage
 
+UNREADABLE = "not a NetCDF file that can be read"
+
 
 @contextmanager
 def opening(path: str | Path, what: str) -> Iterator[None]:
@@ -82,6 +84,28 @@ def refuse_other_files(path: str | Path) -> None:
     if found is not None:
         raise ResultError(f"{path}: {found}, which no result has; it is not read")
     refuse_size(path, sum(sizes))
+
+
+def read_through(path: str | Path) -> None:
+    """Read all that is in an HDF5 file.
+
+    Raises
+    ------
+    ResultError
+        If it cannot be read, or is refused for what is in it.
+    """
+    h5py: Any = import_module("h5py")
+
+    def read(name: str, each: Any) -> None:
+        dict(each.attrs)
+        if isinstance(each, h5py.Dataset):
+            each[()]
+
+    with opening(path, UNREADABLE):
+        refuse_other_files(path)
+        with h5py.File(path) as file:
+            read("/", file)
+            file.visititems(read)
 
 
 def refuse_size(path: str | Path, size: float) -> None:

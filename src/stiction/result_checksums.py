@@ -2,23 +2,32 @@
 
 Each array has HDF5's own (fletcher32), which any program heeds. It does not hold for names, for
 attributes, and for what says where in the file an array is: those of all this are in an attribute.
+The checksum of the whole file stands behind what is HDF5's, where no reader looks. It tells a file
+that is as it was written without HDF5, which must not be asked: it trips over damage. What others
+write into the file takes it away.
 """
 
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Mapping
+from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stiction.checksums import broken, bytes_of, seal
+from stiction.checksums import LENGTH, broken, bytes_of, crc_of_file, seal
+from stiction.errors import ResultError
+from stiction.foreign import opening
 
 if TYPE_CHECKING:
     import xarray as xr
 
 SEAL, DESCRIPTION = "checksums", "description"  # attributes of the file
 CHUNK = 2**16  # samples that share a checksum
+MARK = b"stiction crc-32c"  # stands before the checksum of a whole file
 
 
 def sealed(tables: Mapping[str, xr.Dataset]) -> str:
@@ -43,9 +52,21 @@ def damaged(known: str | None, tables: Mapping[str, xr.Dataset]) -> list[str]:
     return broken(known, _parts(tables))
 
 
-def intact(known: str, description: str) -> bool:
-    """Return whether a description is the one that was written."""
-    return DESCRIPTION not in broken(known, {DESCRIPTION: description.encode()})
+def intact_description(path: str | Path) -> str:
+    """Return the description in a result file of which other parts are damaged.
+
+    Raises
+    ------
+    ResultError
+        If it is damaged itself, or has no checksum.
+    """
+    h5py: Any = import_module("h5py")  # slow to import
+    with opening(path, "not a result that can be mended"), h5py.File(path) as file:
+        known, text = str(file.attrs[SEAL]), str(file.attrs[DESCRIPTION])
+        whole = DESCRIPTION not in broken(known, {DESCRIPTION: text.encode()})
+    if not whole:
+        raise ResultError(f"{path}: is damaged, and so is its description; run that again")
+    return text
 
 
 def _parts(tables: Mapping[str, xr.Dataset]) -> dict[str, Any]:
@@ -70,3 +91,20 @@ def _plain(attributes: Mapping[Any, Any]) -> dict[str, Any]:
         name: value[0] if isinstance(value, list) and len(value) == 1 else value
         for name, value in plain.items()
     }
+
+
+def sign(path: str | Path) -> None:
+    """Put a file's checksum at its end."""
+    own = crc_of_file(path)
+    with open(path, "ab") as file:
+        file.write(MARK + own)
+
+
+def as_written(path: str | Path) -> bool | None:
+    """Return whether a file has the bytes that were written; None if it has no such checksum."""
+    end = len(MARK) + LENGTH
+    with open(path, "rb") as file:
+        size = file.seek(0, os.SEEK_END)
+        file.seek(max(size - end, 0))
+        mark, own = file.read(len(MARK)), file.read()
+    return crc_of_file(path, size - end) == own if mark == MARK else None

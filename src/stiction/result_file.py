@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
-from importlib import import_module
+from collections.abc import Iterable, Iterator, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from stiction.apart import apart
 from stiction.errors import ResultError
-from stiction.foreign import opening, refuse_other_files
+from stiction.foreign import UNREADABLE, opening, read_through, refuse_other_files
 from stiction.labels import STICKS, VARIABLES
-from stiction.result_checksums import SEAL, checked, damaged, intact, sealed
+from stiction.result_checksums import SEAL, as_written, checked, damaged, sealed, sign
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -33,6 +33,7 @@ def write_result(data: xr.Dataset, sticks: xr.Dataset, path: Path) -> None:
     whole = data.assign_attrs({SEAL: sealed(tables)})
     whole.to_netcdf(path, engine="h5netcdf", encoding=checked(data))
     sticks.to_netcdf(path, mode="a", group=STICK_GROUP, engine="h5netcdf", encoding=checked(sticks))
+    sign(path)
 
 
 def read_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
@@ -48,16 +49,19 @@ def read_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
         raise ResultError(f"{path}: is a folder, not the file of one run; {remedy}")
     if not os.path.isfile(path):
         raise ResultError(f"{path}: no such file; write one with 'stiction run'")
-    with opening(path, "not a NetCDF file that can be read"):
+    with opening(path, UNREADABLE):
         _refuse_what_is_no_netcdf(path)
+        whole = as_written(path)
+    if whole is False:
+        raise _damage(path, ["its bytes are not those that were written"])
+    if whole is None:  # HDF5 may trip over it
+        apart(read_through, path)
+    with opening(path, UNREADABLE):
         refuse_other_files(path)
-        data, sticks = _opened(path)
+        data, sticks = opened(path)
         lost = damaged(data.attrs.get(SEAL), {"samples": data, "sticks": sticks})
     if lost:
-        raise ResultError(
-            f"{path}: is damaged, or was changed: {', '.join(lost[:3])}; compute it again with: "
-            f"stiction check {path} --repair"
-        )
+        raise _damage(path, lost)
     data, sticks = data.drop_encoding(), sticks.drop_encoding()
     data.attrs.pop(SEAL, None)
     lacking = [*_lacking(data, VARIABLES), *_lacking(sticks, ENDS)]
@@ -72,20 +76,11 @@ def read_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
     return data, sticks
 
 
-def intact_description(path: str | Path) -> str:
-    """Return the description in a result file of which other parts are damaged.
-
-    Raises
-    ------
-    ResultError
-        If it is damaged itself, or has no checksum.
-    """
-    h5py: Any = import_module("h5py")  # slow to import
-    with opening(path, "not a result that can be mended"), h5py.File(path) as file:
-        known, text = str(file.attrs[SEAL]), str(file.attrs["description"])
-    if not intact(known, text):
-        raise ResultError(f"{path}: is damaged, and so is its description; run that again")
-    return text
+def _damage(path: str | Path, lost: Sequence[str]) -> ResultError:
+    return ResultError(
+        f"{path}: is damaged, or was changed: {', '.join(lost[:3])}; compute it again with: "
+        f"stiction check {path} --repair"
+    )
 
 
 def _refuse_what_is_no_netcdf(path: str | Path) -> None:
@@ -104,7 +99,7 @@ def age(data: xr.Dataset) -> str:
     return f"; stiction {wrote!s:.20} wrote it, this is {this}"
 
 
-def _opened(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
+def opened(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
     """Return the two tables of a file; up to version 0.4 both stood in the root group."""
     import xarray as xr
 
