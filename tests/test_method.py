@@ -19,9 +19,10 @@ from tests.entry import entry
 
 import stiction as st
 import stiction.solver
-from stiction.solver.compiled import called, specialised
+from stiction.solver.compiled import called
 from stiction.solver.integrate import accuracy, tolerance
 from stiction.solver.loop import steps
+from stiction.solver.pointed import pointed
 from stiction.solver.problem import kinds_of
 from stiction.solver.smooth import loop as smooth_loop
 from stiction.solver.smooth.coordinate import coordinate, risen, slip_at, slip_slope
@@ -280,6 +281,7 @@ def turn(problem, held, state, times=()):
     times, sticks = np.array(times, dtype=float), np.zeros((8, 2))
     samples = np.full((len(times), 7), np.nan)
     state = state._replace(counts=state.counts._replace(sticks=0, stuck=0.0))
+    problem = problem._replace(law=pointed(problem.law))
     arguments = problem, state, 1e9, held, 1, times, samples, 0, sticks
     _, after, _, _ = called(steps, kinds_of(problem), *arguments)
     return named(after), samples
@@ -719,15 +721,15 @@ def test_the_printed_residuals_of_a_smooth_step_vanish():
     description = st.simulate(s, 0.02, sample_rate=0).description
     stretch = next(stretches(s, 0.0, 1.0))
     held = accuracy(s, description.initial, stretch, 0.0, 1e-6)._replace(newton=NEWTON)
-    method = Smooth(s.law, None)
+    method = Smooth(s, None)
     held, state = method.resolved(held), method.begin(description)
-    advance = specialised(smooth_loop.advance, *kinds_of(stretch.problem))
+    problem = stretch.problem._replace(law=method.flow)
     K, damping = np.array([s.k_x, s.k_y]), np.array([s.c_x, s.c_y])
     v = s.drive.velocity * np.array(s.direction)
     nothing = np.empty(0), np.empty((0, 8)), 0
     for _ in range(30):
         before = state.motion
-        _, state, _, _ = advance(stretch.problem, state, 1e9, held, 1, *nothing)
+        _, state, _, _ = smooth_loop.advance(problem, state, 1e9, held, 1, *nothing)
         h, past = state.memory.h_last, state.memory.past
         slip, zeta = past[1:, :2], past[1:, 2:]
         u = np.array([before.u_x, before.u_y])

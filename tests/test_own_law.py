@@ -360,7 +360,7 @@ def test_a_law_in_a_script_is_kept_without_its_runs(tmp_path):
 def test_a_file_edited_after_its_import_is_not_taken_for_what_ran(tmp_path, monkeypatch):
     """Neither kept with the result, nor as the name of machine code."""
     from stiction.friction.source import text_of
-    from stiction.solver.compiled import _source
+    from stiction.solver.pointer import _source
 
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.chdir(tmp_path)
@@ -393,11 +393,11 @@ open("law.pickle", "wb").write(pickle.dumps(d.slider))
 """
     one = python(code, tmp_path, **cache)
     kept = sorted((tmp_path / "cache").rglob("*.code"))
-    assert len(kept) == 1
-    stamp = kept[0].stat().st_mtime_ns
+    stamps = [each.stat().st_mtime_ns for each in kept]
+    assert sum("coefficient_and_slope_at" in each.name for each in kept) == 1
     assert python(code, tmp_path, **cache) == one
     assert sorted((tmp_path / "cache").rglob("*.code")) == kept
-    assert kept[0].stat().st_mtime_ns == stamp
+    assert [each.stat().st_mtime_ns for each in kept] == stamps
     # another process makes the law of its pickle, as a pool of processes needs
     load = "import pickle; print(pickle.load(open('law.pickle', 'rb')).law)"
     assert "Mine(mu_0=0.2" in python(load, tmp_path, **cache)

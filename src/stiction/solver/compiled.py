@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable
-from functools import cache
 from typing import Any, TypeVar, cast
 
 import numba
 
-from stiction.friction.source import text_of
 from stiction.solver.interrupt import uninterrupted
 from stiction.solver.machine_code import Shelf
 
@@ -64,6 +61,14 @@ def _nowhere(*_: Any, **__: Any) -> None:
     """Enter a compiled part among what Python can call: not at all."""
 
 
+def compiled_for(function: Any, digest: str | None) -> Any:
+    """Return a function of `compiled` for what is not the package's own, kept under its digest.
+
+    None is for what has no text to tell it by: that is compiled anew in each process.
+    """
+    return _entry(function.py_func, None if digest is None else Shelf(function.py_func, digest))
+
+
 def _entry(function: F, shelf: Shelf | None) -> F:
     made: Any = njit(nogil=True, **ARITHMETIC)(function)
     if shelf is not None:
@@ -71,45 +76,19 @@ def _entry(function: F, shelf: Shelf | None) -> F:
     return cast(F, made)
 
 
-@cache
-def specialised(function: Any, *kinds: type) -> Any:
-    """Return the compiled `function` to call with arguments of these types.
-
-    Code for another law or drive than the package's own is kept under the content of its file: an
-    edit there is seen, and a process that does not know the law never meets it. What stands in a
-    prompt or in the script itself is compiled anew in each process.
-    """
-    own = [kind for kind in kinds if not kind.__module__.startswith("stiction.")]
-    if not own:
-        return function
-    try:
-        digest = hashlib.sha256("".join(sorted(map(_source, own))).encode())
-    except OSError:
-        return _entry(function.py_func, None)
-    return _entry(function.py_func, Shelf(function.py_func, digest.hexdigest()))
-
-
 _met: set[tuple[Any, ...]] = set()
 
 
 def called(function: Any, kinds: tuple[type, ...], *arguments: Any) -> Any:
-    """Call what `specialised` returns; what it returns must be made of plain tuples and numbers.
+    """Call a compiled function; what it returns must be made of plain tuples and numbers.
 
-    The first time it is compiled, or loaded, which no interrupt may cut short: numba would be left
-    with half of its parts in place, and this process could compile nothing more.
+    The first time for arguments of these types it is compiled, or loaded, which no interrupt may
+    cut short: numba would be left with half of its parts in place, and this process could compile
+    nothing more.
     """
-    solve = specialised(function, *kinds)
-    if (solve, kinds) in _met:
-        return solve(*arguments)
+    if (function, kinds) in _met:
+        return function(*arguments)
     with uninterrupted():
-        found = solve(*arguments)
-        _met.add((solve, kinds))
+        found = function(*arguments)
+        _met.add((function, kinds))
     return found
-
-
-def _source(kind: type) -> str:
-    """Return what to name a type's cache after: its text, and its module, by which it is kept."""
-    text = None if kind.__module__ == "__main__" else text_of(kind)
-    if text is None:  # in a script its types are new ones in each process
-        raise OSError(f"{kind.__module__} has no file, as it was run, to name them by")
-    return f"{kind.__module__}\n{text.text}"

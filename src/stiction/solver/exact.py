@@ -6,15 +6,18 @@ from math import nan, sqrt
 from typing import Any
 
 from stiction.description import Description
+from stiction.slider import Slider
 from stiction.solver.compiled import called, compiled
 from stiction.solver.frame import friction
 from stiction.solver.loop import steps
 from stiction.solver.output import Output
+from stiction.solver.pointed import pointed
 from stiction.solver.problem import Problem, constant, kinds_of, steady
 from stiction.solver.returns import Returns, unknown
 from stiction.solver.sampling import COLUMNS
 from stiction.solver.state import Accuracy, Motion, State, cooled, named, start
 from stiction.solver.stick import holding
+from stiction.solver.stretch import friction_of
 from stiction.solver.strides import stride
 from stiction.solver.surface import friction_along
 
@@ -25,6 +28,10 @@ class Exact:
     """Sticks are intervals, and what lies between them is integrated in turning axes."""
 
     columns = COLUMNS
+
+    def __init__(self, slider: Slider) -> None:
+        """Take the slider, and have its law compiled."""
+        self.law = pointed(friction_of(slider)[0])
 
     def begin(self, description: Description) -> State:
         """Return the state from which a run starts."""
@@ -49,14 +56,18 @@ class Exact:
         self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
     ) -> tuple[int, State]:
         """Advance until `end` (s) or until the budget is used up."""
-        return advanced(steps, problem, state, end, held, budget, out)
+        return advanced(steps, self.seen(problem), state, end, held, budget, out)
 
     def last_row(self, problem: Problem, state: State) -> list[float]:
         """Return the sample of a state between two steps."""
         motion = state.motion
         slip = [motion.r * motion.e_x, motion.r * motion.e_y]
-        force = called(force_between, kinds_of(problem), problem, motion)
+        force = called(force_between, kinds_of(problem), self.seen(problem), motion)
         return [motion.u_x, motion.u_y, *slip, *force, float(motion.r == 0.0)]
+
+    def seen(self, problem: Problem) -> Problem:
+        """Return a problem as compiled code takes it: with its law behind pointers."""
+        return problem._replace(law=self.law)
 
 
 @compiled
@@ -74,8 +85,9 @@ def force_between(problem: Problem, motion: Motion) -> tuple[float, float]:
 class Multiscale(Exact):
     """The same, many cycles at once where the return map is smooth."""
 
-    def __init__(self, rtol: float) -> None:
-        """Take the tolerance."""
+    def __init__(self, slider: Slider, rtol: float) -> None:
+        """Take the slider and the tolerance."""
+        super().__init__(slider)
         self.rtol = rtol
         self.problem: Problem | None = None
         self.known: Returns | None = None
@@ -100,7 +112,7 @@ class Multiscale(Exact):
             least=held.least / FINER,
             touch=0.0,  # cycles are counted from one stick to the next, however short
         )
-        return advanced(stride, problem, state, end, fine, budget, out, self.known)
+        return advanced(stride, self.seen(problem), state, end, fine, budget, out, self.known)
 
 
 def advanced(

@@ -19,12 +19,11 @@ from stiction.solver.compiled import inlined
 from stiction.solver.problem import (
     Problem,
     at,
-    coefficient,
+    coefficient_and_slope,
     in_principal_axes,
     rate,
     rate_change,
     rate_curve,
-    slope,
     steady,
     travel,
 )
@@ -176,8 +175,9 @@ def friction(problem: Problem, t: float, r: float) -> tuple[float, float]:
     """
     weight = at(problem.load, t) * problem.system.per_mass
     v = max(r, 0.0)
-    gradient = slope(problem.law, v) * weight
-    return coefficient(problem.law, v) * weight + gradient * (r - v), gradient
+    mu, gradient = coefficient_and_slope(problem.law, v)
+    gradient *= weight
+    return mu * weight + gradient * (r - v), gradient
 
 
 @inlined

@@ -142,10 +142,10 @@ class Method(Protocol):
 
 def method_of(description: Description) -> Method:
     """Return the solver for a description."""
-    law, delta = description.slider.law, description.run.regularisation
-    if delta is not None or has_state(law):
-        return Smooth(law, delta)
-    return Multiscale(description.run.rtol) if description.run.multiscale else Exact()
+    slider, delta = description.slider, description.run.regularisation
+    if delta is not None or has_state(slider.law):
+        return Smooth(slider, delta)
+    return Multiscale(slider, description.run.rtol) if description.run.multiscale else Exact(slider)
 
 
 def integrate(

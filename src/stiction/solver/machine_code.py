@@ -71,7 +71,8 @@ class Shelf:
         path = self._path(signature, context.codegen())
         code = _undamaged(path)
         if code is None:
-            log.info("compiling %s, once", _in_words(signature) or self._name)
+            if solver := _in_words(signature):  # other functions take less than a second
+                log.info("compiling %s, once", solver)
             return None
         return rebuild(context, *pickle.loads(code))
 
@@ -107,7 +108,7 @@ def _undamaged(path: Path) -> bytes | None:
 
 
 def _in_words(signature: Any) -> str:
-    """Return what a solver is compiled for: its law, drive and load; "" for another function."""
+    """Return what a solver is compiled for: its drive and load; "" for another function."""
     names = dict.fromkeys(name for kind in signature for name in _chosen(kind))
     return f"the solver for {', '.join(names)}" if names else ""
 
@@ -115,7 +116,7 @@ def _in_words(signature: Any) -> str:
 def _chosen(kind: Any) -> Iterator[str]:
     if isinstance(kind, types.BaseTuple):
         made_by = getattr(kind, "instance_class", tuple)
-        if not made_by.__module__.startswith(("stiction.solver", "builtins")):
+        if made_by.__module__.startswith("stiction.drive"):
             yield made_by.__name__
         for part in cast(Iterable[Any], kind):
             yield from _chosen(part)
@@ -123,6 +124,8 @@ def _chosen(kind: Any) -> Iterator[str]:
 
 def _told(kind: Any) -> str:
     """Return a type in full: numba names a tuple by its class, without the module."""
+    if isinstance(kind, types.CPointer):
+        return f"{_told(kind.dtype)}*"
     if not isinstance(kind, types.BaseTuple):
         return str(kind)
     made_by, parts = getattr(kind, "instance_class", tuple), cast(Iterable[Any], kind)

@@ -1,8 +1,9 @@
-"""What the compiled solver works on: numbers, and laws and drives by their type.
+"""What the compiled solver works on: numbers, a law, a drive and a load.
 
-The functions below are what compiled code calls; numba replaces each by the method of
-the given law's, drive's or load's type when it compiles, so that the loop is
-specialised for them and nothing is looked up while it runs.
+The functions below are what compiled code calls; numba replaces each by the method of the type of
+its first argument when it compiles. Drives and loads are of two types, constant and varying, for
+which the loop is specialised. A law stands behind pointers there (see `stiction.solver.pointed`),
+so that one loop serves all.
 """
 
 from __future__ import annotations
@@ -76,7 +77,7 @@ class Problem(NamedTuple):
 
 def kinds_of(problem: Problem) -> tuple[Any, ...]:
     """Return the types for which the compiled code is specialised."""
-    return type(problem.law), type(problem.surface), type(problem.drive), type(problem.load)
+    return type(problem.surface), type(problem.drive), type(problem.load)
 
 
 def coefficient(law: FrictionLaw, v: float) -> float:
@@ -87,6 +88,11 @@ def coefficient(law: FrictionLaw, v: float) -> float:
 def slope(law: FrictionLaw, v: float) -> float:
     """Return the derivative of the coefficient at slip speed `v`."""
     return law.slope(v)
+
+
+def coefficient_and_slope(law: FrictionLaw, v: float) -> tuple[float, float]:
+    """Return the friction coefficient and its derivative at slip speed `v`."""
+    return law.coefficient(v), law.slope(v)
 
 
 def static(law: FrictionLaw) -> float:
@@ -190,6 +196,12 @@ for _function in (
     _by_type(_function)
 for _piece in (*SIGNAL_FUNCTIONS, *LAW_FUNCTIONS):
     register_jitable(_piece)
+
+
+@overload(coefficient_and_slope, strict=False)
+def _coefficient_and_slope(law: Any, v: Any) -> Any:
+    own = getattr(law.instance_class, "coefficient_and_slope", None)
+    return own or (lambda law, v: (coefficient(law, v), slope(law, v)))
 
 
 @overload(static, strict=False)

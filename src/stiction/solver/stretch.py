@@ -35,6 +35,7 @@ def stretches(slider: Slider, start: float, end: float) -> Iterator[Stretch]:
     while t < end:
         until, drive = ahead(drives, t)
         until_load, load = ahead(loads, t)
+        drive, load = alike(drive, load)
         stop = min(end, until, until_load)
         lost = vanishes(load, t, stop)
         curve = 0.0
@@ -45,6 +46,18 @@ def stretches(slider: Slider, start: float, end: float) -> Iterator[Stretch]:
         if lost <= stop:
             return
         t = stop
+
+
+def alike(drive: Any, load: Any) -> tuple[Any, Any]:
+    """Return a drive and a load both as constant, or both as varying in time.
+
+    The solver is then compiled for these two cases, not for four; the numbers are the same.
+    """
+    if drive.steady() == load.constant():
+        return drive, load
+    if drive.steady():
+        return Course(Signal(0.0, drive.velocity), Signal(0.0, 0.0)), load
+    return drive, Loading(Signal(0.0, load.force))
 
 
 def system_of(slider: Slider) -> System:

@@ -9,7 +9,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba.extending import overload, register_jitable
 
-from stiction.friction.law import Vector
+from stiction.friction.law import Vector, states
+from stiction.solver.compiled import compiled, inlined
+from stiction.solver.interrupt import uninterrupted
+from stiction.solver.pointer import address, caller, memory, pointee, types
 from stiction.solver.problem import Elliptic, Isotropic, change, coefficient, force, grain
 
 FINEST = 1e-300  # m/s
@@ -46,8 +49,42 @@ class Smoothed(NamedTuple):
         return law.delta
 
 
+class PointedFlow(NamedTuple):
+    """A law as the smooth solver takes it: compiled functions, and its fields.
+
+    Parameters
+    ----------
+    flow_code, grain_code : int
+        Addresses of `flow_at` and `grain_at`, compiled for this law.
+    fields : ndarray
+        Memory with the law's fields.
+    unitless : ndarray of bool
+        Whether what stands in a column has no unit, for slip x, y and the internal states.
+    """
+
+    flow_code: int
+    grain_code: int
+    fields: np.ndarray
+    unitless: np.ndarray
+
+
+def pointed(law: Any) -> PointedFlow:
+    """Return a law as the smooth solver takes it."""
+    plain = np.array([True, True, *(state.unit == "1" for state in states(law))])
+    with uninterrupted():
+        flows, grains = address(flow_at, law, *FLOW), address(grain_at, law, *GRAIN)
+        return PointedFlow(flows, grains, memory(law), plain)
+
+
+@inlined
 def flow(
-    law: Any, slip: Vector, load: float, per_mass: float, values: np.ndarray, i: int, to: np.ndarray
+    law: PointedFlow,
+    slip: Vector,
+    load: float,
+    per_mass: float,
+    values: np.ndarray,
+    i: int,
+    to: np.ndarray,
 ) -> None:
     """Write friction over mass and the internal states' rates of change to ``to[i]``.
 
@@ -58,9 +95,58 @@ def flow(
     values : ndarray
         Rows of slip velocity (x, y) and internal states; row `i` has the states.
     """
-    z = tuple(values[i, 2:])
+    call_flow(law.flow_code, law.fields, (slip[0], slip[1], load, per_mass, values, i, to))
+
+
+@inlined
+def grain_of(law: PointedFlow, values: np.ndarray, i: int) -> float:
+    """Return the slip speed below which friction is proportional to it, at a row's states."""
+    found: float = call_grain(law.grain_code, law.fields, (values, i))
+    return found
+
+
+ROWS = types.float64[:, ::1]
+FLOW = (*(types.float64,) * 4, ROWS, types.intp, ROWS)
+GRAIN = (ROWS, types.intp)
+call_flow: Any = caller(types.none, *FLOW)
+call_grain: Any = caller(types.float64, *GRAIN)
+
+
+@compiled
+def flow_at(
+    law: Any,
+    s_x: float,
+    s_y: float,
+    load: float,
+    per_mass: float,
+    values: np.ndarray,
+    i: int,
+    to: np.ndarray,
+) -> None:
+    """Do as `flow` for the law at a pointer."""
+    found: Any = pointee(law)
+    write_flow(found, (s_x, s_y), load, per_mass, values, i, to)
+
+
+@compiled
+def grain_at(law: Any, values: np.ndarray, i: int) -> float:
+    """Do as `grain_of` for the law at a pointer."""
+    found: Any = pointee(law)
+    return max(grain(found, states_in(found, values, i)), FINEST)
+
+
+def write_flow(
+    law: Any, slip: Vector, load: float, per_mass: float, values: np.ndarray, i: int, to: np.ndarray
+) -> None:
+    """Write friction over mass and the internal states' rates of change to ``to[i]``."""
+    z = states_in(law, values, i)
     to[i, :2] = np.array(force(law, slip, load, z)) * per_mass
     to[i, 2:] = change(law, slip, load, z) if z else ()
+
+
+def states_in(law: Any, values: np.ndarray, i: int) -> tuple[float, ...]:
+    """Return the law's internal states in row `i`."""
+    return tuple(values[i, 2:])
 
 
 def _states(n: int) -> Callable[..., Any]:
@@ -73,12 +159,17 @@ def _states(n: int) -> Callable[..., Any]:
     )
 
 
-@overload(flow, strict=False)
-def _flow(
+@overload(states_in, strict=False)
+def _states_in(law: Any, values: Any, i: Any) -> Callable[..., Any]:
+    found = _states(len(getattr(law.instance_class, "states", tuple)()))
+    return lambda law, values, i: found(values, i)
+
+
+@overload(write_flow, strict=False)
+def _write_flow(
     law: Any, slip: Any, load: Any, per_mass: Any, values: Any, i: Any, to: Any
 ) -> Callable[..., None]:
     n = len(getattr(law.instance_class, "states", tuple)())
-    states = _states(n)
 
     def without(
         law: Any, slip: Any, load: Any, per_mass: Any, values: Any, i: Any, to: Any
@@ -87,7 +178,7 @@ def _flow(
         to[i, 0], to[i, 1] = f[0] * per_mass, f[1] * per_mass
 
     def within(law: Any, slip: Any, load: Any, per_mass: Any, values: Any, i: Any, to: Any) -> None:
-        z = states(values, i)
+        z = states_in(law, values, i)
         f = force(law, slip, load, z)
         to[i, 0], to[i, 1] = f[0] * per_mass, f[1] * per_mass
         dz = change(law, slip, load, z)
@@ -95,26 +186,3 @@ def _flow(
             to[i, 2 + k] = dz[k]
 
     return within if n else without
-
-
-def grain_at(law: Any, values: np.ndarray, i: int) -> float:
-    """Return the slip speed below which friction is proportional to it, at a row's states."""
-    return max(grain(law, tuple(values[i, 2:])), FINEST)
-
-
-def unitless(law: Any, k: int) -> bool:
-    """Return whether the internal state in column `k` of a row has no unit."""
-    return bool(law.states()[k - 2].unit == "1")
-
-
-@overload(unitless, strict=False)
-def _unitless(law: Any, k: Any) -> Callable[..., Any]:
-    given: tuple[Any, ...] = getattr(law.instance_class, "states", tuple)()
-    plain = np.array([True, True, *(state[1] == "1" for state in given)])
-    return lambda law, k: plain[k]
-
-
-@overload(grain_at, strict=False)
-def _grain_at(law: Any, values: Any, i: Any) -> Callable[..., float]:
-    states = _states(len(getattr(law.instance_class, "states", tuple)()))
-    return lambda law, values, i: max(grain(law, states(values, i)), FINEST)

@@ -10,7 +10,7 @@ from stiction.solver.compiled import compiled, piece
 from stiction.solver.problem import Problem, in_principal_axes, travel
 from stiction.solver.radau import step_factor
 from stiction.solver.smooth.coordinate import coordinate
-from stiction.solver.smooth.law import flow, grain_at
+from stiction.solver.smooth.law import flow, grain_of
 from stiction.solver.smooth.newton import A
 from stiction.solver.smooth.rates import Outset, measure, moving, prepare
 from stiction.solver.smooth.sampling import sample
@@ -41,7 +41,7 @@ def begin(
     w.values[START, 1] = s_y
     for k in range(len(z)):
         w.values[START, 2 + k] = w.y[START, 2 + k] = z[k]
-    eps = min(grain_at(problem.law, w.values, START), COARSEST * speed)
+    eps = min(grain_of(problem.law, w.values, START), COARSEST * speed)
     w.y[START, 0], w.y[START, 1] = coordinate(eps, s_x, s_y)
     start = Outset(t, u_x, u_y, eps, min(1.0, speed / eps), 1.0)
     prepare(problem, start, 0.0, w, START)

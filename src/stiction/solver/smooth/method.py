@@ -9,15 +9,16 @@ import numpy as np
 
 from stiction.description import Description
 from stiction.friction import states
-from stiction.solver.compiled import specialised
+from stiction.slider import Slider
 from stiction.solver.interrupt import uninterrupted
 from stiction.solver.output import Output
-from stiction.solver.problem import Problem, at, force, kinds_of
+from stiction.solver.problem import Isotropic, Problem, at, force
 from stiction.solver.sampling import COLUMNS
 from stiction.solver.smooth import loop
-from stiction.solver.smooth.law import Smoothed
+from stiction.solver.smooth.law import Smoothed, pointed
 from stiction.solver.smooth.state import Memory, Motion, State
 from stiction.solver.state import NOTHING, Accuracy, first_step
+from stiction.solver.stretch import friction_of
 
 # of the slip speed below which that of set-valued friction is not resolved: states remember slower
 # slip. LuGre's published case comes out 600 times better for 14 % more steps.
@@ -27,11 +28,13 @@ FINER = 0.03
 class Smooth:
     """A law with internal state, or a set-valued one made smooth over `delta` (m/s)."""
 
-    def __init__(self, law: Any, delta: float | None) -> None:
-        """Take the slider's law."""
+    def __init__(self, slider: Slider, delta: float | None) -> None:
+        """Take the slider, and have its law compiled."""
+        law, surface = friction_of(slider)
         self.first_step = 0.0
         self.states = len(states(law))
-        self.delta = delta
+        self.law: Any = law if delta is None else Smoothed(law, surface, delta)
+        self.flow = pointed(self.law)
         self.columns = COLUMNS + self.states
 
     def begin(self, description: Description) -> State:
@@ -55,11 +58,11 @@ class Smooth:
         self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
     ) -> tuple[int, State]:
         """Advance until `end` (s) or until the budget is used up."""
-        solve = specialised(loop.advance, *kinds_of(problem))
-        smooth, resolved = self.smooth(problem), self.resolved(held)
+        smooth = problem._replace(law=self.flow, surface=Isotropic())  # the law knows its surface
+        resolved = self.resolved(held)
         times, samples = out.times, out.samples
         with uninterrupted():  # the state comes back as named tuples and arrays
-            code, state, out.filled, turns = solve(
+            code, state, out.filled, turns = loop.advance(
                 smooth, state, end, resolved, budget, times, samples, out.filled
             )
         out.used += turns
@@ -69,7 +72,7 @@ class Smooth:
         """Return the sample of a state between two steps."""
         t, u_x, u_y, s_x, s_y = state.motion
         z = tuple(float(value) for value in state.internal)
-        f = force(self.smooth(problem).law, (s_x, s_y), at(problem.load, t), z)
+        f = force(self.law, (s_x, s_y), at(problem.load, t), z)
         return [u_x, u_y, s_x, s_y, *f, 0.0, *z]
 
     def resolved(self, held: Accuracy) -> Accuracy:
@@ -82,9 +85,3 @@ class Smooth:
         if isfinite(held.longest):
             speed = min(speed, 1e-6 * min(held.free_x, held.free_y))
         return held._replace(speed=speed)
-
-    def smooth(self, problem: Problem) -> Problem:
-        """Return the problem with a law that is smooth at zero slip."""
-        if self.delta is None:
-            return problem
-        return problem._replace(law=Smoothed(problem.law, problem.surface, self.delta))

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from stiction.solver.compiled import piece
 from stiction.solver.problem import Problem, at, in_principal_axes, rate, rate_change, travel
 from stiction.solver.smooth.coordinate import slip_at, slip_slope
-from stiction.solver.smooth.law import flow, unitless
+from stiction.solver.smooth.law import flow
 from stiction.solver.smooth.workspace import START, TRIAL, Workspace
 from stiction.solver.state import Accuracy
 from stiction.solver.stick import holding
@@ -122,6 +122,6 @@ def measure(problem: Problem, start: Outset, w: Workspace) -> None:
         x, y = w.jacobian[START, 0, k], w.jacobian[START, 1, k]
         effect = sqrt(x * x + y * y)
         least = enough / effect if effect > 0.0 else 1.0
-        if unitless(problem.law, k):
+        if problem.law.unitless[k]:
             least = min(1.0, least)
         w.size[k] = least + abs(w.y[START, k])

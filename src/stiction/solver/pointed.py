@@ -1,0 +1,56 @@
+"""A set-valued law as the solver takes it: behind pointers."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from stiction.friction.law import static_coefficient
+from stiction.solver.compiled import compiled
+from stiction.solver.interrupt import uninterrupted
+from stiction.solver.pointer import address, caller, memory, pointee, types
+from stiction.solver.problem import coefficient, slope
+
+call: Any = caller(types.UniTuple(types.float64, 2), types.float64)
+
+
+class PointedLaw(NamedTuple):
+    """A set-valued law: one compiled function, and its fields.
+
+    Parameters
+    ----------
+    code : int
+        Address of `coefficient_and_slope_at`, compiled for this law.
+    fields : ndarray
+        Memory with the law's fields.
+    mu_static : float
+        Its largest coefficient at zero slip.
+    """
+
+    code: int
+    fields: np.ndarray
+    mu_static: float
+
+    def coefficient_and_slope(law, v: float) -> tuple[float, float]:
+        """Return the friction coefficient and its derivative (s/m) at slip speed `v` (m/s)."""
+        found: tuple[float, float] = call(law.code, law.fields, (v,))
+        return found
+
+    def coefficient(law, v: float) -> float:
+        """Return the friction coefficient at slip speed `v` (m/s)."""
+        return float(call(law.code, law.fields, (v,))[0])
+
+
+def pointed(law: Any) -> PointedLaw:
+    """Return a set-valued law as the solver takes it."""
+    with uninterrupted():
+        code = address(coefficient_and_slope_at, law, types.float64)
+        return PointedLaw(code, memory(law), static_coefficient(law))
+
+
+@compiled
+def coefficient_and_slope_at(law: Any, v: float) -> tuple[float, float]:
+    """Return coefficient and slope (s/m), at slip speed `v` (m/s), of the law at a pointer."""
+    found: Any = pointee(law)
+    return coefficient(found, v), slope(found, v)

@@ -1,0 +1,173 @@
+"""Code and data behind pointers, for what a user chooses and the solver need not be compiled for.
+
+The machine code of a function and the fields of a law are two addresses. Compiled code calls the
+one with the other, for some 2 ns, and is the same code for all laws; merged into it, each law would
+take its compiling anew.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+from collections.abc import Iterable, Iterator
+from functools import cache
+from typing import Any, cast
+
+import numba
+import numba.core.cgutils
+import numba.core.types
+import numba.extending
+import numpy as np
+from numba.core.registry import cpu_target
+
+from stiction.friction.source import text_of
+from stiction.solver.compiled import compiled, compiled_for
+
+context: Any = cpu_target.target_context
+cgutils: Any = numba.core.cgutils
+types: Any = numba.core.types
+intrinsic: Any = numba.extending.intrinsic
+typeof: Any = numba.typeof
+
+
+def address(function: Any, law: Any, *arguments: Any) -> int:
+    """Return where the machine code of a compiled function for a law lies.
+
+    The function's first argument is a pointer to the law's fields (see `pointee`), `arguments` are
+    the types of its others. It is compiled if a law of this type is met for the first time.
+    """
+    return _address(function, typeof(law), *arguments)
+
+
+def memory(law: Any) -> np.ndarray:
+    """Return the fields of a law as compiled code finds them, and keep its arrays alive."""
+    kind = typeof(law)
+    room: Any = (ctypes.c_char * _size(kind))()
+    room.law = law
+    _for_own(write, kind)(law, ctypes.addressof(room))
+    return np.frombuffer(room, dtype=np.uint8)
+
+
+@cache
+def _address(function: Any, kind: Any, *arguments: Any) -> int:
+    made, signature = _for_own(function, kind), (types.CPointer(kind), *arguments)
+    made.compile(signature)
+    result = made.overloads[signature]
+    return int(result.library.get_pointer_to_function(result.fndesc.llvm_func_name))
+
+
+@cache
+def _size(kind: Any) -> int:
+    """Return how many bytes a value takes, one at least."""
+    return max(1, int(context.get_abi_sizeof(context.get_data_type(kind))))
+
+
+@compiled
+def write(law: Any, to: int) -> None:
+    """Write the fields of a law to an address."""
+    write_value(law, to)
+
+
+def _write_value(_: Any, value: Any, to: Any) -> Any:
+    """Write a value to an address."""
+
+    def generate(context: Any, builder: Any, _: Any, arguments: Any) -> Any:
+        kind = context.get_data_type(value).as_pointer()
+        lent = _lent(context, builder, value, arguments[0])
+        context.pack_value(builder, value, lent, builder.inttoptr(arguments[1], kind))
+        return context.get_dummy_value()
+
+    return types.void(value, types.intp), generate
+
+
+write_value: Any = intrinsic(_write_value)
+
+
+def _lent(context: Any, builder: Any, kind: Any, value: Any) -> Any:
+    """Return a value whose arrays are not counted: Python holds them, and frees them."""
+    if isinstance(kind, types.Array):
+        array = context.make_array(kind)(context, builder, value)
+        for owner in ("meminfo", "parent"):
+            setattr(array, owner, cgutils.get_null_value(getattr(array, owner).type))
+        return array._getvalue()
+    if isinstance(kind, types.BaseTuple):
+        parts = zip(cast(Iterable[Any], kind), cgutils.unpack_tuple(builder, value), strict=True)
+        return context.make_tuple(builder, kind, [_lent(context, builder, *part) for part in parts])
+    context.nrt.incref(builder, kind, value)  # whatever else is counted stays for good
+    return value
+
+
+def _pointee(_: Any, pointer: Any) -> Any:
+    """Return what lies at a pointer."""
+
+    def generate(context: Any, builder: Any, _: Any, arguments: Any) -> Any:
+        return context.unpack_value(builder, pointer.dtype, arguments[0])
+
+    return pointer.dtype(pointer), generate
+
+
+pointee: Any = intrinsic(_pointee)
+
+
+def caller(result: Any, *kinds: Any) -> Any:
+    """Return a function (code, memory, arguments) for compiled code, which calls what lies there.
+
+    `result` and `kinds` are the types of what is returned and of the arguments. What the code
+    raises is raised.
+    """
+
+    def call(_: Any, code: Any, memory: Any, arguments: Any) -> Any:
+        signature = result(types.intp, memory, arguments)
+
+        def generate(context: Any, builder: Any, _: Any, values: Any) -> Any:
+            data = context.make_array(memory)(context, builder, values[1]).data
+            given = zip(
+                cgutils.unpack_tuple(builder, values[2]), arguments.types, kinds, strict=True
+            )
+            passed = [data, *(context.cast(builder, *each) for each in given)]
+            taken, convention = (types.voidptr, *kinds), context.call_conv
+            shape = convention.get_function_type(result, taken).as_pointer()
+            function = builder.inttoptr(values[0], shape)
+            status, value = convention.call_function(builder, function, result, taken, passed)
+            with cgutils.if_unlikely(builder, status.is_error):
+                convention.return_status_propagate(builder, status)
+            return value
+
+        return signature, generate
+
+    return intrinsic(call)
+
+
+@cache
+def _for_own(function: Any, kind: Any) -> Any:
+    """Return the compiled `function` to use with values of this type.
+
+    Code for a law that is not the package's own is kept under the content of its file: an edit
+    there is seen, and a process that does not know the law never meets it. What stands in a prompt
+    or in the script itself is compiled anew in each process.
+    """
+    own = [each for each in _classes(kind) if not each.__module__.startswith("stiction.")]
+    if not own:
+        return function
+    try:
+        digest = hashlib.sha256("".join(sorted(map(_source, own))).encode()).hexdigest()
+    except OSError:
+        return compiled_for(function, None)
+    return compiled_for(function, digest)
+
+
+def _classes(kind: Any) -> Iterator[type]:
+    """Yield the classes of named tuples in a type, its own first."""
+    if isinstance(kind, types.BaseTuple):
+        if hasattr(kind, "instance_class"):
+            yield kind.instance_class
+        for part in cast(Iterable[Any], kind):
+            yield from _classes(part)
+
+
+def _source(kind: type) -> str:
+    """Return what to name a type's code after: its text, and its module, by which it is kept."""
+    text = None if kind.__module__ == "__main__" else text_of(kind)
+    if text is None:  # in a script its types are new ones in each process
+        raise OSError(f"{kind.__module__} has no file, as it was run, to name them by")
+    return f"{kind.__module__}\n{text.text}"
