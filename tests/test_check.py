@@ -1,6 +1,7 @@
 """What is damaged is never silent: it is refused, or computed again and then as it was."""
 
 import json
+import pickle
 import shutil
 from pathlib import Path
 
@@ -96,7 +97,7 @@ def test_no_damage_of_a_store_is_silent(store, tmp_path):
         damage(path / file, number)
         try:
             found = st.open_study(path).load()
-        except (st.ResultError, ValueError):  # the latter is zarr's, of a checksum
+        except st.ResultError:
             try:
                 checked = st.check(path, repair=number % 5 == 0)  # to compute again takes long
             except st.ResultError:
@@ -140,6 +141,56 @@ def test_without_its_consolidated_metadata_a_store_is_damaged(store, tmp_path):
     assert st.check(path).damaged == ["zarr.json"]
     assert st.check(path, repair=True).repaired
     assert st.open_study(path).load().identical(xr.open_zarr(store).load())
+
+
+def flip(file: Path) -> None:
+    """Flip a bit in the middle of a file."""
+    content = bytearray(file.read_bytes())
+    content[len(content) // 2] ^= 1
+    file.write_bytes(content)
+
+
+def test_a_flipped_bit_among_values_is_told_when_they_are_read(store, tmp_path, capsys):
+    chunks = [each for each in store.rglob("*") if each.is_file() and each.name != "zarr.json"]
+    for chunk in chunks:
+        name = chunk.relative_to(store).as_posix()
+        path = shutil.copytree(store, tmp_path / name.replace("/", "-"))
+        flip(path / name)
+        with pytest.raises(st.ResultError, match=rf": {name}; .*check {path} --repair$") as told:
+            pickle.loads(pickle.dumps(st.open_study(path))).load()  # as another process reads it
+        assert len(str(told.value).splitlines()) == 1
+        with pytest.raises(SystemExit) as end:
+            cli.main(["map", str(path), "-o", str(tmp_path / "a.png")])
+        assert end.value.code == 2
+        assert "--repair" in capsys.readouterr().err
+    assert len(chunks) > 6
+    assert not (tmp_path / "a.png").exists()
+
+
+def change(root: dict) -> bytes:
+    """Change a store's own metadata, and the description in it."""
+    changed = root["attributes"]["description"].replace("phi", "psi")
+    return json.dumps(root | {"attributes": root["attributes"] | {"description": changed}}).encode()
+
+
+@pytest.mark.parametrize(
+    "damage", [change, lambda root: json.dumps(root)[:300].encode(), lambda root: b"\xff{}"]
+)
+def test_what_cannot_be_computed_again_is_said_to_be_lost(store, tmp_path, damage, capsys):
+    path = shutil.copytree(store, tmp_path / "a.zarr")
+    content = damage(json.loads((path / "zarr.json").read_text()))
+    (path / "zarr.json").write_bytes(content)
+    for door in (st.open_study, st.map, st.check, lambda path: st.sweep(STUDY, path)):
+        with pytest.raises(
+            st.ResultError, match=r"zarr\.json.*do the study anew, in another store"
+        ):
+            door(path)
+    for more in ([], ["--repair"]):
+        with pytest.raises(SystemExit) as end:
+            cli.main(["check", str(path), *more])
+        assert end.value.code == 2
+        assert "do the study anew" in " ".join(capsys.readouterr().err.split())
+    assert (path / "zarr.json").read_bytes() == content
 
 
 def test_a_removed_variable_of_a_result_is_missed(result, tmp_path):

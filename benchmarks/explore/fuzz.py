@@ -352,8 +352,7 @@ def store(draw: Draw, folder: Path) -> None:
     files = sorted(each for each in path.rglob("*") if each.is_file())
     for _ in range(draw.among([1, 1, 2])):
         file = draw.among(files)
-        if not file.exists():
-            continue
+        files.remove(file)  # one that is torn can be read no more
         if draw.chance(0.15):
             file.unlink()
         elif file.name == "zarr.json" and draw.chance(0.7):

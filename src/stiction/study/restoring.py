@@ -11,7 +11,7 @@ from stiction.files import place, workshop
 from stiction.study import sealing
 from stiction.study.creation import lay_out
 from stiction.study.plan import Study
-from stiction.study.store import CHECKED, Store, group_at, store_at, version
+from stiction.study.store import CHECKED, Store, damage, group_at, store_at, version
 from stiction.study.sweeping import do
 from stiction.study.view import REFINED
 
@@ -45,10 +45,12 @@ def damage_of(path: Path) -> Damage:
     Raises
     ------
     ResultError
-        If it is no store.
+        If it is no store, or so damaged that it cannot be computed again.
     """
     group = group_at(path, "r")
     head = sealing.broken(path) if group.attrs["format"] == CHECKED else []
+    if {sealing.ROOT, sealing.DESCRIPTION} <= {*head}:
+        raise damage(path, head)
     if head:
         return Damage(head, {}, 0)
     store = store_at(path, "r")
@@ -67,15 +69,12 @@ def restore(path: Path, *, trust: bool = False) -> list[str]:
     Raises
     ------
     ResultError
-        If the study's description is damaged itself, or another version wrote it.
+        If it cannot be computed again, or another version wrote it.
     """
     found, files = damage_of(path), []
     if not found.files:
         return []
     group = group_at(path, "r")
-    if {sealing.ROOT, sealing.DESCRIPTION} <= {*found.head}:
-        remedy = "do the study anew, in another store"
-        raise ResultError(f"{path}: its description is damaged, too; {remedy}")
     if group.attrs.get("stiction_version") != version():
         wrote = group.attrs.get("stiction_version")
         raise ResultError(f"{path}: stiction {wrote} wrote it, this is {version()}; use that one")

@@ -41,6 +41,10 @@ MOST_TASKS = 256 * MANY_TASKS  # each is looked at: what a store says of itself 
 ENDS = (*(status.name.lower() for status in errors.Status), "refused", "error")
 COMPLETED, REFUSED, ERROR = 0, ENDS.index("refused"), ENDS.index("error")
 STATUS, MESSAGE = "status", "message"
+ANEW = (
+    "its description is damaged, too, so nothing can be computed again: do the study anew, in "
+    "another store"
+)
 
 
 class Block(NamedTuple):
@@ -252,9 +256,9 @@ def store_at(path: str | Path, mode: Literal["r", "r+"]) -> Store:
 def damage(path: str | Path, files: Sequence[object]) -> ResultError:
     """Return what is said of a store that is not whole."""
     names = ", ".join(map(str, files[:3])) + (f" and {len(files) - 3} more" * (len(files) > 3))
-    return ResultError(
-        f"{path}: is damaged: {names}; compute it again with: stiction check {path} --repair"
-    )
+    again = f"compute it again with: stiction check {path} --repair"
+    lost = {sealing.ROOT, sealing.DESCRIPTION} <= {*map(str, files)}
+    return ResultError(f"{path}: is damaged: {names}; {ANEW if lost else again}")
 
 
 def group_at(path: str | Path, mode: Literal["r", "r+"]) -> zarr.Group:
@@ -270,7 +274,9 @@ def group_at(path: str | Path, mode: Literal["r", "r+"]) -> zarr.Group:
     if not os.path.isdir(path):
         raise ResultError(f"{path}: no such store; write one with 'stiction sweep'")
     refuse_links(path)
-    with opening(path, "is not the store of a study"):  # of zarr's format 2 pickles are a part
+    was = (Path(path) / STATUS / sealing.ROOT).is_file()
+    what = f"is damaged: {sealing.ROOT}; {ANEW}" if was else "is not the store of a study"
+    with opening(path, what):  # of zarr's format 2 pickles are a part
         group = zarr.open_group(Path(path), mode=mode, zarr_format=3, use_consolidated=False)
         known = group.attrs.get("format")
     if known not in FORMATS:
@@ -289,9 +295,12 @@ def open_study(path: str | Path) -> xr.Dataset:
     Raises
     ------
     ResultError
-        If it is none, or is damaged.
+        If it is none, or is damaged; if only values are, when they are asked for.
     """
     import xarray as xr
+    from zarr.storage import LocalStore
+
+    from stiction.study.chunks import WholeChunks
 
     store = store_at(path, "r")
     with opening(path, "is damaged"):
@@ -302,8 +311,9 @@ def open_study(path: str | Path) -> xr.Dataset:
     lost = [file for task in range(layout.tasks) for file in store.damaged(layout.region(task))]
     if lost:
         raise damage(path, [file.relative_to(path) for file in lost])
+    files: Any = WholeChunks(LocalStore(path, read_only=True)) if store.checked else path
     with opening(path, "is damaged"):
-        data: xr.Dataset = xr.open_zarr(path, zarr_format=3)
+        data: xr.Dataset = xr.open_zarr(files, zarr_format=3)
     return data.rename({old: new for old, new in FORMERLY.items() if old in data})
 
 

@@ -77,7 +77,7 @@ def viewed(path: str | Path, cut: Mapping[str, str | float], trust: bool = False
         raise DescriptionError(found)
     part = data.isel(at)
     refuse_size(path, part.nbytes)
-    with opening(path, f"is damaged; compute it again with stiction check {path} --repair"):
+    with opening(path, "is damaged"):
         return View(study, part.load(), at, refined(path))
 
 

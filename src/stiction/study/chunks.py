@@ -1,0 +1,36 @@
+"""The chunks of a store as they are read: one that is not as it was written is told by its name."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from zarr.storage import LocalStore, WrapperStore
+
+from stiction.checksums import without_checksum
+from stiction.study.sealing import ROOT
+from stiction.study.store import damage
+
+if TYPE_CHECKING:
+    from zarr.abc.store import ByteRequest
+    from zarr.core.buffer import Buffer, BufferPrototype
+
+
+class WholeChunks(WrapperStore[LocalStore]):
+    """A folder of zarr's in which each chunk has a checksum."""
+
+    async def get(
+        self, key: str, prototype: BufferPrototype, byte_range: ByteRequest | None = None
+    ) -> Buffer | None:
+        """Return what a file holds.
+
+        Raises
+        ------
+        ResultError
+            If it is a chunk, and not as it was written.
+        """
+        found = await super().get(key, prototype, byte_range)
+        if found is None or byte_range is not None or key.endswith(ROOT):
+            return found
+        if without_checksum(found.to_bytes()) is None:
+            raise damage(self._store.root, [key])
+        return found
