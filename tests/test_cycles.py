@@ -177,7 +177,8 @@ def test_a_dip_before_a_slip_is_a_hesitation_and_no_cycle(phi: str) -> None:
     late = run.data["time"].values > 2.0
     falls = walked(np.rint(1e6 * force).astype(np.int64), int(0.5e6 * np.ptp(force[late])))
     assert abs(cycles.sizes["cycle"] - (len(falls) - 1) // 2) <= 1
-    assert ((cycles["period"] > 0.85) & (cycles["period"] < 1.05)).all()
+    share = cycles["period"] / cycles["period"].median()
+    assert ((share > 0.6) & (share < 1.5)).all()  # neither a dip nor two cycles in one
     assert st.classify(run).kind == "stick-slip"
     seen = observe(st.Description(rig, st.Initial(), st.Settings(duration="10 s")), None)
     assert len(seen.swings.period) == cycles.sizes["cycle"]
