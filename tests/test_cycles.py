@@ -6,7 +6,7 @@ from math import pi
 
 import numpy as np
 import pytest
-from benchmarks.explore.cycles import sawtooth
+from benchmarks.explore.records import sawtooth
 from numpy.typing import NDArray
 from tests.measured import bare, measured
 
@@ -356,6 +356,28 @@ def test_wild_samples_make_no_cycles(seed: int) -> None:
     assert st.find_cycles(slips).sizes["cycle"] == 8
     assert st.classify(slips).kind == "stick-slip"
     assert np.array_equal(without_outliers(saw(time)), saw(time))
+
+
+@pytest.mark.parametrize(
+    "group",
+    [
+        (2.0, 1.9, 0.0, 1.5, 1.6),  # two pairs with a right sample between them
+        (2.0, 1.9, 1.5, 1.6),  # two pairs
+        (-0.7, 0.0, 2.0, -1.0, 0.0, 0.0, 0.9),
+        (2.0, 2.0, 0.0, 0.0, 0.0, 2.0, 2.0),  # the right ones seem to jump off these
+    ],
+)
+def test_groups_of_wild_samples_are_taken_off_and_nothing_else(group: tuple[float, ...]) -> None:
+    time = np.arange(20_000) * 1e-3
+    right = saw(time) + 0.01 * np.random.default_rng(1).normal(size=20_000)
+    force, wild = right.copy(), np.zeros(20_000, bool)
+    for start in range(500, 19_000, 600):
+        force[start : start + len(group)] += group
+        wild[start : start + len(group)] = np.array(group) != 0.0
+    found = without_outliers(force)
+    assert np.array_equal(found[~wild], right[~wild])
+    assert np.abs(found - right)[wild].max() < 0.05  # five standard deviations of the noise
+    assert st.find_cycles(st.Record(time=time, force=force)).sizes["cycle"] == 8
 
 
 def test_irregular_vibration_beside_slow_motion_is_no_steady_sliding() -> None:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import pi
 
 import numpy as np
 import pytest
+from benchmarks.explore.records import Labelled, filtered, judged, long, short, wandering
 from scipy.signal import lfilter
 from tests.measured import bare, measured
 
@@ -121,6 +123,45 @@ def test_noise_of_any_colour_is_no_vibration(seed: int) -> None:
     for noise in (white[2000:], smooth, np.cumsum(white[2000:]), np.diff(white)[1999:]):
         assert highest_hump(time, noise).height < 1.0
     assert highest_hump(time, white[2000:] + 3.0 * np.sin(2 * pi * 30.0 * time)).height > 1.0
+
+
+@pytest.mark.parametrize(
+    ("make", "number"),
+    [  # of seed 20270101: beside a random walk, and on a force that comes to rest
+        (wandering, 27),
+        (wandering, 140),
+        (wandering, 158),
+        (wandering, 187),
+        (long, 95),
+    ],
+)
+def test_small_vibration_beside_a_force_that_wanders_is_seen(
+    make: Callable[[np.random.Generator], Labelled], number: int
+) -> None:
+    assert judged(make, 20270101, number).right
+
+
+def test_vibration_on_a_force_that_rises_is_no_stick() -> None:
+    random = np.random.default_rng(19)
+    vibration = filtered(random, 200.0, 12.0)
+    time = np.arange(len(vibration)) / 600.0
+    noise = 0.1 * random.normal(size=len(time))
+    rising = st.Record(time=time, force=20.0 * time / time[-1] + vibration + noise)
+    assert st.classify(rising).kind == "irregular vibration"
+    assert (
+        st.classify(rising.model_copy(update={"force": rising.force - vibration})).kind == "stuck"
+    )
+
+
+def test_vibrations_of_few_periods_are_told_with_the_confidence_that_they_deserve() -> None:
+    """Of thirty periods some look harmonic: then nothing is sure."""
+    found = [judged(short, 20270101, number) for number in (*range(40), 57, 98, 187, 192)]
+    wrong = [each for each in found if not each.right]
+    assert 4 <= len(wrong) <= 8  # the last four, and one of ten others at most
+    assert all(each.confidence < 0.7 for each in wrong)
+    sure = [each for each in found if each.confidence >= 0.7]
+    assert all(each.right for each in sure)
+    assert len(sure) >= 30
 
 
 def test_a_vibration_whose_size_changes_once_is_harmonic() -> None:

@@ -22,9 +22,11 @@ WIDE = 1.4  # times its frequency, and as far below, reaches a hump
 FAR = 4.0  # below the frequency by this factor: what is still slower is drift
 PER_OCTAVE = 8  # frequencies tried
 HANN = 0.375  # mean square of the window under which the spectrum is taken
-# Power of a hump over that below it down to `FAR`, and over all above it: noise of any colour,
-# through filters of any order, comes beyond both in less than one of 10 000 records.
-OVER_SLOWER, OVER_FASTER = 8.0, 2.0
+# Power of a hump over that below it down to `FAR`, and over all above it. Of noise of any colour,
+# through filters of any order, 1 of 200 records comes beyond both, and 1 of 6000 beyond 1.6 times
+# both; of vibrations beside a random walk that goes as far in a period 1 of 40 stays below.
+OVER_SLOWER, OVER_FASTER = 5.0, 1.25
+STEEP = 7.0  # power of the height with which the odds of a vibration grow
 
 
 class Hump(NamedTuple):
@@ -44,6 +46,12 @@ class Hump(NamedTuple):
     frequency: float
     height: float
     rms: float
+
+    @property
+    def likelihood(self) -> float:
+        """How likely a vibration makes it, and not noise, 0 to 1; one half at a height of 1."""
+        odds: float = min(self.height, 1e9) ** STEEP
+        return odds / (1.0 + odds)
 
 
 NO_HUMP = Hump(np.nan, 0.0, 0.0)

@@ -1,4 +1,4 @@
-"""Wild samples: one to three in a row that jump off a signal and back."""
+"""Wild samples: one to four in a row that jump off a signal and back, alone or near to others."""
 
 from __future__ import annotations
 
@@ -6,11 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
 
 FAR = 8.0  # times the typical step from sample to sample
-STEEPER = 3.0  # than the signal is on either side: a quick movement that is sampled is none
-WIDEST = 3  # samples
-PASSES = 3  # one beside another is seen once that one is gone
+FARTHER = 2.0  # than the signal moves on either side: a quick movement that is sampled is none
+WIDEST = 4  # samples in a row: two pairs
+LONGEST = 8  # samples from the first to the last of a group, with right ones among them
+BESIDE = 3  # samples on either side that tell how far the signal moves; one of them can be wild
+PASSES = 4  # one group beside another is seen once that one is gone
 MOST = 0.05  # of the samples: if there are more, they are the signal
 
 
@@ -24,9 +27,7 @@ def without_outliers(values: Floats) -> Floats:
     """
     kept, wild = values, np.zeros(len(values), bool)
     for _ in range(PASSES):
-        found = np.zeros(len(values), bool)
-        for width in range(1, WIDEST + 1):
-            found |= _outliers(kept, width)
+        found = _outliers(kept)
         if not found.any():
             break
         wild |= found
@@ -38,28 +39,32 @@ def without_outliers(values: Floats) -> Floats:
     return kept
 
 
-def _outliers(values: Floats, width: int) -> NDArray[np.bool_]:
-    """Return which samples belong to runs of some width that jump off and back."""
-    n, found = len(values), np.zeros(len(values), bool)
-    if n < width + 6:
+def _outliers(values: Floats) -> NDArray[np.bool_]:
+    """Return which samples belong to groups that jump off and back."""
+    found, steps = np.zeros(len(values), bool), np.abs(np.diff(values))
+    if not steps.any():
         return found
-    steps = np.abs(np.diff(values))
-    typical = float(np.median(steps[steps > 0.0])) if steps.any() else 0.0
-    first = np.arange(3, n - width - 2)  # of the run; three samples before it and after it
-    left, right = values[first - 1], values[first + width]
-    off = np.full(len(first), np.inf)
-    for k in range(width):
-        line = left + (right - left) * (k + 1) / (width + 1)
-        off = np.minimum(off, np.abs(values[first + k] - line))
-    slopes = [
-        np.minimum(np.abs(end - values[at]), 0.5 * np.abs(end - values[beyond]))
-        for end, at, beyond in (
-            (left, first - 2, first - 3),
-            (right, first + width + 1, first + width + 2),
-        )
-    ]
-    bound = np.maximum.reduce([*slopes, np.abs(right - left)])
-    runs = first[(off > FAR * typical) & (off > STEEPER * bound)]
-    for k in range(width):
-        found[runs + k] = True
+    far = FAR * float(np.median(steps[steps > 0.0]))
+    jumps = np.flatnonzero(steps > far)  # the last samples before them
+    for width in range(1, LONGEST + 1):
+        left = jumps[(jumps >= BESIDE) & (jumps + width + 1 + BESIDE < len(values))]
+        left = left[steps[left + width] > far]
+        right = left + width + 1
+        rise = values[right] - values[left]
+        inside = left[:, None] + np.arange(1, width + 1)
+        line = values[left, None] + rise[:, None] * (inside - left[:, None]) / (width + 1)
+        moves = np.maximum(_moves(values, left, -1), _moves(values, right, 1))
+        bound = np.maximum(far, FARTHER * np.maximum(moves, np.abs(rise)))
+        off = np.abs(values[inside] - line) > bound[:, None]
+        group = off[:, 0] & off[:, -1]
+        if width > WIDEST:
+            rows = np.lib.stride_tricks.sliding_window_view(off, WIDEST + 1, axis=1)
+            group &= ~np.any(np.all(rows, axis=2), axis=1)
+        found[inside[group][off[group]]] = True
     return found
+
+
+def _moves(values: Floats, at: Indices, way: int) -> Floats:
+    """Return how far the signal moves on one side of samples: the median over three of them."""
+    beside = values[at[:, None] + way * np.arange(1, BESIDE + 1)]
+    return np.asarray(np.median(np.abs(beside - values[at, None]), axis=1))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import pi, sqrt
+from math import exp, hypot, log, pi, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -42,7 +42,10 @@ BACKWARD = 0.4  # share of the rise, below which the force falls slowly and rise
 # Rayleigh's distribution have, 0.7 to 1.5 where records are short; a measured vibration of one size
 # has 0.57.
 REGULAR, EVEN = 0.25, 0.75
-SPREAD_ERROR = 2.0  # over the root of the number of swings: relative error of either
+SPREAD_ERROR = 1.8  # over the root of the number of swings: relative error of either
+# That span of irregular vibrations, and of harmonic ones, measured among them, whose swings differ
+# by noise or slowly: the typical one, and the standard deviation of its logarithm
+IRREGULAR_SPREAD, HARMONIC_SPREAD = (1.05, 0.1), (0.17, 0.8)
 ONE_WAY = 0.8  # of all ups and downs is change: a drift or a load, no wandering
 SETTLED = 0.1  # of the force's span is passed in the last quarter; of an even load it is 0.25
 LOADING = 0.5  # of the early rate, or of stiffness times drive velocity: it still sticks
@@ -248,13 +251,30 @@ def _chance(shares: Floats, kind: str, resolution: float) -> float:
 
 
 def _irregular(evidence: dict[str, float], drop: Floats) -> float:
-    """Return how likely swings are irregular, by how much their periods and drops differ."""
+    """Return how likely swings are irregular, by how much their periods and drops differ.
+
+    By periods: whether more of them would differ by more than `REGULAR`. By drops: of the two
+    distributions from which their spread can be drawn, the one of irregular swings is the narrower
+    the more swings there are; where they overlap it is neither likely nor unlikely, and `EVEN`
+    decides.
+    """
     from scipy.special import ndtr
 
-    grows = abs(order(drop)) >= -ORDERED
-    drops = 0.0 if grows else evidence["drop_spread"] / EVEN
-    differ = max(drops, evidence["period_spread"] / REGULAR, 1e-9)
-    return float(ndtr(np.log(differ) * sqrt(len(drop)) / SPREAD_ERROR))
+    count = len(drop)
+    periods = log(max(evidence["period_spread"] / REGULAR, 1e-9)) * sqrt(count) / SPREAD_ERROR
+    spread = evidence["drop_spread"]
+    if abs(order(drop)) >= -ORDERED or spread == 0.0:  # it grows, or is quite even
+        return float(ndtr(periods))
+    error = hypot(SPREAD_ERROR / sqrt(count), IRREGULAR_SPREAD[1])
+    drops = _density(spread, IRREGULAR_SPREAD[0], error)
+    drops /= drops + _density(spread, *HARMONIC_SPREAD)
+    drops = max(drops, 0.5) if spread > EVEN else min(drops, 0.5)
+    return max(float(ndtr(periods)), drops)
+
+
+def _density(value: float, typical: float, spread: float) -> float:
+    """Return the density of a value's logarithm, normally distributed about a typical one's."""
+    return exp(-0.5 * (log(value / typical) / spread) ** 2) / spread + 1e-300
 
 
 def _bounds(kind: str) -> tuple[float, float]:
@@ -302,24 +322,26 @@ def _by_course(record: Record, found: Swings) -> Regime:
     if drive:
         evidence["rate_over_drive"] = way.late_rate / drive
     late = way.late_span / way.span if way.span > 0.0 else 1.0
-    if late <= SETTLED:
-        sure = 1.0 - late / (2.0 * SETTLED)
-        return Regime(SETTLING, sure, evidence | {"late_share": late})
-    if found.turns:
-        return Regime(UNDETERMINED, 0.0, evidence | {"turns": found.turns})
     rising = way.change > 0.0 and way.one_way >= ONE_WAY
-    if not rising or 0.0 < max(abs(way.early_rate), abs(way.late_rate)) < SLOW * drive:
-        # the nearer to cycles it came, the less sure it is that there are none
-        hump = highest_hump(record.time, record.force)
-        height = hump.height if hump.rms > RIPPLE * way.span else 0.0
-        if height > 1.0:
-            evidence |= {"hump": hump.frequency, "hump_height": height}
-            return Regime(IRREGULAR, 1.0 - 0.5 / height, evidence, STEADY)
-        near = max(found.clearness / CLEAR, height)
-        return Regime(STEADY, 1.0 - 0.5 * near, evidence)
+    slides = not rising or 0.0 < max(abs(way.early_rate), abs(way.late_rate)) < SLOW * drive
+    if late > SETTLED and found.turns:
+        return Regime(UNDETERMINED, 0.0, evidence | {"turns": found.turns})
+    # a transient ends, and a load goes on, in the later half; what vibrates then does not end
+    begin = 0 if late > SETTLED and slides else len(record) // 2
+    hump = highest_hump(record.time[begin:], record.force[begin:])
+    vibrates = hump.likelihood if hump.rms > RIPPLE * way.span else 0.0
+    if vibrates > 0.5:
+        evidence |= {"hump": hump.frequency, "hump_height": hump.height}
+        return Regime(IRREGULAR, vibrates, evidence, STEADY)
+    if late <= SETTLED:
+        sure = (1.0 - late / (2.0 * SETTLED)) * (1.0 - vibrates)
+        return Regime(SETTLING, sure, evidence | {"late_share": late})
+    if slides:  # the nearer to cycles it came, the less sure it is that there are none
+        return Regime(STEADY, (1.0 - 0.5 * found.clearness / CLEAR) * (1.0 - vibrates), evidence)
     kept = way.late_rate / way.early_rate
     evidence |= {"one_way": way.one_way, "rate_kept": kept}
     loading = way.late_rate / drive if drive else kept
     if loading >= LOADING:
-        return Regime(STUCK, way.one_way * min(loading, 1.0), evidence)
+        sure = way.one_way * min(loading, 1.0) * (1.0 - vibrates)
+        return Regime(STUCK, sure, evidence)
     return Regime(UNDETERMINED, 0.0, evidence)
