@@ -229,7 +229,7 @@ def test_far_turned_the_angle_is_that_of_the_run():
     assert low < 40.0 < high
     text = str(found)
     assert "before slip" not in text  # it comes to slide without one
-    assert "before it first is faster than the drive" in text
+    assert "before the spring is loaded" in text
 
 
 def test_what_rests_before_slip_implies_no_angle():

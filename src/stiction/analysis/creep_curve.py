@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.creep import first_slip_time
+from stiction.analysis.creep import creep_end
 from stiction.analysis.creep_bins import Bins, between_halves, between_rests, bin_edges
 from stiction.analysis.record import Record, recorded
 from stiction.analysis.trimmed import trimmed_mean
@@ -87,7 +87,7 @@ def creep_curves(
     position = _position(record)
     phases = np.column_stack([cycles["start"].values, cycles["peak_time"].values])
     if isinstance(source, Trajectory):
-        phases = np.vstack([[record.time[0], first_slip_time(source)], phases])
+        phases = np.vstack([[record.time[0], creep_end(source)], phases])
     length = phases[:, 1] - phases[:, 0]
     least = width or _least_width(record, position, length, isinstance(source, Trajectory))
     edges = bin_edges(least, float(length.max(initial=0.0)))

@@ -278,7 +278,7 @@ def _end(found: Analysis) -> str:
     if found.curves is not None and last >= found.record.time[-1]:
         return "the end"
     if not found.cycles.sizes["cycle"] and found.friction.break_away is None:
-        return "it first is faster than the drive"  # it comes to slide without a slip
+        return "the spring is loaded"  # it comes to slide without a slip
     return "slip"
 
 

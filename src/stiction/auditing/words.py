@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, degrees, hypot, isfinite, nan
+from math import cos, degrees, isfinite, nan
 
 import numpy as np
 
@@ -29,7 +29,6 @@ from stiction.units import in_words
 VIBRATES = (HARMONIC, IRREGULAR)  # about steady sliding: nothing sticks or creeps
 HARDLY = 0.05  # of the time: what creeps or rests less than that hardly does
 ALMOST = 0.1  # of the force drop now: a change that leaves less is nearly a remedy
-SLIPPED = 1.5  # times the drive's speed: what is never faster has crept, and not slipped
 NAMES = {
     "phi": "misalignment φ",
     "drive.velocity": "drive velocity V",
@@ -186,9 +185,7 @@ def numbers(found: Audit) -> Table:
     p, seen, s = found.prediction, found.observation, found.slider
     first = float(np.diff(seen.run.stick_intervals[:1]).sum())  # zero if it never sticks
     slip = first_slip_time(seen.run)
-    data = seen.run.data
-    fastest = float(np.abs(data["V_X"].values).max()) / hypot(*s.motion.rate(0.0))
-    slip = slip if fastest > SLIPPED and slip < seen.record.time[-1] else nan
+    slip = slip if slip < seen.record.time[-1] else nan
     creep_at_slip, creep_distance = (p.creep_at_slip, p.creep_distance) if p.slips else (nan, nan)
     held = [("friction that holds at rest", p.F_static, None, "N", False)]
     rows = [

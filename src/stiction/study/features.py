@@ -12,7 +12,6 @@ import numpy as np
 from stiction.solver.compiled import compiled
 
 PARTS = 32  # equal parts of the time, over which the force is averaged
-FASTER = 1.01  # than the drive is a slip: rounding in steady sliding is none
 
 
 class Features(NamedTuple):
@@ -26,8 +25,6 @@ class Features(NamedTuple):
         Mean force in the last quarter, and the span from its lowest to its highest there, N.
     peak_velocity : float
         Largest velocity of the mass along the drive, m/s.
-    slipped : int
-        The first sample at which the mass is faster than the drive; -1 if it never is.
     means : ndarray
         (32,), force averaged over equal parts of the time, N.
     turn_time, turn_value : ndarray
@@ -42,7 +39,6 @@ class Features(NamedTuple):
     late_mean: float
     late_span: float
     peak_velocity: float
-    slipped: int
     means: np.ndarray
     turn_time: np.ndarray
     turn_value: np.ndarray
@@ -57,7 +53,6 @@ def features(
     force: np.ndarray,
     rate: np.ndarray,
     velocity: np.ndarray,
-    drive: np.ndarray,
     reversal: float,
 ) -> Features:
     """Return what evenly spaced samples show.
@@ -66,18 +61,14 @@ def features(
     ----------
     time, force, rate, velocity : ndarray
         (n,), s, N, N/s, m/s; positive along the drive.
-    drive : ndarray
-        (n,) or (1,), speed of the drive along X, m/s.
     reversal : float
         Smallest reversal of the force that counts, of its span.
     """
     n = len(time)
-    low, high, fastest, slipped = force[0], force[0], velocity[0], -1
-    for i in range(n - 1, -1, -1):
+    low, high, fastest = force[0], force[0], velocity[0]
+    for i in range(n):
         low, high = min(low, force[i]), max(high, force[i])
         fastest = max(fastest, velocity[i])
-        if velocity[i] > FASTER * drive[min(i, len(drive) - 1)]:
-            slipped = i
     late, late_low, late_high, total = 3 * n // 4, np.inf, -np.inf, 0.0
     for i in range(late, n):
         late_low, late_high = min(late_low, force[i]), max(late_high, force[i])
@@ -98,7 +89,7 @@ def features(
         high = max(high, turn_value[k])
     late_mean, late_span = total / (n - late), late_high - late_low
     return Features(
-        high, late_mean, late_span, fastest, slipped, means, turn_time, turn_value, trough,
+        high, late_mean, late_span, fastest, means, turn_time, turn_value, trough,
         force[0], force[n - 1],
     )  # fmt: skip
 

@@ -61,7 +61,7 @@ MEASURES: dict[str, Measure] = {
     ),
     "first_slip_time": Measure(
         "s",
-        "time at which the mass first moves faster than the drive, by one part in a hundred",
+        "time at which the first slip begins: the mass gains on the drive, by more than it swings",
         lambda run: run.first_slip[0],
     ),
     "creep_distance": Measure(

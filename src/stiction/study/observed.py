@@ -10,6 +10,7 @@ from math import ceil, nan
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.analysis.creep import loading
 from stiction.analysis.regime import STUCK
 from stiction.description import Description
 from stiction.drive import ConstantVelocity
@@ -115,17 +116,18 @@ class Observed:
     @cached_property
     def features(self) -> Features:
         """What the evenly spaced samples show."""
-        found: Features = features(
-            self.time, self.force, self.rate, self.velocity, np.abs(self.drive), REVERSAL
-        )
+        found: Features = features(self.time, self.force, self.rate, self.velocity, REVERSAL)
         return found
 
     @cached_property
     def first_slip(self) -> tuple[float, float]:
-        """When the mass is first faster than the drive (s), and how far it came until then (m)."""
-        at, positions = self.features.slipped, self.positions
+        """When the first slip begins (s), and how far the mass came until then (m)."""
+        slider, (c, s) = self.description.slider, self.description.slider.direction
+        drive = np.broadcast_to(self.drive, self.time.shape)
+        at = loading(slider, c * self.column(0) + s * self.column(1), drive).slip
         if at < 0:
             return nan, nan
+        positions = self.positions
         return float(self.time[at]), float(positions[at] - positions[0])
 
     @cached_property
