@@ -7,6 +7,7 @@ import pickle
 import subprocess
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 import xarray as xr
@@ -222,6 +223,59 @@ class Mine(NamedTuple):
 """)
     config.write_text(TABLE.replace('"50 mm/s"', "0.05"))
     assert has_state(st.Slider.from_toml(config).law)
+
+
+ENDLESS = [
+    (
+        "return law.mu_0 / ratio",
+        "while True:\n            pass\n        return ratio",
+        "coefficient at 0",
+    ),
+    ("return -law", "while v != v:\n            pass\n        return -law", "slope at nan"),
+    ("return 1.0 + v", "while v == 1.0:\n        v += 0.0\n    return 1.0 + v", "coefficient at 1"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "words"), ENDLESS)
+def test_a_law_that_does_not_end_is_told(config, old, new, words):
+    (config.parent / "mylaw.py").write_text(LAW.replace(old, new))
+    with pytest.raises(st.DescriptionError, match=rf"{words} m/s ran 100,000 lines.*range\(50\)"):
+        st.Description.from_toml(config)
+
+
+class Looping(NamedTuple):
+    mu_0: float
+
+    @staticmethod
+    def states():
+        return (("z", "m", "bristle"),)
+
+    def coefficient(law, v):
+        return law.mu_0
+
+    def settled(law, speed):
+        return (0.0,)
+
+    def force(law, slip, load, state):
+        return (law.mu_0 * load, 0.0)
+
+    def change(law, slip, load, state):
+        z = 1.0
+        while slip[0] == 0.0 and z > 0.0:
+            z = 0.5 * z + 1.0
+        return (z,)
+
+
+def test_check_law_tells_what_does_not_end():
+    with pytest.raises(st.DescriptionError, match="Looping: change at 0 m/s ran 100,000 lines"):
+        st.check_law(Looping(0.2))
+
+
+def test_a_trial_of_a_law_leaves_no_trace(config):
+    before = sys.gettrace()
+    law = st.Slider.from_toml(config).law
+    assert sys.gettrace() is before
+    assert hasattr(type(law).coefficient.__globals__["ratio"], "py_func")  # compiled, as it was
 
 
 def test_what_cannot_be_compiled_is_told_in_a_line(config):

@@ -7,6 +7,7 @@ from math import isfinite
 from types import ModuleType
 from typing import Any
 
+from stiction.bounded import endless
 from stiction.errors import DescriptionError, Fault, one_line
 from stiction.friction.law import has_state
 from stiction.friction.source import member
@@ -19,6 +20,7 @@ WRITE = (
     "coefficient(law, v) and slope(law, v); for a law with internal state: states(), "
     "coefficient(law, v), settled(law, speed), force and change(law, slip, load, state)"
 )
+ENDING = "bound each loop: for _ in range(50)"
 RESERVED = {"law", "source"}  # keys of [friction] that are no parameters
 PROBED = (0.0, 1e-3)  # m/s
 
@@ -55,6 +57,8 @@ def is_law(found: Any, name: str) -> type[Any]:
 
 def tried(law: Any, name: str) -> Any:
     """Return the law, if its methods give numbers: a slip of the pen is told at once."""
+    if said := endless(law):
+        raise fault(f"{name!r}: {said}; {ENDING}")
     probes = [("coefficient", v) for v in PROBED] + [("slope", v) for v in PROBED]
     for method, v in [("coefficient", PROBED[1])] if has_state(law) else probes:
         try:

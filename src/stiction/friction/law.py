@@ -3,6 +3,10 @@
 Laws are NamedTuples with methods in plain Python, which the solver compiles: they may use
 floats, tuples, `math` and the law's own fields. Their first argument is the law itself,
 named ``law``; a function of the user's own that they call must be compiled (`numba.njit`).
+
+They must end for every argument, one that is no number too. Nothing ends a loop in compiled code,
+Ctrl-C neither: bound each, as ``for _ in range(50)``. What loops at some ten probed speeds is told
+when a law is read, or by `stiction.check_law`; what loops elsewhere is not.
 """
 
 from __future__ import annotations

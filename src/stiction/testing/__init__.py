@@ -13,9 +13,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, ClassVar
 
+from stiction.bounded import endless
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import has_state
-from stiction.friction.kinds import is_law
+from stiction.friction.kinds import ENDING, is_law
 from stiction.testing.common import COMMON, SPEEDS
 from stiction.testing.set_valued import SET_VALUED
 from stiction.testing.with_state import WITH_STATE
@@ -31,9 +32,9 @@ def checks_of(law: Any) -> dict[str, Check]:
 def check_law(law: Any, speeds: Sequence[float] = SPEEDS) -> None:
     """Check that the solver can trust a friction law.
 
-    Its values must be finite, its friction dissipative, its slope the derivative of its
-    coefficient, what is compiled the same as in Python; it must pickle, go through a description
-    and back, and carry the paper's system through a short run.
+    Its methods must end, its values be finite, its friction dissipative, its slope the derivative
+    of its coefficient, what is compiled the same as in Python; it must pickle, go through a
+    description and back, and carry the paper's system through a short run.
 
     Parameters
     ----------
@@ -51,6 +52,8 @@ def check_law(law: Any, speeds: Sequence[float] = SPEEDS) -> None:
         raise DescriptionError([Fault(law.__name__, f"is a class; write {law.__name__}(...)")])
     is_law(type(law), type(law).__name__)
     kind = type(law).__name__
+    if said := endless(law):
+        raise DescriptionError([Fault(kind, f"{said}; {ENDING}")])
     found = [
         Fault(f"{kind}.{name}", message)
         for name, check in checks_of(law).items()
