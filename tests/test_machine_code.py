@@ -9,8 +9,8 @@ from tests.entry import entry
 
 import stiction as st
 from stiction.cli import main
-from stiction.solver import compiled, machine_code
-from stiction.solver.machine_code import Shelf
+from stiction.solver.compilation import jit, machine_code
+from stiction.solver.compilation.machine_code import Shelf
 
 
 def twice(x):
@@ -25,7 +25,7 @@ def speed(drive):
 
 def fresh():
     """Return `twice` as the first process, or a later one, would compile it."""
-    return compiled._entry(twice, Shelf(twice))
+    return jit._entry(twice, Shelf(twice))
 
 
 @pytest.fixture
@@ -121,7 +121,8 @@ def test_the_folder_is_named_after_the_sources(tmp_path, monkeypatch):
             to = copy / file.relative_to(package)
             to.parent.mkdir(parents=True, exist_ok=True)
             to.write_bytes(file.read_bytes())
-    monkeypatch.setattr(machine_code, "__file__", str(copy / "solver" / "machine_code.py"))
+    moved = copy / "solver" / "compilation" / "machine_code.py"
+    monkeypatch.setattr(machine_code, "__file__", str(moved))
     machine_code.fingerprint.cache_clear()
     assert machine_code.fingerprint() == before  # wherever the package lies
     law = copy / "friction" / "coulomb.py"
@@ -144,7 +145,7 @@ def test_the_versions_used_last_stay(root):
 
 def test_a_part_is_not_called_from_python():
     """Where numba would call code that is not there."""
-    part = compiled.inlined(twice)
+    part = jit.inlined(twice)
     for _ in range(2):
         with pytest.raises(TypeError, match="twice is called by compiled code only"):
             part(1.5)
@@ -156,7 +157,7 @@ def test_compiling_a_solver_is_said_once(root, caplog):
     with caplog.at_level(logging.INFO, logger="stiction"):
         fresh()(1.5)
         for _ in range(2):
-            compiled._entry(speed, Shelf(speed))(drive)
+            jit._entry(speed, Shelf(speed))(drive)
     said = [each.getMessage() for each in caplog.records]
     assert said == ["compiling the solver for ConstantVelocity, once"]
 

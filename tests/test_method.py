@@ -19,17 +19,17 @@ from tests.entry import entry
 
 import stiction as st
 import stiction.solver
-from stiction.solver.compiled import called
+from stiction.solver.compilation.jit import called
+from stiction.solver.exact.loop import steps
 from stiction.solver.integrate import accuracy, tolerance
-from stiction.solver.loop import steps
-from stiction.solver.pointed import pointed
+from stiction.solver.law import pointed
 from stiction.solver.problem import kinds_of
+from stiction.solver.segments import stretches
 from stiction.solver.smooth import loop as smooth_loop
 from stiction.solver.smooth.coordinate import coordinate, risen, slip_at, slip_slope
 from stiction.solver.smooth.method import Smooth
 from stiction.solver.state import Motion, State, named, start
 from stiction.solver.stick import stick_duration, to_spare
-from stiction.solver.stretch import stretches
 from stiction.solver.surface import takeoff
 
 ROOT = Path(__file__).parents[1]
@@ -773,7 +773,7 @@ def test_a_printed_constant_is_the_code_s(file, name, value):
 def test_every_constant_is_printed():
     """Plain numbers with a name of their own; codes of how a run ends are none."""
     printed = {(file, name) for file, name, _ in printed_constants()}
-    apart = {"machine_code.py", "refusal.py", "twin.py", "sampling.py", "workspace.py"}
+    apart = {"machine_code.py", "refusal.py", "reference.py", "sampling.py", "workspace.py"}
     for path in SOLVER.rglob("*.py"):
         file = path.relative_to(SOLVER).as_posix()
         if path.name in apart:

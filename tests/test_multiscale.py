@@ -7,12 +7,12 @@ import pytest
 from tests.entry import entry
 
 import stiction as st
-from stiction.solver.patch import POINTS, interpolated
+from stiction.solver.multiscale.history import remember, remembered
+from stiction.solver.multiscale.interpolant import POINTS, interpolated
+from stiction.solver.multiscale.return_map import Cycle, unknown
+from stiction.solver.multiscale.section import angle, elongation_held, lead, wrapped
 from stiction.solver.problem import Problem
-from stiction.solver.recall import remember, remembered
-from stiction.solver.returns import Cycle, unknown
-from stiction.solver.stretch import stretches
-from stiction.solver.takeoff import angle, elongation_held, lead, wrapped
+from stiction.solver.segments import stretches
 
 angle, elongation_held, lead, wrapped = map(entry, (angle, elongation_held, lead, wrapped))
 interpolated, remember, remembered = map(entry, (interpolated, remember, remembered))

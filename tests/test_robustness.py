@@ -167,7 +167,7 @@ def test_interrupts_do_no_harm():
 
 HELD_BACK = """
 import signal
-from stiction.solver.interrupt import uninterrupted
+from stiction.solver.compilation.interrupt import uninterrupted
 
 def interrupted():
     try:

@@ -9,9 +9,9 @@ from scipy.linalg import expm
 from tests.entry import entry
 
 import stiction as st
-from stiction.solver.defect import dips
+from stiction.solver.exact.error_estimate import dips
+from stiction.solver.exact.oscillation import MOST, Oscillator, after, swing
 from stiction.solver.radau import A, C, D, cubic
-from stiction.solver.swing import MOST, Oscillator, after, swing
 
 OSCILLATORS = [
     Oscillator(4e7, 1 / 4e7, -50.0, 1.7e-5, -1e-5, 0.02),  # friction that weakens

@@ -14,8 +14,8 @@ from scipy.optimize import brentq
 from tests.entry import entry
 
 import stiction as st
+from stiction.solver.exact.pursuit import landing_slip, landing_time
 from stiction.solver.integrate import tolerance
-from stiction.solver.landing import landing_slip, landing_time
 from stiction.solver.radau import (
     DEFECT_WEIGHT,
     DERIVATIVE,
@@ -30,9 +30,9 @@ from stiction.solver.radau import (
     cubic,
     cubic_slope,
 )
+from stiction.solver.reference import twin
+from stiction.solver.segments import stretches
 from stiction.solver.stick import stick_duration
-from stiction.solver.stretch import stretches
-from stiction.solver.twin import twin
 
 EPS = np.finfo(float).eps
 cubic, cubic_slope, stick_duration = map(entry, (cubic, cubic_slope, stick_duration))

@@ -8,7 +8,7 @@ from math import cos
 import stiction as st
 from stiction import theory
 from stiction.reproduction.numbers import Number, reference
-from stiction.solver.twin import twin
+from stiction.solver.reference import twin
 
 from .case import Case, crest
 

@@ -57,7 +57,7 @@ def reference() -> Reference:
 def against_twin(slider, run) -> Errors:
     """Return the largest errors of the twin over the windows."""
     import stiction as st
-    from stiction.solver.twin import twin
+    from stiction.solver.reference import twin
 
     worst = Errors(0.0, 0.0)
     for start in WINDOWS:

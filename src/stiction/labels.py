@@ -59,7 +59,7 @@ def dataset(
     times : ndarray
         (n,), s.
     samples : ndarray
-        (n, 7 + internal states); the columns of `stiction.solver.sampling`, then the states.
+        (n, 7 + internal states); the columns of `stiction.solver.exact.sampling`, then the states.
     attributes : dict
         Attributes of the dataset beside the description.
     """

@@ -18,8 +18,8 @@ from stiction.friction import has_state, states
 from stiction.initial import Initial
 from stiction.labels import VARIABLES, dataset
 from stiction.slider import Slider
+from stiction.solver.compilation.refusal import reasons
 from stiction.solver.integrate import Solution, integrate
-from stiction.solver.refusal import reasons
 from stiction.trajectory import Statistics, Trajectory
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from stiction.description import Description
 from stiction.drive import drive_stretches, load_stretches
 from stiction.errors import ResultError
 from stiction.solver.integrate import integrate
-from stiction.solver.stretch import fastest_swing, stretches
+from stiction.solver.segments import fastest_swing, stretches
 from stiction.trajectory import Trajectory
 
 Floats = NDArray[np.float64]
@@ -76,8 +76,8 @@ def integrals(run: Trajectory, edges: Floats, integrand: Integrand, accuracy: fl
     edges : ndarray
         (n + 1,), s, ascending, within the run.
     integrand : callable
-        Of times (m,), s, and rows (m, 7 or more) as in `stiction.solver.sampling`; returns the
-        quantities to integrate, (q, m), all in one unit.
+        Of times (m,), s, and rows (m, 7 or more) as in `stiction.solver.exact.sampling`; returns
+        the quantities to integrate, (q, m), all in one unit.
     accuracy : float
         Wanted bound of the quadrature's error, as a share of the integral of the magnitude of
         the largest quantity.
@@ -151,7 +151,7 @@ def split(starts: Floats, lengths: Floats, counts: NDArray[np.intp]) -> tuple[Fl
 
 
 def states_at(run: Trajectory, times: Floats) -> Floats:
-    """Return rows as in `stiction.solver.sampling` at `times` (ascending, s) within the run.
+    """Return rows as in `stiction.solver.exact.sampling` at `times` (ascending, s) within the run.
 
     Raises
     ------

@@ -1,13 +1,9 @@
-"""The exact solver: set-valued friction at zero slip, compiled.
+"""From a description to samples and stick intervals.
 
-While sticking, the motion is known in closed form (`stick`). While slipping, the slip
-velocity is written as ``p (1, w)`` in axes that follow its direction, in which the
-equations stay regular at zero slip, and is integrated by collocation (`slip`, `radau`).
-Take-off is then an ordinary first step from p = 0, and landing a last step whose length
-is solved for, together with its stages, from p = 0 at its end. Where a landing is not
-smooth, the classical pursuit curve ends it in closed form (`landing`). `loop` puts the
-pieces together; `twin` is all of it again, to be read. Laws with internal state, and
-set-valued laws made smooth, never stick and are integrated by `smooth`.
+`integrate` runs one of three solvers over the `segments` of time in which drive and load are
+smooth: `exact` for set-valued friction; `multiscale`, the same with many cycles at once; `smooth`
+for laws with internal state, and for set-valued laws made smooth. `compilation` is how they are
+compiled, `reference` is the exact solver once more by textbook means, to be read and to check it.
 
 The method is derived in docs/method.md; docstrings cite its equations as (M1), (M2), ...
 """

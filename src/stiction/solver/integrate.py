@@ -14,9 +14,11 @@ from stiction.drive import jump
 from stiction.friction import has_state
 from stiction.initial import Initial
 from stiction.slider import Slider
-from stiction.solver.exact import Exact, Multiscale
+from stiction.solver.exact.method import Exact
+from stiction.solver.multiscale.method import Multiscale
 from stiction.solver.output import Output
 from stiction.solver.problem import Problem
+from stiction.solver.segments import Stretch, fastest_swing, load_bounds, speeds, stretches
 from stiction.solver.smooth.method import Smooth
 from stiction.solver.state import (
     COMPLETED,
@@ -26,7 +28,6 @@ from stiction.solver.state import (
     Accuracy,
     Counts,
 )
-from stiction.solver.stretch import Stretch, fastest_swing, load_bounds, speeds, stretches
 
 LEAST = 1e-15  # of the speeds at the start: slower slip than this is none
 ROUNDING = 1e-13  # of velocities: what a step may err by in any case, well above a float's
@@ -37,7 +38,7 @@ BUDGET = 100_000  # turns of the loop between two looks at the clock: some 30 ms
 class Solution(NamedTuple):
     """How the integration ended (an index into `Status`), what it found and what it took.
 
-    `times` (n,) are those reached, `samples` (n, 7 or more) as in `stiction.solver.sampling`
+    `times` (n,) are those reached, `samples` (n, 7 or more) as in `stiction.solver.exact.sampling`
     with the internal states after them, `sticks` (m, 2) in s.
     """
 

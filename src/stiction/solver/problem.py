@@ -2,7 +2,7 @@
 
 The functions below are what compiled code calls; numba replaces each by the method of the type of
 its first argument when it compiles. Drives and loads are of two types, constant and varying, for
-which the loop is specialised. A law stands behind pointers there (see `stiction.solver.pointed`),
+which the loop is specialised. A law stands behind pointers there (see `stiction.solver.law`),
 so that one loop serves all.
 """
 
@@ -18,7 +18,7 @@ from stiction.drive.signal import FUNCTIONS as SIGNAL_FUNCTIONS
 from stiction.friction import FUNCTIONS as LAW_FUNCTIONS
 from stiction.friction import FrictionLaw, StateLaw
 from stiction.friction.law import Vector, static_coefficient
-from stiction.solver.compiled import inlined
+from stiction.solver.compilation.jit import inlined
 
 
 class System(NamedTuple):

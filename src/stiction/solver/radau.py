@@ -12,8 +12,8 @@ from math import sqrt
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from stiction.solver.blocks import Matrix, Triple
-from stiction.solver.compiled import inlined
+from stiction.solver.block_algebra import Matrix, Triple
+from stiction.solver.compilation.jit import inlined
 
 _S6 = sqrt(6.0)
 C: Triple = ((4 - _S6) / 10, (4 + _S6) / 10, 1.0)

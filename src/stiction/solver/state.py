@@ -6,7 +6,7 @@ from math import sqrt
 from typing import Any, NamedTuple
 
 from stiction.slider import Slider
-from stiction.solver.compiled import inlined
+from stiction.solver.compilation.jit import inlined
 
 RUNNING, COMPLETED, STEP_UNDERFLOW, NON_FINITE, TOO_MANY_STEPS, CONTACT_LOST = -1, 0, 1, 2, 3, 4
 
@@ -76,7 +76,7 @@ class Memory(NamedTuple):
 class Counts(NamedTuple):
     """Steps accepted and rejected, Newton iterations, stick intervals and their sum (s).
 
-    mapped : stick intervals that a return map found (see `returns`), all others steps did.
+    mapped : stick intervals that a return map found (see `multiscale`), all others steps did.
     """
 
     steps: int

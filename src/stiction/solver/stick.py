@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import inf, sqrt
 
-from stiction.solver.compiled import inlined
+from stiction.solver.compilation.jit import inlined
 from stiction.solver.problem import (
     Problem,
     at,

@@ -14,7 +14,7 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
-from stiction.solver.compiled import inlined
+from stiction.solver.compilation.jit import inlined
 from stiction.solver.problem import Problem, isotropic
 
 

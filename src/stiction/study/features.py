@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.solver.compiled import compiled
+from stiction.solver.compilation.jit import compiled
 
 PARTS = 32  # equal parts of the time, over which the force is averaged
 

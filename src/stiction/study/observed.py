@@ -69,7 +69,7 @@ class Observed:
         return self._even(self.solution.times)
 
     def column(self, i: int) -> Floats:
-        """Return a column of the samples at `time`, as in `stiction.solver.sampling`."""
+        """Return a column of the samples at `time`, as in `stiction.solver.exact.sampling`."""
         return self._even(self.solution.samples[:, i])
 
     def _even(self, values: Floats) -> Floats:

@@ -121,7 +121,8 @@ def compiled(law: Any, speeds: Sequence[float]) -> Iterator[str]:
     """What is compiled gives what Python gives."""
     import numba
 
-    from stiction.solver import problem, refusal
+    from stiction.solver import problem
+    from stiction.solver.compilation import refusal
 
     prepared = getattr(law, "prepared", lambda: law)()
     for function in (problem.force, problem.change):

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from math import asinh, cosh, exp, hypot, log, sinh, sqrt
 
-from stiction.solver.compiled import piece
+from stiction.solver.compilation.jit import piece
 
 SMALL = 1e-4  # below, sinh(x)/x = 1 + x^2/6 to the last digit
 LARGEST = 700.0  # sinh of more is no float

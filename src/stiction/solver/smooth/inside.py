@@ -11,7 +11,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from stiction.solver import radau
-from stiction.solver.compiled import piece
+from stiction.solver.compilation.jit import piece
 from stiction.solver.problem import Problem
 from stiction.solver.radau import DEFECT_WEIGHT, INTERIOR
 from stiction.solver.smooth.coordinate import coordinate, slip_slope

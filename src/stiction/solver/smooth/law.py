@@ -10,9 +10,9 @@ import numpy as np
 from numba.extending import overload, register_jitable
 
 from stiction.friction.law import Vector, states
-from stiction.solver.compiled import compiled, inlined
-from stiction.solver.interrupt import uninterrupted
-from stiction.solver.pointer import address, caller, memory, pointee, types
+from stiction.solver.compilation.interrupt import uninterrupted
+from stiction.solver.compilation.jit import compiled, inlined
+from stiction.solver.compilation.pointer import address, caller, memory, pointee, types
 from stiction.solver.problem import Elliptic, Isotropic, change, coefficient, force, grain
 
 FINEST = 1e-300  # m/s

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stiction.solver.compiled import piece
+from stiction.solver.compilation.jit import piece
 
 
 @piece

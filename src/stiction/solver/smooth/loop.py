@@ -6,7 +6,7 @@ from math import hypot, isfinite
 
 import numpy as np
 
-from stiction.solver.compiled import compiled, piece
+from stiction.solver.compilation.jit import compiled, piece
 from stiction.solver.problem import Problem, in_principal_axes, travel
 from stiction.solver.radau import step_factor
 from stiction.solver.smooth.coordinate import coordinate
@@ -86,7 +86,7 @@ def advance(
     samples: np.ndarray,
     k: int,
 ) -> tuple[int, State, int, int]:
-    """Advance until `t_end` or until the budget is used up; as `stiction.solver.loop.advance`.
+    """Advance until `t_end` or until the budget is used up, as `exact.loop.advance` does.
 
     Rows of `samples` are 7 + n long; see `stiction.solver.smooth.sampling`.
     """

@@ -10,15 +10,15 @@ import numpy as np
 from stiction.description import Description
 from stiction.friction import states
 from stiction.slider import Slider
-from stiction.solver.interrupt import uninterrupted
+from stiction.solver.compilation.interrupt import uninterrupted
+from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.output import Output
 from stiction.solver.problem import Isotropic, Problem, at, force
-from stiction.solver.sampling import COLUMNS
+from stiction.solver.segments import friction_of
 from stiction.solver.smooth import loop
 from stiction.solver.smooth.law import Smoothed, pointed
 from stiction.solver.smooth.state import Memory, Motion, State
 from stiction.solver.state import NOTHING, Accuracy, first_step
-from stiction.solver.stretch import friction_of
 
 # of the slip speed below which that of set-valued friction is not resolved: states remember slower
 # slip. LuGre's published case comes out 600 times better for 14 % more steps.

@@ -7,7 +7,7 @@ from math import sqrt
 import numpy as np
 
 from stiction.solver import radau
-from stiction.solver.compiled import piece
+from stiction.solver.compilation.jit import piece
 from stiction.solver.problem import Problem
 from stiction.solver.smooth.coordinate import risen, slip_slope
 from stiction.solver.smooth.linear import factorise, solve_in_place

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
-from stiction.solver.compiled import piece
+from stiction.solver.compilation.jit import piece
 from stiction.solver.problem import Problem, at, in_principal_axes, rate, rate_change, travel
 from stiction.solver.smooth.coordinate import slip_at, slip_slope
 from stiction.solver.smooth.law import flow
@@ -93,7 +93,7 @@ def weigh(problem: Problem, start: Outset, h: float, a: float, w: Workspace, i: 
 def moving(problem: Problem, t: float, w: Workspace, accuracy: Accuracy) -> float:
     """Return how fast the system moves about steady sliding at a step's start, m/s.
 
-    As `stiction.solver.motion.moving`; row `START` must be known with its flow.
+    As `stiction.solver.exact.error_estimate.moving`; row `START` must be known with its flow.
     """
     system, (s_x, s_y) = problem.system, (w.values[START, 0], w.values[START, 1])
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, t))

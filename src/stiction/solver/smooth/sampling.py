@@ -1,17 +1,17 @@
 """Output samples inside a step; they do not influence the steps.
 
-A row is that of `stiction.solver.sampling`, then the internal states. It is the end of a shorter
-step from the same start, as there.
+A row is that of `stiction.solver.exact.sampling`, then the internal states. It is the end of a
+shorter step from the same start, as there.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from stiction.solver.compiled import piece
+from stiction.solver.compilation.jit import piece
+from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.problem import Problem, in_principal_axes, travel
 from stiction.solver.radau import C
-from stiction.solver.sampling import COLUMNS
 from stiction.solver.smooth.coordinate import coordinate
 from stiction.solver.smooth.inside import balance, on_cubic
 from stiction.solver.smooth.newton import A, solve

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from stiction.solver.compiled import piece
+from stiction.solver.compilation.jit import piece
+from stiction.solver.exact.step import ATTEMPTS, RESOLUTION
 from stiction.solver.problem import Problem
 from stiction.solver.radau import C, cubic, step_factor
 from stiction.solver.smooth.coordinate import coordinate
@@ -11,7 +12,6 @@ from stiction.solver.smooth.newton import solve
 from stiction.solver.smooth.rates import Outset
 from stiction.solver.smooth.workspace import START, Workspace
 from stiction.solver.state import Accuracy
-from stiction.solver.step import ATTEMPTS, RESOLUTION
 
 
 @piece

@@ -10,7 +10,7 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from stiction.solver.compiled import allocating
+from stiction.solver.compilation.jit import allocating
 
 ROWS = 6
 # stages: 1, 2, 3; numbers of numpy, or numba would compile for each of them anew

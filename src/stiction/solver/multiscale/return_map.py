@@ -1,11 +1,11 @@
 """The return map: from the end of a stick to the end of the next.
 
-While drive and load are steady, the state at the end of a stick is one angle (see `takeoff`),
+While drive and load are steady, the state at the end of a stick is one angle (see `section`),
 so that all that follows, until the end of the next stick, is a function of it (M53). Where that
 function is smooth, polynomials through a few cycles, each solved in full, stand for all the
-others between (`patch`, `chart`). Where it is not, or a cycle is too long to be solved so often,
-as a macroscopic slip is, a cycle that begins where an earlier one did ends as that one did
-(`recall`).
+others between (`interpolant`, `construction`). Where it is not, or a cycle is too long to be
+solved so often, as a macroscopic slip is, a cycle that begins where an earlier one did ends as that
+one did (`history`).
 
 Such stroboscopic maps are what multirevolution and envelope-following methods step over
 (Petzold 1981; Calvo, Jay, Montijano & Randez 2004). Theirs have fast components beside the

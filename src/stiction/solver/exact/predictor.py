@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from math import inf, sqrt
 
-from stiction.solver.blocks import Triple, inverse, times
-from stiction.solver.compiled import inlined
-from stiction.solver.frame import Frame, Outset, elongation
-from stiction.solver.newton import products
+from stiction.solver.block_algebra import Triple, inverse, times
+from stiction.solver.compilation.jit import inlined
+from stiction.solver.exact.collocation import added
+from stiction.solver.exact.newton import products
+from stiction.solver.exact.oscillation import Oscillator, Swing, after, swings
+from stiction.solver.exact.slip_frame import Frame, Outset, elongation
 from stiction.solver.problem import Problem
 from stiction.solver.radau import A, C, D, cubic
-from stiction.solver.slip import added
 from stiction.solver.state import Memory
 from stiction.solver.stick import margin
-from stiction.solver.swing import Oscillator, Swing, after, swings
 
 
 @inlined

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from math import inf
 
-from stiction.solver.blocks import Triple
-from stiction.solver.compiled import inlined
-from stiction.solver.defect import dips, local_error
-from stiction.solver.frame import Frame, Outset
-from stiction.solver.guess import passes, predicted, swung_to_rest, time_to_landing
-from stiction.solver.motion import moving
-from stiction.solver.newton import solve
+from stiction.solver.block_algebra import Triple
+from stiction.solver.compilation.jit import inlined
+from stiction.solver.exact.error_estimate import dips, local_error, moving
+from stiction.solver.exact.newton import solve
+from stiction.solver.exact.oscillation import Swing, oscillator, swing, within_reach
+from stiction.solver.exact.predictor import passes, predicted, swung_to_rest, time_to_landing
+from stiction.solver.exact.slip_frame import Frame, Outset
 from stiction.solver.problem import Problem
 from stiction.solver.radau import step_factor
 from stiction.solver.state import Accuracy, Memory, size_to_try
-from stiction.solver.swing import Swing, oscillator, swing, within_reach
 
 # a step that has not succeeded after so many tries will not; 0.4^100 is beyond any float
 ATTEMPTS = 100

@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from stiction.solver import loop
-from stiction.solver.compiled import inlined, piece
-from stiction.solver.patch import POINTS, interpolated
+from stiction.solver.compilation.jit import inlined, piece
+from stiction.solver.exact import loop
+from stiction.solver.multiscale.interpolant import POINTS, interpolated
+from stiction.solver.multiscale.return_map import NEAR, NODES, Cycle, Returns
+from stiction.solver.multiscale.section import angle, elongation_held, lead, wrapped
 from stiction.solver.problem import Problem, in_principal_axes, rate
-from stiction.solver.returns import NEAR, NODES, Cycle, Returns
 from stiction.solver.state import (
     NOTHING,
     RUNNING,
@@ -23,7 +24,6 @@ from stiction.solver.state import (
     at_takeoff,
 )
 from stiction.solver.stick import stick_duration
-from stiction.solver.takeoff import angle, elongation_held, lead, wrapped
 
 NODE_STEPS = 10_000
 FINER = 0.1  # tolerance of a node's steps over that of others: their noise is below what closes

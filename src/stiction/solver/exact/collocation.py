@@ -1,6 +1,6 @@
 """One step of slip: the collocation equations and their solution by Newton's method.
 
-Unknown are p and w at the three stages (see `frame`); in a step that ends in a landing
+Unknown are p and w at the three stages (see `slip_frame`); in a step that ends in a landing
 p is zero at the last stage and the step size takes its place.
 """
 
@@ -9,13 +9,13 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
-from stiction.solver.blocks import Factors, Triple, dot, eliminated
-from stiction.solver.compiled import inlined
-from stiction.solver.frame import Frame, friction, pull
+from stiction.solver.block_algebra import Factors, Triple, dot, eliminated
+from stiction.solver.compilation.jit import inlined
+from stiction.solver.exact.oscillation import Swing
+from stiction.solver.exact.slip_frame import Frame, friction, pull
 from stiction.solver.problem import Problem
 from stiction.solver.radau import A, C, D
 from stiction.solver.surface import Flow, flow
-from stiction.solver.swing import Swing
 
 
 class Stage(NamedTuple):

@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-from math import nan, sqrt
+from math import sqrt
 from typing import Any
 
 from stiction.description import Description
 from stiction.slider import Slider
-from stiction.solver.compiled import called, compiled
-from stiction.solver.frame import friction
-from stiction.solver.loop import steps
+from stiction.solver.compilation.jit import called, compiled
+from stiction.solver.exact.loop import steps
+from stiction.solver.exact.sampling import COLUMNS
+from stiction.solver.exact.slip_frame import friction
+from stiction.solver.law import pointed
 from stiction.solver.output import Output
-from stiction.solver.pointed import pointed
-from stiction.solver.problem import Problem, constant, kinds_of, steady
-from stiction.solver.returns import Returns, unknown
-from stiction.solver.sampling import COLUMNS
+from stiction.solver.problem import Problem, kinds_of
+from stiction.solver.segments import friction_of
 from stiction.solver.state import Accuracy, Motion, State, cooled, named, start
 from stiction.solver.stick import holding
-from stiction.solver.stretch import friction_of
-from stiction.solver.strides import stride
 from stiction.solver.surface import friction_along
-
-FINER = 0.3  # tolerance of the steps that the return map rests on, over that of others
 
 
 class Exact:
@@ -80,39 +76,6 @@ def force_between(problem: Problem, motion: Motion) -> tuple[float, float]:
     f = m * friction(problem, motion.t, motion.r)[0]
     f_x, f_y = friction_along(problem, motion.e_x, motion.e_y)
     return f * f_x, f * f_y
-
-
-class Multiscale(Exact):
-    """The same, many cycles at once where the return map is smooth."""
-
-    def __init__(self, slider: Slider, rtol: float) -> None:
-        """Take the slider and the tolerance."""
-        super().__init__(slider)
-        self.rtol = rtol
-        self.problem: Problem | None = None
-        self.known: Returns | None = None
-
-    def entered(self, state: State, x: float, y: float) -> State:
-        """Return the state at the start of a stretch, where the slip velocity jumps by (x, y)."""
-        if self.known is not None:
-            self.known.last[:] = nan
-        return super().entered(state, x, y)
-
-    def advance(
-        self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
-    ) -> tuple[int, State]:
-        """Advance until `end` (s) or until the budget is used up."""
-        if not (steady(problem.drive) and constant(problem.load)):
-            return super().advance(problem, state, end, held, budget, out)
-        if self.known is None or problem != self.problem:
-            self.problem, self.known = problem, unknown(self.rtol)
-        fine = held._replace(
-            tolerance=FINER * held.tolerance,
-            newton=FINER * held.newton,
-            least=held.least / FINER,
-            touch=0.0,  # cycles are counted from one stick to the next, however short
-        )
-        return advanced(stride, self.seen(problem), state, end, fine, budget, out, self.known)
 
 
 def advanced(

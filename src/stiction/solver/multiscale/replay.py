@@ -6,11 +6,12 @@ from math import inf, nan
 
 import numpy as np
 
-from stiction.solver.chart import added, advance
-from stiction.solver.compiled import inlined
+from stiction.solver.compilation.jit import inlined
+from stiction.solver.exact.sampling import sample_stick
+from stiction.solver.multiscale.construction import added, advance
+from stiction.solver.multiscale.return_map import Hold
+from stiction.solver.multiscale.section import angle, elongation_held
 from stiction.solver.problem import Problem, in_principal_axes, rate
-from stiction.solver.returns import Hold
-from stiction.solver.sampling import sample_stick
 from stiction.solver.state import (
     COMPLETED,
     NOTHING,
@@ -21,7 +22,6 @@ from stiction.solver.state import (
     at_takeoff,
 )
 from stiction.solver.stick import stick_duration
-from stiction.solver.takeoff import angle, elongation_held
 
 SLIP_STEPS = 1_000_000_000
 SAME = 1e-3  # of a slip: a landing so near to another is the same

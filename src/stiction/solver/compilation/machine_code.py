@@ -180,10 +180,10 @@ def fingerprint() -> str:
     An edit in any of them leads to a fresh folder: what is compiled into one function stands in
     many files.
     """
-    package = Path(__file__).parent.parent
+    package = Path(__file__).parent.parent.parent
     digest = hashlib.sha256(f"{sys.implementation.cache_tag} {numba.__version__}".encode())
     for room in ("drive", "friction", "solver"):
         for file in sorted((package / room).rglob("*.py")):
-            if file.stem != "twin":  # plain Python
+            if file.stem != "reference":  # plain Python
                 digest.update(file.read_bytes())
     return digest.hexdigest()[:16]

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from math import inf
 
-from stiction.solver.compiled import inlined
-from stiction.solver.returns import FAR, NEAR, PAST, Cycle, Returns
+from stiction.solver.compilation.jit import inlined
+from stiction.solver.multiscale.return_map import FAR, NEAR, PAST, Cycle, Returns
 
 
 @inlined

@@ -1,14 +1,21 @@
-"""How far the collocation polynomial of a step is off inside it."""
+"""How far the collocation polynomial of a step is off inside it, and against what that is held.
+
+The tolerance is relative to how fast the system moves about steady sliding. A vibration of a
+micrometre while the drive slides at a metre per second is small beside that, and all that there is
+to see. While it slides steadily the springs keep their length: what they do beside that is the
+motion.
+"""
 
 from __future__ import annotations
 
 from math import inf, sqrt
 
-from stiction.solver.blocks import Triple, less
-from stiction.solver.compiled import inlined
-from stiction.solver.frame import Frame, friction, pull
-from stiction.solver.newton import products
-from stiction.solver.problem import Problem, in_principal_axes, rate
+from stiction.solver.block_algebra import Triple, less
+from stiction.solver.compilation.jit import inlined
+from stiction.solver.exact.newton import products
+from stiction.solver.exact.oscillation import MOST, Oscillator, Swing, after, swings
+from stiction.solver.exact.slip_frame import Frame, Outset, friction, pull
+from stiction.solver.problem import Problem, in_principal_axes, rate, rate_change
 from stiction.solver.radau import (
     DEFECT_WEIGHT,
     INTERIOR,
@@ -21,7 +28,24 @@ from stiction.solver.radau import (
 )
 from stiction.solver.state import Accuracy
 from stiction.solver.surface import flow
-from stiction.solver.swing import MOST, Oscillator, Swing, after, swings
+
+
+@inlined
+def moving(problem: Problem, frame: Frame, start: Outset, accuracy: Accuracy) -> float:
+    """Return the speed of the springs' ends against each other at a step's start (M42), m/s.
+
+    Of an oscillation, its amplitude: the elongation rate u', and u'' times what each spring takes
+    for a radian. No less than what rounding leaves of it.
+    """
+    r, e_x, e_y = frame.r, frame.e_x, frame.e_y
+    v_x, v_y = in_principal_axes(problem, rate(problem.drive, frame.t))
+    g_x, g_y = in_principal_axes(problem, rate_change(problem.drive, frame.t))
+    s_1, s_2 = start.a_1 - start.f, start.a_2 - start.turn
+    x, y = v_x - r * e_x, v_y - r * e_y
+    by_x, by_y = g_x - s_1 * e_x + s_2 * e_y, g_y - s_1 * e_y - s_2 * e_x
+    square = by_x * by_x * accuracy.square_x + by_y * by_y * accuracy.square_y
+    return max(sqrt(x * x + y * y + square), accuracy.least)
+
 
 LOOKS = 6  # at most, at where the slip may be least
 
@@ -70,7 +94,7 @@ def error_at(
     stiffly w follows the force (M37). Errors are held against the slip speed, but against no more
     than the drive's: a rapid slip is over in few steps, and its error shifts all that follows; for
     w accordingly; and in each principal axis against what the elongation rate there can be. None is
-    held against more than the motion about steady sliding (m/s; see `motion`): (M38), (M41).
+    held against more than the motion about steady sliding (m/s; see `moving`): (M38), (M41).
     """
     r, dt, (p_over, rest_over, slid_over) = frame.r, c * h, over
     along, turn = (r, p[0], p[1], p[2]), (0.0, w[0], w[1], w[2])

@@ -7,8 +7,8 @@ from typing import Any, TypeVar, cast
 
 import numba
 
-from stiction.solver.interrupt import uninterrupted
-from stiction.solver.machine_code import Shelf
+from stiction.solver.compilation.interrupt import uninterrupted
+from stiction.solver.compilation.machine_code import Shelf
 
 njit: Any = numba.njit
 F = TypeVar("F", bound=Callable[..., Any])

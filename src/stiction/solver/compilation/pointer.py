@@ -21,7 +21,7 @@ import numpy as np
 from numba.core.registry import cpu_target
 
 from stiction.friction.source import text_of
-from stiction.solver.compiled import compiled, compiled_for
+from stiction.solver.compilation.jit import compiled, compiled_for
 
 context: Any = cpu_target.target_context
 cgutils: Any = numba.core.cgutils

@@ -95,7 +95,7 @@ def twin(
     initial : Initial, optional
         The state to start from; by default the paper's.
     rtol : float, optional
-        Local tolerance of the slip phases; see `slip`.
+        Local tolerance of the slip phases; see `exact.collocation`.
 
     Raises
     ------

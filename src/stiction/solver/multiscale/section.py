@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from math import atan2, cos, pi, sin, sqrt
 
-from stiction.solver.compiled import inlined
+from stiction.solver.compilation.jit import inlined
 from stiction.solver.problem import Problem, at, in_principal_axes, rate, static
 from stiction.solver.stick import holding, holding_change
 from stiction.solver.surface import held_product

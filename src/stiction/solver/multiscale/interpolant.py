@@ -15,9 +15,9 @@ from math import sqrt
 
 import numpy as np
 
-from stiction.solver.compiled import inlined, piece
-from stiction.solver.returns import NODES, Cycle, Hold, Returns
-from stiction.solver.takeoff import wrapped
+from stiction.solver.compilation.jit import inlined, piece
+from stiction.solver.multiscale.return_map import NODES, Cycle, Hold, Returns
+from stiction.solver.multiscale.section import wrapped
 
 
 def leja(count: int) -> np.ndarray:

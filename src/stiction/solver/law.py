@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.friction.law import static_coefficient
-from stiction.solver.compiled import compiled
-from stiction.solver.interrupt import uninterrupted
-from stiction.solver.pointer import address, caller, memory, pointee, types
+from stiction.solver.compilation.interrupt import uninterrupted
+from stiction.solver.compilation.jit import compiled
+from stiction.solver.compilation.pointer import address, caller, memory, pointee, types
 from stiction.solver.problem import coefficient, slope
 
 call: Any = caller(types.UniTuple(types.float64, 2), types.float64)

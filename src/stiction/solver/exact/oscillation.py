@@ -16,9 +16,9 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
-from stiction.solver.blocks import Triple, dot
-from stiction.solver.compiled import inlined
-from stiction.solver.frame import Frame, Outset
+from stiction.solver.block_algebra import Triple, dot
+from stiction.solver.compilation.jit import inlined
+from stiction.solver.exact.slip_frame import Frame, Outset
 from stiction.solver.radau import DERIVATIVE, INTEGRAL, INTERIOR, VALUE, A, C, D
 from stiction.solver.state import Accuracy
 
@@ -39,7 +39,7 @@ class Oscillator(NamedTuple):
 
 
 class Swing(NamedTuple):
-    """What the oscillation adds to the equations of a step; see `slip`.
+    """What the oscillation adds to the equations of a step; see `collocation`.
 
     p, dp : p and h p' at the stages; what it leaves of its cubic in h p' (`rest`) and in the
     distance over h (`slid`), and by how much these change with the step size; the same at the

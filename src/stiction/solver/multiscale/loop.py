@@ -6,14 +6,15 @@ from math import inf
 
 import numpy as np
 
-from stiction.solver.chart import advance, chart
-from stiction.solver.compiled import compiled, inlined
-from stiction.solver.holds import hold_of, landed, sample_cycle
-from stiction.solver.loop import at_rest
-from stiction.solver.patch import cycle_from, followed, place
+from stiction.solver.compilation.jit import compiled, inlined
+from stiction.solver.exact.loop import at_rest
+from stiction.solver.multiscale.construction import advance, chart
+from stiction.solver.multiscale.history import remember, remembered
+from stiction.solver.multiscale.interpolant import cycle_from, followed, place
+from stiction.solver.multiscale.replay import hold_of, landed, sample_cycle
+from stiction.solver.multiscale.return_map import FAR, PATCHES, Cycle, Hold, Returns
+from stiction.solver.multiscale.section import wrapped
 from stiction.solver.problem import Problem
-from stiction.solver.recall import remember, remembered
-from stiction.solver.returns import FAR, PATCHES, Cycle, Hold, Returns
 from stiction.solver.state import (
     COMPLETED,
     RUNNING,
@@ -23,7 +24,6 @@ from stiction.solver.state import (
     State,
     plain,
 )
-from stiction.solver.takeoff import wrapped
 
 PAYS = 8.0  # cycles that a patch must be good for
 VAIN = 30  # nodes that may be in vain at first, and one more for each so many cycles solved
@@ -156,7 +156,7 @@ def stride(
     sticks: np.ndarray,
     known: Returns,
 ) -> tuple[int, Plain, int, int]:
-    """Advance as `stiction.solver.loop.advance` does, by the return map where it is known.
+    """Advance as `stiction.solver.exact.loop.advance` does, by the return map where it is known.
 
     Parameters
     ----------

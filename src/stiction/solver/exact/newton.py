@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from stiction.solver.blocks import Triple, solved
-from stiction.solver.compiled import inlined
-from stiction.solver.frame import Frame
+from stiction.solver.block_algebra import Triple, solved
+from stiction.solver.compilation.jit import inlined
+from stiction.solver.exact.collocation import factors, stage
+from stiction.solver.exact.oscillation import Oscillator, Swing, swing
+from stiction.solver.exact.slip_frame import Frame
 from stiction.solver.problem import Problem
-from stiction.solver.slip import factors, stage
 from stiction.solver.state import Accuracy
-from stiction.solver.swing import Oscillator, Swing, swing
 
 ITERATIONS = 10
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from stiction.solver.compiled import inlined
+from stiction.solver.compilation.jit import inlined
 
 Triple = tuple[float, float, float]
 Matrix = tuple[Triple, Triple, Triple]

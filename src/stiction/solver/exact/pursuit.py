@@ -18,10 +18,10 @@ from math import atan2, cos, inf, sin, sqrt, tan
 
 import numpy as np
 
-from stiction.solver.compiled import inlined
-from stiction.solver.frame import Frame, Outset, elongation
+from stiction.solver.compilation.jit import inlined
+from stiction.solver.exact.sampling import fill
+from stiction.solver.exact.slip_frame import Frame, Outset, elongation
 from stiction.solver.problem import Problem, at, constant, drift, isotropic
-from stiction.solver.sampling import fill
 from stiction.solver.state import Accuracy, Motion, State, at_takeoff
 
 INSTANT = 1e-13  # of the time so far, and of what a spring takes for a radian

@@ -1,0 +1,1 @@
+"""How the solver is compiled, kept on disk, and interrupted."""

@@ -1,0 +1,48 @@
+"""The multiscale solver, as `stiction.solver.integrate` runs it."""
+
+from __future__ import annotations
+
+from math import nan
+
+from stiction.slider import Slider
+from stiction.solver.exact.method import Exact, advanced
+from stiction.solver.multiscale.loop import stride
+from stiction.solver.multiscale.return_map import Returns, unknown
+from stiction.solver.output import Output
+from stiction.solver.problem import Problem, constant, steady
+from stiction.solver.state import Accuracy, State
+
+FINER = 0.3  # tolerance of the steps that the return map rests on, over that of others
+
+
+class Multiscale(Exact):
+    """As `Exact`, many cycles at once where the return map is smooth."""
+
+    def __init__(self, slider: Slider, rtol: float) -> None:
+        """Take the slider and the tolerance."""
+        super().__init__(slider)
+        self.rtol = rtol
+        self.problem: Problem | None = None
+        self.known: Returns | None = None
+
+    def entered(self, state: State, x: float, y: float) -> State:
+        """Return the state at the start of a stretch, where the slip velocity jumps by (x, y)."""
+        if self.known is not None:
+            self.known.last[:] = nan
+        return super().entered(state, x, y)
+
+    def advance(
+        self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
+    ) -> tuple[int, State]:
+        """Advance until `end` (s) or until the budget is used up."""
+        if not (steady(problem.drive) and constant(problem.load)):
+            return super().advance(problem, state, end, held, budget, out)
+        if self.known is None or problem != self.problem:
+            self.problem, self.known = problem, unknown(self.rtol)
+        fine = held._replace(
+            tolerance=FINER * held.tolerance,
+            newton=FINER * held.newton,
+            least=held.least / FINER,
+            touch=0.0,  # cycles are counted from one stick to the next, however short
+        )
+        return advanced(stride, self.seen(problem), state, end, fine, budget, out, self.known)
