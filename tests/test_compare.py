@@ -16,7 +16,7 @@ import stiction as st
 from stiction import comparison
 from stiction.analysis.slip import averaged_slip, outcome
 from stiction.cli import main
-from stiction.friction.likeness import like, traits
+from stiction.friction.equivalent import like, traits
 from stiction.laws import exchanged, read_laws, shared_traits
 from stiction.plotting.canvas import figure_of
 from stiction.plotting.comparison import legend_text, plot_comparison

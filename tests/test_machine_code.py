@@ -125,7 +125,7 @@ def test_the_folder_is_named_after_the_sources(tmp_path, monkeypatch):
     monkeypatch.setattr(machine_code, "__file__", str(moved))
     machine_code.fingerprint.cache_clear()
     assert machine_code.fingerprint() == before  # wherever the package lies
-    law = copy / "friction" / "coulomb.py"
+    law = copy / "friction" / "laws" / "coulomb.py"
     law.write_text(law.read_text() + "\n# edited\n")
     machine_code.fingerprint.cache_clear()
     assert machine_code.fingerprint() != before

@@ -413,7 +413,7 @@ def test_a_law_in_a_script_is_kept_without_its_runs(tmp_path):
 
 def test_a_file_edited_after_its_import_is_not_taken_for_what_ran(tmp_path, monkeypatch):
     """Neither kept with the result, nor as the name of machine code."""
-    from stiction.friction.source import text_of
+    from stiction.friction.user.source import text_of
     from stiction.solver.compilation.pointer import _source
 
     monkeypatch.syspath_prepend(tmp_path)

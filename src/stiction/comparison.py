@@ -100,7 +100,7 @@ def compare(
         ``'{law = "coulomb", mu_0 = 0.15}'``; a description file, of which the table [friction]
         is taken; ``file.py:Class``; or a law's bare name, e.g. ``"coulomb"``. A law given by
         name alone gets parameters that make it comparable with the description's own, see
-        `stiction.friction.likeness.traits`.
+        `stiction.friction.equivalent.traits`.
     max_steps : int, optional
         Each run gives up after so many steps.
     progress : callable, optional

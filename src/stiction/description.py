@@ -12,7 +12,7 @@ from pydantic import Field, StrictBool, model_validator
 
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import law_table, read_law
-from stiction.friction.own import Find, held, is_own, named
+from stiction.friction.user.loading import Find, held, is_own, named
 from stiction.initial import Initial
 from stiction.memory import shortage
 from stiction.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider
@@ -106,8 +106,8 @@ class Description(NamedTuple):
         """Read a description from nested tables, as in the TOML file.
 
         `find` says where the file of a law of the user's own is looked for, see
-        `stiction.friction.own`; in the working folder when left out. It is not run where there
-        are other faults, the `known` ones among them, which are told with those found.
+        `stiction.friction.user.loading`; in the working folder when left out. It is not run where
+        there are other faults, the `known` ones among them, which are told with those found.
         """
         tables: dict[str, Reader] = {**TABLES, "friction": partial(read_law, find=find)}
         last = ("friction",) if is_own(raw.get("friction")) else ()

@@ -13,9 +13,9 @@ import numpy as np
 from stiction.description import Description
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import LAWS, Law, has_state, read_law
+from stiction.friction.equivalent import Traits, like, traits
 from stiction.friction.law import static_coefficient
-from stiction.friction.likeness import Traits, like, traits
-from stiction.friction.own import named
+from stiction.friction.user.loading import named
 from stiction.initial import Initial
 from stiction.tables import read_toml
 from stiction.validation import unknown

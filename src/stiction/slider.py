@@ -21,8 +21,8 @@ from stiction.drive import (
 )
 from stiction.errors import DescriptionError
 from stiction.friction import Law, has_state, read_law
-from stiction.friction.kinds import is_law
-from stiction.friction.own import is_own, named
+from stiction.friction.user.loading import is_own, named
+from stiction.friction.user.validation import is_law
 from stiction.sections import Section, as_html
 from stiction.tables import Reader, folder_of, gather, read_toml, toml_text
 from stiction.units import Angle, Damping, Force, Mass, Stiffness

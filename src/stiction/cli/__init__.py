@@ -102,7 +102,7 @@ def refuse(errors: Console, what: str, message: str) -> NoReturn:
 
 def in_a_law(error: BaseException) -> str | None:
     """Return where in a user's law something was raised, None if it was elsewhere."""
-    from stiction.friction.source import TextLoader
+    from stiction.friction.user.source import TextLoader
 
     modules = [vars(each) for each in list(sys.modules.values()) if isinstance(each, ModuleType)]
     laws = {m.get("__file__") for m in modules if isinstance(m.get("__loader__"), TextLoader)}

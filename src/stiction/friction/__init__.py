@@ -11,18 +11,18 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from stiction.friction.anisotropic import Anisotropic, anisotropy_table, read_anisotropy
-from stiction.friction.coulomb import Coulomb
-from stiction.friction.exponential_weakening import ExponentialWeakening
-from stiction.friction.hyperbolic_weakening import HyperbolicWeakening
 from stiction.friction.law import FrictionLaw, Internal, Law, StateLaw, has_state, states
-from stiction.friction.lugre import LuGre, bending
-from stiction.friction.own import Find, is_own, named, own_table, read_own
-from stiction.friction.rate_and_state import FUNCTIONS as _RATE_AND_STATE
-from stiction.friction.rate_and_state_one import RateStateAgeing, RateStateSlip
-from stiction.friction.rate_and_state_two import RateStateAgeing2, RateStateSlip2
-from stiction.friction.stribeck import Stribeck
-from stiction.friction.table import Table
+from stiction.friction.laws.anisotropic import Anisotropic, anisotropy_table, read_anisotropy
+from stiction.friction.laws.coulomb import Coulomb
+from stiction.friction.laws.exponential_weakening import ExponentialWeakening
+from stiction.friction.laws.hyperbolic_weakening import HyperbolicWeakening
+from stiction.friction.laws.lugre import LuGre, bending
+from stiction.friction.laws.rate_and_state import FUNCTIONS as _RATE_AND_STATE
+from stiction.friction.laws.rate_and_state_one import RateStateAgeing, RateStateSlip
+from stiction.friction.laws.rate_and_state_two import RateStateAgeing2, RateStateSlip2
+from stiction.friction.laws.stribeck import Stribeck
+from stiction.friction.laws.table import Table
+from stiction.friction.user.loading import Find, is_own, named, own_table, read_own
 from stiction.tables import choose
 
 # plain functions that laws call, to be compiled with them

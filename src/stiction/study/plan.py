@@ -14,7 +14,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 from stiction.deprecation import warn_renamed
 from stiction.description import Description
 from stiction.errors import DescriptionError, Fault
-from stiction.friction.own import Find, held, named
+from stiction.friction.user.loading import Find, held, named
 from stiction.sections import Section, Table, as_html
 from stiction.study.axis_table import axis_table
 from stiction.study.coordinates import Coordinate, coordinate_faults, coordinates, zip_faults

@@ -16,7 +16,7 @@ from typing import Any, ClassVar
 from stiction.bounded import endless
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import has_state
-from stiction.friction.kinds import ENDING, is_law
+from stiction.friction.user.validation import ENDING, is_law
 from stiction.testing.common import COMMON, SPEEDS
 from stiction.testing.set_valued import SET_VALUED
 from stiction.testing.with_state import WITH_STATE

@@ -20,7 +20,7 @@ import numba.extending
 import numpy as np
 from numba.core.registry import cpu_target
 
-from stiction.friction.source import text_of
+from stiction.friction.user.source import text_of
 from stiction.solver.compilation.jit import compiled, compiled_for
 
 context: Any = cpu_target.target_context

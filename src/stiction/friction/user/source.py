@@ -16,7 +16,7 @@ from pathlib import Path
 from types import CodeType, ModuleType
 from typing import Any, NamedTuple
 
-from stiction.friction.excerpt import excerpt
+from stiction.friction.user.excerpt import excerpt
 
 
 class Text(NamedTuple):

@@ -17,8 +17,8 @@ from types import ModuleType
 from typing import Any
 
 from stiction.errors import DescriptionError, one_line
-from stiction.friction.kinds import fault, is_law, law_in, tried
-from stiction.friction.source import Text, member, module_name, module_of, read, text_of
+from stiction.friction.user.source import Text, member, module_name, module_of, read, text_of
+from stiction.friction.user.validation import fault, is_law, law_in, tried
 from stiction.validation import made
 
 # from a law's name and the text kept with it, if any, to the class

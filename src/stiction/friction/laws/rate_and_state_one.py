@@ -7,7 +7,7 @@ from math import hypot
 from typing import NamedTuple, Self
 
 from stiction.friction.law import Internal, Vector
-from stiction.friction.rate_and_state import (
+from stiction.friction.laws.rate_and_state import (
     ageing,
     comparable,
     faults,
@@ -23,7 +23,7 @@ from stiction.validation import validated
 
 @validated
 class OneState(NamedTuple):
-    """What both laws share; see `stiction.friction.rate_and_state` for the symbols."""
+    """What both laws share; see `stiction.friction.laws.rate_and_state` for the symbols."""
 
     a: PositiveNumber
     b: Coefficient
@@ -33,7 +33,7 @@ class OneState(NamedTuple):
 
     @classmethod
     def like(kind, static: float, kinetic: float, speed: float) -> Self:
-        """Return a comparable law; see `stiction.friction.rate_and_state.comparable`."""
+        """Return a comparable law; see `stiction.friction.laws.rate_and_state.comparable`."""
         return kind(*comparable(static, kinetic, speed))
 
     def faults(law) -> Iterator[tuple[str, str]]:
@@ -68,8 +68,8 @@ class RateStateAgeing(OneState):
         mu = a asinh[(V/2V*) exp((mu* + b ln(V* theta/D_c))/a)],
         theta' = 1 - V theta/D_c
 
-    See `stiction.friction.rate_and_state` for the symbols and the regularised form. The internal
-    state in results and in ``Initial(states=...)`` is ``log_theta`` = ln(V* theta/D_c).
+    See `stiction.friction.laws.rate_and_state` for the symbols and the regularised form. The
+    internal state in results and in ``Initial(states=...)`` is ``log_theta`` = ln(V* theta/D_c).
     The contacts age: in hold the state grows with time (healing).
 
     Parameters
@@ -98,8 +98,8 @@ class RateStateSlip(OneState):
         mu = a asinh[(V/2V*) exp((mu* + b ln(V* theta/D_c))/a)],
         theta' = -(V theta/D_c) ln(V theta/D_c)
 
-    See `stiction.friction.rate_and_state` for the symbols and the regularised form. The internal
-    state in results and in ``Initial(states=...)`` is ``log_theta`` = ln(V* theta/D_c).
+    See `stiction.friction.laws.rate_and_state` for the symbols and the regularised form. The
+    internal state in results and in ``Initial(states=...)`` is ``log_theta`` = ln(V* theta/D_c).
     The state evolves by slip alone: without slip nothing heals.
 
     Parameters

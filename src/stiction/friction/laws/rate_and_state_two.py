@@ -7,7 +7,7 @@ from math import hypot
 from typing import NamedTuple, Self
 
 from stiction.friction.law import Internal, Vector
-from stiction.friction.rate_and_state import (
+from stiction.friction.laws.rate_and_state import (
     ageing,
     comparable,
     faults,
@@ -23,7 +23,7 @@ from stiction.validation import validated
 
 @validated
 class TwoStates(NamedTuple):
-    """What both laws share; see `stiction.friction.rate_and_state` for the symbols."""
+    """What both laws share; see `stiction.friction.laws.rate_and_state` for the symbols."""
 
     a: PositiveNumber
     b_1: Coefficient
@@ -77,8 +77,8 @@ class RateStateAgeing2(TwoStates):
         mu = a asinh[(V/2V*) exp((mu* + b_1 ln(V* theta_1/D_1) + b_2 ln(V* theta_2/D_2))/a)],
         theta_i' = 1 - V theta_i/D_i
 
-    See `stiction.friction.rate_and_state` for the symbols. The internal states in results and in
-    ``Initial(states=...)`` are ``log_theta_i`` = ln(V* theta_i/D_i). Two are what experiments
+    See `stiction.friction.laws.rate_and_state` for the symbols. The internal states in results and
+    in ``Initial(states=...)`` are ``log_theta_i`` = ln(V* theta_i/D_i). Two are what experiments
     with steps of the slip speed often take (Ruina 1983; Gu et al. 1984,
     doi:10.1016/0022-5096(84)90007-3).
 
@@ -111,8 +111,8 @@ class RateStateSlip2(TwoStates):
         mu = a asinh[(V/2V*) exp((mu* + b_1 ln(V* theta_1/D_1) + b_2 ln(V* theta_2/D_2))/a)],
         theta_i' = -(V theta_i/D_i) ln(V theta_i/D_i)
 
-    See `stiction.friction.rate_and_state` for the symbols. The internal states in results and in
-    ``Initial(states=...)`` are ``log_theta_i`` = ln(V* theta_i/D_i). Two are what experiments
+    See `stiction.friction.laws.rate_and_state` for the symbols. The internal states in results and
+    in ``Initial(states=...)`` are ``log_theta_i`` = ln(V* theta_i/D_i). Two are what experiments
     with steps of the slip speed often take (Ruina 1983; Gu et al. 1984,
     doi:10.1016/0022-5096(84)90007-3).
 

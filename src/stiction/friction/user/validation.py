@@ -10,7 +10,7 @@ from typing import Any
 from stiction.bounded import endless
 from stiction.errors import DescriptionError, Fault, one_line
 from stiction.friction.law import has_state
-from stiction.friction.source import member
+from stiction.friction.user.source import member
 from stiction.validation import unknown
 
 SET_VALUED = ("coefficient", "slope")

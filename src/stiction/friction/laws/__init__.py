@@ -1,0 +1,1 @@
+"""Friction laws, one file a law; `stiction.friction.LAWS` registers them."""
