@@ -11,14 +11,22 @@ import subprocess
 import sys
 from collections.abc import Callable
 from importlib import import_module
+from math import ceil
 from pathlib import Path
 from signal import Signals
 from typing import TypeVar
 
 from stiction.errors import ResultError, StictionError, one_line
 
+try:
+    import resource
+    from signal import SIGXCPU
+except ImportError:  # Windows: seconds are those of a clock there
+    resource = None  # type: ignore[assignment]
+
+ENDLESS = "reading it does not end"
 CHILD = "from stiction.apart import answer; answer()"
-PATIENCE, PER_BYTE = 60.0, 1e-6  # s for any file, and for each byte of it: both are ample
+PATIENCE, PER_BYTE = 30.0, 1e-6  # s of the processor, for any file and for each byte of it: ample
 
 T = TypeVar("T")
 
@@ -31,19 +39,22 @@ def apart(work: Callable[[str], T], path: str | Path) -> T:
     ResultError
         What the function raises, or that its process crashes or does not end.
     """
+    seconds = ceil(PATIENCE + PER_BYTE * os.path.getsize(path))
     # -P: nothing is imported from the working folder
     command = [sys.executable, "-P", "-c", CHILD, work.__module__, work.__qualname__, str(path)]
     try:
         done = subprocess.run(
-            command,
+            [*command, str(seconds)],
             stdin=subprocess.DEVNULL,
             capture_output=True,
-            timeout=PATIENCE + PER_BYTE * os.path.getsize(path),
+            timeout=seconds if resource is None else None,
             env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
             check=False,
         )
     except subprocess.TimeoutExpired:
-        raise _broken(path, "reading it does not end") from None
+        raise _broken(path, ENDLESS) from None
+    if resource is not None and done.returncode == -SIGXCPU:
+        raise _broken(path, ENDLESS)
     if done.returncode:
         raise _broken(path, f"reading it ends in {_name(done.returncode)}")
     refused, answered = json.loads(done.stdout)
@@ -55,7 +66,10 @@ def apart(work: Callable[[str], T], path: str | Path) -> T:
 
 def answer() -> None:
     """Call a function as `apart` asks for it, and write out what it returns or raises."""
-    module, name, path = sys.argv[1:]
+    module, name, path, seconds = sys.argv[1:]
+    if resource is not None:
+        most = resource.getrlimit(resource.RLIMIT_CPU)[1]
+        resource.setrlimit(resource.RLIMIT_CPU, (int(seconds), most))
     out = os.dup(sys.stdout.fileno())  # nothing else is to be written there
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     try:
