@@ -9,7 +9,7 @@ from scipy.integrate import quad, solve_ivp
 import stiction as st
 from stiction import theory
 from stiction.analysis.regime import HARMONIC, SETTLING, STICK_SLIP
-from stiction.auditing import advice, figures, words
+from stiction.auditing import advice, figures, observation, report, words
 from stiction.auditing.advice import advise, nearest
 from stiction.auditing.observation import OSCILLATES, SLIDES, coarse_rate, from_sliding, observe
 from stiction.auditing.page import page
@@ -112,7 +112,7 @@ def test_what_slides_steadily_needs_nothing():
     found = examine(PAPER.replace(phi="10 deg"))
     assert found.advices == ()
     assert found.observation.regime.kind == SETTLING
-    assert sections(found)[-1].sentences == ["Nothing: it slides steadily once it has settled."]
+    assert sections(found)[-1].sentences == ["Nothing: after the start it slides steadily."]
     shown = {row[0]: row[1:] for row in sections(found)[1].table.rows}
     assert shown["creep before the first slip"] == ("none", "none")  # nothing slips
     law = PAPER.friction
@@ -129,6 +129,29 @@ def test_progress_is_told_to_its_end():
     assert fractions[-1] == 1.0
 
 
+def test_an_audit_takes_no_more_work_than_it_may_and_says_what_it_left_out(found, monkeypatch):
+    """Enough for one trial a lever: the one that needs two is cut, and its bar moves within it."""
+    tests = found.observation.work + found.sliding_on.work
+    trials = sum(each.work for each in found.advices)
+    assert tests + trials < observation.MOST_WORK
+    assert not any(each.cut for each in found.advices)
+    few = 4 * 30_000
+    assert trials > few
+    monkeypatch.setattr(report, "MOST_WORK", tests + few)
+    fractions = []
+    seen = examine(PAPER, fractions.append)
+    samples = sum(len(each.tried.record) for each in seen.advices if each.tried)
+    assert sum(each.work for each in seen.advices) < few + samples
+    assert [each.path for each in seen.advices if each.cut] == ["drive.velocity"]
+    sentence = "Values farther from the present one were not tried of drive velocity V: all"
+    assert any(each.startswith(sentence) for each in sections(seen)[-1].sentences)
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1.0
+    parts = report.PARTS
+    inside = {each for each in fractions if abs(parts * each - round(parts * each)) > 1e-9}
+    assert len(inside) >= 3  # it was told of each simulation, not of each part only
+
+
 def test_the_remedies_are_named_with_their_values(found):
     first = sections(found)[-1].sentences[0]
     assert first.startswith("To slide steadily: misalignment φ of 9.954 deg, or damping c_x of 51.")
@@ -140,10 +163,10 @@ def test_no_value_is_tried_twice(monkeypatch):
     rig = {"mass": 0.2, "k_x": 150, "k_y": 6e4, "phi": "0.5 deg", "normal_load": 2}
     soft = st.Slider(**rig, friction=law, drive=st.ConstantVelocity("2 mm/s"))
     tried = []
-    monkeypatch.setattr(advice, "tried", lambda slider: tried.append(slider) or {"tried": None})
+    monkeypatch.setattr(advice, "tried", lambda slider, *_: tried.append(slider) or {"tried": None})
     monkeypatch.setattr(advice, "LEVERS", ("phi",))
     monkeypatch.setattr(advice.Advice, "works", False)
-    (found,) = [each._replace() for each in advise(soft, False)]
+    (found,) = [each._replace() for each in advise(soft, False, 10**6)]
     assert found.then == tried[-1].phi
     assert len({each.phi for each in tried}) == len(tried)
 

@@ -313,6 +313,27 @@ def test_angles_are_cut_where_none_lie():
     assert cut_open(forward).tolist() == forward.tolist()
 
 
+def test_trials_of_many_swings_show_a_few_of_them() -> None:
+    """A solid block says nothing of the motion; what hardly moves is drawn whole."""
+    time = np.linspace(0.0, 100.0, 40_001)
+    before = st.Record(time=time, force=1.0 + 0.25 * (time % 4.0))
+    many = st.Record(time=time, force=1.0 + 0.4 * np.sin(2 * pi * 20.0 * time))
+    calm = st.Record(time=time, force=1.0 + 1e-3 * np.sin(2 * pi * 20.0 * time))
+    trials = [Trial("fast", many), Trial("slow", before), Trial("calm", calm)]
+    fast, slow, still = plot_trials(before, trials)
+    low, high = fast.get_xlim()
+    assert (low, high) == pytest.approx((100.0 - 8 / 20.0, 100.0), abs=1e-3)
+    blue = fast.get_lines()[1].get_ydata()
+    turns = np.count_nonzero(np.diff(np.sign(np.diff(blue))))
+    assert 14 <= turns <= 18
+    assert [text.get_text() for text in fast.texts] == ["8 of some 2000 swings"]
+    assert slow.get_xlim() == still.get_xlim() == (0.0, 100.0)
+    short = st.Record(time=time[:20_000] / 2.0, force=before.force[:20_000])
+    (alone,) = plot_trials(short, [Trial("fast", many)])  # which ended before this part begins
+    assert alone.get_xlim()[1] == 100.0
+    assert len(alone.get_lines()) == 1
+
+
 def test_trials_show_what_is_small_beside_the_loading() -> None:
     time = np.arange(0.0, 10.0, 0.01)
     loading = np.minimum(time, 3.6)

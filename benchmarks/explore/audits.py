@@ -13,7 +13,7 @@ from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from math import pi, sqrt
-from time import perf_counter
+from time import process_time
 from typing import Any, NamedTuple
 
 import stiction as st
@@ -39,7 +39,7 @@ NO_NUMBER = re.compile(r"\b(nan|inf)\b")
 
 
 class Seen(NamedTuple):
-    """What came of one audit: in a line, how long it took (s), and the rules that it breaks."""
+    """What came of one audit: in a line, its time on a core (s), and the rules that it breaks."""
 
     number: int
     what: str
@@ -189,18 +189,18 @@ RULES: tuple[Callable[[Audit], bool], ...] = (
 
 def look(seed: int, number: int) -> Seen:
     """Audit one rig, write its page, and hold it against the rules."""
-    slider, begin = rig(seed, number), perf_counter()
+    slider, begin = rig(seed, number), process_time()
     name = type(slider.law).__name__
     fractions: list[float] = []
     try:
         found = st.audit(slider, fractions.append)
         page(found, f"rig {number}")
     except Exception as error:
-        return Seen(number, name, perf_counter() - begin, (f"{type(error).__name__}: {error}",))
+        return Seen(number, name, process_time() - begin, (f"{type(error).__name__}: {error}",))
     broken = [rule.__name__ for rule in RULES if not rule(found)]
     if fractions != sorted(fractions) or fractions[-1:] != [1.0]:
         broken.append("progress ends elsewhere than at 1")
-    return Seen(number, f"{name}: {found!r}", perf_counter() - begin, tuple(broken))
+    return Seen(number, f"{name}: {found!r}", process_time() - begin, tuple(broken))
 
 
 def main() -> int:

@@ -69,6 +69,10 @@ def find_cycles(source: Trajectory | Record) -> xr.Dataset:
     quarter of its period without a sample; so is the first loading of a run that starts unloaded,
     as no slip comes before it.
 
+    A study (`stiction.Study`) counts the same cycles in the same run but for one sort: swings below
+    a thousandth of the span of the force, its first loading included, which are counted here where
+    they stand apart, and not there.
+
     Parameters
     ----------
     source : Trajectory or Record

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from math import copysign, inf, isfinite, nan, radians, sqrt
 from typing import Any, NamedTuple
 
-from stiction.auditing.observation import SLIDES, Observation, coarse_rate, observe
+from stiction.auditing.observation import SLIDES, Observation, Progress, coarse_rate, observe
 from stiction.auditing.prediction import predict
 from stiction.linear_stability import Critical, critical, growth_rate
 from stiction.parameter import changed, read, unit
@@ -26,6 +26,7 @@ MORE = {
 LEVERS = ("phi", "drive.velocity", "c_x", "k_x")
 NOT_TRIED = (nan, nan, nan, None)  # of an `Advice`: nothing better found so far
 MOST_TURNED = 80.0  # degrees: nearer to a right angle the soft spring is no spring of the drive's
+LEAST_WORK = 20_000  # steps: of fewer a trial would be cut
 STRONGEST = 10.0  # times critical damping: as far as a damper is tried
 
 
@@ -47,6 +48,10 @@ class Advice(NamedTuple):
         The growth rate (1/s) then.
     tried : Observation or None
         The simulation with the value that is advised.
+    work : int
+        Steps and samples of all simulations with one value or another.
+    cut : bool
+        Whether that was all that it may take, and values farther away were not tried.
     """
 
     path: str
@@ -57,6 +62,8 @@ class Advice(NamedTuple):
     then: float
     growth: float
     tried: Observation | None
+    work: int = 0
+    cut: bool = False
 
     @property
     def works(self) -> bool:
@@ -66,30 +73,53 @@ class Advice(NamedTuple):
         return slides and self.growth < 0.0
 
 
-def advise(slider: Slider, stable: bool) -> Iterator[Advice]:
+def advise(slider: Slider, stable: bool, work: int, progress: Progress = None) -> Iterator[Advice]:
     """Yield, for each lever, the nearest value at which sliding is steady, and try it from rest.
 
     Where steady sliding is `stable` already, and only not reached from rest, ever larger values
-    are tried.
+    are tried. All simulations together take so much `work`, see `Observation.work`; what one lever
+    leaves of its share is for the next. `progress` is told the share of the levers that is done.
     """
-    for path in LEVERS:
-        if stable:
-            advice = Advice(path, unit(slider, path), read(slider, path), (nan, nan), *NOT_TRIED)
-            ways: Iterator[tuple[float, float]] = ((nan, then) for then in further(slider, path))
-        else:
-            found = critical(slider, path, limits(slider, path))
-            now = read(slider, path)
-            advice = Advice(path, found.unit, now, found.between, *NOT_TRIED)
-            ways = (nearest(found, now, beyond) for beyond in BEYOND)
-        for edge, then in ways:
-            if then == advice.then:  # the middle of the stretch, from where there is no farther
-                break
-            if isfinite(then):
-                better = changed(slider, path, written(slider, path, then))
-                advice = advice._replace(critical=edge, then=then, **tried(better))
-            if advice.tried is None or advice.works:
-                break
+    told = progress or (lambda fraction: None)
+    for number, path in enumerate(LEVERS):
+
+        def report(fraction: float, before: int = number) -> None:
+            told((before + fraction) / len(LEVERS))
+
+        advice = advise_one(slider, path, stable, work // (len(LEVERS) - number), report)
+        work -= advice.work
+        report(1.0)
         yield advice
+
+
+def advise_one(
+    slider: Slider, path: str, stable: bool, work: int, progress: Callable[[float], None]
+) -> Advice:
+    """Return the nearest value of one lever at which sliding is steady, as tried from rest."""
+    if stable:
+        advice = Advice(path, unit(slider, path), read(slider, path), (nan, nan), *NOT_TRIED)
+        ways = [(nan, then) for then in further(slider, path)]
+    else:
+        found = critical(slider, path, limits(slider, path))
+        now = read(slider, path)
+        advice = Advice(path, found.unit, now, found.between, *NOT_TRIED)
+        ways = [nearest(found, now, beyond) for beyond in BEYOND]
+    for number, (edge, then) in enumerate(ways):
+
+        def report(fraction: float, before: int = number) -> None:
+            progress((before + fraction) / len(ways))
+
+        if not isfinite(then) or then == advice.then:  # nowhere, or the middle of the stretch
+            break
+        left = work - advice.work
+        if left < LEAST_WORK:
+            return advice._replace(cut=True)
+        seen = tried(changed(slider, path, written(slider, path, then)), left, report)
+        spent = advice.work + (seen["tried"].work if seen["tried"] else 0)
+        advice = advice._replace(critical=edge, then=then, work=spent, **seen)
+        if advice.tried is None or advice.works:
+            break
+    return advice
 
 
 def further(slider: Slider, path: str) -> Iterator[float]:
@@ -106,10 +136,13 @@ def further(slider: Slider, path: str) -> Iterator[float]:
             yield now * more
 
 
-def tried(slider: Slider) -> dict[str, Any]:
+def tried(slider: Slider, most_steps: int, progress: Progress) -> dict[str, Any]:
     """Return the growth rate of a changed slider, and a simulation of it."""
     growth, prediction = growth_rate(slider), predict(slider)
-    seen = observe(slider, prediction, growth, sample_rate=coarse_rate(prediction))
+    rate = coarse_rate(prediction)
+    seen = observe(
+        slider, prediction, growth, sample_rate=rate, most_steps=most_steps, progress=progress
+    )
     return {"growth": growth, "tried": seen}
 
 

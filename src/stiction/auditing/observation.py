@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import pi
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -28,9 +29,12 @@ LONGEST = 2000.0  # swings on the soft spring to wait for that at most
 COARSE = 40.0  # samples in each swing on the soft spring
 ALMOST = 0.99  # of the drive's speed: it has come to slide
 MOST_SAMPLES = 200_000
-MOST_STEPS = 5_000_000  # some 2 s
+MOST_WORK = 7_000_000  # steps and samples of all simulations of an audit: some 15 s
+SHARE = 0.35  # of that for the test from rest, and as much for the one from sliding
 MANY = 50_000  # transverse periods, from which on few cycles are to stand for many
 
+
+Progress = Callable[[float], None] | None
 
 SMALL = "an oscillation too small for the load cell to tell"
 # what a run comes to in the end
@@ -74,6 +78,12 @@ class Observation(NamedTuple):
         return STUCK if self.comes_to == STUCK else self.regime.kind
 
     @property
+    def work(self) -> int:
+        """How much the simulation took: steps of the solver, accurate or not, and samples."""
+        steps = self.run.statistics
+        return steps.steps + steps.rejected + len(self.record)
+
+    @property
     def coarse(self) -> bool:
         """Whether it is sampled too coarsely to see the transverse oscillation."""
         slider = self.run.slider
@@ -93,6 +103,8 @@ def observe(
     *,
     sample_rate: float,
     start: Initial | None = None,
+    most_steps: int = int(SHARE * MOST_WORK),
+    progress: Progress = None,
 ) -> Observation:
     """Simulate a friction test, and read its record.
 
@@ -109,6 +121,10 @@ def observe(
         Hz; less if there would be too many samples.
     start : Initial, optional
         Where it starts; from rest, springs unloaded, when left out.
+    most_steps : int, optional
+        It is cut after so many steps of the solver.
+    progress : callable, optional
+        Told the fraction of the simulation that is done.
     """
     load_up = prediction.load_up
     slips = CYCLES * prediction.period if prediction.slips else 0.0
@@ -121,7 +137,8 @@ def observe(
         initial=start,
         sample_rate=min(sample_rate, MOST_SAMPLES / duration),
         multiscale=duration * prediction.f_y > MANY,
-        max_steps=MOST_STEPS,
+        max_steps=most_steps,
+        progress=progress,
     )
     record = record_of(run)
     found = swings(record)
@@ -130,7 +147,9 @@ def observe(
     return Observation(run, record, cycles, regime, shares(run, cycles), outcome(run))
 
 
-def from_sliding(linear: Linearisation, prediction: Prediction) -> Observation:
+def from_sliding(
+    linear: Linearisation, prediction: Prediction, progress: Progress = None
+) -> Observation:
     """Simulate the same test from steady sliding, disturbed by a hundredth of the speed."""
     return observe(
         linear.slider,
@@ -138,6 +157,7 @@ def from_sliding(linear: Linearisation, prediction: Prediction) -> Observation:
         linear.growth_rate,
         sample_rate=coarse_rate(prediction),
         start=linear.disturbed(KICK),
+        progress=progress,
     )
 
 

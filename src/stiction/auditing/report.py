@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from stiction.auditing.advice import LEVERS, Advice, advise, limits
 from stiction.auditing.observation import (
+    MOST_WORK,
     OSCILLATES,
     SLIDES,
     Observation,
@@ -136,29 +137,26 @@ def audit(
     >>> st.audit(st.presets.nakano_popov_2020().replace(phi="9.5 deg"))
     <Audit: settling; steady sliding is stable>
     """
-
     system = slider_of(slider)
+    report = progress or (lambda fraction: None)
 
-    def report(done: int) -> None:
-        if progress is not None:
-            progress(done / PARTS)
+    def part(number: int, of: int = 1) -> Callable[[float], None]:
+        """Return what is told the fraction of some parts that is done."""
+        return lambda fraction: report((number + of * fraction) / PARTS)
 
     sliding, prediction = steady_sliding(system), predict(system)
     growth = sliding.growth_rate
     rate = max(prediction.sample_rate, coarse_rate(prediction))
-    observation = observe(system, prediction, growth, sample_rate=rate)
-    report(1)
-    sliding_on = from_sliding(sliding, prediction)
-    report(2)
-    advices = []
+    observation = observe(system, prediction, growth, sample_rate=rate, progress=part(0))
+    sliding_on = from_sliding(sliding, prediction, part(1))
+    advices: tuple[Advice, ...] = ()
     if not sliding.stable or observation.comes_to != SLIDES:
-        for advice in advise(system, sliding.stable):
-            advices.append(advice)
-            report(2 + len(advices))
+        work = MOST_WORK - observation.work - sliding_on.work
+        advices = tuple(advise(system, sliding.stable, work, part(2, len(LEVERS))))
     misalignment = critical(system, "phi", limits(system, "phi"))
-    report(PARTS)
+    report(1.0)
     both = observation, sliding_on
-    return Audit(system, prediction, sliding, misalignment, *both, tuple(advices))
+    return Audit(system, prediction, sliding, misalignment, *both, advices)
 
 
 FORMER = {"Audit": "stiction.auditing.Audit", "examine": "stiction.audit"}

@@ -18,7 +18,13 @@ from stiction.analysis.regime import (
     UNDETERMINED,
 )
 from stiction.auditing.advice import Advice
-from stiction.auditing.observation import OSCILLATES, SLIDES, UNSETTLED, Observation
+from stiction.auditing.observation import (
+    MOST_WORK,
+    OSCILLATES,
+    SLIDES,
+    UNSETTLED,
+    Observation,
+)
 from stiction.auditing.prediction import suppositions
 from stiction.auditing.report import Audit
 from stiction.friction import has_state
@@ -39,7 +45,7 @@ NAMES = {
 
 SEEN = {  # kinds of motion, in a sentence
     TRANSITIONAL: f"a {TRANSITIONAL} between stick-slip and harmonic vibration",
-    SETTLING: "a transient that settles to steady sliding",
+    SETTLING: "steady sliding, after a motion at the start that dies out",
     STUCK: "loading without a slip",
     UNDETERMINED: "a motion of no clear kind",
 }
@@ -76,7 +82,10 @@ def motions(found: Audit) -> list[str]:
             f"1 % of the drive's speed: {sliding.motion}.",
         ]
     if rest.comes_to == SLIDES and sliding.comes_to == SLIDES:
-        what = "It slides steadily once it has settled, from rest as from a small disturbance."
+        what = (
+            "It comes to slide steadily, started from rest, and goes on sliding steadily after a "
+            "small disturbance."
+        )
         if found.sliding.verdict == UNSTABLE:
             what = (
                 "In the time of the test it slides steadily, but that does not last: small "
@@ -108,7 +117,11 @@ def ended(seen: Observation) -> str:
     if seen.comes_to == SLIDES:
         return "steady sliding"
     name = SEEN.get(seen.motion, seen.motion)
-    return f"{name} (not settled when the test ends)" if seen.comes_to == UNSETTLED else name
+    return (
+        f"{name} (still growing or dying out when the test ends)"
+        if seen.comes_to == UNSETTLED
+        else name
+    )
 
 
 def described(seen: Observation) -> str:
@@ -321,7 +334,7 @@ def transverse(found: Audit) -> list[str]:
 def changes(found: Audit) -> tuple[list[str], Table | None]:
     """Return what would make it slide steadily, each with its simulation from rest."""
     if not found.advices:
-        return ["Nothing: it slides steadily once it has settled."], None
+        return ["Nothing: after the start it slides steadily."], None
     rows = [_change(found, advice) for advice in found.advices]
     goal = "take away the oscillation from rest" if found.bistable else "slide steadily"
     remedies = [
@@ -331,6 +344,13 @@ def changes(found: Audit) -> tuple[list[str], Table | None]:
     ]
     what = f"To {goal}: {', or '.join(remedies)}" if remedies else f"None of these makes it {goal}"
     lines = [f"{what}. Each was simulated from rest, and the last column says what comes of it."]
+    cut = [NAMES[each.path] for each in found.advices if each.cut]
+    if cut:
+        lines.append(
+            f"Values farther from the present one were not tried of {', or '.join(cut)}: all "
+            f"simulations of an audit together take no more than {MOST_WORK / 1e6:g} million steps "
+            "and samples."
+        )
     if found.bistable:
         lines.append(
             "Nothing has to be changed for a test that is started from steady sliding, as long as "
@@ -344,6 +364,8 @@ def _change(found: Audit, advice: Advice) -> tuple[str, ...]:
     if advice.tried is None:
         low, high = (in_words(end, advice.unit) for end in advice.between)
         tried = f"{low} to {high}" if isfinite(advice.between[0]) else "none"
+        if advice.cut:
+            return name, now, "", "none", "not tried"
         return name, now, "nowhere", tried, "no value in that range"
     then, seen = in_words(advice.then, advice.unit), advice.tried
     side = "above" if advice.critical > advice.now else "below"
@@ -351,7 +373,7 @@ def _change(found: Audit, advice: Advice) -> tuple[str, ...]:
         f"{side} {in_words(advice.critical, advice.unit)}" if isfinite(advice.critical) else "now"
     )
     if advice.works:
-        return name, now, edge, then, seen.motion
+        return name, now, edge, then, ended(seen)
     if not seen.run.status.ok:
         until = in_words(float(seen.record.time[-1]), "s")
         return name, now, edge, then, f"not known: the simulation was cut at {until}"

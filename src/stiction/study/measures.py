@@ -50,7 +50,11 @@ MEASURES: dict[str, Measure] = {
         "half the span of the spring force along x in the last quarter",
         lambda run: 0.5 * run.features.late_span,
     ),
-    "cycles": Measure("1", "number of complete cycles", lambda run: float(len(run.swings.drop))),
+    "cycles": Measure(
+        "1",
+        "number of complete cycles, in which the force falls by a thousandth of its span or more",
+        lambda run: float(len(run.swings.drop)),
+    ),
     "period": Measure("s", "mean time from trough to trough", lambda run: _mean(run.swings.period)),
     "force_drop": Measure("N", "mean force drop of the cycles", lambda run: _mean(run.swings.drop)),
     "rise_share": Measure(

@@ -28,7 +28,8 @@ LEAST_SAMPLES, MOST_SAMPLES = 64, 1_000_000  # of one run
 # The fast oscillation is looked at over its last periods.
 FAST_PERIODS, PER_FAST_PERIOD = 32, 16
 # Smallest reversal of the force that counts, of its span: ten times what the fast oscillation
-# makes of it in the paper's system, and small enough to see swings die out.
+# makes of it in the paper's system, and small enough to see swings die out. An analysis counts
+# smaller ones where they stand apart from all that are smaller still.
 REVERSAL = 1e-3
 
 
