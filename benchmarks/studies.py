@@ -26,9 +26,9 @@ import json, sys, tempfile
 from pathlib import Path
 from time import perf_counter, process_time
 import stiction as st
-from stiction.study.engines import Threads
-from stiction.study.observed import observe
-from stiction.study import observed
+from stiction.study.execution.engines import Threads
+from stiction.study.variables.observation import observe
+from stiction.study.variables import observation
 from benchmarks.peak import peak
 
 def study(side, other, duration):
@@ -63,13 +63,13 @@ from concurrent.futures import ThreadPoolExecutor
 side, threads = int(sys.argv[1]), int(sys.argv[2])
 made = study(side, side, 5.0)
 asked = []
-solve = observed.solve
+solve = observation.solve
 
 def note(description, times, progress=None):
     asked.append((description, times))
     raise st.StictionError
 
-observed.solve = note
+observation.solve = note
 for index in ((i, j) for i in range(side) for j in range(side)):
     try:
         observe(made.description(index), None)

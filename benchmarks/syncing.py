@@ -18,8 +18,9 @@ from time import perf_counter, process_time
 from typing import TYPE_CHECKING, NamedTuple
 from unittest.mock import patch
 
-import stiction as st
 from stiction.study.engines import Threads
+
+import stiction as st
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -19,7 +19,7 @@ from stiction.analysis.spread import TIMES
 from stiction.analysis.turning_points import _placed, turning_points
 from stiction.plotting.canvas import figure_of
 from stiction.plotting.cycles import plot_cycles
-from stiction.study.observed import observe
+from stiction.study.variables.observation import observe
 from stiction.units import in_words
 
 Floats = NDArray[np.float64]

@@ -19,7 +19,7 @@ import pytest
 import xarray as xr
 
 import stiction as st
-from stiction.study.store import PENDING
+from stiction.study.store.store import PENDING
 from waiting import PATIENCE, until
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
@@ -28,9 +28,9 @@ KILLS = 20
 NURSERY = """
 import os, resource, sys
 import stiction as st
-from stiction.study.cluster import Scheduler
-from stiction.study.engines import Threads
-from stiction.study.layout import laid_out
+from stiction.study.execution.cluster import Scheduler
+from stiction.study.execution.engines import Threads
+from stiction.study.store.blocks import laid_out
 import distributed, xarray, zarr
 
 study = st.Study.from_json(sys.argv[1])
@@ -169,7 +169,7 @@ DASK = "from distributed.cli.dask_{0} import main; main()"
 # a worker does no block more than a file allows: the study cannot be over before the test is
 GATE = """
 import json, pathlib, time
-from stiction.study import task
+from stiction.study.execution import task
 
 gate = pathlib.Path({0!r})
 done = task.ungated = getattr(task, "ungated", task.done)  # this is loaded more than once

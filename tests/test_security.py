@@ -19,9 +19,9 @@ from stiction.cli.sweep import engine
 from stiction.cli.tables import printed
 from stiction.errors import StictionError
 from stiction.sections import Section, Table
-from stiction.study.cluster import Processes
-from stiction.study.creation import create
-from stiction.study.sealing import seal
+from stiction.study.execution.cluster import Processes
+from stiction.study.store.creation import create
+from stiction.study.store.seal import seal
 from waiting import PATIENCE
 
 

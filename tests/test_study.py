@@ -7,12 +7,12 @@ import pytest
 import xarray as xr
 
 import stiction as st
-from stiction.study.cluster import Processes
-from stiction.study.creation import create
-from stiction.study.engines import Threads
-from stiction.study.layout import Layout, laid_out, places
+from stiction.study.execution.cluster import Processes
+from stiction.study.execution.engines import Threads
 from stiction.study.parameters import unit, varied
-from stiction.study.sealing import seal
+from stiction.study.store.blocks import Layout, laid_out, places
+from stiction.study.store.creation import create
+from stiction.study.store.seal import seal
 
 PAPER = st.presets.nakano_popov_2020()
 BASE = st.Description(PAPER, st.Initial(), st.Settings(duration="30 ms"))

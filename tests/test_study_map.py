@@ -9,9 +9,9 @@ from stiction import theory
 from stiction.cli import main
 from stiction.plotting.canvas import figure_of
 from stiction.plotting.maps import Side
-from stiction.study.boundaries import PHI_C, ZETA, plane
 from stiction.study.presets import PRESETS, preset
-from stiction.study.sealing import seal
+from stiction.study.store.seal import seal
+from stiction.study.view.boundaries import PHI_C, ZETA, plane
 
 PAPER = st.presets.nakano_popov_2020()
 BASE = st.Description(PAPER, st.Initial(), st.Settings(duration="4 s"))

@@ -6,10 +6,10 @@ import pytest
 import stiction as st
 from stiction.analysis.creep import first_slip_time
 from stiction.analysis.regime import shape
-from stiction.study.features import features, zigzag
-from stiction.study.measures import MEASURES
-from stiction.study.observed import observe
-from stiction.study.regimes import KINDS, TRANSVERSE
+from stiction.study.variables.fast_regime import KINDS, TRANSVERSE
+from stiction.study.variables.features import features, zigzag
+from stiction.study.variables.measures import MEASURES
+from stiction.study.variables.observation import observe
 
 PAPER = st.presets.nakano_popov_2020()
 

@@ -11,8 +11,8 @@ import xarray as xr
 import stiction as st
 from power import Disk, State, put
 from stiction.files import held
-from stiction.study.creation import create
-from stiction.study.engines import Threads
+from stiction.study.execution.engines import Threads
+from stiction.study.store.creation import create
 
 BASE = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="10 ms"))
 AXES = {"phi": st.Values(["1 deg", "95 deg", "3 deg"])}  # one is refused, and says why
@@ -99,7 +99,7 @@ def test_a_block_that_lacks_something_is_done_again(tmp_path, name, left):
 
 def test_two_sweeps_of_one_new_store_share_it(tmp_path, monkeypatch):
     """The second one has begun when the first one makes the store; each does a part."""
-    from stiction.study import creation
+    from stiction.study.store import creation
 
     done, place = {"first": [], "second": []}, creation.place
     path = tmp_path / "a.zarr"

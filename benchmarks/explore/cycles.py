@@ -23,8 +23,8 @@ from stiction.analysis.regime import STICK_SLIP
 from stiction.auditing import observation
 from stiction.auditing.prediction import predict
 from stiction.linear_stability import growth_rate
-from stiction.study.features import zigzag
-from stiction.study.observed import observe
+from stiction.study.variables.features import zigzag
+from stiction.study.variables.observation import observe
 
 Floats = NDArray[np.float64]
 

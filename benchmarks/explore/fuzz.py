@@ -29,7 +29,7 @@ from stiction import result_checksums, result_file
 from stiction.cli import main as main_line
 from stiction.cli.options import value as option
 from stiction.laws import read_laws
-from stiction.study.sealing import seal
+from stiction.study.store.seal import seal
 from stiction.tables import toml_text
 
 from .draw import Draw

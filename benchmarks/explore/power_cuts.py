@@ -25,7 +25,7 @@ from random import Random
 import xarray as xr
 
 import stiction as st
-from stiction.study.sweeping import Tally
+from stiction.study.execution.sweep import Tally
 
 SHUTDOWN, WITHOUT_FLUSH = 0x8004587D, 2  # EXT4_IOC_SHUTDOWN, EXT4_GOING_FLAGS_NOLOGFLUSH
 SIZE = 256 * 2**20  # bytes of the file system
@@ -33,7 +33,7 @@ SIDES = (46, 46)  # runs along phi and along V: some 8 s on two threads
 CHILD = """
 import sys
 import stiction as st
-from stiction.study.engines import Threads
+from stiction.study.execution.engines import Threads
 study = st.Study.from_json(sys.argv[1])
 say = lambda tally: print(".", flush=True)
 st.sweep(study, sys.argv[2], engine=Threads(2), progress=say)

@@ -69,11 +69,11 @@ if TYPE_CHECKING:
     from stiction.simulation import run, simulate
     from stiction.slider import Slider
     from stiction.study.axes import Grid, Random, Sobol, Values
-    from stiction.study.mapping import Map, map
+    from stiction.study.execution.refine import refine
+    from stiction.study.execution.sweep import sweep
     from stiction.study.plan import Study
-    from stiction.study.refining import refine
-    from stiction.study.store import open_study
-    from stiction.study.sweeping import sweep
+    from stiction.study.store.store import open_study
+    from stiction.study.view.mapping import Map, map
     from stiction.template import init
     from stiction.testing import check_law
     from stiction.trajectory import Trajectory, export, load
@@ -102,7 +102,7 @@ _HOME = {
     "Initial": "initial",
     "LoadProgram": "drive",
     "LuGre": "friction",
-    "Map": "study.mapping",
+    "Map": "study.view.mapping",
     "Modulation": "drive",
     "Ramp": "drive",
     "Random": "study.axes",
@@ -144,15 +144,15 @@ _HOME = {
     "follow_ridge": "analysis.ridge",
     "init": "template",
     "load": "trajectory",
-    "map": "study.mapping",
+    "map": "study.view.mapping",
     "mean_creep": "analysis.creep_curve",
     "misalignment_from_force": "analysis.force_curve",
-    "open_study": "study.store",
+    "open_study": "study.store.store",
     "oscillation_by_phase": "analysis.oscillation",
     "paper": "reproduction.reproduce",
     "plot": "plotting.door",
     "record_of": "analysis.record",
-    "refine": "study.refining",
+    "refine": "study.execution.refine",
     "run": "simulation",
     "simulate": "simulation",
     "spectrogram": "analysis.spectrum",
@@ -160,7 +160,7 @@ _HOME = {
     "stream_spectrogram": "analysis.spectrum",
     "strongest_line": "analysis.measured_line",
     "summary": "analysis.spread",
-    "sweep": "study.sweeping",
+    "sweep": "study.execution.sweep",
     "transverse_oscillation": "analysis.oscillation",
 }
 # old public names, which go on working for one version

@@ -14,8 +14,8 @@ from stiction.result_checksums import intact_description
 from stiction.result_file import read_tables
 from stiction.sections import Section, as_text
 from stiction.simulation import run
-from stiction.study.restoring import damage_of, restore, stores_in
-from stiction.study.view import broken_changes
+from stiction.study.store.repair import damage_of, restore, stores_in
+from stiction.study.view.view import broken_changes
 
 
 class Check(NamedTuple):

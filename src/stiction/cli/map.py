@@ -49,7 +49,7 @@ def map(
     """
     from stiction.plotting.canvas import figure_of
     from stiction.plotting.save import drawable, write
-    from stiction.study.mapping import map as look
+    from stiction.study.view.mapping import map as look
 
     cut = dict(named(text, "--at") for text in at or ())
     target = drawable(output or study.with_suffix(".png"))

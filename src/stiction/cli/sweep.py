@@ -12,7 +12,7 @@ from stiction.cli.options import Changes, Output, Trust, changes, named
 from stiction.cli.terminal import say
 
 if TYPE_CHECKING:
-    from stiction.study.engines import Engine
+    from stiction.study.execution.engines import Engine
     from stiction.study.plan import Study
 
 
@@ -91,8 +91,8 @@ def sweep(
         Write progress and outcome to standard output as JSON, a line each, at most one a second.
     """
     from stiction.cli.tally import shown
-    from stiction.study.refining import refine as halve
-    from stiction.study.sweeping import sweep as do
+    from stiction.study.execution.refine import refine as halve
+    from stiction.study.execution.sweep import sweep as do
 
     found = None
     study = described(config, preset, changes(set), trust)
@@ -135,7 +135,7 @@ def engine(
 ) -> Engine:
     """Return the engine that is asked for."""
     from stiction.errors import StictionError
-    from stiction.study.engines import Threads
+    from stiction.study.execution.engines import Threads
 
     if sum(each is not None for each in (threads, workers, scheduler)) > 1:
         raise StictionError("--threads, --workers and --scheduler exclude each other; give one")
@@ -146,6 +146,6 @@ def engine(
         raise StictionError("--dashboard is of --workers; give both")
     if workers is None and scheduler is None:
         return Threads() if threads is None else Threads(threads)
-    from stiction.study.cluster import Processes, Scheduler
+    from stiction.study.execution.cluster import Processes, Scheduler
 
     return Processes(workers, dashboard) if workers is not None else Scheduler(str(scheduler))

@@ -16,8 +16,8 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from stiction.cli.terminal import say
 
 if TYPE_CHECKING:
-    from stiction.study.summary import Summary
-    from stiction.study.sweeping import Tally
+    from stiction.study.execution.sweep import Tally
+    from stiction.study.view.summary import Summary
 
 Report = Callable[["Tally"], None]
 Conclude = Callable[[Path, "Summary"], None]

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from stiction.plotting.spectrogram import plot_spectrogram
     from stiction.plotting.stability import plot_boundary, plot_stability
     from stiction.plotting.trials import plot_trials
-    from stiction.study.mapping import plot_map
+    from stiction.study.view.mapping import plot_map
 
 # where each public name lives; imported when first used
 _HOME = {
@@ -42,7 +42,7 @@ _HOME = {
     "plot_damping": "plotting.damping",
     "plot_energy": "plotting.energy",
     "plot_law": "plotting.law",
-    "plot_map": "study.mapping",  # what it draws lies above the figures
+    "plot_map": "study.view.mapping",  # what it draws lies above the figures
     "plot_modes": "plotting.modes",
     "plot_onset": "plotting.onset",
     "plot_oscillation": "plotting.oscillation",

@@ -17,13 +17,13 @@ from stiction.errors import DescriptionError, Fault
 from stiction.friction.user.loading import Find, held, named
 from stiction.sections import Section, Table, as_html
 from stiction.study.axis_table import axis_table
-from stiction.study.coordinates import Coordinate, coordinate_faults, coordinates, zip_faults
-from stiction.study.layout import Index, Layout, laid_out
-from stiction.study.measures import DEFAULT
-from stiction.study.observed import seconds_of
 from stiction.study.parameters import varied
 from stiction.study.reading import axes_of, is_description, measures_of, traces_of
-from stiction.study.size import axis_faults, run_faults
+from stiction.study.store.blocks import Index, Layout, laid_out
+from stiction.study.store.coordinates import Coordinate, coordinate_faults, coordinates, zip_faults
+from stiction.study.store.memory import axis_faults, run_faults
+from stiction.study.variables.measures import DEFAULT
+from stiction.study.variables.observation import seconds_of
 from stiction.tables import folder_of, read_json, read_toml
 from stiction.validation import Described, faulty
 from stiction.writing import parameter_table, slider_tables
@@ -31,9 +31,9 @@ from stiction.writing import parameter_table, slider_tables
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stiction.study.engines import Engine
-    from stiction.study.summary import Summary
-    from stiction.study.sweeping import Tally
+    from stiction.study.execution.engines import Engine
+    from stiction.study.execution.sweep import Tally
+    from stiction.study.view.summary import Summary
 
 
 class Study(Described):
@@ -48,7 +48,7 @@ class Study(Described):
         for two that share a value; see `stiction.study.parameters`) a `Grid`, `Values`,
         `Random` or `Sobol`, or a table of the same.
     measures : sequence of str, optional
-        What to keep of each run, see `stiction.study.measures.MEASURES`.
+        What to keep of each run, see `stiction.study.variables.measures.MEASURES`.
     traces : sequence of str, optional
         Courses over time to keep as well: "force", "velocity", "position".
     trace_samples : int, optional
@@ -164,7 +164,7 @@ class Study(Described):
         progress: Callable[[Tally], None] | None = None,
     ) -> Summary:
         """Deprecated: `stiction.sweep`."""
-        from stiction.study.sweeping import sweep
+        from stiction.study.execution.sweep import sweep
 
         warn_renamed("Study.run(store)", "stiction.sweep(study, store)")
 
@@ -181,7 +181,7 @@ class Study(Described):
         progress: Callable[[Tally], None] | None = None,
     ) -> xr.Dataset:
         """Deprecated: `stiction.refine`."""
-        from stiction.study.refining import refine
+        from stiction.study.execution.refine import refine
 
         warn_renamed("Study.refine(store)", "stiction.refine(study, store)")
 

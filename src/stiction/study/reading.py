@@ -11,8 +11,8 @@ from stiction.errors import DescriptionError, Fault
 from stiction.paths import canonical_path
 from stiction.study.axes import Axis
 from stiction.study.axis_table import read_axis
-from stiction.study.measures import FORMERLY, MEASURES
-from stiction.study.traces import TRACES
+from stiction.study.variables.measures import FORMERLY, MEASURES
+from stiction.study.variables.traces import TRACES
 from stiction.validation import faulty, unknown
 
 

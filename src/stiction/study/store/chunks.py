@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from zarr.storage import LocalStore, WrapperStore
 
 from stiction.checksums import without_checksum
-from stiction.study.sealing import ROOT
-from stiction.study.store import damage
+from stiction.study.store.seal import ROOT
+from stiction.study.store.store import damage
 
 if TYPE_CHECKING:
     from zarr.abc.store import ByteRequest

@@ -10,10 +10,10 @@ import numpy as np
 
 from stiction.errors import ResultError
 from stiction.files import place, workshop
-from stiction.study.kept import TIME, flagged, kept, trace_times
 from stiction.study.plan import Study
-from stiction.study.sealing import seal
-from stiction.study.store import CHECKED, ENDS, PENDING, Store, opened, told, version
+from stiction.study.store.seal import seal
+from stiction.study.store.store import CHECKED, ENDS, PENDING, Store, opened, told, version
+from stiction.study.variables.registry import TIME, flagged, kept, trace_times
 
 if TYPE_CHECKING:
     import zarr

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.study.observed import Observed
-from stiction.study.regimes import KINDS
+from stiction.study.variables.fast_regime import KINDS
+from stiction.study.variables.observation import Observed
 
 
 class Measure(NamedTuple):

@@ -23,11 +23,11 @@ from stiction.checksums import LENGTH, with_checksum, without_checksum
 from stiction.errors import ResultError
 from stiction.files import place, workshop
 from stiction.foreign import opening, refuse_links, refuse_size
-from stiction.study import sealing
-from stiction.study.kept import Kept, names_kept
-from stiction.study.layout import MANY_TASKS, Index, Layout, Region
-from stiction.study.measures import FORMERLY
 from stiction.study.plan import Study
+from stiction.study.store import seal
+from stiction.study.store.blocks import MANY_TASKS, Index, Layout, Region
+from stiction.study.variables.measures import FORMERLY
+from stiction.study.variables.registry import Kept, names_kept
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -238,7 +238,7 @@ def store_at(path: str | Path, mode: Literal["r", "r+"]) -> Store:
         If it is none, or what was written when it was made is damaged.
     """
     group = group_at(path, mode)
-    lost = sealing.broken(Path(path)) if group.attrs["format"] == CHECKED else []
+    lost = seal.broken(Path(path)) if group.attrs["format"] == CHECKED else []
     try:
         study = json.loads(str(group.attrs["description"]))["study"]
         status: Any = group[STATUS]
@@ -257,7 +257,7 @@ def damage(path: str | Path, files: Sequence[object]) -> ResultError:
     """Return what is said of a store that is not whole."""
     names = ", ".join(map(str, files[:3])) + (f" and {len(files) - 3} more" * (len(files) > 3))
     again = f"compute it again with: stiction check {path} --repair"
-    lost = {sealing.ROOT, sealing.DESCRIPTION} <= {*map(str, files)}
+    lost = {seal.ROOT, seal.DESCRIPTION} <= {*map(str, files)}
     return ResultError(f"{path}: is damaged: {names}; {ANEW if lost else again}")
 
 
@@ -274,8 +274,8 @@ def group_at(path: str | Path, mode: Literal["r", "r+"]) -> zarr.Group:
     if not os.path.isdir(path):
         raise ResultError(f"{path}: no such store; write one with 'stiction sweep'")
     refuse_links(path)
-    was = (Path(path) / STATUS / sealing.ROOT).is_file()
-    what = f"is damaged: {sealing.ROOT}; {ANEW}" if was else "is not the store of a study"
+    was = (Path(path) / STATUS / seal.ROOT).is_file()
+    what = f"is damaged: {seal.ROOT}; {ANEW}" if was else "is not the store of a study"
     with opening(path, what):  # of zarr's format 2 pickles are a part
         group = zarr.open_group(Path(path), mode=mode, zarr_format=3, use_consolidated=False)
         known = group.attrs.get("format")
@@ -300,7 +300,7 @@ def open_study(path: str | Path) -> xr.Dataset:
     import xarray as xr
     from zarr.storage import LocalStore
 
-    from stiction.study.chunks import WholeChunks
+    from stiction.study.store.chunks import WholeChunks
 
     store = store_at(path, "r")
     with opening(path, "is damaged"):

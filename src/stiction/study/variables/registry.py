@@ -9,10 +9,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.study.axes import Floats
-from stiction.study.measures import MEASURES
-from stiction.study.observed import Observed
 from stiction.study.plan import Study
-from stiction.study.traces import TRACES
+from stiction.study.variables.measures import MEASURES
+from stiction.study.variables.observation import Observed
+from stiction.study.variables.traces import TRACES
 
 UNKNOWN = "unknown"  # what -1 means where a number stands for a kind
 TIME = "time"  # dimension of traces

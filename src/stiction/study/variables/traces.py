@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from stiction.study.axes import Floats
-from stiction.study.observed import Observed
+from stiction.study.variables.observation import Observed
 
 
 class Trace(NamedTuple):

@@ -12,8 +12,8 @@ from pydantic_core import PydanticCustomError
 from stiction.description import Description
 from stiction.errors import DescriptionError, Fault
 from stiction.study.axes import Axis, Floats, Range
-from stiction.study.measures import MEASURES
 from stiction.study.parameters import number, unit
+from stiction.study.variables.measures import MEASURES
 
 TAKEN = {"status", "message", "time", *MEASURES}  # names in a store
 NAME = re.compile(r"\w[\w ,.-]*")

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, TypeVar
 from uuid import uuid4
 
 from stiction.errors import StictionError
-from stiction.study.engines import AHEAD, Work
+from stiction.study.execution.engines import AHEAD, Work
 
 T = TypeVar("T")
 AGAIN = "what is written is whole, and the same command goes on"

@@ -23,9 +23,9 @@ from stiction.plotting.maps import (
 )
 from stiction.plotting.parameter import Scale, in_unit, parameter_symbol
 from stiction.plotting.style import COLUMN, PAGE, style
-from stiction.study.boundaries import Plane, damping_number, plane
-from stiction.study.layout import Index
-from stiction.study.view import REGIME, View, chosen, kinds, label, viewed
+from stiction.study.store.blocks import Index
+from stiction.study.view.boundaries import Plane, damping_number, plane
+from stiction.study.view.view import REGIME, View, chosen, kinds, label, viewed
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -63,7 +63,7 @@ class Map(NamedTuple):
         return tuple(str(dim) for dim in self.data["status"].dims)
 
     def plot(self, axes: Any = None) -> Any:
-        """Draw it; see `stiction.study.mapping.plot_map`."""
+        """Draw it; see `stiction.study.view.mapping.plot_map`."""
         return plot_map(self, axes)
 
 

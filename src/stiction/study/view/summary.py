@@ -10,7 +10,7 @@ import numpy as np
 
 from stiction.sections import Section, as_text
 from stiction.study.plan import Study
-from stiction.study.store import COMPLETED, ENDS, PENDING, Store
+from stiction.study.store.store import COMPLETED, ENDS, PENDING, Store
 
 
 class Failure(NamedTuple):
@@ -69,7 +69,7 @@ class Summary(NamedTuple):
 
     def plot(self, axes: Any = None) -> Any:
         """Draw what was found; see `stiction.map`."""
-        from stiction.study.mapping import map
+        from stiction.study.view.mapping import map
 
         return map(self.store).plot(axes)
 

@@ -13,13 +13,13 @@ from stiction.deprecation import by_new_names
 from stiction.errors import DescriptionError, Fault, ResultError
 from stiction.foreign import opening, refuse_size
 from stiction.paths import canonical_path
-from stiction.study import sealing
-from stiction.study.kept import kept
-from stiction.study.measures import FORMERLY
 from stiction.study.parameters import number
 from stiction.study.plan import Study
-from stiction.study.regimes import KINDS
-from stiction.study.store import CHECKED, group_at, open_study
+from stiction.study.store import seal
+from stiction.study.store.store import CHECKED, group_at, open_study
+from stiction.study.variables.fast_regime import KINDS
+from stiction.study.variables.measures import FORMERLY
+from stiction.study.variables.registry import kept
 from stiction.validation import unknown
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ class View(NamedTuple):
     at : mapping of str to int
         The place along each of these.
     changes : sequence of Dataset
-        Where the kind of motion changes, if it was refined; see `stiction.study.refining`.
+        Where the kind of motion changes, if it was refined; see `stiction.study.execution.refine`.
     """
 
     study: Study
@@ -118,7 +118,7 @@ def broken_changes(path: str | Path) -> list[str]:
     if group_at(path, "r").attrs["format"] != CHECKED:
         return []
     tables = sorted(Path(path).glob(f"{REFINED}/*/{CHANGES}"))
-    return [each.relative_to(path).as_posix() for each in tables if sealing.broken(each)]
+    return [each.relative_to(path).as_posix() for each in tables if seal.broken(each)]
 
 
 def chosen(view: View, measures: Sequence[str]) -> list[str]:

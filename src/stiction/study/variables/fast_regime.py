@@ -17,7 +17,7 @@ from stiction.analysis import regime
 from stiction.analysis.decay import QUIET, dies_out
 from stiction.analysis.hesitations import take_out
 from stiction.analysis.level import QUARTER
-from stiction.study.features import PARTS, Features
+from stiction.study.variables.features import PARTS, Features
 
 Floats = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from stiction.study.axes import Floats
 from stiction.study.plan import Study
-from stiction.study.view import kinds
+from stiction.study.view.view import kinds
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -16,8 +16,8 @@ from stiction.description import Description
 from stiction.drive import ConstantVelocity
 from stiction.simulation import sample_times, solve
 from stiction.solver.integrate import Solution
-from stiction.study.features import Features, features
-from stiction.study.regimes import Swings, kind_of, swings
+from stiction.study.variables.fast_regime import Swings, kind_of, swings
+from stiction.study.variables.features import Features, features
 
 Floats = NDArray[np.float64]
 
@@ -151,7 +151,7 @@ class Observed:
 
     @cached_property
     def regime(self) -> str:
-        """The kind of motion, one of `stiction.study.regimes.KINDS`."""
+        """The kind of motion, one of `stiction.study.variables.fast_regime.KINDS`."""
         if self.solution.counts.steps == 0:  # friction could hold all the time
             return STUCK
         slider = self.description.slider

@@ -8,8 +8,8 @@ from math import prod
 from stiction.errors import Fault
 from stiction.memory import shortage
 from stiction.study.axes import Axis, Sobol
-from stiction.study.engines import AHEAD, CORES
-from stiction.study.layout import Layout
+from stiction.study.execution.engines import AHEAD, CORES
+from stiction.study.store.blocks import Layout
 
 NUMBER = 8  # bytes
 COPIES = 6  # of an axis' values while they are made

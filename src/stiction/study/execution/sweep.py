@@ -9,13 +9,13 @@ from time import perf_counter
 from typing import NamedTuple
 
 from stiction.files import held
-from stiction.study.creation import create
-from stiction.study.engines import Engine, Threads
-from stiction.study.layout import runs_of
+from stiction.study.execution.engines import Engine, Threads
+from stiction.study.execution.task import done
 from stiction.study.plan import Study
-from stiction.study.store import Store, opened
-from stiction.study.summary import Summary, summary
-from stiction.study.task import done
+from stiction.study.store.blocks import runs_of
+from stiction.study.store.creation import create
+from stiction.study.store.store import Store, opened
+from stiction.study.view.summary import Summary, summary
 
 
 class Tally(NamedTuple):

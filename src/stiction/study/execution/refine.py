@@ -19,16 +19,16 @@ from stiction.errors import DescriptionError, Fault
 from stiction.files import place, workshop
 from stiction.paths import canonical_path
 from stiction.study.axes import Floats, Values
-from stiction.study.engines import Engine
-from stiction.study.intervals import Intervals, changes, half_way, halved, widest
-from stiction.study.kept import UNKNOWN, flagged
+from stiction.study.execution.engines import Engine
+from stiction.study.execution.intervals import Intervals, changes, half_way, halved, widest
+from stiction.study.execution.sweep import Tally, sweep
 from stiction.study.parameters import number
 from stiction.study.plan import Study
-from stiction.study.regimes import FORMERLY, KINDS
-from stiction.study.sealing import seal
-from stiction.study.store import open_study, told
-from stiction.study.sweeping import Tally, sweep
-from stiction.study.view import CHANGES, REFINED, REGIME, kinds
+from stiction.study.store.seal import seal
+from stiction.study.store.store import open_study, told
+from stiction.study.variables.fast_regime import FORMERLY, KINDS
+from stiction.study.variables.registry import UNKNOWN, flagged
+from stiction.study.view.view import CHANGES, REFINED, REGIME, kinds
 from stiction.validation import unknown
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def refine(
         Kinds that are told from all others, e.g. those that come to rest; each from each when
         left out.
     engine, progress
-        As of `stiction.study.sweeping.sweep`.
+        As of `stiction.study.execution.sweep.sweep`.
 
     Returns
     -------

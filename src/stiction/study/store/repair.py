@@ -8,12 +8,12 @@ from typing import NamedTuple
 
 from stiction.errors import ResultError
 from stiction.files import place, workshop
-from stiction.study import sealing
-from stiction.study.creation import lay_out
+from stiction.study.execution.sweep import do
 from stiction.study.plan import Study
-from stiction.study.store import CHECKED, Store, damage, group_at, store_at, version
-from stiction.study.sweeping import do
-from stiction.study.view import REFINED
+from stiction.study.store import seal
+from stiction.study.store.creation import lay_out
+from stiction.study.store.store import CHECKED, Store, damage, group_at, store_at, version
+from stiction.study.view.view import REFINED
 
 
 class Damage(NamedTuple):
@@ -48,8 +48,8 @@ def damage_of(path: Path) -> Damage:
         If it is no store, or so damaged that it cannot be computed again.
     """
     group = group_at(path, "r")
-    head = sealing.broken(path) if group.attrs["format"] == CHECKED else []
-    if {sealing.ROOT, sealing.DESCRIPTION} <= {*head}:
+    head = seal.broken(path) if group.attrs["format"] == CHECKED else []
+    if {seal.ROOT, seal.DESCRIPTION} <= {*head}:
         raise damage(path, head)
     if head:
         return Damage(head, {}, 0)
@@ -91,9 +91,9 @@ def _restore_head(study: Study, path: Path, names: Sequence[str]) -> None:
     """Write again what was written when the store was made."""
     with workshop(path.parent) as room:
         fresh = lay_out(study, room / "store")
-        files = {name for name in (*names, sealing.ROOT) if (fresh / name).is_file()}
+        files = {name for name in (*names, seal.ROOT) if (fresh / name).is_file()}
         place({fresh / name: path / name for name in sorted(files)})
-    if left := sealing.broken(path):
+    if left := seal.broken(path):
         raise ResultError(f"{path}: {', '.join(left)} cannot be made again; do the study anew")
 
 
