@@ -13,6 +13,7 @@ import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
+from functools import cache
 from pathlib import Path
 
 from stiction.errors import ResultError
@@ -115,9 +116,14 @@ def make_folders(folder: Path) -> list[Path]:
 
 def sync(paths: Iterable[Path]) -> None:
     """Wait until the disk has the content of files, and the names in folders."""
-    with ThreadPoolExecutor(AT_ONCE) as pool:
-        for _ in pool.map(_sync, paths):
-            pass
+    for _ in _pool(os.getpid()).map(_sync, paths):
+        pass
+
+
+@cache
+def _pool(_: int) -> ThreadPoolExecutor:
+    """Return the threads of a process that sync its files; a fork has none of its parent's."""
+    return ThreadPoolExecutor(AT_ONCE)
 
 
 def _sync(path: Path) -> None:
