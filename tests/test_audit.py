@@ -112,7 +112,7 @@ def test_what_slides_steadily_needs_nothing():
     found = examine(PAPER.replace(phi="10 deg"))
     assert found.advices == ()
     assert found.observation.regime.kind == SETTLING
-    assert sections(found)[-1].sentences == ["Nothing: after the start it slides steadily."]
+    assert sections(found)[-1].sentences == ["Nothing: it slides steadily after the start."]
     shown = {row[0]: row[1:] for row in sections(found)[1].table.rows}
     assert shown["creep before the first slip"] == ("none", "none")  # nothing slips
     law = PAPER.friction

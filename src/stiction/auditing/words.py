@@ -334,7 +334,7 @@ def transverse(found: Audit) -> list[str]:
 def changes(found: Audit) -> tuple[list[str], Table | None]:
     """Return what would make it slide steadily, each with its simulation from rest."""
     if not found.advices:
-        return ["Nothing: after the start it slides steadily."], None
+        return ["Nothing: it slides steadily after the start."], None
     rows = [_change(found, advice) for advice in found.advices]
     goal = "take away the oscillation from rest" if found.bistable else "slide steadily"
     remedies = [
