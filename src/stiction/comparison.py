@@ -7,6 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from stiction.analysis.slip import outcome
 from stiction.description import SAMPLE, Description, description_of
 from stiction.errors import DescriptionError, Fault
@@ -21,6 +23,9 @@ HEADINGS = (
     "law", "sticks", "stuck (s)", "largest k_x u_x/W", "fastest slip (m/s)",
     "slowest in load-up (m/s)", "median in load-up (m/s)",
 )  # fmt: skip
+
+
+REST = 1e-9  # of the drive's speed: what is slower rests, in any test
 
 
 class Comparison(dict[str, Trajectory]):
@@ -65,7 +70,8 @@ class Comparison(dict[str, Trajectory]):
 def row(label: str, run: Trajectory) -> tuple[str, ...]:
     """Return the row of one law."""
     o = outcome(run)
-    speeds = (f"{value:.3g}" for value in (o.fastest, o.slowest, o.creep))
+    least = REST * float(np.hypot(run.data["drive_X"], run.data["drive_Y"]).max())
+    speeds = (f"{v if v > least else 0.0:.3g}" for v in (o.fastest, o.slowest, o.creep))
     stuck = (str(o.sticks), f"{o.time_stuck:.3g}")
     return label, *stuck, f"{o.peak:.4f}", *speeds
 
@@ -100,7 +106,8 @@ def compare(
         ``'{law = "coulomb", mu_0 = 0.15}'``; a description file, of which the table [friction]
         is taken; ``file.py:Class``; or a law's bare name, e.g. ``"coulomb"``. A law given by
         name alone gets parameters that make it comparable with the description's own, see
-        `stiction.friction.equivalent.traits`.
+        `stiction.laws.comparable`; the name of the description's own law means that one, which
+        is run once.
     max_steps : int, optional
         Each run gives up after so many steps.
     progress : callable, optional
@@ -119,7 +126,8 @@ def compare(
     """
     description = sampled(description_of(description))
     own = description.slider.law
-    all_laws = [own, *read_laws(description, [laws] if isinstance(laws, str | Path) else laws)]
+    others = read_laws(description, [laws] if isinstance(laws, str | Path) else laws)
+    all_laws = [own, *(law for law in others if law is not own)]
     settings = description.run
     samples = len(all_laws) * settings.duration * (settings.sample_rate or 0.0)
     if short := shortage(SAMPLE * samples):

@@ -20,6 +20,8 @@ from stiction.initial import Initial
 from stiction.tables import read_toml
 from stiction.validation import unknown
 
+BRISTLES = 100.0  # of the stiffness along x, as Canudas de Wit et al. (1995) beside our 1 kN/m
+MEMORY = 200.0  # in a slip length, as 10 µm in the 2 mm of Nakano & Popov
 EXAMPLE = """'{law = "coulomb", mu_0 = 0.15}'"""
 
 
@@ -73,9 +75,33 @@ def read(description: Description, value: Any) -> Law:
     if ":" in text:  # not from a file: the user says so
         return read_law({"law": text}, named(Path(), trust=True))
     if text in LAWS:
-        return like(LAWS[text], shared_traits(description))
+        return comparable(LAWS[text], description)
     other = f"(or a table {EXAMPLE}, a .toml file, file.py:Class)"
     raise DescriptionError([Fault("law", f"{unknown('law', text, LAWS)} {other}")])
+
+
+def comparable(kind: Any, description: Description) -> Law:
+    """Return the law of this kind that is like the description's own; that itself if it is one.
+
+    What the coefficients do not say is in proportion to the apparatus: bristles are a hundred
+    times as stiff as its soft spring, and critically damped; memory lasts for a two hundredth of
+    the slip length, or for as long as that of the described law. For the apparatus of Nakano &
+    Popov these are the published values of both laws.
+    """
+    slider = description.slider
+    if isinstance(slider.law, kind):
+        return slider.law
+    made = like(kind, shared_traits(description))
+    known = slider.law._asdict() if hasattr(slider.law, "_asdict") else {}
+    sigma_0, memory = BRISTLES * slider.k_x, slider.F_0 / slider.k_x / MEMORY
+    own = {"sigma_0": sigma_0, "sigma_1": 2.0 * sqrt(sigma_0 * slider.mass)}
+    own |= {"D_c": memory, "D_1": memory, "D_2": 10.0 * memory}
+    chosen = {
+        name: known.get(name, float(f"{value:.4g}"))
+        for name, value in own.items()
+        if name in kind._fields
+    }
+    return made._replace(**chosen) if chosen else made
 
 
 def inline(text: str) -> dict[str, Any]:

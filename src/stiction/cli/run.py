@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 from stiction.cli.options import Changes, Output, Trust, changes
 from stiction.cli.terminal import say
 
+REST = 1e-9  # of the drive velocity: what slips less rests
+
 if TYPE_CHECKING:
     from stiction.trajectory import Trajectory
 
@@ -49,6 +51,8 @@ def run(config: Path, /, *, output: Output, trust: Trust = False, set: Changes =
 
 def said(result: Trajectory, output: Path) -> list[str]:
     """Return what is said of a run that is written."""
+    from stiction.units import in_words
+
     statistics = result.statistics
     lines = []
     if not result.status.ok:
@@ -60,15 +64,45 @@ def said(result: Trajectory, output: Path) -> list[str]:
     sampled = " at start and end (sample_rate = 0)" if few else ""
     lines += [
         f"{output}: {result.data.sizes['time']} samples, stick intervals: "
-        f"{statistics.stick_count}, {statistics.time_stuck:.6g} s in all; "
-        f"{statistics.steps} steps{mapped}",
-        f"largest k_x u_x{sampled}: {peak:.4g} N, {peak / result.slider.normal_load:.4g} of the "
-        "normal load",
+        f"{statistics.stick_count}, {in_words(statistics.time_stuck, 's')} in all"
+        f"{share(result)}; {statistics.steps} steps{mapped}",
+        f"largest force of the spring along x, k_x u_x{sampled}: {in_words(peak, 'N')}, "
+        f"{peak / result.slider.normal_load:.4g} of the normal load",
         f"next: stiction plot {output} --output {output.with_suffix('.png')}, "
         f"stiction analyse {output}",
     ]
-    if statistics.steps == 0:
+    if statistics.steps == 0 or (result.status.ok and rested(result)):
         still = not result.data["drive_X"].any() and not result.data["drive_Y"].any()
-        remedy = "the drive is at rest; give it a velocity" if still else "run it longer"
+        remedy = "the drive is at rest; give it a velocity" if still else longer(result)
         lines.append(f"it never slipped: friction could hold all the time; {remedy}")
     return lines
+
+
+def share(result: Trajectory) -> str:
+    """Return how much of the time it stuck, in words."""
+    times = result.data["time"].values
+    lasted = float(times[-1] - times[0])
+    return (
+        f", {100 * result.statistics.time_stuck / lasted:.3g}% of the time" if lasted > 0.0 else ""
+    )
+
+
+def rested(result: Trajectory) -> bool:
+    """Return whether the mass did not move, though no law with zero slip holds it."""
+    V, slip = abs(result.slider.motion.velocity), result.data["slip_speed"].values
+    return V > 0.0 and bool((slip[1:] < REST * V).all())
+
+
+def longer(result: Trajectory) -> str:
+    """Return how long a run must be to see the mass slip."""
+    from stiction.units import in_words
+
+    slider = result.slider
+    V = abs(slider.motion.velocity)
+    if not V > 0.0:
+        return "run it longer"
+    most, load = in_words(slider.F_0, "N"), in_words(slider.F_0 / slider.k_x / V, "s")
+    return (
+        f"a spring is loaded to the {most} that friction can hold after some {load}; "
+        "set a longer duration"
+    )

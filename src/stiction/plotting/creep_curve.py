@@ -72,7 +72,7 @@ def draw_mean(ax: Axes, mean: xr.Dataset, V: float) -> None:
     value, error = mean["velocity"].values / V, 2.0 * mean["velocity_error"].values / V
     band = "two standard errors"
     ax.fill_between(middle, value - error, value + error, color=BLACK, alpha=0.2, lw=0, label=band)
-    ax.plot(middle, value, "o", color=BLACK, markersize=2.6, label="their mean", zorder=3)
+    ax.plot(middle, value, "o", color=BLACK, markersize=2.6, label="mean of these", zorder=3)
 
 
 def plot_creep(

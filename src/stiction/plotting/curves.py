@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from math import pi, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from stiction.analysis.slip import Slip, averaged_slip
+from stiction.analysis.slip import Slip
 from stiction.plotting.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY
-from stiction.plotting.time_series import envelope, prefixed
+from stiction.plotting.time_series import averaged, envelope, prefixed
 from stiction.trajectory import Trajectory
 
-PARTS = 500  # of the time: finer than a printed line shows
 COLOURS = (BLACK, RED, BLUE, GREEN, ORANGE, SKY, PURPLE)
 DASHES: tuple[Any, ...] = ("solid", (0, (5, 1.5)), (0, (7, 1.2, 1.2, 1.2)), (0, (1.4, 1.1)))
 
@@ -53,14 +51,6 @@ def curves_of(runs: Mapping[str, Trajectory]) -> list[Curve]:
         )
         for at, (label, run) in enumerate(runs.items())
     ]
-
-
-def averaged(run: Trajectory) -> Slip:
-    """Average slip over a 500th of the time, or less if a rapid slip needs it to be seen."""
-    times, slider = run.data["time"].values, run.slider
-    rapid = pi * sqrt(slider.mass / min(slider.k_x, slider.k_y))
-    parts = np.clip(5 * (times[-1] - times[0]) / rapid, PARTS, 20 * PARTS)
-    return averaged_slip(run, int(parts))
 
 
 def common(values: Iterable[ArrayLike]) -> tuple[float, str]:

@@ -45,16 +45,18 @@ def draw_ridge(ax: Axes, oscillation: xr.Dataset) -> None:
         alpha=0.6,
         label=expected,
     )
-    ax.plot(time, oscillation["frequency"].values * factor, color=RED, lw=0.9, label="ridge")
+    seen = oscillation["frequency"].values * factor
+    if np.isfinite(seen).any():
+        ax.plot(time, seen, color=RED, lw=0.9, label="seen")
 
 
 def draw_amplitudes(ax: Axes, oscillation: xr.Dataset) -> None:
     """Draw velocity and displacement of the oscillation as shares of their bounds."""
     time = oscillation["time"].values
     share = (oscillation["amplitude"] / oscillation["amplitude_bound"]).values
-    ax.plot(
-        time, share, color=BLUE, dashes=(4, 1.5), label=r"of $u_y$, over $V\sin\varphi/\omega_y$"
-    )
+    if np.isfinite(share).any():
+        label = r"of $u_y$, over $V\sin\varphi/\omega_y$"
+        ax.plot(time, share, color=BLUE, dashes=(4, 1.5), label=label)
     share = (oscillation["velocity"] / oscillation["velocity_bound"]).values
     ax.plot(time, share, color=BLACK, label=r"of $v_y$, over $V\sin\varphi$")
     ax.axhline(1.0, color=GREY, linewidth=0.6, zorder=1)

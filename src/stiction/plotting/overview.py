@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.patches import Patch
 
 from stiction.plotting import time_series
 from stiction.plotting.canvas import canvas, fixed, named
 from stiction.plotting.law import draw_law
 from stiction.plotting.schematic import draw_schematic
-from stiction.plotting.style import BLACK, BLUE, ORANGE, PAGE, RED, style
+from stiction.plotting.style import BLACK, BLUE, GREY, ORANGE, PAGE, RED, style
 from stiction.plotting.time_series import Floats
 from stiction.plotting.words import (
     base_velocity,
@@ -140,17 +142,21 @@ def _series(run: Trajectory) -> dict[str, Callable[[Axes, Trajectory], Any]]:
 
 def _forces(ax: Axes, run: Trajectory) -> None:
     """Draw both spring forces."""
-    factor, prefix = time_series.prefixed(
-        abs(run.data["spring_x"].values) + abs(run.data["spring_y"].values)
-    )
+    forces = [run.data[f"spring_{axis}"].values for axis in "xy"]
+    factor, prefix = time_series.prefixed(np.concatenate(forces))
     times = run.data["time"].values
-    for axis, color in (("x", RED), ("y", ORANGE)):
-        values = run.data[f"spring_{axis}"].values * factor
-        line = time_series.draw_line(ax, times, values, color)
+    for axis, color, force in zip("xy", (RED, ORANGE), forces, strict=True):
+        line = time_series.draw_line(ax, times, force * factor, color)
         line.set_label(f"$k_{axis} u_{axis}$")
         line.set_zorder(2.2 if axis == "x" else 2.0)  # what swings across would hide it
     ax.set_ylabel(f"spring force ({prefix}N)")
-    ax.legend(loc="lower right", ncols=2, bbox_to_anchor=(1.0, 0.97), borderaxespad=0.0)
+    handles = ax.get_lines()
+    if ax.collections:
+        band = Patch(color=GREY, alpha=time_series.BAND, linewidth=0, label="fast oscillation")
+        handles = [*handles, band]
+    ax.legend(
+        handles=handles, loc="lower right", ncols=3, bbox_to_anchor=(1.0, 0.97), borderaxespad=0.0
+    )
 
 
 def _written(ax: Axes, run: Trajectory) -> None:

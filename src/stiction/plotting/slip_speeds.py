@@ -10,9 +10,11 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from stiction.analysis.stuck import stuck_until
 from stiction.plotting.curves import Curve, common, mark_early_end
+from stiction.plotting.parameter import PLAIN
 from stiction.plotting.style import GREY
+from stiction.plotting.time_series import fastest_drive
 
-DEEPEST = 1e-24  # of the largest slip speed: what is below is rounding
+DEEPEST = 1e-6  # of the drive's speed: what is below rests, in any test
 ROW = 0.8  # height of a filled row
 
 
@@ -43,7 +45,7 @@ def draw_portrait(ax: Axes, curves: Sequence[Curve]) -> None:
 
 
 def set_speed_limits(ax: Axes, curves: Sequence[Curve]) -> None:
-    """Fit the axis of slip speed to the lines, not to the moments of a landing."""
+    """Fit the axis of slip speed to the lines, not to the moments of a landing or to rest."""
     spans = [curve.slip for curve in curves]
     moving = [slip.mean[(slip.mean > 0) & (slip.rest < 0.5)] for slip in spans]
     means = np.concatenate([each[np.isfinite(each)] for each in moving])
@@ -51,12 +53,13 @@ def set_speed_limits(ax: Axes, curves: Sequence[Curve]) -> None:
     top = highs.max(initial=0.0)
     if not top > 0:
         top = 1.0  # nothing ever slips: an empty decade
-    bottom = max(means.min(initial=top), DEEPEST * top)
+    slowest = DEEPEST * max(fastest_drive(curve.run) for curve in curves)
+    bottom = min(max(means.min(initial=top), slowest), top)
     decades = max(np.log10(top / bottom), 1.0)
     ax.set_ylim(bottom / 10 ** max(0.3, 0.05 * decades), top * 10 ** (0.05 * decades))
     ax.yaxis.set_major_locator(LogLocator(numticks=8))
     ax.yaxis.set_minor_locator(LogLocator(subs="all" if decades < 8 else (1.0,), numticks=99))
-    ax.yaxis.set_minor_formatter(NullFormatter())
+    ax.yaxis.set_minor_formatter(NullFormatter() if decades > 1.5 else PLAIN)
 
 
 def draw_rests(ax: Axes, curves: Sequence[Curve], bins: int = 300) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import pi, sqrt
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
@@ -9,6 +11,7 @@ from matplotlib.patches import StepPatch
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 
+from stiction.analysis.slip import Slip, averaged_slip
 from stiction.analysis.stuck import stuck_until
 from stiction.plotting.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED
 from stiction.quantity_text import SI, thousands
@@ -17,9 +20,16 @@ from stiction.trajectory import Trajectory
 Floats = NDArray[np.float64]
 
 FEW = 50  # so few samples are shown as such: what happens between them is not known
+PARTS = 500  # of the time: finer than a printed line shows
+BINS = 1500  # more than a printed line has dots
+TURNS = 4  # in a bin: what turns more often cannot be seen to oscillate there
+SMOOTH = 9  # bins, two of them with weight zero, over which the mean there is taken
+BAND = 0.3  # opacity of the range in which it does
+LEAST = 1e-9  # of the drive's speed, or of its way: what is less is rounding
+STILL = 1.0  # deg: an angle that changes less is drawn on an axis of this size
 
 
-def envelope(time: ArrayLike, values: ArrayLike, bins: int = 1500) -> tuple[Floats, Floats]:
+def envelope(time: ArrayLike, values: ArrayLike, bins: int = BINS) -> tuple[Floats, Floats]:
     """Thin out a long series so that its line looks the same: extremes of each of `bins` bins.
 
     Parameters
@@ -27,7 +37,7 @@ def envelope(time: ArrayLike, values: ArrayLike, bins: int = 1500) -> tuple[Floa
     time, values : array
         (n,); not-a-number values leave gaps only where a whole bin lacks a value.
     bins : int
-        More than a printed line has dots.
+        How many.
 
     Returns
     -------
@@ -43,12 +53,37 @@ def envelope(time: ArrayLike, values: ArrayLike, bins: int = 1500) -> tuple[Floa
     return np.repeat(middle, 2), np.column_stack([low, high]).ravel()
 
 
+def swings(values: ArrayLike, bins: int = BINS) -> tuple[NDArray[np.bool_], Floats]:
+    """Return in which bins of `envelope` values oscillate too fast to be seen, and their means."""
+    v = np.asarray(values, dtype=np.float64)
+    starts = np.linspace(0, len(v), bins, endpoint=False).astype(np.intp)
+    turns = np.pad(np.diff(v[:-1]) * np.diff(v[1:]) < 0.0, 1)
+    known = np.isfinite(v)
+    count = np.maximum(np.add.reduceat(known.astype(np.intp), starts), 1)
+    mean = np.add.reduceat(np.where(known, v, 0.0), starts) / count
+    fast = np.add.reduceat(turns.astype(np.intp), starts) >= TURNS
+    whole = np.hanning(SMOOTH)  # a bin may hold a period and a half
+    weight = np.maximum(np.convolve(fast, whole, "same"), 1e-300)
+    return fast, np.where(fast, np.convolve(mean * fast, whole, "same") / weight, mean)
+
+
 def draw_line(
     ax: Axes, time: ArrayLike, values: ArrayLike, color: str = BLACK, width: float = 0.7
 ) -> Line2D:
-    """Draw values over time (s), thinned out by `envelope`; `width` in pt."""
+    """Draw values over time (s), thinned out by `envelope`; `width` in pt.
+
+    Where they oscillate too fast to be seen, the line is their mean, and a pale band their range.
+    """
     times = np.asarray(time)
-    (line,) = ax.plot(*envelope(times, values), color=color, linewidth=width)
+    thin, shown = envelope(times, values)
+    if len(times) > 2 * BINS:
+        fast, mean = swings(values)
+        pairs = shown.reshape(-1, 2)
+        if fast.any():
+            low, high = np.where(fast, pairs.T, np.nan)
+            ax.fill_between(thin[::2], low, high, color=color, alpha=BAND, linewidth=0)
+        shown = np.where(fast[:, np.newaxis], mean[:, np.newaxis], pairs).ravel()
+    (line,) = ax.plot(thin, shown, color=color, linewidth=width)
     if len(times) <= FEW:
         line.set(linestyle="none", marker="o", markersize=2.5, clip_on=False, zorder=3)
     if times[-1] > times[0]:
@@ -89,11 +124,11 @@ def imposed(run: Trajectory) -> list[tuple[str, Floats, str, str]]:
 
 
 def prefixed(values: ArrayLike) -> tuple[float, str]:
-    """Return factor and prefix (n, µ, m, none, k) of a unit in which values are about 1 to 100."""
+    """Return factor and prefix (n, µ, m, none, k) of a unit in which values are 0.2 to 200."""
     largest = np.fmax.reduce(np.abs(np.asarray(values, dtype=np.float64)), initial=0.0)
     if not 0 < largest < np.inf:
         return 1.0, ""
-    power = min(max(thousands(5.0 * largest, "m"), -3), 1)
+    power = min(max(thousands(5.0 * largest, "m"), -8), 2)
     return 1000.0**-power, SI[power]
 
 
@@ -112,14 +147,32 @@ def draw_spring_force(ax: Axes, run: Trajectory, axis: str, color: str = RED) ->
 
 def draw_friction(ax: Axes, run: Trajectory) -> Line2D:
     """Draw the magnitude of the friction force over time; while stuck, the force that holds."""
-    return draw_quantity(ax, run, "friction", "$F$", PURPLE)
+    return draw_values(ax, run, _after_start(run, "friction"), "$F$", "N", PURPLE)
+
+
+def _after_start(run: Trajectory, variable: str) -> Floats:
+    """Return a variable without its first value, of the instant in which the mass is let go.
+
+    There it moves with a millionth of the drive's speed, and friction is what it is in slip; it
+    sticks, or creeps far slower, at once. Few samples, which are shown as such, keep it.
+    """
+    values = run.data[variable].values.astype(np.float64)
+    if len(values) > FEW:
+        values[0] = np.nan
+    return values
 
 
 def draw_direction(ax: Axes, run: Trajectory) -> Line2D:
     """Draw the friction angle psi (deg) to the drive direction over time."""
-    ax.yaxis.set_major_locator(MaxNLocator(nbins=4, steps=[1, 1.5, 3, 4.5, 9, 10]))
+    angles = cut_open(_after_start(run, "psi"))
+    low, high = (float(each.reduce(angles, initial=np.nan)) for each in (np.fmin, np.fmax))
+    steps = [1, 1.5, 3, 4.5, 9, 10] if high - low > 40.0 else [1, 2, 5, 10]  # 30, 45, 90 deg
+    ax.yaxis.set_major_locator(MaxNLocator(nbins=4, steps=steps))
     ax.set_ylabel(r"$\psi$ (deg)")
-    return draw_line(ax, run.data["time"].values, cut_open(run.data["psi"].values), PURPLE)
+    line = draw_line(ax, run.data["time"].values, angles, PURPLE)
+    if high - low < STILL:
+        ax.set_ylim(low - STILL, high + STILL)
+    return line
 
 
 def cut_open(angles: ArrayLike) -> Floats:
@@ -139,8 +192,24 @@ def cut_open(angles: ArrayLike) -> Floats:
 
 
 def draw_position(ax: Axes, run: Trajectory) -> Line2D:
-    """Draw the position X along the drive direction over time."""
-    return draw_quantity(ax, run, "X", "$X$", BLUE)
+    """Draw the position X along the drive direction over time; rounding is drawn as rest."""
+    X, way = run.data["X"].values, fastest_drive(run) * float(np.ptp(run.data["time"].values))
+    if np.ptp(X) > LEAST * way or not way > 0.0:
+        return draw_quantity(ax, run, "X", "$X$", BLUE)
+    line = draw_values(ax, run, np.zeros(len(X)), "$X$", run.data["X"].attrs["units"], BLUE)
+    _say_only(ax, "at rest")
+    return line
+
+
+def fastest_drive(run: Trajectory) -> float:
+    """Return the largest speed of the drive in a run, m/s."""
+    return float(np.hypot(run.data["drive_X"].values, run.data["drive_Y"].values).max())
+
+
+def _say_only(ax: Axes, text: str) -> None:
+    """Write what a panel shows where there is nothing to measure on its axis."""
+    ax.set_yticks([])
+    ax.text(0.5, 0.6, text, transform=ax.transAxes, ha="center", color=GREY, fontsize=7)
 
 
 def draw_rate(ax: Axes, run: Trajectory, axis: str) -> Line2D:
@@ -151,16 +220,32 @@ def draw_rate(ax: Axes, run: Trajectory, axis: str) -> Line2D:
 def draw_slip_speed(ax: Axes, run: Trajectory) -> Line2D:
     """Draw the slip speed (m/s) over time on a logarithmic axis; gaps where it is zero.
 
-    Speeds below 1e-7 of the largest are left out, so that a landing does not stretch the axis.
+    The line is the mean over short times, a pale band reaches to the maximum: where it comes to
+    rest in each of many oscillations, how far it falls is no speed of the system. Speeds below
+    1e-7 of the largest are left out, so that a landing does not stretch the axis.
     """
-    speed = run.data["slip_speed"].values
+    speed = _after_start(run, "slip_speed")
     largest = np.fmax.reduce(speed, initial=0.0)
     ax.set_ylabel(r"$v_\mathrm{slip}$ (m/s)")
-    if not largest > 0:
-        return draw_line(ax, run.data["time"].values, speed, GREEN)
+    if not largest > LEAST * fastest_drive(run):
+        _say_only(ax, "no slip")
+        return draw_line(ax, run.data["time"].values, np.zeros(len(speed)), GREEN)
     ax.set_yscale("log")
-    shown = np.where(speed > 1e-7 * largest, speed, np.nan)
-    return draw_line(ax, run.data["time"].values, shown, GREEN)
+    if len(speed) <= FEW:
+        shown = np.where(speed > 1e-7 * largest, speed, np.nan)
+        return draw_line(ax, run.data["time"].values, shown, GREEN)
+    slip = averaged(run)
+    mean = np.where(slip.mean > 1e-7 * largest, slip.mean, np.nan)
+    ax.fill_between(slip.time, mean, slip.high, color=GREEN, alpha=BAND, linewidth=0)
+    return draw_line(ax, slip.time, mean, GREEN)
+
+
+def averaged(run: Trajectory) -> Slip:
+    """Average slip over a 500th of the time, or less if a rapid slip needs it to be seen."""
+    times, slider = run.data["time"].values, run.slider
+    rapid = pi * sqrt(slider.mass / min(slider.k_x, slider.k_y))
+    parts = np.clip(5 * (times[-1] - times[0]) / rapid, PARTS, 20 * PARTS)
+    return averaged_slip(run, int(parts))
 
 
 def draw_time_stuck(ax: Axes, run: Trajectory, bins: int = 300) -> StepPatch:

@@ -11,6 +11,7 @@ from typing import Any, get_type_hints
 from stiction import theory
 from stiction.drive import ConstantVelocity, Modulation
 from stiction.friction import Anisotropic, name_of
+from stiction.quantity_text import DIGITS
 from stiction.slider import Slider
 from stiction.trajectory import Trajectory
 from stiction.units import in_words, unit_of
@@ -131,8 +132,17 @@ def scales_in_words(slider: Slider) -> list[str]:
     V, phi = abs(base_velocity(slider)), abs(slider.phi)
     if V > 0 and sin(phi) > 0:
         A = float(theory.damping_number(slider.F_0, V, phi, slider.mass, slider.k_x))
-        lines.append(rf"$A$ = {A:.4g}, $\zeta(\theta=\varphi)$ = {A * sin(phi) ** 3:.2g}")
+        zeta = plain(A * sin(phi) ** 3, 2)
+        lines.append(rf"$A$ = {plain(A)}, $\zeta(\theta=\varphi)$ = {zeta}")
     return lines
+
+
+def plain(value: float, digits: int = DIGITS) -> str:
+    """Return a number as one writes it: with digits to a million, then with a power of ten."""
+    if value < 1e6:
+        return f"{float(f'{value:.{digits}g}'):.10g}"
+    mantissa, power = f"{value:.{digits - 1}e}".split("e")
+    return rf"${mantissa}\times 10^{{{int(power)}}}$"
 
 
 def outcome_in_words(run: Trajectory, width: int = 38) -> list[str]:
