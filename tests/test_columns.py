@@ -29,6 +29,14 @@ def test_a_column(values: list[float], unit: str, heading: str, cells: list[str]
     assert all(number(cell) for cell in cells)
 
 
+def test_columns_of_one_kind_are_written_alike() -> None:
+    work, part = Quantity([5e-3, 4e-3], "J"), Quantity([5e-5, -2e-9], "J")
+    table = grid({"from": Quantity([0.1, 0.2], "s"), "work": work, "part": part}, 5, alike="J")
+    assert table.headings == ("from (ms)", "work (mJ)", "part (mJ)")
+    assert table.rows[0] == ("100.0", "5.000", "0.050")
+    assert table.rows[1] == ("200.0", "4.000", "0.000")
+
+
 def test_no_more_rows_than_wanted() -> None:
     assert len(grid({"a": Quantity(range(9), "s"), "b": Quantity(range(9), "1")}, 4).rows) == 4
 

@@ -10,6 +10,7 @@ from tests.measured import measured
 import stiction as st
 from stiction import theory
 from stiction.analysis.creep_bins import bin_edges
+from stiction.analysis.creep_found import MISSED
 from stiction.analysis.trimmed import trimmed_mean
 from stiction.plotting.canvas import figure_of
 from stiction.plotting.creep_curve import creep_theory, plot_creep
@@ -124,6 +125,14 @@ def test_the_misalignment_of_the_closed_form_is_exact():
         # the mean force of a bin is that of its middle, to (1/8)^2/24 of what the velocity bends
         assert found.phi == pytest.approx(radians(degrees), rel=2e-3)
         assert pytest.approx(F_0, rel=1e-3) == found.F_0
+
+
+def test_creep_that_is_not_that_of_eq_7_implies_no_misalignment():
+    curve = exact_curve(radians(1.0), bin_edges(0.005, 1.95))
+    assert st.fit_misalignment(curve, V, K).misfit < 1e-3
+    early = curve["force"] < 0.8 * curve["force"].max()
+    rests = curve.assign(velocity=curve["velocity"].where(~early, 1e-9 * V))  # a soft k_y loads
+    assert st.fit_misalignment(rests, V, K).misfit > MISSED
 
 
 @pytest.mark.parametrize("spikes", [0.0, 0.02])

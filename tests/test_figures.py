@@ -26,8 +26,9 @@ from stiction.plotting.save import save, write
 from stiction.plotting.schematic import draw_schematic
 from stiction.plotting.shapes import Points
 from stiction.plotting.style import BLUE, PURPLE, new_figure, style
-from stiction.plotting.time_series import cut_open, envelope, prefixed
+from stiction.plotting.time_series import cut_open, draw_line, envelope, prefixed
 from stiction.plotting.trials import Trial, plot_trials
+from stiction.plotting.words import plain
 from stiction.reproduction.creep import creep
 from stiction.reproduction.figure3 import figure3
 from stiction.reproduction.figure4 import figure4
@@ -357,3 +358,40 @@ def test_words_in_the_damping_diagram_stand_beside_its_paths() -> None:
     for A in (3.0, 100.0, 3000.0):
         place = clear_of([A], 0.1, 1e5)
         assert abs(place - np.log(A / 0.1) / np.log(1e6)) >= HALF
+
+
+def test_an_oscillation_too_fast_to_be_seen_is_a_band_about_its_mean() -> None:
+    time = np.linspace(0.0, 1.0, 60_001)
+    for turns, fast in ((20.0, False), (6000.0, True)):
+        ax = Figure().add_subplot()
+        line = draw_line(ax, time, 3.0 + np.sin(2.0 * np.pi * turns * time))
+        heights = np.asarray(line.get_ydata(), dtype=np.float64)
+        assert len(ax.collections) == fast
+        if fast:  # a bin holds 4 periods: their mean is 3 but for the part of one that is cut off
+            np.testing.assert_allclose(heights, 3.0, atol=0.05)
+            band = ax.collections[0].get_paths()[0].vertices[:, 1]
+            assert band.min() < 2.05
+            assert band.max() > 3.95
+        else:
+            assert np.ptp(heights) == pytest.approx(2.0, abs=1e-4)
+
+
+def test_a_mass_that_rests_has_no_axis_of_rounding(slider: st.Slider) -> None:
+    run = st.simulate(slider, "2 ms", sample_rate="100 kHz")  # the first stick lasts 11 ms
+    panels = run.plot()
+    for name, said in (("position", "at rest"), ("speed", "no slip")):
+        assert [text.get_text() for text in panels[name].texts] == [said]
+        assert not len(panels[name].get_yticks())
+    friction = panels["friction"].get_lines()[0].get_ydata()
+    assert np.isnan(friction[0])  # it is let go with a millionth of V, and sticks at once
+    assert np.nanmax(friction) < 0.2 * slider.F_0  # 2 of 11.5 ms
+
+
+def test_units_reach_down_to_a_microscope_s_energies() -> None:
+    assert prefixed([1.4e-17]) == (pytest.approx(1e18), "a")
+
+
+def test_large_numbers_have_a_power_of_ten() -> None:
+    assert plain(25664.3) == "25660"
+    assert plain(99.81, 2) == "100"
+    assert plain(1.878e7) == r"$1.878\times 10^{7}$"

@@ -5,11 +5,13 @@ from math import pi, sin
 
 import numpy as np
 import pytest
+import xarray as xr
 from scipy.signal import ShortTimeFFT
 from scipy.signal.windows import hamming
 from tests.measured import measured
 
 import stiction as st
+from stiction.analysis.oscillation import apart
 from stiction.analysis.ridge import best_path
 from stiction.plotting.canvas import figure_of
 from stiction.plotting.oscillation import plot_oscillation
@@ -215,6 +217,17 @@ def test_a_record_larger_than_memory_is_streamed(tmp_path):
 def test_too_short_a_stream_is_refused():
     with pytest.raises(ValueError, match="holds 200 samples at 2000 Hz; there are 30 and"):
         list(st.stream_spectrogram([NOISE[:10], NOISE[:20]], RATE))
+
+
+def test_harmonics_of_cycles_that_follow_closely_are_no_oscillation(oscillation):
+    starts = 0.5 + 0.05 * np.arange(20)  # a window is 50 ms wide
+    close = xr.Dataset({"period": ("cycle", np.full(20, 0.05)), "start": ("cycle", starts)})
+    found = apart(oscillation, close)
+    seen = np.isfinite(found["frequency"].values)
+    assert seen.any()
+    assert found["time"].values[seen].max() < 0.5
+    far = close.assign(period=("cycle", np.full(20, 0.9)))
+    assert apart(oscillation, far) is oscillation
 
 
 def test_the_figure_says_what_is_drawn(paper_run, oscillation):

@@ -20,8 +20,10 @@ class Quantity(NamedTuple):
     unit: str
 
 
-def grid(quantities: Mapping[str, Quantity], rows: int) -> Table:
+def grid(quantities: Mapping[str, Quantity], rows: int, alike: str = "") -> Table:
     """Return a table of quantities by their headings, its first rows, each in a unit that suits.
+
+    All that have the unit `alike` are written alike, to be compared and added.
 
     Examples
     --------
@@ -29,9 +31,11 @@ def grid(quantities: Mapping[str, Quantity], rows: int) -> Table:
     Table(headings=('force (mN)',), rows=[('250.0',), ('-1.2',), ('none',)])
     """
     columns, headings = [], []
+    together = [np.ravel(values)[:rows] for values, unit in quantities.values() if unit == alike]
+    common = scale(np.concatenate(together).tolist(), alike) if together else (0, 0)
     for name, (values, unit) in quantities.items():
         numbers = np.asarray(values, dtype=np.float64)[:rows]
-        power, decimals = scale(numbers.tolist(), unit)
+        power, decimals = common if unit == alike else scale(numbers.tolist(), unit)
         headings.append(name if unit == "1" else f"{name} ({SI[power]}{unit})")
         columns.append([cell(value / 1000.0**power, decimals) for value in numbers.tolist()])
     return Table(tuple(headings), list(zip(*columns, strict=True)))

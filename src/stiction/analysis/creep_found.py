@@ -23,6 +23,7 @@ T = TypeVar("T")
 
 KNOWN = 0.25  # standard error of an exponent, or of an angle over it, that still says something
 SURE = 2.0  # standard errors
+MISSED = 0.1  # of the creep: what Eq. (7) misses by more, it does not describe
 RESTS = 1e-6  # of the drive velocity: what moves less for most of the time rests
 BACKWARD, SOME = 0.02, 0.25  # of the drive velocity; of the bins: creep the other way
 
@@ -144,6 +145,11 @@ def _misalignment(mean: xr.Dataset, V: float, stiffness: float) -> Misalignment:
     if np.nanmedian(np.abs(mean["velocity"].values)) < RESTS * V:
         raise ResultError("not determined: the mass rests, where Eq. (7) has it creep")
     found = fit_misalignment(mean, V, stiffness)
+    if found.misfit > MISSED:
+        raise ResultError(
+            "not determined: Eq. (7), which supposes slow loading and a spring that is far "
+            f"stiffer across, misses this creep by {100.0 * found.misfit:.2g}%"
+        )
     if not found.phi_error < KNOWN * abs(found.phi):
         most = degrees(abs(found.phi) + SURE * found.phi_error)
         limit = f"; it is below {most:.2g} deg" if most < 45.0 else ""

@@ -144,7 +144,8 @@ def _first_peak(forces: Floats, noise: float) -> tuple[int | None, str]:
     risen = highest - forces[0] > 0.5 * (highest[-1] - forces[0])
     fallen = np.flatnonzero((highest - forces > fall) & risen)
     if not len(fallen):
-        return None, "the force rises to its last value without a peak"
+        least = f"{100.0 * PEAK:g}% of its rise"
+        return None, f"the first loading does not end in a fall of more than {least}"
     return int(np.argmax(forces[: fallen[0] + 1])), ""
 
 

@@ -21,7 +21,8 @@ SURE = 2.0  # standard errors that an angle must be away from nothing
 class Misalignment(NamedTuple):
     """The misalignment that creep implies (rad), F_0 (N), and their standard errors.
 
-    `stiffness` (N/m) is that at which the force rises, where it was fitted with them.
+    `stiffness` (N/m) is that at which the force rises, where it was fitted with them; `misfit`
+    is by how much of itself the creep typically differs from Eq. (7), beyond two standard errors.
     """
 
     phi: float
@@ -29,6 +30,7 @@ class Misalignment(NamedTuple):
     F_0: float
     F_0_error: float
     stiffness: float = np.nan
+    misfit: float = np.nan
 
     @property
     def interval(self) -> tuple[float, float]:
@@ -83,7 +85,7 @@ def fit_misalignment(
     _, _, velocity, error, force = used
     largest = float(force.max())
 
-    def creep(_: Floats, phi: float, excess: float) -> Floats:
+    def creep(force: Floats, phi: float, excess: float) -> Floats:
         theta = np.arccos(np.clip(force / (largest + excess), -1.0, 1.0))
         speed = drive_velocity * np.sin(phi) * np.cos(theta - phi) / np.sin(theta)
         return np.asarray(speed)
@@ -91,4 +93,8 @@ def fit_misalignment(
     start = (0.02, max(1.02 * peak - largest, 1e-3 * peak))
     bounds = ((-1.5, 1e-6 * peak), (1.5, 10.0 * peak))
     (phi, excess), (phi_error, F_0_error) = fitted(creep, force, velocity, error, start, bounds)
-    return Misalignment(phi, phi_error, largest + excess, F_0_error)
+    theory = creep(force, phi, excess)
+    missed = np.maximum(np.abs(velocity - theory) - SURE * error, 0.0)
+    size = np.maximum(np.maximum(np.abs(velocity), np.abs(theory)), 1e-300)
+    misfit = float(np.median(missed / size))
+    return Misalignment(phi, phi_error, largest + excess, F_0_error, misfit=misfit)

@@ -154,6 +154,25 @@ def oscillation_by_phase(oscillation: xr.Dataset, run: Trajectory, phases: Float
     )
 
 
+def hides(oscillation: xr.Dataset, cycles: xr.Dataset) -> bool:
+    """Return whether cycles follow so closely that windows hold more than half of one."""
+    if not cycles.sizes["cycle"]:
+        return False
+    return bool(oscillation.attrs["width"] > 0.5 * float(np.median(cycles["period"].values)))
+
+
+def apart(oscillation: xr.Dataset, cycles: xr.Dataset) -> xr.Dataset:
+    """Return an oscillation without the lines that may be harmonics of the cycles themselves.
+
+    Where windows hold more than half a cycle these are all but those before the first cycle.
+    """
+    if not hides(oscillation, cycles):
+        return oscillation
+    before = oscillation["time"] + 0.5 * oscillation.attrs["width"] < float(cycles["start"][0])
+    cleared = {name: oscillation[name].where(before) for name in ("frequency", "amplitude")}
+    return oscillation.assign(cleared)
+
+
 def _labelled(dimension: str, rows: Rows) -> dict[str, tuple[str, Any, dict[str, str]]]:
     """Return variables over a dimension from values, unit and long name of each."""
     return {

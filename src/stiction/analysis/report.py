@@ -15,7 +15,7 @@ from stiction.analysis.energy import energy_budget
 from stiction.analysis.friction_found import Friction, find_friction
 from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.misalignment import Misalignment
-from stiction.analysis.oscillation import oscillation_by_phase, transverse_oscillation
+from stiction.analysis.oscillation import apart, oscillation_by_phase, transverse_oscillation
 from stiction.analysis.record import Record, recorded
 from stiction.analysis.regime import STICK_SLIP, TRANSITIONAL, Regime, regime_of
 from stiction.analysis.spread import summary
@@ -151,7 +151,9 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     cycles, regime = found.cycles, regime_of(record, found)
     sticking = cycles if regime.kind in (STICK_SLIP, TRANSITIONAL) else cycles.isel(cycle=slice(0))
     if run is not None:
-        oscillation = tried(missing, "oscillation", lambda: transverse_oscillation(run))
+        oscillation = tried(
+            missing, "oscillation", lambda: apart(transverse_oscillation(run), cycles)
+        )
         energy = tried(missing, "energy", lambda: energy_budget(run, edges(run, cycles)))
         width = None
     else:

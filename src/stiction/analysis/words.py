@@ -11,6 +11,7 @@ from stiction.analysis.columns import Quantity, grid
 from stiction.analysis.creep_found import RESTS, drive_speed
 from stiction.analysis.friction_found import Measured
 from stiction.analysis.hum import of_mains
+from stiction.analysis.oscillation import hides
 from stiction.analysis.regime import (
     HARMONIC,
     IRREGULAR,
@@ -52,7 +53,8 @@ ENERGIES = {
 }
 UNLESS_NONE = ("hesitations",)
 SELDOM = 0.05  # of the time: a line that is seen no longer may be chance
-NOTHING = 1e-6  # of the work: what is less stands in the files, not in the terminal
+NOTHING = 1e-3  # of the work: what is less stands in the files, not in the terminal
+ALIKE = 1e-5  # of a value: a spread that is less is the solver's, not the motion's
 FRICTIONS = {
     "break_away": "first break-away",
     "static": "static, mean of the peaks",
@@ -87,7 +89,8 @@ def plainly(found: Analysis) -> str:
         size = f"the force drops by {in_words(drop, 'N')}"
         plain = {
             STICK_SLIP: f"The mass sticks and slips {times}{every}; {size}",
-            TRANSITIONAL: f"The mass slips {times}{every}, and hardly rests in between; {size}",
+            TRANSITIONAL: f"The mass slips {times}{every}, between stick-slip and plain "
+            f"vibration; {size}",
             HARMONIC: f"The mass swings {times}{every}, without sticking; {size}",
         }
         if kind in plain:
@@ -114,8 +117,9 @@ def friction(found: Analysis) -> Section:
                 f"{title[0].upper()}{title[1:]}: not known; {found.friction.missing[name]}."
             )
             continue
-        force = _with_error(in_words(each.force, "N"), each.error, "N")
-        spread = in_words(each.spread, "N") if isfinite(each.spread) else ""
+        error = each.error if each.error > ALIKE * abs(each.force) else 0.0
+        force = _with_error(in_words(each.force, "N"), error, "N")
+        spread = _spread(each.spread, each.force, "N")
         mu = f"{each.coefficient:.4g}" if isfinite(each.coefficient) else ""
         if mu and each.coefficient_error > SLIGHT * abs(each.coefficient):
             mu += f" ± {each.coefficient_error:.1g}"
@@ -138,7 +142,7 @@ def cycles(found: Analysis) -> Section:
         mean, spread = float(row["mean"]), float(row["standard_deviation"])
         unit = str(row["unit"].values)
         if isfinite(mean) and (quantity not in UNLESS_NONE or mean):
-            several = in_words(spread, unit) if isfinite(spread) else ""
+            several = _spread(spread, mean, unit)
             rows.append((str(row["meaning"].values), in_words(mean, unit), several))
     table = Table(("quantity", "mean", "standard deviation"), rows)
     lines = [*_hesitations(found.cycles), f"{count}, from trough to trough. Means over them:"]
@@ -219,7 +223,7 @@ def oscillation(found: Analysis) -> Section:
     seen = found.oscillation["frequency"].values
     seen = seen[np.isfinite(seen)]
     if len(seen) < SELDOM * found.oscillation.sizes["time"] or not len(seen):
-        return Section("Oscillation", ["No line stands out of the noise."])
+        return Section("Oscillation", [f"No line stands out of the noise.{_hidden(found)}"])
     low, high = (in_words(float(each), "Hz") for each in (seen.min(), seen.max()))
     share = 100.0 * len(seen) / found.oscillation.sizes["time"]
     pitch = f"between {low} and {high}" if low != high else f"at {low}"
@@ -237,11 +241,25 @@ def oscillation(found: Analysis) -> Section:
         "stick phase from": Quantity(phases["start"].values, "s"),
         "at rest": Quantity(100.0 * phases["share_stuck"].values, "%"),
         "sticks": Quantity(phases["sticks_per_second"].values, "1/s"),
-        "ringing down": Quantity(100.0 * phases["ring_down"].values, "%"),
+        "free swing at the end": Quantity(100.0 * phases["ring_down"].values, "%"),
         "oscillation from": Quantity(phases["first_frequency"].values, "Hz"),
         "to": Quantity(phases["last_frequency"].values, "Hz"),
     }
-    return Section("Oscillation", lines, grid(columns, SHOWN))
+    known = {name: each for name, each in columns.items() if np.isfinite(each.values[:SHOWN]).any()}
+    lines[0] += _hidden(found)
+    return Section("Oscillation", lines, grid(known, SHOWN))
+
+
+def _hidden(found: Analysis) -> str:
+    """Say that cycles follow too closely for an oscillation to be told from them."""
+    oscillation = found.oscillation
+    if found.phases is None or oscillation is None or not hides(oscillation, found.cycles):
+        return ""
+    width = in_words(oscillation.attrs["width"], "s")
+    return (
+        f" It is sought in windows of 50 of its periods, {width}; the cycles follow too closely "
+        "for that, so it is sought before the first only."
+    )
 
 
 def energy(found: Analysis) -> Section:
@@ -255,14 +273,23 @@ def energy(found: Analysis) -> Section:
     columns |= {ENERGIES[name]: Quantity(budget[name].values, "J") for name in names}
     closes = f"It closes to {left / work:.1g} of the work." if work > 0.0 else "No work is done."
     small = [ENERGIES[name] for name in ENERGIES if name not in names]
-    less = f" Less than {NOTHING:.0e} of it: {', '.join(small)}." if small and work > 0.0 else ""
+    less = f" Less than {100 * NOTHING:g}% of it: {', '.join(small)}." if small and work else ""
     sentence = f"Where the work of the drive goes, from each time to the next. {closes}{less}"
-    return Section("Energy", [sentence], grid(columns, SHOWN))
+    return Section("Energy", [sentence], grid(columns, SHOWN, alike="J"))
 
 
 def _with_error(value: str, error: float, unit: str) -> str:
     """Return a value in words with its standard error, if that is known."""
     return f"{value} ± {in_words(float(f'{error:.1g}'), unit)}" if error > 0.0 else value
+
+
+def _spread(spread: float, mean: float, unit: str) -> str:
+    """Return a spread in words; of what differs by less than a run is right to, only that."""
+    if not isfinite(spread):
+        return ""
+    if spread <= ALIKE * abs(mean):
+        return f"< {100.0 * ALIKE:g}%"
+    return in_words(spread, unit)
 
 
 def _true(found: Analysis) -> str:

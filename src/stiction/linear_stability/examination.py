@@ -172,9 +172,15 @@ def modes_section(linear: Linearisation) -> Section:
         for value, f, zeta in modes
         if value.imag >= 0.0
     ]
-    sentence = f"Steady sliding is {linear.verdict}: {decays}."
+    sentences = [f"Steady sliding is {linear.verdict}: {decays}."]
+    law = linear.slider.law
+    if linear.stable and getattr(law, "mu_static", 0.0) > law.coefficient(0.0):
+        sentences.append(
+            "The static coefficient plays no part in that: a mass that is at rest, or is stopped, "
+            "may go on to stick and slip. stiction audit tries both starts."
+        )
     headings = ("growth rate (1/s)", "frequency (Hz)", "damping ratio")
-    return Section("Steady sliding", [sentence], Table(headings, rows))
+    return Section("Steady sliding", sentences, Table(headings, rows))
 
 
 def critical_section(slider: Slider, found: Sequence[Critical]) -> Section:

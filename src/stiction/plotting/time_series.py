@@ -23,6 +23,7 @@ FEW = 50  # so few samples are shown as such: what happens between them is not k
 PARTS = 500  # of the time: finer than a printed line shows
 BINS = 1500  # more than a printed line has dots
 TURNS = 4  # in a bin: what turns more often cannot be seen to oscillate there
+THIN = 5e-3  # of a panel's height: a range that is less is seen as a line
 SMOOTH = 9  # bins, two of them with weight zero, over which the mean there is taken
 BAND = 0.3  # opacity of the range in which it does
 LEAST = 1e-9  # of the drive's speed, or of its way: what is less is rounding
@@ -57,11 +58,14 @@ def swings(values: ArrayLike, bins: int = BINS) -> tuple[NDArray[np.bool_], Floa
     """Return in which bins of `envelope` values oscillate too fast to be seen, and their means."""
     v = np.asarray(values, dtype=np.float64)
     starts = np.linspace(0, len(v), bins, endpoint=False).astype(np.intp)
-    turns = np.pad(np.diff(v[:-1]) * np.diff(v[1:]) < 0.0, 1)
+    rate = np.diff(v)
+    moves = np.flatnonzero(np.isfinite(rate) & (rate != 0.0))
+    turns = moves[1:][np.diff(np.sign(rate[moves])) != 0.0]
     known = np.isfinite(v)
     count = np.maximum(np.add.reduceat(known.astype(np.intp), starts), 1)
     mean = np.add.reduceat(np.where(known, v, 0.0), starts) / count
-    fast = np.add.reduceat(turns.astype(np.intp), starts) >= TURNS
+    within = np.searchsorted(starts, turns, side="right") - 1
+    fast = np.bincount(within, minlength=bins) >= TURNS
     whole = np.hanning(SMOOTH)  # a bin may hold a period and a half
     weight = np.maximum(np.convolve(fast, whole, "same"), 1e-300)
     return fast, np.where(fast, np.convolve(mean * fast, whole, "same") / weight, mean)
@@ -79,6 +83,8 @@ def draw_line(
     if len(times) > 2 * BINS:
         fast, mean = swings(values)
         pairs = shown.reshape(-1, 2)
+        height = np.fmax.reduce(shown) - np.fmin.reduce(shown)
+        fast &= pairs[:, 1] - pairs[:, 0] > THIN * height
         if fast.any():
             low, high = np.where(fast, pairs.T, np.nan)
             ax.fill_between(thin[::2], low, high, color=color, alpha=BAND, linewidth=0)
