@@ -90,9 +90,10 @@ def comparable(kind: Any, description: Description) -> Law:
     """
     slider = description.slider
     if isinstance(slider.law, kind):
-        return slider.law
-    made = like(kind, shared_traits(description))
-    known = slider.law._asdict() if hasattr(slider.law, "_asdict") else {}
+        described: Law = slider.law
+        return described
+    made: Any = like(kind, shared_traits(description))
+    known = slider.law._asdict() if hasattr(slider.law, "_asdict") else {}  # a class of one's own
     sigma_0, memory = BRISTLES * slider.k_x, slider.F_0 / slider.k_x / MEMORY
     own = {"sigma_0": sigma_0, "sigma_1": 2.0 * sqrt(sigma_0 * slider.mass)}
     own |= {"D_c": memory, "D_1": memory, "D_2": 10.0 * memory}
@@ -101,7 +102,8 @@ def comparable(kind: Any, description: Description) -> Law:
         for name, value in own.items()
         if name in kind._fields
     }
-    return made._replace(**chosen) if chosen else made
+    suited: Law = made._replace(**chosen) if chosen else made
+    return suited
 
 
 def inline(text: str) -> dict[str, Any]:

@@ -245,7 +245,11 @@ def oscillation(found: Analysis) -> Section:
         "oscillation from": Quantity(phases["first_frequency"].values, "Hz"),
         "to": Quantity(phases["last_frequency"].values, "Hz"),
     }
-    known = {name: each for name, each in columns.items() if np.isfinite(each.values[:SHOWN]).any()}
+    known = {
+        name: each
+        for name, each in columns.items()
+        if np.isfinite(np.asarray(each.values, dtype=np.float64)[:SHOWN]).any()
+    }
     lines[0] += _hidden(found)
     return Section("Oscillation", lines, grid(known, SHOWN))
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
@@ -150,10 +151,10 @@ def _forces(ax: Axes, run: Trajectory) -> None:
         line.set_label(f"$k_{axis} u_{axis}$")
         line.set_zorder(2.2 if axis == "x" else 2.0)  # what swings across would hide it
     ax.set_ylabel(f"spring force ({prefix}N)")
-    handles = ax.get_lines()
+    handles: list[Artist] = [*ax.get_lines()]
     if ax.collections:
         band = Patch(color=GREY, alpha=time_series.BAND, linewidth=0, label="fast oscillation")
-        handles = [*handles, band]
+        handles.append(band)
     ax.legend(
         handles=handles, loc="lower right", ncols=3, bbox_to_anchor=(1.0, 0.97), borderaxespad=0.0
     )
