@@ -29,7 +29,7 @@ LONGEST = 2000.0  # swings on the soft spring to wait for that at most
 COARSE = 40.0  # samples in each swing on the soft spring
 ALMOST = 0.99  # of the drive's speed: it has come to slide
 MOST_SAMPLES = 200_000
-MOST_WORK = 7_000_000  # steps and samples of all simulations of an audit: some 15 s
+MOST_WORK = 7_000_000  # steps and samples of all simulations of an audit: 2 s without states
 SHARE = 0.35  # of that for the test from rest, and as much for the one from sliding
 MANY = 50_000  # transverse periods, from which on few cycles are to stand for many
 
