@@ -1,10 +1,13 @@
 """Runs that many tests look at, computed once."""
 
 import os
+import shutil
+from pathlib import Path
 
 import pytest
 
 import stiction as st
+from stiction.solver.compilation import machine_code
 
 os.environ["DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT"] = "30m"  # not 30 s: the machine may be busy
 
@@ -24,3 +27,15 @@ def paper_run(slider: st.Slider) -> st.Trajectory:
 def sharp_run(slider: st.Slider) -> st.Trajectory:
     """Fig. 3 at a tolerance 1e6 times tighter, on the same samples."""
     return st.simulate(slider, 5.0, sample_rate=10e3, rtol=1e-12)
+
+
+@pytest.fixture
+def code_cache(slider: st.Slider, tmp_path: Path) -> Path:
+    """A folder for machine code in which the solver is compiled, but no law."""
+    st.simulate(slider, 1e-3)
+    full = machine_code.folder()
+    place = tmp_path / "cache" / full.name
+    place.mkdir(parents=True, mode=0o700)
+    for kept in full.glob("stiction.solver.exact.loop.steps-*"):
+        shutil.copy(kept, place)
+    return tmp_path / "cache"

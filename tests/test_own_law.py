@@ -436,8 +436,8 @@ def test_a_law_in_a_prompt_has_no_text(tmp_path):
         st.Description.from_json((tmp_path / "script.json").read_text(), trust=True)
 
 
-def test_machine_code_is_kept_for_the_next_process(config, tmp_path):
-    cache = {"NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+def test_machine_code_is_kept_for_the_next_process(config, tmp_path, code_cache):
+    cache = {"NUMBA_CACHE_DIR": str(code_cache)}
     code = f"""
 import pickle, stiction as st
 from stiction.simulation import run
@@ -446,11 +446,11 @@ print(run(d).stick_intervals[0, 1])
 open("law.pickle", "wb").write(pickle.dumps(d.slider))
 """
     one = python(code, tmp_path, **cache)
-    kept = sorted((tmp_path / "cache").rglob("*.code"))
+    kept = sorted(code_cache.rglob("*.code"))
     stamps = [each.stat().st_mtime_ns for each in kept]
     assert sum("coefficient_and_slope_at" in each.name for each in kept) == 1
     assert python(code, tmp_path, **cache) == one
-    assert sorted((tmp_path / "cache").rglob("*.code")) == kept
+    assert sorted(code_cache.rglob("*.code")) == kept
     assert [each.stat().st_mtime_ns for each in kept] == stamps
     # another process makes the law of its pickle, as a pool of processes needs
     load = "import pickle; print(pickle.load(open('law.pickle', 'rb')).law)"

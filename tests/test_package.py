@@ -103,8 +103,8 @@ print(st.simulate(slider, 0.1).stick_intervals[0, 1])
 """
 
 
-def test_a_user_s_law_is_compiled_cached_and_seen_when_edited(tmp_path):
-    cache = {"NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": str(tmp_path)}
+def test_a_user_s_law_is_compiled_cached_and_seen_when_edited(tmp_path, code_cache):
+    cache = {"NUMBA_CACHE_DIR": str(code_cache), "PYTHONPATH": str(tmp_path)}
     law = tmp_path / "mylaw.py"
     law.write_text(LAW.format(factor="1.0"))
     one = float(run_python(USE, **cache))

@@ -1,11 +1,13 @@
 """What SECURITY.md promises, a test for each line; laws of files are in `test_own_law`."""
 
+import gc
 import json
 import os
 import re
 import socket
 import subprocess
 import sys
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import h5py
@@ -54,6 +56,15 @@ def test_workers_listen_to_this_machine_and_to_their_own_client_alone():
     told = [a for a in answers if a and a[0] != 21 and not re.match(rb"HTTP/1.\d 404", a)]
     assert told == []
     at_work.close()
+
+
+def test_a_port_that_another_scheduler_has_is_not_asked_for():
+    """dask, refused, leaves a socket open behind it."""
+    with ExitStack() as held:
+        with suppress(OSError):  # somebody has it
+            held.enter_context(socket.create_server(("127.0.0.1", 8787)))
+        assert [*Processes(1).results(lambda *_: 1, [0])] == [1]
+        gc.collect()
 
 
 def test_the_dashboard_is_shown_where_it_is_asked_for():

@@ -57,7 +57,9 @@ class Processes(NamedTuple):
                 host=LOOPBACK,
                 protocol="tls://",
                 security=temporary_certificate(),
-                dashboard_address=f"{LOOPBACK}:8787" if self.dashboard else None,
+                # without one, any free port: another scheduler of this machine may have dask's own
+                dashboard_address=f"{LOOPBACK}:{8787 if self.dashboard else 0}",
+                scheduler_kwargs={"dashboard": self.dashboard},
                 silence_logs=logging.ERROR,  # of tasks that are cancelled
             )
             with lost_and_told(), cluster, dask.Client(cluster) as client:
