@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import StepPatch
 from matplotlib.ticker import FuncFormatter, MaxNLocator
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 
 from stiction.analysis.slip import Slip, averaged_slip
@@ -22,9 +23,10 @@ Floats = NDArray[np.float64]
 FEW = 50  # so few samples are shown as such: what happens between them is not known
 PARTS = 500  # of the time: finer than a printed line shows
 BINS = 1500  # more than a printed line has dots
-TURNS = 4  # in a bin: what turns more often cannot be seen to oscillate there
+NEAR, HALF = 9, 5  # bins about one in which turns are counted, and in which extremes are sought
+TURNS = 5  # there: what has a period of fewer than four bins cannot be seen to oscillate
 THIN = 5e-3  # of a panel's height: a range that is less is seen as a line
-SMOOTH = 9  # bins, two of them with weight zero, over which the mean there is taken
+SMOOTH = 13  # bins, two of them with weight zero, over which the mean there is taken
 BAND = 0.3  # opacity of the range in which it does
 LEAST = 1e-9  # of the drive's speed, or of its way: what is less is rounding
 STILL = 1.0  # deg: an angle that changes less is drawn on an axis of this size
@@ -65,7 +67,8 @@ def swings(values: ArrayLike, bins: int = BINS) -> tuple[NDArray[np.bool_], Floa
     count = np.maximum(np.add.reduceat(known.astype(np.intp), starts), 1)
     mean = np.add.reduceat(np.where(known, v, 0.0), starts) / count
     within = np.searchsorted(starts, turns, side="right") - 1
-    fast = np.bincount(within, minlength=bins) >= TURNS
+    nearby = np.convolve(np.bincount(within, minlength=bins), np.ones(NEAR), "same")
+    fast = nearby >= TURNS
     whole = np.hanning(SMOOTH)  # a bin may hold a period and a half
     weight = np.maximum(np.convolve(fast, whole, "same"), 1e-300)
     return fast, np.where(fast, np.convolve(mean * fast, whole, "same") / weight, mean)
@@ -86,7 +89,10 @@ def draw_line(
         height = np.fmax.reduce(shown) - np.fmin.reduce(shown)
         fast &= pairs[:, 1] - pairs[:, 0] > THIN * height
         if fast.any():
-            low, high = np.where(fast, pairs.T, np.nan)
+            near = np.pad(pairs, ((HALF // 2, HALF // 2), (0, 0)), mode="edge")
+            windows = sliding_window_view(near, HALF, axis=0)
+            low = np.where(fast, windows[:, 0].min(axis=1), np.nan)
+            high = np.where(fast, windows[:, 1].max(axis=1), np.nan)
             ax.fill_between(thin[::2], low, high, color=color, alpha=BAND, linewidth=0)
         shown = np.where(fast[:, np.newaxis], mean[:, np.newaxis], pairs).ravel()
     (line,) = ax.plot(thin, shown, color=color, linewidth=width)
