@@ -183,7 +183,7 @@ def test_the_figure_says_what_is_drawn(slider):
     budget = st.energy_budget(st.simulate(slider.replace(c_x=1.0), 0.1), [0.0, 0.05, 0.1])
     upper, lower = figure_of(plot_energy, budget).axes
     assert upper.get_ylabel() == "energy (µJ)"
-    assert lower.get_xlabel() == "interval"
+    assert lower.get_xlabel() == "interval of the run"
     _, labels = upper.get_legend_handles_labels()
     assert {"work of the drive", "friction, $y$", "spring, $x$"} <= set(labels)
     heights = [bar.get_height() for each in upper.containers for bar in each]

@@ -116,5 +116,5 @@ def plot_energy(budget: xr.Dataset, axes: Sequence[Axes] | None = None) -> NDArr
         panels[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.07), ncols=3)
         panels[1].legend(loc="best")
         panels[1].xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
-        panels[1].set_xlabel("part of the run: first loading, each cycle, rest")
+        panels[1].set_xlabel("interval of the run")
     return np.array(panels, dtype=object)
