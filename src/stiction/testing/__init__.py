@@ -13,9 +13,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, ClassVar
 
-from stiction.bounded import endless
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import has_state
+from stiction.friction.user.bounded import endless
 from stiction.friction.user.validation import ENDING, is_law
 from stiction.testing.common import COMMON, SPEEDS
 from stiction.testing.set_valued import SET_VALUED

@@ -7,9 +7,9 @@ from math import isfinite
 from types import ModuleType
 from typing import Any
 
-from stiction.bounded import endless
 from stiction.errors import DescriptionError, Fault, one_line
 from stiction.friction.law import has_state
+from stiction.friction.user.bounded import endless
 from stiction.friction.user.source import member
 from stiction.validation import unknown
 

@@ -51,7 +51,7 @@ class Shelf:
     function
         The Python function.
     own
-        Digest of the user's law or drive for which it is compiled; "" for the package's own.
+        Digest of the user's law for which it is compiled; "" for the package's own.
     """
 
     def __init__(self, function: Callable[..., Any], own: str = "") -> None:

@@ -29,6 +29,8 @@ from stiction.solver.radau import (
 from stiction.solver.state import Accuracy
 from stiction.solver.surface import flow
 
+LOOKS = 6  # at most, at where the slip may be least
+
 
 @inlined
 def moving(problem: Problem, frame: Frame, start: Outset, accuracy: Accuracy) -> float:
@@ -45,9 +47,6 @@ def moving(problem: Problem, frame: Frame, start: Outset, accuracy: Accuracy) ->
     by_x, by_y = g_x - s_1 * e_x + s_2 * e_y, g_y - s_1 * e_y - s_2 * e_x
     square = by_x * by_x * accuracy.square_x + by_y * by_y * accuracy.square_y
     return max(sqrt(x * x + y * y + square), accuracy.least)
-
-
-LOOKS = 6  # at most, at where the slip may be least
 
 
 @inlined

@@ -26,6 +26,8 @@ from stiction.solver.state import Accuracy
 from stiction.solver.stick import holding
 from stiction.solver.surface import friction_along
 
+COLUMNS = 7
+
 
 @inlined
 def within(
@@ -90,9 +92,6 @@ def ended(h: float, s: Swing, p: Triple, w: Triple) -> tuple[float, float, float
 def on_cubic(first: float, values: Triple, x: float) -> float:
     """Return the cubic through a value at the start and those at the stages."""
     return cubic((first, values[0], values[1], values[2]), x)
-
-
-COLUMNS = 7
 
 
 @inlined
