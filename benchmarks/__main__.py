@@ -10,7 +10,7 @@ from time import perf_counter
 from rich.console import Console
 from rich.progress import MofNCompleteColumn, Progress, TimeElapsedColumn
 
-from .report import save, show
+from benchmarks.report import save, show
 
 # each module has run(progress, quick) -> Section
 PARTS = {

@@ -21,9 +21,9 @@ from rich.console import Console
 from rich.progress import Progress
 from rich.table import Table
 
-from .regression.trees import ROOT, Absent, Worker, at_work, changed, known, laid_out
-from .regression.verdict import CONFIDENCE, Ratio, ratio, slower
-from .regression.workload import CASES
+from benchmarks.regression.trees import ROOT, Absent, Worker, at_work, changed, known, laid_out
+from benchmarks.regression.verdict import CONFIDENCE, Ratio, ratio, slower
+from benchmarks.regression.workload import CASES
 
 PAIRS = 6  # of runs, a generation
 

@@ -12,8 +12,8 @@ from rich import box
 from rich import table as rich_table
 from rich.console import Console
 
-from .machine import machine
-from .section import Cell, Section, Table
+from benchmarks.machine import machine
+from benchmarks.section import Cell, Section, Table
 
 WIDTH = 190  # characters; the tables need them, however narrow the terminal
 DPI = 160

@@ -15,8 +15,8 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import track
 
-from .regression.results import runs
-from .regression.trees import ROOT, known, laid_out
+from benchmarks.regression.results import runs
+from benchmarks.regression.trees import ROOT, known, laid_out
 
 RESULTS = Path(__file__).parent / "regression" / "results.py"
 

@@ -6,7 +6,7 @@ A function that the methods call must be decorated with `numba.njit`; keep it in
 from math import log1p
 from typing import NamedTuple
 
-from stiction.units import Coefficient, PositiveSpeed
+from stiction.text.units import Coefficient, PositiveSpeed
 
 
 class Logarithmic(NamedTuple):

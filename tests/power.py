@@ -13,7 +13,7 @@ from stat import S_ISDIR
 
 import pytest
 
-from stiction import files
+from stiction.storage import files
 
 State = dict[str, bytes | None]  # content by path; None for a folder
 

@@ -6,8 +6,8 @@ asks that they agree to the digits given.
 
 from itertools import chain
 
-from . import belt, lugre, oscillator, paper, rate_and_state, steady, transverse
-from .case import Case
+from benchmarks.cases import belt, lugre, oscillator, paper, rate_and_state, steady, transverse
+from benchmarks.cases.case import Case
 
 # each with what it shares with nobody before it: run side by side, hardly anything compiles twice
 GROUPS: tuple[tuple[Case, ...], ...] = (

@@ -8,9 +8,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import stiction as st
+from benchmarks.cases.case import Case, block, crest
 from stiction.reproduction.numbers import Number
-
-from .case import Case, block, crest
 
 SPEED, D = 0.2, 3.0  # of the belt; F = 1/(1 + d |slip|)
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import stiction as st
+from benchmarks.cases.case import Case, block
 from stiction.reproduction.numbers import Number
 from stiction.solver.integrate import tolerance
-
-from .case import Case, block
 
 V = 0.1  # m/s
 RTOL = 1e-13  # where the digits are right

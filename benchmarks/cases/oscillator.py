@@ -8,9 +8,8 @@ from math import atan, pi, sqrt, tan
 import numpy as np
 
 import stiction as st
+from benchmarks.cases.case import Case, block, crest
 from stiction.reproduction.numbers import Number
-
-from .case import Case, block, crest
 
 SAMPLES = 20_000  # a period
 

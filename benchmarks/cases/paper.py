@@ -6,11 +6,10 @@ from functools import cache
 from math import cos
 
 import stiction as st
+from benchmarks.cases.case import Case, crest
 from stiction import theory
 from stiction.reproduction.numbers import Number, reference
 from stiction.solver.reference import twin
-
-from .case import Case, crest
 
 SAMPLE_RATE = 100e3  # so that extremes and their times are those of the solution
 TWIN = 18.5e-3  # s; eight sticks, which take the twin some seconds

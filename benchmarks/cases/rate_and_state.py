@@ -8,10 +8,9 @@ from math import nan
 from scipy.optimize import brentq
 
 import stiction as st
+from benchmarks.cases.case import Case, block, growth
 from stiction.reproduction.numbers import Number
 from stiction.solver.integrate import tolerance
-
-from .case import Case, block, growth
 
 A, B, D_C, V, SIGMA, MASS = 0.01, 0.015, 1e-5, 1e-2, 5e6, 1e3  # all per unit area
 

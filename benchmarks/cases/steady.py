@@ -9,10 +9,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 import stiction as st
+from benchmarks.cases.case import Case, growth
 from stiction.reproduction.numbers import Number
 from stiction.solver.integrate import tolerance
-
-from .case import Case, growth
 
 LOW, HIGH = 8.0, 9.3  # deg
 RATE = 1e3  # samples a second: some hundred in a period of the slow oscillation

@@ -8,9 +8,8 @@ from math import pi, sqrt
 from scipy.special import ellipk
 
 import stiction as st
+from benchmarks.cases.case import Case, block
 from stiction.reproduction.numbers import Number
-
-from .case import Case, block
 
 MU = 0.3
 

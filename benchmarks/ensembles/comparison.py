@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.progress import Progress
 
-from ..harness.contest import contest
-from ..harness.library import Library
-from ..harness.row import Errors, Match, Row, failures, fastest, matches, verdict
-from ..precision.case import GRID, spring_force
-from ..precision.peers.ours import solve
-from ..section import Cell, Section, Table
-from .many import CORES, PHI, in_threads
+from benchmarks.ensembles.many import CORES, PHI, in_threads
+from benchmarks.harness.contest import contest
+from benchmarks.harness.library import Library
+from benchmarks.harness.row import Errors, Match, Row, failures, fastest, matches, verdict
+from benchmarks.precision.case import GRID, spring_force
+from benchmarks.precision.peers.ours import solve
+from benchmarks.section import Cell, Section, Table
 
 PEERS = ("ours", "numbalsoda", "heyoka", "diffrax")
 REFERENCE_RTOL = 1e-11

@@ -18,10 +18,9 @@ from pathlib import Path
 from rich.console import Console
 
 import stiction as st
-
-from ..report import show
-from .accuracy import Seen, look, section
-from .systems import system
+from benchmarks.explore.accuracy import Seen, look, section
+from benchmarks.explore.systems import system
+from benchmarks.report import show
 
 EVERY = 500  # systems between two looks at how far it is
 CHUNK = 10  # systems handed to a process at a time

@@ -12,11 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from benchmarks.explore.deviation import FINER, FINEST, deviation, forces, response
+from benchmarks.explore.systems import system
+from benchmarks.section import Section, Table
 from stiction.solver.integrate import tolerance
-
-from ..section import Section, Table
-from .deviation import FINER, FINEST, deviation, forces, response
-from .systems import system
 
 BOUNDS = {"in steps": 30.0, "multiscale": 2.0}  # of the error over the response
 SHARES = (0.5, 0.9, 0.99, 0.999, 1.0)

@@ -17,16 +17,15 @@ from time import process_time
 from typing import Any, NamedTuple
 
 import stiction as st
+from benchmarks.explore.draw import Draw
+from benchmarks.explore.systems import LAWS as PLAIN
+from benchmarks.explore.systems import named_law
 from stiction.auditing import Audit
 from stiction.auditing.observation import OSCILLATES, SLIDES
 from stiction.auditing.page import page
 from stiction.auditing.words import VIBRATES
 from stiction.linear_stability.linear import STABLE, UNSTABLE
-from stiction.unit_text import registry
-
-from .draw import Draw
-from .systems import LAWS as PLAIN
-from .systems import named_law
+from stiction.text.unit_text import registry
 
 LAWS = (
     "exponential", "stribeck", "coulomb", "hyperbolic", "anisotropic", "table",

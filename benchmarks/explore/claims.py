@@ -17,10 +17,9 @@ import numpy as np
 from scipy.linalg import expm
 
 import stiction as st
+from benchmarks.explore.draw import Draw
+from benchmarks.explore.systems import System, system
 from stiction.solver.integrate import tolerance
-
-from .draw import Draw
-from .systems import System, system
 
 SAMPLES = 5  # of a run
 PERIODS = 12.0  # of the faster oscillation, after the first stick

@@ -25,14 +25,14 @@ import h5py
 import numpy as np
 
 import stiction as st
-from stiction import result_checksums, result_file
+from benchmarks.explore.draw import Draw
 from stiction.cli import main as main_line
 from stiction.cli.options import value as option
 from stiction.laws import read_laws
+from stiction.result import checksums
+from stiction.result.file import opened
 from stiction.study.store.seal import seal
-from stiction.tables import toml_text
-
-from .draw import Draw
+from stiction.text.toml import toml_text
 
 STEPS = 200  # of a run; the solver's end is no part of what is looked at here
 SECONDS = 2.0  # an input that takes longer is listed
@@ -281,7 +281,7 @@ def result(draw: Draw, folder: Path) -> None:
     whole = _result(folder)
     path.write_bytes(whole)
     if draw.chance(0.25):
-        checksum = whole.rindex(result_checksums.MARK)  # of the whole file: others write none
+        checksum = whole.rindex(checksums.MARK)  # of the whole file: others write none
         path.write_bytes(torn(draw, whole[: draw.among([checksum, len(whole)])]))
     else:
         with h5py.File(path, "r+") as file:
@@ -298,11 +298,11 @@ def result(draw: Draw, folder: Path) -> None:
 def reseal(path: Path) -> None:
     """Have a result's checksums fit what is in it, as who changes it on purpose would."""
     with suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
-        data, sticks = result_file.opened(path)
-        seal = result_checksums.sealed({"samples": data, "sticks": sticks})
+        data, sticks = opened(path)
+        seal = checksums.sealed({"samples": data, "sticks": sticks})
         with h5py.File(path, "r+") as file:
-            file.attrs[result_checksums.SEAL] = seal
-    result_checksums.sign(path)
+            file.attrs[checksums.SEAL] = seal
+    checksums.sign(path)
 
 
 def _result(folder: Path, kept: dict[str, bytes] = {}) -> bytes:  # noqa: B006

@@ -20,8 +20,8 @@ from rich.table import Table
 from scipy.signal import lfilter
 
 import stiction as st
-from stiction.analysis.cycles import swings
-from stiction.analysis.regime import (
+from stiction.analysis.motion.cycles import swings
+from stiction.analysis.motion.regime import (
     HARMONIC,
     IRREGULAR,
     STEADY,

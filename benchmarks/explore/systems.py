@@ -8,8 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 import stiction as st
-
-from .draw import Draw
+from benchmarks.explore.draw import Draw
 
 SHORT, LONG = 100.0, 400.0  # periods of the faster oscillation, from the end of the first stick on
 LATER = 3.0  # and so many first sticks at most

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.progress import Progress
 
-from .contestant import Failed
-from .library import Library
-from .rounds import round_robin
-from .row import Errors, Row
+from benchmarks.harness.contestant import Failed
+from benchmarks.harness.library import Library
+from benchmarks.harness.rounds import round_robin
+from benchmarks.harness.row import Errors, Row
 
 FIRST = 0.7  # of the time: for errors; the rest is for rounds
 LEAST = 5.0  # s; that a run may take, if it is begun

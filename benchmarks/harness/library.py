@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .contestant import Failed
+from benchmarks.harness.contestant import Failed
 
 ROOT = Path(__file__).parents[2]
 START = 120.0  # s; for imports and for what is compiled

@@ -16,7 +16,7 @@ from time import perf_counter
 
 import numpy as np
 
-from .contestant import Contestant, Failed
+from benchmarks.harness.contestant import Contestant, Failed
 
 MOMENT = 0.02  # s
 

@@ -10,16 +10,16 @@ from statistics import median
 
 from rich.progress import Progress
 
-from ..harness.contest import contest
-from ..harness.library import Library
-from ..harness.row import Row, failures, matches, verdict
-from ..section import Cell, Section, Table
-from . import levels
-from .case import GRID, spring_force
-from .figure import figure
-from .peers import PEERS
-from .peers.ours import compiled
-from .reference import RTOL, Reference, largest, reference
+from benchmarks.harness.contest import contest
+from benchmarks.harness.library import Library
+from benchmarks.harness.row import Row, failures, matches, verdict
+from benchmarks.precision import levels
+from benchmarks.precision.case import GRID, spring_force
+from benchmarks.precision.figure import figure
+from benchmarks.precision.peers import PEERS
+from benchmarks.precision.peers.ours import compiled
+from benchmarks.precision.reference import RTOL, Reference, largest, reference
+from benchmarks.section import Cell, Section, Table
 
 HEADINGS = (
     "solver",

@@ -14,7 +14,7 @@ import math
 import numba
 import numpy as np
 
-from .case import K_X, K_Y, MASS, MU_0, MU_INF, V_F, W
+from benchmarks.precision.case import K_X, K_Y, MASS, MU_0, MU_INF, V_F, W
 
 
 @numba.njit(inline="always")

@@ -8,7 +8,7 @@ from itertools import cycle
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..harness.row import OURS, Row
+from benchmarks.harness.row import OURS, Row
 
 # Okabe & Ito's colours, told apart by the colour-blind, and a wine red of Tol's: one a library.
 # Markers tell the methods apart, also in black and white.

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from math import inf
 from typing import NamedTuple
 
-from ..harness.row import Errors, Row, fastest
-from ..section import Cell, Table
-from .peers.ours import MULTISCALE, SOLVER
+from benchmarks.harness.row import Errors, Row, fastest
+from benchmarks.precision.peers.ours import MULTISCALE, SOLVER
+from benchmarks.section import Cell, Table
 
 LSODA = "LSODA (numbalsoda)"
 OURS = (SOLVER, MULTISCALE)

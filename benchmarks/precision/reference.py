@@ -7,8 +7,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..harness.row import Errors
-from .case import DURATION, GRID, K_X, K_Y, PUBLISHED_U_X, PUBLISHED_U_Y, spring_force
+from benchmarks.harness.row import Errors
+from benchmarks.precision.case import (
+    DURATION,
+    GRID,
+    K_X,
+    K_Y,
+    PUBLISHED_U_X,
+    PUBLISHED_U_Y,
+    spring_force,
+)
 
 RTOL = 1e-13  # the tightest that stiction takes
 FINE = 10  # samples for each step of the grid, for the twin

@@ -15,26 +15,28 @@ from stiction.deprecation import old_names
 
 if TYPE_CHECKING:
     from stiction import linear_stability, plotting, presets, theory
-    from stiction.analysis.creep_curve import creep_curves, mean_creep
-    from stiction.analysis.cycles import find_cycles
-    from stiction.analysis.divergence import fit_divergence
-    from stiction.analysis.drift import detrended
+    from stiction.analysis.creep.curve import creep_curves, mean_creep
+    from stiction.analysis.creep.divergence import fit_divergence
+    from stiction.analysis.creep.force_curve import misalignment_from_force
+    from stiction.analysis.creep.misalignment import fit_misalignment
     from stiction.analysis.energy import energy_budget
-    from stiction.analysis.force_curve import misalignment_from_force
     from stiction.analysis.measured_line import strongest_line
-    from stiction.analysis.misalignment import fit_misalignment
+    from stiction.analysis.motion.cycle_summary import summary
+    from stiction.analysis.motion.cycles import find_cycles
+    from stiction.analysis.motion.drift import detrended
+    from stiction.analysis.motion.regime import Regime, classify
     from stiction.analysis.onset import find_onset
-    from stiction.analysis.oscillation import oscillation_by_phase, transverse_oscillation
     from stiction.analysis.record import Record, record_of
-    from stiction.analysis.regime import Regime, classify
     from stiction.analysis.report import Analysis, analyse, analyze
-    from stiction.analysis.ridge import follow_ridge
-    from stiction.analysis.spectrum import spectrogram, stream_spectrogram
-    from stiction.analysis.spread import summary
+    from stiction.analysis.signals.ridge import follow_ridge
+    from stiction.analysis.signals.spectrum import spectrogram, stream_spectrogram
+    from stiction.analysis.transverse_oscillation import (
+        oscillation_by_phase,
+        transverse_oscillation,
+    )
     from stiction.auditing.report import Audit, audit
     from stiction.checking import Check, check
     from stiction.comparison import Comparison, compare
-    from stiction.description import Description, Settings
     from stiction.drive import (
         Constant,
         ConstantVelocity,
@@ -62,19 +64,20 @@ if TYPE_CHECKING:
         Stribeck,
         Table,
     )
-    from stiction.initial import Initial
     from stiction.linear_stability.examination import Stability, stability
     from stiction.plotting.door import plot
     from stiction.reproduction.reproduce import paper
     from stiction.simulation import run, simulate
-    from stiction.slider import Slider
     from stiction.study.axes import Grid, Random, Sobol, Values
     from stiction.study.execution.refine import refine
     from stiction.study.execution.sweep import sweep
     from stiction.study.plan import Study
     from stiction.study.store.store import open_study
     from stiction.study.view.mapping import Map, map
-    from stiction.template import init
+    from stiction.system.description import Description, Settings
+    from stiction.system.initial import Initial
+    from stiction.system.slider import Slider
+    from stiction.system.template import init
     from stiction.testing import check_law
     from stiction.trajectory import Trajectory, export, load
 
@@ -90,7 +93,7 @@ _HOME = {
     "Constant": "drive",
     "ConstantVelocity": "drive",
     "Coulomb": "friction",
-    "Description": "description",
+    "Description": "system.description",
     "DescriptionError": "errors",
     "DriveProgram": "drive",
     "ExponentialWeakening": "friction",
@@ -99,7 +102,7 @@ _HOME = {
     "Harmonic": "drive",
     "Hold": "drive",
     "HyperbolicWeakening": "friction",
-    "Initial": "initial",
+    "Initial": "system.initial",
     "LoadProgram": "drive",
     "LuGre": "friction",
     "Map": "study.view.mapping",
@@ -111,11 +114,11 @@ _HOME = {
     "RateStateSlip": "friction",
     "RateStateSlip2": "friction",
     "Record": "analysis.record",
-    "Regime": "analysis.regime",
+    "Regime": "analysis.motion.regime",
     "ResultError": "errors",
     "Reversal": "drive",
-    "Settings": "description",
-    "Slider": "slider",
+    "Settings": "system.description",
+    "Slider": "system.slider",
     "Sobol": "study.axes",
     "Stability": "linear_stability.examination",
     "Status": "errors",
@@ -131,37 +134,37 @@ _HOME = {
     "audit": "auditing.report",
     "check": "checking",
     "check_law": "testing",
-    "classify": "analysis.regime",
+    "classify": "analysis.motion.regime",
     "compare": "comparison",
-    "creep_curves": "analysis.creep_curve",
-    "detrended": "analysis.drift",
+    "creep_curves": "analysis.creep.curve",
+    "detrended": "analysis.motion.drift",
     "energy_budget": "analysis.energy",
     "export": "trajectory",
-    "find_cycles": "analysis.cycles",
+    "find_cycles": "analysis.motion.cycles",
     "find_onset": "analysis.onset",
-    "fit_divergence": "analysis.divergence",
-    "fit_misalignment": "analysis.misalignment",
-    "follow_ridge": "analysis.ridge",
-    "init": "template",
+    "fit_divergence": "analysis.creep.divergence",
+    "fit_misalignment": "analysis.creep.misalignment",
+    "follow_ridge": "analysis.signals.ridge",
+    "init": "system.template",
     "load": "trajectory",
     "map": "study.view.mapping",
-    "mean_creep": "analysis.creep_curve",
-    "misalignment_from_force": "analysis.force_curve",
+    "mean_creep": "analysis.creep.curve",
+    "misalignment_from_force": "analysis.creep.force_curve",
     "open_study": "study.store.store",
-    "oscillation_by_phase": "analysis.oscillation",
+    "oscillation_by_phase": "analysis.transverse_oscillation",
     "paper": "reproduction.reproduce",
     "plot": "plotting.door",
     "record_of": "analysis.record",
     "refine": "study.execution.refine",
     "run": "simulation",
     "simulate": "simulation",
-    "spectrogram": "analysis.spectrum",
+    "spectrogram": "analysis.signals.spectrum",
     "stability": "linear_stability.examination",
-    "stream_spectrogram": "analysis.spectrum",
+    "stream_spectrogram": "analysis.signals.spectrum",
     "strongest_line": "analysis.measured_line",
-    "summary": "analysis.spread",
+    "summary": "analysis.motion.cycle_summary",
     "sweep": "study.execution.sweep",
-    "transverse_oscillation": "analysis.oscillation",
+    "transverse_oscillation": "analysis.transverse_oscillation",
 }
 # old public names, which go on working for one version
 _RENAMED = {"hear_song": "transverse_oscillation", "song_by_phase": "oscillation_by_phase"}

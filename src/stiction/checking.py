@@ -7,15 +7,15 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from stiction.apart import apart
-from stiction.description import Description
 from stiction.errors import ResultError
-from stiction.result_checksums import intact_description
-from stiction.result_file import read_tables
-from stiction.sections import Section, as_text
+from stiction.result.checksums import intact_description
+from stiction.result.file import read_tables
 from stiction.simulation import run
+from stiction.storage.isolation import apart
 from stiction.study.store.repair import damage_of, restore, stores_in
 from stiction.study.view.view import broken_changes
+from stiction.system.description import Description
+from stiction.text.sections import Section, as_text
 
 
 class Check(NamedTuple):

@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 
 from stiction.analysis.slip import outcome
-from stiction.description import SAMPLE, Description, description_of
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import Law, name_of, parameters
 from stiction.laws import exchanged, read_laws
 from stiction.memory import shortage
-from stiction.sections import Section, Table, as_html, as_text
 from stiction.simulation import automatic_times, run
+from stiction.system.description import SAMPLE, Description, description_of
+from stiction.text.sections import Section, Table, as_html, as_text
 from stiction.trajectory import Trajectory
 
 HEADINGS = (

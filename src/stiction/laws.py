@@ -10,15 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from stiction.description import Description
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import LAWS, Law, has_state, read_law
 from stiction.friction.equivalent import Traits, like, traits
 from stiction.friction.law import static_coefficient
 from stiction.friction.user.loading import named
-from stiction.initial import Initial
-from stiction.tables import read_toml
-from stiction.validation import unknown
+from stiction.system.description import Description
+from stiction.system.initial import Initial
+from stiction.text.toml import read_toml
+from stiction.text.validation import unknown
 
 BRISTLES = 100.0  # of the stiffness along x, as Canudas de Wit et al. (1995) beside our 1 kN/m
 MEMORY = 200.0  # in a slip length, as 10 µm in the 2 mm of Nakano & Popov

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from stiction.drive import ConstantVelocity
 from stiction.friction import ExponentialWeakening
-from stiction.slider import Slider
+from stiction.system.slider import Slider
 
 
 def nakano_popov_2020() -> Slider:

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numba.core.errors import NumbaError
 
-from stiction.description import Description, Settings, description_of
 from stiction.errors import STATUSES, DescriptionError, Fault, Status
 from stiction.friction import has_state, states
-from stiction.initial import Initial
-from stiction.labels import VARIABLES, dataset
-from stiction.slider import Slider
+from stiction.result.dataset import VARIABLES, dataset
 from stiction.solver.compilation.refusal import reasons
 from stiction.solver.integrate import Solution, integrate
+from stiction.system.description import Description, Settings, description_of
+from stiction.system.initial import Initial
+from stiction.system.slider import Slider
 from stiction.trajectory import Statistics, Trajectory
 
 if TYPE_CHECKING:

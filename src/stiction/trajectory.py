@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stiction.description import Description
 from stiction.errors import DescriptionError, ResultError, Status
-from stiction.files import placeable, whole
 from stiction.friction import states
-from stiction.initial import Initial
-from stiction.labels import VARIABLES, apparent_friction, described, stick_table
-from stiction.result_file import ENDS, age, read_tables, write_result
-from stiction.sections import Section, as_html
-from stiction.slider import Slider
-from stiction.table_files import exportable, write_tables
-from stiction.writing import parameter_table, slider_tables
+from stiction.result.dataset import VARIABLES, apparent_friction, described, stick_table
+from stiction.result.file import ENDS, age, read_tables, write_result
+from stiction.storage.files import placeable, whole
+from stiction.storage.table_files import exportable, write_tables
+from stiction.system.description import Description
+from stiction.system.initial import Initial
+from stiction.system.slider import Slider
+from stiction.system.writing import parameter_table, slider_tables
+from stiction.text.sections import Section, as_html
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -89,7 +89,7 @@ class Trajectory:
 
     @cached_property
     def data(self) -> xr.Dataset:
-        """The samples: variables over ``time``, with units (see `stiction.labels`)."""
+        """The samples: variables over ``time``, with units (see `stiction.result.dataset`)."""
         return self.arrays()
 
     @cached_property

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...harness.contestant import Contestant, Failed, rows
-from ...precision.case import drive, initial_state
-from ...precision.peers.diffrax import jitted
-from ..many import PHI
+from benchmarks.ensembles.many import PHI
+from benchmarks.harness.contestant import Contestant, Failed, rows
+from benchmarks.precision.case import drive, initial_state
+from benchmarks.precision.peers.diffrax import jitted
 
 KVAERNO3 = (
     {"delta": 3e-6, "rtol": 1e-3, "atol": 1e-8},

@@ -6,10 +6,10 @@ from functools import cache
 
 import numpy as np
 
-from ...harness.contestant import Contestant, Failed, rows
-from ...precision.case import drive, initial_state
-from ...precision.peers.heyoka import regularised
-from ..many import PHI
+from benchmarks.ensembles.many import PHI
+from benchmarks.harness.contestant import Contestant, Failed, rows
+from benchmarks.precision.case import drive, initial_state
+from benchmarks.precision.peers.heyoka import regularised
 
 SETTINGS = (
     {"delta": 3e-6, "tol": 1e-5},

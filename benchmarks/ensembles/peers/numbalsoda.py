@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numba
 
-from ...harness.contestant import Contestant, rows
-from ...precision.peers.numbalsoda import solver
-from ..many import in_threads
+from benchmarks.ensembles.many import in_threads
+from benchmarks.harness.contestant import Contestant, rows
+from benchmarks.precision.peers.numbalsoda import solver
 
 LSODA = (
     {"delta": 3e-6, "rtol": 1e-4, "atol": 1e-8},

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from ...harness.contestant import Contestant, rows
-from ...precision.peers.ours import solve
-from ..many import in_threads
+from benchmarks.ensembles.many import in_threads
+from benchmarks.harness.contestant import Contestant, rows
+from benchmarks.precision.peers.ours import solve
 
 RTOL = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)
 

@@ -4,8 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...harness.contestant import Contestant, Failed, rows
-from ..case import K_X, K_Y, MASS, MU_0, MU_INF, PHI, V_F, W, drive, initial_state
+from benchmarks.harness.contestant import Contestant, Failed, rows
+from benchmarks.precision.case import (
+    K_X,
+    K_Y,
+    MASS,
+    MU_0,
+    MU_INF,
+    PHI,
+    V_F,
+    W,
+    drive,
+    initial_state,
+)
 
 KVAERNO3 = (
     {"delta": 3e-6, "rtol": 1e-3, "atol": 1e-8},

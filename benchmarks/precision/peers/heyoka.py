@@ -6,8 +6,19 @@ from math import atan2, cos, hypot, sin, sqrt
 
 import numpy as np
 
-from ...harness.contestant import Contestant, Failed, rows
-from ..case import K_X, K_Y, MASS, MU_0, MU_INF, PHI, V_F, W, drive, initial_state
+from benchmarks.harness.contestant import Contestant, Failed, rows
+from benchmarks.precision.case import (
+    K_X,
+    K_Y,
+    MASS,
+    MU_0,
+    MU_INF,
+    PHI,
+    V_F,
+    W,
+    drive,
+    initial_state,
+)
 
 REGULARISED = (
     {"delta": 1e-6, "tol": 1e-6},

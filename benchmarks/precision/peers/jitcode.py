@@ -6,8 +6,19 @@ import warnings
 
 import numpy as np
 
-from ...harness.contestant import Contestant, Failed, rows
-from ..case import K_X, K_Y, MASS, MU_0, MU_INF, PHI, V_F, W, drive, initial_state
+from benchmarks.harness.contestant import Contestant, Failed, rows
+from benchmarks.precision.case import (
+    K_X,
+    K_Y,
+    MASS,
+    MU_0,
+    MU_INF,
+    PHI,
+    V_F,
+    W,
+    drive,
+    initial_state,
+)
 
 LSODA = (
     {"delta": 3e-6, "rtol": 1e-4, "atol": 1e-8},

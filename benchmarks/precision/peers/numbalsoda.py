@@ -5,9 +5,9 @@ from __future__ import annotations
 import numba
 import numpy as np
 
-from ...harness.contestant import Contestant, Failed, rows
-from ..case import PHI, drive, initial_state
-from ..equations import rates
+from benchmarks.harness.contestant import Contestant, Failed, rows
+from benchmarks.precision.case import PHI, drive, initial_state
+from benchmarks.precision.equations import rates
 
 # Ever sharper, the fastest found for what they reach, by trying hundreds with the answer known.
 # From delta=9e-7 on the smoothed law damps the transverse oscillation away, and steps are long.

@@ -7,8 +7,8 @@ from math import degrees
 
 import numpy as np
 
-from ...harness.contestant import Contestant, Failed, rows
-from ..case import ENDS, PHI
+from benchmarks.harness.contestant import Contestant, Failed, rows
+from benchmarks.precision.case import ENDS, PHI
 
 SOLVER, MULTISCALE = "stiction", "stiction, multiscale"
 RTOL = (

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numba
 import numpy as np
 
-from ...harness.contestant import Contestant, rows
-from ..case import PHI, drive, initial_state
-from ..equations import rates
+from benchmarks.harness.contestant import Contestant, rows
+from benchmarks.precision.case import PHI, drive, initial_state
+from benchmarks.precision.equations import rates
 
 STEPS = ({"dt": 1e-5}, {"dt": 1e-6}, {"dt": 1e-7})  # s
 

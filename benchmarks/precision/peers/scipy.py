@@ -8,9 +8,9 @@ from functools import partial
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from ...harness.contestant import Contestant, Failed, rows
-from ..case import PHI, drive, initial_state
-from ..equations import derivative_of, jacobian_of
+from benchmarks.harness.contestant import Contestant, Failed, rows
+from benchmarks.precision.case import PHI, drive, initial_state
+from benchmarks.precision.equations import derivative_of, jacobian_of
 
 LSODA = (
     {"delta": 3e-6, "rtol": 1e-4, "atol": 1e-8},

@@ -11,8 +11,19 @@ from math import exp, hypot
 
 import numpy as np
 
-from ...harness.contestant import Contestant, rows
-from ..case import K_X, K_Y, MASS, MU_0, MU_INF, PHI, V_F, W, drive, initial_state
+from benchmarks.harness.contestant import Contestant, rows
+from benchmarks.precision.case import (
+    K_X,
+    K_Y,
+    MASS,
+    MU_0,
+    MU_INF,
+    PHI,
+    V_F,
+    W,
+    drive,
+    initial_state,
+)
 
 STEPS = ({"h": 1e-3}, {"h": 1e-4}, {"h": 1e-5})  # s
 

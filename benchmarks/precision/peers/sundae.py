@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...harness.contestant import Contestant, Failed, rows
-from ..case import PHI, drive, initial_state
-from ..equations import derivative, jacobian
+from benchmarks.harness.contestant import Contestant, Failed, rows
+from benchmarks.precision.case import PHI, drive, initial_state
+from benchmarks.precision.equations import derivative, jacobian
 
 CVODE = (
     {"delta": 3e-6, "rtol": 1e-4, "atol": 1e-8},

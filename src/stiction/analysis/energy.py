@@ -11,8 +11,8 @@ from stiction.analysis.quadrature import integrals, states_at
 from stiction.drive import drive_stretches, jump
 from stiction.drive.program import pick
 from stiction.errors import ResultError
-from stiction.slider import Slider
 from stiction.solver.integrate import tolerance
+from stiction.system.slider import Slider
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stiction.analysis.report import Analysis
-from stiction.files import placeable, whole
-from stiction.table_files import with_units, write_tables
+from stiction.storage.files import placeable, whole
+from stiction.storage.table_files import with_units, write_tables
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from stiction.initial import Initial
 from stiction.linear_stability import steady_sliding
 from stiction.simulation import simulate
-from stiction.slider import Slider
+from stiction.system.initial import Initial
+from stiction.system.slider import Slider
 
 if TYPE_CHECKING:
     import xarray as xr

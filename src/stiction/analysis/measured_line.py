@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stiction.analysis.record import Record
-from stiction.analysis.ridge import follow_ridge
-from stiction.analysis.spectrum import spectrogram
+from stiction.analysis.signals.ridge import follow_ridge
+from stiction.analysis.signals.spectrum import spectrogram
 from stiction.errors import ResultError
 
 if TYPE_CHECKING:

@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 from stiction.analysis.limit_cycle import KICK, OSCILLATING, REST, UNDECIDED, Found, settled
 from stiction.errors import DescriptionError, Fault
 from stiction.linear_stability import steady_sliding
-from stiction.parameter import changed, placed, read, unit
-from stiction.slider import Slider
+from stiction.system.parameter import changed, placed, read, unit
+from stiction.system.slider import Slider
 
 if TYPE_CHECKING:
     import xarray as xr

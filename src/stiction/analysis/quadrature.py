@@ -14,11 +14,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.description import Description
 from stiction.drive import drive_stretches, load_stretches
 from stiction.errors import ResultError
 from stiction.solver.integrate import integrate
 from stiction.solver.segments import fastest_swing, stretches
+from stiction.system.description import Description
 from stiction.trajectory import Trajectory
 
 Floats = NDArray[np.float64]

@@ -10,9 +10,9 @@ from pydantic import BeforeValidator, model_validator
 from pydantic_core import PydanticCustomError
 
 from stiction.errors import Fault, ResultError
+from stiction.text.units import Force, Kind, Mass, PositiveSpeed, Stiffness, reader, to_si
+from stiction.text.validation import Described, faulty
 from stiction.trajectory import Trajectory
-from stiction.units import Force, Kind, Mass, PositiveSpeed, Stiffness, reader, to_si
-from stiction.validation import Described, faulty
 
 Floats = NDArray[np.float64]
 

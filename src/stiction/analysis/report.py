@@ -7,21 +7,25 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from stiction.analysis.creep_found import find_creep, tried
-from stiction.analysis.cycles import swings
-from stiction.analysis.divergence import Divergence
-from stiction.analysis.doubts import taken_off, warnings
+from stiction.analysis.creep.divergence import Divergence
+from stiction.analysis.creep.findings import find_creep, tried
+from stiction.analysis.creep.misalignment import Misalignment
 from stiction.analysis.energy import energy_budget
-from stiction.analysis.friction_found import Friction, find_friction
 from stiction.analysis.measured_line import strongest_line
-from stiction.analysis.misalignment import Misalignment
-from stiction.analysis.oscillation import apart, oscillation_by_phase, transverse_oscillation
+from stiction.analysis.motion.cycle_summary import summary
+from stiction.analysis.motion.cycles import swings
+from stiction.analysis.motion.doubts import taken_off, warnings
+from stiction.analysis.motion.friction import Friction, find_friction
+from stiction.analysis.motion.regime import STICK_SLIP, TRANSITIONAL, Regime, regime_of
 from stiction.analysis.record import Record, recorded
-from stiction.analysis.regime import STICK_SLIP, TRANSITIONAL, Regime, regime_of
-from stiction.analysis.spread import summary
+from stiction.analysis.transverse_oscillation import (
+    apart,
+    oscillation_by_phase,
+    transverse_oscillation,
+)
 from stiction.deprecation import warn_renamed
 from stiction.errors import ResultError
-from stiction.sections import Section, as_html, as_text
+from stiction.text.sections import Section, as_html, as_text
 from stiction.trajectory import Trajectory, load
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from stiction.analysis.creep import first_slip_time
+from stiction.analysis.creep.first_slip import first_slip_time
 from stiction.errors import Status
 from stiction.trajectory import Trajectory
 

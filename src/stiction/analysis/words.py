@@ -7,12 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stiction.analysis.columns import Quantity, grid
-from stiction.analysis.creep_found import RESTS, drive_speed
-from stiction.analysis.friction_found import Measured
-from stiction.analysis.hum import of_mains
-from stiction.analysis.oscillation import hides
-from stiction.analysis.regime import (
+from stiction.analysis.creep.findings import RESTS, drive_speed
+from stiction.analysis.motion.friction import Measured
+from stiction.analysis.motion.regime import (
     HARMONIC,
     IRREGULAR,
     SETTLING,
@@ -22,9 +19,12 @@ from stiction.analysis.regime import (
     TRANSITIONAL,
 )
 from stiction.analysis.report import Analysis
-from stiction.sections import Section, Table
+from stiction.analysis.signals.hum import of_mains
+from stiction.analysis.transverse_oscillation import hides
+from stiction.text.columns import Quantity, grid
+from stiction.text.sections import Section, Table
+from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
-from stiction.units import in_words
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 from stiction.auditing.observation import SLIDES, Observation, Progress, coarse_rate, observe
 from stiction.auditing.prediction import predict
 from stiction.linear_stability import Critical, critical, growth_rate
-from stiction.parameter import changed, read, unit
-from stiction.slider import Slider
+from stiction.system.parameter import changed, read, unit
+from stiction.system.slider import Slider
 
 # How far beyond a critical value to go, of it: farther where an oscillation, once there, goes on
 # although steady sliding is stable

@@ -7,18 +7,18 @@ from math import hypot
 import numpy as np
 from matplotlib.figure import Figure
 
-from stiction.analysis.creep_curve import creep_curves, mean_creep
+from stiction.analysis.creep.curve import creep_curves, mean_creep
 from stiction.auditing.report import Audit
 from stiction.auditing.words import HARDLY, NAMES, VIBRATES
 from stiction.friction import has_state
 from stiction.linear_stability import boundary
-from stiction.plotting.canvas import figure_of
-from stiction.plotting.creep_curve import creep_theory, plot_creep
-from stiction.plotting.cycles import plot_cycles
-from stiction.plotting.stability import plot_boundary
-from stiction.plotting.trials import Trial, plot_trials
+from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep
+from stiction.plotting.analysis.cycles import plot_cycles
+from stiction.plotting.analysis.trials import Trial, plot_trials
+from stiction.plotting.page.canvas import figure_of
+from stiction.plotting.stability.boundary import plot_boundary
 from stiction.reproduction.figure5 import figure5
-from stiction.units import in_words
+from stiction.text.units import in_words
 
 
 def test(found: Audit) -> Figure | None:

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from stiction import theory
-from stiction.analysis.cycles import swings
+from stiction.analysis.motion.cycles import swings
+from stiction.analysis.motion.regime import SETTLING, STEADY, STUCK, Regime, regime_of
 from stiction.analysis.record import Record, record_of
-from stiction.analysis.regime import SETTLING, STEADY, STUCK, Regime, regime_of
 from stiction.auditing.prediction import SEEN, Prediction
-from stiction.initial import Initial
 from stiction.linear_stability import Linearisation
 from stiction.simulation import simulate
-from stiction.slider import Slider
+from stiction.system.initial import Initial
+from stiction.system.slider import Slider
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:

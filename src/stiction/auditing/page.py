@@ -15,8 +15,8 @@ from stiction.auditing import figures
 from stiction.auditing.report import Audit
 from stiction.auditing.words import sections
 from stiction.errors import ResultError
-from stiction.files import placeable, whole
-from stiction.plotting.save import png
+from stiction.plotting.page.save import png
+from stiction.storage.files import placeable, whole
 
 SUFFIXES = (".html", ".htm")
 

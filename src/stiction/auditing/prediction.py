@@ -10,8 +10,8 @@ import numpy as np
 from stiction import theory
 from stiction.friction import Anisotropic, has_state
 from stiction.friction.law import static_coefficient
-from stiction.slider import Slider
-from stiction.units import in_words
+from stiction.system.slider import Slider
+from stiction.text.units import in_words
 
 SEEN = 10.0  # samples a transverse period: enough to see its shape, not just its frequency
 # of the time until the slip: a first stick that is longer is no short beginning, as in Eq. (7)

@@ -18,10 +18,10 @@ from stiction.auditing.observation import (
 )
 from stiction.auditing.prediction import Prediction, predict
 from stiction.deprecation import old_attributes
-from stiction.description import Description
 from stiction.linear_stability import Critical, Linearisation, critical, steady_sliding
-from stiction.sections import Section, as_html, as_text
-from stiction.slider import Slider, slider_of
+from stiction.system.description import Description
+from stiction.system.slider import Slider, slider_of
+from stiction.text.sections import Section, as_html, as_text
 
 PARTS = 3 + len(LEVERS)  # of the work: two tests, an advice a lever, the critical misalignments
 

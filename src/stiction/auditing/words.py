@@ -6,9 +6,9 @@ from math import cos, degrees, isfinite, nan
 
 import numpy as np
 
-from stiction.analysis.creep import first_slip_time
-from stiction.analysis.friction_found import find_friction
-from stiction.analysis.regime import (
+from stiction.analysis.creep.first_slip import first_slip_time
+from stiction.analysis.motion.friction import find_friction
+from stiction.analysis.motion.regime import (
     HARMONIC,
     IRREGULAR,
     SETTLING,
@@ -29,8 +29,8 @@ from stiction.auditing.prediction import suppositions
 from stiction.auditing.report import Audit
 from stiction.friction import has_state
 from stiction.linear_stability.linear import STABLE, UNSTABLE
-from stiction.sections import Section, Table
-from stiction.units import in_words
+from stiction.text.sections import Section, Table
+from stiction.text.units import in_words
 
 VIBRATES = (HARMONIC, IRREGULAR)  # about steady sliding: nothing sticks or creeps
 HARDLY = 0.05  # of the time: what creeps or rests less than that hardly does

@@ -48,7 +48,7 @@ COMMANDS = (
     "check",
 )
 for _name in COMMANDS:  # light modules: what is heavy they import when they are called
-    app.command(getattr(import_module(f"stiction.cli.{_name}"), _name))
+    app.command(getattr(import_module(f"stiction.cli.commands.{_name}"), _name))
 app.register_install_completion_command(
     help="Let the shell (bash, zsh, fish or PowerShell) complete commands and options."
 )

@@ -11,7 +11,7 @@ from rich.table import Table as Grid
 from rich.text import Text
 
 from stiction.errors import visible
-from stiction.sections import Section, Table
+from stiction.text.sections import Section, Table
 
 LONGEST = 24  # letters of a word that is not broken
 

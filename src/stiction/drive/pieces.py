@@ -13,8 +13,8 @@ from typing import Annotated, Any, NamedTuple
 
 from pydantic import AfterValidator
 
-from stiction.units import Duration, Rate, reader
-from stiction.validation import validated
+from stiction.text.units import Duration, Rate, reader
+from stiction.text.validation import validated
 
 
 def _level(value: Any) -> Any:

@@ -14,8 +14,8 @@ from stiction.drive.pieces import DRIVE_PIECES, LOAD_PIECES
 from stiction.drive.reading import Reading, as_modulation, as_pieces
 from stiction.drive.signal import Course, Loading, Signal, signal_at
 from stiction.drive.steady import ConstantLoad, ConstantVelocity
-from stiction.units import FORCE, VELOCITY, Velocity
-from stiction.validation import Described
+from stiction.text.units import FORCE, VELOCITY, Velocity
+from stiction.text.validation import Described
 
 Times = Any  # a float or an array
 Repeat = Annotated[int, Field(ge=1, le=100_000)]

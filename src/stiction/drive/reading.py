@@ -10,9 +10,9 @@ from pydantic_core import PydanticCustomError
 
 from stiction.drive.pieces import LEVELS, Modulation
 from stiction.errors import DescriptionError, Fault
-from stiction.tables import choose
-from stiction.units import Kind, fault, to_si
-from stiction.validation import faulty
+from stiction.text.toml import choose
+from stiction.text.units import Kind, fault, to_si
+from stiction.text.validation import faulty
 
 
 class Reading(NamedTuple):

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from stiction.units import Force, Velocity
-from stiction.validation import validated
+from stiction.text.units import Force, Velocity
+from stiction.text.validation import validated
 
 
 @validated

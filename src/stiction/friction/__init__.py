@@ -23,7 +23,7 @@ from stiction.friction.laws.rate_and_state_two import RateStateAgeing2, RateStat
 from stiction.friction.laws.stribeck import Stribeck
 from stiction.friction.laws.table import Table
 from stiction.friction.user.loading import Find, is_own, named, own_table, read_own
-from stiction.tables import choose
+from stiction.text.toml import choose
 
 # plain functions that laws call, to be compiled with them
 FUNCTIONS = (*_RATE_AND_STATE, bending)

@@ -7,9 +7,9 @@ from math import exp, inf, log
 from typing import NamedTuple
 
 from stiction.errors import DescriptionError, Fault
-from stiction.parameter import changed, placed, read, unit
-from stiction.paths import canonical_path
-from stiction.slider import Slider
+from stiction.system.parameter import changed, placed, read, unit
+from stiction.system.slider import Slider
+from stiction.text.paths import canonical_path
 
 DECADES = 3.0  # either way from a parameter's own value, where no range is given
 WIDE = 10.0  # ratio of the ends beyond which the scale is logarithmic
@@ -56,7 +56,7 @@ def axis(slider: Slider, path: str, between: Sequence[float | str] | None = None
     slider : Slider
         The system.
     path : str
-        The parameter, see `stiction.parameter`.
+        The parameter, see `stiction.system.parameter`.
     between : pair of float or str, optional
         Its range; when left out, 0 to 90 degrees for an angle, else three decades either way
         from its present value.

@@ -14,8 +14,8 @@ from stiction.linear_stability.derivatives import Floats
 from stiction.linear_stability.following import Growth, Point, both_ways, directed, near
 from stiction.linear_stability.linear import growth_rate, steady_sliding
 from stiction.linear_stability.roots import sign_changes, signed_growth
-from stiction.parameter import read
-from stiction.slider import Slider
+from stiction.system.parameter import read
+from stiction.system.slider import Slider
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.friction import Anisotropic
-from stiction.slider import Slider
+from stiction.system.slider import Slider
 
 Floats = NDArray[np.float64]
 

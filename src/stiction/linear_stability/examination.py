@@ -23,15 +23,15 @@ from stiction.linear_stability.linear import (
 )
 from stiction.linear_stability.roots import Critical, critical
 from stiction.linear_stability.spectrum import modes_over
-from stiction.parameter import read
-from stiction.sections import Section, Table, as_html, as_text
-from stiction.slider import Slider, slider_of
-from stiction.units import in_words
+from stiction.system.parameter import read
+from stiction.system.slider import Slider, slider_of
+from stiction.text.sections import Section, Table, as_html, as_text
+from stiction.text.units import in_words
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stiction.description import Description
+    from stiction.system.description import Description
 
 OVER = ("phi", "drive.velocity")
 DIGITS = 6  # of a critical value

@@ -11,11 +11,11 @@ import numpy as np
 
 from stiction.errors import StictionError
 from stiction.friction import states
-from stiction.initial import Initial
 from stiction.linear_stability.derivatives import Floats, Response
 from stiction.linear_stability.eigenvalues import Complex, Eigenvalues, eigenvalues
 from stiction.linear_stability.steady import drive_velocity, steady_friction
-from stiction.slider import Slider
+from stiction.system.initial import Initial
+from stiction.system.slider import Slider
 
 STABLE, UNSTABLE = "stable", "unstable"
 BOUNDARY = "on the boundary of stability within its uncertainty"

@@ -11,7 +11,7 @@ import numpy as np
 from stiction.linear_stability.axis import axis
 from stiction.linear_stability.derivatives import Floats
 from stiction.linear_stability.linear import BOUNDARY, steady_sliding
-from stiction.slider import Slider
+from stiction.system.slider import Slider
 
 POINTS = 65  # at which a range is looked at first
 CLEAR = 1e-6  # of the largest eigenvalue: the sign of a growth rate that is larger is no rounding

@@ -10,7 +10,7 @@ import numpy as np
 from stiction.linear_stability.axis import axis
 from stiction.linear_stability.eigenvalues import Complex
 from stiction.linear_stability.linear import steady_sliding
-from stiction.slider import Slider
+from stiction.system.slider import Slider
 
 if TYPE_CHECKING:
     import xarray as xr

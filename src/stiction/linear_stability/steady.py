@@ -11,7 +11,7 @@ from stiction.drive import drive_stretches, load_stretches
 from stiction.errors import DescriptionError, Fault, StictionError
 from stiction.friction import has_state
 from stiction.linear_stability.derivatives import Floats, Response, set_valued, with_state
-from stiction.slider import Slider
+from stiction.system.slider import Slider
 
 SETTLED = 1e-9  # what unsteady internal states may do to friction, relative to it
 STEADY = "sliding is linearised at a steady drive and load: slider.replace("

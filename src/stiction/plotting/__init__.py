@@ -15,42 +15,42 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from stiction.plotting.analysis import plot_analysis
-    from stiction.plotting.comparison import plot_comparison
-    from stiction.plotting.creep_curve import plot_creep
-    from stiction.plotting.cycles import plot_cycles
-    from stiction.plotting.damping import plot_damping
-    from stiction.plotting.energy import plot_energy
-    from stiction.plotting.law import plot_law
-    from stiction.plotting.modes import plot_modes
-    from stiction.plotting.onset import plot_onset
-    from stiction.plotting.oscillation import plot_oscillation
-    from stiction.plotting.overview import plot_run
-    from stiction.plotting.schematic import plot_slider
-    from stiction.plotting.spectrogram import plot_spectrogram
-    from stiction.plotting.stability import plot_boundary, plot_stability
-    from stiction.plotting.trials import plot_trials
+    from stiction.plotting.analysis.creep_curve import plot_creep
+    from stiction.plotting.analysis.cycles import plot_cycles
+    from stiction.plotting.analysis.energy import plot_energy
+    from stiction.plotting.analysis.oscillation import plot_oscillation
+    from stiction.plotting.analysis.overview import plot_analysis
+    from stiction.plotting.analysis.spectrogram import plot_spectrogram
+    from stiction.plotting.analysis.trials import plot_trials
+    from stiction.plotting.apparatus.schematic import plot_slider
+    from stiction.plotting.run.comparison import plot_comparison
+    from stiction.plotting.run.law import plot_law
+    from stiction.plotting.run.overview import plot_run
+    from stiction.plotting.stability.boundary import plot_boundary, plot_stability
+    from stiction.plotting.stability.damping import plot_damping
+    from stiction.plotting.stability.modes import plot_modes
+    from stiction.plotting.stability.onset import plot_onset
     from stiction.study.view.mapping import plot_map
 
 # where each public name lives; imported when first used
 _HOME = {
-    "plot_analysis": "plotting.analysis",
-    "plot_boundary": "plotting.stability",
-    "plot_comparison": "plotting.comparison",
-    "plot_creep": "plotting.creep_curve",
-    "plot_cycles": "plotting.cycles",
-    "plot_damping": "plotting.damping",
-    "plot_energy": "plotting.energy",
-    "plot_law": "plotting.law",
+    "plot_analysis": "plotting.analysis.overview",
+    "plot_boundary": "plotting.stability.boundary",
+    "plot_comparison": "plotting.run.comparison",
+    "plot_creep": "plotting.analysis.creep_curve",
+    "plot_cycles": "plotting.analysis.cycles",
+    "plot_damping": "plotting.stability.damping",
+    "plot_energy": "plotting.analysis.energy",
+    "plot_law": "plotting.run.law",
     "plot_map": "study.view.mapping",  # what it draws lies above the figures
-    "plot_modes": "plotting.modes",
-    "plot_onset": "plotting.onset",
-    "plot_oscillation": "plotting.oscillation",
-    "plot_run": "plotting.overview",
-    "plot_slider": "plotting.schematic",
-    "plot_spectrogram": "plotting.spectrogram",
-    "plot_stability": "plotting.stability",
-    "plot_trials": "plotting.trials",
+    "plot_modes": "plotting.stability.modes",
+    "plot_onset": "plotting.stability.onset",
+    "plot_oscillation": "plotting.analysis.oscillation",
+    "plot_run": "plotting.run.overview",
+    "plot_slider": "plotting.apparatus.schematic",
+    "plot_spectrogram": "plotting.analysis.spectrogram",
+    "plot_stability": "plotting.stability.boundary",
+    "plot_trials": "plotting.analysis.trials",
 }
 
 __all__ = [

@@ -14,8 +14,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from stiction.plotting.parameter import PLAIN, Scale
-from stiction.plotting.style import BLACK, BLUE, GREEN
+from stiction.plotting.page.parameter import PLAIN, Scale
+from stiction.plotting.page.style import BLACK, BLUE, GREEN
 
 Floats = NDArray[np.float64]
 CASING = [patheffects.withStroke(linewidth=3.0, foreground="white")]

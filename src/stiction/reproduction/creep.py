@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from stiction import theory
-from stiction.analysis.creep import first_slip_time, mean_creep_velocity
-from stiction.plotting.style import (
+from stiction.analysis.creep.first_slip import first_slip_time, mean_creep_velocity
+from stiction.plotting.page.style import (
     BLACK,
     BLUE,
     COLUMN,

@@ -5,9 +5,9 @@ from __future__ import annotations
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from stiction.analysis.creep import first_slip_time
-from stiction.plotting import time_series
-from stiction.plotting.style import BLUE, COLUMN, new_figure, panel_letter, style
+from stiction.analysis.creep.first_slip import first_slip_time
+from stiction.plotting.page.style import BLUE, COLUMN, new_figure, panel_letter, style
+from stiction.plotting.run import time_series
 from stiction.trajectory import Trajectory
 
 

@@ -8,11 +8,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from stiction import theory
-from stiction.analysis.creep import first_slip_time
-from stiction.analysis.spectrum import rate_spectrogram
-from stiction.plotting.spectrogram import draw_spectrogram, mark_frequency
-from stiction.plotting.style import COLUMN, RED, new_figure, panel_letter, style
-from stiction.plotting.time_series import draw_line, draw_rate, prefixed
+from stiction.analysis.creep.first_slip import first_slip_time
+from stiction.analysis.signals.spectrum import rate_spectrogram
+from stiction.plotting.analysis.spectrogram import draw_spectrogram, mark_frequency
+from stiction.plotting.page.style import COLUMN, RED, new_figure, panel_letter, style
+from stiction.plotting.run.time_series import draw_line, draw_rate, prefixed
 from stiction.trajectory import Trajectory
 
 

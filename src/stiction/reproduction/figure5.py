@@ -8,9 +8,9 @@ from math import degrees, log, radians, sin
 from matplotlib.figure import Figure
 
 from stiction import theory
-from stiction.plotting.damping import CLEAR, draw_damping_map, draw_force_path
-from stiction.plotting.style import BLUE, COLUMN, GREEN, RED, new_figure, style
-from stiction.slider import Slider
+from stiction.plotting.page.style import BLUE, COLUMN, GREEN, RED, new_figure, style
+from stiction.plotting.stability.damping import CLEAR, draw_damping_map, draw_force_path
+from stiction.system.slider import Slider
 
 PLACES = (0.41, 0.6, 0.75, 0.25)  # of a word in the diagram, the best first
 HALF = 0.17  # of its width, and some room

@@ -14,7 +14,7 @@ from math import pi, radians, sin
 import numpy as np
 
 from stiction import theory
-from stiction.slider import Slider
+from stiction.system.slider import Slider
 from stiction.trajectory import Trajectory
 
 
@@ -103,7 +103,7 @@ def from_theory(slider: Slider) -> list[Number]:
 
 def from_simulation(run: Trajectory) -> list[Number]:
     """Return the numbers that the paper reads off its simulation."""
-    from stiction.analysis.creep import first_slip_time
+    from stiction.analysis.creep.first_slip import first_slip_time
 
     d, slider = run.data, run.slider
     time, slip = d["time"].values, first_slip_time(run)
@@ -177,7 +177,7 @@ def _ridge(run: Trajectory, start: float, end: float) -> float:
 
 def of_creep(run: Trajectory) -> list[Number]:
     """Return Eq. (7) against the simulation, and Eq. (8) against Eq. (7)."""
-    from stiction.analysis.creep import mean_creep_velocity
+    from stiction.analysis.creep.first_slip import mean_creep_velocity
 
     s, V = run.slider, run.slider.motion.rate(0.0)[0]
     l_x = s.F_0 / s.k_x

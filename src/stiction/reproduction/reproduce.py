@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from stiction import presets
 from stiction.errors import StictionError
 from stiction.friction import Coulomb
-from stiction.plotting.save import save
+from stiction.plotting.page.save import save
 from stiction.reproduction.creep import creep
 from stiction.reproduction.figure3 import figure3
 from stiction.reproduction.figure4 import figure4
@@ -20,8 +20,8 @@ from stiction.reproduction.numbers import numbers
 from stiction.reproduction.schematic import schematic
 from stiction.reproduction.table import Table
 from stiction.reproduction.zero_slip import zero_slip
-from stiction.sections import Section, as_text
 from stiction.simulation import simulate
+from stiction.text.sections import Section, as_text
 from stiction.trajectory import Trajectory
 
 DURATION, RATE = 5.0, 10e3  # Fig. 3's time axis; Fig. 4 needs some samples a transverse period

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from stiction.files import whole
 from stiction.reproduction.numbers import Number
-from stiction.sections import Section
-from stiction.sections import Table as Rows
+from stiction.storage.files import whole
+from stiction.text.sections import Section
+from stiction.text.sections import Table as Rows
 
 HEADER = ("where", "what", "stated", "computed", "deviation", "tolerance", "unit", "verdict")
 

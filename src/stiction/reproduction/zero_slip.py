@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
-from stiction.plotting.friction_circle import draw_friction_arc, draw_friction_circle
-from stiction.plotting.style import (
+from stiction.plotting.apparatus.friction_circle import draw_friction_arc, draw_friction_circle
+from stiction.plotting.page.style import (
     GREEN,
     GREY,
     PAGE,
@@ -17,7 +17,7 @@ from stiction.plotting.style import (
     new_figure,
     style,
 )
-from stiction.plotting.time_series import prefixed
+from stiction.plotting.run.time_series import prefixed
 from stiction.trajectory import Trajectory
 
 

@@ -9,11 +9,8 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from stiction.description import Description
 from stiction.drive import jump
 from stiction.friction import has_state
-from stiction.initial import Initial
-from stiction.slider import Slider
 from stiction.solver.exact.method import Exact
 from stiction.solver.multiscale.method import Multiscale
 from stiction.solver.output import Output
@@ -28,6 +25,9 @@ from stiction.solver.state import (
     Accuracy,
     Counts,
 )
+from stiction.system.description import Description
+from stiction.system.initial import Initial
+from stiction.system.slider import Slider
 
 LEAST = 1e-15  # of the speeds at the start: slower slip than this is none
 ROUNDING = 1e-13  # of velocities: what a step may err by in any case, well above a float's

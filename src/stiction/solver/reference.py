@@ -22,8 +22,8 @@ from scipy.integrate import solve_ivp  # type: ignore[attr-defined]
 from scipy.optimize import brentq
 
 from stiction.drive import ConstantVelocity
-from stiction.initial import Initial
-from stiction.slider import Slider
+from stiction.system.initial import Initial
+from stiction.system.slider import Slider
 
 TAKE_OFF = 0.1  # length of a take-off, in units of the shorter natural period over 2 pi
 DEGREE = 8  # of the polynomials in time that describe it; their error is near rounding

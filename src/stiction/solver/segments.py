@@ -14,8 +14,8 @@ from stiction.drive import Course, Loading, ahead, drive_stretches, load_stretch
 from stiction.drive.signal import Signal, signal_at, signal_bounds, signal_change
 from stiction.friction import Anisotropic, has_state
 from stiction.friction.law import static_coefficient
-from stiction.slider import Slider
 from stiction.solver.problem import Elliptic, Isotropic, Problem, System
+from stiction.system.slider import Slider
 
 
 class Stretch(NamedTuple):

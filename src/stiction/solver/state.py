@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import sqrt
 from typing import Any, NamedTuple
 
-from stiction.slider import Slider
 from stiction.solver.compilation.jit import inlined
+from stiction.system.slider import Slider
 
 RUNNING, COMPLETED, STEP_UNDERFLOW, NON_FINITE, TOO_MANY_STEPS, CONTACT_LOST = -1, 0, 1, 2, 3, 4
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import AfterValidator, BeforeValidator, Field
 
-from stiction.validation import Described
+from stiction.text.validation import Described
 
 Floats = NDArray[np.float64]
 MOST = 1_000_000_000  # values of an axis

@@ -7,7 +7,7 @@ from typing import Any, cast
 
 from stiction.errors import DescriptionError, Fault
 from stiction.study.axes import Axis, Grid, Random, Sobol, Values
-from stiction.validation import unknown
+from stiction.text.validation import unknown
 
 SAMPLINGS: dict[str, type[Any]] = {"grid": Grid, "random": Random, "sobol": Sobol}
 WRITTEN = {"start": "from", "stop": "to"}

@@ -13,13 +13,13 @@ from functools import lru_cache
 from math import radians
 from typing import Any, cast, get_args, get_type_hints
 
-from stiction.description import Description
 from stiction.drive.pieces import LEVELS
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import Anisotropic
-from stiction.parameter import names
-from stiction.units import Kind, to_si, unit_of
-from stiction.validation import made, unknown
+from stiction.system.description import Description
+from stiction.system.parameter import names
+from stiction.text.units import Kind, to_si, unit_of
+from stiction.text.validation import made, unknown
 
 LEVEL_UNITS = {"drive": "m/s", "load": "N"}  # of pieces, which do not know their quantity
 

@@ -12,10 +12,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Self
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from stiction.deprecation import warn_renamed
-from stiction.description import Description
 from stiction.errors import DescriptionError, Fault
 from stiction.friction.user.loading import Find, held, named
-from stiction.sections import Section, Table, as_html
 from stiction.study.axis_table import axis_table
 from stiction.study.parameters import varied
 from stiction.study.reading import axes_of, is_description, measures_of, traces_of
@@ -24,9 +22,11 @@ from stiction.study.store.coordinates import Coordinate, coordinate_faults, coor
 from stiction.study.store.memory import axis_faults, run_faults
 from stiction.study.variables.measures import DEFAULT
 from stiction.study.variables.observation import seconds_of
-from stiction.tables import folder_of, read_json, read_toml
-from stiction.validation import Described, faulty
-from stiction.writing import parameter_table, slider_tables
+from stiction.system.description import Description
+from stiction.system.writing import parameter_table, slider_tables
+from stiction.text.sections import Section, Table, as_html
+from stiction.text.toml import folder_of, read_json, read_toml
+from stiction.text.validation import Described, faulty
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -11,15 +11,15 @@ from math import pi
 
 import numpy as np
 
-from stiction.description import Description, Settings
 from stiction.errors import DescriptionError, Fault
-from stiction.initial import Initial
 from stiction.presets import nakano_popov_2020
-from stiction.slider import Slider
 from stiction.study.axes import Axis, Floats, Grid, Values
 from stiction.study.plan import Study
+from stiction.system.description import Description, Settings
+from stiction.system.initial import Initial
+from stiction.system.slider import Slider
+from stiction.text.validation import unknown
 from stiction.theory import natural_frequency
-from stiction.validation import unknown
 
 MEASURES = ("regime", "peak_force", "amplitude", "period", "creep_distance", "time_stuck")
 TRAVEL = 4.0  # slip lengths that the drive moves at least: the spring is loaded, then some cycles

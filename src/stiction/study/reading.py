@@ -6,14 +6,14 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from stiction.deprecation import by_new_names
-from stiction.description import Description
 from stiction.errors import DescriptionError, Fault
-from stiction.paths import canonical_path
 from stiction.study.axes import Axis
 from stiction.study.axis_table import read_axis
 from stiction.study.variables.measures import FORMERLY, MEASURES
 from stiction.study.variables.traces import TRACES
-from stiction.validation import faulty, unknown
+from stiction.system.description import Description
+from stiction.text.paths import canonical_path
+from stiction.text.validation import faulty, unknown
 
 
 def is_description(value: Any) -> Any:

@@ -9,10 +9,10 @@ from math import isfinite, nan
 from typing import Any
 
 from stiction import presets
-from stiction.description import Description, Settings
 from stiction.errors import StictionError
-from stiction.initial import Initial
-from stiction.slider import Slider
+from stiction.system.description import Description, Settings
+from stiction.system.initial import Initial
+from stiction.system.slider import Slider
 
 SPEEDS: tuple[float, ...] = (0.0, *(10.0 ** (i / 4) for i in range(-36, 5)))
 ROUNDING = 1e-12  # exp and pow of two libraries agree to some units of the last digit

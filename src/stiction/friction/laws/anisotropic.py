@@ -8,8 +8,8 @@ from pydantic import AfterValidator, Field
 
 from stiction.errors import DescriptionError, Fault
 from stiction.friction.law import FrictionLaw, Law, has_state
-from stiction.units import Angle, reader
-from stiction.validation import validated
+from stiction.text.units import Angle, reader
+from stiction.text.validation import validated
 
 
 def _is_set_valued(law: Any) -> Any:

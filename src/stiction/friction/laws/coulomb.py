@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from stiction.friction.law import static_fault
-from stiction.units import Coefficient
-from stiction.validation import validated
+from stiction.text.units import Coefficient
+from stiction.text.validation import validated
 
 
 @validated

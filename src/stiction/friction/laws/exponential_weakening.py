@@ -7,8 +7,8 @@ from math import exp
 from typing import NamedTuple
 
 from stiction.friction.law import static_fault
-from stiction.units import Coefficient, PositiveSpeed
-from stiction.validation import validated
+from stiction.text.units import Coefficient, PositiveSpeed
+from stiction.text.validation import validated
 
 
 @validated

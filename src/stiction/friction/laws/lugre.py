@@ -6,8 +6,8 @@ from math import exp, sqrt
 from typing import NamedTuple, Self
 
 from stiction.friction.law import Internal, Vector
-from stiction.units import Damping, PositiveNumber, PositiveSpeed, Stiffness
-from stiction.validation import validated
+from stiction.text.units import Damping, PositiveNumber, PositiveSpeed, Stiffness
+from stiction.text.validation import validated
 
 
 @validated

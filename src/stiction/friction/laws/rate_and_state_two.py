@@ -17,8 +17,8 @@ from stiction.friction.laws.rate_and_state import (
     slipping,
     steady,
 )
-from stiction.units import Coefficient, PositiveLength, PositiveNumber, PositiveSpeed
-from stiction.validation import validated
+from stiction.text.units import Coefficient, PositiveLength, PositiveNumber, PositiveSpeed
+from stiction.text.validation import validated
 
 
 @validated

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.friction.law import static_fault
-from stiction.units import Coefficient, Coefficients, Speeds
-from stiction.validation import validated
+from stiction.text.units import Coefficient, Coefficients, Speeds
+from stiction.text.validation import validated
 
 
 @validated

@@ -19,7 +19,7 @@ from typing import Any
 from stiction.errors import DescriptionError, one_line
 from stiction.friction.user.source import Text, member, module_name, module_of, read, text_of
 from stiction.friction.user.validation import fault, is_law, law_in, tried
-from stiction.validation import made
+from stiction.text.validation import made
 
 # from a law's name and the text kept with it, if any, to the class
 Find = Callable[[str, str | None], type[Any]]

@@ -11,7 +11,7 @@ from stiction.errors import DescriptionError, Fault, one_line
 from stiction.friction.law import has_state
 from stiction.friction.user.bounded import endless
 from stiction.friction.user.source import member
-from stiction.validation import unknown
+from stiction.text.validation import unknown
 
 SET_VALUED = ("coefficient", "slope")
 WITH_STATE = ("states", "coefficient", "settled", "force", "change")

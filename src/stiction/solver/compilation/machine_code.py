@@ -31,7 +31,7 @@ from numba.core.sigutils import normalize_signature as _normalize
 from platformdirs import user_cache_path
 
 from stiction.errors import ResultError
-from stiction.files import whole
+from stiction.storage.files import whole
 
 rebuild: Any = compiler.CompileResult._rebuild
 dumps: Any = _dumps

@@ -5,8 +5,6 @@ from __future__ import annotations
 from math import sqrt
 from typing import Any
 
-from stiction.description import Description
-from stiction.slider import Slider
 from stiction.solver.compilation.jit import called, compiled
 from stiction.solver.exact.loop import steps
 from stiction.solver.exact.sampling import COLUMNS
@@ -18,6 +16,8 @@ from stiction.solver.segments import friction_of
 from stiction.solver.state import Accuracy, Motion, State, cooled, named, start
 from stiction.solver.stick import holding
 from stiction.solver.surface import friction_along
+from stiction.system.description import Description
+from stiction.system.slider import Slider
 
 
 class Exact:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from math import nan
 
-from stiction.slider import Slider
 from stiction.solver.exact.method import Exact, advanced
 from stiction.solver.multiscale.loop import stride
 from stiction.solver.multiscale.return_map import Returns, unknown
 from stiction.solver.output import Output
 from stiction.solver.problem import Problem, constant, steady
 from stiction.solver.state import Accuracy, State
+from stiction.system.slider import Slider
 
 FINER = 0.3  # tolerance of the steps that the return map rests on, over that of others
 

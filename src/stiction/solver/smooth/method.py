@@ -7,9 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from stiction.description import Description
 from stiction.friction import states
-from stiction.slider import Slider
 from stiction.solver.compilation.interrupt import uninterrupted
 from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.output import Output
@@ -19,6 +17,8 @@ from stiction.solver.smooth import loop
 from stiction.solver.smooth.law import Smoothed, pointed
 from stiction.solver.smooth.state import Memory, Motion, State
 from stiction.solver.state import NOTHING, Accuracy, first_step
+from stiction.system.description import Description
+from stiction.system.slider import Slider
 
 # of the slip speed below which that of set-valued friction is not resolved: states remember slower
 # slip. LuGre's published case comes out 600 times better for 14 % more steps.

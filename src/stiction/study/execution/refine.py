@@ -16,8 +16,7 @@ from pydantic_core import PydanticCustomError
 
 from stiction.deprecation import by_new_names
 from stiction.errors import DescriptionError, Fault
-from stiction.files import place, workshop
-from stiction.paths import canonical_path
+from stiction.storage.files import place, workshop
 from stiction.study.axes import Floats, Values
 from stiction.study.execution.engines import Engine
 from stiction.study.execution.intervals import Intervals, changes, half_way, halved, widest
@@ -29,7 +28,8 @@ from stiction.study.store.store import open_study, told
 from stiction.study.variables.fast_regime import FORMERLY, KINDS
 from stiction.study.variables.registry import UNKNOWN, flagged
 from stiction.study.view.view import CHANGES, REFINED, REGIME, kinds
-from stiction.validation import unknown
+from stiction.text.paths import canonical_path
+from stiction.text.validation import unknown
 
 if TYPE_CHECKING:
     import xarray as xr

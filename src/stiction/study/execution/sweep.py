@@ -8,7 +8,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import NamedTuple
 
-from stiction.files import held
+from stiction.storage.files import held
 from stiction.study.execution.engines import Engine, Threads
 from stiction.study.execution.task import done
 from stiction.study.plan import Study

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from zarr.storage import LocalStore, WrapperStore
 
-from stiction.checksums import without_checksum
+from stiction.storage.checksums import without_checksum
 from stiction.study.store.seal import ROOT
 from stiction.study.store.store import damage
 

@@ -9,11 +9,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from pydantic_core import PydanticCustomError
 
-from stiction.description import Description
 from stiction.errors import DescriptionError, Fault
 from stiction.study.axes import Axis, Floats, Range
 from stiction.study.parameters import number, unit
 from stiction.study.variables.measures import MEASURES
+from stiction.system.description import Description
 
 TAKEN = {"status", "message", "time", *MEASURES}  # names in a store
 NAME = re.compile(r"\w[\w ,.-]*")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stiction.errors import ResultError
-from stiction.files import place, workshop
+from stiction.storage.files import place, workshop
 from stiction.study.plan import Study
 from stiction.study.store.seal import seal
 from stiction.study.store.store import CHECKED, ENDS, PENDING, Store, opened, told, version

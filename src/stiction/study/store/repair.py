@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from stiction.errors import ResultError
-from stiction.files import place, workshop
+from stiction.storage.files import place, workshop
 from stiction.study.execution.sweep import do
 from stiction.study.plan import Study
 from stiction.study.store import seal

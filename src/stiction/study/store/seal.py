@@ -10,7 +10,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from stiction import checksums
+from stiction.storage import checksums
 
 ROOT, SEAL, DESCRIPTION = "zarr.json", "checksums", "description"
 

@@ -19,10 +19,10 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 
 from stiction import errors
-from stiction.checksums import LENGTH, with_checksum, without_checksum
 from stiction.errors import ResultError
-from stiction.files import place, workshop
-from stiction.foreign import opening, refuse_links, refuse_size
+from stiction.storage.checksums import LENGTH, with_checksum, without_checksum
+from stiction.storage.files import place, workshop
+from stiction.storage.foreign import opening, refuse_links, refuse_size
 from stiction.study.plan import Study
 from stiction.study.store import seal
 from stiction.study.store.blocks import MANY_TASKS, Index, Layout, Region

@@ -1,6 +1,6 @@
 """Which kind of motion a run shows, from the features of its clean samples.
 
-The kinds and their bounds are those of `stiction.analysis.regime`, which finds them in any
+The kinds and their bounds are those of `stiction.analysis.motion.regime`, which finds them in any
 record, noisy or not, and takes a hundred times as long; a test holds the two together. Without
 noise a little more can be said: swings that no other follows for long are over, be they but two.
 """
@@ -13,10 +13,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis import regime
-from stiction.analysis.decay import QUIET, dies_out
-from stiction.analysis.hesitations import take_out
-from stiction.analysis.level import QUARTER
+from stiction.analysis.motion import regime
+from stiction.analysis.motion.decay import QUIET, dies_out
+from stiction.analysis.motion.hesitations import take_out
+from stiction.analysis.motion.level import QUARTER
 from stiction.study.variables.features import PARTS, Features
 
 Floats = NDArray[np.float64]
@@ -106,7 +106,7 @@ def kind_of(
 
 
 def course(found: Features, start: float, end: float, drive: float) -> str:
-    """Return the kind of a force without cycles, by the rules of `stiction.analysis.regime`."""
+    """Return the kind of a force without cycles, by the rules of `analysis.motion.regime`."""
     f = found.means.tolist()
     span, change = max(f) - min(f), f[-1] - f[0]
     quarter = QUARTER * (end - start) / PARTS

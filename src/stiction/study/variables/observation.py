@@ -10,14 +10,14 @@ from math import ceil, nan
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.creep import loading
-from stiction.analysis.regime import STUCK
-from stiction.description import Description
+from stiction.analysis.creep.first_slip import loading
+from stiction.analysis.motion.regime import STUCK
 from stiction.drive import ConstantVelocity
 from stiction.simulation import sample_times, solve
 from stiction.solver.integrate import Solution
 from stiction.study.variables.fast_regime import Swings, kind_of, swings
 from stiction.study.variables.features import Features, features
+from stiction.system.description import Description
 
 Floats = NDArray[np.float64]
 

@@ -12,10 +12,10 @@ from stiction import linear_stability as stability
 from stiction import theory as closed_forms
 from stiction.drive import ConstantVelocity
 from stiction.errors import StictionError
-from stiction.slider import Slider
 from stiction.study.axes import Floats
 from stiction.study.parameters import varied
 from stiction.study.plan import Study
+from stiction.system.slider import Slider
 
 FINE = 60  # points each way, at least as many as there are runs
 

@@ -10,8 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.errors import DescriptionError, Fault
-from stiction.plotting.canvas import canvas, fixed, listed, panel
-from stiction.plotting.damping import draw_damping_map
 from stiction.plotting.maps import (
     Side,
     draw_changes,
@@ -21,8 +19,10 @@ from stiction.plotting.maps import (
     draw_slice,
     draw_theory,
 )
-from stiction.plotting.parameter import Scale, in_unit, parameter_symbol
-from stiction.plotting.style import COLUMN, PAGE, style
+from stiction.plotting.page.canvas import canvas, fixed, listed, panel
+from stiction.plotting.page.parameter import Scale, in_unit, parameter_symbol
+from stiction.plotting.page.style import COLUMN, PAGE, style
+from stiction.plotting.stability.damping import draw_damping_map
 from stiction.study.store.blocks import Index
 from stiction.study.view.boundaries import Plane, damping_number, plane
 from stiction.study.view.view import REGIME, View, chosen, kinds, label, viewed

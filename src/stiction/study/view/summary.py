@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.sections import Section, as_text
 from stiction.study.plan import Study
 from stiction.study.store.store import COMPLETED, ENDS, PENDING, Store
+from stiction.text.sections import Section, as_text
 
 
 class Failure(NamedTuple):

@@ -11,8 +11,7 @@ from pydantic_core import PydanticCustomError
 
 from stiction.deprecation import by_new_names
 from stiction.errors import DescriptionError, Fault, ResultError
-from stiction.foreign import opening, refuse_size
-from stiction.paths import canonical_path
+from stiction.storage.foreign import opening, refuse_size
 from stiction.study.parameters import number
 from stiction.study.plan import Study
 from stiction.study.store import seal
@@ -20,7 +19,8 @@ from stiction.study.store.store import CHECKED, group_at, open_study
 from stiction.study.variables.fast_regime import KINDS
 from stiction.study.variables.measures import FORMERLY
 from stiction.study.variables.registry import kept
-from stiction.validation import unknown
+from stiction.text.paths import canonical_path
+from stiction.text.validation import unknown
 
 if TYPE_CHECKING:
     import xarray as xr

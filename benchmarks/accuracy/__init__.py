@@ -1,0 +1,1 @@
+"""How right: known solutions, convergence, conservation, linear theory."""

@@ -1,0 +1,1 @@
+"""How fast: scaling, start-up, studies, memory."""

@@ -1,0 +1,117 @@
+"""How a creep curve diverges towards slip."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.analysis.creep.least_squares import fitted, used_bins
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+
+
+class Divergence(NamedTuple):
+    """Exponent n of the creep's divergence, and its standard error.
+
+    Parameters
+    ----------
+    exponent, exponent_error : float
+        n; 1/2 by Eq. (8).
+    amplitude, amplitude_error : float
+        a, m/s; V phi by Eq. (8).
+    lag, lag_error : float
+        By how much the divergence comes later than the slip, s.
+    loading_time : float
+        l_x/V, s, as it was given.
+    """
+
+    exponent: float
+    exponent_error: float
+    amplitude: float
+    amplitude_error: float
+    lag: float
+    lag_error: float
+    loading_time: float
+
+    def velocity(self, to_slip: Floats) -> Floats:
+        """Return the fitted velocity (m/s) at times before slip (s); NaN after the divergence."""
+        tau = 1.0 - (np.asarray(to_slip) + self.lag) / self.loading_time
+        tau = np.where(np.abs(tau) < 1.0, tau, np.nan)
+        found: Floats = self.amplitude * tau * ((1.0 - tau) * (1.0 + tau)) ** -self.exponent
+        return found
+
+
+def fit_divergence(
+    curve: xr.Dataset,
+    loading_time: float,
+    stretch: tuple[float, float] = (0.05, 0.3),
+    lag: float | None = None,
+) -> Divergence:
+    """Fit how the creep velocity diverges towards slip.
+
+    The model is the singular term of Eq. (8), corrected, with the exponent left free,
+
+        X' = a tau (1 - tau^2)^(-n),   tau = 1 - (t_s - t)/(l_x/V),
+
+    averaged over each bin (its integral is known) and fitted by least squares for a, n and the
+    time t_s of the divergence, which comes a little after the slip. A bare power of t_s - t
+    is its limit; over a stretch wide enough to be fitted it differs by the factors tau and
+    1 + tau, which would turn 1/2 into 0.56.
+
+    At a finite misalignment Eq. (7) has no divergence: its velocity grows to V, and the friction
+    force can turn no further than to phi. As theta^2 is about 2 (1 - tau), stay with the stretch
+    above phi^2, in rad.
+
+    Parameters
+    ----------
+    curve : Dataset
+        Over ``bin``, from `mean_creep`, or one phase of `creep_curves`.
+    loading_time : float
+        l_x/V, s: the spring's elongation that carries the whole friction over the drive velocity.
+    stretch : tuple of float
+        Bins are used whose time to slip is this part of `loading_time`, from and to.
+    lag : float, optional
+        By how much the divergence comes later than the slip, s; fitted unless it is given.
+
+    Returns
+    -------
+    Divergence
+        Standard errors from the curve's own and a hundredth of the velocity for the theory.
+
+    Raises
+    ------
+    ResultError
+        If fewer than five bins lie in the stretch.
+
+    References
+    ----------
+    Nakano & Popov, arXiv:2008.01854, Eq. (8); see `stiction.theory`.
+    """
+    low, high = stretch[0] * loading_time, stretch[1] * loading_time
+    begin, end, velocity, error, _ = used_bins(curve, low, high)
+
+    def mean(_: Floats, amplitude: float, exponent: float, lag: float) -> Floats:
+        early, late = (1.0 - (T + lag) / loading_time for T in (begin, end))
+        rest = 1.0 - exponent or 1e-12  # at n = 1 the integral is a logarithm, its limit
+        powers = [np.maximum((1.0 - tau) * (1.0 + tau), 1e-12) ** rest for tau in (early, late)]
+        area = 0.5 * (powers[0] - powers[1]) / rest
+        return np.asarray(amplitude * area * loading_time / (begin - end))
+
+    tau = 1.0 - 0.5 * (begin + end) / loading_time
+    scale = float(np.median(velocity * np.sqrt((1.0 - tau) * (1.0 + tau)) / tau))
+    start, low_n, high_n = (scale, 0.49), (-np.inf, -3.0), (np.inf, 5.0)
+    if lag is None:
+        bounds = ((*low_n, -0.9 * float(end.min())), (*high_n, loading_time))
+        found, errors = fitted(mean, begin, velocity, error, (*start, 0.0), bounds)
+    else:
+        found, errors = fitted(
+            lambda at, a, n: mean(at, a, n, lag), begin, velocity, error, start, (low_n, high_n)
+        )
+        found, errors = [*found, lag], [*errors, 0.0]
+    (a, n, late), (a_error, n_error, late_error) = found, errors
+    return Divergence(n, n_error, a, a_error, late, late_error, loading_time)

@@ -1,0 +1,157 @@
+"""What is found of the creep before slip: its curves, and what they imply."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import degrees
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
+
+import numpy as np
+
+from stiction.analysis.creep.curve import creep_curves, mean_creep
+from stiction.analysis.creep.divergence import Divergence, fit_divergence
+from stiction.analysis.creep.force_curve import misalignment_from_force
+from stiction.analysis.creep.misalignment import Misalignment, fit_misalignment
+from stiction.analysis.record import Record
+from stiction.errors import ResultError, StictionError
+from stiction.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+T = TypeVar("T")
+
+KNOWN = 0.25  # standard error of an exponent, or of an angle over it, that still says something
+SURE = 2.0  # standard errors
+MISSED = 0.1  # of the creep: what Eq. (7) misses by more, it does not describe
+RESTS = 1e-6  # of the drive velocity: what moves less for most of the time rests
+BACKWARD, SOME = 0.02, 0.25  # of the drive velocity; of the bins: creep the other way
+
+
+class CreepFound(NamedTuple):
+    """Creep curves, their mean, and what they imply; None where `missing` says why.
+
+    See `stiction.Analysis`, which holds the same.
+    """
+
+    curves: xr.Dataset | None
+    mean: xr.Dataset | None
+    divergence: Divergence | None
+    misalignment: Misalignment | None
+    missing: dict[str, str]
+
+
+def tried(missing: dict[str, str], name: str, find: Callable[[], T]) -> T | None:
+    """Return what is found; or None, and note under its name in `missing` why it is not."""
+    try:
+        return find()
+    except StictionError as error:
+        missing[name] = str(error)
+        return None
+
+
+def find_creep(
+    source: Trajectory | Record, record: Record, cycles: xr.Dataset, width: float | None
+) -> CreepFound:
+    """Return what is found of the creep in the stick phases of these cycles.
+
+    Where a record does not say where the mass is, the misalignment is found from the force alone,
+    and the creep is counted from the stiffness that is found with it; where it is not found, from
+    the even loading in the first half of each rise.
+    """
+    missing: dict[str, str] = {}
+    run = source if isinstance(source, Trajectory) else None
+    by_force = None
+    if record.position is None:
+        by_force = tried(missing, "misalignment", lambda: misalignment_from_force(record, cycles))
+    known = calibrated(record, cycles, by_force)
+    curves = tried(missing, "creep", lambda: creep_curves(run or known, cycles, width))
+    mean = tried(missing, "creep", lambda: _mean(curves, known)) if curves is not None else None
+    if run is not None and run.slider.phi == 0.0:
+        return CreepFound(curves, mean, None, None, missing)
+    V, stiffness = drive_speed(source, known), known.stiffness
+    if mean is None or V is None or stiffness is None:
+        return CreepFound(curves, mean, None, by_force, missing)
+    if record.position is None:
+        divergence = None
+        if by_force is None:
+            missing["divergence"] = "not determined: without the misalignment, creep is not known"
+        else:
+            loading = by_force.F_0 / stiffness / V
+            divergence = tried(missing, "divergence", lambda: _divergence(mean, loading))
+        return CreepFound(curves, mean, divergence, by_force, missing)
+    loading = float(np.nanmax(mean["force"].values)) / stiffness / V
+    divergence = tried(missing, "divergence", lambda: _divergence(mean, loading))
+    by_creep = tried(missing, "misalignment", lambda: _misalignment(mean, V, stiffness))
+    return CreepFound(curves, mean, divergence, by_creep, missing)
+
+
+def drive_speed(source: Trajectory | Record, record: Record) -> float | None:
+    """Return V of Eq. (7), m/s; None if it is not known.
+
+    Of a run it is the drive's own, where its record has that part which loads the soft spring.
+    """
+    if isinstance(source, Trajectory):
+        return abs(source.slider.motion.velocity) or None
+    return record.drive_velocity
+
+
+def calibrated(record: Record, cycles: xr.Dataset, found: Misalignment | None = None) -> Record:
+    """Return a record with the stiffness that its own loading shows, unless it has a position.
+
+    That which was found together with the misalignment; without it, that of the even loading in
+    the first half of each rise (the median over cycles). A few per cent between a stated
+    stiffness and that at which the force rises would hide the creep, V less the rate of force
+    over stiffness.
+    """
+    if record.position is not None:
+        return record
+    if found is not None:
+        return record.model_copy(update={"stiffness": found.stiffness})
+    shown = cycles["stiffness"].values
+    shown = shown[np.isfinite(shown)]
+    if not len(shown) or not np.median(shown) > 0.0:
+        return record
+    return record.model_copy(update={"stiffness": float(np.median(shown))})
+
+
+def _mean(curves: xr.Dataset, record: Record) -> xr.Dataset:
+    """Return the mean creep curve, if it goes the way that creep goes."""
+    if not np.isfinite(curves["velocity"].values).any():
+        raise ResultError("there is no stick phase with samples enough to see it in")
+    mean = mean_creep(curves)
+    velocity, error = (mean[name].values for name in ("velocity", "velocity_error"))
+    least = BACKWARD * (record.drive_velocity or 0.0)
+    backward = np.mean(velocity < -SURE * np.nan_to_num(error) - least)
+    if backward > SOME and record.position is None:
+        raise ResultError(
+            "not determined: the mass would creep against the drive; stiffness and drive velocity "
+            "do not belong to this force"
+        )
+    return mean
+
+
+def _divergence(mean: xr.Dataset, loading: float) -> Divergence:
+    """Return how creep diverges, if that stands out of its uncertainty."""
+    found = fit_divergence(mean, loading)
+    n, error = found.exponent, found.exponent_error
+    if not error < KNOWN or not found.amplitude > SURE * found.amplitude_error or n <= 0.0:
+        raise ResultError("not determined: no divergence stands out of its uncertainty")
+    return found
+
+
+def _misalignment(mean: xr.Dataset, V: float, stiffness: float) -> Misalignment:
+    """Return the misalignment that creep implies, if it stands out of its uncertainty."""
+    if np.nanmedian(np.abs(mean["velocity"].values)) < RESTS * V:
+        raise ResultError("not determined: the mass rests, where Eq. (7) has it creep")
+    found = fit_misalignment(mean, V, stiffness)
+    if found.misfit > MISSED:
+        raise ResultError(
+            "not determined: Eq. (7), which supposes slow loading and a spring that is far "
+            f"stiffer across, misses this creep by {100.0 * found.misfit:.2g}%"
+        )
+    if not found.phi_error < KNOWN * abs(found.phi):
+        most = degrees(abs(found.phi) + SURE * found.phi_error)
+        limit = f"; it is below {most:.2g} deg" if most < 45.0 else ""
+        raise ResultError(f"not determined: it does not stand out of its uncertainty{limit}")
+    return found

@@ -1,0 +1,216 @@
+"""The misalignment that a measured force implies by itself, from the shape of its rises."""
+
+from __future__ import annotations
+
+from math import degrees, exp, log, pi
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.analysis.creep.loading_curve import LoadingCurve, loading_curve
+from stiction.analysis.creep.misalignment import Misalignment
+from stiction.analysis.motion.cycles import find_cycles
+from stiction.analysis.record import Record
+from stiction.errors import ResultError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+
+GRID = 400  # angles at which the closed form is tabled
+MODEL = 1e-4  # of the drop: what Eq. (7), with the terms below, leaves out at the best
+MISSED = 4.0  # a misfit that all cycles share is as smooth as the curve: it counts this much
+WORST = 1e-3  # of the drop: with a larger misfit the rises do not have the shape
+# What a record leaves open: stated stiffness over the true one, less 1; logarithms of k_x/k_y and
+# of the weakening of friction at the drive velocity. What is assumed of each, and how widely.
+TAILS = (0.0, log(1e-3), log(1e-2))
+WIDTHS = (0.02, 1.5, 1.3)
+THEORY = (
+    0.1  # relative accuracy of phi at the best: the transverse oscillation lowers friction, too
+)
+KNOWN = 0.3  # relative standard error above which an angle is not determined
+EARLY = 0.5  # F_0 above the peak by this share
+SURELY = 20.0  # deg: what is known to be less is worth a word
+LOWEST = (1e-5, log(1e-5), -0.1, log(1e-6), log(1e-5))
+HIGHEST = (0.3, 0.0, 0.1, log(0.1), 0.0)
+MOST, FIXED = 50, 1e-3  # evaluations in a fit; the width that holds a parameter
+SCALES = (0.01, 1.0, 0.01, 1.0, 1.0)
+STARTS = ((0.03, log(0.02)), (0.08, log(0.1)))  # phi, and the logarithm of F_0/peak - 1
+
+
+def misalignment_from_force(record: Record, cycles: xr.Dataset | None = None) -> Misalignment:
+    """Fit the misalignment with which friction, as it turns, bends the rises of a force.
+
+    By Eq. (7) the force rises at k_x V_x (1 - tan(phi) cot(theta)), F = F_0 cos(theta): the less,
+    the nearer it comes to F_0. Fitted are the time that the rises take (their mean over cycles at
+    equal forces), by phi, F_0 and the stiffness, with the stated one known to 2 %; with k_x/k_y,
+    which slows the turning, and a friction that is lower the faster the creep, of both of which
+    only the order of magnitude is assumed. The standard error holds the scatter of the cycles,
+    these assumptions, the steps in which the force is read, and what the fit misses.
+
+    Parameters
+    ----------
+    record : Record
+        Of stick-slip, with stiffness and drive velocity.
+    cycles : Dataset, optional
+        From `stiction.find_cycles`, which finds them otherwise.
+
+    Returns
+    -------
+    Misalignment
+        Its size: a force alone does not tell its sign.
+
+    Raises
+    ------
+    ResultError
+        Where the record does not determine it to 30 % or so (one standard error), with the reason.
+
+    References
+    ----------
+    Nakano & Popov, arXiv:2008.01854, Eqs. (6) and (7).
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> slider = st.presets.nakano_popov_2020()
+    >>> run = st.simulate(slider, "5 s", sample_rate="2 kHz")
+    >>> time, force = (run.data[name].values for name in ("time", "spring_x"))
+    >>> record = st.Record(time=time, force=force, stiffness="1 kN/m", drive_velocity="1 mm/s")
+    >>> low, high = st.misalignment_from_force(record).interval
+    >>> low < slider.phi < high
+    True
+    """
+    table = find_cycles(record) if cycles is None else cycles
+    if not table.sizes["cycle"]:
+        raise ResultError("there is no stick-slip cycle, in which friction could be seen to turn")
+    curve = loading_curve(record, table)
+    best, covariance, gain, misfit, apart = _fitted(curve)
+    phi, excess, off = float(best[0]), exp(best[1]), float(best[2])
+    error = max(float(covariance[0, 0]) ** 0.5, apart, _over_cycles(curve, gain))
+    error = float(np.hypot(error, THEORY * phi))
+    _refuse(phi, error, excess, misfit, off)
+    F_0 = curve.peak * (1.0 + excess)
+    F_0_error = curve.peak * excess * float(covariance[1, 1]) ** 0.5
+    stiffness = (record.stiffness or 0.0) / (1.0 + off)
+    return Misalignment(phi, error, F_0, F_0_error, stiffness)
+
+
+def crept(
+    force: Floats, phi: float, F_0: float, ratio: float = 0.0, weakening: float = 0.0
+) -> Floats:
+    """Return k_x times the distance crept (N) up to each force, but for a constant, by Eq. (7).
+
+    Parameters
+    ----------
+    force : array
+        (n,), N, increasing and below `F_0`.
+    phi, F_0 : float
+        Misalignment (rad), friction at zero slip (N).
+    ratio : float
+        k_x/k_y, with which u_y = F sin(theta)/k_y turns the slip back.
+    weakening : float
+        -V F'(0)/F_0: friction is F_0/(1 + weakening |s|/V) with |s| = V sin(phi)/sin(theta).
+    """
+    nearest, farthest = (float(np.arccos(min(each / F_0, 1.0))) for each in (force[-1], force[0]))
+    theta = np.linspace(max(0.6 * nearest, 1.0001 * phi), min(1.05 * farthest, 0.999 * pi), GRID)
+    cotangent = 1.0 / np.tan(theta)
+    rate = (1.0 - np.tan(phi) * cotangent) / (1.0 + ratio * cotangent**2)
+    lag = 1.0 / np.maximum(rate, 1e-3) - 1.0
+    fall = -np.cos(theta) / (1.0 + weakening * np.sin(phi) / np.sin(theta))
+    done = np.concatenate([[0.0], np.cumsum(-0.5 * np.diff(fall) * (lag[1:] + lag[:-1]))])
+    found: Floats = F_0 * np.interp(-force / F_0, np.maximum.accumulate(fall), done)
+    return found
+
+
+class _Fit(NamedTuple):
+    """Parameters, their covariance, how each level moves phi (rad/N), the misfit over the drop.
+
+    `apart` is how far off phi (rad) lies with k_x/k_y a standard deviation to either side.
+    """
+
+    best: Floats
+    covariance: Floats
+    gain: Floats
+    misfit: float
+    apart: float
+
+
+def _fitted(curve: LoadingCurve) -> _Fit:
+    """Fit phi, ln(F_0/peak - 1), the stiffness' error, ln(k_x/k_y) and ln(weakening)."""
+    from scipy.optimize import least_squares
+
+    seen = curve.crept - curve.crept.mean()
+    error = np.hypot(curve.error, MODEL * curve.drop)
+    middle, width = np.array(TAILS), np.array(WIDTHS)
+
+    def missed(p: Floats) -> Floats:
+        x = crept(curve.force, p[0], curve.peak * (1.0 + exp(p[1])), exp(p[3]), exp(p[4]))
+        told = (x + curve.force) * (1.0 + p[2]) - curve.force  # by a stiffness off by so much
+        return np.asarray(seen - (told - told.mean()))
+
+    def weighted(p: Floats) -> Floats:
+        assumed = (p[2:] - middle) / width
+        return np.concatenate([missed(p) / error, assumed])
+
+    minimised: Any = least_squares
+
+    def best_from(start: Floats) -> Any:
+        inside = np.clip(start, np.add(LOWEST, 1e-9), np.subtract(HIGHEST, 1e-9))
+        return minimised(
+            weighted, inside, bounds=(LOWEST, HIGHEST), x_scale=SCALES, max_nfev=MOST, xtol=1e-6
+        )
+
+    best = min((best_from(np.array([*at, *TAILS])) for at in STARTS), key=lambda found: found.cost)
+    excess = float(np.mean(missed(best.x) ** 2) - np.mean(curve.error**2))
+    misfit = max(excess, 0.0) ** 0.5 / curve.drop
+    error = np.hypot(curve.error, max(MODEL, MISSED * misfit) * curve.drop)
+    best = best_from(best.x)
+    covariance = np.linalg.pinv(best.jac.T @ best.jac)
+    gain = (covariance[0] @ best.jac.T)[: len(error)] / error
+    other = []
+    width[1] = FIXED
+    for side in (-1.0, 1.0):  # it is not linear in the logarithm of k_x/k_y
+        middle[1] = best.x[3] + side * float(covariance[3, 3]) ** 0.5
+        other.append(float(best_from(np.array([*best.x[:3], middle[1], best.x[4]])).x[0]))
+    return _Fit(
+        best.x, covariance, gain, misfit, float(np.mean(np.subtract(other, best.x[0]) ** 2) ** 0.5)
+    )
+
+
+def _over_cycles(curve: LoadingCurve, gain: Floats) -> float:
+    """Return the standard error of phi from how far each cycle by itself would move it."""
+    from scipy.special import stdtrit  # the quantile of Student's t
+
+    count = len(curve.apart)
+    if count < 2:
+        return 0.0
+    wide = max(1.0, 0.5 * float(stdtrit(count - 1, 0.975)))
+    return float(wide * (curve.apart @ gain).std(ddof=1) / count**0.5)
+
+
+def _refuse(phi: float, error: float, excess: float, misfit: float, off: float) -> None:
+    """Raise where the record does not determine the angle, with the reason."""
+    if abs(off) > 2.0 * WIDTHS[0]:
+        raise ResultError(
+            f"not determined: the force rises at {1.0 / (1.0 + off):.3g} times stiffness times "
+            "drive velocity as they are stated; measure both again"
+        )
+    if misfit > WORST:
+        raise ResultError(
+            "not determined: the rises do not have the shape that friction gives as it turns "
+            f"(they miss it by {misfit:.1%} of the drop)"
+        )
+    if excess > EARLY:
+        raise ResultError(
+            "not determined: the force falls so early in its rise that the friction, towards "
+            "which it would bend, is not seen"
+        )
+    if not error < KNOWN * phi:
+        most = degrees(phi + 2.0 * error)
+        known = f"; it is below {most:.2g} deg" if most < SURELY else ""
+        raise ResultError(
+            "not determined: the bend of the rises does not stand out of noise and the "
+            f"uncertainty of stiffness and friction{known}"
+        )

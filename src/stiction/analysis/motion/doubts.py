@@ -1,0 +1,190 @@
+"""What cannot be true of a record, in words: numbers that do not belong together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import isfinite, log10, pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from stiction.analysis.motion.drift import Drift, find_drift
+from stiction.analysis.motion.friction import Friction
+from stiction.analysis.motion.regime import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
+from stiction.analysis.record import Record
+from stiction.analysis.signals.hum import Line, of_mains
+from stiction.text.units import in_words
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+LARGEST_MU = 3.0
+LEAST_MU = 0.01  # of dry friction: superlubricity aside
+FASTER, SLOWER = 1.1, 0.5  # rate of loading over stiffness times drive velocity
+LIGHTER, HEAVIER = 1.4, 0.7  # k/m by the swing over that stated; a slip is slower than a swing
+SLOW_SLIP = 0.1
+THOUSAND = 0.2  # what is within a factor of 5 of a thousand, or its square, is a unit mistaken
+FEW = 6  # samples in a slip
+UNLOADED = 0.02  # of the largest force
+NOISE = 5.0  # standard deviations
+
+
+def warnings(record: Record, kind: str, cycles: xr.Dataset, friction: Friction) -> tuple[str, ...]:
+    """Return plain sentences on what is not as it should be, most weighty first."""
+    found = [
+        *_friction_too_large(record, friction),
+        *_loading_too_fast(record, kind, cycles),
+        *_mass(record, kind, cycles),
+        *_mains(kind, cycles),
+        *_coarse(record, cycles),
+        *_drift(record, kind, cycles),
+        *_zero(record, friction, cycles),
+    ]
+    return tuple(found)
+
+
+def taken_off(lines: tuple[Line, ...]) -> tuple[str, ...]:
+    """Return a sentence for each line that was taken off a force before its cycles were sought."""
+    found = []
+    for line in lines:
+        hum = ", the mains' hum in all likelihood," if of_mains(line.frequency) else ""
+        found.append(
+            f"A line at {in_words(line.frequency, 'Hz')} with an amplitude of "
+            f"{in_words(0.5 * line.height, 'N')}{hum} was taken off the force before its cycles "
+            "were sought."
+        )
+    return tuple(found)
+
+
+def _mains(kind: str, cycles: xr.Dataset) -> Iterator[str]:
+    """Doubt a vibration with the frequency of the mains: nothing else is left to tell it from."""
+    if kind != HARMONIC:
+        return
+    lasts = float(cycles["trough_time"][-1] - cycles["start"][0])
+    frequency = cycles.sizes["cycle"] / lasts
+    if of_mains(frequency):
+        yield (
+            f"The force swings at {in_words(frequency, 'Hz')}, as the mains do. Record it with the "
+            "drive at rest: if it swings then, that is hum, and the mass slides steadily."
+        )
+
+
+def _friction_too_large(record: Record, friction: Friction) -> Iterator[str]:
+    known = [each for each in friction[:3] if each is not None]
+    mu = max((abs(each.coefficient) for each in known), default=np.nan)
+    if mu > LARGEST_MU:
+        load = in_words(record.normal_load or 0.0, "N")
+        thousandfold = mu * 1e-3 > LEAST_MU
+        milli = "is the force in millinewtons? Give force_unit='mN'; or " if thousandfold else ""
+        yield (
+            f"A friction coefficient of {mu:.3g} is beyond belief: {milli}check the normal load, "
+            f"{load}."
+        )
+
+
+def _loading_too_fast(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:
+    if kind not in (STICK_SLIP, TRANSITIONAL) or not record.stiffness or not record.drive_velocity:
+        return
+    stated = record.stiffness * record.drive_velocity
+    seen = float(np.median(cycles["stick_slope"].values))
+    ratio = seen / stated
+    if not isfinite(ratio) or SLOWER <= ratio <= FASTER:
+        return
+    yield (
+        f"The force rises at {in_words(seen, 'N/s')}, {ratio:.3g} times stiffness times drive "
+        f"velocity as stated, {in_words(stated, 'N/s')}: {_remedy(ratio)}."
+    )
+
+
+def _remedy(ratio: float) -> str:
+    """Return what is likely wrong with a rate that is so many times as large as stated."""
+    power = log10(ratio) / 3.0 if ratio > 0.0 else 0.0
+    if abs(power) > 0.5 and abs(power - round(power)) < 0.1:
+        if power < 0.0:
+            return (
+                "is the time in milliseconds? Give time_unit='ms'; or stiffness or drive velocity "
+                "is stated 1000 times too large"
+            )
+        return (
+            "is the force in millinewtons? Give force_unit='mN'; or stiffness or drive velocity "
+            "is stated 1000 times too small"
+        )
+    return "check stiffness and drive velocity, or the gain of the load cell"
+
+
+def _mass(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:
+    """Doubt k/m where a swing, or half a swing in each slip, takes another time."""
+    if not record.mass or not record.stiffness or not cycles.sizes["cycle"]:
+        return
+    fall = float(np.median(cycles["trough_time"].values - cycles["peak_time"].values))
+    swing = 2.0 * fall
+    lightest, heaviest = LIGHTER, SLOW_SLIP
+    if kind == HARMONIC:
+        swing, heaviest = float(np.median(cycles["period"].values)), HEAVIER
+    elif kind not in (STICK_SLIP, TRANSITIONAL):
+        return
+    if fall * record.sample_rate < FEW:
+        return
+    seen, stated = (2.0 * pi / swing) ** 2, record.stiffness / record.mass
+    if heaviest <= seen / stated <= lightest:
+        return
+    what = "swings" if kind == HARMONIC else "slips"
+    yield (
+        f"By the time of its {what} ({in_words(swing if kind == HARMONIC else fall, 's')}) "
+        f"stiffness over mass is {seen / stated:.2g} times {stated:.3g} 1/s², as stated: "
+        f"{_remedy_of_mass(seen / stated)}."
+    )
+
+
+def _remedy_of_mass(ratio: float) -> str:
+    """Return what is likely wrong with a k/m that is so many times as large as stated."""
+    if THOUSAND * 1e-6 < ratio < 1e-6 / THOUSAND:
+        return "is the time in milliseconds? Give time_unit='ms'; or check mass and stiffness"
+    return "check mass and stiffness"
+
+
+def _coarse(record: Record, cycles: xr.Dataset) -> Iterator[str]:
+    if not cycles.sizes["cycle"]:
+        return
+    fall = float(np.median(cycles["trough_time"].values - cycles["peak_time"].values))
+    samples = fall * record.sample_rate
+    if samples < FEW:
+        yield (
+            f"A fall of the force takes {samples:.1f} samples: peaks and troughs are cut off. "
+            f"Sample at {in_words(10.0 / max(fall, 1.0 / record.sample_rate), 'Hz')} or more."
+        )
+
+
+def _drift(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:
+    if kind not in (STICK_SLIP, TRANSITIONAL, HARMONIC, STEADY):
+        return
+    drift: Drift = find_drift(record, cycles)
+    if drift.stands_out:
+        yield (
+            f"The force drifts by {in_words(drift.rate, 'N/s')}, {in_words(drift.change, 'N')} in "
+            "all, and friction coefficients with it. If it is the load cell, analyse "
+            "st.detrended(record)."
+        )
+
+
+def _zero(record: Record, friction: Friction, cycles: xr.Dataset) -> Iterator[str]:
+    """Doubt the zero where a record begins unloaded, or goes where friction cannot."""
+    largest = float(np.abs(record.force).max(initial=0.0))
+    if friction.kinetic is not None and friction.kinetic.force < 0.0:
+        yield (
+            f"The mean friction is {in_words(friction.kinetic.force, 'N')}, against the drive: the "
+            "zero of the force is off, or its sign; give zero=, the reading without load."
+        )
+        return
+    if friction.break_away is None or record.zero is not None:
+        return
+    some = record.force[: max(8, len(record) // 400)]
+    noise = float(np.std(np.diff(some))) / 2.0**0.5
+    first = float(some[0])
+    plateau = float(np.ptp(some)) < max(NOISE * noise, 1e-9 * largest) * 2.0
+    read = float(np.median(some)) if plateau else first
+    if abs(read) > max(UNLOADED * largest, NOISE * noise):
+        yield (
+            f"The record begins before the first loading, at {in_words(read, 'N')}: if the spring "
+            f"was unloaded, give zero='{read:.4g} N'."
+        )

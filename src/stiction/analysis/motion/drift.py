@@ -1,0 +1,81 @@
+"""Whether a force drifts, and whether its zero is right."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.analysis.motion.cycles import find_cycles
+from stiction.analysis.record import Record
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+
+SURE = 4.0  # standard errors
+WORTH = 0.02  # of the mean force, over the record: less is not worth a word
+PARTS = 20  # means of a force without cycles, from the second half on
+FEWEST = 4  # cycles that show a drift
+
+
+class Drift(NamedTuple):
+    """A steady change of the force (N/s), its standard error, and by how much in all (N)."""
+
+    rate: float
+    error: float
+    change: float
+    stands_out: bool
+
+
+def find_drift(record: Record, cycles: xr.Dataset) -> Drift:
+    """Return how fast the middle between peaks and troughs rises, or the force without cycles.
+
+    A line fitted to them; its error holds for scatter that is independent from cycle to cycle.
+    """
+    if cycles.sizes["cycle"] >= FEWEST:
+        at = 0.5 * (cycles["peak_time"].values + cycles["trough_time"].values)
+        middle = 0.5 * (cycles["peak"].values + cycles["trough"].values)
+    elif not cycles.sizes["cycle"] and len(record) >= 4 * PARTS:
+        half = len(record) // 2
+        at, middle = (
+            np.array([part.mean() for part in np.array_split(each[half:], PARTS)])
+            for each in (record.time, record.force)
+        )
+    else:
+        return Drift(0.0, np.nan, 0.0, stands_out=False)
+    line = np.polyfit(at, middle, 1)
+    rate, left = float(line[0]), middle - np.polyval(line, at)
+    spread = float((left @ left / (len(at) - 2)) ** 0.5)
+    error = spread / float(np.sqrt(((at - at.mean()) ** 2).sum()))
+    change = rate * float(at[-1] - at[0])
+    large = abs(change) > WORTH * abs(float(middle.mean()))
+    return Drift(rate, error, change, stands_out=bool(large and abs(rate) > SURE * error))
+
+
+def detrended(record: Record) -> Record:
+    """Return a record without the steady drift of its force.
+
+    The line is zero at the first sample: what the load cell reads there is taken for right. A
+    friction that itself changes steadily is taken for drift, too.
+
+    Parameters
+    ----------
+    record : Record
+        With four cycles at least, or sliding steadily in its second half.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> time = np.arange(0.0, 20.0, 1e-3)
+    >>> record = st.Record(time=time, force=1.0 + 0.1 * (time % 2.0) + 0.01 * time)
+    >>> cycles = st.find_cycles(st.detrended(record))
+    >>> bool(np.ptp(cycles["peak"].values) < 0.001)
+    True
+    """
+    drift = find_drift(record, find_cycles(record))
+    force = record.force - drift.rate * (record.time - record.time[:1])
+    force.setflags(write=False)
+    return record.model_copy(update={"force": force})

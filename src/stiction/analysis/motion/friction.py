@@ -1,0 +1,193 @@
+"""The friction that a force shows, in any motion: at the break-away, at rest, while it slides."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.analysis.motion.regime import (
+    HARMONIC,
+    IRREGULAR,
+    SETTLING,
+    STEADY,
+    STICK_SLIP,
+    TRANSITIONAL,
+    UNDETERMINED,
+)
+from stiction.analysis.record import Record
+from stiction.analysis.signals.turning_points import without_spikes
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+
+PARTS = 400  # means in a record, in which its break-away is sought
+FEWEST = 32  # samples, below which nothing is said
+STANDS_OUT = 4.0  # standard deviations of the noise of a mean
+PEAK = 0.02  # of the rise: the fall after a maximum that makes it a peak
+LOADED = 0.3  # of the largest force: a record that begins above shows no loading from nothing
+SHARP = 2e-3  # of the range of force: noise that is averaged away at the peak
+BLOCKS = 20  # means, whose scatter gives the standard error of a mean of samples that depend
+
+
+class Measured(NamedTuple):
+    """A force (N), its standard error, and its spread (a standard deviation); NaN if not known.
+
+    `normal_load` (N), where it is known, makes coefficients of them.
+    """
+
+    force: float
+    error: float
+    spread: float
+    normal_load: float = np.nan
+
+    @property
+    def coefficient(self) -> float:
+        """Friction coefficient; NaN without a normal load."""
+        return self.force / self.normal_load
+
+    @property
+    def coefficient_error(self) -> float:
+        """Standard error of the coefficient."""
+        return self.error / self.normal_load
+
+    @property
+    def coefficient_spread(self) -> float:
+        """Spread of the coefficient."""
+        return self.spread / self.normal_load
+
+
+class Friction(NamedTuple):
+    """The friction of a record; None where `missing` says why.
+
+    Parameters
+    ----------
+    break_away : Measured or None
+        The first maximum of a force that is loaded from (nearly) nothing.
+    static : Measured or None
+        Mean of the peaks before each slip, of stick-slip.
+    kinetic : Measured or None
+        While it slides: the mean force after the break-away; of stick-slip and vibration the mean
+        of peak and trough, about which a mass swings that slips against a constant friction.
+    missing : dict
+        Why each of them is not known.
+    """
+
+    break_away: Measured | None
+    static: Measured | None
+    kinetic: Measured | None
+    missing: dict[str, str]
+
+
+def find_friction(record: Record, kind: str, cycles: xr.Dataset) -> Friction:
+    """Return the friction that a record shows.
+
+    Parameters
+    ----------
+    record : Record
+        The force.
+    kind : str
+        Of motion, see `stiction.classify`.
+    cycles : Dataset
+        From `stiction.find_cycles`.
+    """
+    missing: dict[str, str] = {}
+    load = record.normal_load or np.nan
+    if len(record) < FEWEST:
+        few = f"the record has {len(record)} samples and {FEWEST} are needed"
+        return Friction(None, None, None, dict.fromkeys(("break_away", "static", "kinetic"), few))
+    forces, times, noise = _means(record)
+    at, reason = _first_peak(forces, noise)
+    break_away = None
+    if at is None:
+        missing["break_away"] = reason
+    else:
+        break_away = _break_away(record, forces, at, noise)
+    count = cycles.sizes["cycle"]
+    static = None
+    if kind in (STICK_SLIP, TRANSITIONAL) and count:
+        static = _over(cycles["peak"].values, load)
+    else:
+        missing["static"] = "the mass does not stick again and again; see the break-away"
+    kinetic = None
+    if kind in (STICK_SLIP, TRANSITIONAL, HARMONIC, IRREGULAR) and count:
+        kinetic = _over(0.5 * (cycles["peak"].values + cycles["trough"].values), load)
+    elif kind in (STEADY, SETTLING, UNDETERMINED) and (at is not None or kind != UNDETERMINED):
+        kinetic = _sliding(record, times, at, kind, load)
+    else:
+        missing["kinetic"] = "the mass is not seen to slide"
+    return Friction(break_away, static, kinetic, missing)
+
+
+def _means(record: Record) -> tuple[Floats, Floats, float]:
+    """Return means over equal parts of a record, their times, and the noise of each (N)."""
+    count = min(PARTS, len(record))
+    edges = np.linspace(0, len(record), count, endpoint=False).astype(np.intp)
+    size = np.diff(edges, append=len(record))
+    forces, times = (
+        np.add.reduceat(x, edges) / size for x in (without_spikes(record.force), record.time)
+    )
+    bent = np.diff(record.force, 2)
+    noise = float(np.median(np.abs(bent))) / 0.6745 / 6.0**0.5 / float(np.median(size)) ** 0.5
+    return forces, times, noise
+
+
+def _first_peak(forces: Floats, noise: float) -> tuple[int | None, str]:
+    """Return which mean is the first maximum of a loading, or None and why there is none."""
+    highest = np.maximum.accumulate(forces)
+    if forces[0] > LOADED * highest[-1]:
+        return None, "the record does not begin with an unloaded spring"
+    fall = np.maximum(STANDS_OUT * noise, PEAK * (highest - forces[0]))
+    risen = highest - forces[0] > 0.5 * (highest[-1] - forces[0])
+    fallen = np.flatnonzero((highest - forces > fall) & risen)
+    if not len(fallen):
+        least = f"{100.0 * PEAK:g}% of its rise"
+        return None, f"the first loading does not end in a fall of more than {least}"
+    return int(np.argmax(forces[: fallen[0] + 1])), ""
+
+
+def _break_away(record: Record, forces: Floats, at: int, noise: float) -> Measured:
+    """Return the largest force about a mean that is a maximum, averaged as far as noise asks."""
+    size, first = -(-len(record) // len(forces)), at * len(record) // len(forces)
+    near = without_spikes(record.force)[max(0, first - 2 * size) : first + 3 * size]
+    rough = noise * size**0.5  # of a sample
+    wanted = (rough / max(SHARP * float(np.ptp(forces)), 1e-300)) ** 2
+    width = int(min(max(wanted, 1.0), size))
+    smooth = np.convolve(near, np.full(width, 1.0 / width), "valid")
+    error = float(np.hypot(rough / width**0.5, _missed(smooth, width)))
+    return Measured(float(smooth.max()), error, np.nan, record.normal_load or np.nan)
+
+
+def _missed(values: Floats, step: int) -> float:
+    """Return by how much a peak can exceed its largest value, from the values a step apart.
+
+    A rounded peak, bent much the same on all of it, lies below the lines that continue its sides:
+    below where they meet. A corner bends more than twice as much as a side of it; it lies below
+    the rise, continued by a step.
+    """
+    top = int(np.argmax(values))
+    at = np.clip(top + step * np.arange(-2, 3), 0, len(values) - 1)
+    before, rise, fall, after = np.diff(values[at]) * (1.0, 1.0, -1.0, -1.0)
+    if rise + fall > 2.0 * min(before - rise, after - fall):
+        return float(max(rise, before - rise))  # it lies after the largest value, or before
+    meet = rise * (after - fall) / (rise + after), fall * (before - rise) / (fall + before)
+    return float(max(meet))
+
+
+def _over(values: Floats, load: float) -> Measured:
+    """Return mean, standard error and spread of values that do not depend on each other."""
+    spread = float(values.std(ddof=1)) if len(values) > 1 else np.nan
+    return Measured(float(values.mean()), spread / len(values) ** 0.5, spread, load)
+
+
+def _sliding(record: Record, times: Floats, at: int | None, kind: str, load: float) -> Measured:
+    """Return the mean force while it slides: in the last half of what follows the break-away."""
+    begin = record.time[0] if at is None else float(times[at])
+    share = 0.5 if kind != STEADY or at is not None else 0.0
+    begin += share * (float(record.time[-1]) - begin)
+    force = record.force[record.time >= begin]
+    blocks = np.array([part.mean() for part in np.array_split(force, min(BLOCKS, len(force)))])
+    return _over(force, load)._replace(error=_over(blocks, load).error)

@@ -1,0 +1,139 @@
+"""What is a cycle of a force, and what is only a hesitation within one.
+
+Before a slip, or within it, the mass can hesitate: the force dips, rises again, and then falls.
+Such a reversal belongs to its cycle. It is told from a cycle by its height: a cycle is a fall of
+at least half the swing. Irregular stick-slip is the exception. It has small slips among large
+ones of every size; where falls differ so, and the small ones are fewer, only one that is far below
+the others is a hesitation.
+
+Only reversals that stand apart from noise and ripple come here: of a measured force those beyond
+about 5 % of a drop, 10 % under noise. Shallower ones are not counted.
+
+Whatever counts cycles asks here: `stiction.analysis.motion.cycles`, an audit, and studies.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+HALF = 0.5  # of the swing: a fall of so much is a cycle, where the falls are alike
+LEAST = 0.1  # of the swing: what is less is a hesitation, however much the falls differ
+AROUND = 12  # to each side with which a rise or fall is compared: amplitudes may grow, shrink
+# Times as many as falls: so many reversals come with the falls and belong to them. Those below
+# LEAST do not count, as how many of them are seen depends on noise and samples.
+OFTEN = 1.1
+FEW = 5  # falls: whether fewer are alike is not known
+# Falls spread evenly from half the swing to the whole of it have a standard deviation of 0.19 of
+# their mean; twice the standard error of that, 1/(2 n)^(1/2), is added.
+ALIKE = 0.23
+
+
+class Hesitations(NamedTuple):
+    """Reversals taken out of a sequence of turning points, and what is left.
+
+    Parameters
+    ----------
+    kept : ndarray
+        (n,) numbers of the points between which the cycles' rises and falls lie.
+    at : ndarray
+        (m,) number of the first of the two points of each reversal taken out, in order.
+    depth : ndarray
+        (m,) its height, in the unit of the values.
+    """
+
+    kept: Indices
+    at: Indices
+    depth: Floats
+
+
+def take_out(values: Floats) -> Hesitations:
+    """Take the hesitations out of a sequence of turning points.
+
+    Parameters
+    ----------
+    values : ndarray
+        (n,) peaks and troughs in turn; first and last a value that the record reaches before and
+        after them, which shows how far its cut movements went at least.
+    """
+    found, shallow = _below(values, HALF), _below(values, LEAST)
+    change = np.diff(values[found.kept])
+    fall = -change[change < 0.0]
+    deep = (len(shallow.kept) - len(found.kept)) // 2
+    return found if deep >= OFTEN * len(fall) > 0 or _alike(fall) else shallow
+
+
+def _below(values: Floats, share: float) -> Hesitations:
+    """Take out reversals that are less than a share of the swing, the smallest first."""
+    points = np.arange(len(values))
+    at, depth = [np.zeros(0, np.intp)], [np.zeros(0)]
+    while len(points) > 4:
+        legs = np.abs(np.diff(values[points]))
+        inner = legs[1:-1]
+        small = (inner < legs[2:]) & (inner <= legs[:-2]) & (inner < share * swing(legs)[1:-1])
+        found = np.flatnonzero(small) + 1  # never two neighbours: one of them is not the smaller
+        if not len(found):
+            break
+        at.append(points[found])
+        depth.append(legs[found])
+        points = np.delete(points, np.concatenate([found, found + 1]))
+    places = np.concatenate(at)
+    order = np.argsort(places)
+    return Hesitations(_whole(values, points, share), places[order], np.concatenate(depth)[order])
+
+
+def _alike(fall: Floats) -> bool:
+    """Return whether falls are of one size."""
+    if len(fall) < FEW:
+        return False
+    ratio = fall / typical(fall)
+    spread = float(ratio.std() / ratio.mean())
+    return bool(spread * (1.0 + (2.0 / len(fall)) ** 0.5) < ALIKE)
+
+
+def swing(legs: Floats) -> Floats:
+    """Return, for each leg, what is typical around it of legs in the same direction.
+
+    Rises are compared with rises and falls with falls: where the force drifts they differ. The
+    first leg and the last may be cut, and do not count.
+    """
+    found = np.zeros(len(legs))
+    for first in (1, 2):
+        if len(legs) - 1 > first:
+            found[first:-1:2] = typical(legs[first:-1:2])
+    return found
+
+
+def typical(size: Floats) -> Floats:
+    """Return what is typical around each: those at least as large make half of all the way."""
+    width = 2 * AROUND + 1
+    if len(size) <= width:
+        return np.full(len(size), _weighted_median(size[None, :])[0])
+    near = _weighted_median(np.lib.stride_tricks.sliding_window_view(size, width))
+    return np.concatenate([np.full(AROUND, near[0]), near, np.full(AROUND, near[-1])])
+
+
+def _weighted_median(rows: Floats) -> Floats:
+    """Return the median of each row, each value weighted by itself."""
+    ordered = np.sort(rows, axis=1)
+    passed = np.cumsum(ordered, axis=1)
+    middle = np.argmax(passed >= 0.5 * passed[:, -1:], axis=1)
+    return np.asarray(np.take_along_axis(ordered, middle[:, None], axis=1)[:, 0])
+
+
+def _whole(values: Floats, points: Indices, share: float) -> Indices:
+    """Leave out the ends, and what they cut of a hesitation: small legs before a large one."""
+    inner = points[1:-1]
+    for _ in range(2):
+        legs = np.abs(np.diff(values[np.concatenate([points[:1], inner, points[-1:]])]))
+        legs, limit = legs[1:-1], share * swing(legs)[1:-1]
+        largest = np.maximum.accumulate(legs)
+        jump = (largest[:-1] < limit[:-1]) & (largest[:-1] < LEAST * legs[1:])
+        inner = inner[np.flatnonzero(jump)[-1] + 1 if jump.any() else 0 :]
+        inner, points = inner[::-1], points[::-1]
+    return inner

@@ -1,0 +1,348 @@
+"""Which kind of motion a record shows, how sure that is, and why."""
+
+from __future__ import annotations
+
+from math import exp, hypot, log, pi, sqrt
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.analysis.motion.band import highest_hump
+from stiction.analysis.motion.cycles import Swings, swings
+from stiction.analysis.motion.decay import MANY, ORDERED, order
+from stiction.analysis.motion.level import PARTS, course
+from stiction.analysis.motion.rest import STICKING, rest_share, rise_share
+from stiction.analysis.record import Record, recorded
+from stiction.analysis.signals.hum import samples_per_period
+from stiction.analysis.signals.turning_points import CLEAR
+from stiction.text.units import in_words
+from stiction.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+
+STICK_SLIP = "stick-slip"
+TRANSITIONAL = "transitional oscillation"
+HARMONIC = "harmonic vibration"
+IRREGULAR = "irregular vibration"
+SETTLING = "settling"
+STEADY = "steady sliding"
+STUCK = "stuck"
+UNDETERMINED = "undetermined"
+
+# Bounds of the share of a cycle for which the mass rests, or creeps, by the cycle's shape
+SHAPES = ((STICKING, STICK_SLIP), (0.5, TRANSITIONAL), (0.0, HARMONIC))
+BACKWARD = 0.4  # share of the rise, below which the force falls slowly and rises fast
+# A vibration is irregular beyond either: the standard deviation of the periods over their mean,
+# which noise through a wide filter brings to 0.37 and more; and the span of the drops over their
+# median, a tenth left out at each end. Noise through any filter has 1.4 of it, as amplitudes of
+# Rayleigh's distribution have, 0.7 to 1.5 where records are short; a measured vibration of one size
+# has 0.57.
+REGULAR, EVEN = 0.25, 0.75
+SPREAD_ERROR = 1.8  # over the root of the number of swings: relative error of either
+# That span of irregular vibrations, and of harmonic ones, measured among them, whose swings differ
+# by noise or slowly: the typical one, and the standard deviation of its logarithm
+IRREGULAR_SPREAD, HARMONIC_SPREAD = (1.05, 0.1), (0.17, 0.8)
+ONE_WAY = 0.8  # of all ups and downs is change: a drift or a load, no wandering
+SETTLED = 0.1  # of the force's span is passed in the last quarter; of an even load it is 0.25
+LOADING = 0.5  # of the early rate, or of stiffness times drive velocity: it still sticks
+SLOW = 0.1  # of stiffness times drive velocity: the mass goes at 9/10 of the drive's speed or more
+MANY_SAMPLES = 64.0  # a cycle: no quicker line has been folded back to it
+FEWEST, ENOUGH = 3.5, 8.0  # samples a cycle: below the first it is not known, nor what it is
+# Samples that a quick fall seems to take at most, and that a fall takes which may be quick: a sine
+# of four samples falls for two
+QUICK, SLOWEST = 1.6, 3.0
+RIPPLE = 1e-3  # of the force's span: a vibration that is less is no motion of its own
+GROWN = 0.1  # of a force drop: less is not worth a word
+NOISE_SHOWS = 1e-3  # of a force drop; what is less is no noise of a load cell
+
+
+def _whole(value: float) -> str:
+    return f"{value:.0f}"
+
+
+def _percent(value: float) -> str:
+    return f"{value:.0%}"
+
+
+def _rounded(value: float) -> str:
+    return f"{float(f'{value:.3g}'):g}"
+
+
+def _force(value: float) -> str:
+    return in_words(value, "N")
+
+
+def _frequency(value: float) -> str:
+    return in_words(value, "Hz")
+
+
+WORDS = {
+    "cycles": ("{} complete cycles", _whole),
+    "rise_share": ("the force rises for {} of a cycle (a sine: 50%, a sawtooth: 100%)", _percent),
+    "rest_share": ("a mass that swings so rests or creeps for {} of it", _percent),
+    "backward": (
+        "it falls slowly and rises fast, in {} of the cycles: is its sign right?",
+        _percent,
+    ),
+    "cycles_alike": ("{} of the cycles have this shape themselves", _percent),
+    "period_spread": ("periods differ by {} of their mean", _percent),
+    "drop_spread": ("four fifths of the force drops differ by up to {} of their median", _percent),
+    "natural_period": ("a period is {} times the mass's own on its spring", _rounded),
+    "drop_over_noise": ("force drops are {} times as high as noise reaches", _rounded),
+    "line_taken_off": ("a line at {} was taken off the force before", _frequency),
+    "swings": ("{} swings, each smaller than the last but for noise", _whole),
+    "last_over_first": ("the last force drop is {} times the first", _rounded),
+    "turns": ("{} peaks and troughs make no complete cycle", _whole),
+    "change": ("the force changes by {} from beginning to end", _force),
+    "span": ("it spans {}, averaged over a 32nd of the time", _force),
+    "scatter": ("it scatters by {} about that", _force),
+    "late_share": ("in the last quarter of the time it spans {} of this", _percent),
+    "one_way": ("{} of all its ups and downs is this change", _percent),
+    "rate_kept": ("at the end it changes at {} times the rate of the beginning", _rounded),
+    "rate_over_drive": (
+        "at the end its rate is {} times stiffness times drive velocity",
+        _rounded,
+    ),
+    "hump": ("it vibrates at about {}, in swings of every size", _frequency),
+    "hump_height": ("in the spectrum these stand {} times as high as they must", _rounded),
+    "samples_per_cycle": ("a cycle has {} samples, too few to show it", _rounded),
+    "rate_needed": ("sample at {} or more", _frequency),
+    "samples": ("there are {} samples, too few", _whole),
+}
+
+
+class Regime(NamedTuple):
+    """A kind of motion, and why.
+
+    Parameters
+    ----------
+    kind : str
+        "stick-slip" (at rest, or in creep, for three quarters of a cycle or more),
+        "transitional oscillation" (for half of it or more), "harmonic vibration" (for less or
+        not at all), "irregular vibration" (swings that stand out, of changing period), "settling"
+        (a transient that decays), "steady sliding" (no swings stand
+        apart from the noise: what is smaller is not seen), "stuck" (it loads and never slips)
+        or "undetermined".
+    confidence : float
+        0 to 1. With cycles: how likely one more of them has the kind's shape, from how they
+        scatter about their own or, where some have another shape, from how many do; so cycles
+        that are all alike are surer than cycles that differ, and thirty than three.
+    evidence : dict
+        Numbers that say why; ``str(regime)`` puts them into words.
+    runner_up : str
+        The kind that most of the other cycles have; empty if there are none.
+    """
+
+    kind: str
+    confidence: float
+    evidence: dict[str, float]
+    runner_up: str = ""
+
+    def __str__(self) -> str:
+        """Say it in words."""
+        other = f"; else {self.runner_up}" if self.runner_up else ""
+        said = ((*WORDS[name], value) for name, value in self.evidence.items())
+        reasons = "; ".join(text.format(written(value)) for text, written, value in said)
+        return f"{self.kind} (confidence {self.confidence:.2f}{other}): {reasons}"
+
+
+def classify(source: Trajectory | Record) -> Regime:
+    """Tell which kind of motion a record shows.
+
+    Cycles decide by their shape (`stiction.analysis.motion.rest`), if there are any; if not, or if
+    they die out, the course of the force does: it loads to the end, settles, or stays about where
+    it is.
+
+    Parameters
+    ----------
+    source : Trajectory or Record
+        A run, or what was measured. With stiffness, drive velocity and mass the rate of loading and
+        the natural period count as well; without, the shape alone.
+    """
+    record = recorded(source)
+    return regime_of(record, swings(record))
+
+
+def regime_of(record: Record, found: Swings) -> Regime:
+    """Tell which kind of motion a record shows, of which the swings are known: see `classify`."""
+    if len(record) < PARTS:
+        return Regime(UNDETERMINED, 0.0, {"samples": len(record)})
+    per_cycle = 2.0 * len(record) / max(found.turns, 1)
+    if not found.table.sizes["cycle"] or per_cycle < MANY_SAMPLES:
+        per_cycle = min(per_cycle, samples_per_period(record.force))
+    if per_cycle < FEWEST:
+        needed = ENOUGH / per_cycle * record.sample_rate
+        return Regime(UNDETERMINED, 0.0, {"samples_per_cycle": per_cycle, "rate_needed": needed})
+    if found.dying:
+        drop = found.table["drop"].values
+        sure = (len(drop) + 1) / (len(drop) + 3)
+        return Regime(SETTLING, sure, {"swings": len(drop), "last_over_first": drop[-1] / drop[0]})
+    if found.table.sizes["cycle"]:
+        return _by_shape(record, found)
+    return _by_course(record, found)
+
+
+def _by_shape(record: Record, found: Swings) -> Regime:
+    table, count = found.table, found.table.sizes["cycle"]
+    step = float(np.median(np.diff(record.time)))
+    shares = table["rise_share"].values
+    other = ""
+    if float(table["period"].mean()) < ENOUGH * step:
+        share, as_well = _coarse_shares(table, step)
+        shares = np.full(count, share)
+        other = shape(as_well) if shape(as_well) != shape(share) else ""
+    kinds = [shape(share) for share in shares]
+    typical = float(np.median(shares))
+    kind = shape(typical)
+    alike = kinds.count(kind)
+    evidence = {"cycles": count, "rise_share": typical}
+    if kind == UNDETERMINED:
+        evidence["backward"] = alike / count
+    else:
+        evidence["rest_share"] = float(rest_share(typical))
+    evidence |= {
+        "cycles_alike": alike / count,
+        "period_spread": float(table["period"].std() / table["period"].mean()),
+    }
+    drop = table["drop"].values
+    if kind == HARMONIC:
+        span = np.subtract(*np.percentile(drop, (90.0, 10.0)))
+        evidence["drop_spread"] = float(span / np.median(drop))
+    evidence |= _natural_period(record, table)
+    if found.noise > NOISE_SHOWS * np.median(drop):
+        evidence["drop_over_noise"] = float(np.median(drop)) / found.noise
+    grown = float(drop[-1] / drop[0])
+    if count >= MANY and abs(order(drop)) >= -ORDERED and abs(grown - 1.0) > GROWN:
+        evidence["last_over_first"] = grown
+    if found.lines:
+        evidence["line_taken_off"] = found.lines[0].frequency
+    others = sorted(set(kinds) - {kind, UNDETERMINED}, key=kinds.count)
+    counted = (alike + 1) / (count + 3)
+    confidence = max(counted, _chance(shares, kind, step / float(table["period"].mean())))
+    if other:  # as likely
+        return Regime(kind, 0.5 * confidence, evidence, other)
+    irregular = _irregular(evidence, drop) if kind == HARMONIC else 0.0
+    if irregular > 0.5:
+        return Regime(IRREGULAR, irregular * confidence, evidence, HARMONIC)
+    confidence *= 1.0 - irregular
+    if irregular > 1.0 - alike / count:
+        return Regime(kind, confidence, evidence, IRREGULAR)
+    return Regime(kind, confidence, evidence, others[-1] if others else "")
+
+
+def _chance(shares: Floats, kind: str, resolution: float) -> float:
+    """Return how likely one cycle more has a kind's shape, where all scatter about one shape.
+
+    Student's distribution of the next of n values, about their median, whose standard deviation
+    is seen with n - 1 degrees of freedom and is no less than the resolution, one sample.
+    """
+    from scipy.special import stdtr
+
+    count = len(shares)
+    if count < 2:
+        return 0.0
+    low, high = _bounds(kind)
+    scale = np.hypot(shares.std(ddof=1), resolution) * sqrt(1.0 + 1.0 / count)
+    below = stdtr(count - 1, (np.array([low, high]) - np.median(shares)) / scale)
+    return float(below[1] - below[0])
+
+
+def _irregular(evidence: dict[str, float], drop: Floats) -> float:
+    """Return how likely swings are irregular, by how much their periods and drops differ.
+
+    By periods: whether more of them would differ by more than `REGULAR`. By drops: of the two
+    distributions from which their spread can be drawn, the one of irregular swings is the narrower
+    the more swings there are; where they overlap it is neither likely nor unlikely, and `EVEN`
+    decides.
+    """
+    from scipy.special import ndtr
+
+    count = len(drop)
+    periods = log(max(evidence["period_spread"] / REGULAR, 1e-9)) * sqrt(count) / SPREAD_ERROR
+    spread = evidence["drop_spread"]
+    if abs(order(drop)) >= -ORDERED or spread == 0.0:  # it grows, or is quite even
+        return float(ndtr(periods))
+    error = hypot(SPREAD_ERROR / sqrt(count), IRREGULAR_SPREAD[1])
+    drops = _density(spread, IRREGULAR_SPREAD[0], error)
+    drops /= drops + _density(spread, *HARMONIC_SPREAD)
+    drops = max(drops, 0.5) if spread > EVEN else min(drops, 0.5)
+    return max(float(ndtr(periods)), drops)
+
+
+def _density(value: float, typical: float, spread: float) -> float:
+    """Return the density of a value's logarithm, normally distributed about a typical one's."""
+    return exp(-0.5 * (log(value / typical) / spread) ** 2) / spread + 1e-300
+
+
+def _bounds(kind: str) -> tuple[float, float]:
+    """Return between which shares of the rise a cycle is of a kind."""
+    if kind == UNDETERMINED:
+        return -np.inf, BACKWARD
+    ends = [np.inf, *(float(rise_share(rests)) for rests, _ in SHAPES[:-1]), BACKWARD]
+    place = [name for _, name in SHAPES].index(kind)
+    return ends[place + 1], ends[place]
+
+
+def _coarse_shares(table: xr.Dataset, step: float) -> tuple[float, float]:
+    """Return the mean share of the rise in cycles of few samples, and what it can be as well.
+
+    A fall quicker than a sample is seen from the last sample before it to the first after it:
+    one sample longer than it is, on average. A fall of some samples may be so or not.
+    """
+    period = float(table["period"].mean())
+    fall = float((table["trough_time"] - table["peak_time"]).mean())
+    slow, quick = 1.0 - fall / period, 1.0 - max(fall - step, 0.0) / period
+    if fall < QUICK * step:
+        return quick, quick
+    return slow, quick if fall < SLOWEST * step else slow
+
+
+def shape(rise_share: float) -> str:
+    """Return the kind of cycles whose force rises for so much of the time."""
+    if rise_share < BACKWARD:
+        return UNDETERMINED
+    rests = rest_share(rise_share)
+    return next(kind for bound, kind in SHAPES if rests >= bound)
+
+
+def _natural_period(record: Record, table: xr.Dataset) -> dict[str, float]:
+    if record.mass is None or record.stiffness is None:
+        return {}
+    own = 2.0 * pi * sqrt(record.mass / record.stiffness)
+    return {"natural_period": float(table["period"].median()) / own}
+
+
+def _by_course(record: Record, found: Swings) -> Regime:
+    way = course(record.time, record.force)
+    drive = (record.stiffness or 0.0) * (record.drive_velocity or 0.0)
+    evidence = {"change": way.change, "span": way.span, "scatter": way.scatter}
+    if drive:
+        evidence["rate_over_drive"] = way.late_rate / drive
+    late = way.late_span / way.span if way.span > 0.0 else 1.0
+    rising = way.change > 0.0 and way.one_way >= ONE_WAY
+    slides = not rising or 0.0 < max(abs(way.early_rate), abs(way.late_rate)) < SLOW * drive
+    if late > SETTLED and found.turns:
+        return Regime(UNDETERMINED, 0.0, evidence | {"turns": found.turns})
+    # a transient ends, and a load goes on, in the later half; what vibrates then does not end
+    begin = 0 if late > SETTLED and slides else len(record) // 2
+    hump = highest_hump(record.time[begin:], record.force[begin:])
+    vibrates = hump.likelihood if hump.rms > RIPPLE * way.span else 0.0
+    if vibrates > 0.5:
+        evidence |= {"hump": hump.frequency, "hump_height": hump.height}
+        return Regime(IRREGULAR, vibrates, evidence, STEADY)
+    if late <= SETTLED:
+        sure = (1.0 - late / (2.0 * SETTLED)) * (1.0 - vibrates)
+        return Regime(SETTLING, sure, evidence | {"late_share": late})
+    if slides:  # the nearer to cycles it came, the less sure it is that there are none
+        return Regime(STEADY, (1.0 - 0.5 * found.clearness / CLEAR) * (1.0 - vibrates), evidence)
+    kept = way.late_rate / way.early_rate
+    evidence |= {"one_way": way.one_way, "rate_kept": kept}
+    loading = way.late_rate / drive if drive else kept
+    if loading >= LOADING:
+        sure = way.one_way * min(loading, 1.0) * (1.0 - vibrates)
+        return Regime(STUCK, sure, evidence)
+    return Regime(UNDETERMINED, 0.0, evidence)

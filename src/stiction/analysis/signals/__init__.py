@@ -1,0 +1,1 @@
+"""Signals: turning points, lines, spectra and wild samples of any series of numbers."""

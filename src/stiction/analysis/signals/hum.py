@@ -1,0 +1,194 @@
+"""A narrow line in a force, such as mains hum, estimated so that it can be taken off.
+
+A line is coherent over the whole record: in its spectrum it is as narrow as the record is long,
+far above what lies beside it, and alone. Harmonics of regular stick-slip are narrow as well, but
+never alone. A vibration can be both: whether a line is the motion or beside it, cycles tell that
+are left without it (`stiction.analysis.motion.cycles`).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+EVEN = 0.1  # of a sample's distance: how far it may lie off an even grid
+PERIODS = 16  # of a line that a record has at least
+ABOVE = 30.0  # times the median power beside it: noise goes beyond in one of 2^30 samples
+BESIDE = 64  # samples of the spectrum at least, over which the median is taken
+LOBE = 4  # samples of the spectrum to each side that a line takes: the window's lobe
+WANDERS = 2e-3  # of its frequency, to each side: the mains keep theirs to 0.1 Hz
+FAINT = 0.1  # of a line's highest power: what is less may be something else
+ALONE = 9.0  # times the largest power within half an octave
+HARMONICS = 8
+LEAST = 1e-12  # of the largest power: what is less is nothing
+MUCH = 0.3  # of the power; the first harmonic of a sawtooth has 0.6
+TRIED = 20  # of the strongest
+BLOCK = 5  # periods in each mean of amplitude and phase
+LONGEST = 250  # periods over which amplitude and phase are taken for constant
+
+
+MAINS, MAINS_VARIES = (50.0, 60.0, 100.0, 120.0), 0.004  # Hz; a grid keeps its frequency to 0.4 %
+
+
+class Line(NamedTuple):
+    """A narrow line and its harmonics.
+
+    Parameters
+    ----------
+    frequency : float
+        Hz.
+    height : float
+        From crest to trough, N.
+    values : ndarray
+        (n,) what of the force it makes, N.
+    """
+
+    frequency: float
+    height: float
+    values: Floats
+
+
+def narrow_lines(time: Floats, force: Floats) -> list[Line]:
+    """Return lines that are narrow and alone, at most four: those first that are most so.
+
+    Parameters
+    ----------
+    time, force : ndarray
+        (n,), s, evenly spaced, and N.
+    """
+    step = even_step(time)
+    if step is None or len(time) < 4 * PERIODS or np.ptp(force) == 0.0:
+        return []
+    power, bin_width = spectrum(force)
+    floor = beside(power)
+    return [_measured(force, step, power, floor, bin_width, at) for at in _alone(power, floor)]
+
+
+def _measured(
+    force: Floats, step: float, power: Floats, floor: Floats, width: float, at: int
+) -> Line:
+    """Return the line at a sample of the spectrum, with its harmonics."""
+    from scipy.ndimage import uniform_filter1d  # type: ignore[attr-defined]
+
+    cycles = _middle(power, at) * width  # per sample
+    length = round(1.0 / cycles)
+    quick = force - uniform_filter1d(force, length, mode="nearest")
+    turn = np.exp(2j * np.pi * cycles * np.arange(len(force)))
+    for _ in range(2):  # as it wanders
+        phase = _envelope(quick * turn.conj(), cycles)
+        turn *= phase / np.maximum(np.abs(phase), 1e-300)
+    values = np.zeros(len(force))
+    for k in range(1, HARMONICS + 1):
+        at = round(k * cycles / width)
+        if at >= len(power) - LOBE:
+            break
+        if k == 1 or power[_lobe(at)].max() > ABOVE * floor[at]:
+            own, turns = turn**k, np.pi * k * cycles
+            passed = 1.0 - np.sin(length * turns) / (length * np.sin(turns))
+            values += 2.0 / passed * (_envelope(quick * own.conj(), cycles) * own).real
+    height = float(np.subtract(*np.percentile(values, (99.0, 1.0))))
+    return Line(cycles / step, height, values)
+
+
+def of_mains(frequency: float) -> bool:
+    """Return whether a frequency (Hz) is that of the mains, or twice it."""
+    return any(abs(frequency / line - 1.0) < MAINS_VARIES for line in MAINS)
+
+
+def samples_per_period(force: Floats) -> float:
+    """Return how many samples the strongest line has a period; infinity if none makes the force.
+
+    A line makes the force if it is narrow and bears much of what varies.
+    """
+    if len(force) < 4 * PERIODS or np.ptp(force) == 0.0:
+        return np.inf
+    power, width = spectrum(force)
+    at = int(np.argmax(power))
+    line = float(power[_lobe(at)].sum())
+    makes = power[at] > ABOVE * beside(power)[at] and line > MUCH * float(power.sum())
+    return 1.0 / (at * width) if makes and at > 0 else np.inf
+
+
+def even_step(time: Floats) -> float | None:
+    """Return the time from sample to sample (s), None if they are not evenly spaced."""
+    n = len(time)
+    if n < 2:
+        return None
+    step = float(time[-1] - time[0]) / (n - 1)
+    return step if np.abs(time - time[0] - step * np.arange(n)).max() <= EVEN * step else None
+
+
+def spectrum(force: Floats) -> tuple[Floats, float]:
+    """Return the power of a force under a Hann window, and the width of its samples in cycles."""
+    from scipy.fft import next_fast_len, rfft
+
+    n = len(force)
+    ramp = np.linspace(0.0, 1.0, n)
+    level = force - force[0] - (force[-1] - force[0]) * ramp
+    size = next_fast_len(n, real=True)  # type: ignore[no-untyped-call]
+    window = 0.5 - 0.5 * np.cos(2.0 * np.pi * ramp)
+    return np.abs(rfft((level - level.mean()) * window, size)) ** 2, 1.0 / size
+
+
+def beside(power: Floats) -> Floats:
+    """Return the median power around each sample of a spectrum, by blocks."""
+    edges = [0]
+    while edges[-1] < len(power):
+        edges.append(edges[-1] + max(BESIDE, int(10.0 * WANDERS * edges[-1])))
+    size = np.diff(np.minimum(edges, len(power)))
+    medians = np.array([np.median(block) for block in np.split(power, edges[1:-1])])
+    around = np.maximum.reduce([medians, np.roll(medians, 1), np.roll(medians, -1)])
+    return np.repeat(around, size)
+
+
+def _alone(power: Floats, floor: Floats) -> list[int]:
+    """Return samples that stand out of those beside them, and are alone, the most so first."""
+    candidate = power > ABOVE * np.maximum(floor, LEAST * power.max())
+    candidate[:PERIODS] = candidate[-LOBE - 1 :] = False
+    candidate[1:-1] &= (power[1:-1] >= power[2:]) & (power[1:-1] >= power[:-2])
+    found = np.flatnonzero(candidate)
+    alone = {}
+    for at in found[np.argsort(-power[found])[:TRIED]].tolist():
+        low, high, own = int(at / 1.5), int(at * 1.5) + 1, _lobe(at)
+        others = max(power[low : own.start].max(), power[own.stop : high].max(initial=0.0))
+        if power[at] > ALONE * others:
+            alone[at] = power[at] / max(others, 1e-300)
+    return sorted(alone, key=lambda at: -alone[at])[:4]
+
+
+def _lobe(at: int) -> slice:
+    """Return the samples of a spectrum that a line takes whose highest is at one of them."""
+    half = LOBE + round(WANDERS * at)
+    return slice(max(at - half, 0), at + half + 1)
+
+
+def _middle(power: Floats, at: int) -> float:
+    """Return the place of a line between samples: the mean over its lobe, weighted by power."""
+    lobe = _lobe(at)
+    weight = np.where(power[lobe] > FAINT * power[at], power[lobe], 0.0)
+    return float(np.average(np.arange(lobe.start, lobe.stop), weights=weight))
+
+
+def _envelope(turned: NDArray[np.complex128], cycles: float) -> NDArray[np.complex128]:
+    """Return a line's amplitude and phase, of a force turned back by its frequency (per sample).
+
+    They are averaged over blocks of a few periods; of these a straight line is fitted under a
+    window around each, so that the ends of the record are as good as its middle.
+    """
+    n = len(turned)
+    edges = np.linspace(0, n, max(int(n * cycles / BLOCK), 3) + 1).astype(np.intp)
+    size = np.diff(edges)
+    means = np.add.reduceat(turned, edges[:-1])
+    half = min(LONGEST // (2 * BLOCK), (len(size) - 1) // 2)
+    away = np.arange(-half, half + 1)
+    weights = [np.hanning(2 * half + 3)[1:-1] * away**power for power in range(3)]
+    s0, s1, s2 = (np.convolve(size, weight, "same") for weight in weights)
+    t0, t1 = (np.convolve(means, weight, "same") for weight in weights[:2])
+    near = (s2 * t0 - s1 * t1) / (s0 * s2 - s1**2)
+    middle = 0.5 * (edges[1:] + edges[:-1] - 1)
+    at = np.arange(n)
+    return np.asarray(np.interp(at, middle, near.real) + 1j * np.interp(at, middle, near.imag))

@@ -1,0 +1,105 @@
+"""Turning points to a fraction of a sample, or to within the noise."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.analysis.signals.piecewise_fit import fitted
+from stiction.analysis.signals.turning_points import TurningPoints
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+
+ROUNDING = 1e-9  # a slope less than this part of the bend is none
+
+
+class Vertices(NamedTuple):
+    """Time and value of each turning point, (n,) each."""
+
+    time: Floats
+    value: Floats
+
+
+def vertices(time: Floats, points: TurningPoints) -> Vertices:
+    """Place turning points by a parabola through all samples that noise could have made the top.
+
+    These reach from the first sample, on the way up, that is within the noise of the top to the
+    last one on the way down; where there is no noise they are the top and its two neighbours.
+    The parabola's vertex is kept among them: at a corner, where a slow rise ends in a fall, it
+    lies where the fall begins.
+
+    Parameters
+    ----------
+    time : array
+        (n,), of each sample of the signal.
+    points : TurningPoints
+        At least two.
+    """
+    values = points.values
+    time = time[: len(values) * points.width].reshape(len(values), -1).mean(axis=1)
+    upward = np.where(points.trough, -1.0, 1.0)  # each point is a top of `upward * values`
+    first, last = _within_noise(points, upward)
+    fit = fitted(time, values, first, last, 2)
+    x = _top(upward * fit.coefficients[:, 1], upward * fit.coefficients[:, 2])
+    found = Vertices(fit.middle + fit.half * x, fit.at(x))
+    return _corners_as_sampled(time, values, upward, first, last, found)
+
+
+def _top(slope: Floats, bend: Floats) -> Floats:
+    """Return where slope x + bend x^2 is highest within -1 to 1, and 0 where it is at both ends."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        vertex = np.clip(-0.5 * slope / bend, -1.0, 1.0)
+    tilted = np.abs(slope) > ROUNDING * np.abs(bend)
+    return np.where(bend < 0.0, vertex, np.where(tilted, np.sign(slope), 0.0))
+
+
+def _within_noise(points: TurningPoints, upward: Floats) -> tuple[Indices, Indices]:
+    """Return first and last sample of each top; at least its sample and both neighbours."""
+    index, values, n = points.index, points.values, len(points.values)
+    enough = values[index] - upward * points.noise
+    # the legs before the first point and after the last are looked at as far as the next ones
+    before = max(0, 2 * index[0] - index[1])
+    after = min(n - 1, 2 * index[-1] - index[-2])
+    ends = np.concatenate([[before], index, [after]])
+    leg = np.repeat(np.arange(len(index) + 1), np.diff(ends))
+    at = np.arange(before, after)
+    on_top = [
+        sign * values[at] >= sign * level
+        for sign, level in (
+            (np.append(upward, upward[-1])[leg], np.append(enough, enough[-1])[leg]),
+            (np.append(upward[0], upward)[leg], np.append(enough[0], enough)[leg]),
+        )
+    ]
+    starts = ends[:-1] - before
+    first = np.minimum.reduceat(np.where(on_top[0], at, n), starts)[:-1]
+    last = np.maximum.reduceat(np.where(on_top[1], at, -1), starts)[1:]
+    first = np.minimum(first, np.clip(index - 1, 0, n - 3))
+    return first, np.maximum(last, np.clip(index + 1, 2, n - 1))
+
+
+def _corners_as_sampled(
+    time: Floats, values: Floats, upward: Floats, first: Indices, last: Indices, found: Vertices
+) -> Vertices:
+    """Leave a top of three samples as it is where it is a corner: no parabola goes through it.
+
+    It is a corner if it bends more than twice as much as next to it, on either side.
+    """
+    middle = first + 1
+    before, here, after = (
+        -upward * _bend(time, values, np.clip(middle + k, 1, len(values) - 2)) for k in (-1, 0, 1)
+    )
+    corner = (last - first == 2) & (here > 2.0 * np.maximum(before, after))
+    return Vertices(
+        np.where(corner, time[middle], found.time), np.where(corner, values[middle], found.value)
+    )
+
+
+def _bend(time: Floats, values: Floats, middle: Indices) -> Floats:
+    """Return the second derivative from three samples."""
+    (t0, t1, t2), (v0, v1, v2) = ([x[middle + k] for k in (-1, 0, 1)] for x in (time, values))
+    bend: Floats = 2.0 * ((v2 - v1) / (t2 - t1) - (v1 - v0) / (t1 - t0)) / (t2 - t0)
+    return bend

@@ -1,0 +1,198 @@
+"""Where a signal turns: the peaks and troughs that stand apart from noise and ripple."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.analysis.signals.gap import widest_gap
+from stiction.analysis.signals.reversals import (
+    Counts,
+    Indices,
+    all_heights,
+    extrema,
+    standing_out,
+    taken_out,
+)
+
+Floats = NDArray[np.float64]
+Number = TypeVar("Number", np.int64, np.float64)
+
+FINE = 2**26  # counts over a signal's range; sums over 2^30 samples still fit into 64 bits
+FEWEST = 8  # samples a cycle has at least; with fewer, no shape can be seen
+COARSE_TURNS = 12  # turning points of cycles of few samples, which are needed at least
+ALIKE = 0.5  # the smaller legs over the larger ones, the tenths beyond left out; 0.08 for noise
+EVEN = 0.3  # standard deviation of the periods over their mean
+AS_GOOD = 0.9  # of the clearest gap: of two levels as good, the finer one places points better
+PLACING = 1 / 16  # of a leg: with noise below this the finest level places a corner best
+# A gap found by chance: some 20 levels times 20 octaves are tried, so that exp(-12) each leaves
+# one false alarm in 400 records of a random walk at most.
+CLEAR = 12.0
+
+
+class TurningPoints(NamedTuple):
+    """Troughs and peaks in turn, and the averaged signal in which they were found.
+
+    Parameters
+    ----------
+    index : ndarray
+        (n,) number of each in `values`.
+    trough : ndarray
+        (n,) whether it is a trough.
+    values : ndarray
+        Means of the signal over `width` samples each, without wild ones.
+    width : int
+        1, 2, 4, ...
+    noise : float
+        How far noise reaches in `values`, see `noise_reach`.
+    clearness : float
+        Of the gap between them and all smaller reversals, see `stiction.analysis.signals.gap`.
+    least : float
+        Height of that gap's middle, in the unit of the values: smaller reversals are not seen.
+    """
+
+    index: Indices  # type: ignore[assignment]  # a tuple's index(), which nobody needs here
+    trough: NDArray[np.bool_]
+    values: Floats
+    width: int
+    noise: float
+    clearness: float
+    least: float = 0.0
+
+    @property
+    def before(self) -> float:
+        """The farthest that the signal is from the first point before it."""
+        values = self.values[: self.index[0] + 1]
+        return float(values.max() if self.trough[0] else values.min())
+
+    @property
+    def after(self) -> float:
+        """The farthest that the signal is from the last point after it."""
+        values = self.values[self.index[-1] :]
+        return float(values.max() if self.trough[-1] else values.min())
+
+
+def turning_points(values: Floats) -> TurningPoints:
+    """Find the peaks and troughs of the movements that stand apart from all smaller ones.
+
+    The signal is looked at as it is and averaged over 2, 4, 8 ... samples. At each level the
+    heights of all reversals are listed, and the gap between small and large among them is
+    sought; the level with the clearest one decides. If none is clear, there are no points.
+
+    Parameters
+    ----------
+    values : array
+        (n,), finite, in any unit: multiplied by a factor they have the same turning points.
+    """
+    counts = without_spikes(as_counts(values))
+    levels = list(averaged(counts))
+    step = typical_step(counts)
+    gaps = [
+        widest_gap(
+            all_heights(each) / 2**level,
+            max(step, typical_step(each) / 2**level),
+            len(each) / FEWEST,
+        )
+        for level, each in enumerate(levels)
+    ]
+    clearest = max((gap.clearness for gap in gaps), default=0.0)
+    if clearest < CLEAR and len(few := coarse_points(counts)):
+        rising = np.diff(counts[few], prepend=counts[0]) < 0
+        return TurningPoints(few, rising, values, 1, 0.0, CLEAR)
+    none = np.zeros(0, np.intp)
+    nothing = TurningPoints(none, none.astype(bool), values, 1, 0.0, clearest)
+    if clearest < CLEAR:
+        return nothing
+    level = next(i for i, gap in enumerate(gaps) if gap.clearness >= AS_GOOD * clearest)
+    gap, width = gaps[level], 2**level
+    index = standing_out(levels[level], gap.middle * width, gap.low * width)
+    if len(index) < 2:  # one turn is no cycle
+        return nothing
+    leg = float(np.median(np.abs(np.diff(levels[level][index])))) / width
+    trough = np.diff(levels[level][index], append=0) > 0
+    trough[-1:] = ~trough[-2:-1]
+    reach = [noise_reach(levels[i], gap.middle * 2**i) / 2**i for i in range(level + 1)]
+    quiet = next(i for i, noise in enumerate(reach) if noise < PLACING * leg or i == level)
+    for finer in range(level - 1, quiet - 1, -1):
+        index = _placed(levels[finer], index, trough)
+    unit = float(np.ptp(values)) / FINE
+    means = values.min() + unit / 2**quiet * levels[quiet] if quiet else without_spikes(values)
+    noise, least = unit * reach[quiet], unit * gap.middle
+    return TurningPoints(index, trough, means, 2**quiet, noise, gap.clearness, least)
+
+
+def coarse_points(counts: Counts) -> Indices:
+    """Return the turning points of cycles of few samples each; none unless nearly all are alike.
+
+    Of so few samples no smaller reversal can be seen to stand apart from. But noise makes
+    reversals of every height, and cycles make them of one.
+    """
+    found = extrema(counts)[1:-1]
+    if len(found) < COARSE_TURNS:
+        return found[:0]
+    legs = np.abs(np.diff(counts[found]))
+    small, large = np.percentile(legs, (10.0, 90.0))
+    period = found[2:] - found[:-2]
+    alike = small > ALIKE * large and period.std() < EVEN * period.mean()
+    return found if alike else found[:0]
+
+
+def _placed(counts: Counts, index: Indices, trough: NDArray[np.bool_]) -> Indices:
+    """Return where the turning points of the sums of two are in `counts`, in the same order.
+
+    Each is sought among six samples, those nearer to the next point left out.
+    """
+    middle = index[:-1] + index[1:]
+    first, last = np.append(0, middle + 1), np.append(middle, len(counts) - 1)
+    around = np.clip(2 * index[:, None] + np.arange(-2, 4), first[:, None], last[:, None])
+    upward = np.where(trough, -1, 1)[:, None] * counts[around]
+    return np.take_along_axis(around, np.argmax(upward, axis=1)[:, None], axis=1)[:, 0]
+
+
+def as_counts(values: Floats) -> Counts:
+    """Return the values as whole numbers, 0 to `FINE`, so that ties are ties in any unit."""
+    if len(values) == 0 or np.ptp(values) == 0.0:
+        return np.zeros(len(values), np.int64)
+    counts: Counts = np.rint((values - values.min()) / np.ptp(values) * FINE).astype(np.int64)
+    return counts
+
+
+def without_spikes(values: NDArray[Number]) -> NDArray[Number]:
+    """Limit each sample to where its neighbours' straight lines lead; a smooth peak stays."""
+    if len(values) < 5:
+        return values
+    before, after = values[1:-3], values[3:-1]
+    lines = np.stack([before, after, 2 * before - values[:-4], 2 * after - values[4:]])
+    limited = values.copy()
+    limited[2:-2] = np.clip(values[2:-2], lines.min(axis=0), lines.max(axis=0))
+    return limited
+
+
+def averaged(counts: Counts) -> Iterator[Counts]:
+    """Yield the signal, then its sums over 2, 4, 8 ... samples, single wild ones replaced."""
+    from scipy.ndimage import median_filter  # type: ignore[attr-defined]
+
+    while len(counts) >= 2 * FEWEST:
+        yield counts
+        pairs = counts[: len(counts) // 2 * 2].reshape(-1, 2).sum(axis=1)
+        counts = median_filter(pairs, 3, mode="nearest")
+
+
+def typical_step(counts: Counts) -> float:
+    """Return the median difference of two samples in succession that differ at all."""
+    steps = np.abs(np.diff(counts))
+    return float(np.median(steps[steps > 0])) if steps.any() else 0.0
+
+
+def noise_reach(counts: Counts, height: float) -> float:
+    """Return how far noise reaches, from the reversals smaller than `height`.
+
+    White noise turns back in two of three samples: six times the sum of its reversals, divided by
+    the number of samples, is then about two standard deviations. Where only a few samples turn
+    back, as in a smooth signal with a ripple here and there, it is nearly nothing.
+    """
+    _, heights = taken_out(counts, height)
+    return 6.0 * float(heights.sum()) / max(len(counts), 1)

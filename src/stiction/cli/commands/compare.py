@@ -1,0 +1,87 @@
+"""``stiction compare``: one apparatus under several friction laws."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
+
+from stiction.cli.options import Changes, Output, Trust, changes
+from stiction.cli.terminal import say
+
+if TYPE_CHECKING:
+    from stiction.trajectory import Trajectory
+
+
+def compare(
+    config: Path,
+    /,
+    *,
+    law: Annotated[list[str], Parameter(negative=())],
+    output: Output,
+    data: Path | None = None,
+    trust: Trust = False,
+    set: Changes = None,
+) -> int:
+    """Run the apparatus of CONFIG under its own friction law and others, and draw them together.
+
+    Spring force, position, slip speed over decades and phase portrait: the picture shows which
+    part of "stick" each law predicts. True zero slip, which no logarithmic axis holds, has a
+    row for each law below the slip speed.
+
+    For example, with what `stiction init my.toml` writes:
+
+        stiction compare my.toml --law coulomb --law '{law = "coulomb", mu_0 = 0.15}' -o laws.png
+
+    A law given by its name alone takes comparable parameters from the law in CONFIG: its
+    friction coefficient at rest, in fast slip, and the slip speed in between.
+
+    Exit status: 0 when every run reached its duration, 1 when one ended earlier (it is drawn
+    all the same), 2 when a law or the description cannot be simulated.
+
+    Parameters
+    ----------
+    config
+        A description in TOML; `stiction init` writes one to start from.
+    law
+        A law to compare with; repeat it for more. A name (coulomb), an inline table with its
+        parameters ('{law = "coulomb", mu_0 = 0.15}'), another description (other.toml), of
+        which the table [friction] is taken, or a law of your own (file.py:Class).
+    output
+        The figure to write: .png, .pdf or .svg.
+    data
+        A folder for the results as well, a NetCDF file each; made if it is not there.
+    """
+    from stiction import comparison
+    from stiction.cli.progress import progress
+    from stiction.cli.tables import printed
+    from stiction.plotting.page.canvas import figure_of
+    from stiction.plotting.page.save import drawable, write
+    from stiction.storage.files import usable_folder
+    from stiction.system.description import Description
+
+    description = Description.from_toml(config, changes(set), trust=trust)
+    drawable(output)
+    if data is not None:
+        usable_folder(data)
+    with progress("simulating and drawing") as report:
+        found = comparison.compare(description, law, progress=report)
+        figure = figure_of(found.plot)
+    write(figure, output)
+    printed(str(config), found.tables())
+    for path in (output, *([] if data is None else save(found, data))):
+        say(f"wrote {path}")
+    return 0 if found.ok else 1
+
+
+def save(runs: Mapping[str, Trajectory], folder: Path) -> list[Path]:
+    """Write each run to a file named after its law; return the paths."""
+    from stiction.storage.files import make_folder
+
+    make_folder(folder)
+    names = (re.sub(r"[^\w.-]+", "-", label).strip("-") for label in runs)
+    paths = (folder / f"{count}-{name}.nc" for count, name in enumerate(names, 1))
+    return [run.save(path) for run, path in zip(runs.values(), paths, strict=True)]

@@ -1,0 +1,57 @@
+"""``stiction map``: what a study found, drawn."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from stiction.cli.options import MaybeOutput, Trust, named
+from stiction.cli.terminal import say
+
+
+def map(
+    study: Path,
+    /,
+    *,
+    of: Annotated[list[str] | None, Parameter(negative=())] = None,
+    at: Annotated[list[str] | None, Parameter(negative=())] = None,
+    output: MaybeOutput = None,
+    trust: Trust = False,
+) -> None:
+    """Draw what the study in the store STUDY found, finished or not.
+
+    Over two parameters a map of the kind of motion: stick-slip, transitional oscillation,
+    harmonic vibration, settling, steady sliding, transverse oscillation. Two lines over it say
+    what theory expects: where steady sliding loses its stability, and where the damping ratio at
+    slip is 1. Over one parameter a curve; samples over phi and V as points in the damping diagram.
+
+    For example, after `stiction sweep --preset yaw-angle -o yaw.zarr`:
+
+        stiction map yaw.zarr
+
+        stiction map yaw.zarr --of amplitude --of creep_distance -o more.png
+
+        stiction map yaw.zarr --of period --at "phi = 1 deg" -o slice.png
+
+    Parameters
+    ----------
+    study
+        The store that `stiction sweep` wrote.
+    of
+        A measure to draw, such as regime or peak_force; repeat it for more panels.
+    at
+        A cut through a study of more dimensions, NAME=VALUE; the nearest value that was run is
+        taken. Repeat it for several.
+    output
+        The figure to write (.png, .pdf or .svg); STUDY.png beside the store when left out.
+    """
+    from stiction.plotting.page.canvas import figure_of
+    from stiction.plotting.page.save import drawable, write
+    from stiction.study.view.mapping import map as look
+
+    cut = dict(named(text, "--at") for text in at or ())
+    target = drawable(output or study.with_suffix(".png"))
+    found = look(study, of or (), cut, trust=trust)
+    say(f"wrote {write(figure_of(found.plot), target)}")

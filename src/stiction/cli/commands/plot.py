@@ -1,0 +1,30 @@
+"""``stiction plot``: look at a result."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from stiction.cli.options import Output, Trust
+from stiction.cli.terminal import say
+
+
+def plot(result: Path, /, *, output: Output, trust: Trust = False) -> None:
+    """Draw the overview of a result: the system, forces, direction, position, slip speed.
+
+    For example, after `stiction run my.toml -o my.nc`:
+
+        stiction plot my.nc -o my.png
+
+    Parameters
+    ----------
+    result
+        A file written by `stiction run`.
+    output
+        The figure to write: .png, .pdf or .svg.
+    """
+    from stiction.plotting.door import plot as draw
+    from stiction.plotting.page.canvas import figure_of
+    from stiction.plotting.page.save import drawable, write
+
+    drawable(output)
+    say(f"wrote {write(figure_of(draw, result, trust=trust), output)}")

@@ -1,0 +1,108 @@
+"""``stiction run``: simulate a described apparatus."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from stiction.cli.options import Changes, Output, Trust, changes
+from stiction.cli.terminal import say
+
+REST = 1e-9  # of the drive velocity: what slips less rests
+
+if TYPE_CHECKING:
+    from stiction.trajectory import Trajectory
+
+
+def run(config: Path, /, *, output: Output, trust: Trust = False, set: Changes = None) -> int:
+    """Simulate the apparatus that CONFIG describes and write the result as NetCDF.
+
+    For example, with what `stiction init my.toml` writes, and then with another misalignment
+    and speed:
+
+        stiction run my.toml -o my.nc
+
+        stiction run my.toml --set phi=3deg --set V=2mm/s -o other.nc
+
+    Exit status: 0 when the run reached its duration, 1 when it ended earlier (what was
+    computed is written all the same), 2 when the description cannot be simulated.
+
+    Parameters
+    ----------
+    config
+        A description in TOML; `stiction init` writes one to start from.
+    output
+        The NetCDF file to write: samples over time, and every stick interval.
+    """
+    from stiction import simulation
+    from stiction.cli.progress import progress
+    from stiction.system.description import Description
+    from stiction.trajectory import writable
+
+    description = Description.from_toml(config, changes(set), trust=trust)
+    writable(output)
+    with progress("simulating") as report:
+        result = simulation.run(description, progress=report)
+        result.save(output)
+    for line in said(result, output):
+        say(line)
+    return 0 if result.status.ok else 1
+
+
+def said(result: Trajectory, output: Path) -> list[str]:
+    """Return what is said of a run that is written."""
+    from stiction.text.units import in_words
+
+    statistics = result.statistics
+    lines = []
+    if not result.status.ok:
+        reached = float(result.data.time[-1])
+        lines.append(f"ended early at t = {reached:.6g} s: {result.status.value}")
+    peak = float(abs(result.data["spring_x"]).max())
+    mapped = f", {statistics.mapped} intervals without any" if statistics.mapped else ""
+    few = result.data.sizes["time"] <= 2
+    sampled = " at start and end (sample_rate = 0)" if few else ""
+    lines += [
+        f"{output}: {result.data.sizes['time']} samples, stick intervals: "
+        f"{statistics.stick_count}, {in_words(statistics.time_stuck, 's')} in all"
+        f"{share(result)}; {statistics.steps} steps{mapped}",
+        f"largest force of the spring along x, k_x u_x{sampled}: {in_words(peak, 'N')}, "
+        f"{peak / result.slider.normal_load:.4g} of the normal load",
+        f"next: stiction plot {output} --output {output.with_suffix('.png')}, "
+        f"stiction analyse {output}",
+    ]
+    if statistics.steps == 0 or (result.status.ok and rested(result)):
+        still = not result.data["drive_X"].any() and not result.data["drive_Y"].any()
+        remedy = "the drive is at rest; give it a velocity" if still else longer(result)
+        lines.append(f"it never slipped: friction could hold all the time; {remedy}")
+    return lines
+
+
+def share(result: Trajectory) -> str:
+    """Return how much of the time it stuck, in words."""
+    times = result.data["time"].values
+    lasted = float(times[-1] - times[0])
+    return (
+        f", {100 * result.statistics.time_stuck / lasted:.3g}% of the time" if lasted > 0.0 else ""
+    )
+
+
+def rested(result: Trajectory) -> bool:
+    """Return whether the mass did not move, though no law with zero slip holds it."""
+    V, slip = abs(result.slider.motion.velocity), result.data["slip_speed"].values
+    return V > 0.0 and bool((slip[1:] < REST * V).all())
+
+
+def longer(result: Trajectory) -> str:
+    """Return how long a run must be to see the mass slip."""
+    from stiction.text.units import in_words
+
+    slider = result.slider
+    V = abs(slider.motion.velocity)
+    if not V > 0.0:
+        return "run it longer"
+    most, load = in_words(slider.F_0, "N"), in_words(slider.F_0 / slider.k_x / V, "s")
+    return (
+        f"a spring is loaded to the {most} that friction can hold after some {load}; "
+        "set a longer duration"
+    )

@@ -1,0 +1,84 @@
+"""``stiction stability``: is steady sliding stable, and where does that change?"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+from cyclopts import Parameter
+
+from stiction.cli.options import Changes, MaybeOutput, Trust, changes
+from stiction.cli.terminal import say
+
+
+def stability(
+    config: Path,
+    /,
+    *,
+    over: Annotated[list[str] | None, Parameter(negative=())] = None,
+    between: Annotated[
+        list[tuple[str, str]] | None, Parameter(negative=(), allow_leading_hyphen=True)
+    ] = None,
+    output: MaybeOutput = None,
+    trust: Trust = False,
+    set: Changes = None,
+) -> None:
+    """Say whether the apparatus of CONFIG slides steadily, and at which parameters that changes.
+
+    Steady sliding is linearised: each mode of a small disturbance grows or decays. Where one
+    begins to grow, an oscillation sets in; in simulations it is what one hears or sees as
+    stick-slip. Weakening friction drives it; damping, and the turning of the friction vector
+    with misalignment, hold it back.
+
+    For example, with what `stiction init my.toml` writes: every critical misalignment and
+    velocity, and a map of both; then the modes over the misalignment alone, at another speed:
+
+        stiction stability my.toml -o map.png
+
+        stiction stability my.toml --over phi --between "1 deg" "30 deg" --set V=2mm/s -o modes.png
+
+    The drive of CONFIG must be steady, and the load constant.
+
+    Parameters
+    ----------
+    config
+        A description in TOML; `stiction init` writes one to start from. Its [run] is not used.
+    over
+        A parameter to vary: phi, V, c_x, mass, friction.mu_inf, ..., or several with one value
+        ("k_x, k_y"). Repeat it for a second one; phi and V when left out.
+    between
+        Its range, two values with their units; repeat it for a second one, in the same order.
+        When left out 0 to 90 degrees for an angle, three decades either way for all else.
+    output
+        The figure to write (.png, .pdf or .svg): the modes over one parameter, or the boundary
+        of stability in the plane of two.
+    """
+    from stiction.cli.tables import printed
+    from stiction.errors import StictionError
+    from stiction.linear_stability.examination import OVER
+    from stiction.linear_stability.examination import stability as examine
+    from stiction.plotting.page.canvas import figure_of
+    from stiction.plotting.page.save import drawable, write
+    from stiction.system.slider import Slider
+
+    slider = Slider.from_toml(config, changes(set), trust=trust)
+    paths, ranges = over or OVER, [tuple(map(number, each)) for each in between or []]
+    if len(paths) > 2 or len(ranges) not in (0, len(paths)):
+        counts = f"{len(paths)} and {len(ranges)}"
+        raise StictionError(
+            f"give --over once or twice, and --between as often or not at all, not {counts} times"
+        )
+    if output is not None:
+        drawable(output)
+    found = examine(slider, paths, ranges or None)
+    printed(str(config), found.tables())
+    if output is not None:
+        say(f"wrote {write(figure_of(found.plot), output)}")
+
+
+def number(text: str) -> Any:
+    """Return a bare number as such: it is in SI, as in a description."""
+    try:
+        return float(text)
+    except ValueError:
+        return text

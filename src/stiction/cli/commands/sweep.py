@@ -1,0 +1,151 @@
+"""``stiction sweep``: many runs, over axes of parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from stiction.cli.options import Changes, Output, Trust, changes, named
+from stiction.cli.terminal import say
+
+if TYPE_CHECKING:
+    from stiction.study.execution.engines import Engine
+    from stiction.study.plan import Study
+
+
+def sweep(
+    config: Path | None = None,
+    /,
+    *,
+    output: Output,
+    preset: str | None = None,
+    refine: str | None = None,
+    apart: Annotated[list[str] | None, Parameter(negative=())] = None,
+    threads: int | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    dashboard: Annotated[bool, Parameter(negative=())] = False,
+    quiet: Annotated[bool, Parameter(negative=())] = False,
+    json_lines: Annotated[bool, Parameter(negative=())] = False,
+    trust: Trust = False,
+    set: Changes = None,
+) -> int:
+    """Do the study that CONFIG describes: many runs, kept in a zarr store.
+
+    CONFIG is a description, as `stiction init` writes it, with an axis for each parameter that
+    varies, and what to keep of each run:
+
+        [study]
+        measures = ["peak_force", "creep_distance"]
+
+        [axes.phi]
+        from = "0.5 deg"
+        to = "10 deg"
+        count = 20
+
+        [axes."drive.velocity"]
+        from = "0.1 mm/s"
+        to = "10 mm/s"
+        count = 20
+        spacing = "log"
+
+    There are ready ones: `stiction sweep --preset yaw-angle -o yaw.zarr`, then `stiction map
+    yaw.zarr`.
+
+    Stopped at any moment and started again with the same command, it does what is missing. Read
+    the store with xarray.open_zarr.
+
+    Exit status: 0 when every run came to its end, 1 when some failed (the store says which, and
+    why; the others are there), 2 when the study cannot be run, 130 when it was interrupted.
+
+    Parameters
+    ----------
+    config
+        The study, in TOML.
+    output
+        The store to write or to go on with, a folder: study.zarr.
+    preset
+        A ready study in place of CONFIG: yaw-angle (phi x V: misalignment stabilises),
+        anisotropy (k_y x phi), damping-diagram (A x theta, Fig. 5 with simulations on it).
+    refine
+        An axis and how closely to find where the kind of motion changes along it, for each value
+        of the others, as "phi = 0.01 deg": by halving, not by filling the grid.
+    apart
+        With --refine, a kind of motion that is told from all others, as "settling"; repeat
+        it for more. All are told from each other when left out.
+    threads
+        How many runs at a time in this process; as many as there are cores when left out.
+    workers
+        So many processes of this machine in place of threads, by dask.
+    scheduler
+        A dask scheduler to hand the runs to, as tcp://host:port; its workers write the store
+        themselves, so that all must see the same files.
+    dashboard
+        With --workers, dask's dashboard at http://localhost:8787, for every user of this machine.
+    quiet
+        Say nothing but what went wrong.
+    json_lines
+        Write progress and outcome to standard output as JSON, a line each, at most one a second.
+    """
+    from stiction.cli.tally import shown
+    from stiction.study.execution.refine import refine as halve
+    from stiction.study.execution.sweep import sweep as do
+
+    found = None
+    study = described(config, preset, changes(set), trust)
+    means = engine(threads, workers, scheduler, dashboard)
+    try:
+        with shown(quiet, json_lines) as (report, conclude):
+            result = do(study, output, engine=means, progress=report)
+            if refine is not None:
+                along, to = named(refine, "--refine")
+                found = halve(study, output, along, to, apart=apart, engine=means, progress=report)
+    except KeyboardInterrupt:
+        say(f"{output}: stopped; the same command goes on where it was", error=True)
+        return 130
+    conclude(output, result)
+    if found is not None and not (quiet or json_lines):
+        say(f"{found.sizes['point']} changes along {along}, by {found.attrs['runs']} runs in all")
+    return 1 if result.failed else 0
+
+
+def described(
+    config: Path | None, preset: str | None, given: Mapping[str, Any], trust: bool = False
+) -> Study:
+    """Return the study that is asked for, with other values of some parameters."""
+    from stiction.errors import StictionError
+    from stiction.study import presets
+    from stiction.study.plan import Study
+    from stiction.text.paths import with_changes
+
+    if (config is None) == (preset is None):
+        known = ", ".join(presets.PRESETS)
+        raise StictionError(f"give a study's file or --preset NAME, one of both; known: {known}")
+    if config is not None:
+        return Study.from_toml(config, given, trust=trust)
+    study = presets.preset(str(preset))
+    return Study.from_dict(with_changes(study.to_dict(), given)) if given else study
+
+
+def engine(
+    threads: int | None, workers: int | None, scheduler: str | None, dashboard: bool = False
+) -> Engine:
+    """Return the engine that is asked for."""
+    from stiction.errors import StictionError
+    from stiction.study.execution.engines import Threads
+
+    if sum(each is not None for each in (threads, workers, scheduler)) > 1:
+        raise StictionError("--threads, --workers and --scheduler exclude each other; give one")
+    for name, count in (("threads", threads), ("workers", workers)):
+        if count is not None and count < 1:
+            raise StictionError(f"--{name} must be 1 at least, is {count}")
+    if dashboard and workers is None:
+        raise StictionError("--dashboard is of --workers; give both")
+    if workers is None and scheduler is None:
+        return Threads() if threads is None else Threads(threads)
+    from stiction.study.execution.cluster import Processes, Scheduler
+
+    return Processes(workers, dashboard) if workers is not None else Scheduler(str(scheduler))

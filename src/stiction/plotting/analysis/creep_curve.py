@@ -1,0 +1,132 @@
+"""Creep curves: each stick phase, their mean with its uncertainty, and what theory says."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import LogLocator
+from numpy.typing import NDArray
+
+from stiction import theory
+from stiction.plotting.page.canvas import panel
+from stiction.plotting.page.parameter import PLAIN
+from stiction.plotting.page.style import BLACK, BLUE, COLUMN, GREEN, GREY, RED, style
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+Line = Callable[[Floats], Any]  # time to slip (s) to velocity (m/s)
+
+LOOKS: tuple[tuple[str, Any], ...] = (
+    (BLUE, "-"),
+    (GREEN, (0, (5, 2))),
+    (RED, (0, (1, 1.5))),
+    (BLACK, (0, (6, 1.5, 1, 1.5))),
+)
+
+
+def creep_theory(
+    V: float, phi: float, l_x: float, slip_time: float | None = None
+) -> dict[str, Line]:
+    """Return Eqs. (7) and (8) as functions of the time to slip.
+
+    Parameters
+    ----------
+    V, phi, l_x : float
+        Drive velocity (m/s), misalignment (rad), slip length (m), as in `stiction.theory`.
+    slip_time : float, optional
+        When slip comes in a loading that starts at t = 0 with an unloaded spring, s; by default
+        at V t = l_x. Inertia makes it later.
+    """
+    formulas = {
+        "Eq. (7), closed form": theory.creep_velocity,
+        "Eq. (8), corrected": theory.creep_velocity_approximation,
+        "Eq. (8), as printed": theory.creep_velocity_as_printed,
+    }
+
+    end = l_x / V if slip_time is None else slip_time
+
+    def before_slip(formula: Callable[..., Any]) -> Line:
+        return lambda to_slip: formula(end - to_slip, V, phi, l_x)
+
+    return {label: before_slip(formula) for label, formula in formulas.items()}
+
+
+def draw_phases(ax: Axes, curves: xr.Dataset, V: float) -> None:
+    """Draw the creep of every stick phase, as a share of the drive velocity `V` (m/s)."""
+    faint = max(0.05, min(0.5, 4.0 / max(curves.sizes["phase"], 1)))
+    for phase in range(curves.sizes["phase"]):
+        row = curves.isel(phase=phase)
+        middle = 0.5 * (row["begin"] + row["end"]).values
+        label = "each stick phase" if phase == 0 else None
+        ax.plot(middle, row["velocity"].values / V, color=BLACK, lw=0.4, alpha=faint, label=label)
+
+
+def draw_mean(ax: Axes, mean: xr.Dataset, V: float) -> None:
+    """Draw the mean creep curve with a band of two standard errors to each side."""
+    middle = 0.5 * (mean["begin"] + mean["end"]).values
+    value, error = mean["velocity"].values / V, 2.0 * mean["velocity_error"].values / V
+    band = "two standard errors"
+    ax.fill_between(middle, value - error, value + error, color=BLACK, alpha=0.2, lw=0, label=band)
+    ax.plot(middle, value, "o", color=BLACK, markersize=2.6, label="mean of these", zorder=3)
+
+
+def plot_creep(
+    curves: xr.Dataset,
+    mean: xr.Dataset,
+    V: float,
+    lines: Mapping[str, Line] | None = None,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw creep curves by the time to slip, which is at the right.
+
+    The velocity is on a logarithmic axis if the mean is above twice its error everywhere, on a
+    linear one otherwise, where noise has both signs.
+
+    Parameters
+    ----------
+    curves, mean : Dataset
+        From `stiction.creep_curves` and `stiction.mean_creep`.
+    V : float
+        Drive velocity, m/s.
+    lines : mapping of str to callable, optional
+        What to compare with, each by its name: velocity (m/s) as a function of the time to slip
+        (s), from `creep_theory` or a fit's ``velocity``.
+    ax : Axes, optional
+        Drawn on; a new figure as wide as a column when left out.
+    """
+    middle = 0.5 * (mean["begin"] + mean["end"]).values
+    value, error = mean["velocity"].values, np.nan_to_num(mean["velocity_error"].values)
+    with style():
+        ax = panel(ax, COLUMN, 2.9)
+        draw_phases(ax, curves, V)
+        draw_mean(ax, mean, V)
+        to_slip = np.geomspace(0.5 * middle.min(), middle.max(), 400)
+        for (label, line), (color, dashes) in zip((lines or {}).items(), LOOKS, strict=False):
+            drawn = np.asarray(line(to_slip), dtype=np.float64) / V
+            ax.plot(to_slip, drawn, color=color, linestyle=dashes, linewidth=1.2, label=label)
+        ax.set(xscale="log", xlim=(to_slip[-1] * 1.05, to_slip[0]))
+        if (value > 2.0 * error).all():
+            ax.set(yscale="log", ylim=(0.5 * value.min() / V, 1.5))
+            if 0.5 * value.min() / V > 0.05:  # not two decades: each label is written out
+                ax.yaxis.set_major_formatter(PLAIN)
+                ax.yaxis.set_minor_formatter(PLAIN)
+                ax.yaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
+        else:
+            ax.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
+            lowest = float(np.nanmin(value - 2.0 * error, initial=0.0)) / V
+            ax.set_ylim(min(-0.05, max(-0.4, 1.1 * lowest)), 1.3)
+        ax.set_xlabel("time to slip (s)")
+        ax.set_ylabel(r"creep velocity $\dot{X}/V$ (1)")
+        low, high = ax.get_ylim()
+        for each in ax.get_lines():  # what lies outside is not in the legend
+            seen = np.asarray(each.get_ydata(), dtype=np.float64)
+            if not ((seen > low) & (seen < high)).any():
+                each.set_label("_outside")
+        legend = ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
+        legend.get_lines()[0].set_alpha(0.5)
+    return ax

@@ -1,0 +1,114 @@
+"""A record with its cycles marked, and what kind of motion they show."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from stiction.analysis.motion.cycles import swings
+from stiction.analysis.motion.regime import regime_of
+from stiction.analysis.record import Record, recorded
+from stiction.plotting.page.canvas import canvas, fixed, listed
+from stiction.plotting.page.style import BLUE, GREY, PAGE, PALE, RED, style
+from stiction.plotting.run.time_series import draw_line, name_time, prefixed
+from stiction.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FEW = 12  # cycles that are seen one by one on a page's width
+SHOWN = 6  # cycles in the close-up
+
+
+def plot_cycles(
+    source: Trajectory | Record, axes: Axes | Sequence[Axes] | None = None
+) -> NDArray[np.object_]:
+    """Draw the force of a record with its peaks and troughs marked, and its kind of motion.
+
+    Where there are many cycles, some from the middle of the record are shown larger below.
+
+    Parameters
+    ----------
+    source : Record or Trajectory
+        Measured, or a run; not empty.
+    axes : Axes, or two of them, optional
+        For the whole record, and for the part that is shown larger; a new figure as wide as a
+        page when left out.
+
+    Returns
+    -------
+    ndarray of Axes
+        One, or two where there are many cycles.
+    """
+    record = recorded(source)
+    found = swings(record)
+    cycles, regime = found.cycles, regime_of(record, found)
+    many = cycles.sizes["cycle"] > FEW
+    with style():
+        if axes is None:
+            fig = canvas(PAGE, 4.4 if many else 2.6)
+            panels = fixed(list(fig.subplots(2 if many else 1, 1, squeeze=False)[:, 0]))
+        else:
+            panels = listed(axes)
+        draw_cycles(panels[0], record, cycles)
+        panels[0].set_title(regime.kind.capitalize())
+        if many and len(panels) > 1:
+            _zoom(panels[0], panels[1], record, cycles)
+        for ax in panels:
+            name_time(ax)
+    return np.array(panels, dtype=object)
+
+
+def draw_cycles(ax: Axes, record: Record, cycles: xr.Dataset) -> None:
+    """Draw the force of a record over time and mark peaks and troughs.
+
+    Parameters
+    ----------
+    ax : Axes
+        Drawn on.
+    record : Record
+        Not empty.
+    cycles : Dataset
+        From `stiction.analysis.motion.cycles.find_cycles`.
+    """
+    factor, prefix = prefixed(record.force)
+    draw_line(ax, record.time, factor * record.force, GREY, 0.5)
+    size = float(np.clip(60.0 / max(cycles.sizes["cycle"], 1), 1.5, 4.0))  # pt: they do not touch
+    low_time = np.append(cycles["start"].values[:1], cycles["trough_time"].values)
+    low = np.append(cycles["start_force"].values[:1], cycles["trough"].values)
+    for time, force, color, marker, name in (
+        (cycles["peak_time"].values, cycles["peak"].values, RED, "v", "peak"),
+        (low_time, low, BLUE, "^", "trough"),
+    ):
+        if len(time):
+            ax.plot(time, factor * force, marker, color=color, markersize=size, label=name)
+    if cycles.sizes["cycle"]:
+        ax.legend(
+            loc="lower right",
+            bbox_to_anchor=(1.0, 1.0),  # above: it would hide troughs
+            borderaxespad=0.2,
+            ncols=2,
+            markerscale=4.0 / size,
+        )
+    ax.margins(y=0.08)
+    ax.set_ylabel(f"spring force ({prefix}N)")
+
+
+def _zoom(whole: Axes, part: Axes, record: Record, cycles: xr.Dataset) -> None:
+    """Show some cycles from the middle on `part`, and shade that time on `whole`."""
+    first = (cycles.sizes["cycle"] - SHOWN) // 2
+    begin, end = cycles["start"].values[first], cycles["trough_time"].values[first + SHOWN - 1]
+    margin = 0.1 * (end - begin)
+    begin, end = begin - margin, end + margin
+    seen = (record.time >= begin) & (record.time <= end)
+    chosen = cycles.isel(cycle=slice(first, first + SHOWN))
+    near = record.model_copy(update={"time": record.time[seen], "force": record.force[seen]})
+    draw_cycles(part, near, chosen)
+    if (legend := part.get_legend()) is not None:
+        legend.remove()  # it stands above, and would hide what is seen larger here
+    part.set_title("the shaded time")
+    whole.axvspan(begin, end, color=PALE, zorder=0)

@@ -1,0 +1,120 @@
+"""Where the work of the drive goes, interval by interval."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator, NullFormatter
+from numpy.typing import NDArray
+
+from stiction.plotting.page.canvas import canvas, fixed, listed
+from stiction.plotting.page.style import (
+    BLACK,
+    BLUE,
+    COLUMN,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    RED,
+    SKY,
+    panel_letter,
+    style,
+)
+from stiction.plotting.run.time_series import prefixed
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+# what the work becomes: label, colour, hatch, whether it is dissipated
+PARTS = {
+    "friction_x": ("friction, $x$", RED, ""),
+    "friction_y": ("friction, $y$", ORANGE, "////"),
+    "damper_x": ("damper, $x$", PURPLE, ""),
+    "damper_y": ("damper, $y$", GREY, "////"),
+    "spring_x": ("spring, $x$", BLUE, ""),
+    "spring_y": ("spring, $y$", SKY, "////"),
+    "kinetic": ("kinetic", GREEN, "...."),
+}
+
+
+def draw_budget(ax: Axes, budget: xr.Dataset) -> None:
+    """Draw for each interval what the work became, stacked; what was taken out of it goes down.
+
+    Black ticks beside it mark the work of the drive. Parts below a thousandth of the largest
+    are left out.
+    """
+    named = {name: budget[name].values for name in PARTS}
+    factor, prefix = prefixed(np.concatenate([*named.values(), budget["work"].values]))
+    largest = max(float(np.abs(values).max()) for values in named.values())
+    place = np.arange(1, budget.sizes["interval"] + 1)
+    up, down = np.zeros(len(place)), np.zeros(len(place))
+    for name, values in named.items():
+        label, color, hatch = PARTS[name]
+        if np.abs(values).max() < 1e-3 * largest:
+            continue
+        bottom = np.where(values >= 0.0, up, down)
+        ax.bar(
+            place, factor * values, 0.7, factor * bottom, label=label, color=color,
+            hatch=hatch, edgecolor="white", linewidth=0.0,
+        )  # fmt: skip
+        up, down = up + np.maximum(values, 0.0), down + np.minimum(values, 0.0)
+    work = factor * budget["work"].values
+    ax.hlines(
+        work, place - 0.45, place + 0.45, color=BLACK, linewidth=1.6, label="work of the drive"
+    )
+    ax.axhline(0.0, color=BLACK, linewidth=0.6)
+    ax.set_ylabel(f"energy ({prefix}J)")
+
+
+def draw_closure(ax: Axes, budget: xr.Dataset) -> None:
+    """Draw how far each interval is from closing, as a share of the work of all."""
+    place = np.arange(1, budget.sizes["interval"] + 1)
+    whole = float(np.abs(budget["work"].values).sum()) or 1.0
+    ax.semilogy(
+        place, np.abs(budget["residual"].values) / whole, "o", color=BLACK, ms=3, label="residual"
+    )
+    bound = budget["bound"].values / whole
+    ax.semilogy(place, bound, "_", color=RED, ms=9, mew=1.2, label="its bound")
+    shown = np.concatenate([np.abs(budget["residual"].values) / whole, np.ravel(bound)])
+    decades = np.log10(shown[np.isfinite(shown) & (shown > 0.0)])
+    if len(decades):  # whole ones: no other labels are needed
+        ax.set_ylim(10.0 ** np.floor(decades.min() - 0.1), 10.0 ** np.ceil(decades.max() + 0.1))
+    ax.yaxis.set_minor_formatter(NullFormatter())
+    ax.set_ylabel("share of work (1)")
+
+
+def plot_energy(budget: xr.Dataset, axes: Sequence[Axes] | None = None) -> NDArray[np.object_]:
+    """Draw an energy budget: (a) where the work goes, (b) how exactly that closes.
+
+    Parameters
+    ----------
+    budget : Dataset
+        From `stiction.energy_budget`, with some intervals, e.g. cycles.
+    axes : two Axes, optional
+        Drawn on; a new figure as wide as a column when left out.
+
+    Returns
+    -------
+    ndarray of Axes
+        The two.
+    """
+    with style():
+        if axes is None:
+            fig = canvas(COLUMN, 4.3)
+            panels = fixed(list(fig.subplots(2, 1, sharex=True, height_ratios=[1.8, 1.0])))
+            fig.align_ylabels(panels)
+        else:
+            panels = listed(axes)
+        draw_budget(panels[0], budget)
+        draw_closure(panels[1], budget)
+        for ax, letter in zip(panels, "ab", strict=True):
+            panel_letter(ax, letter)
+        panels[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.07), ncols=3)
+        panels[1].legend(loc="best")
+        panels[1].xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
+        panels[1].set_xlabel("interval of the run")
+    return np.array(panels, dtype=object)

@@ -1,0 +1,126 @@
+"""The transverse oscillation: spectrogram, frequency, amplitude, and the rests."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from stiction.analysis.transverse_oscillation import oscillation_spectrogram
+from stiction.plotting.analysis.spectrogram import draw_spectrogram, frequency_unit
+from stiction.plotting.page.canvas import canvas, fixed, listed
+from stiction.plotting.page.style import (
+    BLACK,
+    BLUE,
+    COLUMN,
+    GREY,
+    ORANGE,
+    RED,
+    panel_letter,
+    style,
+)
+from stiction.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+HIGHEST = 1.5  # of omega_y, drawn
+
+
+def draw_ridge(ax: Axes, oscillation: xr.Dataset) -> None:
+    """Draw over a spectrogram the frequency followed, and omega_y sin(theta) in theory."""
+    time = oscillation["time"].values
+    factor, _ = frequency_unit(HIGHEST * oscillation.attrs["natural_frequency"])
+    natural = oscillation.attrs["natural_frequency"] * factor
+    ax.axhline(natural, color="white", linewidth=0.8, dashes=(5, 3), label=r"$\omega_y/2\pi$")
+    expected = r"$\omega_y \sin\theta/2\pi$"
+    ax.plot(
+        time,
+        oscillation["expected"].values * factor,
+        color="white",
+        lw=1.6,
+        alpha=0.6,
+        label=expected,
+    )
+    seen = oscillation["frequency"].values * factor
+    if np.isfinite(seen).any():
+        ax.plot(time, seen, color=RED, lw=0.9, label="seen")
+
+
+def draw_amplitudes(ax: Axes, oscillation: xr.Dataset) -> None:
+    """Draw velocity and displacement of the oscillation as shares of their bounds."""
+    time = oscillation["time"].values
+    share = (oscillation["amplitude"] / oscillation["amplitude_bound"]).values
+    if np.isfinite(share).any():
+        label = r"of $u_y$, over $V\sin\varphi/\omega_y$"
+        ax.plot(time, share, color=BLUE, dashes=(4, 1.5), label=label)
+    share = (oscillation["velocity"] / oscillation["velocity_bound"]).values
+    ax.plot(time, share, color=BLACK, label=r"of $v_y$, over $V\sin\varphi$")
+    ax.axhline(1.0, color=GREY, linewidth=0.6, zorder=1)
+    ax.set_ylim(0.0, None)
+    ax.set_ylabel("amplitude (1)")
+
+
+def draw_share_stuck(ax: Axes, oscillation: xr.Dataset) -> None:
+    """Draw the share of time stuck (%): where it is zero, the oscillation rings down freely."""
+    share = 100.0 * oscillation["share_stuck"].values
+    ax.fill_between(oscillation["time"].values, share, color=ORANGE, linewidth=0)
+    ax.set_ylim(0.0, None)
+    ax.set_ylabel("stuck (%)")
+
+
+def plot_oscillation(
+    run: Trajectory, oscillation: xr.Dataset, axes: Sequence[Axes] | None = None
+) -> NDArray[np.object_]:
+    """Draw the transverse oscillation of a run over time.
+
+    (a) Spectrogram of v_y with the frequency followed, omega_y, and omega_y sin(theta). (b) The
+    amplitudes of v_y and u_y over their bounds. (c) The share of time stuck.
+
+    Parameters
+    ----------
+    run : Trajectory
+        As for `stiction.transverse_oscillation`.
+    oscillation : Dataset
+        What that returned.
+    axes : three Axes, optional
+        Drawn on; a new figure as wide as a column when left out.
+
+    Returns
+    -------
+    ndarray of Axes
+        The three.
+    """
+    natural = oscillation.attrs["natural_frequency"]
+    with style():
+        if axes is None:
+            fig = canvas(COLUMN, 4.6)
+            panels = fixed(list(fig.subplots(3, 1, sharex=True, height_ratios=[2.0, 1.2, 1.0])))
+            fig.align_ylabels(panels)
+        else:
+            panels = listed(axes)
+        amplitude = oscillation_spectrogram(run)
+        top = max(40.0, 10.0 * np.ceil(2.0 * np.log10(float(amplitude.max()) / 1e-6)))
+        mesh = draw_spectrogram(
+            panels[0], amplitude, decibels=(top - 70.0, top), highest=HIGHEST * natural
+        )
+        draw_ridge(panels[0], oscillation)
+        draw_amplitudes(panels[1], oscillation)
+        draw_share_stuck(panels[2], oscillation)
+        for ax, letter in zip(panels, "abc", strict=True):
+            panel_letter(ax, letter)
+        panels[0].legend(loc="upper right", ncols=3, labelcolor="white", handlelength=1.4)
+        panels[1].set_ylim(0.0, 1.5 * panels[1].get_ylim()[1])  # room for the legend
+        panels[1].legend(loc="upper left", ncols=2, columnspacing=1.0)
+        begin, end = (float(oscillation["time"][at]) for at in (0, -1))
+        if end > begin:
+            panels[-1].set_xlim(begin, end)
+        panels[-1].set_xlabel("time $t$ (s)")
+        bar = panels[0].figure.colorbar(
+            mesh, ax=panels, location="bottom", extend="both", aspect=35, pad=0.01
+        )
+        bar.set_label("amplitude of $v_y$ (dB re 1 µm/s)")
+    return np.array(panels, dtype=object)

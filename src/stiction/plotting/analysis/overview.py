@@ -1,0 +1,53 @@
+"""The figures of an analysis: cycles, creep, oscillation, energy."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from stiction.analysis.creep.findings import drive_speed
+from stiction.analysis.report import Analysis
+from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep
+from stiction.plotting.analysis.cycles import plot_cycles
+from stiction.plotting.analysis.energy import plot_energy
+from stiction.plotting.analysis.oscillation import plot_oscillation
+from stiction.plotting.page.canvas import figure_of
+from stiction.trajectory import Trajectory
+
+
+def plot_analysis(found: Analysis, axes: Any = None) -> Any:
+    """Draw the force with its cycles and its kind of motion; see `plot_cycles`."""
+    return plot_cycles(found.record, axes)
+
+
+def figures(found: Analysis) -> dict[str, Figure]:
+    """Return the figure of every part of an analysis that there is, by its name."""
+    drawn = {}
+    if len(found.record):
+        drawn["cycles"] = figure_of(plot_cycles, found.record)
+    V = drive_speed(found.source, found.record)
+    if found.curves is not None and found.creep is not None and V is not None:
+        fit, lines = found.misalignment, {}
+        if fit is not None and fit.stands_out and found.record.stiffness is not None:
+            stiffness = fit.stiffness if isfinite(fit.stiffness) else found.record.stiffness
+            l_x = fit.F_0 / stiffness
+            theory = creep_theory(V, fit.phi, l_x, _loading(found))
+            lines = {f"{name}, fitted": line for name, line in theory.items()}
+        drawn["creep"] = figure_of(plot_creep, found.curves, found.creep, V, lines)
+    seen = 0 if found.oscillation is None else found.oscillation.sizes.get("time", 0)
+    if isinstance(found.source, Trajectory) and found.oscillation is not None and seen > 1:
+        drawn["oscillation"] = figure_of(plot_oscillation, found.source, found.oscillation)
+    if found.energy is not None:
+        drawn["energy"] = figure_of(plot_energy, found.energy)
+    return drawn
+
+
+def _loading(found: Analysis) -> float | None:
+    """Return how long the one loading of a run lasted, s; None where there are others, or none."""
+    if found.curves is None or found.curves.sizes["phase"] != 1:
+        return None
+    if not isinstance(found.source, Trajectory):
+        return None
+    return float(found.curves["slip_time"][0] - found.record.time[0])

@@ -1,0 +1,1 @@
+"""Drawings of the apparatus: from above, from the side, and its vectors."""

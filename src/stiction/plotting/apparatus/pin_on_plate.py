@@ -1,0 +1,102 @@
+"""The usual apparatus of a friction test: a pin on a cantilever spring, a plate that moves."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
+
+from stiction.plotting.apparatus import shapes
+from stiction.plotting.apparatus.misalignment import drawn_misalignment, misalignment_note
+from stiction.plotting.apparatus.shapes import Points
+from stiction.plotting.page.style import BLUE, FLOOR, RED
+from stiction.system.slider import Slider
+
+VIEW = np.array([[1.0, 0.0], [0.35, 0.62], [0.0, 0.8]])  # oblique: where X, Y and Z point
+
+
+def draw_apparatus(ax: Axes, slider: Slider) -> Axes:
+    """Draw a pin on a cantilever above a moving plate (Nakano & Popov, Fig. 1).
+
+    The leaf spring bends easily along x and hardly yields along y; mounted a little askew, its
+    principal axes (red) lie at the misalignment phi to the drive direction (blue).
+
+    Parameters
+    ----------
+    ax : Axes
+        Drawn on without frame, with equal aspect.
+    slider : Slider
+        The system; only its misalignment matters.
+    """
+    phi = drawn_misalignment(slider.phi)
+    turn = np.array([[np.cos(phi), -np.sin(phi), 0], [np.sin(phi), np.cos(phi), 0], [0, 0, 1]])
+    _draw_plate(ax)
+    _draw_cantilever(ax, turn)
+    for axis, color, text in (
+        ([(0, 0, 0), (2.7, 0, 0)], BLUE, "$X$"),
+        (np.array([(0, 0, 0), (2.7, 0, 0)]) @ turn, RED, "$x$"),
+        (np.array([(0, -1.6, 0), (0, 3.9, 0)]) @ turn, RED, "$y$"),
+    ):
+        tail, head = _seen(axis)
+        way = (head - tail) / np.hypot(*(head - tail))
+        shapes.line(ax, [tail, head], color, 0.8, "-.", zorder=2.5)
+        shapes.arrow(ax, [head - 0.1 * way, head], color, 0.8)
+        shapes.name(ax, head + 0.2 * way, text, color)
+    if phi:
+        arc = np.c_[shapes.arc_path((0, 0), 2.2, -phi, 0), np.zeros(60)]
+        shapes.line(ax, _seen(arc))
+        middle = np.array([np.cos(phi / 2), -np.sin(phi / 2), 0])
+        shapes.name(ax, _seen(2.45 * middle), r"$\varphi$")
+    note = misalignment_note(slider.phi)
+    ax.text(0.98, 0.0, note, transform=ax.transAxes, ha="right", va="bottom", fontsize=7)
+    ax.update_datalim([(0.0, -2.0)])
+    ax.margins(0.03)
+    ax.autoscale_view()
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_axis_off()
+    return ax
+
+
+def _draw_plate(ax: Axes) -> None:
+    """Draw the plate and the velocity at which it moves towards the pin's holder."""
+    left, right, front, back, bottom = -2.6, 3.2, -1.9, 1.7, -0.25
+    top = _seen([(left, front, 0), (right, front, 0), (right, back, 0), (left, back, 0)])
+    edge = _seen([(left, front, bottom), (right, front, bottom), (right, back, bottom)])
+    shapes.polygon(ax, [top[0], top[1], edge[1], edge[0]], face="#C9C9C9", zorder=1.0)
+    shapes.polygon(ax, [top[1], top[2], edge[2], edge[1]], face="#B5B5B5", zorder=1.0)
+    shapes.polygon(ax, top, face=FLOOR, zorder=1.0)
+    shapes.name(ax, _seen((-1.6, -1.55, 0)), "plate", size=7)
+    shapes.arrow(ax, _seen([(-0.9, -0.65, 0), (-2.1, -0.65, 0)]), BLUE, 2.0)
+    shapes.name(ax, _seen((-1.4, -0.3, 0)), "$V$", BLUE)
+
+
+def _draw_cantilever(ax: Axes, turn: Points) -> None:
+    """Draw the pin, the leaf spring that holds it, and the clamp at the leaf's other end."""
+
+    def put(points: ArrayLike) -> Points:
+        return _seen(np.asarray(points) @ turn)
+
+    low, high, length = 0.75, 1.35, 2.6
+    pin = [(-0.09, 0.0), (0.09, 0.0), (0.09, low), (-0.09, low)]
+    leaf = [(0, -0.2, low), (0, length, low), (0, length, high), (0, -0.2, high)]
+    shapes.polygon(ax, pin, face="#8A8A8A", zorder=3.2)
+    shapes.polygon(ax, put(leaf), face="#DDE8F0", zorder=3.4)
+    near, wide, bottom, top = length, 0.3, low - 0.2, high + 0.2
+    far = near + 0.5
+    toward = 1 if turn[0] @ (0.35, -1.0, 0.775) > 0 else -1  # which side the eye sees
+    front = [(x, near, z) for x, z in ((-wide, bottom), (wide, bottom), (wide, top), (-wide, top))]
+    side = [
+        (toward * wide, y, z) for y, z in ((near, bottom), (far, bottom), (far, top), (near, top))
+    ]
+    lid = [(x, y, top) for x, y in ((-wide, near), (wide, near), (wide, far), (-wide, far))]
+    for part, face in ((front, "#A5A5A5"), (side, "#8A8A8A"), (lid, "#C9C9C9")):
+        shapes.polygon(ax, put(part), face=face, zorder=3.6)
+    leans = np.sign(put((0, 1, 0))[0]) or 1
+    beside = put((0, 0.5 * length, high)) + np.array([-0.75 * leans, 0.2])
+    shapes.name(ax, beside, "leaf spring", size=7)
+    shapes.name(ax, (-0.4 * leans, 0.3), "pin", size=7)
+
+
+def _seen(points: ArrayLike) -> Points:
+    seen: Points = np.asarray(points, dtype=np.float64) @ VIEW
+    return seen

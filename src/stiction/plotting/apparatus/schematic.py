@@ -1,0 +1,185 @@
+"""The system seen from above: block, spring, drive, and the angles between them."""
+
+from __future__ import annotations
+
+from math import copysign, cos, pi, sin
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from stiction.plotting.apparatus import shapes
+from stiction.plotting.apparatus.misalignment import (
+    Placement,
+    drawn_misalignment,
+    drawn_slip_angle,
+    misalignment_note,
+    placement,
+)
+from stiction.plotting.apparatus.shapes import Points, polar
+from stiction.plotting.page.canvas import panel
+from stiction.plotting.page.style import BLUE, COLUMN, FLOOR, GREEN, GREY, PURPLE, RED, style
+from stiction.system.slider import Slider
+
+# half a side of the block, where the bracket stands along x and y, how far it overhangs
+BLOCK, WALL_X, WALL_Y, OVERHANG = 0.6, 3.0, 2.7, 0.75
+BACK = 3.0  # how far F and the axes reach behind the block
+
+
+def plot_slider(slider: Slider, ax: Axes | None = None) -> Axes:
+    """Draw the system seen from above; see `draw_schematic`.
+
+    Parameters
+    ----------
+    slider : Slider
+        The system.
+    ax : Axes, optional
+        Drawn on; a new figure as wide as a column when left out.
+    """
+    with style():
+        return draw_schematic(panel(ax, COLUMN, 2.4), slider)
+
+
+def draw_schematic(ax: Axes, slider: Slider) -> Axes:
+    """Draw the slider from above (Nakano & Popov, Fig. 2(b)).
+
+    Blue is the drive direction X, red are the principal axes x and y of the spring; the far
+    end of the spring is a bracket that moves with the drive. The friction F on the block is
+    opposite to its slip velocity; psi and theta are the angles of the slip to X and x, and so
+    those of F to -X and -x, where they are drawn. Lengths are
+    not to scale; the misalignment is, where it is large enough to be seen.
+
+    Parameters
+    ----------
+    ax : Axes
+        Drawn on as the floor, with equal aspect and without ticks.
+    slider : Slider
+        The system, with or without dampers, pulled either way or not at all.
+    """
+    drawn = drawn_misalignment(slider.phi)
+    side = copysign(1.0, drawn)
+    phi, theta = abs(drawn), abs(drawn_slip_angle(drawn))
+    velocity = slider.motion.rate(0.0)[0]
+    lab = placement(drawn)
+    ends = [
+        *_draw_axes(ax, lab, phi, side),
+        *_draw_spring(ax, lab, slider),
+        *_draw_drive(ax, lab, phi, velocity),
+        *_draw_slip(ax, lab, phi, theta, backward=velocity < 0),
+    ]
+    _frame(ax, np.vstack(ends), misalignment_note(slider.phi))
+    return ax
+
+
+def _reach(phi: float) -> float:
+    """Distance along X from the block's centre to the bracket."""
+    return min(WALL_X / max(cos(phi), 1e-9), WALL_Y / max(sin(phi), 1e-9))
+
+
+def _draw_axes(ax: Axes, lab: Placement, phi: float, side: float) -> list[Points]:
+    """Draw the principal axes and, between x and X, the misalignment."""
+    x = lab([(-BACK, 0), (WALL_X + 1.9, 0)])
+    y = lab([(0, -1.5), (0, WALL_Y + 1.1)] if side > 0 else [(0, WALL_Y + 0.7), (0, -1.9)])
+    for axis, text in ((x, "x"), (y, "y")):
+        if _coincide(text, phi):  # then X is drawn over it and bears both names
+            axis[1] -= 2.0 * _unit(axis)
+            shapes.line(ax, axis, RED, 0.7, "-.", zorder=1)
+        else:
+            _draw_axis(ax, axis, f"${text}$", RED)
+    if phi > 0:
+        radius = 0.55 + max(_reach(phi), 3.9 if phi > 0.7 else 0.0)
+        shapes.line(ax, lab(shapes.arc_path((0, 0), radius, 0, phi)))
+        shapes.name(ax, lab(polar(radius + 0.35, phi / 2)), r"$\varphi$")
+    return [x, y]
+
+
+def _draw_spring(ax: Axes, lab: Placement, slider: Slider) -> list[Points]:
+    """Draw the block, the bracket, and between them the springs and dampers."""
+    corners = BLOCK * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+    bracket = lab([(WALL_X, -OVERHANG), (WALL_X, WALL_Y), (-OVERHANG, WALL_Y)])
+    shapes.polygon(ax, lab(corners), face="#D5D5D5")
+    shapes.name(ax, (0, 0), "$m$")
+    shapes.line(ax, bracket, GREY, 3.0)
+    ex, ey = np.eye(2)
+    for axis, along, across, length, c in (
+        ("x", ex, ey, WALL_X, slider.c_x),
+        ("y", ey, ex, WALL_Y, slider.c_y),
+    ):
+        ends, offset = np.outer([BLOCK, length], along), (0.3 if c > 0 else 0.0) * across
+        shapes.line(ax, lab(shapes.spring_path(*(ends + offset))))
+        text = f"$k_{axis}$"
+        beside = ends.mean(axis=0) - 0.55 * across
+        if c > 0:
+            shapes.dashpot(ax, *lab(ends - offset))
+            text += f", $c_{axis}$"
+            beside -= offset * (1 + 1.5 * abs(lab(across)[0]))  # a text is wider than high
+        shapes.name(ax, lab(beside), text)
+    return [bracket]
+
+
+def _draw_drive(ax: Axes, lab: Placement, phi: float, velocity: float) -> list[Points]:
+    """Draw the drive direction X and, where there is one, the velocity of the bracket."""
+    start = _reach(phi) + 0.1
+    X = lab([polar(start, phi), polar(start + 2.2, phi)])
+    names = ["$X$"] + [f"${axis}$" for axis in "xy" if _coincide(axis, phi)]
+    shapes.line(ax, lab([np.zeros(2), polar(-BACK, phi)]), BLUE, 0.7, "-.", zorder=1)
+    _draw_axis(ax, X, ", ".join(names), BLUE)
+    if velocity:
+        ends = lab([polar(start, phi), polar(start + 1.4, phi)])
+        shapes.arrow(ax, ends if velocity > 0 else ends[::-1], BLUE, 2.0)
+    above = polar(start + (0.75 if velocity else 1.4), phi) + polar(0.5, phi + pi / 2)
+    shapes.name(ax, lab(above), "$V$" if velocity else "$V = 0$", BLUE)
+    return [X]
+
+
+def _draw_slip(ax: Axes, lab: Placement, phi: float, theta: float, backward: bool) -> list[Points]:
+    """Draw slip velocity and friction, opposite to each other, and their angles."""
+    corner = np.array([BLOCK, BLOCK])
+    ahead = lab([corner, corner + polar(1.5, theta)])
+    behind = lab([polar(-BLOCK / max(cos(theta), sin(theta)), theta), polar(-BACK, theta)])
+    beside = (
+        corner + polar(1.0, theta) + polar(0.7, theta + (pi / 2 if theta < pi / 4 else -pi / 2))
+    )
+    names = [(GREEN, r"$v_\mathrm{slip}$"), (PURPLE, "$F$")]
+    for ends, place, (color, text) in zip(
+        (ahead, behind),
+        (lab(beside), behind[1] + 0.35 * _unit(behind)),
+        reversed(names) if backward else names,
+        strict=True,
+    ):
+        shapes.arrow(ax, ends, color, 1.6)
+        shapes.name(ax, place, text, color)
+    between = pi + (phi + theta) / 2 if theta > phi else pi + theta / 2
+    for radius, start, text in ((1.55, phi, r"$\psi$"), (2.25, 0.0, r"$\theta$")):
+        if theta > start:
+            shapes.line(ax, lab(shapes.arc_path((0, 0), radius, pi + start, pi + theta)))
+            shapes.name(ax, lab(polar(radius + 0.3, between)), text)
+    return [behind, ahead]
+
+
+def _draw_axis(ax: Axes, ends: Points, text: str, color: str) -> None:
+    shapes.line(ax, ends, color, 0.7, "-.", zorder=1)
+    shapes.arrow(ax, [ends[1] - 0.1 * _unit(ends), ends[1]], color, 0.7)
+    shapes.name(ax, ends[1] + (0.6 if "," in text else 0.35) * _unit(ends), text, color)
+
+
+def _coincide(axis: str, phi: float) -> bool:
+    return abs(phi - (0 if axis == "x" else pi / 2)) < 1e-9
+
+
+def _unit(ends: Points) -> Points:
+    way: Points = ends[1] - ends[0]
+    way /= np.hypot(*way)
+    return way
+
+
+def _frame(ax: Axes, points: Points, note: str) -> None:
+    """Make the axes the floor, with room for what is named at the ends."""
+    (left, bottom), (right, top) = points.min(axis=0) - 0.9, points.max(axis=0) + 0.9
+    ax.margins(0)
+    ax.update_datalim([(left, bottom - 0.6), (right, top)])
+    ax.autoscale_view()
+    ax.set(xticks=[], yticks=[], facecolor=FLOOR)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.spines[:].set_visible(False)
+    for x, text, place in ((0.02, "floor ($XY$ plane)", "left"), (0.98, note, "right")):
+        ax.text(x, 0.02, text, transform=ax.transAxes, ha=place, va="bottom", fontsize=7)

@@ -1,0 +1,109 @@
+"""Springs, dashpots, arrows and arcs, each drawn on given axes at given points.
+
+A point is (horizontal, vertical) in data coordinates; the axes should have equal aspect.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patches import FancyArrowPatch, Polygon
+from matplotlib.text import Text
+from numpy.typing import ArrayLike, NDArray
+
+from stiction.plotting.page.style import BLACK, PALE
+
+Points = NDArray[np.float64]
+
+
+def line(
+    ax: Axes,
+    points: ArrayLike,
+    color: str = BLACK,
+    width: float = 0.8,
+    dashes: str = "-",
+    zorder: float = 2.0,
+) -> Line2D:
+    """Draw a line through points, shape (n, 2); `width` in pt."""
+    xy = np.asarray(points, dtype=np.float64)
+    (drawn,) = ax.plot(
+        xy[:, 0],
+        xy[:, 1],
+        color=color,
+        linewidth=width,
+        linestyle=dashes,
+        zorder=zorder,
+        solid_capstyle="round",
+        solid_joinstyle="round",
+    )
+    return drawn
+
+
+def polygon(
+    ax: Axes, points: ArrayLike, face: str = PALE, edge: str = BLACK, zorder: float = 3.0
+) -> Polygon:
+    """Draw a filled polygon with the given corners, shape (n, 2)."""
+    drawn = Polygon(np.asarray(points), facecolor=face, edgecolor=edge, linewidth=0.8)
+    drawn.set_zorder(zorder)
+    ax.add_patch(drawn)
+    return drawn
+
+
+def arrow(ax: Axes, ends: ArrayLike, color: str = BLACK, width: float = 1.4) -> FancyArrowPatch:
+    """Draw a straight arrow from the first to the second of `ends`, shape (2, 2); `width` in pt."""
+    (x_0, y_0), (x_1, y_1) = np.asarray(ends, dtype=np.float64)
+    drawn = FancyArrowPatch(
+        (x_0, y_0),
+        (x_1, y_1),
+        arrowstyle="-|>",
+        mutation_scale=4.0 + 3.5 * width,
+        linewidth=width,
+        color=color,
+        shrinkA=0,
+        shrinkB=0,
+        zorder=5,
+    )
+    ax.add_patch(drawn)
+    return drawn
+
+
+def name(ax: Axes, point: ArrayLike, text: str, color: str = BLACK, size: float = 8.0) -> Text:
+    """Write `text` centred at `point`; `size` in pt."""
+    x, y = np.asarray(point)
+    return ax.text(x, y, text, color=color, fontsize=size, ha="center", va="center", zorder=6)
+
+
+def spring_path(start: ArrayLike, end: ArrayLike, width: float = 0.22, turns: int = 5) -> Points:
+    """Return a zigzag from `start` to `end` that reaches `width` to either side, shape (n, 2)."""
+    along = np.r_[0.0, 0.15, 0.15 + 0.7 * (np.arange(2 * turns) + 0.5) / (2 * turns), 0.85, 1.0]
+    across = np.r_[0.0, 0.0, width * (-1.0) ** np.arange(2 * turns), 0.0, 0.0]
+    return _between(start, end, along, across)
+
+
+def dashpot(ax: Axes, start: ArrayLike, end: ArrayLike, width: float = 0.22) -> list[Line2D]:
+    """Draw a damper from `start` to `end`: a cup, and a piston in it."""
+    cup = ([0.0, 0.38, 0.38, 0.68, 0.38, 0.38, 0.68], [0, 0, 1, 1, 1, -1, -1])
+    rod, piston = ([0.56, 1.0], [0, 0]), ([0.56, 0.56], [0.7, -0.7])
+    return [
+        line(ax, _between(start, end, np.asarray(along), width * np.asarray(across)))
+        for along, across in (cup, rod, piston)
+    ]
+
+
+def arc_path(centre: ArrayLike, radius: float, start: float, end: float) -> Points:
+    """Return a circular arc from angle `start` to `end` (rad), shape (n, 2)."""
+    angles = np.linspace(start, end, 60)
+    return np.asarray(centre) + radius * np.column_stack([np.cos(angles), np.sin(angles)])
+
+
+def polar(radius: float, angle: float) -> Points:
+    """Return the point at `radius` and `angle` (rad)."""
+    return radius * np.array([np.cos(angle), np.sin(angle)])
+
+
+def _between(start: ArrayLike, end: ArrayLike, along: Points, across: Points) -> Points:
+    """Points from fractions `along` the way from start to end and lengths `across` it."""
+    tail, way = np.asarray(start, float), np.asarray(end, float) - np.asarray(start, float)
+    normal = np.array([-way[1], way[0]]) / np.hypot(*way)
+    return tail + np.outer(along, way) + np.outer(across, normal)

@@ -1,0 +1,91 @@
+"""Where a figure is drawn: on the axes that are given, or on a new figure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextvars import ContextVar
+from typing import Any, TypeVar
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from stiction.errors import StictionError
+from stiction.plotting.page.style import SHEET, new_figure
+from stiction.text.validation import unknown
+
+Drawing = TypeVar("Drawing", bound=Callable[..., Any])
+
+_alone: ContextVar[bool] = ContextVar("alone", default=False)
+
+
+def canvas(width: float, height: float) -> Figure:
+    """Return a new figure of a size (in) that pyplot knows, so that notebooks show it.
+
+    Inside `figure_of` nobody else knows it.
+    """
+    if _alone.get():
+        return new_figure(width, height)
+    from matplotlib import pyplot
+
+    return pyplot.figure(figsize=(width, height), layout="constrained")
+
+
+def panel(ax: Axes | None, width: float, height: float) -> Axes:
+    """Return the axes that are given, or those of a new figure of a size (in)."""
+    return fixed([canvas(width, height).subplots()])[0] if ax is None else ax
+
+
+def listed(axes: Any) -> list[Axes]:
+    """Return axes that are given one by one, as an array or as a mapping, in a list."""
+    if isinstance(axes, Axes):
+        return [axes]
+    return list(axes.values()) if isinstance(axes, Mapping) else list(np.ravel(axes))
+
+
+def fixed(axes: Sequence[Axes]) -> Sequence[Axes]:
+    """Let the ticks of axes keep the look of the style sheet when they are drawn later."""
+    for ax in axes:
+        for way in "xy":
+            for which in ("major", "minor"):
+                look = {
+                    "direction": SHEET[f"{way}tick.direction"],
+                    "width": SHEET[f"{way}tick.{which}.width"],
+                }
+                ax.tick_params(axis=way, which=which, **look)  # type: ignore[arg-type]
+            size = {"length": SHEET[f"{way}tick.major.size"]}
+            size["labelsize"] = SHEET[f"{way}tick.labelsize"]
+            ax.tick_params(axis=way, which="major", **size)  # type: ignore[arg-type]
+        ax.tick_params(which="both", top=True, right=True)
+    return axes
+
+
+def named(drawings: Mapping[str, Drawing], name: str) -> Drawing:
+    """Return what draws a panel.
+
+    Raises
+    ------
+    StictionError
+        If there is no such panel.
+    """
+    if name not in drawings:
+        raise StictionError(unknown("panel", name, drawings))
+    return drawings[name]
+
+
+def figure_of(draw: Callable[..., Any], *arguments: Any, **values: Any) -> Figure:
+    """Return the figure that a function of `stiction.plotting` draws, known to nobody else."""
+    token = _alone.set(True)
+    try:
+        axes: Iterable[Axes] = listed(draw(*arguments, **values))
+    finally:
+        _alone.reset(token)
+    return whole_figure(next(iter(axes)))
+
+
+def whole_figure(ax: Axes) -> Figure:
+    """Return the figure that axes stand in, not a part of it."""
+    figure: Any = ax.figure
+    while not isinstance(figure, Figure):
+        figure = figure.figure if figure.figure is not figure else figure._parent
+    return figure

@@ -1,0 +1,61 @@
+"""A parameter along an axis: its symbol, and its values in a unit that suits their size."""
+
+from __future__ import annotations
+
+from math import degrees
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.ticker import FuncFormatter
+from numpy.typing import ArrayLike, NDArray
+
+from stiction.plotting.page.words import symbol
+from stiction.plotting.run.time_series import prefixed
+
+SYMBOLS = {"phi": r"$\varphi$", "drive.velocity": "$V$", "normal_load": "$W$", "mass": "$m$"}
+PLAIN = FuncFormatter(lambda value, _: f"{value:g}")  # 0.1, 1, 10: units are chosen to suit
+
+
+def parameter_symbol(path: str) -> str:
+    """Return how a parameter is printed, several that share one value with equals signs."""
+    names = [name.strip() for name in path.split(",")]
+    return " = ".join(SYMBOLS.get(name, symbol(name.rpartition(".")[2])) for name in names)
+
+
+def in_unit(values: ArrayLike, unit: str) -> tuple[float, str]:
+    """Return the factor from SI to the unit that suits the values, and that unit; deg for rad."""
+    if unit == "rad":
+        return degrees(1.0), "deg"
+    if unit in ("kg", "1", ""):
+        return 1.0, unit or "1"
+    factor, prefix = prefixed(values)
+    return factor, prefix + unit.replace("*", " ")
+
+
+class Scale(NamedTuple):
+    """One parameter along an axis: its symbol, the factor from SI to the unit drawn, the unit."""
+
+    symbol: str
+    factor: float
+    unit: str
+
+    @property
+    def label(self) -> str:
+        """Symbol and unit."""
+        return f"{self.symbol} ({self.unit})"
+
+    def drawn(self, values: ArrayLike) -> NDArray[np.float64]:
+        """Return values (SI) as they are drawn."""
+        found: NDArray[np.float64] = np.asarray(values, dtype=np.float64) * self.factor
+        return found
+
+    def named(self, value: float) -> str:
+        """Return one value (SI) with symbol and unit."""
+        unit = "°" if self.unit == "deg" else f" {self.unit}" if self.unit != "1" else ""
+        return f"{self.symbol} = {value * self.factor:.4g}{unit}"
+
+
+def scale_of(path: str, unit: str, ends: ArrayLike, *, logarithmic: bool = False) -> Scale:
+    """Return the scale of a parameter with a range (SI); a logarithmic one suits its middle."""
+    size = np.sqrt(np.prod(np.asarray(ends, dtype=np.float64))) if logarithmic else ends
+    return Scale(parameter_symbol(path), *in_unit(size, unit))

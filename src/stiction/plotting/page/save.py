@@ -1,0 +1,68 @@
+"""Figures to files."""
+
+from __future__ import annotations
+
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from stiction.errors import ResultError
+from stiction.plotting.page.style import style
+from stiction.storage.files import placeable, whole
+
+FORMATS = (".png", ".pdf", ".svg")
+# nothing that changes from one day to the next: the same figure is the same file
+METADATA: dict[str, dict[str, Any]] = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}
+
+
+def save(fig: Figure, path: str | Path) -> list[Path]:
+    """Write a figure as ``path.png``, to look at, and ``path.pdf``, to print; see `write`."""
+    bare = Path(path)
+    return [write(fig, bare.with_name(bare.name + suffix)) for suffix in (".png", ".pdf")]
+
+
+def write(fig: Figure, path: str | Path) -> Path:
+    """Write a figure to a file, whole or not at all; return the path.
+
+    Parameters
+    ----------
+    fig : Figure
+        The figure.
+    path : str or Path
+        With one of the suffixes in `FORMATS`; a file that is there is replaced.
+
+    Raises
+    ------
+    ResultError
+        If the format is not known, or the file cannot be written there.
+    """
+    target = drawable(path)
+    suffix = target.suffix.lower()
+    with whole(target) as part, style():
+        fig.savefig(part, format=suffix[1:], metadata=METADATA.get(suffix))
+    return target
+
+
+def drawable(path: str | Path) -> Path:
+    """Return the path of a figure, if one can be written there.
+
+    Raises
+    ------
+    ResultError
+        If the format is not known, there is no folder, or something else than a file is there.
+    """
+    target = Path(path)
+    suffix = target.suffix.lower()
+    if suffix not in FORMATS:
+        raise ResultError(f"{target}: unknown format {suffix!r}; use {', '.join(FORMATS)}")
+    return placeable(target)
+
+
+def png(fig: Figure) -> bytes:
+    """Return a figure as a PNG image, to be put into a page."""
+    image = BytesIO()
+    with style():
+        fig.savefig(image, format="png")
+    return image.getvalue()

@@ -1,0 +1,155 @@
+"""A run in words, for the margin of a figure."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from math import degrees, pi, sin
+from textwrap import wrap
+from typing import Any, get_type_hints
+
+from stiction import theory
+from stiction.drive import ConstantVelocity, Modulation
+from stiction.friction import Anisotropic, name_of
+from stiction.system.slider import Slider
+from stiction.text.quantity_text import DIGITS
+from stiction.text.units import in_words, unit_of
+from stiction.trajectory import Trajectory
+
+LETTERS = {"mu": r"\mu", "sigma": r"\sigma", "omega": r"\omega", "theta": r"\theta"}
+SUBSCRIPTS = {"inf": r"\infty", "star": "*", "static": r"\mathrm{static}"}
+WIDTH = 40  # characters of a line
+
+
+def symbol(name: str) -> str:
+    """Return a parameter's name as it is printed: ``mu_0`` with its subscript."""
+    letter, _, subscript = name.partition("_")
+    if len(letter) > 1 and letter not in LETTERS:
+        return name
+    below = SUBSCRIPTS.get(subscript, subscript)
+    return f"${LETTERS.get(letter, letter)}" + (f"_{{{below}}}$" if below else "$")
+
+
+def system_in_words(slider: Slider) -> list[str]:
+    """Return the mechanical parameters of a slider and its drive, in a few lines."""
+    misalignment = f"{degrees(slider.phi):.4g}°".replace("-", "−")
+    lines = [
+        f"$m$ = {in_words(slider.mass, 'kg')}, $W$ = {in_words(slider.normal_load, 'N')}",
+        f"$k_x$ = {in_words(slider.k_x, 'N/m')}, $k_y$ = {in_words(slider.k_y, 'N/m')}",
+        rf"$\varphi$ = {misalignment}, $V$ = {in_words(base_velocity(slider), 'm/s')}",
+    ]
+    if slider.c_x > 0 or slider.c_y > 0:
+        c_x, c_y = (in_words(c, "N s/m") for c in (slider.c_x, slider.c_y))
+        lines.insert(2, f"$c_x$ = {c_x}, $c_y$ = {c_y}")
+    return lines + protocol_in_words(slider)
+
+
+def base_velocity(slider: Slider) -> float:
+    """Return the drive velocity that a constant drive has, or a program starts from, in m/s."""
+    return slider.motion.velocity
+
+
+def protocol_in_words(slider: Slider) -> list[str]:
+    """Return what drive and load do in time, nothing if they are constant."""
+    lines: list[str] = []
+    drive, load = slider.motion, slider.load
+    if not isinstance(drive, ConstantVelocity):
+        lines += program_in_words(f"{slider.driven} driven", drive.program, drive.repeat)
+        for way, harmonic in (("along", drive.along), ("across", drive.across)):
+            if harmonic is not None:
+                lines.append(f"{way}: ±{harmonic_in_words(harmonic, 'm/s')}")
+    if load is not None:
+        lines += program_in_words("load", load.program, load.repeat)
+        if load.modulation is not None:
+            lines.append(f"load: ±{harmonic_in_words(load.modulation, 'N')}")
+    return lines
+
+
+def program_in_words(what: str, program: Sequence[Any], repeat: int) -> list[str]:
+    """Return the pieces of a program by name."""
+    if not program:
+        return []
+    names = ", ".join(type(piece).__name__.lower() for piece in program)
+    times = f" ({repeat} times)" if repeat > 1 else ""
+    return wrap(f"{what}: {names}{times}", WIDTH, max_lines=3, placeholder=" …")
+
+
+def harmonic_in_words(harmonic: Modulation, unit: str) -> str:
+    """Return amplitude and frequency of a modulation."""
+    return f"{in_words(harmonic.amplitude, unit)} at {in_words(harmonic.frequency, 'Hz')}"
+
+
+def law_in_words(slider: Slider) -> list[str]:
+    """Return the friction law: its name, and its parameters in the lines that follow."""
+    return [f"{name_of(slider.law)}:", *wrapped(parameters_in_words(slider.law), WIDTH)]
+
+
+def parameters_in_words(law: Any) -> list[str]:
+    """Return a law's parameters with their units, without those left out as zero."""
+    if isinstance(law, Anisotropic):
+        grain = f"across/along {law.ratio:.4g}", f"axis at {degrees(law.angle):.4g}°"
+        return [*parameters_in_words(law.law), *grain]
+    hints = get_type_hints(type(law), include_extras=True)
+    left_out = {name for name, value in law._field_defaults.items() if value == 0}
+    words = []
+    for name, value in law._asdict().items():
+        if isinstance(value, tuple):
+            words.append(f"{len(value)} values of {symbol(name)}")
+        elif value != 0 or name not in left_out:
+            unit = unit_of(hints[name])
+            words.append(f"{symbol(name)} = {in_words(value, unit)}")
+    return words
+
+
+def wrapped(words: Sequence[str], width: int) -> list[str]:
+    """Return words, separated by commas, in lines of about `width` characters."""
+    lines = [""]
+    for word in words:
+        longer = f"{lines[-1]}, {word}" if lines[-1] else word
+        if len(shown(longer)) > width and lines[-1]:
+            lines[-1] += ","
+            lines.append(word)
+        else:
+            lines[-1] = longer
+    return lines
+
+
+def shown(text: str) -> str:
+    r"""Return about the characters that a text with symbols such as $\mu_0$ is drawn with."""
+    text = re.sub(r"\\(infty|mu|sigma|omega|theta)", "o", text)
+    return re.sub(r"\\mathrm|[${}_\\]", "", text)
+
+
+def scales_in_words(slider: Slider) -> list[str]:
+    """Return what follows from the parameters: F_0, natural frequencies, damping number."""
+    f_x, f_y = (
+        float(theory.natural_frequency(k, slider.mass)) / (2 * pi) for k in (slider.k_x, slider.k_y)
+    )
+    lines = [
+        rf"$F_0 = \mu_0 W$ = {in_words(slider.F_0, 'N')}",
+        rf"$\omega_x/2\pi$ = {in_words(f_x, 'Hz')}, $\omega_y/2\pi$ = {in_words(f_y, 'Hz')}",
+    ]
+    V, phi = abs(base_velocity(slider)), abs(slider.phi)
+    if V > 0 and sin(phi) > 0:
+        A = float(theory.damping_number(slider.F_0, V, phi, slider.mass, slider.k_x))
+        zeta = plain(A * sin(phi) ** 3, 2)
+        lines.append(rf"$A$ = {plain(A)}, $\zeta(\theta=\varphi)$ = {zeta}")
+    return lines
+
+
+def plain(value: float, digits: int = DIGITS) -> str:
+    """Return a number as one writes it: with digits to a million, then with a power of ten."""
+    if value < 1e6:
+        return f"{float(f'{value:.{digits}g}'):.10g}"
+    mantissa, power = f"{value:.{digits - 1}e}".split("e")
+    return rf"${mantissa}\times 10^{{{int(power)}}}$"
+
+
+def outcome_in_words(run: Trajectory, width: int = 38) -> list[str]:
+    """Return how the run ended, in lines of at most `width` characters, and how it stuck."""
+    times = run.data["time"].values
+    lasted, stuck = float(times[-1] - times[0]), run.stick_intervals
+    share = 100 * float((stuck[:, 1] - stuck[:, 0]).sum()) / lasted if lasted > 0 else 0.0
+    count = f"{len(stuck)} stick{'s' * (len(stuck) != 1)}, {share:.3g} % of the time"
+    simulated = f"{in_words(lasted, 's')} simulated"
+    return [*wrap(run.status.value, width), simulated, count if len(stuck) else "no stick"]

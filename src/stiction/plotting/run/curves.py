@@ -1,0 +1,76 @@
+"""Several runs as curves in one panel, told apart by colour and by line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
+
+from stiction.analysis.slip import Slip
+from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY
+from stiction.plotting.run.time_series import averaged, envelope, prefixed
+from stiction.trajectory import Trajectory
+
+COLOURS = (BLACK, RED, BLUE, GREEN, ORANGE, SKY, PURPLE)
+DASHES: tuple[Any, ...] = ("solid", (0, (5, 1.5)), (0, (7, 1.2, 1.2, 1.2)), (0, (1.4, 1.1)))
+
+
+class Curve(NamedTuple):
+    """One run, how it is called, how its lines look, and its slip averaged over short times."""
+
+    label: str
+    run: Trajectory
+    look: dict[str, Any]
+    slip: Slip
+
+    @property
+    def color(self) -> str:
+        """The colour of its lines."""
+        return str(self.look["color"])
+
+
+def curves_of(runs: Mapping[str, Trajectory]) -> list[Curve]:
+    """Return a curve for each run; no two of the first 28 look alike.
+
+    The first is a broad line below the others: where they agree, both are seen.
+    """
+    return [
+        Curve(
+            label,
+            run,
+            {
+                "color": COLOURS[at % len(COLOURS)],
+                "linestyle": DASHES[at % len(DASHES)],
+                "linewidth": 0.9 if at else 1.5,
+                "zorder": 2.0 + 0.01 * at,
+            },
+            averaged(run),
+        )
+        for at, (label, run) in enumerate(runs.items())
+    ]
+
+
+def common(values: Iterable[ArrayLike]) -> tuple[float, str]:
+    """Return factor and prefix of the unit that suits all values together; see `prefixed`."""
+    largest = [np.fmax.reduce(np.abs(np.asarray(each)), initial=0.0) for each in values]
+    return prefixed([value for value in largest if np.isfinite(value)])
+
+
+def draw_over_time(ax: Axes, curves: Sequence[Curve], variable: str, symbol: str) -> None:
+    """Draw a variable of every run over time, with a cross where a run ended early."""
+    factor, prefix = common(curve.run.data[variable].values for curve in curves)
+    ax.set_ylabel(f"{symbol} ({prefix}{curves[0].run.data[variable].attrs['units']})")
+    for curve in curves:
+        times, values = curve.run.data["time"].values, curve.run.data[variable].values * factor
+        ax.plot(*envelope(times, values), **curve.look)
+        mark_early_end(ax, curve, times[-1], values[-1])
+    ax.margins(y=0.08)
+
+
+def mark_early_end(ax: Axes, curve: Curve, x: float, y: float) -> None:
+    """Mark the last point of a run that did not reach its duration."""
+    if not curve.run.status.ok:
+        ax.plot(x, y, "x", color=curve.color, markersize=5, markeredgewidth=1.2, zorder=4)

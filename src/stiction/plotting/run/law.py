@@ -1,0 +1,68 @@
+"""A friction law."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from stiction.friction import has_state
+from stiction.friction.law import static_coefficient
+from stiction.plotting.page.canvas import panel
+from stiction.plotting.page.style import COLUMN, PURPLE, style
+from stiction.plotting.run.time_series import prefixed
+from stiction.system.slider import Slider
+
+
+def plot_law(slider: Slider, fastest: float | None = None, ax: Axes | None = None) -> Axes:
+    """Draw the friction coefficient of a slider over slip speed.
+
+    Parameters
+    ----------
+    slider : Slider
+        The system.
+    fastest : float, optional
+        Largest slip speed, m/s; ten times that of the drive when left out.
+    ax : Axes, optional
+        Drawn on; a new figure as wide as a column when left out.
+    """
+    with style():
+        ax = panel(ax, COLUMN, 2.2)
+        speed = 10.0 * abs(slider.motion.velocity) if fastest is None else fastest
+        draw_law(ax, slider, speed)
+    return ax
+
+
+def draw_law(ax: Axes, slider: Slider, fastest: float) -> Line2D:
+    """Draw the friction coefficient over slip speed.
+
+    At zero slip friction takes any value up to the static coefficient: the vertical line. For a
+    law with internal state the coefficient is that of steady sliding, over the logarithm.
+
+    Parameters
+    ----------
+    ax : Axes
+        Drawn on.
+    slider : Slider
+        The system.
+    fastest : float
+        Largest slip speed, m/s; 1 m/s if it is zero or not finite.
+    """
+    top = fastest if 0 < fastest < np.inf else 1.0
+    law, rests = slider.law, not has_state(slider.law)
+    speeds = np.linspace(0.0, top, 201) if rests else np.geomspace(1e-6 * top, top, 201)
+    mu = [law.coefficient(float(speed)) for speed in speeds]
+    factor, prefix = prefixed(speeds)
+    speeds *= factor
+    if rests:
+        largest = max(static_coefficient(law), mu[0])
+        (line,) = ax.plot(np.r_[0.0, 0.0, speeds], [0.0, largest, *mu], color=PURPLE, linewidth=1.2)
+        ax.set_xlim(-0.03 * top * factor, top * factor)
+    else:
+        (line,) = ax.semilogx(speeds, mu, color=PURPLE, linewidth=1.2)
+        ax.set_xlim(speeds[0], speeds[-1])
+        largest = max(mu)
+    ax.set_ylim(0.0, 1.2 * max(largest, *mu) or 1.0)
+    ax.set_xlabel(rf"$v_\mathrm{{slip}}$ ({prefix}m/s)")
+    ax.set_ylabel(r"$\mu$ (1)" if rests else r"$\mu$, steady (1)")
+    return line

@@ -1,0 +1,185 @@
+"""A whole run on one page."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.patches import Patch
+
+from stiction.plotting.apparatus.schematic import draw_schematic
+from stiction.plotting.page.canvas import canvas, fixed, named
+from stiction.plotting.page.style import BLACK, BLUE, GREY, ORANGE, PAGE, RED, style
+from stiction.plotting.page.words import (
+    base_velocity,
+    law_in_words,
+    outcome_in_words,
+    scales_in_words,
+    system_in_words,
+)
+from stiction.plotting.run import time_series
+from stiction.plotting.run.law import draw_law
+from stiction.plotting.run.time_series import Floats
+from stiction.trajectory import Trajectory
+
+LINE, GAP = 10.5, 3.0  # of what is written, pt
+DRAWING, LAW = 2.1, 1.7  # heights of the system's drawing and of the law, in
+
+
+SERIES = ("force", "friction", "direction", "position", "speed", "stuck")
+
+
+def plot_run(run: Trajectory, axes: Mapping[str, Axes] | None = None) -> dict[str, Axes]:
+    """Draw a run: the system, its parameters, how it ended, and what it did over time.
+
+    Friction law, spring forces, magnitude and direction of the friction force, position, slip
+    speed, and the share of time stuck, which counts every stick interval however short.
+
+    Parameters
+    ----------
+    run : Trajectory
+        Any run, of any system, ended well or not.
+    axes : mapping of str to Axes, optional
+        What to draw, and where: any of "system", "words", "law", "drive_X", "drive_Y",
+        "normal_load" (where these change), "force", "friction", "direction", "position",
+        "speed", "stuck". All, on a new figure as wide as a page, when left out.
+
+    Returns
+    -------
+    dict of str to Axes
+        The axes by their names.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "20 ms", sample_rate="10 kHz")
+    >>> run.plot()["force"].get_ylabel()
+    'spring force (N)'
+    """
+    with style():
+        panels = dict(_panels(run) if axes is None else axes)
+        drawings = {"system": _system, "words": _written, "law": _law, **_series(run)}
+        for name, ax in panels.items():
+            named(drawings, name)(ax, run)
+        series = [ax for name, ax in panels.items() if name not in ("system", "words", "law")]
+        if axes is None:
+            for ax in series[:-1]:
+                ax.set_xlabel("")
+            series[0].figure.align_ylabels(series)
+    return panels
+
+
+def _panels(run: Trajectory) -> dict[str, Axes]:
+    """Return the axes of a new figure, by their names."""
+    words = _words(run)
+    written = sum(GAP + LINE * (1 + len(lines)) for _, lines, _ in words) / 72 + 0.3
+    fig = canvas(PAGE, max(6.2, DRAWING + written + LAW + 0.1))
+    left, right = fig.subfigures(1, 2, squeeze=False, width_ratios=[1, 1.55])[0]
+    panels = left.subplot_mosaic(
+        [["system"], ["words"], ["law"]], height_ratios=[DRAWING, written, LAW]
+    )
+    imposed = [name for name, *_ in time_series.imposed(run)]
+    heights = [0.85] * len(imposed) + [1.4, 1, 1, 1, 1.2, 0.6]
+    series = right.subplots(len(heights), 1, sharex=True, height_ratios=heights)
+    fixed([*panels.values(), *series])
+    return {**panels, **dict(zip((*imposed, *SERIES), series, strict=True))}
+
+
+def _system(ax: Axes, run: Trajectory) -> None:
+    draw_schematic(ax, run.slider)
+
+
+def _law(ax: Axes, run: Trajectory) -> None:
+    drive = abs(base_velocity(run.slider))  # what slips when nothing else does
+    draw_law(ax, run.slider, max(drive, float(run.data["slip_speed"].max())))
+
+
+def _words(run: Trajectory) -> list[tuple[str, list[str], str]]:
+    """Return what is written: headings, lines below them, and their colour."""
+    return [
+        ("System", system_in_words(run.slider), BLACK),
+        ("Friction", law_in_words(run.slider), BLACK),
+        ("Scales", scales_in_words(run.slider), BLACK),
+        ("Run", outcome_in_words(run), BLUE if run.status.ok else RED),
+    ]
+
+
+def _series(run: Trajectory) -> dict[str, Callable[[Axes, Trajectory], Any]]:
+    """Return what draws each quantity over time, by its name."""
+
+    def spaced(draw: Callable[[Axes, Trajectory], Any]) -> Callable[[Axes, Trajectory], Any]:
+        def drawn(ax: Axes, run: Trajectory) -> None:
+            draw(ax, run)
+            ax.set_xlabel("time $t$ (s)")
+            times = run.data["time"].values
+            if times[-1] > times[0]:
+                ax.set_xlim(times[0], times[-1])
+            if draw not in (time_series.draw_slip_speed, time_series.draw_time_stuck):
+                ax.margins(y=0.12)
+
+        return drawn
+
+    def imposed(values: Floats, symbol: str, unit: str) -> Callable[[Axes, Trajectory], Any]:
+        return lambda ax, run: time_series.draw_values(ax, run, values, symbol, unit)
+
+    drawings = (
+        _forces,
+        time_series.draw_friction,
+        time_series.draw_direction,
+        time_series.draw_position,
+        time_series.draw_slip_speed,
+        time_series.draw_time_stuck,
+    )
+    found = {each[0]: imposed(*each[1:]) for each in time_series.imposed(run)}
+    named: dict[str, Callable[[Axes, Trajectory], Any]] = {
+        **found,
+        **dict(zip(SERIES, drawings, strict=True)),
+    }
+    return {name: spaced(draw) for name, draw in named.items()}
+
+
+def _forces(ax: Axes, run: Trajectory) -> None:
+    """Draw both spring forces."""
+    forces = [run.data[f"spring_{axis}"].values for axis in "xy"]
+    factor, prefix = time_series.prefixed(np.concatenate(forces))
+    times = run.data["time"].values
+    for axis, color, force in zip("xy", (RED, ORANGE), forces, strict=True):
+        line = time_series.draw_line(ax, times, force * factor, color)
+        line.set_label(f"$k_{axis} u_{axis}$")
+        line.set_zorder(2.2 if axis == "x" else 2.0)  # what swings across would hide it
+    ax.set_ylabel(f"spring force ({prefix}N)")
+    handles: list[Artist] = [*ax.get_lines()]
+    if ax.collections:
+        band = Patch(color=GREY, alpha=time_series.BAND, linewidth=0, label="fast oscillation")
+        handles.append(band)
+    ax.legend(
+        handles=handles, loc="lower right", ncols=3, bbox_to_anchor=(1.0, 0.97), borderaxespad=0.0
+    )
+
+
+def _written(ax: Axes, run: Trajectory) -> None:
+    _write(ax, _words(run))
+
+
+def _write(ax: Axes, words: list[tuple[str, list[str], str]]) -> None:
+    ax.set_axis_off()
+    offset = 0.0
+    for heading, lines, color in words:
+        for line in (heading, *lines):
+            text = ax.annotate(
+                line,
+                (0, 1),
+                (0 if line == heading else 6, -offset),
+                xycoords="axes fraction",
+                textcoords="offset points",
+                va="top",
+                color=BLACK if line == heading else color,
+                fontweight="bold" if line == heading else "normal",
+                fontsize=7.5,
+            )
+            text.set_in_layout(False)
+            offset += LINE
+        offset += GAP

@@ -1,0 +1,110 @@
+"""Slip speeds of several runs over decades, and zero slip, which no decade holds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from stiction.analysis.stuck import stuck_until
+from stiction.plotting.page.parameter import PLAIN
+from stiction.plotting.page.style import GREY
+from stiction.plotting.run.curves import Curve, common, mark_early_end
+from stiction.plotting.run.time_series import fastest_drive
+
+DEEPEST = 1e-6  # of the drive's speed: what is below rests, in any test
+ROW = 0.8  # height of a filled row
+
+
+def draw_speeds(ax: Axes, curves: Sequence[Curve]) -> None:
+    """Draw slip speed (m/s) over time: its mean, and a band from there up to its maximum.
+
+    Down to which speed it falls is not drawn: where it comes to rest that is zero.
+    """
+    ax.set_yscale("log", nonpositive="mask")
+    ax.set_ylabel(r"$v_\mathrm{slip}$ (m/s)")
+    for curve in curves:
+        slip = curve.slip
+        mean = np.where(slip.mean > 0, slip.mean, np.nan)
+        ax.fill_between(slip.time, mean, slip.high, color=curve.color, alpha=0.18, linewidth=0)
+        ax.plot(slip.time, mean, **curve.look)
+        mark_early_end(ax, curve, slip.time[-1], mean[-1])
+
+
+def draw_portrait(ax: Axes, curves: Sequence[Curve]) -> None:
+    """Draw the mean slip speed (m/s) over the spring force."""
+    ax.set_yscale("log", nonpositive="mask")
+    factor, _ = common(curve.run.data["spring_x"].values for curve in curves)
+    for curve in curves:
+        slip = curve.slip
+        mean = np.where(slip.mean > 0, slip.mean, np.nan)
+        ax.plot(slip.force * factor, mean, **curve.look)
+        mark_early_end(ax, curve, slip.force[-1] * factor, mean[-1])
+
+
+def set_speed_limits(ax: Axes, curves: Sequence[Curve]) -> None:
+    """Fit the axis of slip speed to the lines, not to the moments of a landing or to rest."""
+    spans = [curve.slip for curve in curves]
+    moving = [slip.mean[(slip.mean > 0) & (slip.rest < 0.5)] for slip in spans]
+    means = np.concatenate([each[np.isfinite(each)] for each in moving])
+    highs = np.concatenate([slip.high[np.isfinite(slip.high)] for slip in spans])
+    top = highs.max(initial=0.0)
+    if not top > 0:
+        top = 1.0  # nothing ever slips: an empty decade
+    slowest = DEEPEST * max(fastest_drive(curve.run) for curve in curves)
+    bottom = min(max(means.min(initial=top), slowest), top)
+    decades = max(np.log10(top / bottom), 1.0)
+    ax.set_ylim(bottom / 10 ** max(0.3, 0.05 * decades), top * 10 ** (0.05 * decades))
+    ax.yaxis.set_major_locator(LogLocator(numticks=8))
+    ax.yaxis.set_minor_locator(LogLocator(subs="all" if decades < 8 else (1.0,), numticks=99))
+    ax.yaxis.set_minor_formatter(NullFormatter() if decades > 1.5 else PLAIN)
+
+
+def draw_rests(ax: Axes, curves: Sequence[Curve], bins: int = 300) -> None:
+    """Draw when each run is at zero slip: its row is filled as high as the share of time."""
+    first = curves[0].run.data["time"].values
+    end = max(float(curve.run.data["time"][-1]) for curve in curves)
+    edges = np.linspace(first[0], max(end, np.nextafter(first[0], np.inf)), bins + 1)
+    for row, curve in enumerate(curves):
+        share = np.diff(stuck_until(edges, curve.run.stick_intervals)) / np.diff(edges)
+        fill_row(ax, row, share, edges, curve)
+    finish_rows(ax, len(curves))
+    ax.set_ylabel("zero\nslip", rotation=0, ha="right", va="center")
+    ax.set_xlabel("time $t$ (s)")
+    ax.set_xlim(edges[0], edges[-1])
+
+
+def draw_held(ax: Axes, curves: Sequence[Curve], bins: int = 120) -> None:
+    """Draw at which spring forces each run is at zero slip: the share of the time there."""
+    forces = [curve.run.data["spring_x"].values for curve in curves]
+    factor, prefix = common(forces)
+    finite = np.concatenate([force[np.isfinite(force)] for force in forces]) * factor
+    low, high = (finite.min(), finite.max()) if len(finite) else (0.0, 1.0)
+    pad = 0.04 * (high - low) or 1.0
+    edges = np.linspace(low - pad, high + pad, bins + 1)
+    for row, (curve, force) in enumerate(zip(curves, forces, strict=True)):
+        times = curve.run.data["time"].values
+        # however short: all are counted
+        stuck = np.diff(stuck_until(times, curve.run.stick_intervals))
+        total, _ = np.histogram(force[:-1] * factor, edges, weights=np.diff(times))
+        held, _ = np.histogram(force[:-1] * factor, edges, weights=stuck)
+        share = np.divide(held, total, out=np.zeros(bins), where=total > 0)
+        fill_row(ax, row, share, edges, curve)
+    finish_rows(ax, len(curves))
+    ax.set_xlabel(f"$k_x u_x$ ({prefix}N)")
+    ax.set_xlim(edges[0], edges[-1])
+
+
+def fill_row(ax: Axes, row: int, share: np.ndarray, edges: np.ndarray, curve: Curve) -> None:
+    """Fill a row, counted from the top, as high as the share 0 to 1."""
+    ax.stairs(-row - 1 + ROW * share, edges, baseline=-row - 1, fill=True, color=curve.color)
+
+
+def finish_rows(ax: Axes, rows: int) -> None:
+    """Rule the rows, and take off the ticks, which have no meaning there."""
+    ax.set_ylim(-rows - 0.1, 0.0)
+    ax.tick_params(axis="y", left=False, right=False, labelleft=False)
+    for row in range(rows):
+        ax.axhline(-row - 1, color=GREY, linewidth=0.3, zorder=1)

@@ -1,0 +1,274 @@
+"""Quantities of a run over time, one function a quantity."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patches import StepPatch
+from matplotlib.ticker import FuncFormatter, MaxNLocator
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import ArrayLike, NDArray
+
+from stiction.analysis.slip import Slip, averaged_slip
+from stiction.analysis.stuck import stuck_until
+from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED
+from stiction.text.quantity_text import SI, thousands
+from stiction.trajectory import Trajectory
+
+Floats = NDArray[np.float64]
+
+FEW = 50  # so few samples are shown as such: what happens between them is not known
+PARTS = 500  # of the time: finer than a printed line shows
+BINS = 1500  # more than a printed line has dots
+NEAR, HALF = 9, 5  # bins about one in which turns are counted, and in which extremes are sought
+TURNS = 5  # there: what has a period of fewer than four bins cannot be seen to oscillate
+THIN = 5e-3  # of a panel's height: a range that is less is seen as a line
+SMOOTH = 13  # bins, two of them with weight zero, over which the mean there is taken
+BAND = 0.3  # opacity of the range in which it does
+LEAST = 1e-9  # of the drive's speed, or of its way: what is less is rounding
+STILL = 1.0  # deg: an angle that changes less is drawn on an axis of this size
+
+
+def envelope(time: ArrayLike, values: ArrayLike, bins: int = BINS) -> tuple[Floats, Floats]:
+    """Thin out a long series so that its line looks the same: extremes of each of `bins` bins.
+
+    Parameters
+    ----------
+    time, values : array
+        (n,); not-a-number values leave gaps only where a whole bin lacks a value.
+    bins : int
+        How many.
+
+    Returns
+    -------
+    time, values : ndarray
+        (2 bins,), or what was given if that is not longer.
+    """
+    t, v = np.asarray(time, dtype=np.float64), np.asarray(values, dtype=np.float64)
+    if len(t) <= 2 * bins:
+        return t, v
+    starts = np.linspace(0, len(t), bins, endpoint=False).astype(np.intp)
+    middle = 0.5 * (t[starts] + t[np.r_[starts[1:], len(t)] - 1])
+    low, high = np.fmin.reduceat(v, starts), np.fmax.reduceat(v, starts)
+    return np.repeat(middle, 2), np.column_stack([low, high]).ravel()
+
+
+def swings(values: ArrayLike, bins: int = BINS) -> tuple[NDArray[np.bool_], Floats]:
+    """Return in which bins of `envelope` values oscillate too fast to be seen, and their means."""
+    v = np.asarray(values, dtype=np.float64)
+    starts = np.linspace(0, len(v), bins, endpoint=False).astype(np.intp)
+    rate = np.diff(v)
+    moves = np.flatnonzero(np.isfinite(rate) & (rate != 0.0))
+    turns = moves[1:][np.diff(np.sign(rate[moves])) != 0.0]
+    known = np.isfinite(v)
+    count = np.maximum(np.add.reduceat(known.astype(np.intp), starts), 1)
+    mean = np.add.reduceat(np.where(known, v, 0.0), starts) / count
+    within = np.searchsorted(starts, turns, side="right") - 1
+    nearby = np.convolve(np.bincount(within, minlength=bins), np.ones(NEAR), "same")
+    fast = nearby >= TURNS
+    whole = np.hanning(SMOOTH)  # a bin may hold a period and a half
+    weight = np.maximum(np.convolve(fast, whole, "same"), 1e-300)
+    return fast, np.where(fast, np.convolve(mean * fast, whole, "same") / weight, mean)
+
+
+def draw_line(
+    ax: Axes, time: ArrayLike, values: ArrayLike, color: str = BLACK, width: float = 0.7
+) -> Line2D:
+    """Draw values over time (s), thinned out by `envelope`; `width` in pt.
+
+    Where they oscillate too fast to be seen, the line is their mean, and a pale band their range.
+    """
+    times = np.asarray(time)
+    thin, shown = envelope(times, values)
+    if len(times) > 2 * BINS:
+        fast, mean = swings(values)
+        pairs = shown.reshape(-1, 2)
+        height = np.fmax.reduce(shown) - np.fmin.reduce(shown)
+        fast &= pairs[:, 1] - pairs[:, 0] > THIN * height
+        if fast.any():
+            near = np.pad(pairs, ((HALF // 2, HALF // 2), (0, 0)), mode="edge")
+            windows = sliding_window_view(near, HALF, axis=0)
+            low = np.where(fast, windows[:, 0].min(axis=1), np.nan)
+            high = np.where(fast, windows[:, 1].max(axis=1), np.nan)
+            ax.fill_between(thin[::2], low, high, color=color, alpha=BAND, linewidth=0)
+        shown = np.where(fast[:, np.newaxis], mean[:, np.newaxis], pairs).ravel()
+    (line,) = ax.plot(thin, shown, color=color, linewidth=width)
+    if len(times) <= FEW:
+        line.set(linestyle="none", marker="o", markersize=2.5, clip_on=False, zorder=3)
+    if times[-1] > times[0]:
+        ax.set_xlim(times[0], times[-1])
+    return line
+
+
+def draw_quantity(
+    ax: Axes, run: Trajectory, variable: str, symbol: str, color: str = BLACK
+) -> Line2D:
+    """Draw a variable of the run over time, in the multiple of its unit that suits its size."""
+    data = run.data[variable]
+    return draw_values(ax, run, data.values, symbol, data.attrs["units"], color)
+
+
+def draw_values(
+    ax: Axes, run: Trajectory, values: ArrayLike, symbol: str, unit: str, color: str = BLACK
+) -> Line2D:
+    """Draw values of one unit over the run's time, in the multiple that suits their size."""
+    array = np.asarray(values, dtype=np.float64)
+    factor, prefix = prefixed(array)
+    ax.set_ylabel(f"{symbol} ({prefix}{unit})")
+    return draw_line(ax, run.data["time"].values, array * factor, color)
+
+
+def imposed(run: Trajectory) -> list[tuple[str, Floats, str, str]]:
+    """Return what a protocol imposes and is not constant: its name, values, symbol, unit.
+
+    Drive velocity along X and across it, and normal load.
+    """
+    names = (("drive_X", "$V$"), ("drive_Y", "$V_Y$"), ("normal_load", "$W$"))
+    found = [(name, run.data[name], symbol) for name, symbol in names]
+    return [
+        (name, each.values, symbol, each.attrs["units"])
+        for name, each, symbol in found
+        if np.ptp(each.values) > 0
+    ]
+
+
+def prefixed(values: ArrayLike) -> tuple[float, str]:
+    """Return factor and prefix (n, µ, m, none, k) of a unit in which values are 0.2 to 200."""
+    largest = np.fmax.reduce(np.abs(np.asarray(values, dtype=np.float64)), initial=0.0)
+    if not 0 < largest < np.inf:
+        return 1.0, ""
+    power = min(max(thousands(5.0 * largest, "m"), -8), 2)
+    return 1000.0**-power, SI[power]
+
+
+def name_time(ax: Axes) -> None:
+    """Write a time axis, whose values are in s, in the unit that suits what it shows: s, ms, ..."""
+    factor, prefix = prefixed(ax.get_xlim())
+    factor, prefix = (factor, prefix) if factor > 1.0 else (1.0, "")
+    ax.xaxis.set_major_formatter(FuncFormatter(lambda t, _: f"{factor * t:.10g}"))
+    ax.set_xlabel(f"time $t$ ({prefix}s)")
+
+
+def draw_spring_force(ax: Axes, run: Trajectory, axis: str, color: str = RED) -> Line2D:
+    """Draw the spring force along the principal axis ``"x"`` or ``"y"`` over time."""
+    return draw_quantity(ax, run, f"spring_{axis}", rf"$k_{axis} u_{axis}$", color)
+
+
+def draw_friction(ax: Axes, run: Trajectory) -> Line2D:
+    """Draw the magnitude of the friction force over time; while stuck, the force that holds."""
+    return draw_values(ax, run, _after_start(run, "friction"), "$F$", "N", PURPLE)
+
+
+def _after_start(run: Trajectory, variable: str) -> Floats:
+    """Return a variable without its first value, of the instant in which the mass is let go.
+
+    There it moves with a millionth of the drive's speed, and friction is what it is in slip; it
+    sticks, or creeps far slower, at once. Few samples, which are shown as such, keep it.
+    """
+    values = run.data[variable].values.astype(np.float64)
+    if len(values) > FEW:
+        values[0] = np.nan
+    return values
+
+
+def draw_direction(ax: Axes, run: Trajectory) -> Line2D:
+    """Draw the friction angle psi (deg) to the drive direction over time."""
+    angles = cut_open(_after_start(run, "psi"))
+    low, high = (float(each.reduce(angles, initial=np.nan)) for each in (np.fmin, np.fmax))
+    steps = [1, 1.5, 3, 4.5, 9, 10] if high - low > 40.0 else [1, 2, 5, 10]  # 30, 45, 90 deg
+    ax.yaxis.set_major_locator(MaxNLocator(nbins=4, steps=steps))
+    ax.set_ylabel(r"$\psi$ (deg)")
+    line = draw_line(ax, run.data["time"].values, angles, PURPLE)
+    if high - low < STILL:
+        ax.set_ylim(low - STILL, high + STILL)
+    return line
+
+
+def cut_open(angles: ArrayLike) -> Floats:
+    """Return angles (deg) on the turn that begins where none, or the fewest, of them lie.
+
+    Sliding back and forth has angles about 0 and 180 degrees: cut there, a line over time would
+    jump from edge to edge. Cut at 180 degrees where that does as well.
+    """
+    values = np.asarray(angles, dtype=np.float64)
+    edges = np.arange(-180.0, 181.0, 10.0)
+    count, _ = np.histogram(np.mod(values[np.isfinite(values)] + 180.0, 360.0) - 180.0, edges)
+    beside = count + np.roll(count, 1)  # of each edge
+    start = edges[0] if beside[0] == 0 else edges[int(np.argmin(beside))]
+    start -= 360.0 if start > 0.0 else 0.0  # the turn that lies nearest to zero
+    opened: Floats = np.mod(values - start, 360.0) + start
+    return opened
+
+
+def draw_position(ax: Axes, run: Trajectory) -> Line2D:
+    """Draw the position X along the drive direction over time; rounding is drawn as rest."""
+    X, way = run.data["X"].values, fastest_drive(run) * float(np.ptp(run.data["time"].values))
+    if np.ptp(X) > LEAST * way or not way > 0.0:
+        return draw_quantity(ax, run, "X", "$X$", BLUE)
+    line = draw_values(ax, run, np.zeros(len(X)), "$X$", run.data["X"].attrs["units"], BLUE)
+    _say_only(ax, "at rest")
+    return line
+
+
+def fastest_drive(run: Trajectory) -> float:
+    """Return the largest speed of the drive in a run, m/s."""
+    return float(np.hypot(run.data["drive_X"].values, run.data["drive_Y"].values).max())
+
+
+def _say_only(ax: Axes, text: str) -> None:
+    """Write what a panel shows where there is nothing to measure on its axis."""
+    ax.set_yticks([])
+    ax.text(0.5, 0.6, text, transform=ax.transAxes, ha="center", color=GREY, fontsize=7)
+
+
+def draw_rate(ax: Axes, run: Trajectory, axis: str) -> Line2D:
+    """Draw the elongation rate along the principal axis ``"x"`` or ``"y"`` over time."""
+    return draw_quantity(ax, run, f"v_{axis}", rf"$v_{axis}$", RED)
+
+
+def draw_slip_speed(ax: Axes, run: Trajectory) -> Line2D:
+    """Draw the slip speed (m/s) over time on a logarithmic axis; gaps where it is zero.
+
+    The line is the mean over short times, a pale band reaches to the maximum: where it comes to
+    rest in each of many oscillations, how far it falls is no speed of the system. Speeds below
+    1e-7 of the largest are left out, so that a landing does not stretch the axis.
+    """
+    speed = _after_start(run, "slip_speed")
+    largest = np.fmax.reduce(speed, initial=0.0)
+    ax.set_ylabel(r"$v_\mathrm{slip}$ (m/s)")
+    if not largest > LEAST * fastest_drive(run):
+        _say_only(ax, "no slip")
+        return draw_line(ax, run.data["time"].values, np.zeros(len(speed)), GREEN)
+    ax.set_yscale("log")
+    if len(speed) <= FEW:
+        shown = np.where(speed > 1e-7 * largest, speed, np.nan)
+        return draw_line(ax, run.data["time"].values, shown, GREEN)
+    slip = averaged(run)
+    mean = np.where(slip.mean > 1e-7 * largest, slip.mean, np.nan)
+    ax.fill_between(slip.time, mean, slip.high, color=GREEN, alpha=BAND, linewidth=0)
+    return draw_line(ax, slip.time, mean, GREEN)
+
+
+def averaged(run: Trajectory) -> Slip:
+    """Average slip over a 500th of the time, or less if a rapid slip needs it to be seen."""
+    times, slider = run.data["time"].values, run.slider
+    rapid = pi * sqrt(slider.mass / min(slider.k_x, slider.k_y))
+    parts = np.clip(5 * (times[-1] - times[0]) / rapid, PARTS, 20 * PARTS)
+    return averaged_slip(run, int(parts))
+
+
+def draw_time_stuck(ax: Axes, run: Trajectory, bins: int = 300) -> StepPatch:
+    """Draw the share of time (%) spent at zero slip, from every stick interval of the run.
+
+    Stick intervals can be far shorter than the sample interval and number thousands; their share
+    in each of `bins` bins shows them all.
+    """
+    times = run.data["time"].values
+    edges = np.linspace(times[0], max(times[-1], np.nextafter(times[0], np.inf)), bins + 1)
+    share = 100.0 * np.diff(stuck_until(edges, run.stick_intervals)) / np.diff(edges)
+    ax.set_ylabel("stuck (%)")
+    ax.set_ylim(0, 105)
+    return ax.stairs(share, edges, fill=True, color=GREY)

@@ -1,0 +1,1 @@
+"""Figures of linear stability: modes, boundaries, damping, onset."""

@@ -1,0 +1,145 @@
+"""Where steady sliding is stable: the boundary in the plane of two parameters."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike, NDArray
+
+from stiction.linear_stability import Stability
+from stiction.plotting.page.canvas import panel
+from stiction.plotting.page.parameter import PLAIN, Scale, scale_of
+from stiction.plotting.page.style import BLACK, BLUE, COLUMN, style
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+
+PIXELS = 161  # each way, of the signed distance to the boundary
+UNSTABLE = "#F9E3C5"
+
+
+def plot_stability(found: Stability, axes: Any = None) -> Any:
+    """Draw the modes over one parameter, or the boundary in the plane of two.
+
+    Parameters
+    ----------
+    found : Stability
+        From `stiction.stability`.
+    axes : Axes, optional
+        As of `plot_modes` (two of them) or `plot_boundary` (one).
+    """
+    if len(found.criticals) == 2:
+        return plot_boundary(found.boundary, ax=axes)
+    from stiction.plotting.stability.modes import plot_modes
+
+    return plot_modes(found.modes, found.criticals[0], axes)
+
+
+def plot_boundary(
+    curve: xr.Dataset,
+    closed_form: tuple[ArrayLike, ArrayLike] | None = None,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw the boundary of stability in two parameters, with the slider's own point.
+
+    Parameters
+    ----------
+    curve : Dataset
+        From `stiction.linear_stability.boundary`.
+    closed_form : pair of arrays, optional
+        Another boundary to compare with, the two parameters in SI.
+    ax : Axes, optional
+        Drawn on; a new figure as wide as a column when left out.
+    """
+    with style():
+        ax = panel(ax, COLUMN, 2.9)
+        x, y = draw_boundary(ax, curve)
+        if closed_form is not None:
+            ax.plot(
+                x.drawn(closed_form[0]), y.drawn(closed_form[1]), color=BLACK, linewidth=1.1,
+                dashes=(1.2, 1.8), dash_capstyle="round", label="closed form", zorder=4,
+            )  # fmt: skip
+        ax.plot(
+            x.drawn(curve.attrs["x_own"]), y.drawn(curve.attrs["y_own"]), color=BLACK,
+            marker="o", markersize=4.5, linestyle="none", label="this slider", zorder=5,
+            clip_on=False,
+        )  # fmt: skip
+        ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
+    return ax
+
+
+def draw_boundary(ax: Axes, curve: xr.Dataset) -> tuple[Scale, Scale]:
+    """Draw the boundary from `stiction.linear_stability.boundary`; both sides are named.
+
+    Returns the scales of the two axes, to draw more on them.
+    """
+    scales = []
+    for way in ("x", "y"):
+        path, ends = curve.attrs[way], curve.attrs[f"{way}_range"]
+        log = curve.attrs[f"{way}_scale"] == "log"
+        scale = scale_of(path, curve[path].attrs["units"], ends, logarithmic=log)
+        axis = ax.xaxis if way == "x" else ax.yaxis
+        ax.set(**{f"{way}scale": curve.attrs[f"{way}_scale"], f"{way}label": scale.label})
+        ax.set(**{f"{way}lim": scale.drawn(ends)})
+        if log:
+            axis.set_major_formatter(PLAIN)
+        scales.append(scale)
+    _name_sides(ax, curve)
+    for number in np.unique(curve["branch"].values):
+        on = curve["branch"].values == number
+        x, y = (
+            s.drawn(curve[curve.attrs[w]].values[on]) for s, w in zip(scales, "xy", strict=True)
+        )
+        label = "boundary" if number == 0 else None
+        ax.plot(x, y, color=BLUE, linewidth=1.8, label=label, zorder=3, clip_on=False)
+    return scales[0], scales[1]
+
+
+def _name_sides(ax: Axes, curve: xr.Dataset) -> None:
+    """Tint the unstable side, and write on both what they are, far from the boundary."""
+    grid = np.linspace(0.0, 1.0, PIXELS)
+    across, up = np.meshgrid(grid, grid)
+    signed = signed_distance(curve, across, up)
+    if (signed > 0).any():
+        ax.contourf(
+            across, up, signed, [0.0, np.inf], colors=[UNSTABLE], transform=ax.transAxes, zorder=0
+        )
+    edge = np.minimum.reduce([across / 1.6, (1 - across) / 1.6, up, 1 - up])  # words are wide
+    for name, side in (("unstable", signed), ("stable", -signed)):
+        room = np.minimum(side / 1.6, edge)
+        if room.max() > 0.03:
+            at = np.unravel_index(np.argmax(room), room.shape)
+            ax.text(
+                across[at], up[at], name, transform=ax.transAxes, ha="center", va="center", zorder=4
+            )
+
+
+def signed_distance(curve: xr.Dataset, across: Floats, up: Floats) -> Floats:
+    """Return the distance to the boundary in fractions of the plane, positive where unstable."""
+    ends = []
+    for way in ("x", "y"):
+        values, limits = curve[curve.attrs[way]].values, curve.attrs[f"{way}_range"]
+        if curve.attrs[f"{way}_scale"] == "log":
+            values, limits = np.log(values / limits[0]), np.log(limits / limits[0])
+        ends.append((values - limits[0]) / (limits[1] - limits[0]))
+    joined = np.flatnonzero(np.diff(curve["branch"].values) == 0)
+    if len(joined) == 0:
+        return np.full(across.shape, np.sign(curve.attrs["growth_rate"]))
+    nearest, side = np.full(across.shape, np.inf), np.zeros(across.shape)
+    for i in joined:
+        (x, y), (dx, dy) = (ends[0][i], ends[1][i]), (np.diff(end[i : i + 2])[0] for end in ends)
+        square = max(dx * dx + dy * dy, 1e-30)
+        part = np.clip(((across - x) * dx + (up - y) * dy) / square, 0.0, 1.0)
+        gap = np.hypot(across - x - part * dx, up - y - part * dy)
+        left = (dx * (up - y) - dy * (across - x)) / np.sqrt(square)
+        # of two pieces that meet in the nearest point, the one that is seen more squarely tells
+        closer = gap < nearest * (1 - 1e-9)
+        squarer = (gap <= nearest * (1 + 1e-9)) & (np.abs(left) > np.abs(side))
+        side = np.where(closer | squarer, left, side)
+        nearest = np.minimum(gap, nearest)
+    signed: Floats = nearest * np.sign(side)
+    return signed

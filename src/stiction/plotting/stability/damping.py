@@ -1,0 +1,143 @@
+"""The damping diagram: the damping ratio over force angle and damping number."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap, Normalize
+from matplotlib.contour import QuadContourSet
+from matplotlib.lines import Line2D
+from matplotlib.markers import CARETDOWN
+from matplotlib.text import Annotation
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
+
+from stiction import theory
+from stiction.plotting.page.canvas import panel
+from stiction.plotting.page.style import BLACK, COLUMN, GREEN, style
+
+SHADES = LinearSegmentedColormap.from_list("damping", ["#E9BE8B", "#FFFFFF", "#9DBDD3"])
+CLEAR = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 1.0}
+DECADES = np.arange(-7, 7)
+CLOSE = 30.0  # ratio of the damping numbers of two paths whose labels would meet
+
+
+def draw_damping_map(
+    ax: Axes,
+    A: tuple[float, float] = (1e-1, 1e5),
+    theta: tuple[float, float] = (0.5, 90.0),
+) -> QuadContourSet:
+    """Map zeta = A sin^3(theta), Eq. (10), over A and theta, with a contour at every decade.
+
+    The boundary zeta = 1 is green: above it the slow motion is overdamped (creep), below it
+    underdamped (rapid slip).
+
+    Parameters
+    ----------
+    ax : Axes
+        Drawn on with logarithmic axes.
+    A : tuple of float
+        Range of the damping number, dimensionless.
+    theta : tuple of float
+        Range of the force angle, deg.
+
+    Returns
+    -------
+    QuadContourSet
+        The contour zeta = 1.
+    """
+    across, up = np.geomspace(*A, 200), np.geomspace(*theta, 200)
+    zeta = theory.damping_ratio(across[None, :], np.radians(up[:, None]))
+    edge = float(np.abs(DECADES).max())
+    ax.set(xscale="log", yscale="log", xlim=A, ylim=theta)
+    ax.contourf(
+        across, up, np.log10(zeta), DECADES, cmap=SHADES, norm=Normalize(-edge, edge), extend="both"
+    )
+    decades = ax.contour(
+        across, up, zeta, 10.0 ** DECADES[DECADES != 0], colors=BLACK, linewidths=0.4
+    )
+    boundary = ax.contour(across, up, zeta, [1.0], colors=GREEN, linewidths=2.0)
+    _name_decades(ax, decades, A, theta)
+    ax.yaxis.set_major_locator(FixedLocator([0.5, 1, 2, 5, 10, 20, 45, 90]))
+    ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    ax.yaxis.set_minor_locator(NullLocator())
+    ax.set_xlabel(r"damping number $A$ (1)")
+    ax.set_ylabel(r"force angle $\theta$ (deg)")
+    return boundary
+
+
+def plot_damping(
+    A: tuple[float, float] = (1e-1, 1e5),
+    theta: tuple[float, float] = (0.5, 90.0),
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw the damping diagram: the damping ratio over damping number and force angle.
+
+    Parameters
+    ----------
+    A, theta
+        Ranges, as of `draw_damping_map`.
+    ax : Axes, optional
+        Drawn on; a new figure as wide as a column when left out.
+    """
+    with style():
+        ax = panel(ax, COLUMN, 2.7)
+        draw_damping_map(ax, A, theta)
+    return ax
+
+
+def draw_force_path(ax: Axes, A: float, phi: float, color: str, label: str) -> Line2D:
+    """Draw how the friction force turns during creep: at constant A from 90 deg down to phi.
+
+    Where the path meets zeta = 1 a cross marks the change from slow to fast slip.
+
+    Parameters
+    ----------
+    ax : Axes
+        With a damping map on it.
+    A : float
+        Damping number, dimensionless.
+    phi : float
+        Misalignment, rad.
+    color, label : str
+        For the line and the legend.
+    """
+    end = float(np.degrees(abs(phi)))
+    (path,) = ax.plot([A, A], [90.0, end], color=color, linewidth=1.8, label=label, zorder=4)
+    ax.plot([A], [end], color=color, marker=CARETDOWN, markersize=7, zorder=4)
+    crossing = float(np.degrees(theory.critical_angle(A)))
+    if crossing > end:
+        ax.plot([A], [crossing], color=BLACK, marker="x", markersize=7, mew=1.8, zorder=5)
+        # beside a path close to the right the label stands on the left
+        others = [text.xy[0] / A for text in ax.texts if isinstance(text, Annotation)]
+        left = any(1.0 <= ratio < CLOSE for ratio in others)
+        ax.annotate(
+            rf"$\theta$ = {crossing:.1f}°",
+            (A, crossing),
+            (-7, -3) if left else (7, 3),
+            textcoords="offset points",
+            fontsize=7,
+            ha="right" if left else "left",
+            va="top" if left else "bottom",
+            bbox=CLEAR,
+            zorder=6,
+        )
+    return path
+
+
+def _name_decades(
+    ax: Axes, decades: QuadContourSet, A: tuple[float, float], theta: tuple[float, float]
+) -> None:
+    """Write the damping ratio on each contour: at the right where zeta > 1, else at the left."""
+    places = []
+    for power in DECADES[DECADES != 0]:
+        at = A[1] / 2.2 if power > 0 else A[0] * 2.5
+        angle = np.degrees(theory.critical_angle(at / 10.0**power))
+        if 1.15 * theta[0] < angle < 0.9 * theta[1]:
+            places.append((at, float(angle)))
+    ax.clabel(
+        decades,
+        fmt=lambda zeta: rf"$10^{{{np.log10(zeta):.0f}}}$",
+        fontsize=7,
+        inline_spacing=2,
+        manual=places,
+    )

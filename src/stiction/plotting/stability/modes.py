@@ -1,0 +1,133 @@
+"""The modes of steady sliding over one parameter: growth rates and frequencies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from stiction.linear_stability import Critical
+from stiction.plotting.page.canvas import canvas, fixed, listed
+from stiction.plotting.page.parameter import PLAIN, Scale, scale_of
+from stiction.plotting.page.style import BLUE, COLUMN, GREY, ORANGE, style
+from stiction.plotting.stability.boundary import UNSTABLE
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+CLOSE = 0.13  # of the axis: numbers so near to each other would overlap
+
+
+def plot_modes(
+    modes: xr.Dataset, critical: Critical | None = None, axes: Sequence[Axes] | None = None
+) -> NDArray[np.object_]:
+    """Draw growth rates and frequencies of the modes over one parameter.
+
+    Parameters
+    ----------
+    modes : Dataset
+        From `stiction.linear_stability.modes_over`.
+    critical : Critical, optional
+        Critical values of the same parameter: dashed, with their numbers above.
+    axes : two Axes, optional
+        Drawn on; a new figure as wide as a column when left out.
+
+    Returns
+    -------
+    ndarray of Axes
+        The two.
+    """
+    values, log = modes["value"], modes.attrs["scale"] == "log"
+    ends = values.values[[0, -1]]
+    scale = scale_of(values.attrs["long_name"], values.attrs["units"], ends, logarithmic=log)
+    marked = scale.drawn(() if critical is None else critical.values)
+    with style():
+        if axes is None:
+            fig = canvas(COLUMN, 3.6)
+            above, below = fixed(list(fig.subplots(2, 1, sharex=True)))
+            fig.align_ylabels([above, below])
+        else:
+            above, below = listed(axes)
+        draw_growth_rates(above, modes, scale)
+        draw_frequencies(below, modes, scale)
+        for ax in (above, below):
+            ax.set(xscale=modes.attrs["scale"], xlim=scale.drawn(ends))
+            for value in marked:
+                ax.axvline(value, color=GREY, linewidth=0.8, dashes=(4, 2), zorder=1)
+        for value, side in zip(marked, sides(above, marked), strict=True):
+            above.annotate(
+                f"{value:.4g}",
+                (value, 1.0),
+                (0, 2),
+                xycoords=("data", "axes fraction"),
+                textcoords="offset points",
+                ha=side,
+                va="bottom",
+                fontsize=7,
+            )
+        if log:
+            below.xaxis.set_major_formatter(PLAIN)
+        below.set_xlabel(scale.label)
+        above.legend(
+            loc="lower center", bbox_to_anchor=(0.5, 1.07 if len(marked) else 1.0), ncols=3
+        )
+    return np.array([above, below], dtype=object)
+
+
+def sides(ax: Axes, values: NDArray[np.float64]) -> list[str]:
+    """Return how numbers above values are aligned: those of close neighbours away from each other.
+
+    The axis has its scale and its limits already.
+    """
+    points = np.column_stack([values, np.zeros(len(values))])
+    gaps = np.diff(ax.transAxes.inverted().transform(ax.transData.transform(points))[:, 0])
+    before, after = (np.append(*pair) < CLOSE for pair in ((np.inf, gaps), (gaps, np.inf)))
+    return [
+        "right" if next_is and not last_is else "left" if last_is and not next_is else "center"
+        for last_is, next_is in zip(before, after, strict=True)
+    ]
+
+
+def draw_growth_rates(ax: Axes, modes: xr.Dataset, scale: Scale) -> None:
+    """Draw growth rates, dashed where a mode does not oscillate; the unstable half is tinted.
+
+    The axis is fitted to the fastest growing mode; some may decay faster than is shown.
+    """
+    growth, oscillates = modes["growth_rate"].values, modes["frequency"].values > 0
+    top = np.abs(growth.max(axis=1)).max()
+    ax.set(ylim=(-2.5 * top, 1.25 * top), ylabel="growth rate (1/s)")
+    ax.axhspan(0.0, 1.25 * top, color=UNSTABLE, linewidth=0, zorder=0, label="unstable")
+    ax.axhline(0.0, color=GREY, linewidth=0.6)
+    at = scale.drawn(modes["value"].values)
+    for rates, rings in zip(growth.T, oscillates.T, strict=True):
+        ax.plot(at, np.where(rings, rates, np.nan), color=BLUE, linewidth=1.2)
+        ax.plot(at, np.where(rings, np.nan, rates), color=ORANGE, linewidth=1.2, dashes=(3, 1.5))
+    ax.plot([], [], color=BLUE, linewidth=1.2, label="oscillates")
+    ax.plot([], [], color=ORANGE, linewidth=1.2, dashes=(3, 1.5), label="does not")
+
+
+def draw_frequencies(ax: Axes, modes: xr.Dataset, scale: Scale) -> None:
+    """Draw the frequencies of the modes that oscillate, unstable ones broad.
+
+    The axis is logarithmic where they span a decade or more.
+    """
+    at, frequency = scale.drawn(modes["value"].values), modes["frequency"].values
+    ax.set_ylabel("frequency (Hz)")
+    ringing = frequency[frequency > 0.0]
+    if not len(ringing):
+        ax.set_yticks([])
+        ax.text(0.5, 0.5, "no mode oscillates", transform=ax.transAxes, ha="center", va="center")
+        return
+    for f, rate in zip(frequency.T, modes["growth_rate"].values.T, strict=True):
+        shown = np.where(f > 0, f, np.nan)
+        ax.plot(at, shown, color=BLUE, linewidth=1.2)
+        ax.plot(at, np.where(rate > 0, shown, np.nan), color=BLUE, linewidth=3.0, alpha=0.5)
+    if ringing.max() < 10.0 * ringing.min():
+        ax.set_ylim(0.0, 1.1 * ringing.max())
+    else:
+        ax.set_yscale("log")
+        ax.yaxis.set_major_formatter(PLAIN)

@@ -1,0 +1,110 @@
+"""What a result file knows of itself: checksums of all that is read back from it.
+
+Each array has HDF5's own (fletcher32), which any program heeds. It does not hold for names, for
+attributes, and for what says where in the file an array is: those of all this are in an attribute.
+The checksum of the whole file stands behind what is HDF5's, where no reader looks. It tells a file
+that is as it was written without HDF5, which must not be asked: it trips over damage. What others
+write into the file takes it away.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stiction.errors import ResultError
+from stiction.storage.checksums import LENGTH, broken, bytes_of, crc_of_file, seal
+from stiction.storage.foreign import opening
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+SEAL, DESCRIPTION = "checksums", "description"  # attributes of the file
+CHUNK = 2**16  # samples that share a checksum
+MARK = b"stiction crc-32c"  # stands before the checksum of a whole file
+
+
+def sealed(tables: Mapping[str, xr.Dataset]) -> str:
+    """Return the checksums of tables, as they are kept in the attribute."""
+    return seal(_parts(tables))
+
+
+def checked(table: xr.Dataset) -> dict[Any, dict[str, Any]]:
+    """Return how the arrays of a table are encoded: with HDF5's checksums."""
+    return {
+        name: {"fletcher32": True, "chunksizes": (min(each.size, CHUNK),)}
+        for name, each in table.variables.items()
+        if each.size
+    }
+
+
+def damaged(known: str | None, tables: Mapping[str, xr.Dataset]) -> list[str]:
+    """Return the names of what is not as it was written; older versions kept no checksums."""
+    if known is None:
+        arrays = [each for table in tables.values() for each in table.variables.values()]
+        return [SEAL] if any(each.encoding.get("fletcher32") for each in arrays) else []
+    return broken(known, _parts(tables))
+
+
+def intact_description(path: str | Path) -> str:
+    """Return the description in a result file of which other parts are damaged.
+
+    Raises
+    ------
+    ResultError
+        If it is damaged itself, or has no checksum.
+    """
+    h5py: Any = import_module("h5py")  # slow to import
+    with opening(path, "not a result that can be mended"), h5py.File(path) as file:
+        known, text = str(file.attrs[SEAL]), str(file.attrs[DESCRIPTION])
+        whole = DESCRIPTION not in broken(known, {DESCRIPTION: text.encode()})
+    if not whole:
+        raise ResultError(f"{path}: is damaged, and so is its description; run that again")
+    return text
+
+
+def _parts(tables: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    """Return all that is in tables: the numbers of each array, and every attribute together."""
+    numbers: dict[str, Any] = {}
+    attributes: dict[str, Any] = {}
+    for name, table in tables.items():
+        kept = {key: value for key, value in table.attrs.items() if key != SEAL}
+        if DESCRIPTION in kept:
+            numbers[DESCRIPTION] = str(kept.pop(DESCRIPTION)).encode()
+        attributes[name] = _plain(kept)
+        for column, each in table.variables.items():
+            numbers[f"{name}.{column}"] = bytes_of(each.values)
+            attributes[f"{name}.{column}"] = [each.dtype.kind, each.dims, _plain(each.attrs)]
+    return {**numbers, "attributes": json.dumps(attributes, sort_keys=True).encode()}
+
+
+def _plain(attributes: Mapping[Any, Any]) -> dict[str, Any]:
+    """Return attributes as they are in any format: numbers, texts and lists of them."""
+    plain = {str(name): np.asarray(value).tolist() for name, value in attributes.items()}
+    return {
+        name: value[0] if isinstance(value, list) and len(value) == 1 else value
+        for name, value in plain.items()
+    }
+
+
+def sign(path: str | Path) -> None:
+    """Put a file's checksum at its end."""
+    own = crc_of_file(path)
+    with open(path, "ab") as file:
+        file.write(MARK + own)
+
+
+def as_written(path: str | Path) -> bool | None:
+    """Return whether a file has the bytes that were written; None if it has no such checksum."""
+    end = len(MARK) + LENGTH
+    with open(path, "rb") as file:
+        size = file.seek(0, os.SEEK_END)
+        file.seek(max(size - end, 0))
+        mark, own = file.read(len(MARK)), file.read()
+    return crc_of_file(path, size - end) == own if mark == MARK else None

@@ -1,0 +1,130 @@
+"""From the solver's numbers to two tables: samples, and stick intervals; names and units."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stiction.friction import states
+from stiction.system.description import Description
+from stiction.system.slider import Slider
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+# name: (unit, long name), as CF attributes
+VARIABLES = {
+    "u_x": ("m", "spring elongation along x"),
+    "u_y": ("m", "spring elongation along y"),
+    "v_x": ("m/s", "elongation rate along x"),
+    "v_y": ("m/s", "elongation rate along y"),
+    "slip_x": ("m/s", "slip velocity along x"),
+    "slip_y": ("m/s", "slip velocity along y"),
+    "slip_speed": ("m/s", "slip speed"),
+    "spring_x": ("N", "spring force along x, k_x u_x"),
+    "spring_y": ("N", "spring force along y, k_y u_y"),
+    "friction": ("N", "magnitude of the friction force F"),
+    "theta": ("deg", "friction angle to the principal axis x: on the mass F points at theta + 180"),
+    "psi": ("deg", "friction angle to the drive direction X: on the mass F points at psi + 180"),
+    "X": ("m", "position along the drive direction"),
+    "Y": ("m", "position across the drive direction"),
+    "V_X": ("m/s", "velocity along the drive direction"),
+    "drive_X": ("m/s", "drive velocity along X"),
+    "drive_Y": ("m/s", "drive velocity across X"),
+    "normal_load": ("N", "normal load"),
+    "mu": ("1", "apparent friction coefficient: spring force along X over the normal load"),
+    "sticking": ("1", "whether the slip is zero"),
+}
+STICKS = {
+    "stick_start": ("s", "start of a stick interval"),
+    "stick_end": ("s", "end of a stick interval"),
+    "stick_duration": ("s", "duration of a stick interval"),
+}
+
+
+def dataset(
+    description: Description,
+    times: np.ndarray,
+    samples: np.ndarray,
+    attributes: dict[str, Any],
+) -> xr.Dataset:
+    """Return the samples of a run as a dataset over ``time``.
+
+    Parameters
+    ----------
+    description : Description
+        What was run.
+    times : ndarray
+        (n,), s.
+    samples : ndarray
+        (n, 7 + internal states); the columns of `stiction.solver.exact.sampling`, then the states.
+    attributes : dict
+        Attributes of the dataset beside the description.
+    """
+    import xarray as xr
+
+    slider = description.slider
+    c, s = slider.direction
+    columns = np.ascontiguousarray(samples.T)
+    u_x, u_y, slip_x, slip_y, f_x, f_y, sticking = columns[:7]
+    travel_X, travel_Y = slider.motion.travel(0.0, times)
+    rate_X, rate_Y = slider.motion.rate(times)
+    v_x = rate_X * c - rate_Y * s - slip_x
+    v_y = rate_X * s + rate_Y * c - slip_y
+    friction = np.hypot(f_x, f_y)
+    theta = np.degrees(np.arctan2(f_y, f_x))
+    theta[friction <= 1e-14 * np.max(friction, initial=0.0)] = np.nan  # no force, no direction
+    values = {
+        "u_x": u_x,
+        "u_y": u_y,
+        "v_x": v_x,
+        "v_y": v_y,
+        "slip_x": slip_x,
+        "slip_y": slip_y,
+        "slip_speed": np.hypot(slip_x, slip_y),
+        "spring_x": slider.k_x * u_x,
+        "spring_y": slider.k_y * u_y,
+        "friction": friction,
+        "theta": theta,
+        "psi": theta - np.degrees(slider.phi),
+        "X": travel_X - u_x * c - u_y * s,
+        "Y": travel_Y + u_x * s - u_y * c,
+        "V_X": slip_x * c + slip_y * s,
+        "drive_X": np.broadcast_to(rate_X, times.shape).copy(),
+        "drive_Y": np.broadcast_to(rate_Y, times.shape).copy(),
+        "normal_load": np.broadcast_to(slider.weight(times), times.shape).copy(),
+        "sticking": sticking.astype(np.int8),
+    }
+    values["mu"] = apparent_friction(slider, values)
+    variables = {name: ("time", values[name], described(*VARIABLES[name])) for name in VARIABLES}
+    for state, value in zip(states(slider.law), columns[7:], strict=True):
+        variables[state.name] = ("time", value, described(state.unit, state.meaning))
+    time = ("time", times, described("s", "time"))
+    attributes = {"description": description.to_json(), **attributes}
+    return xr.Dataset(variables, {"time": time}, attributes)
+
+
+def apparent_friction(slider: Slider, values: Mapping[Any, Any]) -> Any:
+    """Return the spring force along the drive direction X over the normal load.
+
+    That is what a friction test reports; in steady sliding it is the coefficient of the law.
+    """
+    c, s = slider.direction
+    with np.errstate(divide="ignore", invalid="ignore"):  # a load may vanish at the end of a run
+        return (values["spring_x"] * c + values["spring_y"] * s) / values["normal_load"]
+
+
+def stick_table(intervals: np.ndarray) -> xr.Dataset:
+    """Return stick intervals, (n, 2) in s, as a dataset over ``stick``."""
+    import xarray as xr
+
+    start, end = intervals.T
+    columns = dict(zip(STICKS, (start.copy(), end.copy(), end - start), strict=True))
+    return xr.Dataset({name: ("stick", columns[name], described(*STICKS[name])) for name in STICKS})
+
+
+def described(unit: str, meaning: str) -> dict[str, str]:
+    """Return the CF attributes of a variable."""
+    return {"units": unit, "long_name": meaning}

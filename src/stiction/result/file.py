@@ -1,0 +1,136 @@
+"""The file of a run: nothing in it is believed before it was looked at."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stiction.errors import ResultError
+from stiction.result.checksums import SEAL, as_written, checked, damaged, sealed, sign
+from stiction.result.dataset import STICKS, VARIABLES
+from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files
+from stiction.storage.isolation import apart
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+SIGNATURE = b"\x89HDF\r\n\x1a\n"  # of HDF5, in which NetCDF 4 is written
+STICK_GROUP = "sticks"  # of a result file
+ENDS = ("stick_start", "stick_end")
+TEXTS = ("description", "status", "stiction_version")
+SHORTEST = 1e-100  # s, between two samples
+LATER = {"mu", "stick_duration"}  # columns that older versions did not write
+
+
+def write_result(data: xr.Dataset, sticks: xr.Dataset, path: Path) -> None:
+    """Write samples and sticks, with checksums of all that is in them."""
+    tables = {"samples": data, "sticks": sticks}
+    whole = data.assign_attrs({SEAL: sealed(tables)})
+    whole.to_netcdf(path, engine="h5netcdf", encoding=checked(data))
+    sticks.to_netcdf(path, mode="a", group=STICK_GROUP, engine="h5netcdf", encoding=checked(sticks))
+    sign(path)
+
+
+def read_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
+    """Return samples and sticks of a result file.
+
+    Raises
+    ------
+    ResultError
+        If there is no such file, or it is not a result of this package.
+    """
+    if os.path.isdir(path):
+        remedy = "of a study, st.map(path) draws a map and st.open_study(path) reads the data"
+        raise ResultError(f"{path}: is a folder, not the file of one run; {remedy}")
+    if not os.path.isfile(path):
+        raise ResultError(f"{path}: no such file; write one with 'stiction run'")
+    with opening(path, UNREADABLE):
+        _refuse_what_is_no_netcdf(path)
+        whole = as_written(path)
+    if whole is False:
+        raise _damage(path, ["its bytes are not those that were written"])
+    if whole is None:  # HDF5 may trip over it
+        apart(read_through, path)
+    with opening(path, UNREADABLE):
+        refuse_other_files(path)
+        data, sticks = opened(path)
+        lost = damaged(data.attrs.get(SEAL), {"samples": data, "sticks": sticks})
+    if lost:
+        raise _damage(path, lost)
+    data, sticks = data.drop_encoding(), sticks.drop_encoding()
+    data.attrs.pop(SEAL, None)
+    lacking = [*_lacking(data, VARIABLES), *_lacking(sticks, ENDS)]
+    lacking += ["its description"] if "description" not in data.attrs else []
+    if lacking:
+        what = f"it lacks {', '.join(lacking)}"
+        raise ResultError(f"{path}: not a result of 'stiction run'; {what}{age(data)}")
+    wrong = [*_wrong(data, "time", ["time", *VARIABLES]), *_wrong(sticks, "stick", STICKS)]
+    wrong += [f"{name} is no text" for name in TEXTS if not isinstance(data.attrs.get(name), str)]
+    if wrong:
+        raise ResultError(f"{path}: not a result of 'stiction run'; {'; '.join(wrong)}{age(data)}")
+    return data, sticks
+
+
+def _damage(path: str | Path, lost: Sequence[str]) -> ResultError:
+    return ResultError(
+        f"{path}: is damaged, or was changed: {', '.join(lost[:3])}; compute it again with: "
+        f"stiction check {path} --repair"
+    )
+
+
+def _refuse_what_is_no_netcdf(path: str | Path) -> None:
+    """Refuse a file that is none of NetCDF's, as a table of a measured record."""
+    with open(path, "rb") as file:
+        if file.read(len(SIGNATURE)) != SIGNATURE:
+            record = "a measured record is analysed in Python: st.analyse(st.Record(...))"
+            raise ResultError(f"{path}: not a NetCDF file; write one with 'stiction run'; {record}")
+
+
+def age(data: xr.Dataset) -> str:
+    """Return what is to be said of a file that another version wrote, '' of this one's."""
+    wrote, this = data.attrs.get("stiction_version"), version("stiction")
+    if wrote is None or str(wrote) == this:
+        return ""
+    return f"; stiction {wrote!s:.20} wrote it, this is {this}"
+
+
+def opened(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
+    """Return the two tables of a file; up to version 0.4 both stood in the root group."""
+    import xarray as xr
+
+    how: dict[str, Any] = {"engine": "h5netcdf", "decode_times": False, "phony_dims": "sort"}
+    data = xr.load_dataset(path, **how)
+    if "stick" in data.dims:
+        return data.drop_dims("stick"), data.drop_dims("time", errors="ignore")
+    try:
+        sticks = xr.load_dataset(path, group=STICK_GROUP, **how)
+    except OSError:  # there is no such group
+        return data, xr.Dataset()
+    return data, sticks
+
+
+def _lacking(table: xr.Dataset, names: Iterable[str]) -> list[str]:
+    return [name for name in names if name not in table and name not in LATER]
+
+
+def _wrong(table: xr.Dataset, dim: str, names: Iterable[str]) -> Iterator[str]:
+    """Yield what is wrong with columns of numbers along one dimension."""
+    for name in names:
+        if name not in table:
+            continue
+        column = table[name]
+        if column.dtype.kind not in "fiu" or column.dims != (dim,):
+            along = ", ".join(map(str, column.dims)) or "nothing"
+            yield f"{name} is {column.dtype} along {along}, and must be numbers along {dim}"
+        elif name in ("time", *ENDS):
+            values = column.values.astype(np.float64)
+            least = SHORTEST if name == "time" else 0.0
+            if not np.isfinite(values).all() or (np.diff(values) < least).any():
+                yield f"{name} must be finite and ascend"
+            elif name == "time" and not len(values):
+                yield "there are no samples in it"

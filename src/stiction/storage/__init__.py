@@ -1,0 +1,1 @@
+"""Files: written whole, summed, and looked at before anything in them is believed."""

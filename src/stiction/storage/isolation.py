@@ -1,0 +1,90 @@
+"""Reading in a process of its own: what a file does to the library that reads it ends there.
+
+HDF5 is C and believes what a file says of itself: of some damaged files it reads without end.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from importlib import import_module
+from math import ceil
+from pathlib import Path
+from signal import Signals
+from typing import TypeVar
+
+from stiction.errors import ResultError, StictionError, one_line
+
+try:
+    import resource
+    from signal import SIGXCPU
+except ImportError:  # Windows: seconds are those of a clock there
+    resource = None  # type: ignore[assignment]
+
+ENDLESS = "reading it does not end"
+CHILD = "from stiction.storage.isolation import answer; answer()"
+PATIENCE, PER_BYTE = 30.0, 1e-6  # s of the processor, for any file and for each byte of it: ample
+
+T = TypeVar("T")
+
+
+def apart(work: Callable[[str], T], path: str | Path) -> T:
+    """Return what a function returns of a file, text or None; another process calls it.
+
+    Raises
+    ------
+    ResultError
+        What the function raises, or that its process crashes or does not end.
+    """
+    seconds = ceil(PATIENCE + PER_BYTE * os.path.getsize(path))
+    # -P: nothing is imported from the working folder
+    command = [sys.executable, "-P", "-c", CHILD, work.__module__, work.__qualname__, str(path)]
+    try:
+        done = subprocess.run(
+            [*command, str(seconds)],
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=seconds if resource is None else None,
+            env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        raise _broken(path, ENDLESS) from None
+    if resource is not None and done.returncode == -SIGXCPU:
+        raise _broken(path, ENDLESS)
+    if done.returncode:
+        raise _broken(path, f"reading it ends in {_name(done.returncode)}")
+    refused, answered = json.loads(done.stdout)
+    if refused:
+        raise ResultError(answered)
+    returned: T = answered
+    return returned
+
+
+def answer() -> None:
+    """Call a function as `apart` asks for it, and write out what it returns or raises."""
+    module, name, path, seconds = sys.argv[1:]
+    if resource is not None:
+        most = resource.getrlimit(resource.RLIMIT_CPU)[1]
+        resource.setrlimit(resource.RLIMIT_CPU, (int(seconds), most))
+    out = os.dup(sys.stdout.fileno())  # nothing else is to be written there
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+    try:
+        answered = False, getattr(import_module(module), name)(path)
+    except StictionError as error:
+        answered = True, str(error)
+    except Exception as error:
+        answered = True, f"{path}: cannot be read: {one_line(error)}"
+    with open(out, "w", encoding="ascii") as pipe:
+        json.dump(answered, pipe)
+
+
+def _name(code: int) -> str:
+    return Signals(-code).name if code < 0 else f"exit status {code}"
+
+
+def _broken(path: str | Path, how: str) -> ResultError:
+    return ResultError(f"{path}: is damaged: {how}; do that run again")

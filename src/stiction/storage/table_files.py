@@ -1,0 +1,123 @@
+"""Tables to files that other programs read: CSV, Parquet, MATLAB."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from stiction.errors import ResultError
+from stiction.storage.files import placeable, whole
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Tables = Mapping[str, "xr.Dataset"]
+
+
+def write_tables(tables: Tables, path: str | Path, attributes: Mapping[str, str]) -> list[Path]:
+    """Write tables to the kind of file that the suffix names; return the paths.
+
+    CSV (a unit in the head of each column: ``u_x [m]``) and Parquet (units among the metadata of
+    each column) hold one table a file: the first at `path`, the others beside it, under their
+    names (``run-sticks.csv``). MATLAB has them all in one file, a struct each, the units in
+    another.
+
+    Parameters
+    ----------
+    tables : mapping of str to Dataset
+        By their names.
+    path : str or Path
+        With the suffix .csv, .parquet or .mat.
+    attributes : mapping of str to str
+        What is to be known of them all, where the format has a place for it.
+
+    Raises
+    ------
+    ResultError
+        If the format is not known, needs what is not installed, or cannot be written there.
+    """
+    first = exportable(path)
+    write = FORMATS[first.suffix.lower()]
+    if write is _mat:
+        with whole(first) as part:
+            _mat(tables, part, attributes)
+        return [first]
+    paths: list[Path] = []
+    for name, table in tables.items():
+        beside = first.with_name(f"{first.stem}-{name}{first.suffix}") if paths else first
+        with whole(placeable(beside)) as part:
+            write({name: table}, part, attributes)
+        paths.append(beside)
+    return paths
+
+
+def exportable(path: str | Path) -> Path:
+    """Return the path of tables, if they can be written there; see `write_tables`."""
+    target = Path(path)
+    if target.suffix.lower() not in FORMATS:
+        known = ", ".join(FORMATS)
+        raise ResultError(f"{target}: unknown format {target.suffix!r}; name it with {known}")
+    return placeable(target)
+
+
+def with_units(table: xr.Dataset) -> Any:
+    """Return a table as a data frame, its columns named with their units: ``peak [N]``."""
+    units = {
+        name: f"{name} [{unit}]" for name, unit in units_of(table).items() if unit not in ("", "1")
+    }
+    return table.to_dataframe().rename(columns=units).rename_axis(index=units)
+
+
+def units_of(table: xr.Dataset) -> dict[str, str]:
+    """Return the unit of each column, '' where there is none."""
+    return {str(name): str(v.attrs.get("units", "")) for name, v in table.variables.items()}
+
+
+def _csv(tables: Tables, path: Path, attributes: Mapping[str, str]) -> None:
+    for table in tables.values():
+        with_units(table).to_csv(path)
+
+
+def _parquet(tables: Tables, path: Path, attributes: Mapping[str, str]) -> None:
+    try:
+        import pyarrow
+        from pyarrow import parquet
+    except ImportError:
+        message = "Parquet needs pyarrow; install it with: pip install 'stiction[parquet]'"
+        raise ResultError(f"{message}, or name the file .csv or .mat") from None
+    for table in tables.values():
+        units = units_of(table)
+        columns = pyarrow.Table.from_pandas(table.to_dataframe().reset_index())
+        fields = [
+            field.with_metadata({"units": units.get(field.name, "")}) for field in columns.schema
+        ]
+        known = {**(columns.schema.metadata or {}), **attributes}
+        parquet.write_table(columns.cast(pyarrow.schema(fields, metadata=known)), path)
+
+
+def _mat(tables: Tables, path: Path, attributes: Mapping[str, str]) -> None:
+    io: Any = import_module("scipy.io")  # slow to import
+    structs: dict[str, Any] = {
+        _name(name): {_name(column): values.values for column, values in table.variables.items()}
+        for name, table in tables.items()
+    }
+    units = {
+        _name(name): {_name(column): unit for column, unit in units_of(table).items()}
+        for name, table in tables.items()
+    }
+    contents = {**structs, "units": units, **attributes}
+    io.savemat(path, contents, appendmat=False, long_field_names=True, oned_as="column")
+
+
+def _name(name: object) -> str:
+    """Return a name that MATLAB takes."""
+    return str(name).replace("-", "_")
+
+
+FORMATS: dict[str, Callable[[Tables, Path, Mapping[str, str]], None]] = {
+    ".csv": _csv,
+    ".parquet": _parquet,
+    ".mat": _mat,
+}

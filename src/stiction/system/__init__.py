@@ -1,0 +1,1 @@
+"""What is simulated: slider, start and settings, read from a description and written back."""

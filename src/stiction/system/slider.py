@@ -1,0 +1,302 @@
+"""The described system: a mass on a plane, pulled by a spring with two stiffnesses."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from math import cos, pi, sin, sqrt
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import AfterValidator
+
+from stiction.drive import (
+    ConstantVelocity,
+    Drive,
+    DriveProgram,
+    LoadProgram,
+    load_at,
+    read_drive,
+    read_load,
+)
+from stiction.errors import DescriptionError
+from stiction.friction import Law, has_state, read_law
+from stiction.friction.user.loading import is_own, named
+from stiction.friction.user.validation import is_law
+from stiction.system.writing import parameter_table, slider_tables
+from stiction.text.sections import Section, as_html
+from stiction.text.toml import Reader, folder_of, gather, read_toml, toml_text
+from stiction.text.units import Angle, Damping, Force, Mass, Stiffness
+from stiction.text.validation import Described
+
+
+def _within_a_right_angle(phi: float) -> float:
+    if abs(phi) > pi / 2 * (1 + 1e-12):
+        raise ValueError(
+            f"must lie between -90 deg and 90 deg, is {phi * 180 / pi:g} deg; "
+            "name the axis x that lies nearer to the drive direction"
+        )
+    return phi
+
+
+def _is_law(value: Any) -> Any:
+    if isinstance(value, type) or not isinstance(value, tuple):
+        raise ValueError(f"{value!r} is not a friction law; write for example st.Coulomb(mu_0=0.2)")
+    try:
+        is_law(type(value), type(value).__name__)
+    except DescriptionError as error:
+        raise ValueError(error.faults[0].message) from None
+    return value
+
+
+def _is_drive(value: Any) -> Any:
+    if not isinstance(value, ConstantVelocity | DriveProgram):
+        raise ValueError(
+            f"{value!r} is not a drive; write for example st.ConstantVelocity('1 mm/s')"
+        )
+    return value
+
+
+def _is_load(value: Any) -> Any:
+    if value is not None and not isinstance(value, LoadProgram):
+        raise ValueError(
+            f"{value!r} is not a program of the load; write for example "
+            "st.LoadProgram(program=[st.Ramp('20 N', '1 s')])"
+        )
+    return value
+
+
+DRIVE = "ConstantVelocity | DriveProgram"
+
+
+class Apparatus(Described):
+    """The mechanical part: mass, springs, dampers, misalignment, load (see `Slider`)."""
+
+    mass: Mass
+    k_x: Stiffness
+    k_y: Stiffness
+    phi: Annotated[Angle, AfterValidator(_within_a_right_angle)]
+    normal_load: Force
+    c_x: Damping = 0.0
+    c_y: Damping = 0.0
+    driven: Literal["plate", "spring"] = "plate"
+
+
+class Slider(Apparatus):
+    r"""A mass in frictional contact with a plane, pulled through an anisotropic spring.
+
+    The axes x and y are the principal axes of the spring; the drive moves along X, which
+    lies at the misalignment angle phi from x (Nakano & Popov, Figs. 1 and 2). Each
+    parameter is a number in SI or a string with its unit; phi needs its unit.
+
+    Parameters
+    ----------
+    mass : float or str
+        m, kg.
+    k_x, k_y : float or str
+        Principal stiffnesses, N/m.
+    phi : str
+        Misalignment angle between x and X, within 90 degrees of zero; ``slider.phi`` is in rad.
+    normal_load : float or str
+        W, N; what a program of the load starts from.
+    friction : FrictionLaw
+        For example `ExponentialWeakening` or `Coulomb`.
+    drive : ConstantVelocity or DriveProgram
+        The drive velocity in time.
+    load : LoadProgram, optional
+        The normal load in time, where it is not constant.
+    c_x, c_y : float or str, optional
+        Damping constants of the spring along x and y, N s/m; none in the paper.
+    driven : {"plate", "spring"}, optional
+        What the drive moves: the plate under a mass whose spring is held (Fig. 1, and Eq. (1)
+        to the letter), or the far end of the spring over a plate at rest (Fig. 2). At a steady
+        drive they are the same. Where the drive accelerates, a driven plate adds the inertia
+        m dv_d/dt to what the friction must hold, and where its velocity jumps, the slip
+        velocity jumps with it; with a driven spring end neither is so.
+
+    Raises
+    ------
+    DescriptionError
+        With every fault at once.
+
+    Notes
+    -----
+    Glossary of the symbols used throughout, with the paper's equations:
+
+    ========== ======================================================= ===== =====
+    symbol     meaning                                                 unit  Eq.
+    ========== ======================================================= ===== =====
+    u_x, u_y   spring elongations along the principal axes             m     1
+    v_x, v_y   elongation rates du_x/dt, du_y/dt                       m/s   2
+    v_slip     slip speed, magnitude of drive velocity minus (v_x,v_y) m/s   3
+    theta      friction angle to x, that of the slip velocity          deg   1
+    psi        friction angle to X, theta - phi                        deg   1
+    F          friction force; on the mass it points at theta + 180    N     1
+    mu         spring force along X over W, as a test reports it       1     \-
+    X, Y       position of the mass in the laboratory                  m     6
+    V          drive velocity                                          m/s   2
+    F_0        friction force at vanishing slip, mu_0 W                N     7
+    l_x        slip length F_0/k_x                                     m     8
+    omega_x    sqrt(k_x/m), the low natural frequency                  rad/s 10
+    omega_y    sqrt(k_y/m), the high natural frequency                 rad/s 9
+    A          mu_0 W/(2 V sin(phi) sqrt(m k_x))                       1     10
+    zeta       instantaneous damping ratio A sin^3(theta)              1     10
+    ========== ======================================================= ===== =====
+
+    The spring pulls the mass along its elongation; the friction on the mass points against its
+    slip over the plate: m u'' + K u = F s/\|s\|, with s the slip velocity. Results hold the
+    magnitude ``friction`` and the angle ``theta`` at which s lies; on the mass the force has the
+    components -F cos(theta) and -F sin(theta) along x and y, and so it is drawn in every figure.
+    While the mass sticks, theta is the angle of the force that friction holds. On an
+    `Anisotropic` surface the force and the slip differ in direction; theta is that of the force.
+
+    Angles are in degrees wherever they are data: results, tables and figures, as their
+    ``attrs["units"]`` say. What you write carries its unit. As numbers in Python, ``slider.phi``
+    and the arguments of `stiction.theory`, they are in rad, the unit of SI.
+    """
+
+    friction: Annotated[Any, AfterValidator(_is_law), "friction law"]
+    drive: Annotated[Any, AfterValidator(_is_drive), DRIVE] = ConstantVelocity(0.0)
+    load: Annotated[Any, AfterValidator(_is_load), "LoadProgram | None"] = None
+
+    @property
+    def law(self) -> Law:
+        """The friction law, typed."""
+        law: Law = self.friction
+        return law
+
+    @property
+    def motion(self) -> Drive:
+        """The drive, typed."""
+        drive: Drive = self.drive
+        return drive
+
+    @property
+    def direction(self) -> tuple[float, float]:
+        """Unit vector of X in the axes (x, y): (cos phi, sin phi), exact at a right angle."""
+        c, s = cos(self.phi), sin(self.phi)
+        return (0.0, s) if abs(c) < 1e-15 else (c, s)
+
+    @property
+    def F_0(self) -> float:
+        """Friction force at vanishing slip, mu_0 W, in N; at the slip speed of the drive for a
+        law with internal state, which may have none at rest."""
+        speed = abs(self.motion.rate(0.0)[0]) if has_state(self.law) else 0.0
+        return self.law.coefficient(speed) * self.normal_load
+
+    @property
+    def natural_frequencies(self) -> tuple[float, float]:
+        """Natural frequencies of the mass on its spring, the slower first, in Hz."""
+        low, high = sorted((self.k_x, self.k_y))
+        return sqrt(low / self.mass) / (2 * pi), sqrt(high / self.mass) / (2 * pi)
+
+    @property
+    def shaken(self) -> tuple[float, ...]:
+        """Frequencies of the harmonics in the programs of drive and load, in Hz."""
+        drive, load = self.drive, self.load
+        parts = [*getattr(drive, "program", ()), *getattr(load, "program", ())]
+        parts += [getattr(drive, name, None) for name in ("along", "across")]
+        parts.append(getattr(load, "modulation", None))
+        return tuple(part.frequency for part in parts if hasattr(part, "frequency"))
+
+    def weight(self, t: Any) -> Any:
+        """Return the normal load at time `t` (float or array, s), in N; W until it changes."""
+        return load_at(self.normal_load, self.load, t)
+
+    def replace(self, **changes: Any) -> Self:
+        """Return the same slider with some parameters changed, e.g. ``phi="3 deg"``."""
+        values = {name: getattr(self, name) for name in type(self).model_fields}
+        values["phi"] = f"{self.phi!r} rad"
+        return type(self)(**(values | changes))
+
+    @classmethod
+    def from_toml(
+        cls,
+        path: str | Path,
+        changes: Mapping[str, Any] | None = None,
+        *,
+        trust: bool = False,
+    ) -> Slider:
+        """Read the slider of a description; `Description` reads the whole of it.
+
+        Parameters
+        ----------
+        path : str or Path
+            A file, or a text of several lines as `to_toml` writes it.
+        changes : mapping, optional
+            Other values of some parameters by their paths, as `Description.from_toml`.
+        trust : bool, optional
+            Whether the file of a friction law may lie outside the description's folder.
+        """
+        raw, find = read_toml(path, changes), named(folder_of(path), trust)
+        return cls.from_parts(
+            gather(
+                {name: raw[name] for name in raw if name in SLIDER_TABLES},
+                {**SLIDER_TABLES, "friction": partial(read_law, find=find)},
+                absent=OPTIONAL_TABLES,
+                last=("friction",) if is_own(raw.get("friction")) else (),
+            )
+        )
+
+    def _repr_html_(self) -> str:
+        return as_html([Section("Slider", [], parameter_table(slider_tables(self)))])
+
+    def to_toml(self) -> str:
+        """Return the slider as a description, with units; `from_toml` reads the same again.
+
+        A friction law of one's own is named by its file and class.
+
+        Examples
+        --------
+        >>> import stiction as st
+        >>> print(st.presets.nakano_popov_2020().to_toml())
+        [slider]
+        mass = "250 g"
+        k_x = "1 kN/m"
+        k_y = "10 MN/m"
+        phi = "1 deg"
+        normal_load = "10 N"
+        <BLANKLINE>
+        [friction]
+        law = "exponential-weakening"
+        mu_0 = 0.2
+        mu_inf = 0.15
+        v_f = "10 mm/s"
+        <BLANKLINE>
+        [drive]
+        velocity = "1 mm/s"
+        <BLANKLINE>
+        """
+        return toml_text(slider_tables(self))
+
+    @classmethod
+    def from_parts(cls, parts: Mapping[str, Any]) -> Slider:
+        """Put together what the readers in `SLIDER_TABLES` returned."""
+        apparatus: Apparatus = parts["slider"]
+        return cls(
+            **apparatus.model_dump(mode="json"),
+            friction=parts["friction"],
+            drive=parts["drive"],
+            load=parts.get("load"),
+        )
+
+
+def slider_of(source: Any) -> Slider:
+    """Return a slider: as given, of a description or a run, or that in a file.
+
+    Raises
+    ------
+    DescriptionError
+        If it is none of these.
+    """
+    found = getattr(source, "slider", source)
+    return found if isinstance(found, Slider) else Slider.from_toml(source)
+
+
+SLIDER_TABLES: dict[str, Reader] = {
+    "slider": lambda table: Apparatus(**table),
+    "friction": read_law,
+    "drive": read_drive,
+    "load": read_load,
+}
+OPTIONAL_TABLES = ("load",)

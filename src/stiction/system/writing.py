@@ -1,0 +1,100 @@
+"""From a slider to the tables of a description, with units as people write them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, get_type_hints
+
+from stiction.drive import ConstantVelocity
+from stiction.drive.pieces import DRIVE_PIECES, LEVELS, LOAD_PIECES
+from stiction.friction import Anisotropic, law_table
+from stiction.text.quantity_text import quantity_text
+from stiction.text.sections import Table as Rows
+from stiction.text.units import FORCE, VELOCITY, Kind, kind_of
+
+if TYPE_CHECKING:
+    from stiction.system.slider import Slider
+
+Table = dict[str, Any]
+
+
+def slider_tables(slider: Slider) -> dict[str, Table]:
+    """Return the tables [slider], [friction], [drive] and [load] of a description."""
+    parts = {"friction", "drive", "load"}
+    mechanical = [name for name in type(slider).model_fields if name not in parts]
+    return {
+        "slider": described(slider, mechanical),
+        "friction": _law(slider.law),
+        "drive": _drive(slider.motion),
+        **({} if slider.load is None else {"load": _program(slider.load, LOAD_PIECES, FORCE)}),
+    }
+
+
+def parameter_table(tables: Mapping[str, Table]) -> Rows:
+    """Return a description's tables as one: a row for each parameter, as it is written."""
+    rows = [
+        (f"{name}.{key}", str(value))
+        for name, table in tables.items()
+        for key, value in table.items()
+    ]
+    return Rows(("parameter", "value"), rows)
+
+
+def described(value: Any, names: Iterable[str]) -> Table:
+    """Return fields of a description that differ from their defaults, with units."""
+    fields, hints = type(value).model_fields, get_type_hints(type(value), include_extras=True)
+    return {
+        name: _written(getattr(value, name), kind_of(hints[name]))
+        for name in names
+        if fields[name].is_required() or getattr(value, name) != fields[name].default
+    }
+
+
+def _written(value: Any, kind: Kind | None) -> Any:
+    """Return a value with its unit, if it is a quantity that has one."""
+    value = value.tolist() if hasattr(value, "tolist") else value  # a number of NumPy
+    if kind is not None and kind.unit and isinstance(value, float):
+        return quantity_text(value, kind.unit)
+    return value
+
+
+def _named(value: Any) -> Table:
+    """Return the fields of a NamedTuple that differ from their defaults, with units."""
+    hints, defaults = get_type_hints(type(value), include_extras=True), value._field_defaults
+    return {
+        name: _written(its, kind_of(hints.get(name)))
+        for name, its in value._asdict().items()
+        if name not in defaults or its != defaults[name]
+    }
+
+
+def _law(law: Any) -> Table:
+    if isinstance(law, Anisotropic):
+        surface = {name: each for name, each in _named(law).items() if name != "law"}
+        return {**_law(law.law), "anisotropy": surface}
+    return {"law": law_table(law)["law"], **_named(law)}
+
+
+def _drive(drive: Any) -> Table:
+    if isinstance(drive, ConstantVelocity):
+        return _named(drive)
+    return _program(drive, DRIVE_PIECES, VELOCITY)
+
+
+def _program(program: Any, known: Mapping[str, type[Any]], kind: Kind) -> Table:
+    names = {each: name for name, each in known.items()}
+    table = described(program, type(program).model_fields)
+    for name, value in table.items():
+        if name == "program":
+            table[name] = [{"piece": names[type(each)], **_piece(each, kind)} for each in value]
+        elif hasattr(value, "_asdict"):
+            table[name] = _piece(value, kind)
+    return table
+
+
+def _piece(piece: Any, kind: Kind) -> Table:
+    """Return the parameters of a piece, whose levels are of one quantity."""
+    return {
+        name: _written(value, kind) if name in LEVELS else value
+        for name, value in _named(piece).items()
+    }

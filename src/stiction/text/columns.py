@@ -1,0 +1,55 @@
+"""Columns of numbers that can be compared at a glance: one unit, one number of decimals in each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import floor, isfinite, log10
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from stiction.text.quantity_text import DIGITS, SI, thousands
+from stiction.text.sections import Table
+
+
+class Quantity(NamedTuple):
+    """Values of a quantity, (n,), and their SI unit."""
+
+    values: ArrayLike
+    unit: str
+
+
+def grid(quantities: Mapping[str, Quantity], rows: int, alike: str = "") -> Table:
+    """Return a table of quantities by their headings, its first rows, each in a unit that suits.
+
+    All that have the unit `alike` are written alike, to be compared and added.
+
+    Examples
+    --------
+    >>> grid({"force": Quantity([0.25, -0.0012, float("nan")], "N")}, 3)
+    Table(headings=('force (mN)',), rows=[('250.0',), ('-1.2',), ('none',)])
+    """
+    columns, headings = [], []
+    together = [np.ravel(values)[:rows] for values, unit in quantities.values() if unit == alike]
+    common = scale(np.concatenate(together).tolist(), alike) if together else (0, 0)
+    for name, (values, unit) in quantities.items():
+        numbers = np.asarray(values, dtype=np.float64)[:rows]
+        power, decimals = common if unit == alike else scale(numbers.tolist(), unit)
+        headings.append(name if unit == "1" else f"{name} ({SI[power]}{unit})")
+        columns.append([cell(value / 1000.0**power, decimals) for value in numbers.tolist()])
+    return Table(tuple(headings), list(zip(*columns, strict=True)))
+
+
+def scale(values: Sequence[float], unit: str) -> tuple[int, int]:
+    """Return a power of a thousand, and decimals, for four digits of the largest value."""
+    largest = max((abs(value) for value in values if isfinite(value)), default=0.0)
+    # as the largest is written, so that 999.97 is 1000.0 of the next prefix
+    size = floor(log10(float(f"{largest:.{DIGITS - 1}e}"))) if largest > 0.0 else 0
+    power = thousands(largest, unit)
+    return power, max(0, DIGITS - 1 - (size - 3 * power))
+
+
+def cell(value: float, decimals: int) -> str:
+    """Return a number with so many decimals, and no sign if they are all zero."""
+    return f"{round(value, decimals) + 0.0:.{decimals}f}" if isfinite(value) else "none"

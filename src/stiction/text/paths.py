@@ -1,0 +1,119 @@
+"""How a parameter is named: a path through a description's tables, or a short name for one.
+
+``phi`` and ``slider.phi`` are the same, so are ``V`` and ``drive.velocity``; ``mu_0`` is a number
+of the friction law, ``duration`` a setting of the run. Elements of a list count from 1, as in
+``drive.program.2.duration``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from copy import deepcopy
+from typing import Any
+
+from stiction.errors import DescriptionError, Fault
+from stiction.text.validation import unknown
+
+ALIASES = {
+    "V": "drive.velocity",
+    "velocity": "drive.velocity",
+    "W": "normal_load",
+    "m": "mass",
+}
+MECHANICAL = ("mass", "k_x", "k_y", "c_x", "c_y", "phi", "normal_load", "driven")
+SETTINGS = ("duration", "sample_rate", "rtol", "regularisation", "multiscale")
+TABLES = ("slider", "friction", "drive", "load", "initial", "run", "study", "axes")
+
+
+def canonical(name: str) -> str:
+    """Return the name under which a parameter is known: short names and ``slider.`` resolved."""
+    bare = name.strip().removeprefix("slider.")
+    return ALIASES.get(bare, bare)
+
+
+def canonical_path(path: str) -> str:
+    """Return a path, of several parameters that share one value too, short names resolved."""
+    names = [name.strip() for name in path.split(",")]
+    if not any(name in ALIASES for name in names):
+        return path  # as it was written: stores are named by it
+    return ", ".join(ALIASES.get(name, name) for name in names)
+
+
+def with_changes(raw: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a description's tables with other values of some parameters.
+
+    Raises
+    ------
+    DescriptionError
+        With every path that leads nowhere.
+    """
+    tables, found = deepcopy(dict(raw)), []
+    for name, value in changes.items():
+        try:
+            put(tables, keys_of(tables, name), value)
+        except (KeyError, IndexError, TypeError) as error:
+            found.append(Fault(name, str(error.args[0])))
+    if found:
+        raise DescriptionError(found)
+    return tables
+
+
+def keys_of(tables: Mapping[str, Any], name: str) -> list[str]:
+    """Return the way to a parameter through a description's tables, table first."""
+    bare = name.strip()
+    keys = ALIASES.get(bare, bare).split(".")
+    if len(keys) > 1 and keys[0] in TABLES:
+        return keys
+    if keys[0] in MECHANICAL:
+        return ["slider", *keys]
+    if keys[0] in SETTINGS:
+        return ["run", *keys]
+    law = tables.get("friction")
+    if isinstance(law, Mapping) and keys[0] in law:
+        return ["friction", *keys]
+    raise KeyError(unknown("parameter", name, known(tables)))
+
+
+def known(tables: Mapping[str, Any]) -> Iterator[str]:
+    """Yield names that lead somewhere."""
+    yield from (*ALIASES, *MECHANICAL, *SETTINGS)
+    for title, table in tables.items():
+        if isinstance(table, Mapping):
+            yield from (f"{title}.{key}" for key in table)
+
+
+def put(owner: Any, keys: list[str], value: Any) -> None:
+    """Put a value where the keys lead; a table that is not there is made."""
+    key, rest = first(owner, keys)
+    if rest:
+        put(member(owner, key), rest, value)
+    elif isinstance(owner, list):
+        owner[place(owner, key)] = value
+    elif isinstance(owner, dict):
+        owner[key] = value
+    else:
+        raise TypeError(f"has no part {key!r}: it is {owner!r}")
+
+
+def first(owner: Any, keys: list[str]) -> tuple[str, list[str]]:
+    """Return the first key and the rest; a key that is there may have dots in it."""
+    for count in range(len(keys), 1, -1):
+        if isinstance(owner, dict) and (joined := ".".join(keys[:count])) in owner:
+            return joined, keys[count:]
+    return keys[0], keys[1:]
+
+
+def member(owner: Any, key: str) -> Any:
+    """Return a part of a table, made if it is not there, or an element of a list."""
+    if isinstance(owner, list):
+        return owner[place(owner, key)]
+    if not isinstance(owner, dict):
+        raise TypeError(f"has no part {key!r}: it is {owner!r}")
+    return owner.setdefault(key, {})
+
+
+def place(owner: list[Any], key: str) -> int:
+    """Return the place of an element that is counted from 1."""
+    if not key.isdigit() or not 1 <= int(key) <= len(owner):
+        raise IndexError(f"{key!r} is no element of a list of {len(owner)}; they count from 1")
+    return int(key) - 1

@@ -1,0 +1,198 @@
+"""Reading a description's tables, and gathering the faults of all of them."""
+
+from __future__ import annotations
+
+import errno
+import json
+import tomllib
+from collections.abc import Callable, Collection, Mapping, Sequence
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from stiction.errors import DescriptionError, Fault
+from stiction.text.paths import with_changes
+from stiction.text.validation import unknown
+
+Reader = Callable[[dict[str, Any]], Any]
+LARGEST = 2**24  # bytes of a description: a table of a million values
+DEEPEST = 16  # tables and lists inside one another; descriptions have five
+TOO_DEEP = f"is nested more deeply than {DEEPEST} levels; no description is"
+BITS = 64  # of an integer, as TOML has it
+
+
+def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """Read a TOML file, or a text of several lines in TOML, with other values of some parameters.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file, or the text.
+    changes : mapping, optional
+        For the path of a parameter (see `stiction.text.paths`) its value.
+
+    Raises
+    ------
+    DescriptionError
+        Saying why the file cannot be read, or which parameter is none; or that it is no path.
+    """
+    if not isinstance(path, str | PathLike):
+        message = f"{type(path).__name__} is no description; give its file, or its text in TOML"
+        raise DescriptionError([Fault("path", message)])
+    written = isinstance(path, str) and "\n" in path
+    where = "the text" if written else str(path)
+    try:
+        raw = tomllib.loads(str(path) if written else _text_of(Path(path)))
+    except RecursionError:
+        message = TOO_DEEP
+    except OSError as error:
+        message = f"{error.strerror or 'cannot be read'}; write a description with 'stiction init'"
+    except UnicodeDecodeError:
+        message = "is not text in UTF-8; write a description with 'stiction init'"
+    except ValueError as error:  # what is not TOML, and integers of thousands of digits
+        unquoted = (
+            "; a value with a unit goes in quotes" if "Expected newline" in str(error) else ""
+        )
+        message = f"is not TOML: {error}{unquoted}"
+    else:
+        tame(raw, where)
+        return tame(with_changes(raw, changes), where) if changes else raw
+    raise DescriptionError([Fault(where, message)])
+
+
+def read_json(text: str) -> dict[str, Any]:
+    """Return the tables that a text in JSON holds.
+
+    Raises
+    ------
+    DescriptionError
+        If it holds none.
+    """
+    try:
+        raw = json.loads(text)
+    except (ValueError, RecursionError, TypeError) as error:
+        raise DescriptionError([Fault("description", f"is not JSON: {error}")]) from None
+    if not isinstance(raw, dict):
+        raise DescriptionError([Fault("description", f"must be tables, is {raw!r:.60}")])
+    return tame(raw, "description")
+
+
+def tame(raw: dict[str, Any], where: str) -> dict[str, Any]:
+    """Return tables, if they can be followed and written out without exhausting the machine.
+
+    Raises
+    ------
+    DescriptionError
+        If they are nested too deeply, or hold integers too long for any computer's.
+    """
+    level: list[tuple[str, Any]] = list(raw.items())
+    found = []
+    for _ in range(DEEPEST):
+        inside: list[tuple[str, Any]] = []
+        for path, value in level:
+            if isinstance(value, dict | list):
+                parts = value.items() if isinstance(value, dict) else enumerate(value, 1)
+                inside += [(f"{path}.{key}", each) for key, each in parts]
+            elif isinstance(value, int) and value.bit_length() > BITS:
+                found.append(Fault(path, f"an integer has {BITS} bits at most; write it as 1e30"))
+        level = inside
+    if level:
+        found.append(Fault(where, TOO_DEEP))
+    if found:
+        raise DescriptionError(found)
+    return raw
+
+
+def _text_of(path: Path) -> str:
+    """Return the text of a file, of which no more is read than a description may have."""
+    try:
+        with path.open("rb") as file:
+            content = file.read(LARGEST + 1)
+    except ValueError as error:  # a name with a zero in it
+        raise OSError(str(error)) from None
+    if len(content) > LARGEST:
+        raise OSError(errno.EFBIG, f"has more than {LARGEST:,} bytes")
+    return content.decode("utf-8-sig")
+
+
+def folder_of(path: str | Path) -> Path:
+    """Return the folder of what `read_toml` reads: the working one for a text."""
+    return Path() if isinstance(path, str) and "\n" in path else Path(path).parent
+
+
+def toml_text(tables: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return tables of numbers, texts, lists and tables of these as TOML."""
+    parts = []
+    for name, table in tables.items():
+        lines = [f"{key} = {_value(value)}" for key, value in table.items()]
+        parts.append("\n".join([f"[{name}]", *lines]) + "\n")
+    return "\n".join(parts)
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return f"{{ {', '.join(f'{key} = {_value(each)}' for key, each in value.items())} }}"
+    if isinstance(value, list | tuple):
+        items = [_value(each) for each in value]
+        if any(isinstance(each, Mapping) for each in value):
+            return "[\n" + "".join(f"    {item},\n" for item in items) + "]"
+        return f"[{', '.join(items)}]"
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    return str(value).lower() if isinstance(value, bool) else repr(value)
+
+
+def gather(
+    raw: Mapping[str, Any],
+    readers: Mapping[str, Reader],
+    optional: Collection[str] = (),
+    absent: Collection[str] = (),
+    last: Collection[str] = (),
+    known: Sequence[Fault] = (),
+) -> dict[str, Any]:
+    """Read every table with its reader.
+
+    A table that is not there is an error, or read as an empty one if it is `optional`, or
+    left out of what is returned if it may be `absent`. Those that come `last`, which run what
+    they name, are read only where there is no fault in any other, nor a `known` one.
+
+    Raises
+    ------
+    DescriptionError
+        With every fault in every table, each below the table's name, after the known ones.
+    """
+    found = [*known]
+    strange = [name for name in raw if name not in readers]
+    found += [Fault(name or '""', unknown("table", name, readers)) for name in strange]
+    parts: dict[str, Any] = {}
+    for name, read in sorted(readers.items(), key=lambda item: item[0] in last):
+        if (name in absent and name not in raw) or (name in last and found):
+            continue
+        table = raw.get(name, {} if name in optional else None)
+        if table is None:
+            found.append(Fault(name, f"missing; write a table [{name}]"))
+        elif not isinstance(table, Mapping):
+            found.append(Fault(name, f"must be a table [{name}], is {table!r}"))
+        else:
+            try:
+                parts[name] = read(dict(table))
+            except DescriptionError as error:
+                found += [
+                    Fault(".".join([name, *fault.path.split(".")[1:]]), fault.message)
+                    for fault in error.faults
+                ]
+    if found:
+        raise DescriptionError(found)
+    return parts
+
+
+def choose(
+    table: dict[str, Any], key: str, known: Mapping[str, type[Any]], default: str | None = None
+) -> Any:
+    """Make the kind of law or drive that ``table[key]`` names, from the rest of the table."""
+    name = table.pop(key, default)
+    if not isinstance(name, str) or name not in known:
+        listed = f"missing; known: {', '.join(known)}"
+        message = listed if name is None else unknown(key, str(name), known)
+        raise DescriptionError([Fault(f"table.{key}", message)])
+    return known[name](**table)

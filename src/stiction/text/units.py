@@ -1,0 +1,230 @@
+"""Units at the boundary: ``"10 mm/s"`` becomes SI; inside there are floats only.
+
+Each name below is a type for a field of a description. A number is taken as SI,
+a string must carry its unit, and an angle must be a string, because a bare number
+does not say whether it is in degrees or radians.
+"""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from functools import partial
+from math import inf, isfinite, isinf, isnan, pi, radians
+from types import UnionType
+from typing import Annotated, Any, NamedTuple, Union, get_args, get_origin
+
+from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
+from pydantic_core import PydanticCustomError
+
+from stiction.text.quantity_text import DIGITS, SI, angle_text, thousands
+from stiction.text.unit_text import UnitError, factor, short
+
+
+class Kind(NamedTuple):
+    """A physical quantity: what it is called, its SI unit, and an example to write."""
+
+    name: str
+    unit: str
+    example: str
+
+
+LONGEST = 200  # characters of a number and its unit
+LARGEST, SMALLEST = 1e60, 1e-60  # in SI; what is smaller is zero. A product of five is a number
+VELOCITY = Kind("a velocity", "m/s", "1 mm/s")
+FORCE = Kind("a force", "N", "10 N")
+
+# one number, then whatever is its unit: nothing to calculate, no decimal comma
+QUANTITY = re.compile(
+    r"\s*([+−-]?(?:\d+\.?\d*|\.\d+|nan|inf)(?:[eE][+−-]?\d+)?)(?![\d,])(.*)", re.S
+)
+
+
+def to_si(value: object, kind: Kind) -> float:
+    """Return `value` as a float in the SI unit of `kind`; below 1e-60 it is zero.
+
+    Parameters
+    ----------
+    value : float, int or str
+        A bare number in SI, or a string of a number and a unit; NumPy's numbers and pint's
+        quantities are read as these.
+    kind : Kind
+        The quantity that is wanted.
+
+    Raises
+    ------
+    PydanticCustomError
+        With the rule, the offending value and what to write instead.
+    """
+    value = _bare(value)
+    angle = kind.unit == "rad"
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        raise fault(f"{value!r} is not {kind.name}; write for example {kind.example!r}")
+    if isinstance(value, str):
+        number = _parse(value, kind)
+    elif angle:
+        raise fault(f"degree or radian? write '{value} deg' or '{value} rad'")
+    else:
+        number = as_float(value)
+    if not isfinite(number):
+        value = value if isinstance(value, str) else number  # an integer may have a million digits
+        raise fault(f"{value!r} is not finite; write for example {kind.example!r}")
+    if abs(number) > LARGEST:
+        unit = f" {kind.unit}".rstrip()
+        raise fault(f"{value!r} is beyond {LARGEST:g}{unit}; write for example {kind.example!r}")
+    return number if abs(number) >= SMALLEST else 0.0
+
+
+def as_float(value: Any) -> float:
+    """Return a number as a float, infinity for an integer that is too large for one."""
+    try:
+        return float(value)
+    except OverflowError:
+        return inf
+
+
+def _bare(value: object) -> object:
+    """Return a number of NumPy as Python's, a quantity of pint as text, others as they are."""
+    if hasattr(value, "magnitude") and hasattr(value, "units"):
+        return f"{_bare(value.magnitude)!r} {value.units}"
+    return value.item() if hasattr(value, "item") and getattr(value, "shape", None) == () else value
+
+
+def _parse(text: str, kind: Kind) -> float:
+    if len(text) > LONGEST:
+        raise fault(f"has {len(text)} characters, no quantity has more than {LONGEST}")
+    found = QUANTITY.fullmatch(text)
+    if not found:
+        comma = " (the decimal sign is a point)" if "," in text else ""
+        raise fault(
+            f"{text!r} is not one number and its unit{comma}; write for example {kind.example!r}"
+        )
+    number, unit = float(found[1].replace("−", "-")), found[2].strip()
+    if unit == kind.unit:
+        return number  # many runs are described in SI
+    if unit == "deg" and kind.unit == "rad":
+        return number * radians(1.0)
+    if not unit:
+        raise fault(f"{text!r} has no unit; write for example {kind.example!r}")
+    if not kind.unit:
+        raise fault(f"{text!r} must be a number without a unit; write for example {kind.example}")
+    try:
+        size = factor(unit, kind.unit)
+    except UnitError as error:
+        raise fault(
+            f"{text!r} is not one number and its unit: {error}; write for example {kind.example!r}"
+        ) from error
+    if size is None:
+        raise fault(
+            f"{text!r} is in {short(unit) or 'no unit'}, not a unit of {kind.name}; "
+            f"write for example {kind.example!r}"
+        )
+    return _times(found[1].replace("−", "-"), size)
+
+
+def _times(text: str, size: float) -> float:
+    """Return a number times a factor: where that is a decimal prefix, the float nearest to it."""
+    number = float(text)
+    up, down = round(size), round(1.0 / size)
+    if number == 0.0 or not isfinite(number):
+        return number
+    if up and abs(size - up) < 1e-14 * size:
+        return float(Fraction(text) * up)
+    if down and abs(1.0 - down * size) < 1e-14:
+        return float(Fraction(text) / down)
+    return number * size
+
+
+def fault(message: str) -> PydanticCustomError:
+    """Return the error for a value that cannot be read."""
+    # braces would be read as fields of a template
+    return PydanticCustomError("unit", message.replace("{", "(").replace("}", ")"))
+
+
+def kind_of(hint: Any) -> Kind | None:
+    """Return the quantity of a field annotated with one of the types below, None for others.
+
+    A field that may be left out, ``Velocity | None``, is one of them.
+    """
+    inner = [each for each in get_args(hint) if each is not type(None)]
+    if get_origin(hint) in (Union, UnionType) and len(inner) == 1:
+        return kind_of(inner[0])
+    for item in getattr(hint, "__metadata__", ()):
+        kind = getattr(getattr(item, "func", None), "keywords", {}).get("kind")
+        if isinstance(kind, Kind):
+            return kind
+    return None
+
+
+def unit_of(hint: Any) -> str:
+    """Return the SI unit of a field annotated with one of the types below, '' for others."""
+    kind = kind_of(hint)
+    return "" if kind is None else kind.unit
+
+
+def reader(name: str, unit: str, example: str) -> BeforeValidator:
+    """Return the validator that reads a quantity with the given SI unit."""
+    return BeforeValidator(partial(to_si, kind=Kind(name, unit, example)))
+
+
+def _listed(value: object) -> object:
+    """Return an array as a list; refuse what is one value."""
+    value = value.tolist() if hasattr(value, "tolist") else value
+    if not isinstance(value, list | tuple):
+        raise fault(f"{value!r} is not a list of values; write them in brackets: [..., ...]")
+    return value
+
+
+def _not_below_one(value: float) -> float:
+    if not 1.0 <= value <= 10.0:
+        raise ValueError(
+            f"must lie between 1 and 10, is {value:g}; below 1 friction would change infinitely "
+            "fast as slip vanishes"
+        )
+    return value
+
+
+Angle = Annotated[float, reader("an angle", "rad", "1 deg"), PlainSerializer(angle_text)]
+Coefficient = Annotated[float, reader("a number", "", "0.20"), Field(ge=0)]
+Number = Annotated[float, reader("a number", "", "1e-6")]
+Exponent = Annotated[float, reader("a number", "", "2"), AfterValidator(_not_below_one)]
+PositiveNumber = Annotated[float, reader("a number", "", "0.01"), Field(gt=0)]
+Mass = Annotated[float, reader("a mass", "kg", "0.25 kg"), Field(gt=0)]
+Stiffness = Annotated[float, reader("a stiffness", "N/m", "1 kN/m"), Field(gt=0)]
+Damping = Annotated[float, reader("a damping constant", "N*s/m", "0.5 N*s/m"), Field(ge=0)]
+Force = Annotated[float, reader("a force", "N", "10 N"), Field(gt=0)]
+Length = Annotated[float, reader("a length", "m", "0.1 mm")]
+PositiveLength = Annotated[float, reader("a length", "m", "10 um"), Field(gt=0)]
+Velocity = Annotated[float, reader("a velocity", "m/s", "1 mm/s")]
+Speed = Annotated[float, reader("a velocity", "m/s", "1 mm/s"), Field(ge=0)]
+PositiveSpeed = Annotated[float, reader("a velocity", "m/s", "10 mm/s"), Field(gt=0)]
+PerSpeed = Annotated[float, reader("friction per slip speed", "s/m", "0.5 s/m"), Field(ge=0)]
+Speeds = Annotated[tuple[Speed, ...], BeforeValidator(_listed), "sequence of float (m/s) | str"]
+Coefficients = Annotated[tuple[Coefficient, ...], BeforeValidator(_listed), "sequence of float"]
+Time = Annotated[float, reader("a time", "s", "5 s")]
+Duration = Annotated[float, reader("a time", "s", "5 s"), Field(gt=0)]
+Rate = Annotated[float, reader("a frequency", "Hz", "10 kHz"), Field(gt=0)]
+SampleRate = Annotated[float, reader("a frequency", "Hz", "10 kHz"), Field(ge=0)]
+
+
+def in_words(value: float, unit: str, digits: int = DIGITS) -> str:
+    """Return a value in an SI unit as text, with a prefix that suits it; an angle in degrees.
+
+    Examples
+    --------
+    >>> in_words(3.49e-5, "m"), in_words(0.0174533, "rad"), in_words(float("nan"), "N")
+    ('34.9 µm', '1 deg', 'none')
+    >>> in_words(0.0123456, "kg", 6), in_words(0.02, "1/s")
+    ('12.3456 g', '0.02 1/s')
+    """
+    if isnan(value):
+        return "none"
+    if isinf(value):
+        return "∞" if value > 0.0 else "-∞"
+    if unit == "rad":
+        return f"{value * 180.0 / pi:.{digits}g} deg"
+    if unit == "kg" and value != 0.0:
+        value, unit = 1e3 * value, "g"
+    power = thousands(value, unit, digits)
+    name = "" if unit == "1" else unit.replace("*", " ")
+    return f"{value / 1000.0**power:.{digits}g} {SI[power]}{name}".rstrip()

@@ -1,0 +1,301 @@
+"""From pydantic's errors to faults with a path, a rule, the offending value and a remedy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from difflib import get_close_matches
+from functools import cache
+from inspect import Parameter, Signature, signature
+from numbers import Real
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, cast, get_args, get_type_hints
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, create_model
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails, PydanticCustomError
+
+from stiction.errors import DescriptionError, Fault
+from stiction.text.quantity_text import angle_text
+from stiction.text.units import as_float, kind_of, unit_of
+
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass
+else:
+    ModelMetaclass = type(BaseModel)
+
+T = TypeVar("T")
+READS = "reads_parameters"  # marks the constructors that `validated` makes
+
+
+class _Presented(ModelMetaclass):
+    """Lists a class without what it inherits from the library: `dir` and `help` ask this."""
+
+    def __dir__(cls) -> list[str]:
+        return _own_names(cls, super().__dir__())
+
+
+class Described(BaseModel, metaclass=_Presented):
+    """A frozen piece of a description; a bad one raises `DescriptionError` with every fault."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_: Any) -> None:
+        """Show names, units and defaults as the signature, not how each is read."""
+        hints, plain = get_type_hints(cls, include_extras=True), get_type_hints(cls)
+        parameters = [
+            Parameter(
+                name,
+                Parameter.KEYWORD_ONLY,
+                default=Parameter.empty if field.is_required() else field.default,
+                annotation=_shown(hints.get(name), plain.get(name)),
+            )
+            for name, field in cls.model_fields.items()
+        ]
+        required = sorted(parameters, key=lambda p: p.default is not Parameter.empty)
+        cls.__signature__ = Signature(required)
+
+    def __init__(self, **values: Any) -> None:
+        """Validate, or raise every fault at once."""
+        collect(type(self).__name__, super().__init__, type(self).model_fields, values)
+
+    def __dir__(self) -> list[str]:
+        """List the fields, and what the class adds."""
+        return _own_names(type(self), super().__dir__())
+
+    def __repr__(self) -> str:
+        """Return what makes it again, exactly."""
+        hints = get_type_hints(type(self), include_extras=True)
+        fields = type(self).model_fields
+        return _call(self, {name: hints.get(name) for name in fields}, _defaults(fields))
+
+    def __str__(self) -> str:
+        """Return the same, angles with their unit; the library would give bare numbers."""
+        return repr(self)
+
+
+def _own_names(cls: Any, names: Iterable[str]) -> list[str]:
+    """Return the names without those of the library that reads descriptions."""
+    own = {name for kind in cls.__mro__ if kind is not BaseModel for name in vars(kind)}
+    inherited = {name for name in dir(BaseModel) if name.startswith("_") or name not in own}
+    plain = {*dir(object), *(name for name in names if not name.startswith(("__", "model_")))}
+    return sorted(plain - inherited | plain & {*dir(object)})
+
+
+def _defaults(fields: Mapping[str, FieldInfo]) -> dict[str, Any]:
+    return {name: field.default for name, field in fields.items() if not field.is_required()}
+
+
+def _call(value: Any, hints: Mapping[str, Any], defaults: Mapping[str, Any]) -> str:
+    """Return the text that makes a value again: its fields that differ from their defaults."""
+    written = []
+    for name, hint in hints.items():
+        its = getattr(value, name)
+        default = defaults.get(name)
+        same = type(its) is type(default) and its == default  # no array is a default
+        if name not in defaults or not same:
+            written.append(f"{name}={quoted(its, hint)}")
+    return f"{type(value).__name__}({', '.join(written)})"
+
+
+def quoted(value: Any, hint: Any) -> str:
+    """Return a field's value as Python has it: an angle with its unit, of an array its size."""
+    if isinstance(value, float) and unit_of(hint) == "rad":
+        return repr(angle_text(value))
+    if getattr(value, "shape", None) == ():  # a number of NumPy
+        value = value.tolist()
+    return f"<{value.size} values>" if hasattr(value, "size") else repr(value)
+
+
+class _Annotation(str):
+    """Stands for a type in a signature, where it is shown as it is."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+def _shown(hint: Any, plain: Any) -> Any:
+    """Return how a parameter is annotated for a reader: what may be given, and its unit.
+
+    `plain` is its type without what reads it; a text beside that goes before.
+    """
+    texts = [item for item in getattr(hint, "__metadata__", ()) if isinstance(item, str)]
+    kind = kind_of(hint)
+    if texts:
+        return _Annotation(texts[0])
+    if kind is None or not kind.unit:
+        return Parameter.empty if plain in (None, Any) else plain
+    if kind.unit == "rad":
+        return _Annotation("str (deg or rad)")
+    none = " | None" if type(None) in get_args(plain) else ""
+    return _Annotation(f"float ({kind.unit}) | str{none}")
+
+
+def faulty(found: Sequence[Fault]) -> PydanticCustomError:
+    """Return the error for faults found inside one field, each with its path below it."""
+    return PydanticCustomError("faults", "several faults", {"found": list(found)})
+
+
+def collect(
+    path: str, build: Callable[..., T], known: Iterable[str], values: Mapping[str, Any]
+) -> T:
+    """Call ``build(**values)``, turning a `ValidationError` into a `DescriptionError`."""
+    try:
+        return build(**values)
+    except ValidationError as error:
+        raise DescriptionError(faults(error, path, known)) from None
+
+
+def faults(error: ValidationError, path: str, known: Iterable[str]) -> list[Fault]:
+    """Return each fault of a pydantic error below `path`; `known` are the keys allowed there."""
+    found = []
+    for detail in error.errors():
+        # lists are counted from 1, as their readers count them
+        keys = (str(key + 1) if isinstance(key, int) else key for key in detail["loc"])
+        at = ".".join([path, *keys])
+        if detail["type"] == "faults":
+            found += [
+                Fault(f"{at}.{inner.path}", inner.message) for inner in detail["ctx"]["found"]
+            ]
+        else:
+            found.append(Fault(at, _message(detail, tuple(known))))
+    return found
+
+
+def _message(detail: ErrorDetails, known: tuple[str, ...]) -> str:
+    value = detail["input"]
+    limit = detail.get("ctx", {})
+    match detail["type"]:
+        case "missing":
+            return "missing; it has no default"
+        case "extra_forbidden":
+            return unknown("key", str(detail["loc"][-1]), known)
+        case "unexpected_keyword_argument":
+            return unknown("parameter", str(detail["loc"][-1]), known)
+        case "greater_than":
+            return f"must be greater than {limit['gt']:g}, is {value!r}"
+        case "greater_than_equal":
+            return f"must not be below {limit['ge']:g}, is {value!r}"
+        case "less_than_equal":
+            return f"must not be above {limit['le']:g}, is {value!r}"
+        case "less_than":
+            return f"must be below {limit['lt']:g}, is {value!r}"
+        case "unit" | "value_error":
+            return detail["msg"].removeprefix("Value error, ")
+        case _:
+            return f"{detail['msg']}, is {value!r}"
+
+
+def unknown(what: str, name: str, known: Iterable[str]) -> str:
+    """Return the message for a name that is not one of `known`, with the nearest that is."""
+    known = sorted(known)
+    near = get_close_matches(name, known, 1)
+    remedy = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(known)}"
+    return f"unknown {what} {name!r}; {remedy}"
+
+
+def _no_faults(made: object) -> Iterable[tuple[str, str]]:
+    return ()
+
+
+@cache
+def fields(kind: Any) -> type[Described]:
+    """Return the model that validates the parameters of a NamedTuple `kind`."""
+    hints = {
+        name: Plain if hint is float else hint
+        for name, hint in get_type_hints(kind, include_extras=True).items()
+    }
+    defaults = kind._field_defaults
+    model: type[Described] = create_model(  # type: ignore[call-overload]
+        kind.__name__,
+        __base__=Described,
+        **{name: (hints.get(name, Plain), defaults.get(name, ...)) for name in kind._fields},
+    )
+    return model
+
+
+def made(kind: type[T], values: Mapping[str, Any]) -> T:
+    """Make a NamedTuple from a table of parameters, checked whether or not it is `validated`.
+
+    A field annotated as a plain float takes a number, in SI; one with a type of
+    `stiction.text.units` reads units.
+    """
+    if hasattr(kind.__new__, READS):
+        return kind(**values)
+    model = fields(cast(Any, kind))(**values)
+    return _checked(kind(**{name: getattr(model, name) for name in type(model).model_fields}))
+
+
+def _checked(value: T) -> T:
+    check: Callable[[T], Iterable[tuple[str, str]]] = getattr(type(value), "faults", _no_faults)
+    name = type(value).__name__
+    found = [Fault(f"{name}.{field}", message) for field, message in check(value)]
+    if found:
+        raise DescriptionError(found)
+    return value
+
+
+def _number(value: object) -> object:
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise PydanticCustomError(
+            "unit",
+            f"{value!r} is not a number; it is a plain float: write a number in SI, or annotate "
+            "it with a type of stiction.text.units, e.g. PositiveSpeed".replace("{", "(").replace(
+                "}", ")"
+            ),
+        )
+    return as_float(value)
+
+
+Plain = Annotated[float, BeforeValidator(_number)]
+
+
+def validated(kind: type[T]) -> type[T]:
+    """Class decorator: a NamedTuple whose parameters are read, with units, when it is made.
+
+    The compiled solver takes the tuple as it is: floats in SI. The parameters are
+    declared once, as the tuple's annotated fields; what must hold between them is checked
+    by a method ``faults``, which yields a field and a message for each fault. A class derived
+    from it is read likewise.
+    """
+    plain: Any = kind.__new__
+    names = tuple(signature(plain).parameters)[1:]
+
+    def new(cls: type[T], *args: Any, **values: Any) -> T:
+        given = dict(zip(names, args, strict=False)) | values
+        if len(args) > len(names):
+            raise TypeError(f"{cls.__name__} takes {', '.join(names)}")
+        model = fields(cast(Any, cls))(**given)
+        value: T = plain(cls, **{name: getattr(model, name) for name in names})
+        return _checked(value)
+
+    new.__doc__ = plain.__doc__
+    setattr(new, READS, True)
+    setattr(new, "__signature__", _signature(plain, kind))  # noqa: B010
+    setattr(kind, "__repr__", _written)  # noqa: B010
+    kind.__new__ = staticmethod(new)  # type: ignore[method-assign,assignment]
+    setattr(kind, "__reduce__", _reduced)  # noqa: B010
+    return kind
+
+
+def _signature(constructor: Any, kind: Any) -> Signature:
+    """Return the signature of a NamedTuple with what may be given, and units."""
+    hints, plain = get_type_hints(kind, include_extras=True), get_type_hints(kind)
+    return Signature(
+        [
+            each.replace(annotation=_shown(hints[name], plain[name])) if name in hints else each
+            for name, each in signature(constructor).parameters.items()
+        ]
+    )
+
+
+def _written(value: Any) -> str:
+    """Return what makes a NamedTuple again, exactly."""
+    hints = get_type_hints(type(value), include_extras=True)
+    return _call(value, {name: hints.get(name) for name in value._fields}, value._field_defaults)
+
+
+def _reduced(value: Any) -> tuple[Any, ...]:
+    """Return how to unpickle or copy what has been read already: as it is."""
+    return type(value)._make, (tuple(value),)

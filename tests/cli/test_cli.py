@@ -1,0 +1,200 @@
+"""The command line, run for real on real files."""
+
+import json
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from tests.waiting import INTERRUPTIBLE, PATIENCE
+
+import stiction as st
+from stiction.cli import COMMANDS, main
+
+# runs the command, and says so once the simulation is on its way
+TOLD = """
+from stiction import simulation
+from stiction.cli import main
+
+run = simulation.run
+
+def told(description, progress):
+    said = []
+
+    def report(fraction):
+        if not said:
+            said.append(print("on its way", flush=True))
+        progress(fraction)
+
+    return run(description, progress=report)
+
+simulation.run = told
+main()
+"""
+
+
+def stiction(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
+    """Run the installed command in a process of its own."""
+    command = [sys.executable, "-c", "from stiction.cli import main; main()", *map(str, arguments)]
+    return subprocess.run(
+        command, cwd=cwd, capture_output=True, text=True, timeout=PATIENCE, check=False
+    )
+
+
+def inside(*arguments: object) -> int:
+    """Run the command in this process; return the exit status."""
+    with pytest.raises(SystemExit) as end:
+        main([str(argument) for argument in arguments])
+    return int(end.value.code or 0)
+
+
+@pytest.fixture
+def config(tmp_path):
+    """What `stiction init` writes, shortened to 50 ms."""
+    path = tmp_path / "slider.toml"
+    assert inside("init", path) == 0
+    text = path.read_text()
+    assert 'duration = "5 s"' in text
+    path.write_text(text.replace('duration = "5 s"', 'duration = "50 ms"'))
+    return path
+
+
+def test_help_teaches(tmp_path):
+    done = stiction("--help", cwd=tmp_path)
+    assert done.returncode == 0
+    for name in COMMANDS:
+        assert name in done.stdout
+    assert "stiction init my.toml" in done.stdout
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_explains_itself(name, capsys):
+    assert inside(name, "--help") == 0
+    text = capsys.readouterr().out
+    assert f"stiction {name}" in text
+    assert len(text.splitlines()) > 8
+
+
+def test_init_writes_the_paper_s_system(tmp_path, slider):
+    assert inside("init", tmp_path / "a.toml") == 0
+    assert st.Slider.from_toml(tmp_path / "a.toml") == slider
+    assert inside("init", tmp_path / "a.toml") == 2  # does not write over it
+    assert inside("init", tmp_path / "a.toml", "--force") == 0
+    assert inside("init", tmp_path / "no" / "a.toml") == 2
+
+
+def test_run_and_plot(config, tmp_path):
+    done = stiction("run", config, "--output", "a.nc", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "501 samples" in done.stdout
+    assert "stiction plot a.nc" in done.stdout
+    assert st.load(tmp_path / "a.nc").status.ok
+    done = stiction("plot", "a.nc", "--output", "a.png", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+    assert {path.name for path in tmp_path.iterdir()} == {"slider.toml", "a.nc", "a.png"}
+
+
+def test_a_bad_description_leaves_nothing_behind(config, tmp_path):
+    config.write_text(
+        config.read_text().replace('mass = "0.25 kg"', "mass = 0").replace("phi", "ph")
+    )
+    done = stiction("run", config, "--output", "a.nc", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "slider.mass: must be greater than 0" in done.stderr
+    assert "slider.phi: missing" in done.stderr
+    assert "did you mean 'phi'" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not (tmp_path / "a.nc").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("run", "none.toml", "--output", "a.nc"), "No such file"),
+        (("plot", "none.nc", "--output", "a.png"), "no such file"),
+        (("run", "slider.toml", "--output", "no/a.nc"), "make it first"),
+        (("plot", "slider.toml", "--output", "a.png"), "not a NetCDF file"),
+    ],
+)
+def test_a_wrong_path_is_one_message(config, tmp_path, monkeypatch, capsys, arguments, words):
+    monkeypatch.chdir(tmp_path)
+    assert inside(*arguments) == 2
+    assert words in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["slider.toml"]
+
+
+def test_plot_refuses_an_unknown_format(config, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert inside("run", "slider.toml", "--output", "a.nc") == 0
+    assert inside("plot", "a.nc", "--output", "a.bmp") == 2
+    assert ".png" in capsys.readouterr().err
+
+
+def test_run_does_not_write_over_what_is_no_result(config, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    before = config.read_text()
+    assert inside("run", "slider.toml", "--output", "slider.toml") == 2
+    assert "name it slider.nc" in capsys.readouterr().err
+    assert config.read_text() == before
+    (tmp_path / "folder.nc").mkdir()
+    assert inside("run", "slider.toml", "--output", "folder.nc") == 2
+    assert "not a file" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_ctrl_c_ends_a_long_run_cleanly(config, tmp_path):
+    config.write_text(config.read_text().replace('"50 ms"', '"1e5 s"').replace("10 kHz", "1 Hz"))
+    process = subprocess.Popen(
+        [sys.executable, "-c", INTERRUPTIBLE + TOLD, "run", str(config), "--output", "long.nc"],
+        cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    assert process.stdout.readline() == "on its way\n"
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 130
+    assert "interrupted" in errors
+    assert "Traceback" not in errors
+    assert not (tmp_path / "long.nc").exists()
+
+
+def test_a_run_that_ends_early_says_so(config, tmp_path, monkeypatch, capsys):
+    from stiction import simulation
+
+    whole = simulation.run
+    monkeypatch.setattr(simulation, "run", lambda d, progress: whole(d, max_steps=100))
+    monkeypatch.chdir(tmp_path)
+    assert inside("run", "slider.toml", "--output", "a.nc") == 1
+    assert "ended early" in capsys.readouterr().out
+    assert st.load("a.nc").status is st.Status.TOO_MANY_STEPS  # what was computed is kept
+
+
+def test_paper(tmp_path, capsys):
+    assert inside("paper", "--out", tmp_path / "out") == 0
+    text = capsys.readouterr().out
+    assert "WRONG" not in text
+    names = {path.name for path in (tmp_path / "out").iterdir()}
+    for figure in ("figure-1-and-2", "figure-3", "figure-4", "figure-5", "beyond-zero-slip"):
+        assert {f"{figure}.png", f"{figure}.pdf"} <= names
+    entries = json.loads((tmp_path / "out" / "numbers.json").read_text())
+    assert len(entries) > 20
+    verdicts = [entry["verdict"] for entry in entries]
+    assert set(verdicts) == {"agrees", "finding"}
+    assert verdicts.count("finding") == 2
+
+
+def test_paper_one_figure(tmp_path):
+    assert inside("paper", "--out", tmp_path, "--figure", 5) == 0
+    assert {path.name for path in tmp_path.iterdir()} == {"figure-5.png", "figure-5.pdf"}
+
+
+def test_a_wrong_number_is_an_exit_status(tmp_path, monkeypatch, capsys):
+    from stiction.reproduction import reproduce
+    from stiction.reproduction.numbers import Number
+
+    wrong = [Number("here", "one", 1.0, 2.0, 0.5), Number("here", "nothing", 0.0, float("nan"), 1)]
+    monkeypatch.setattr(reproduce, "numbers", lambda *_: wrong)
+    monkeypatch.setattr(reproduce, "DURATION", 0.6)
+    assert inside("paper", "--out", tmp_path) == 1
+    assert "0 of 2 of the paper's numbers agree; wrong: one, nothing" in capsys.readouterr().out

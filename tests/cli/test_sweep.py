@@ -1,0 +1,127 @@
+"""``stiction sweep``: the command line of studies."""
+
+import json
+import signal
+import subprocess
+import sys
+
+import pytest
+import xarray as xr
+from tests.waiting import INTERRUPTIBLE, PATIENCE
+
+from stiction.cli import main
+
+STUDY = """
+[study]
+measures = ["peak_force", "time_stuck"]
+
+[axes.phi]
+from = "1 deg"
+to = "4 deg"
+count = 4
+
+[axes."drive.velocity"]
+values = ["1 mm/s", "2 mm/s"]
+"""
+
+
+@pytest.fixture
+def config(tmp_path):
+    """The paper's system for 50 ms, over eight pairs of values."""
+    path = tmp_path / "study.toml"
+    assert inside("init", path) == 0
+    text = path.read_text().replace('duration = "5 s"', 'duration = "50 ms"')
+    path.write_text(text.replace('sample_rate = "10 kHz"', "") + STUDY)
+    return path
+
+
+def inside(*arguments: object) -> int:
+    with pytest.raises(SystemExit) as end:
+        main([str(argument) for argument in arguments])
+    return int(end.value.code or 0)
+
+
+def test_a_study_is_run_and_gone_on_with(config, tmp_path, capsys):
+    assert inside("sweep", config, "--output", tmp_path / "a.zarr", "--threads", 2) == 0
+    assert "a.zarr: 8 runs" in capsys.readouterr().out
+    data = xr.open_zarr(tmp_path / "a.zarr")
+    assert data["peak_force"].shape == (4, 2)
+    assert inside("sweep", config, "--output", tmp_path / "a.zarr", "--quiet") == 0
+    assert capsys.readouterr() == ("", "")
+
+
+def test_progress_on_a_terminal(config, tmp_path, capsys, monkeypatch):
+    monkeypatch.setenv("FORCE_COLOR", "1")  # what rich takes for a terminal
+    monkeypatch.setenv("COLUMNS", "200")
+    assert inside("sweep", config, "-o", tmp_path / "a.zarr", "--threads", 1) == 0
+    shown = capsys.readouterr().err
+    assert "8 of 8 runs" in shown
+    assert "a second" in shown
+    assert "left" in shown
+
+
+def test_progress_as_json_lines(config, tmp_path, capsys):
+    assert inside("sweep", config, "-o", tmp_path / "a.zarr", "--json-lines") == 0
+    *lines, last = map(json.loads, capsys.readouterr().out.splitlines())
+    assert lines
+    assert all(line["runs"] == 8 and line["runs_per_second"] > 0.0 for line in lines)
+    assert last == {"store": str(tmp_path / "a.zarr"), "runs": 8, "done": 8, "failed": {}}
+
+
+def test_failing_runs_are_counted_and_the_first_is_named(config, tmp_path, capsys):
+    config.write_text(
+        config.read_text()
+        + '[load.modulation]\namplitude = "1 N"\nfrequency = "50 Hz"\n'
+        + '[axes."load.modulation.amplitude"]\nvalues = [1, 12]\n'
+    )
+    assert inside("sweep", config, "-o", tmp_path / "a.zarr") == 1
+    out = capsys.readouterr().out
+    assert "16 runs" in out
+    assert "8 failed (8 contact lost); the first at phi = 1 deg, drive.velocity = 0.001 m/s" in out
+    assert inside("sweep", config, "-o", tmp_path / "a.zarr", "--quiet") == 1
+    assert "8 failed" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (('to = "4 deg"', "to = 4"), "axes.phi.to: degree or radian?"),
+        (('"peak_force"', '"peak_forse"'), "study.measures: unknown measure 'peak_forse'; did you"),
+        (("[axes.phi]", "[axes.phy]"), "axes.phy: unknown parameter 'phy'; did you mean 'phi'?"),
+        (("[axes", "[axis"), "axes: missing"),
+        (("[study]", "[stuyd]"), "stuyd: unknown table"),
+        (('mass = "0.25 kg"', "mass = 0"), "slider.mass: must be greater than 0"),
+    ],
+)
+def test_a_bad_study_leaves_nothing_behind(config, tmp_path, capsys, change, says):
+    config.write_text(config.read_text().replace(*change))
+    assert inside("sweep", config, "-o", tmp_path / "a.zarr") == 2
+    assert says in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["study.toml"]
+
+
+def test_engines_exclude_each_other(config, tmp_path, capsys):
+    assert inside("sweep", config, "-o", tmp_path / "a.zarr", "--threads", 0) == 2
+    assert "must be 1 at least" in capsys.readouterr().err
+    assert inside("sweep", config, "-o", tmp_path / "a.zarr", "--threads", 1, "--workers", 1) == 2
+    assert "exclude each other" in capsys.readouterr().err
+
+
+def test_an_interrupt_leaves_a_store_to_go_on_with(config, tmp_path):
+    """Long runs, interrupted once the first are done: the others are left, and it says how."""
+    text = config.read_text().replace('duration = "50 ms"', 'duration = "20 s"')
+    config.write_text(text.replace("count = 4", "count = 400"))
+    command = INTERRUPTIBLE + "from stiction.cli import main; main()"
+    arguments = ["sweep", str(config), "-o", "a.zarr", "--json-lines"]
+    sweep = subprocess.Popen(
+        [sys.executable, "-c", command, *arguments],
+        cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    assert json.loads(sweep.stdout.readline())["runs"] == 800
+    sweep.send_signal(signal.SIGINT)
+    _, err = sweep.communicate(timeout=PATIENCE)
+    assert sweep.returncode == 130
+    assert "same command" in err
+    status = xr.open_zarr(tmp_path / "a.zarr")["status"].values
+    assert 0 < (status == 0).sum() < status.size
+    assert set(status.ravel().tolist()) == {-1, 0}

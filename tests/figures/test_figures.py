@@ -1,0 +1,397 @@
+"""Every figure is drawn, and shows what it says it shows."""
+
+from __future__ import annotations
+
+from math import degrees, pi, radians
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import FancyArrowPatch
+
+import stiction as st
+from stiction import theory
+from stiction.analysis.creep.first_slip import first_slip_time, mean_creep_velocity
+from stiction.analysis.signals.spectrum import rate_spectrogram, ridge, spectrogram
+from stiction.analysis.stuck import stuck_until
+from stiction.plotting.analysis.cycles import plot_cycles
+from stiction.plotting.analysis.trials import Trial, plot_trials
+from stiction.plotting.apparatus.misalignment import drawn_misalignment
+from stiction.plotting.apparatus.schematic import draw_schematic
+from stiction.plotting.apparatus.shapes import Points
+from stiction.plotting.page.canvas import figure_of
+from stiction.plotting.page.save import save, write
+from stiction.plotting.page.style import BLUE, PURPLE, new_figure, style
+from stiction.plotting.page.words import plain
+from stiction.plotting.run.overview import plot_run
+from stiction.plotting.run.time_series import cut_open, draw_line, envelope, prefixed
+from stiction.plotting.stability.damping import draw_damping_map
+from stiction.reproduction.creep import creep
+from stiction.reproduction.figure3 import figure3
+from stiction.reproduction.figure4 import figure4
+from stiction.reproduction.figure5 import HALF, clear_of, figure5
+from stiction.reproduction.schematic import schematic
+from stiction.reproduction.zero_slip import zero_slip
+
+
+def drawn(fig: Figure) -> Figure:
+    """Draw it for real, so that whatever is wrong with it shows."""
+    fig.set_dpi(60)
+    fig.draw_without_rendering()
+    return fig
+
+
+def words(ax: Axes) -> str:
+    return " ".join(text.get_text() for text in ax.texts)
+
+
+def curve(ax: Axes, index: int = 0) -> Points:
+    return np.asarray(ax.lines[index].get_xydata(), dtype=float)
+
+
+@pytest.fixture(scope="module")
+def fine(paper_run: st.Trajectory) -> st.Trajectory:
+    """Four transverse periods in the first stick phase, sampled finely."""
+    return st.simulate(
+        paper_run.slider, 0.004, sample_rate=2e5, initial=paper_run.state(0.5), rtol=1e-5
+    )
+
+
+# --- figures of the paper ---
+
+
+def test_figure3_shows_five_quantities_with_units_and_the_creep(paper_run: st.Trajectory) -> None:
+    fig = drawn(figure3(paper_run))
+    labels = [ax.get_ylabel() for ax in fig.axes]
+    assert [label.split("(")[1] for label in labels] == ["N)", "N)", "N)", "deg)", "mm)"]
+    assert fig.axes[-1].get_xlabel() == "time $t$ (s)"
+    assert fig.axes[0].get_xlim() == (0.0, 5.0)
+    force = curve(fig.axes[0])
+    assert force[:, 1].max() == pytest.approx(1.9926, abs=1e-3)  # the peak outlives thinning
+    (inset,) = fig.axes[-1].child_axes
+    assert "µm" in inset.get_ylabel()
+    assert 20 < curve(inset)[:, 1].max() < 50  # creep of tens of um before slip, not mm
+
+
+def test_figure4_shows_the_falling_frequency(paper_run: st.Trajectory) -> None:
+    fig = drawn(figure4(paper_run))
+    names = [ax.get_ylabel() for ax in fig.axes[:4]]
+    assert names == ["$v_x$ (mm/s)", "frequency (kHz)", "$v_y$ (µm/s)", "frequency (kHz)"]
+    assert fig.axes[4].get_xlabel() == "amplitude (dB re 1 µm/s)"
+    (marked,) = (line for line in fig.axes[3].lines)
+    assert marked.get_ydata()[0] == pytest.approx(1.0066, abs=1e-3)
+    assert "omega_y" in words(fig.axes[3])
+
+
+@pytest.mark.parametrize("axis", ["x", "y"])
+def test_spectrum_starts_at_the_natural_frequency_and_falls(
+    paper_run: st.Trajectory, axis: str
+) -> None:
+    found = ridge(rate_spectrogram(paper_run, axis), above=200.0)
+    at = [float(found.sel(time=time, method="nearest")) for time in (0.1, 0.5, 1.0, 1.5, 1.8)]
+    assert at[0] == pytest.approx(1006.6, abs=10)
+    assert all(np.diff(at) < 0)
+    assert at[-1] < 500
+
+
+def test_figure5_has_its_cross_where_zeta_is_one(slider: st.Slider) -> None:
+    fig = drawn(figure5(slider))
+    (ax,) = fig.axes
+    crosses = [line for line in ax.lines if line.get_marker() == "x"]
+    assert len(crosses) == 1  # none for 10 deg
+    np.testing.assert_allclose(crosses[0].get_xydata(), [(3623.9, 3.733)], rtol=1e-4)
+    ends = [curve(ax, index)[-1] for index in (0, 3)]
+    assert [end[1] for end in ends] == pytest.approx([1.0, 10.0])
+    assert ax.get_xlabel().endswith("(1)")
+    assert ax.get_ylabel().endswith("(deg)")
+
+
+def test_the_boundary_of_the_damping_map_is_the_critical_angle() -> None:
+    ax = new_figure(3, 3).subplots()
+    (path,) = draw_damping_map(ax).get_paths()
+    A, theta = path.vertices.T
+    inside = A > 1.01
+    np.testing.assert_allclose(
+        theta[inside], np.degrees(theory.critical_angle(A[inside])), rtol=2e-3
+    )
+
+
+@pytest.mark.parametrize("change", [{"phi": "0 deg"}, {"drive": st.ConstantVelocity(0.0)}])
+def test_what_has_no_damping_number_is_refused(
+    slider: st.Slider, change: dict[str, object]
+) -> None:
+    with pytest.raises(ValueError, match="needs a drive and a misalignment"):
+        figure5(slider.replace(**change))
+
+
+# --- beyond the paper ---
+
+
+def test_zero_slip_shows_rests_inside_the_circle(fine: st.Trajectory) -> None:
+    fig = drawn(zero_slip(fine, (0.5, 0.504)))
+    speed, circle, arc, force = fig.axes
+    assert speed.get_ylabel().endswith("(µm/s)")
+    assert len(speed.collections[0].get_paths()) == 4  # shaded once each oscillation
+    time, slip = curve(speed).T
+    for start, end in (fine.stick_intervals - 0.5) * 1e3:
+        inside = (time > start + 0.005) & (time < end - 0.005)
+        assert np.all(slip[inside] == 0)
+    friction = curve(force)[:, 1]
+    assert friction.min() < 1.99
+    assert friction.max() == pytest.approx(2.0, abs=1e-4)
+    stick = curve(arc, 1)
+    radius = np.hypot(*stick[np.isfinite(stick).all(axis=1)].T)
+    assert radius.max() <= 2.0 + 1e-9
+    assert radius.min() < 1.99
+    assert circle.get_xlabel() == "$F_X$ (N)"
+
+
+def test_creep_agrees_with_theory(paper_run: st.Trajectory) -> None:
+    mean = mean_creep_velocity(paper_run)
+    early = mean.sel(time=slice(0.02, 1.5))
+    exact = theory.creep_velocity(early["time"].values, 1e-3, radians(1), 2e-3)
+    np.testing.assert_allclose(early.values, exact, rtol=0.012)
+    assert 2.0 < first_slip_time(paper_run) < 2.04
+    fig = drawn(creep(paper_run))
+    value, deviation = fig.axes
+    assert value.get_yscale() == "log"
+    assert len(value.get_legend().get_texts()) == 4
+    assert deviation.get_ylabel().endswith("(%)")
+    corrected, printed = curve(deviation, 2), curve(deviation, 3)
+    middle = np.abs(corrected[:, 0] - 1.0).argmin()
+    assert corrected[middle, 1] == pytest.approx(0.64, abs=0.05)
+    assert printed[middle, 1] == pytest.approx(-48.2, abs=0.5)
+
+
+# --- schematic ---
+
+
+@pytest.mark.parametrize("phi", [0, 1, 10, 30, 45, 60, 85, 90, -1, -5, -45, -90])
+def test_schematic_draws_the_misalignment(slider: st.Slider, phi: float) -> None:
+    damped = slider.replace(phi=f"{phi} deg", c_x=1.0 if phi > 30 else 0.0, c_y=0.5)
+    with style():
+        fig = new_figure(3.4, 3.4)
+        ax = draw_schematic(fig.subplots(), damped)
+    drawn(fig)
+    shown = degrees(drawn_misalignment(radians(phi)))
+    assert (shown == pytest.approx(phi)) == ("drawn at" not in words(ax))
+    assert f"{phi}°".replace("-", "−") in words(ax)
+    arrows = [patch for patch in ax.patches if isinstance(patch, FancyArrowPatch)]
+    heads = {mpl.colors.to_hex(arrow.get_edgecolor()).upper(): way(arrow) for arrow in arrows[::-1]}
+    assert heads[BLUE] == pytest.approx(0)  # X and the drive point to the right
+    force = heads[PURPLE]  # opposite to slip, between -X and the negative y axis
+    assert 0 <= np.sign(phi or 1) * (force % 360 - 180) <= max(90 - abs(shown), 1e-9)
+    assert r"\psi" in words(ax) or phi in (0, 90, -90)
+
+
+def way(arrow: FancyArrowPatch) -> float:
+    """Direction of an arrow, in deg."""
+    tail, head = arrow._posA_posB  # type: ignore[attr-defined]
+    return float(np.degrees(np.arctan2(head[1] - tail[1], head[0] - tail[0])))
+
+
+@pytest.mark.parametrize("velocity", [1e-3, 0.0, -1e-3])
+def test_schematic_draws_any_drive(slider: st.Slider, velocity: float) -> None:
+    fig = drawn(schematic(slider.replace(drive=st.ConstantVelocity(velocity), phi="-40 deg")))
+    apparatus, side, top, triangle = fig.axes
+    assert ("V = 0" in words(top)) == (velocity == 0) == ("V = 0" in words(side))
+    assert "leaf spring" in words(apparatus)
+    assert r"\dot{u}_x" in words(triangle)
+
+
+# --- overview ---
+
+
+@pytest.mark.parametrize(
+    ("changes", "rate"),
+    [
+        ({"phi": "0 deg"}, "1 kHz"),
+        ({"phi": "90 deg", "c_x": 1.0}, "1 kHz"),
+        ({"phi": "-3 deg"}, None),
+        ({"drive": st.ConstantVelocity(0.0)}, "20 Hz"),
+        ({"friction": st.Coulomb(mu_0=0.0)}, "1 kHz"),
+        ({"mass": 1e-12, "k_x": 1e-6, "k_y": 1e-3, "normal_load": 1e-9}, "100 Hz"),
+    ],
+)
+def test_overview_of_any_system(
+    slider: st.Slider, changes: dict[str, object], rate: str | None
+) -> None:
+    run = st.simulate(slider.replace(**changes), 0.1, sample_rate=rate)
+    fig = drawn(figure_of(plot_run, run))
+    text = " ".join(words(ax) for ax in fig.axes)
+    assert run.status.value in text
+    for ax in fig.axes[2:]:
+        assert ax.get_ylabel().endswith(")"), "a label without its unit"
+
+
+def test_overview_of_the_paper_shows_every_stick(paper_run: st.Trajectory) -> None:
+    fig = drawn(figure_of(plot_run, paper_run))
+    assert "2959 sticks" in words(fig.axes[1])
+    stairs = fig.axes[-1].patches[0].get_data()
+    share = (stairs.values * np.diff(stairs.edges)).sum() / 100
+    assert share == pytest.approx(0.3231, abs=1e-4)
+
+
+def test_overview_of_a_run_that_broke_off_says_why(slider: st.Slider) -> None:
+    run = st.simulate(slider, 1.0, sample_rate=1e3, max_steps=50)
+    assert not run.status.ok
+    assert "max_steps" in words(drawn(figure_of(plot_run, run)).axes[1])
+
+
+# --- what they are made of ---
+
+
+def test_spectrogram_gives_the_amplitude_of_a_sine() -> None:
+    time = np.arange(10_000) / 1e4
+    found = spectrogram(3 * np.sin(2 * pi * 1000 * time) + 5 + 7 * time, 1e4)
+    assert float(found.max()) == pytest.approx(3.0, rel=1e-3)
+    assert set(ridge(found).values) == {1000.0}
+    assert float(found.sel(frequency=0.0).max()) < 1e-3  # the trend is taken off
+    assert float(found["time"][0]) == pytest.approx(0.05)
+    assert float(found["time"][-1]) <= 0.95 + 1e-9
+
+
+@pytest.mark.parametrize("bad", [np.zeros(10), np.full(2000, np.nan)])
+def test_spectrogram_refuses_what_it_cannot_transform(bad: Points) -> None:
+    with pytest.raises(ValueError, match=r"window|finite"):
+        spectrogram(bad, 1e4)
+
+
+def test_envelope_keeps_the_extremes_and_the_gaps() -> None:
+    time = np.linspace(0, 1, 20_000)
+    values = np.sin(5000 * time)
+    values[7777] = 9.0
+    values[:4000] = np.nan
+    thin, kept = envelope(time, values, bins=100)
+    assert len(thin) == 200
+    assert np.nanmax(kept) == 9.0
+    assert np.isnan(kept[:38]).all()
+    assert np.isfinite(kept[42:]).all()
+
+
+def test_time_stuck_counts_parts_of_intervals() -> None:
+    sticks = np.array([[0.0, 0.5], [2.0, 3.0]])
+    np.testing.assert_allclose(stuck_until([0, 0.25, 1, 2.5, 9], sticks), [0, 0.25, 0.5, 1.0, 1.5])
+    assert not stuck_until([0, 1], np.empty((0, 2))).any()
+
+
+def test_units_suit_the_size() -> None:
+    assert prefixed([2e-3, -4e-3]) == (1e3, "m")
+    assert prefixed([np.nan, 0.0]) == (1.0, "")
+
+
+def test_drawing_leaves_no_trace(slider: st.Slider) -> None:
+    before = dict(mpl.rcParams)
+    figure5(slider)
+    assert dict(mpl.rcParams) == before
+
+
+def test_save_writes_both_formats_small_and_whole(paper_run: st.Trajectory, tmp_path: Path) -> None:
+    png, pdf = save(figure3(paper_run), tmp_path / "figure-3.v1")
+    assert png.name == "figure-3.v1.png"
+    assert png.read_bytes().startswith(b"\x89PNG")
+    assert pdf.read_bytes().startswith(b"%PDF")
+    assert pdf.stat().st_size < 1_000_000
+    assert sorted(tmp_path.iterdir()) == [pdf, png]
+
+
+def test_saving_in_vain_says_why(tmp_path: Path) -> None:
+    with pytest.raises(st.ResultError, match="no folder"):
+        write(Figure(), tmp_path / "missing" / "a.png")
+    with pytest.raises(st.ResultError, match=r"unknown format '\.bmp'"):
+        write(Figure(), tmp_path / "a.bmp")
+
+
+def test_angles_are_cut_where_none_lie():
+    back_and_forth = np.array([-175.0, 5.0, 178.0, -8.0, np.nan])
+    opened = cut_open(back_and_forth)
+    assert np.nanmax(np.abs(np.mod(opened - back_and_forth + 180, 360) - 180)) < 1e-9
+    assert np.nanmax(opened) - np.nanmin(opened) == pytest.approx(193.0)  # no jump from -175 to 178
+    forward = np.array([-90.0, 0.0, 89.0])
+    assert cut_open(forward).tolist() == forward.tolist()
+
+
+def test_trials_of_many_swings_show_a_few_of_them() -> None:
+    """A solid block says nothing of the motion; what hardly moves is drawn whole."""
+    time = np.linspace(0.0, 100.0, 40_001)
+    before = st.Record(time=time, force=1.0 + 0.25 * (time % 4.0))
+    many = st.Record(time=time, force=1.0 + 0.4 * np.sin(2 * pi * 20.0 * time))
+    calm = st.Record(time=time, force=1.0 + 1e-3 * np.sin(2 * pi * 20.0 * time))
+    trials = [Trial("fast", many), Trial("slow", before), Trial("calm", calm)]
+    fast, slow, still = plot_trials(before, trials)
+    low, high = fast.get_xlim()
+    assert (low, high) == pytest.approx((100.0 - 8 / 20.0, 100.0), abs=1e-3)
+    blue = fast.get_lines()[1].get_ydata()
+    turns = np.count_nonzero(np.diff(np.sign(np.diff(blue))))
+    assert 14 <= turns <= 18
+    assert [text.get_text() for text in fast.texts] == ["8 of some 2000 swings"]
+    assert slow.get_xlim() == still.get_xlim() == (0.0, 100.0)
+    short = st.Record(time=time[:20_000] / 2.0, force=before.force[:20_000])
+    (alone,) = plot_trials(short, [Trial("fast", many)])  # which ended before this part begins
+    assert alone.get_xlim()[1] == 100.0
+    assert len(alone.get_lines()) == 1
+
+
+def test_trials_show_what_is_small_beside_the_loading() -> None:
+    time = np.arange(0.0, 10.0, 0.01)
+    loading = np.minimum(time, 3.6)
+    before = st.Record(time=time, force=loading + 0.03 * np.sin(40.0 * time) * (time > 4.0))
+    (ax,) = plot_trials(before, [Trial("a damper", st.Record(time=time, force=loading))])
+    low, high = ax.get_ylim()
+    assert 3.5 < low < 3.57
+    assert 3.63 < high < 3.7
+
+
+def test_times_of_milliseconds_are_written_so() -> None:
+    time = np.arange(0.0, 8e-4, 1e-6)
+    record = st.Record(time=time, force=1.0 + np.sin(2 * np.pi * time / 5e-5))
+    ax = drawn(figure_of(plot_cycles, record)).axes[-1]
+    assert ax.get_xlabel() == "time $t$ (ms)"
+    labels = [float(text.get_text()) for text in ax.get_xticklabels() if text.get_text()]
+    assert 0.1 < max(labels) <= 0.8
+
+
+def test_words_in_the_damping_diagram_stand_beside_its_paths() -> None:
+    for A in (3.0, 100.0, 3000.0):
+        place = clear_of([A], 0.1, 1e5)
+        assert abs(place - np.log(A / 0.1) / np.log(1e6)) >= HALF
+
+
+def test_an_oscillation_too_fast_to_be_seen_is_a_band_about_its_mean() -> None:
+    time = np.linspace(0.0, 1.0, 60_001)
+    for turns, fast in ((20.0, False), (6000.0, True)):
+        ax = Figure().add_subplot()
+        line = draw_line(ax, time, 3.0 + np.sin(2.0 * np.pi * turns * time))
+        heights = np.asarray(line.get_ydata(), dtype=np.float64)
+        assert len(ax.collections) == fast
+        if fast:  # a bin holds 4 periods: their mean is 3 but for the part of one that is cut off
+            np.testing.assert_allclose(heights, 3.0, atol=0.05)
+            band = ax.collections[0].get_paths()[0].vertices[:, 1]
+            assert band.min() < 2.05
+            assert band.max() > 3.95
+        else:
+            assert np.ptp(heights) == pytest.approx(2.0, abs=1e-4)
+
+
+def test_a_mass_that_rests_has_no_axis_of_rounding(slider: st.Slider) -> None:
+    run = st.simulate(slider, "2 ms", sample_rate="100 kHz")  # the first stick lasts 11 ms
+    panels = run.plot()
+    for name, said in (("position", "at rest"), ("speed", "no slip")):
+        assert [text.get_text() for text in panels[name].texts] == [said]
+        assert not len(panels[name].get_yticks())
+    friction = panels["friction"].get_lines()[0].get_ydata()
+    assert np.isnan(friction[0])  # it is let go with a millionth of V, and sticks at once
+    assert np.nanmax(friction) < 0.2 * slider.F_0  # 2 of 11.5 ms
+
+
+def test_units_reach_down_to_a_microscope_s_energies() -> None:
+    assert prefixed([1.4e-17]) == (pytest.approx(1e18), "a")
+
+
+def test_large_numbers_have_a_power_of_ten() -> None:
+    assert plain(25664.3) == "25660"
+    assert plain(99.81, 2) == "100"
+    assert plain(1.878e7) == r"$1.878\times 10^{7}$"

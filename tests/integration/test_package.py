@@ -1,0 +1,153 @@
+"""The package as a whole: light imports, public names, compiled cache, examples."""
+
+import doctest
+import os
+import subprocess
+import sys
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+from tests.waiting import PATIENCE
+
+import stiction as st
+
+ROOT = Path(__file__).parents[2]
+SOURCE = ROOT / "src/stiction"
+HEAVY = {"numba", "scipy", "xarray", "matplotlib", "pint", "pandas"}
+
+
+def run_python(code: str, **environment: str) -> str:
+    done = subprocess.run(
+        [sys.executable, "-W", "error::DeprecationWarning:stiction", "-c", code],
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+        env=os.environ | environment,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("module", ["stiction", "stiction.cli"])
+def test_imports_stay_light(module):
+    loaded = run_python(f"import {module}, sys; print(*sys.modules)").split()
+    assert HEAVY.isdisjoint(loaded)
+
+
+def test_public_names():
+    for name in st.__all__:
+        assert getattr(st, name) is not None
+        assert name in dir(st)
+    assert callable(st.simulate)
+    with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
+        st.nonsense  # noqa: B018
+
+
+def test_names_survive_their_modules():
+    """A submodule's name must not hide a public function of the same name."""
+    code = "import stiction as st; st.simulate; st.simulate; import stiction.trajectory; st.load"
+    assert run_python(f"{code}; print(callable(st.simulate), callable(st.load))") == "True True\n"
+
+
+@pytest.mark.parametrize(
+    "path", [path for path in sorted(SOURCE.rglob("*.py")) if ">>> " in path.read_text("utf-8")]
+)
+def test_every_docstring_example_runs(path, monkeypatch):
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    name = ".".join(path.relative_to(SOURCE.parent).with_suffix("").parts)
+    result = doctest.testmod(import_module(name.removesuffix(".__init__")))
+    assert result.attempted > 0
+    assert result.failed == 0
+
+
+def test_readme_example_runs(tmp_path, monkeypatch):
+    """The README's Python block is what a reader will type."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    code = text.split("```python\n")[1].split("```")[0]
+    monkeypatch.chdir(tmp_path)
+    exec(compile(code, "README.md", "exec"), {})
+    assert (tmp_path / "run.nc").exists()
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.py")), ids=lambda p: p.stem)
+def test_examples_run(path, tmp_path):
+    done = subprocess.run(
+        [sys.executable, path],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+
+
+LAW = """
+from typing import NamedTuple
+import stiction as st
+
+class Mine(NamedTuple):
+    mu: float
+    def coefficient(law, v):
+        return law.mu * {factor}
+    def slope(law, v):
+        return 0.0
+"""
+
+USE = """
+import stiction as st, mylaw
+slider = st.presets.nakano_popov_2020().replace(friction=mylaw.Mine(0.2))
+print(st.simulate(slider, 0.1).stick_intervals[0, 1])
+"""
+
+
+def test_a_user_s_law_is_compiled_cached_and_seen_when_edited(tmp_path, code_cache):
+    cache = {"NUMBA_CACHE_DIR": str(code_cache), "PYTHONPATH": str(tmp_path)}
+    law = tmp_path / "mylaw.py"
+    law.write_text(LAW.format(factor="1.0"))
+    one = float(run_python(USE, **cache))
+    assert float(run_python(USE, **cache)) == one
+    law.write_text(LAW.format(factor="2.0"))
+    assert float(run_python(USE, **cache)) == pytest.approx(2 * one, rel=1e-9)
+    # a process that does not know the law is not disturbed by it
+    law.unlink()
+    code = "import stiction as st; print(st.simulate(st.presets.nakano_popov_2020(), 0.02).status)"
+    assert "COMPLETED" in run_python(code, NUMBA_CACHE_DIR=cache["NUMBA_CACHE_DIR"])
+
+
+def test_old_names_go_on_working_with_a_warning():
+    from stiction import _RENAMED
+    from stiction.deprecation import old_names
+
+    for old, new in _RENAMED.items():
+        with pytest.warns(DeprecationWarning, match=f"stiction.{old} is now called stiction.{new}"):
+            assert getattr(st, old) is not None
+        assert old not in dir(st)
+    find = old_names("stiction", {"old_load": "load", "older": "stiction.errors.Status"})
+    with pytest.warns(DeprecationWarning, match=r"stiction.old_load is now called stiction.load"):
+        assert find("old_load") is st.load
+    with pytest.warns(DeprecationWarning, match=r"older is now called stiction.errors.Status"):
+        assert find("older") is st.Status
+    with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
+        find("nonsense")
+
+
+def test_what_a_module_held_answers_where_a_function_took_its_place() -> None:
+    slider = st.presets.nakano_popov_2020()
+    with pytest.warns(DeprecationWarning, match=r"st\w+.stability.growth_rate is now called"):
+        assert st.stability.growth_rate(slider) == st.linear_stability.growth_rate(slider)
+    sliding = st.linear_stability.steady_sliding(slider)
+    former, renamed = st.stability.Linearisation, r"stiction.stability.Linearisation is now called"
+    with pytest.warns(DeprecationWarning, match=renamed) as warned:
+        assert isinstance(sliding, former)
+    assert warned[0].filename == __file__
+    with pytest.warns(DeprecationWarning, match=renamed):
+        assert not isinstance(slider, former)
+    with pytest.warns(DeprecationWarning, match=renamed):
+        assert issubclass(type(sliding), former)
+    with pytest.warns(DeprecationWarning, match=renamed):
+        assert former.verdict is type(sliding).verdict
+    with pytest.warns(DeprecationWarning, match=r"stiction.audit.Audit is now called"):
+        assert not isinstance(slider, st.audit.Audit)

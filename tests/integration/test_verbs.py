@@ -1,0 +1,312 @@
+"""Each command is a function of its name, which returns what the command prints and draws."""
+
+import inspect
+
+import matplotlib as mpl
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+import stiction as st
+from stiction import plotting
+from stiction.cli import COMMANDS, main
+from stiction.cli.options import changes
+from stiction.plotting.page.canvas import figure_of, listed
+from stiction.text.paths import with_changes
+
+mpl.use("Agg")
+PAPER = st.presets.nakano_popov_2020()
+
+
+def inside(*arguments):
+    with pytest.raises(SystemExit) as end:
+        main([str(argument) for argument in arguments])
+    return int(end.value.code or 0)
+
+
+@pytest.fixture
+def config(tmp_path):
+    """A short run of the paper's system, as text."""
+    path = st.init(tmp_path / "my.toml")
+    path.write_text(path.read_text().replace('"5 s"', '"20 ms"'))
+    return path
+
+
+@pytest.fixture(scope="module")
+def run():
+    return st.simulate(PAPER, "20 ms", sample_rate="10 kHz")
+
+
+@pytest.mark.parametrize("name", [*COMMANDS, "analyze", "refine"])
+def test_each_command_is_a_function_with_a_docstring(name):
+    function = getattr(st, name)
+    assert inspect.isfunction(function)
+    assert name in dir(st)
+    assert "Parameters\n" in inspect.getdoc(function)
+    assert not any(
+        each.kind in (each.VAR_POSITIONAL, each.VAR_KEYWORD)
+        for each in inspect.signature(function).parameters.values()
+    )
+
+
+def test_a_run_from_its_file_is_that_of_its_description(config):
+    run = st.run(config)
+    assert run.data.equals(st.run(st.Description.from_toml(config)).data)
+
+
+def test_what_is_unambiguous_is_taken_and_else_the_remedy_is_named(tmp_path):
+    description = st.Description(PAPER, st.Initial(), st.Settings(duration="20 ms"))
+    assert st.stability(description, "phi").stable == st.stability(PAPER, "phi").stable
+    shaken = PAPER.replace(drive=st.DriveProgram(velocity=1e-3, along=st.Modulation(1e-3, 5.0)))
+    with pytest.raises(st.DescriptionError, match="drive"):  # it is read, and then refused
+        st.audit(description._replace(slider=shaken))
+    for verb in (st.run, lambda slider: st.compare(slider, ["coulomb"])):
+        with pytest.raises(st.DescriptionError, match=r"no duration; .*st\.Description\(slider"):
+            verb(PAPER)
+    with pytest.raises(st.DescriptionError, match=r"st\.run\(description\) simulates a whole"):
+        st.simulate(description, "20 ms")
+    (tmp_path / "study.zarr").mkdir()
+    with pytest.raises(st.ResultError, match=r"is a folder.*st\.map\(path\) draws a map"):
+        st.plot(tmp_path / "study.zarr")
+
+
+def test_rooms_keep_their_old_names_with_a_warning():
+    with pytest.warns(DeprecationWarning, match=r"stiction\.linear_stability\.growth_rate"):
+        rate = st.stability.growth_rate(PAPER)
+    assert rate == st.linear_stability.growth_rate(PAPER)
+    assert {"examine", "Audit"} <= set(dir(st.audit))
+    base = st.Description(PAPER, st.Initial(), st.Settings(duration=0.02))
+    study = st.Study(base=base, axes={"V": st.Values(["1 mm/s"])}, measures=["peak_force"])
+    for call in (study.run, lambda path: study.refine(path, "nothing", 1.0)):
+        with (
+            pytest.warns(DeprecationWarning, match=r"stiction\.(sweep|refine)\(study, store\)"),
+            pytest.raises(st.StictionError),
+        ):
+            call("/no such folder/a.zarr")
+
+
+def test_stability_says_what_its_command_prints(config, capsys):
+    found = st.stability(config, over="V", between=("0.1 mm/s", "1 m/s"))
+    assert inside("stability", config, "--over", "V", "--between", "0.1 mm/s", "1 m/s") == 0
+    text = capsys.readouterr().out
+    for part in found.tables():
+        assert part.title in text
+    assert found.over == ("drive.velocity",)
+    assert not found.stable
+    assert repr(found) == "<Stability: unstable; over drive.velocity>"
+    assert "<table>" in found._repr_html_()
+    assert str(found).startswith("Steady sliding\n")
+    with pytest.raises(st.StictionError, match="as many ranges or none; given: 1 and 2"):
+        st.stability(PAPER, over=["phi"], between=[None, None])
+
+
+def test_a_comparison_is_a_mapping_with_a_table(config):
+    found = st.compare(config, "coulomb")
+    assert list(found) == ["exponential-weakening", "coulomb"]
+    (part,) = found.tables()
+    assert part.table.to_dataframe()["law"].tolist() == list(found)
+    assert found.ok
+
+
+def test_a_study_from_sweep_to_map(config, tmp_path):
+    base = st.Description.from_toml(config, {"duration": "2 ms"})
+    study = st.Study(base=base, axes={"V": st.Grid("1 mm/s", "2 mm/s", 2)}, measures=["peak_force"])
+    done = st.sweep(study, tmp_path / "a.zarr")
+    assert repr(done).endswith("a.zarr: 2 of 2, 0 failed>")
+    (ax,) = figure_of(done.plot).axes
+    assert ax.get_xlabel() == "$V$ (mm/s)"
+    found = st.map(tmp_path / "a.zarr", of="peak_force")
+    assert found.dims == ("drive.velocity",)
+    assert repr(found) == "<Map of peak_force over drive.velocity>"
+
+
+# --- figures ---
+
+
+@pytest.mark.parametrize("name", dir(plotting))
+def test_each_public_figure_takes_axes_and_has_a_docstring(name):
+    if name.startswith("__"):
+        return
+    function = getattr(plotting, name)
+    last = list(inspect.signature(function).parameters)[-1]
+    assert last in ("ax", "axes")
+    assert inspect.signature(function).parameters[last].default is None
+    assert inspect.getdoc(function)
+
+
+def test_a_run_is_drawn_on_the_axes_that_are_given(run):
+    figure = Figure()
+    ax, other = figure.subplots(2, 1)
+    assert run.plot({"force": ax, "speed": other}) == {"force": ax, "speed": other}
+    assert figure.axes == [ax, other]
+    assert ax.get_ylabel().startswith("spring force")
+    with pytest.raises(st.StictionError, match="did you mean"):
+        run.plot({"forc": ax})
+
+
+def test_a_figure_of_its_own_is_known_to_pyplot_only_at_the_public_door(run):
+    from matplotlib import pyplot
+
+    before = pyplot.get_fignums()
+    figure_of(run.plot)
+    assert pyplot.get_fignums() == before
+    axes = run.plot()
+    assert len(pyplot.get_fignums()) == len(before) + 1
+    pyplot.close(listed(axes)[0].figure.figure)
+    assert pyplot.get_fignums() == before
+
+
+def test_one_panel_figures_draw_on_given_axes(run):
+    ax = Figure().subplots()
+    stability = st.stability(PAPER)
+    for draw in (
+        lambda ax: plotting.plot_law(PAPER, ax=ax),
+        lambda ax: plotting.plot_slider(PAPER, ax=ax),
+        lambda ax: plotting.plot_damping(ax=ax),
+        lambda ax: stability.plot(ax),
+    ):
+        ax = Figure().subplots()
+        assert draw(ax) is ax
+    whole = st.plot(st.record_of(run), Figure().subplots())
+    assert all(isinstance(each, Axes) for each in whole)
+
+
+@pytest.mark.parametrize("verb", [st.run, st.audit, st.stability, st.Study.from_toml])
+def test_what_is_no_description_is_refused(verb):
+    with pytest.raises(st.DescriptionError, match="int is no description; give its file"):
+        verb(3)
+
+
+def test_a_figure_that_the_paper_has_not_is_refused(tmp_path):
+    with pytest.raises(st.StictionError, match="figure must be 3, 4 or 5, is 7"):
+        st.paper(tmp_path, figure=7)
+
+
+def test_what_has_no_figure_says_so():
+    with pytest.raises(st.StictionError, match="float has no figure"):
+        st.plot(3.0)
+
+
+# --- other values of parameters ---
+
+
+TABLES = {
+    "slider": {"phi": "1 deg"},
+    "friction": {"law": "coulomb", "mu_0": 0.2},
+    "drive": {"velocity": "1 mm/s", "program": [{"piece": "hold", "duration": "1 s"}]},
+    "axes": {"drive.velocity": {"count": 3}},
+}
+
+
+@pytest.mark.parametrize(
+    ("text", "way", "value"),
+    [
+        ("phi=3deg", ("slider", "phi"), "3deg"),
+        ("slider.phi = 3 deg", ("slider", "phi"), "3 deg"),
+        ("V=2mm/s", ("drive", "velocity"), "2mm/s"),
+        ("W=20", ("slider", "normal_load"), 20),
+        ("m=1e-3", ("slider", "mass"), 1e-3),
+        ("k_x=1 kN/m", ("slider", "k_x"), "1 kN/m"),
+        ("mu_0=0.3", ("friction", "mu_0"), 0.3),
+        ("friction.mu_static=0.3", ("friction", "mu_static"), 0.3),
+        ("duration=10s", ("run", "duration"), "10s"),
+        ("run.multiscale=true", ("run", "multiscale"), True),
+        ("drive.program.1.duration=2s", ("drive", "program", 0, "duration"), "2s"),
+        ("axes.drive.velocity.count=9", ("axes", "drive.velocity", "count"), 9),
+        ("load.program=[]", ("load", "program"), []),
+    ],
+)
+def test_a_parameter_is_set_by_its_path_or_short_name(text, way, value):
+    found = with_changes(TABLES, changes([text]))
+    for key in way:
+        found = found[key]
+    assert found == value
+    assert TABLES["slider"]["phi"] == "1 deg"  # what is read is left as it is
+
+
+def test_set_reaches_every_command_that_reads_a_description(config, tmp_path, capsys):
+    assert inside("run", config, "--set", "phi=3deg", "--set", "V = 2 mm/s", "-o",
+                  tmp_path / "a.nc") == 0  # fmt: skip
+    slider = st.load(tmp_path / "a.nc").slider
+    assert slider == PAPER.replace(phi="3 deg", drive=st.ConstantVelocity("2 mm/s"))
+    capsys.readouterr()
+    for command in (("audit",), ("stability",), ("compare", "--law", "coulomb", "-o", "a.png")):
+        name, *rest = command
+        assert inside(name, config, *rest, "--set", "slider.ph=3deg", "--set", "W=2 m") == 2
+        text = capsys.readouterr().err
+        assert "slider.ph: unknown key 'ph'; did you mean 'phi'?" in text
+        assert "slider.normal_load: " in text
+    assert inside("sweep", "--preset", "yaw-angle", "-o", tmp_path / "a.zarr", "--set",
+                  "friction.mu_9=3") == 2  # fmt: skip
+    assert "friction.mu_9: unknown" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("ph=3deg", "ph: unknown parameter 'ph'; did you mean 'phi'?"),
+        ("drive.program.7.to=3", "'7' is no element of a list of 1; they count from 1"),
+        ("phi.to=3", "phi.to: has no part 'to': it is '1 deg'"),
+        ("phi", "--set 'phi' is no NAME=VALUE"),
+        ("=3", "--set '=3' is no NAME=VALUE"),
+    ],
+)
+def test_a_path_that_leads_nowhere_says_where_it_ends(text, words):
+    with pytest.raises(st.StictionError) as error:
+        with_changes(TABLES, changes([text]))
+    assert words in str(error.value)
+
+
+# --- the command line itself ---
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("run", "my.toml", "--outputt", "a-rather-long-folder-name/a-rather-long-name.nc"),
+        ("stability", "my.toml", "--between", "a"),
+        ("paper", "--figure", "7"),
+        ("paperr",),
+        ("run", "a-rather-long-folder-name/a-rather-long-name-of-a-description.toml", "-o", "a.nc"),
+    ],
+)
+def test_what_is_wrong_is_said_whole_on_a_narrow_terminal(arguments, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "60")
+    assert inside(*arguments) == 2
+    text = capsys.readouterr().err
+    assert text.startswith("error ")
+    assert "│" not in text
+    assert text.rstrip().endswith(("--help", "'stiction init'"))
+
+
+def test_python_m_stiction_and_completion():
+    from stiction.cli import app
+
+    assert "complete" in app.generate_completion(shell="bash")
+    import importlib.util
+
+    assert importlib.util.find_spec("stiction.__main__") is not None
+    assert inside("--version") == 0
+
+
+@pytest.mark.parametrize("name", ["paper", "run", "plot", "analyse", "audit", "compare",
+                                  "stability", "sweep", "map"])  # fmt: skip
+def test_the_output_option_has_one_name_and_help_an_example(name, capsys):
+    assert inside(name, "--help") == 0
+    text = capsys.readouterr().out
+    assert "--output" in text
+    assert "-o " in text
+    assert text.count(f"stiction {name}") > 1  # in the usage, and as an example
+
+
+def test_a_table_breaks_between_words_on_a_narrow_terminal(capsys, monkeypatch):
+    from stiction.cli.tables import printed
+    from stiction.text.sections import Section, Table
+
+    headings = ("law", "sticks", "slowest in load-up (m/s)", "median in load-up (m/s)")
+    row = ("coulomb, mu_static = 0.2", "39", "3.58e-05", "1.25e-05")
+    monkeypatch.setenv("COLUMNS", "40")
+    printed("a title", [Section("a part", [], Table(headings, [row]))])
+    text = capsys.readouterr().out
+    assert {*row[1:], "coulomb,", "load-up"} <= set(text.split())
+    assert max(map(len, text.splitlines())) <= 40

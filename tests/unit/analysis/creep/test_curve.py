@@ -1,0 +1,253 @@
+"""Creep curves against Eq. (7), from runs and from noisy records."""
+
+from math import radians
+
+import numpy as np
+import pytest
+import xarray as xr
+from tests.measured import measured
+
+import stiction as st
+from stiction import theory
+from stiction.analysis.creep.binning import bin_edges
+from stiction.analysis.creep.findings import MISSED
+from stiction.analysis.signals.robust import trimmed_mean
+from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep
+from stiction.plotting.page.canvas import figure_of
+
+V, K, F_0 = 1e-3, 1e3, 2.0
+L_X = F_0 / K
+
+
+def one_phase(start: float, slip: float) -> xr.Dataset:
+    return xr.Dataset({"start": ("cycle", [start]), "peak_time": ("cycle", [slip])})
+
+
+def exact_curve(phi: float, edges: np.ndarray) -> xr.Dataset:
+    """Mean velocities of Eq. (7) between times `edges` (s) before V t = l_x, from its solution."""
+    t = L_X / V - edges
+    u = theory.creep_elongation(t, V, phi, L_X)
+    velocity = V + np.diff(u) / np.diff(edges) * np.cos(phi)  # edges count backwards in time
+    middle = 0.5 * (t[1:] + t[:-1])
+    columns = {
+        "velocity": velocity,
+        "velocity_error": np.zeros(len(velocity)),
+        "force": K * theory.creep_elongation(middle, V, phi, L_X),
+        "begin": edges[1:],
+        "end": edges[:-1],
+    }
+    return xr.Dataset({name: ("bin", values) for name, values in columns.items()})
+
+
+def noisy_record(seed: int, spikes: float) -> tuple[st.Record, xr.Dataset]:
+    """Twelve stick phases of Eq. (7) at 5 degrees with noise, and wild samples."""
+    draw = np.random.default_rng(seed)
+    t = np.arange(0.0, 1.9, 1e-3)
+    force = np.tile(K * theory.creep_elongation(t, V, radians(5), L_X), 12)
+    force += draw.normal(scale=2e-3, size=len(force))
+    wild = draw.random(len(force)) < spikes
+    force[wild] += draw.normal(scale=0.5, size=wild.sum())
+    time = np.arange(len(force)) * 1e-3
+    starts = np.arange(12) * 1.9
+    cycles = xr.Dataset({"start": ("cycle", starts), "peak_time": ("cycle", starts + t[-1])})
+    velocity = V * np.cos(radians(5))  # along x; X' is then cos(phi)^2 V - cos(phi) u_x', nearly
+    return st.Record(time=time, force=force, stiffness=K, drive_velocity=velocity), cycles
+
+
+@pytest.fixture(scope="module")
+def curves(paper_run):
+    return st.creep_curves(paper_run, st.find_cycles(st.record_of(paper_run)))
+
+
+def test_every_stick_phase_of_a_run_has_its_curve(paper_run, curves):
+    assert curves.sizes["phase"] == 4  # the first loading, and three cycles
+    first = curves.isel(phase=0)
+    middle = 2.0321 - 0.5 * (first["begin"] + first["end"]).values
+    early = (middle > 0.05) & (middle < 1.5)
+    expected = theory.creep_velocity(middle[early], V, radians(1), L_X)
+    # friction that weakens at the swing's slip speeds adds half a per cent, and more near slip
+    assert first["velocity"].values[early] == pytest.approx(expected, rel=0.012)
+    assert early.sum() >= 6
+
+
+def test_phases_of_the_settled_cycle_are_alike(curves):
+    rows = curves["velocity"].values[1:, 2:25]
+    assert np.ptp(rows, axis=0) / rows.mean(axis=0) == pytest.approx(0.0, abs=5e-3)
+
+
+def test_the_mean_is_that_of_the_phases(curves):
+    mean = st.mean_creep(curves)
+    both = curves["velocity"].values[:, : mean.sizes["bin"]]
+    full = np.isfinite(both).all(axis=0)
+    assert mean["velocity"].values[full] == pytest.approx(both[:, full].mean(axis=0), rel=1e-12)
+    error = both[:, full].std(axis=0, ddof=1) / 2.0  # four phases
+    assert mean["velocity_error"].values[full] == pytest.approx(error, rel=1e-9)
+    assert mean["phases"].values[full].tolist() == [4] * full.sum()
+
+
+def test_the_exponent_of_the_closed_form_is_one_half_in_the_limit():
+    edges = bin_edges(0.02, 1.9)
+    off = []
+    for phi in (1e-2, 1e-4, 1e-6):
+        found = st.fit_divergence(exact_curve(phi, edges), L_X / V)
+        off.append(abs(found.exponent - 0.5))
+        assert found.amplitude == pytest.approx(V * phi, rel=10 * phi + 1e-5)
+    assert off[2] < 1e-5 < off[0]
+    assert off[2] < off[1] < off[0]
+
+
+def test_a_known_lag_is_kept():
+    found = st.fit_divergence(exact_curve(1e-6, bin_edges(0.02, 1.9)), L_X / V, lag=0.0)
+    assert (found.lag, found.lag_error) == (0.0, 0.0)
+    assert found.exponent == pytest.approx(0.5, abs=1e-5)
+    assert found.velocity(np.array([0.5, -1.0]))[0] == pytest.approx(
+        theory.creep_velocity(1.5, V, 1e-6, L_X), rel=1e-4
+    )
+
+
+def test_the_exponent_of_the_paper_s_run(curves):
+    found = st.fit_divergence(st.mean_creep(curves), L_X / V)
+    assert abs(found.exponent - 0.5) < 2 * found.exponent_error < 0.1
+
+
+@pytest.mark.parametrize("degrees", [1, 3])
+def test_the_misalignment_that_a_run_implies(slider, degrees):
+    run = st.simulate(slider.replace(phi=f"{degrees} deg"), 5.0, sample_rate=10e3)
+    mean = st.mean_creep(st.creep_curves(run, st.find_cycles(st.record_of(run))))
+    found = st.fit_misalignment(mean, V, K)
+    assert abs(found.phi - radians(degrees)) < 2 * found.phi_error < 0.01 * radians(degrees)
+    assert pytest.approx(F_0, rel=0.005) == found.F_0
+
+
+def test_the_misalignment_of_the_closed_form_is_exact():
+    for degrees in (0.1, 1.0, 10.0):
+        found = st.fit_misalignment(exact_curve(radians(degrees), bin_edges(0.005, 1.95)), V, K)
+        # the mean force of a bin is that of its middle, to (1/8)^2/24 of what the velocity bends
+        assert found.phi == pytest.approx(radians(degrees), rel=2e-3)
+        assert pytest.approx(F_0, rel=1e-3) == found.F_0
+
+
+def test_creep_that_is_not_that_of_eq_7_implies_no_misalignment():
+    curve = exact_curve(radians(1.0), bin_edges(0.005, 1.95))
+    assert st.fit_misalignment(curve, V, K).misfit < 1e-3
+    early = curve["force"] < 0.8 * curve["force"].max()
+    rests = curve.assign(velocity=curve["velocity"].where(~early, 1e-9 * V))  # a soft k_y loads
+    assert st.fit_misalignment(rests, V, K).misfit > MISSED
+
+
+@pytest.mark.parametrize("spikes", [0.0, 0.02])
+def test_the_errors_of_a_noisy_record_are_what_they_say(spikes):
+    off = []
+    for seed in range(5):
+        record, cycles = noisy_record(seed, spikes)
+        mean = st.mean_creep(st.creep_curves(record, cycles, 0.02))
+        t = 1.899 - np.stack([mean["begin"], mean["end"]])
+        u = theory.creep_elongation(t, V, radians(5), L_X)
+        expected = record.drive_velocity - np.diff(u, axis=0)[0] / np.diff(t, axis=0)[0]
+        off.append((mean["velocity"].values - expected) / mean["velocity_error"].values)
+    # of twelve phases two are trimmed: 2.26 holds 95 % of a t distribution with nine degrees of
+    # freedom; 145 bins, so that 91 % is two standard deviations away
+    assert 0.91 < np.mean(np.abs(off) < 2.26) < 0.99
+    assert np.median(mean["velocity_error"]) < 0.05 * V
+
+
+def test_wild_samples_widen_no_error_much():
+    errors = [
+        float(st.mean_creep(st.creep_curves(*noisy_record(2, share), 0.03))["velocity_error"][3])
+        for share in (0.0, 0.02)
+    ]
+    assert errors[1] < 1.5 * errors[0]  # a mean of all samples would have 35 times the error
+
+
+def test_a_trimmed_mean_and_its_error():
+    draw = np.random.default_rng(0)
+    many = np.array([trimmed_mean(draw.normal(size=40)) for _ in range(4000)])
+    assert many[:, 0].std() == pytest.approx(many[:, 1].mean(), rel=0.05)
+    assert trimmed_mean(np.array([3.0])).value == 3.0
+    assert np.isnan(trimmed_mean(np.zeros(0)).value)
+
+
+def test_no_slip_still_creeps(slider):
+    """At 10 degrees there is no cycle: the whole run is one stick phase."""
+    run = st.simulate(slider.replace(phi="10 deg"), 1.0, sample_rate=10e3)
+    curves = st.creep_curves(run, st.find_cycles(st.record_of(run)))
+    assert curves.sizes["phase"] == 1
+    assert np.isfinite(curves["velocity"]).any()
+
+
+def test_where_there_is_no_stick_phase_there_is_no_curve():
+    record = st.Record(time=[], force=[], stiffness=K, drive_velocity=V)
+    curves = st.creep_curves(record, st.find_cycles(record))
+    mean = st.mean_creep(curves)
+    assert (curves.sizes["phase"], mean.sizes["bin"]) == (0, 0)
+    with pytest.raises(st.ResultError, match="0 bins of the creep curve lie between"):
+        st.fit_misalignment(mean, V, K)
+
+
+def test_a_drive_the_other_way_creeps_alike(slider, curves):
+    back = slider.replace(drive=st.ConstantVelocity(-V))
+    run = st.simulate(back, 5.0, sample_rate=10e3)
+    mirrored = st.creep_curves(run, st.find_cycles(st.record_of(run)))
+    np.testing.assert_array_equal(mirrored["velocity"], curves["velocity"])
+
+
+def test_what_cannot_be_known_is_refused(curves):
+    record = st.Record(time=np.arange(10.0), force=np.arange(10.0), stiffness=1.0)
+    with pytest.raises(st.ResultError, match="does not say where the mass is; give"):
+        st.creep_curves(record, one_phase(0.0, 9.0))
+    with pytest.raises(st.ResultError, match=r"width must be above 0 s, is -1\.0; leave it out"):
+        st.creep_curves(record, one_phase(0.0, 9.0), -1.0)
+    with pytest.raises(st.ResultError, match="0 bins of the creep curve lie between"):
+        st.fit_divergence(st.mean_creep(curves), L_X / V, (3.0, 4.0))
+
+
+def test_a_measured_record_creeps_before_slip():
+    record = measured("k168_v42")
+    cycles = st.find_cycles(record)
+    # as the early loading has it, with which the mass then rests on the average
+    record = record.model_copy(update={"stiffness": float(cycles["stiffness"].median())})
+    mean = st.mean_creep(st.creep_curves(record, cycles, 0.04))  # two periods of the mains
+    share, error = (mean[name].values / 42e-6 for name in ("velocity", "velocity_error"))
+    assert share[0] > 0.5
+    assert share[0] - share[1] > 2 * np.hypot(error[0], error[1])
+    early = (mean["begin"] > 1.0).values & (mean["phases"] > 20).values
+    assert np.abs(share[early]).max() < 0.05
+    assert (error[:8] < 0.15).all()
+
+
+def test_the_figure_says_what_is_drawn(curves):
+    mean = st.mean_creep(curves)
+    found = st.fit_divergence(mean, L_X / V)
+    lines = creep_theory(V, radians(1), L_X, 2.0321) | {"fit": found.velocity}
+    ax = figure_of(plot_creep, curves, mean, V, lines).axes[0]
+    assert ax.get_xlabel() == "time to slip (s)"
+    assert ax.get_yscale() == "log"
+    _, labels = ax.get_legend_handles_labels()
+    assert labels[-4:] == [*creep_theory(V, 0.1, L_X), "fit"]
+    noisy = st.mean_creep(st.creep_curves(*noisy_record(3, 0.0), 0.01))
+    assert figure_of(plot_creep, curves, noisy, V).axes[0].get_yscale() == "linear"
+
+
+def test_far_turned_the_angle_is_that_of_the_run():
+    """Eq. (7) has the drive's own speed, not its part along the soft spring: 40 deg, not 47."""
+    rig = {"mass": 0.1, "k_x": 2e3, "k_y": 4e6, "phi": "40 deg", "normal_load": 6}
+    law = st.ExponentialWeakening(mu_0=0.25, mu_inf=0.15, v_f="10 mm/s")
+    slider = st.Slider(**rig, friction=law, drive=st.ConstantVelocity("1 mm/s"))
+    found = st.analyse(st.simulate(slider, 3.0, sample_rate=2e4))
+    low, high = (np.degrees(each) for each in found.misalignment.interval)
+    assert low < 40.0 < high
+    text = str(found)
+    assert "before slip" not in text  # it comes to slide without one
+    assert "before the spring is loaded" in text
+
+
+def test_what_rests_before_slip_implies_no_angle():
+    """Across hardly stiffer than along, the mass rests: no limit of an angle follows from that."""
+    rig = {"mass": 0.5, "k_x": 5e3, "k_y": 1.5e4, "phi": "12 deg", "normal_load": 15}
+    law = st.ExponentialWeakening(mu_0=0.3, mu_inf=0.2, v_f="20 mm/s")
+    slider = st.Slider(**rig, friction=law, drive=st.ConstantVelocity("5 mm/s"))
+    found = st.analyse(st.simulate(slider, 0.9, sample_rate=5e3))
+    assert found.missing["misalignment"] == (
+        "not determined: the mass rests, where Eq. (7) has it creep"
+    )
+    assert "before slip it rests" in str(found)

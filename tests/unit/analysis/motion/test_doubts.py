@@ -1,0 +1,181 @@
+"""Friction of any motion, and doubts in words: what cannot be true, drift, a zero that is off."""
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.analysis.motion.friction import find_friction
+from stiction.text.sections import as_text
+
+KNOWN = {
+    "normal_load": "10 N",
+    "stiffness": "1 N/mm",
+    "drive_velocity": "1 mm/s",
+    "mass": "250 g",
+}
+
+
+@pytest.fixture(scope="module")
+def force():
+    run = st.simulate(st.presets.nakano_popov_2020(), 7.0, sample_rate=2e3)
+    return run.data["time"].values, run.data["spring_x"].values
+
+
+def told(time: np.ndarray, force: np.ndarray, **changes: object) -> str:
+    return " ".join(st.analyse(st.Record(time=time, force=force, **KNOWN | changes)).warnings)
+
+
+def test_what_belongs_together_is_not_doubted(force) -> None:
+    assert told(*force) == ""
+
+
+@pytest.mark.parametrize(
+    ("stretch", "gain", "changes", "said"),
+    [
+        (1e3, 1.0, {}, "is the time in milliseconds? Give time_unit='ms'"),
+        (1.0, 1e3, {}, "is the force in millinewtons? Give force_unit='mN'"),
+        (1e3, 1e3, {}, "A friction coefficient of 199 is beyond belief"),
+        (1e3, 1e3, {}, "stiffness over mass is 7.3e-07 times"),
+        (1.0, 1.0, {"stiffness": "1 MN/m"}, "stated 1000 times too large"),
+        (1.0, 1.0, {"drive_velocity": "1 um/s"}, "stated 1000 times too small"),
+        (1.0, 1.0, {"mass": "1 kg"}, "stiffness over mass is 2.9 times 1e+03 1/s², as stated"),
+        (1.0, 1.0, {"stiffness": "700 N/m"}, "1.4 times stiffness times drive velocity"),
+    ],
+)
+def test_numbers_that_cannot_be_true_are_doubted(force, stretch, gain, changes, said) -> None:
+    time, newtons = force
+    assert said in told(stretch * time, gain * newtons, **changes)
+
+
+def test_drift_is_seen_and_taken_off(force) -> None:
+    time, newtons = force
+    record = st.Record(time=time, force=newtons + 0.05 * time, **KNOWN)
+    found = st.analyse(record)
+    assert "The force drifts by 50" in found.warnings[0]
+    assert as_text(found.tables()).startswith("Warnings")
+    mended = st.analyse(st.detrended(record))
+    assert mended.warnings == ()
+    assert mended.friction.static.coefficient == pytest.approx(0.1993, rel=2e-3)
+
+
+def test_a_zero_that_is_off_is_seen_and_taken_off(force) -> None:
+    time, newtons = force
+    assert "at 300 mN: if the spring was unloaded, give zero='0.3 N'" in told(time, newtons + 0.3)
+    assert told(time, newtons + 0.3, zero="0.3 N") == ""
+    assert "against the drive" in told(time, newtons - 2.5)
+
+
+def test_coarse_sampling_is_named() -> None:
+    time = np.arange(0.0, 60.0, 1e-3)
+    assert "Sample at" in told(time, 1.0 + 0.3 * (time % 1.1))
+
+
+def test_a_break_away_before_steady_sliding() -> None:
+    time = np.arange(0.0, 10.0, 1e-3)
+    noise = 0.01 * np.random.default_rng(2).standard_normal(len(time))
+    course = np.where(time < 2.0, 1.5 * time, 2.0 + np.exp(-8.0 * (time - 2.0)))
+    found = st.analyse(st.Record(time=time, force=course + noise, normal_load=10.0))
+    assert found.friction.break_away.coefficient == pytest.approx(0.3, abs=0.003)
+    assert found.friction.kinetic.coefficient == pytest.approx(0.2, abs=0.001)
+    assert found.friction.kinetic.coefficient_spread == pytest.approx(0.001, rel=0.1)
+    assert found.friction.static is None
+    assert "first break-away" in as_text(found.tables())
+
+
+@pytest.mark.parametrize("count", [100, 399, 600, 1000, 10_000, 30_001])
+def test_a_late_break_away_is_read_where_it_is(count) -> None:
+    time = np.linspace(0.0, 10.0, count)
+    force = np.where(time < 7.0, time / 7.0, 0.8) + 0.05 * np.exp(-((time - 6.9) ** 2) / 0.04)
+    found = st.analyse(st.Record(time=time, force=force, position=None))
+    assert found.friction.break_away.force == pytest.approx(force.max(), rel=1e-4)
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.013, 0.05, 0.09, 0.16, 0.19])
+def test_coarse_samples_of_a_break_away_state_by_how_much_they_can_miss_it(shift) -> None:
+    time = np.arange(shift, 20.0, 0.2)
+    late = np.maximum(time - 6.0, 0.0)
+    courses = {  # each with its largest force, at 6 s
+        "rounded": 2.0 * np.sin(np.pi * np.minimum(time, 9.0) / 12.0),
+        "corner": np.where(time < 6.0, time / 3.0, 1.4 + 0.6 * np.exp(-8.0 * late)),
+    }
+    for name, force in courses.items():
+        peak = st.analyse(st.Record(time=time, force=force)).friction.break_away
+        assert 0.0 <= 2.0 - peak.force <= peak.error + 1e-12, name
+        assert peak.error < 2.0 * 0.2 / 3.0, name  # two samples of the steepest rise
+
+
+def test_one_sample_of_sliding_has_a_mean_and_no_error() -> None:
+    time = np.append(np.arange(0.0, 4.0, 0.1), 100.0)
+    force = np.append(np.minimum(time[:-1], 6.9 - time[:-1]), 2.0)
+    record = st.Record(time=time, force=force)
+    kinetic = find_friction(record, "steady sliding", st.find_cycles(record)).kinetic
+    assert kinetic.force == 2.0
+    assert np.isnan([kinetic.error, kinetic.spread]).all()
+
+
+def test_steady_sliding_has_its_mean_and_spread() -> None:
+    time = np.arange(0.0, 10.0, 1e-3)
+    noise = 0.05 * np.random.default_rng(2).standard_normal(len(time))
+    found = st.analyse(st.Record(time=time, force=2.0 + noise, normal_load=10.0))
+    kinetic = found.friction.kinetic
+    assert abs(kinetic.coefficient - 0.2) < 4.0 * kinetic.coefficient_error
+    assert kinetic.spread == pytest.approx(0.05, rel=0.05)
+    assert found.friction.missing["break_away"].startswith("the record does not begin")
+
+
+def test_columns_that_mean_nothing_are_not_given() -> None:
+    time = np.arange(0.0, 3.0, 1e-4)
+    swing = 1.0 + 0.3 * np.sin(2.0 * np.pi * 10.0 * time)
+    found = st.analyse(st.Record(time=time, force=swing, normal_load=5.0))
+    assert found.regime.kind == "harmonic vibration"
+    assert np.isnan(found.cycles["stick_slope"]).all()
+    assert "harmonic vibration" in found.missing["creep_distance"]
+    assert found.friction.kinetic.coefficient == pytest.approx(0.2, rel=1e-3)
+
+
+def test_a_harmonic_of_the_cycles_is_no_line() -> None:
+    time = np.arange(0.0, 60.0, 1e-3)
+    noise = 2e-4 * np.random.default_rng(0).standard_normal(len(time))
+    sawtooth = 1.0 + 0.3 * (time % 1.1)
+    found = st.analyse(st.Record(time=time, force=sawtooth + noise))
+    assert np.isfinite(found.oscillation["frequency"]).mean() < 0.05
+    assert "No line stands out" in as_text(found.tables())
+    hum = 0.01 * np.sin(2.0 * np.pi * 47.0 * time)
+    found = st.analyse(st.Record(time=time, force=sawtooth + hum + noise))
+    assert found.oscillation["frequency"].values == pytest.approx(47.0, abs=0.1)
+
+
+def test_a_report_prints_itself_and_no_creep_goes_backwards() -> None:
+    random = np.random.default_rng(7)
+    time = np.arange(0.0, 60.0, 0.01)
+    force = 0.45 + 0.17 * (time / 2.5 % 1.0) + 0.002 * time + 0.002 * random.normal(size=len(time))
+    hum = 0.02 * np.sin(2 * np.pi * 49.99 * np.arange(0.0, 60.0, 0.001))
+    known = {"stiffness": "150 N/m", "drive_velocity": "0.4 mm/s", "normal_load": "2 N"}
+    text = str(st.analyse(st.Record(time=time, force=force, **known)))
+    assert text.startswith("Warnings\n")
+    assert "creeps at -" not in text
+    fast = np.arange(0.0, 60.0, 0.001)
+    humming = st.Record(time=fast, force=np.interp(fast, time, force) + hum)
+    assert "frequency of the mains" in str(st.analyse(humming))
+
+
+def test_a_record_too_slow_for_a_fast_line_is_told_the_rate() -> None:
+    time = np.arange(0.0, 33.0, 0.1)
+    found = st.analyse(st.Record(time=time, force=1.0 + (time / 0.75) % 1.0))
+    assert found.missing["oscillation"].endswith("of which there are 10")
+
+
+def test_a_coefficient_of_five_is_doubted_but_is_no_factor_of_a_thousand() -> None:
+    time = np.arange(0.0, 20.0, 0.01)
+    found = st.analyse(st.Record(time=time, force=5.0 + time % 1.0, normal_load="1 N"))
+    assert "beyond belief: check the normal load, 1 N." in " ".join(found.warnings)
+
+
+@pytest.mark.parametrize(("frequency", "doubted"), [(50.0, True), (59.9, True), (55.0, False)])
+def test_a_vibration_of_the_mains_may_be_hum(frequency: float, doubted: bool) -> None:
+    """Of steady sliding with hum nothing but its frequency tells that it is no vibration."""
+    time = np.arange(0.0, 6.0, 0.001)
+    record = st.Record(time=time, force=1.5 + 0.08 * np.sin(2 * np.pi * frequency * time))
+    found = st.analyse(record)
+    assert found.regime.kind == "harmonic vibration"
+    assert ("with the drive at rest" in " ".join(found.warnings)) == doubted

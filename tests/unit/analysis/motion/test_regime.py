@@ -1,0 +1,271 @@
+"""Each kind of motion is told from the others, with what is known of the rig and without."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import pi
+
+import numpy as np
+import pytest
+from benchmarks.explore.records import Labelled, filtered, judged, long, short, wandering
+from scipy.signal import lfilter
+from tests.measured import bare, measured
+
+import stiction as st
+from stiction.analysis.motion.band import highest_hump
+from stiction.analysis.motion.decay import dies_out
+from stiction.analysis.motion.rest import rest_share
+
+TRANSITIONAL = "transitional oscillation"
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "least"),
+    [
+        ("k168_v42", "stick-slip", 0.9),
+        ("k168_v1100", TRANSITIONAL, 0.4),
+        ("k1002_v4300", "harmonic vibration", 0.9),
+        ("k2254_v42", "steady sliding", 0.8),
+    ],
+)
+def test_measured_records_are_told_apart(name: str, kind: str, least: float) -> None:
+    record = measured(name)
+    for known in (record, bare(record)):
+        regime = st.classify(known)
+        assert regime.kind == kind
+        assert regime.confidence > least
+    for part in np.array_split(np.arange(len(record)), 6):
+        assert st.classify(st.Record(time=record.time[part], force=record.force[part])).kind == kind
+
+
+def test_between_says_what_else_it_could_be() -> None:
+    regime = st.classify(measured("k168_v1100"))
+    assert regime.runner_up == "stick-slip"
+    assert regime.confidence < 0.7
+    assert "the force rises for 7" in str(regime)
+    assert 1.2 < regime.evidence["natural_period"] < 1.7  # 2 pi sqrt(m/k) = 85 ms of 125 ms
+
+
+@pytest.mark.parametrize(
+    ("phi", "kind"),
+    [  # critical: 8.66 deg
+        ("1 deg", "stick-slip"),
+        ("8 deg", "stick-slip"),
+        ("8.8 deg", "settling"),
+        ("10 deg", "settling"),
+    ],
+)
+def test_the_critical_misalignment_parts_stick_slip_from_damped(
+    slider: st.Slider, phi: str, kind: str
+) -> None:
+    run = st.simulate(slider.replace(phi=phi), 10.0, sample_rate=10e3)
+    record = st.record_of(run)
+    assert st.classify(record).kind == kind
+    assert st.classify(bare(record)).kind == kind
+    assert (st.find_cycles(record).sizes["cycle"] > 0) == (kind == "stick-slip")
+
+
+def test_constant_friction_is_a_transient(slider: st.Slider) -> None:
+    law = st.ExponentialWeakening(mu_0=0.2, mu_inf=0.2, v_f="10 mm/s")
+    run = st.simulate(slider.replace(friction=law), 10.0, sample_rate=10e3)
+    regime = st.classify(st.record_of(run))
+    assert regime.kind == "settling"
+    assert "each smaller than the last" in str(regime)
+
+
+def test_a_run_before_its_first_slip_is_stuck(paper_run: st.Trajectory) -> None:
+    record = st.record_of(paper_run)
+    early = record.time < 1.5
+    part = st.Record(time=record.time[early], force=record.force[early])
+    assert st.classify(part).kind == "stuck"
+    known = part.model_copy(update={"stiffness": 1e3, "drive_velocity": 1e-3})
+    assert st.classify(known).kind == "stuck"
+    # the same slow rise on a spring that would load a hundred times faster: it slides
+    stiff = part.model_copy(update={"stiffness": 1e5, "drive_velocity": 1e-3})
+    assert st.classify(stiff).kind == "steady sliding"
+
+
+@pytest.mark.parametrize(
+    ("per_cycle", "noise"),  # twelve samples a cycle do not show it under more noise
+    [(12, 0.0), (12, 0.1), (100, 0.0), (100, 0.1), (100, 0.5), (1000, 0.0), (1000, 0.5)],
+)
+def test_a_vibration_is_no_stick_slip(noise: float, per_cycle: int) -> None:
+    time = np.arange(20 * per_cycle) / (3.0 * per_cycle)
+    wave = np.sin(2 * pi * 3.0 * time) + noise * np.random.default_rng(1).normal(size=len(time))
+    regime = st.classify(st.Record(time=time, force=wave))
+    assert regime.kind == "harmonic vibration"
+    assert regime.evidence["period_spread"] < 0.25
+
+
+@pytest.mark.parametrize("samples", [6.0, 20.0, 60.0])  # a period
+@pytest.mark.parametrize("bandwidth", [0.03, 0.08, 0.2])
+def test_noise_through_a_narrow_filter_is_an_irregular_vibration(
+    samples: float, bandwidth: float
+) -> None:
+    """Swings of every size beside slow motion, on a mass that could swing at that frequency."""
+    random, rate = np.random.default_rng(8), 48.0 * samples
+    size = int(5.0 * rate)
+    pole = np.exp((2j - bandwidth) * pi / samples)
+    rung = lfilter([1.0], [1.0, -2.0 * pole.real, abs(pole) ** 2], random.normal(size=2 * size))
+    time = np.arange(size) / rate
+    noise = random.normal(size=size) / 20.0
+    force = 20.0 + rung[size:] / rung.std() + 4.0 * np.sin(0.5 * time) + noise
+    record = st.Record(time=time, force=force, mass=1.0, stiffness=(2.0 * pi * 48.0) ** 2)
+    for known in (record, bare(record)):
+        assert st.classify(known).kind == "irregular vibration"
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_noise_of_any_colour_is_no_vibration(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    white, time = random.normal(size=6000), np.arange(4000) * 1e-3
+    smooth = lfilter([1.0], [1.0, -1.8, 0.81], white)[2000:]  # falls off beyond 17 Hz
+    for noise in (white[2000:], smooth, np.cumsum(white[2000:]), np.diff(white)[1999:]):
+        assert highest_hump(time, noise).height < 1.0
+    assert highest_hump(time, white[2000:] + 3.0 * np.sin(2 * pi * 30.0 * time)).height > 1.0
+
+
+@pytest.mark.parametrize(
+    ("make", "number"),
+    [  # of seed 20270101: beside a random walk, and on a force that comes to rest
+        (wandering, 27),
+        (wandering, 140),
+        (wandering, 158),
+        (wandering, 187),
+        (long, 95),
+    ],
+)
+def test_small_vibration_beside_a_force_that_wanders_is_seen(
+    make: Callable[[np.random.Generator], Labelled], number: int
+) -> None:
+    assert judged(make, 20270101, number).right
+
+
+def test_vibration_on_a_force_that_rises_is_no_stick() -> None:
+    random = np.random.default_rng(19)
+    vibration = filtered(random, 200.0, 12.0)
+    time = np.arange(len(vibration)) / 600.0
+    noise = 0.1 * random.normal(size=len(time))
+    rising = st.Record(time=time, force=20.0 * time / time[-1] + vibration + noise)
+    assert st.classify(rising).kind == "irregular vibration"
+    assert (
+        st.classify(rising.model_copy(update={"force": rising.force - vibration})).kind == "stuck"
+    )
+
+
+def test_vibrations_of_few_periods_are_told_with_the_confidence_that_they_deserve() -> None:
+    """Of thirty periods some look harmonic: then nothing is sure."""
+    found = [judged(short, 20270101, number) for number in (*range(40), 57, 98, 187, 192)]
+    wrong = [each for each in found if not each.right]
+    assert 4 <= len(wrong) <= 8  # the last four, and one of ten others at most
+    assert all(each.confidence < 0.7 for each in wrong)
+    sure = [each for each in found if each.confidence >= 0.7]
+    assert all(each.right for each in sure)
+    assert len(sure) >= 30
+
+
+def test_a_vibration_whose_size_changes_once_is_harmonic() -> None:
+    time = np.arange(8000) * 1e-3
+    for size in (1.0 + 2.0 * time / 8.0, 1.0 + 1.5 * np.exp(-3.0 * time)):
+        regime = st.classify(st.Record(time=time, force=size * np.sin(2 * pi * 12.0 * time)))
+        assert regime.kind == "harmonic vibration"
+        assert regime.confidence > 0.9
+
+
+def test_records_of_no_motion_in_particular() -> None:
+    time = np.arange(4000) * 1e-3
+    random = np.random.default_rng(7)
+    white = random.normal(size=4000)
+    spike = np.where(time == time[777], 5.0, 1.0)
+    kinds = {
+        kind: [st.classify(st.Record(time=time, force=force)).kind for force in forces]
+        for kind, forces in {
+            "steady sliding": [
+                np.ones(4000),
+                white,
+                2.0 + 0.01 * white,
+                spike,
+                spike + 0.01 * white,
+            ],
+            "stuck": [time, time + 0.05 * white, time + spike],
+            "settling": [1.0 - np.exp(-5.0 * time), np.exp(-2 * time) * np.sin(40 * time)],
+        }.items()
+    }
+    for kind, found in kinds.items():
+        assert set(found) == {kind}
+
+
+@pytest.mark.parametrize("size", [0, 1, 3, 20])
+def test_too_few_samples_determine_nothing(size: int) -> None:
+    regime = st.classify(st.Record(time=np.arange(size), force=np.ones(size)))
+    assert (regime.kind, regime.confidence) == ("undetermined", 0.0)
+    assert f"there are {size} samples, too few" in str(regime)
+
+
+def test_one_cut_slip_determines_nothing(paper_run: st.Trajectory) -> None:
+    record = st.record_of(paper_run)
+    early = record.time < 2.9
+    regime = st.classify(st.Record(time=record.time[early], force=record.force[early]))
+    assert regime.kind == "undetermined"
+    assert "make no complete cycle" in str(regime)
+
+
+def test_cycles_that_are_alike_are_sure_however_few() -> None:
+    time = np.arange(40_000) * 1e-3
+    for samples in (6500, 12_500, 40_000):
+        regime = st.classify(st.Record(time=time[:samples], force=time[:samples] % 2.0))
+        assert regime.confidence > 0.98
+    assert st.classify(st.Record(time=time[:4500], force=time[:4500] % 2.0)).confidence == 0.5
+
+
+def test_few_cycles_that_differ_say_less_than_many() -> None:
+    def confidence(count: int) -> float:
+        rises = 0.85 + 0.06 * np.resize([1.0, -1.0], count + 2)  # either side of 0.777 is near
+        start = np.arange(count + 2.0)
+        corners = np.stack([start, start + rises], axis=1).ravel()
+        time = np.arange(0.05, count + 1.95, 1e-3)
+        force = np.interp(time, corners, np.resize([0.0, 1.0], len(corners)))
+        return st.classify(st.Record(time=time, force=force)).confidence
+
+    assert 0.5 < confidence(2) < confidence(4) < confidence(16) < 0.98
+
+
+def test_what_dies_out() -> None:
+    decay = 0.7 ** np.arange(10)
+    assert dies_out(decay, np.ones(10), 0.5)
+    assert not dies_out(decay[:5], np.ones(5), 0.5)  # it may go on
+    assert dies_out(decay[:5], np.ones(5), 4.0)  # but it did not
+    assert not dies_out(decay[::-1], np.ones(10), 0.5)
+    assert not dies_out([], [], 0.0)
+
+
+@pytest.mark.parametrize("velocity", ["2 mm/s", "20 mm/s", "60 mm/s", "150 mm/s"])
+def test_the_shape_of_a_cycle_says_how_long_it_rests(velocity: str, slider: st.Slider) -> None:
+    """Friction that is constant in slip, and larger at rest: the case of the closed form."""
+    drive = st.ConstantVelocity(velocity)
+    law = st.Coulomb(mu_0=0.2, mu_static=0.3)
+    aligned = slider.replace(phi="0 deg", friction=law, drive=drive)
+    period = 2.0 * 3.0 / (1e3 * drive.velocity) + 0.1  # s, at least: it loads from trough to peak
+    run = st.simulate(aligned, 12.0 * period, sample_rate=4000.0 / period)
+    cycles = st.find_cycles(run)
+    begin, end = float(cycles["start"][1]), float(cycles["trough_time"][-1])
+    rests = np.diff(np.clip(run.stick_intervals, begin, end), axis=1).sum() / (end - begin)
+    # a peak is placed to a fraction of a sample, of which a period has a hundred or more; the
+    # share of rest changes six times as much as that of the rise at most, where that is > 0.52
+    assert rests == pytest.approx(float(rest_share(cycles["rise_share"].median())), abs=0.02)
+    assert st.classify(run).evidence["rest_share"] == pytest.approx(rests, abs=0.02)
+
+
+def test_a_force_with_the_wrong_sign_is_asked_about() -> None:
+    time = np.arange(20_000) * 1e-3
+    regime = st.classify(st.Record(time=time, force=1.0 - time % 2.0))
+    assert regime.kind == "undetermined"
+    assert "is its sign right?" in str(regime)
+
+
+def test_words_have_units_and_no_powers_of_ten() -> None:
+    time = np.arange(20_000) * 1e-3
+    rig = {"stiffness": 1e6, "mass": 1e-3}
+    text = str(st.classify(st.Record(time=time, force=1e-9 * (time % 2.0), **rig)))
+    assert "a period is 10100 times the mass's own" in text  # 2 s sqrt(k/m)/(2 pi)
+    assert "spans 310 pN" in str(st.classify(st.Record(time=time, force=1.6e-11 * time)))

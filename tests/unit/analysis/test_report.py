@@ -1,0 +1,149 @@
+import csv
+import json
+from math import degrees
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.analysis.creep.findings import calibrated
+from stiction.analysis.export import write
+from stiction.analysis.words import sections
+from stiction.cli import main
+from stiction.plotting.analysis.overview import figures
+
+PAPER = st.presets.nakano_popov_2020()
+
+
+@pytest.fixture(scope="module")
+def run():
+    return st.simulate(PAPER, duration=5.0, sample_rate=10e3)
+
+
+@pytest.fixture(scope="module")
+def found(run):
+    return st.analyse(run)
+
+
+def test_a_run_says_everything_of_itself(found):
+    assert found.missing == {}
+    assert found.regime.kind == "stick-slip"
+    assert found.cycles.sizes["cycle"] == 3
+    assert found.phases.sizes["phase"] == 4  # the first loading is one
+    assert float(found.energy["work"].sum()) > 0.0
+    assert degrees(found.misalignment.phi) == pytest.approx(1.0, abs=0.02)
+
+
+def test_bare_arrays_say_what_they_can(run):
+    record = st.Record(time=run.data["time"].values, force=run.data["spring_x"].values)
+    found = st.analyse(record)
+    assert found.cycles.sizes["cycle"] == 3
+    assert "stiffness and drive_velocity" in found.missing["creep"]
+    assert found.energy is None
+    assert all(part.sentences for part in sections(found))
+
+
+def test_creep_of_a_measured_record_is_counted_from_its_own_loading(run):
+    data = {"time": run.data["time"].values, "force": run.data["spring_x"].values}
+    stated = st.Record(**data, stiffness=900.0, drive_velocity=1e-3)
+    found = st.analyse(stated)
+    shown = calibrated(stated, found.cycles).stiffness
+    assert shown == pytest.approx(982.0, abs=1.0)  # k_x less what creeps already
+    late = found.creep.isel(bin=slice(1, 10))
+    true = st.analyse(run).creep
+    at = np.interp(late["begin"], true["begin"], true["velocity"])
+    assert late["velocity"].values == pytest.approx(at, abs=0.03e-3)  # the share of V that is lost
+
+
+def test_a_run_without_a_sample_rate_is_sampled_well_enough():
+    found = st.analyse(st.simulate(PAPER, duration=5.0))
+    assert found.regime.kind == "stick-slip"
+    assert found.cycles.sizes["cycle"] == 3
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 10, 1000])
+def test_short_and_constant_records_are_no_error(count):
+    record = st.Record(time=np.arange(count) * 1e-3, force=np.ones(count))
+    found = st.analyse(record)
+    assert found.cycles.sizes["cycle"] == 0
+    assert [part.title for part in sections(found)] == [
+        "Motion", "Friction", "Cycles", "Creep", "Oscillation", "Energy",
+    ]  # fmt: skip
+
+
+def test_a_run_without_samples_or_misalignment_is_no_error():
+    for run in (
+        st.simulate(PAPER, duration=0.5),
+        st.simulate(PAPER.replace(phi="0 deg"), duration=0.5, sample_rate=1e3),
+        st.simulate(PAPER.replace(drive=st.ConstantVelocity(0.0)), duration=0.1, sample_rate=1e3),
+    ):
+        assert all(part.sentences for part in sections(st.analyse(run)))
+
+
+def test_tables_and_numbers_as_files(found, tmp_path):
+    names = [path.name for path in write(found, tmp_path)]
+    assert names == [
+        "analysis.json", "friction.csv", "cycles.csv", "summary.csv", "creep.csv",
+        "creep-phases.csv", "oscillation.csv", "oscillation-phases.csv", "energy.csv",
+    ]  # fmt: skip
+    with (tmp_path / "cycles.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert float(rows[0]["peak [N]"]) == pytest.approx(float(found.cycles["peak"][0]), rel=1e-11)
+    numbers = json.loads((tmp_path / "analysis.json").read_text())
+    assert numbers["regime"]["kind"] == "stick-slip"
+    assert numbers["cycles"]["period"]["unit"] == "s"
+    assert numbers["misalignment"]["phi"] == found.misalignment.phi
+
+
+def test_the_command_writes_tables_and_figures(run, tmp_path, capsys):
+    result = run.save(tmp_path / "my.nc")
+    with pytest.raises(SystemExit) as ended:
+        main(["analyse", str(result)])
+    assert ended.value.code == 0
+    assert "It diverges towards slip with the exponent" in " ".join(capsys.readouterr().out.split())
+    written = sorted(path.name for path in (tmp_path / "my-analysis").iterdir())
+    assert {"cycles.png", "creep.png", "oscillation.png", "energy.png", "cycles.csv"} < set(written)
+
+
+def test_the_command_refuses_a_file_for_a_folder(run, tmp_path, capsys):
+    result = run.save(tmp_path / "my.nc")
+    (tmp_path / "my-analysis").write_text("")
+    with pytest.raises(SystemExit) as ended:
+        main(["analyse", str(result)])
+    assert ended.value.code == 2
+    assert "is not a folder" in capsys.readouterr().err
+
+
+def test_an_even_rise_creeps_by_no_more_than_rounding() -> None:
+    time = np.arange(20_000) * 1e-3
+    known = {"stiffness": 0.1, "drive_velocity": 1.0}
+    found = st.analyse(st.Record(time=time, force=0.1 * (time % 2.0) + 1.0, **known))
+    assert found.creep is not None
+    # all but the bin at slip, into which the fall of one sample reaches
+    still = np.abs(found.creep["velocity"].values) <= 2.0 * found.creep["velocity_error"].values
+    assert still[1:].all()
+    assert (found.creep["velocity_error"].values > 0.0).all()
+
+
+def test_few_samples_show_no_creep(slider: st.Slider) -> None:
+    for rate in (0, 1.0, 10.0):
+        found = st.analyse(st.simulate(slider, 5.0, sample_rate=rate))
+        assert found.misalignment is None
+        if rate == 0:
+            assert "samples enough" in found.missing["creep"]
+
+
+def test_an_aligned_run_implies_no_misalignment(slider: st.Slider) -> None:
+    found = st.analyse(st.simulate(slider.replace(phi="0 deg"), 5.0, sample_rate=10e3))
+    assert (found.divergence, found.misalignment) == (None, None)
+    assert "there is no misalignment" in found.missing["oscillation"]
+    assert set(figures(found)) == {"cycles", "creep", "energy"}  # no picture of silence
+
+
+def test_old_names_go_on_working_with_a_warning(run, found) -> None:
+    with pytest.warns(DeprecationWarning, match="transverse_oscillation"):
+        assert st.hear_song is st.transverse_oscillation
+    with pytest.warns(DeprecationWarning, match="oscillation_by_phase"):
+        assert st.song_by_phase is st.oscillation_by_phase
+    with pytest.warns(DeprecationWarning, match="oscillation"):
+        assert found.song is found.oscillation

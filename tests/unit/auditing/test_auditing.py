@@ -1,0 +1,401 @@
+import re
+from math import cos, degrees, isnan, pi, sin, sqrt
+
+import numpy as np
+import pytest
+from benchmarks.explore.audits import RULES, rig
+from scipy.integrate import quad, solve_ivp
+
+import stiction as st
+from stiction import theory
+from stiction.analysis.motion.regime import HARMONIC, SETTLING, STICK_SLIP
+from stiction.auditing import advice, figures, observation, report, words
+from stiction.auditing.advice import advise, nearest
+from stiction.auditing.observation import OSCILLATES, SLIDES, coarse_rate, from_sliding, observe
+from stiction.auditing.page import page
+from stiction.auditing.prediction import predict
+from stiction.auditing.report import Audit
+from stiction.auditing.report import audit as examine
+from stiction.auditing.words import sections
+from stiction.cli import main
+from stiction.linear_stability import Critical, critical, steady_sliding
+
+PAPER = st.presets.nakano_popov_2020()
+
+
+@pytest.fixture(scope="module")
+def found():
+    return examine(PAPER)
+
+
+def test_load_up_and_creep_by_integrating_eq_7():
+    p, V, phi, l_x = predict(PAPER), 1e-3, PAPER.phi, 2e-3
+
+    def rate(_, u):
+        return [float(theory.elongation_rate(u[0], V, phi, l_x))]
+
+    def slow_turns_fast(_, u):
+        return u[0] - l_x * cos(p.theta_c)
+
+    slow_turns_fast.terminal = True
+    way = solve_ivp(rate, (0, 5), [0.0], events=slow_turns_fast, rtol=1e-11, atol=1e-14)
+    assert p.load_up == pytest.approx(way.t[-1], rel=1e-8)
+    distance = quad(lambda t: theory.creep_velocity(t, V, phi, l_x), 0, p.load_up, epsrel=1e-10)[0]
+    assert p.creep_distance == pytest.approx(distance, rel=1e-8)
+    assert p.mu_static == pytest.approx(0.2 * cos(theory.critical_angle(3623.887)), rel=1e-7)
+
+
+def test_a_slip_is_half_a_swing_that_friction_stops():
+    # the estimate balances energy: what the spring gives is what friction takes along the way
+    p = predict(PAPER)
+    peak, mean = p.mu_static * 10.0, p.mu_kinetic * 10.0
+    v = (peak - mean) / sqrt(1e3 * 0.25) + 1e-3
+    law = PAPER.friction
+    work = quad(lambda tau: law.coefficient(v * sin(tau)) * 10.0 * sin(tau), 0, pi)[0] / 2.0
+    assert work == pytest.approx(mean, rel=1e-3)  # 64 midpoints of a smooth function
+    assert p.drop == pytest.approx(2.0 * (peak - mean), rel=1e-12)
+
+
+def test_theory_beside_the_simulation(found):
+    p, seen = found.prediction, found.observation
+    sticks = seen.run.stick_intervals
+    assert p.first_stick == pytest.approx(sticks[0, 1] - sticks[0, 0], rel=1e-6)
+    # Eq. (7) leaves out inertia, of relative order (omega_x load_up)^-1, here 1/128
+    assert seen.mean("mu_static") == pytest.approx(p.mu_static, rel=1 / 128)
+    assert seen.mean("period") == pytest.approx(
+        p.period, rel=0.05
+    )  # damping in the slip is left out
+    assert seen.mean("drop") == pytest.approx(p.drop, rel=0.05)
+
+
+def test_critical_misalignment_of_the_paper_s_case(found):
+    assert degrees(found.prediction.phi_c) == pytest.approx(8.655, abs=5e-4)
+    assert degrees(found.misalignment.values[0]) == pytest.approx(8.656, abs=5e-4)
+    assert "8.6560 deg (8.6554 deg in closed form): the margin is 7.656 deg more" in str(
+        sections(found)[0].sentences
+    )
+
+
+def test_shares_of_a_cycle_add_up_and_rest_is_that_of_the_sticks(found):
+    seen = found.observation
+    rest, creep, slip = seen.shares
+    assert rest + creep + slip == pytest.approx(1.0, abs=1e-12)
+    begin, end = float(seen.cycles["start"][0]), float(seen.cycles["trough_time"][-1])
+    inside = [stick for stick in seen.run.stick_intervals if begin <= stick[0] and stick[1] <= end]
+    assert rest == pytest.approx(np.diff(inside, axis=1).sum() / (end - begin), abs=1e-5)
+
+
+def test_advice_is_tried_and_says_when_it_does_not_help(found):
+    advices = {each.path: each for each in found.advices}
+    phi, speed, damper = (advices[path] for path in ("phi", "drive.velocity", "c_x"))
+    assert phi.works
+    assert damper.works
+    assert phi.tried.regime.kind == SETTLING
+    # far beyond the critical speed friction is flat: what oscillates goes on oscillating
+    assert speed.growth < 0.0
+    assert not speed.works
+    assert isnan(advices["k_x"].then)
+    rows = next(part for part in sections(found) if part.title == "What to change").table.rows
+    assert [row[-1].startswith("no value") for row in rows] == [False, False, False, True]
+    assert rows[1][-1].startswith("no remedy: ")
+
+
+def test_an_advised_damper_is_what_the_closed_form_says(found):
+    # at phi = 1 deg, k_y to infinity: c + F' cos^2 + F/V sin^2 = 0
+    law, c, s = PAPER.friction, cos(PAPER.phi) ** 2, sin(PAPER.phi) ** 2
+    closed = -(law.slope(1e-3) * 10 * c + law.coefficient(1e-3) * 10 / 1e-3 * s) / c
+    damper = next(each for each in found.advices if each.path == "c_x")
+    assert damper.critical == pytest.approx(closed, rel=2e-3)  # of order k_x/k_y and c_x^2/(m k_y)
+
+
+def test_what_slides_steadily_needs_nothing():
+    found = examine(PAPER.replace(phi="10 deg"))
+    assert found.advices == ()
+    assert found.observation.regime.kind == SETTLING
+    assert sections(found)[-1].sentences == ["Nothing: it slides steadily after the start."]
+    shown = {row[0]: row[1:] for row in sections(found)[1].table.rows}
+    assert shown["creep before the first slip"] == ("none", "none")  # nothing slips
+    law = PAPER.friction
+    assert float(shown["apparent kinetic friction"][1]) == pytest.approx(
+        law.coefficient(1e-3) * cos(found.slider.phi), rel=1e-3
+    )
+    assert figures.creep(found) is None
+
+
+def test_progress_is_told_to_its_end():
+    fractions = []
+    examine(PAPER.replace(phi="10 deg"), fractions.append)
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1.0
+
+
+def test_an_audit_takes_no_more_work_than_it_may_and_says_what_it_left_out(found, monkeypatch):
+    """Enough for one trial a lever: the one that needs two is cut, and its bar moves within it."""
+    tests = found.observation.work + found.sliding_on.work
+    trials = sum(each.work for each in found.advices)
+    assert tests + trials < observation.MOST_WORK
+    assert not any(each.cut for each in found.advices)
+    few = 4 * 30_000
+    assert trials > few
+    monkeypatch.setattr(report, "MOST_WORK", tests + few)
+    fractions = []
+    seen = examine(PAPER, fractions.append)
+    samples = sum(len(each.tried.record) for each in seen.advices if each.tried)
+    assert sum(each.work for each in seen.advices) < few + samples
+    assert [each.path for each in seen.advices if each.cut] == ["drive.velocity"]
+    sentence = "Values farther from the present one were not tried of drive velocity V: all"
+    assert any(each.startswith(sentence) for each in sections(seen)[-1].sentences)
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1.0
+    parts = report.PARTS
+    inside = {each for each in fractions if abs(parts * each - round(parts * each)) > 1e-9}
+    assert len(inside) >= 3  # it was told of each simulation, not of each part only
+
+
+def test_the_remedies_are_named_with_their_values(found):
+    first = sections(found)[-1].sentences[0]
+    assert first.startswith("To slide steadily: misalignment φ of 9.954 deg, or damping c_x of 51.")
+
+
+def test_no_value_is_tried_twice(monkeypatch):
+    """Where the stretch of stable values is short, all ways end in its middle."""
+    law = st.ExponentialWeakening(mu_0=0.35, mu_inf=0.22, v_f="5 mm/s")
+    rig = {"mass": 0.2, "k_x": 150, "k_y": 6e4, "phi": "0.5 deg", "normal_load": 2}
+    soft = st.Slider(**rig, friction=law, drive=st.ConstantVelocity("2 mm/s"))
+    tried = []
+    monkeypatch.setattr(advice, "tried", lambda slider, *_: tried.append(slider) or {"tried": None})
+    monkeypatch.setattr(advice, "LEVERS", ("phi",))
+    monkeypatch.setattr(advice.Advice, "works", False)
+    (found,) = [each._replace() for each in advise(soft, False, 10**6)]
+    assert found.then == tried[-1].phi
+    assert len({each.phi for each in tried}) == len(tried)
+
+
+@pytest.mark.parametrize(
+    ("changes", "kind"),
+    [
+        ({"phi": "0 deg"}, STICK_SLIP),
+        ({"phi": "-1 deg"}, STICK_SLIP),
+        ({"drive": st.ConstantVelocity(-1e-3)}, STICK_SLIP),
+        ({"friction": st.Coulomb(mu_0=0.2)}, SETTLING),
+    ],
+)
+def test_audits_of_other_apparatus(changes, kind):
+    found = examine(PAPER.replace(**changes))
+    assert found.observation.regime.kind == kind
+    assert all(part.sentences or part.table for part in sections(found))
+    assert page(found, "it").count("<section") == len(sections(found)) + 1
+
+
+def test_a_mirrored_apparatus_has_the_same_audit(found):
+    mirrored = examine(PAPER.replace(phi="-1 deg"))
+    assert mirrored.prediction == found.prediction
+    assert mirrored.observation.mean("drop") == found.observation.mean("drop")
+    assert mirrored.misalignment.values[-1] == pytest.approx(-found.misalignment.values[0])
+
+
+def test_the_nearest_stable_stretch_is_advised():
+    found = Critical(
+        "k", "", (1.0, 100.0), np.array([10.0, 50.0]), np.zeros(2), (True, False, True)
+    )
+    assert nearest(found, 12.0, 0.15) == (10.0, 8.5)
+    assert nearest(found, 45.0, 0.15) == (50.0, pytest.approx(57.5))
+    assert nearest(found, 45.0, 9.0) == (50.0, 75.0)  # not past the middle of the stretch
+
+
+def test_the_page_needs_nothing_from_outside(found):
+    text = page(found, "a <rig>")
+    assert "Audit of a &lt;rig&gt;" in text
+    assert text.count("data:image/png;base64,") == 5
+    assert not re.findall(r'(?:src|href)="(?!data:)(?!https://arxiv)', text)
+    assert "<script" not in text
+
+
+def test_the_command_prints_and_writes(tmp_path, capsys):
+    config, report = tmp_path / "my.toml", tmp_path / "my.html"
+    for arguments in (["init", str(config)], ["audit", str(config), "-o", str(report)]):
+        with pytest.raises(SystemExit) as ended:
+            main(arguments)
+        assert ended.value.code == 0
+    printed = capsys.readouterr().out
+    assert "damping number A, Eq. (10)" in printed
+    assert report.read_text(encoding="utf-8").endswith("</html>")
+
+
+def test_what_cannot_be_audited_or_written_says_why(tmp_path, capsys):
+    config = tmp_path / "my.toml"
+    with pytest.raises(SystemExit):
+        main(["init", str(config)])
+    with pytest.raises(SystemExit) as ended:
+        main(["audit", str(config), "-o", str(tmp_path / "report.txt")])
+    assert ended.value.code == 2
+    assert "report.html" in capsys.readouterr().err
+    config.write_text(config.read_text().replace('velocity = "1 mm/s"', "velocity = 0"))
+    with pytest.raises(SystemExit) as ended:
+        main(["audit", str(config)])
+    assert ended.value.code == 2
+    assert "drive.velocity: is zero" in capsys.readouterr().err
+
+
+def said(slider: st.Slider) -> str:
+    return " ".join(sentence for part in sections(examine(slider)) for sentence in part.sentences)
+
+
+def rows_of(slider: st.Slider) -> str:
+    table = sections(examine(slider))[1].table
+    return "\n".join(" | ".join(row) for row in table.rows)
+
+
+def test_friction_with_state_is_no_artefact_of_the_misalignment():
+    law = st.RateStateAgeing(a=0.008, b=0.012, D_c="10 um", mu_star=0.6, V_star="1 um/s")
+    rig = {"mass": "100 kg", "k_x": "1 MN/m", "k_y": "1 GN/m", "normal_load": "50 kN"}
+    drive = st.ConstantVelocity("10 um/s")
+    block = st.Slider(**rig, phi="0.3 deg", friction=law, drive=drive)
+    text = said(block)
+    assert "Friction with internal state creeps by itself" in text
+    assert "~ " in rows_of(block)
+    assert "artefact" not in text
+    assert "During creep the mass oscillates" not in text
+
+
+def test_a_transverse_spring_that_is_not_stiff_is_said_to_be_none():
+    law = st.Stribeck(mu_s=0.6, mu_c=0.45, v_s="5 mm/s", d=1)
+    rig = {"mass": "200 g", "k_x": "5 kN/m", "k_y": "1 MN/m", "normal_load": "20 N"}
+    pin = st.Slider(**rig, phi="0.5 deg", friction=law, drive=st.ConstantVelocity("0.5 mm/s"))
+    text = said(pin)
+    assert "here 1.75 k_x" in text  # 200 tan(0.5 deg)
+    # it is the same closed form as above, and no number of the finite spring
+    assert "unstable at every φ of that sign; on a transverse spring that is rigid" in text
+    assert "artefact" not in text  # it rests
+
+
+def test_an_aligned_apparatus_does_not_creep(found):
+    text = said(PAPER.replace(phi="0 deg"))
+    assert "There is no misalignment, so friction does not turn." in text
+    assert "creeping" not in text
+    assert "artefact" in " ".join(sections(found)[2].sentences)
+
+
+# --- both motions -------------------------------------------------------------------------------
+
+STATIC = {"mass": "150 g", "k_x": "1.2 kN/m", "k_y": "3 MN/m", "normal_load": "8 N"}
+STATIC_PEAK = st.Slider(
+    **STATIC,
+    phi="1 deg",
+    friction=st.Coulomb(mu_0=0.45, mu_static=0.6),
+    drive=st.ConstantVelocity("1 mm/s"),
+)
+
+
+def test_static_friction_above_kinetic_is_bistable():
+    """Steady sliding is stable, and not reached from rest: both are said, without contradiction."""
+    found = examine(STATIC_PEAK)
+    assert found.sliding.stable
+    assert (found.observation.comes_to, found.sliding_on.comes_to) == (OSCILLATES, SLIDES)
+    assert found.bistable
+    parts = {part.title: part for part in sections(found)}
+    assert "it is bistable" in parts["Verdict"].sentences[0]
+    text = " ".join(sentence for part in parts.values() for sentence in part.sentences)
+    assert "Nothing: it slides steadily" not in text
+    assert "each rest with a jump" in text
+    remedies = {each.path: each for each in found.advices}
+    assert remedies["phi"].works
+    assert remedies["c_x"].works
+    for each in found.advices:  # what is advised was tried from rest
+        assert each.works == (each.tried.comes_to == SLIDES)
+
+
+def test_theory_knows_the_static_coefficient():
+    """Square-on it rests until the spring carries mu_static W, and swings about mu_0 W then."""
+    found = examine(STATIC_PEAK.replace(phi="0 deg"))
+    p, seen = found.prediction, found.observation
+    assert p.first_stick == pytest.approx(0.6 * 8 / (1.2e3 * 1e-3), rel=1e-12)
+    assert seen.run.stick_intervals[0, 1] == pytest.approx(p.first_stick, rel=1e-9)
+    assert p.load_up == p.first_stick
+    assert p.drop == pytest.approx(2 * (0.6 - 0.45) * 8, rel=1e-3)
+    assert seen.mean("drop") == pytest.approx(p.drop, rel=0.01)
+    assert seen.mean("period") == pytest.approx(p.period, rel=0.02)
+    # the first stick of a misaligned one ends by the same force
+    tilted = predict(STATIC_PEAK)
+    assert tilted.first_stick == pytest.approx(9.165e-2, rel=1e-3)
+
+
+def test_a_hard_onset_is_bistable():
+    """Driven above the critical speed it slides on if it slides, and vibrates from rest."""
+    fast = PAPER.replace(drive=st.ConstantVelocity("0.12 m/s"))
+    found = examine(fast)
+    assert found.sliding.stable
+    assert found.bistable
+    assert len(found.advices) == 4
+
+
+# --- what words say ------------------------------------------------------------------------------
+
+
+def short(slider: st.Slider) -> Audit:
+    """Return an audit without advice."""
+    prediction, sliding = predict(slider), steady_sliding(slider)
+    rate = coarse_rate(prediction)
+    rest = observe(slider, prediction, sliding.growth_rate, sample_rate=rate)
+    both = rest, from_sliding(sliding, prediction)
+    return Audit(slider, prediction, sliding, critical(slider, "phi"), *both, ())
+
+
+def test_what_vibrates_does_not_creep():
+    found = short(PAPER.replace(drive=st.ConstantVelocity("30 mm/s")))
+    assert found.observation.motion == HARMONIC
+    text = " ".join(words.stick(found) + words.transverse(found))
+    assert "no stick in it" in text
+    assert "creeping" not in text
+    assert "During creep" not in text
+
+
+def test_what_mostly_rests_is_said_to():
+    text = " ".join(words.stick(short(PAPER.replace(phi="0 deg"))))
+    assert "mostly true rest" in text
+    assert "artefact" not in text
+
+
+def test_a_stability_that_lasts_no_test_is_said_to():
+    """Where a disturbance of 1 % oscillates in the test, "stable" says which are meant."""
+    found = short(PAPER.replace(phi="10 deg"))
+    assert words.stability(found).startswith("Steady sliding is stable: small disturbances decay")
+    kicked = found._replace(sliding_on=found.sliding_on._replace(comes_to=OSCILLATES))
+    assert not kicked.bistable
+    assert "stable only to disturbances far below 1 %" in words.stability(kicked)
+    assert "in a test it does not last" in words.stability(kicked)
+
+
+def test_a_sliding_that_lasts_a_test_only_is_said_to():
+    """Just below the critical speed disturbances grow in hours."""
+    found = short(PAPER.replace(drive=st.ConstantVelocity("92.1 mm/s")))
+    assert found.sliding.verdict == "unstable"
+    assert (found.observation.comes_to, found.sliding_on.comes_to) == (OSCILLATES, SLIDES)
+    assert "to steady sliding in the time of the test" in words.motions(found)[0]
+
+
+def test_a_change_that_leaves_little_is_no_failure(found):
+    """Where the force still falls, by a hundredth of what it did, that is nearly a remedy."""
+    rest = found.observation
+    small = rest._replace(cycles=rest.cycles.assign(drop=0.01 * rest.cycles["drop"]))
+    tried = found.advices[0]._replace(tried=small)
+    assert words._change(found, tried)[-1].startswith("almost: stick-slip, force drop ")
+    again = found.advices[0]._replace(tried=rest)
+    assert words._change(found, again)[-1].startswith("no remedy: stick-slip, force drop ")
+
+
+@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.__name__)
+def test_the_paper_s_audit_breaks_no_rule(rule, found):
+    assert rule(found)
+
+
+def test_rules_see_what_contradicts(found):
+    """A rule that cannot be broken says nothing: an unstable rig, called one without advice."""
+    silent = found._replace(advices=())
+    broken = {rule.__name__ for rule in RULES if not rule(silent)}
+    assert "nothing_to_change" in broken
+
+
+def test_rigs_are_drawn_by_number_alone():
+    assert rig(3, 7) == rig(3, 7)
+    assert rig(3, 7) != rig(3, 8)

@@ -1,0 +1,488 @@
+"""A law of the user's own, in a file that a description names: read, kept, and read back."""
+
+import inspect
+import json
+import os
+import pickle
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+import xarray as xr
+from tests.waiting import PATIENCE
+
+import stiction as st
+from stiction.cli import main
+from stiction.friction import has_state
+
+LAW = """
+from typing import NamedTuple
+from numba import njit
+from stiction.text.units import PositiveSpeed
+
+with open("ran", "a") as file:  # what running this text leaves behind
+    file.write("x")
+
+@njit
+def ratio(v, v_h):
+    return 1.0 + v / v_h
+
+class Mine(NamedTuple):
+    mu_0: float
+    v_h: PositiveSpeed = 0.05
+
+    def coefficient(law, v):
+        return law.mu_0 / ratio(v, law.v_h)
+
+    def slope(law, v):
+        return -law.mu_0 / law.v_h / ratio(v, law.v_h) ** 2
+"""
+TABLE = """
+[slider]
+mass = "0.25 kg"
+k_x = "1 kN/m"
+k_y = "10 MN/m"
+phi = "1 deg"
+normal_load = "10 N"
+[friction]
+law = "mylaw.py:Mine"
+mu_0 = 0.2
+v_h = "50 mm/s"
+[drive]
+velocity = "1 mm/s"
+[run]
+duration = "50 ms"
+sample_rate = "10 kHz"
+"""
+
+
+@pytest.fixture
+def config(tmp_path, monkeypatch):
+    """A description beside its law, in another folder than the working one."""
+    (tmp_path / "working").mkdir()
+    monkeypatch.chdir(tmp_path / "working")
+    (tmp_path / "mylaw.py").write_text(LAW)
+    (tmp_path / "a.toml").write_text(TABLE)
+    yield tmp_path / "a.toml"
+    forget_laws()
+
+
+def forget_laws():
+    """Take every law out of this process, as in a new one."""
+    for name in [name for name in sys.modules if name.startswith("stiction_law_")]:
+        del sys.modules[name]
+
+
+def python(code, cwd, **environment):
+    """Run Python in a process of its own; return what it prints."""
+    done = subprocess.run(
+        [sys.executable, *([code] if code.endswith(".py") else ["-c", code])],
+        cwd=cwd,
+        env=os.environ | environment,
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def simulated(config):
+    from stiction.simulation import run
+
+    return run(st.Description.from_toml(config))
+
+
+def test_a_description_names_a_file_and_a_class(config):
+    run = simulated(config)
+    law = run.slider.law
+    assert type(law).__name__ == "Mine"
+    assert law == (0.2, 0.05)
+    builtin = run.slider.replace(friction=st.HyperbolicWeakening(mu_0=0.2, v_h=0.05))
+    same = st.simulate(builtin, 0.05, sample_rate=1e4)
+    # the slope is rounded otherwise; a step is kept to 2e-5
+    assert run.stick_intervals == pytest.approx(same.stick_intervals, rel=1e-9, abs=1e-9)
+    assert st.Slider.from_toml(config) == run.slider
+
+
+@pytest.mark.parametrize(
+    "to", ["../working/mylaw.py", "{working}/mylaw.py", "link.py", "linked/mylaw.py"]
+)
+def test_a_law_lies_in_the_folder_of_its_description(config, to):
+    """Not where its writer chose a path to, nor in the working folder, nor behind a link."""
+    folder, working = config.parent / "of", config.parent / "working"
+    folder.mkdir()
+    (working / "mylaw.py").write_text(LAW)
+    (folder / "link.py").symlink_to(working / "mylaw.py")
+    (folder / "linked").symlink_to(working)
+    text = TABLE.replace("mylaw.py", to.format(working=working))
+    (folder / "a.toml").write_text(text)
+    with pytest.raises(st.DescriptionError, match=r"lies outside the folder .* --trust"):
+        st.Description.from_toml(folder / "a.toml")
+    assert not (working / "ran").exists()
+    allowed = st.Description.from_toml(folder / "a.toml", trust=True)
+    assert allowed.slider.law == (0.2, 0.05)
+    (folder / "a.toml").write_text(TABLE)
+    with pytest.raises(st.DescriptionError, match=r"no file 'mylaw.py' in .*of"):
+        st.Description.from_toml(folder / "a.toml")
+
+
+def test_a_law_is_not_run_before_all_else_is_right(config):
+    folder = config.parent / "working"
+    wrong = [TABLE.replace("0.25 kg", "-0.25 kg"), TABLE.replace("50 ms", "50 m"), TABLE + "[x]\n"]
+    for text in wrong:
+        config.write_text(text)
+        with pytest.raises(st.DescriptionError) as error:
+            st.Description.from_toml(config)
+        assert len(error.value.faults) == 1
+    study = "[study]\nmeasures = ['pig']\nseed = -1\n[axes.phi]\nfrom = '1 deg'\ncount = 0\n"
+    config.write_text(TABLE.replace("0.25 kg", "-0.25 kg") + study)
+    with pytest.raises(st.DescriptionError) as error:
+        st.Study.from_toml(config)
+    assert [fault.path for fault in error.value.faults] == [
+        *("axes.phi.to", "axes.phi.count", "study.measures", "study.seed", "slider.mass")
+    ]
+    assert not (folder / "ran").exists()
+    config.write_text(TABLE)
+    st.Slider.from_toml(config)
+    assert (folder / "ran").exists()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "path", "words"),
+    [
+        ("mylaw.py:Mine", "none.py:Mine", "law", "no file 'none.py' in "),
+        ("mylaw.py:Mine", "mylaw.py:", "law", "write 'mylaw.py:MyLaw'"),
+        ("mylaw.py:Mine", "mylaw.py:Mein", "law", "did you mean 'Mine'"),
+        ("mylaw.py:Mine", "mylaw.py:ratio", "law", "is not a NamedTuple; write class ratio("),
+        ("mu_0 = 0.2", "mu_O = 0.2", "mu_0", "missing"),
+        ("mu_0 = 0.2", "mu_O = 0.2", "mu_O", "did you mean 'mu_0'"),
+        ("mu_0 = 0.2", 'mu_0 = "0.2"', "mu_0", "'0.2' is not a number"),
+        ("mu_0 = 0.2", "mu_0 = true", "mu_0", "True is not a number"),
+        ('v_h = "50 mm/s"', 'v_h = "50 mm"', "v_h", "not a unit of a velocity"),
+        ("mu_0 = 0.2", "source = 1\nmu_0 = 0.2", "source", "must be text"),
+    ],
+)
+def test_faults_of_the_description(config, old, new, path, words):
+    config.write_text(TABLE.replace(old, new))
+    with pytest.raises(st.DescriptionError) as error:
+        st.Description.from_toml(config)
+    found = {fault.path: fault.message for fault in error.value.faults}
+    assert words in found[f"friction.{path}"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("from numba", "from nunba", "cannot be run: ModuleNotFoundError: No module named"),
+        ("class Mine", "class Mine Mine", "cannot be run: SyntaxError"),
+        ("@njit", "import sys; sys.exit(3)", "cannot be run: SystemExit: 3"),
+        ("@njit", "raise BaseException('no')", "cannot be run: BaseException: no"),
+        ("mu_0 / ratio", "mu_0.exit() / ratio", "raises AttributeError"),
+        ("return law.mu_0", "raise GeneratorExit; return law.mu_0", "raises GeneratorExit"),
+        ("mu_0: float", "mu_0: 'Flot'", "Mine' cannot be made: NameError: name 'Flot'"),
+        ("def slope", "def slop", "is not a friction law, it lacks slope; write class Mine("),
+        ("mu_0 / ratio", "nu / ratio", "raises AttributeError"),
+        ("mu_0 / ratio", "mu_0 / v / ratio", "raises ZeroDivisionError"),
+        ("mu_0 / ratio", "mu_0 * float('nan') / ratio", "is nan; it must be finite"),
+        ("mu_0", "law", "has a parameter 'law'"),
+        ("def slope(law, v)", "def states()", "it lacks settled, force, change; write"),
+    ],
+)
+def test_faults_of_the_file(config, old, new, words):
+    (config.parent / "mylaw.py").write_text(LAW.replace(old, new))
+    with pytest.raises(st.DescriptionError) as error:
+        st.Description.from_toml(config)
+    assert words in str(error.value)
+    assert "friction" in str(error.value)
+    assert "\n" not in words
+
+
+def test_the_example_describes_what_its_script_runs():
+    folder = Path(__file__).parents[3] / "examples"
+    description = st.Description.from_toml(folder / "own_law.toml")
+    assert description.slider.law == (0.2, 0.01, 1e-4)
+    assert description.run == st.Settings(duration=5.0, sample_rate=1e3)
+
+
+def test_a_law_with_state_is_found(config):
+    (config.parent / "mylaw.py").write_text("""
+from typing import NamedTuple
+class Mine(NamedTuple):
+    mu_0: float
+    v_h: float
+    @staticmethod
+    def states(): return (("z", "m", "bristle"),)
+    def coefficient(law, v): return law.mu_0
+    def settled(law, speed): return (0.0,)
+    def force(law, slip, load, state): return (0.0, 0.0)
+    def change(law, slip, load, state): return (0.0,)
+""")
+    config.write_text(TABLE.replace('"50 mm/s"', "0.05"))
+    assert has_state(st.Slider.from_toml(config).law)
+
+
+ENDLESS = [
+    (
+        "return law.mu_0 / ratio",
+        "while True:\n            pass\n        return ratio",
+        "coefficient at 0",
+    ),
+    ("return -law", "while v != v:\n            pass\n        return -law", "slope at nan"),
+    ("return 1.0 + v", "while v == 1.0:\n        v += 0.0\n    return 1.0 + v", "coefficient at 1"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "words"), ENDLESS)
+def test_a_law_that_does_not_end_is_told(config, old, new, words):
+    (config.parent / "mylaw.py").write_text(LAW.replace(old, new))
+    with pytest.raises(st.DescriptionError, match=rf"{words} m/s ran 100,000 lines.*range\(50\)"):
+        st.Description.from_toml(config)
+
+
+class Looping(NamedTuple):
+    mu_0: float
+
+    @staticmethod
+    def states():
+        return (("z", "m", "bristle"),)
+
+    def coefficient(law, v):
+        return law.mu_0
+
+    def settled(law, speed):
+        return (0.0,)
+
+    def force(law, slip, load, state):
+        return (law.mu_0 * load, 0.0)
+
+    def change(law, slip, load, state):
+        z = 1.0
+        while slip[0] == 0.0 and z > 0.0:
+            z = 0.5 * z + 1.0
+        return (z,)
+
+
+def test_check_law_tells_what_does_not_end():
+    with pytest.raises(st.DescriptionError, match="Looping: change at 0 m/s ran 100,000 lines"):
+        st.check_law(Looping(0.2))
+
+
+def test_a_trial_of_a_law_leaves_no_trace(config):
+    before = sys.gettrace()
+    law = st.Slider.from_toml(config).law
+    assert sys.gettrace() is before
+    assert hasattr(type(law).coefficient.__globals__["ratio"], "py_func")  # compiled, as it was
+
+
+def test_what_cannot_be_compiled_is_told_in_a_line(config):
+    (config.parent / "mylaw.py").write_text(LAW.replace("@njit", ""))
+    with pytest.raises(st.DescriptionError) as error:
+        simulated(config)
+    first, _ = map(str, error.value.faults)
+    assert first.startswith("friction: coefficient cannot be compiled: Untyped global name 'ratio'")
+    assert "numba.njit" in first
+
+
+# --- kept and read back -------------------------------------------------------------------------
+
+
+def test_back_in_the_same_process(config, tmp_path):
+    run = simulated(config)
+    again = st.Description.from_json(run.description.to_json())
+    assert again == run.description
+    assert type(again.slider.law) is type(run.slider.law)
+    assert st.Description.from_dict(run.description.to_dict()) == run.description
+    kept = run.description.to_dict()["friction"]
+    assert kept == {"law": "mylaw.py:Mine", "source": LAW, "mu_0": 0.2, "v_h": 0.05}
+    (tmp_path / "mylaw.py").unlink()
+    back = st.load(run.save(tmp_path / "a.nc"))  # this process knows the law
+    assert type(back.slider.law) is type(run.slider.law)
+    law = pickle.loads(pickle.dumps(run.slider.law))
+    assert type(law) is type(run.slider.law)
+
+
+LOAD = "import stiction as st; print(st.load({path!r}{trust}).slider.law)"
+REFUSED = """
+import stiction as st
+try:
+    st.load({path!r})
+except st.ResultError as error:
+    print(error)
+"""
+
+
+def test_another_process_runs_nothing(config, tmp_path):
+    path = str(simulated(config).save(tmp_path / "a.nc"))
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    # the same text beside the result, and in the working folder: the sender may have put it there
+    (elsewhere / "mylaw.py").write_text(LAW)
+    said = python(REFUSED.format(path=path), elsewhere)
+    assert "friction.law: 'mylaw.py:Mine' is a law of one's own" in said
+    assert "trust=True" in said
+    assert not (elsewhere / "ran").exists()  # nothing was run
+    # a module that was imported from the same text is the user's own choice
+    assert "Mine(mu_0=0.2" in python("import mylaw; " + LOAD.format(path=path, trust=""), elsewhere)
+    (elsewhere / "ran").unlink()
+    (elsewhere / "mylaw.py").write_text(LAW + "# edited\n")
+    assert "trust=True" in python("import mylaw" + REFUSED.format(path=path), elsewhere)
+    (elsewhere / "mylaw.py").unlink()
+    (elsewhere / "ran").unlink()
+    assert "Mine(mu_0=0.2" in python(LOAD.format(path=path, trust=", trust=True"), elsewhere)
+    assert (elsewhere / "ran").exists()
+    # what was computed can be read anyway
+    with xr.open_dataset(path, engine="h5netcdf") as data:
+        assert json.loads(data.attrs["description"])["friction"]["source"] == LAW
+
+
+def test_a_result_without_the_text_runs_no_file(config, tmp_path):
+    """A result that names a file, but does not hold its text, has nothing run."""
+    run = simulated(config)
+    table = run.description.to_dict()
+    del table["friction"]["source"]
+    (tmp_path / "other.py").write_text(LAW + "# another\n")
+    table["friction"]["law"] = "other.py:Mine"
+    run.data.attrs["description"] = json.dumps(table)
+    run.save(tmp_path / "a.nc")
+    for trust in (False, True):
+        with pytest.raises(st.ResultError, match="was not kept"):
+            st.load(tmp_path / "a.nc", trust=trust)
+    assert not [name for name in sys.modules if name.startswith("stiction_law_other")]
+
+
+def test_a_result_names_no_class_but_a_law(config):
+    """Texts of modules that every process has loaded are known to all."""
+    table = st.Description.from_toml(config).to_dict()
+    ran = config.parent / "working" / "popped"
+    command = {"args": ["touch", str(ran)], "source": inspect.getsource(subprocess)}
+    table["friction"] = {"law": "subprocess.py:Popen", **command}
+    with pytest.raises(st.DescriptionError, match=r"'subprocess.py:Popen' is not a NamedTuple"):
+        st.Description.from_json(json.dumps(table))
+    assert not ran.exists()
+
+
+SCRIPT = """
+from math import exp
+from typing import NamedTuple
+import stiction as st
+
+SCALE = 0.1
+def unused(): return 1
+
+class Mine(NamedTuple):
+    mu: float
+    def coefficient(law, v): return law.mu * (1 + SCALE * exp(-v))
+    def slope(law, v): return -SCALE * law.mu * exp(-v)
+
+with open("ran", "a") as file:
+    file.write("x")
+slider = st.presets.nakano_popov_2020().replace(friction=Mine(0.2))
+description = st.Description(slider, st.Initial(), st.Settings(duration=1.0))
+with open("script.json", "w") as file:
+    file.write(description.to_json())
+print(st.Description.from_json(description.to_json()).slider.law)
+"""
+READ = """
+import stiction as st
+text = open("script.json").read()
+try:
+    print(st.Description.from_json(text))
+except st.DescriptionError as error:
+    print(error)
+print(st.Description.from_json(text, trust=True).slider.law)
+"""
+
+
+def test_a_law_in_a_script_is_kept_without_its_runs(tmp_path):
+    (tmp_path / "script.py").write_text(SCRIPT)
+    assert "Mine(mu=0.2)" in python("script.py", tmp_path)
+    refused, trusted = python(READ, tmp_path).splitlines()
+    assert "'script.py:Mine' is a law of one's own" in refused
+    assert trusted == "Mine(mu=0.2)"
+    assert (tmp_path / "ran").read_text() == "x"  # the script ran once
+    text = json.loads((tmp_path / "script.json").read_text())["friction"]["source"]
+    assert "class Mine" in text
+    assert "SCALE = 0.1" in text
+    assert "unused" not in text
+    assert "replace" not in text
+
+
+def test_a_file_edited_after_its_import_is_not_taken_for_what_ran(tmp_path, monkeypatch):
+    """Neither kept with the result, nor as the name of machine code."""
+    from stiction.friction.user.source import text_of
+    from stiction.solver.compilation.pointer import _source
+
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "edited_law.py"
+    path.write_text(LAW)
+    import edited_law
+
+    assert text_of(edited_law.Mine) == ("edited_law.py", LAW)
+    assert _source(edited_law.Mine) == f"edited_law\n{LAW}"
+    path.write_text(LAW.replace("-law.mu_0", "-2 * law.mu_0"))
+    assert text_of(edited_law.Mine) is None
+    with pytest.raises(OSError, match="as it was run"):
+        _source(edited_law.Mine)
+
+
+def test_a_law_in_a_prompt_has_no_text(tmp_path):
+    python(SCRIPT.replace("print(st.Description", "#"), tmp_path)
+    with pytest.raises(st.DescriptionError, match="'__main__:Mine' was not kept"):
+        st.Description.from_json((tmp_path / "script.json").read_text(), trust=True)
+
+
+def test_machine_code_is_kept_for_the_next_process(config, tmp_path, code_cache):
+    cache = {"NUMBA_CACHE_DIR": str(code_cache)}
+    code = f"""
+import pickle, stiction as st
+from stiction.simulation import run
+d = st.Description.from_toml({str(config)!r})
+print(run(d).stick_intervals[0, 1])
+open("law.pickle", "wb").write(pickle.dumps(d.slider))
+"""
+    one = python(code, tmp_path, **cache)
+    kept = sorted(code_cache.rglob("*.code"))
+    stamps = [each.stat().st_mtime_ns for each in kept]
+    assert sum("coefficient_and_slope_at" in each.name for each in kept) == 1
+    assert python(code, tmp_path, **cache) == one
+    assert sorted(code_cache.rglob("*.code")) == kept
+    assert [each.stat().st_mtime_ns for each in kept] == stamps
+    # another process makes the law of its pickle, as a pool of processes needs
+    load = "import pickle; print(pickle.load(open('law.pickle', 'rb')).law)"
+    assert "Mine(mu_0=0.2" in python(load, tmp_path, **cache)
+
+
+@pytest.mark.parametrize("raised", ["ValueError('no')", "BaseException('no')", "SystemExit(0)"])
+def test_what_a_law_raises_later_is_told_in_a_line(config, raised, capsys):
+    """Not in a traceback: it is the law that is to be corrected."""
+    body = f"if v > 2e-3: raise {raised}\n        return law.mu_0"
+    law = LAW.replace("return law.mu_0 / ratio(v, law.v_h)", body)
+    (config.parent / "mylaw.py").write_text(law)
+    with pytest.raises(SystemExit) as end:
+        main(["stability", str(config), "--set", "V=3mm/s"])
+    assert end.value.code == 2
+    said = capsys.readouterr().err
+    assert f"mylaw.py, line 18: {raised.partition('(')[0]}: " in said
+    assert "Traceback" not in said
+
+
+def test_the_command_line(config, tmp_path, capsys):
+    def inside(*arguments):
+        with pytest.raises(SystemExit) as end:
+            main([str(argument) for argument in arguments])
+        return int(end.value.code or 0)
+
+    assert inside("run", config, "--output", tmp_path / "a.nc") == 0
+    assert inside("plot", tmp_path / "a.nc", "--output", tmp_path / "a.svg") == 0
+    (tmp_path / "mylaw.py").unlink()
+    forget_laws()
+    capsys.readouterr()
+    assert inside("plot", tmp_path / "a.nc", "--output", tmp_path / "b.png") == 2
+    assert "on the command line --trust" in capsys.readouterr().err
+    assert not (tmp_path / "b.png").exists()
+    assert inside("plot", tmp_path / "a.nc", "--output", tmp_path / "b.png", "--trust") == 0

@@ -1,0 +1,94 @@
+"""Files are written whole or not at all, and stay when the power fails."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+from tests.power import Disk
+
+import stiction as st
+from stiction.storage.files import WORKSHOP, whole, workshop
+
+OLD, NEW = b"the old content", b"what is new"
+
+
+@pytest.fixture
+def disk(tmp_path, monkeypatch):
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder" / "a.txt").write_bytes(OLD)
+    made = Disk(tmp_path / "folder", monkeypatch)
+    yield made
+    made.close()
+
+
+def test_a_power_cut_leaves_the_old_file_or_the_new_one(disk):
+    with whole(disk.root / "a.txt") as part:
+        part.write_bytes(NEW)
+    found = {state["a.txt"] for state in disk.states}
+    assert found == {OLD, NEW}
+    disk.states.clear()
+    disk.look()
+    assert {state["a.txt"] for state in disk.states} == {NEW}  # it stays from now on
+
+
+def test_the_disk_of_these_tests_loses_what_is_not_synced(disk):
+    """As a file was written before: to a part that takes its name."""
+    (disk.root / "part").write_bytes(NEW)
+    os.replace(disk.root / "part", disk.root / "a.txt")
+    found = {state["a.txt"] for state in disk.states}
+    assert found == {OLD, b"", bytes(len(NEW)), NEW}
+
+
+def test_what_cannot_be_written_leaves_what_was_there(tmp_path):
+    target = tmp_path / "a.toml"
+    target.write_bytes(OLD)
+    with pytest.raises(st.ResultError, match="cannot be written: No space left"), whole(target):
+        raise OSError(28, "No space left on device")
+    assert [each.name for each in tmp_path.iterdir()] == ["a.toml"]
+    assert target.read_bytes() == OLD
+
+
+LIMITED = """
+import resource, sys
+import stiction as st
+resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
+st.init(sys.argv[1], force=True)
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs limits of the system")
+def test_init_on_a_full_disk_keeps_the_user_s_file(tmp_path):
+    """The system lets files grow to 100 bytes."""
+    target = tmp_path / "my.toml"
+    target.write_bytes(OLD)
+    command = [sys.executable, "-c", LIMITED, str(target)]
+    ended = subprocess.run(command, capture_output=True, text=True)
+    assert "cannot be written: File too large" in ended.stderr
+    assert target.read_bytes() == OLD
+    assert [each.name for each in tmp_path.iterdir()] == ["my.toml"]
+
+
+KILLED = """
+import sys, time
+from pathlib import Path
+from stiction.storage.files import whole
+with whole(Path(sys.argv[1])) as part:
+    part.write_text("half")
+    print("there", flush=True)
+    time.sleep(3600)
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="Windows cannot tell who is alive")
+def test_what_a_killed_process_leaves_is_taken_away(tmp_path):
+    command = [sys.executable, "-c", KILLED, str(tmp_path / "a.txt")]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline() == "there\n"
+        with whole(tmp_path / "b.txt") as part:
+            part.write_bytes(NEW)
+        assert len([*tmp_path.glob(f"{WORKSHOP}*/*.txt")]) == 1  # it is alive: left alone
+        process.kill()
+    with workshop(tmp_path):
+        pass
+    assert [each.name for each in tmp_path.iterdir()] == ["b.txt"]

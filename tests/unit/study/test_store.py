@@ -1,0 +1,133 @@
+"""Studies stay when the power fails: each state that a cut may leave goes on to the same end.
+
+The cut of a real file system is a command: ``python -m benchmarks.explore.power_cuts``.
+"""
+
+import os
+
+import pytest
+import xarray as xr
+from tests.power import Disk, State, put
+
+import stiction as st
+from stiction.storage.files import held
+from stiction.study.execution.engines import Threads
+from stiction.study.store.creation import create
+
+BASE = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="10 ms"))
+AXES = {"phi": st.Values(["1 deg", "95 deg", "3 deg"])}  # one is refused, and says why
+STUDY = st.Study(base=BASE, axes=AXES, measures=["peak_force"], traces=["force"], trace_samples=3)
+
+
+@pytest.fixture
+def disk(tmp_path, monkeypatch):
+    (tmp_path / "folder").mkdir()
+    made = Disk(tmp_path / "folder", monkeypatch)
+    yield made
+    made.close()
+
+
+def test_a_store_is_there_whole_or_not_at_all(disk):
+    create(STUDY, disk.root / "a.zarr")
+    found = [named(state, "a.zarr") for state in disk.states]
+    disk.states.clear()
+    disk.look()
+    right, *others = [named(state, "a.zarr") for state in disk.states]
+    assert all(each == right for each in others)
+    assert all(each in ({}, right) for each in found)
+    assert {} in found
+
+
+def test_no_block_is_taken_for_done_that_is_not_whole(tmp_path, monkeypatch):
+    """Before and after each sync and rename, with what is not synced lost, empty, zero or there."""
+    path, seen = tmp_path / "a.zarr", set()
+    store = create(STUDY, path)
+    disk = Disk(path, monkeypatch)
+    st.sweep(STUDY, path, engine=Threads(1))
+    right = {str(each.relative_to(path)): each for each in path.rglob("*") if each.is_file()}
+    for number, state in enumerate(disk.states):
+        found = store._replace(path=tmp_path / str(number))
+        put(state, found.path)
+        done = [task for task in range(STUDY.layout.tasks) if found.has(STUDY.layout.region(task))]
+        seen.add(len(done))
+        for name, file in right.items():
+            if "/c/" not in name or name.startswith("phi") or name.split("/")[2] in map(str, done):
+                assert state[name] == file.read_bytes()
+    assert seen == {0, 1, 2, 3}
+    disk.close()
+
+
+def named(state: State, folder: str) -> State:
+    """Return what is in a folder of a state."""
+    return {name: content for name, content in state.items() if name.startswith(folder)}
+
+
+def test_what_was_said_to_be_done_stays(disk):
+    """When a block is reported, no state in which it is not done is left."""
+    marks = []
+
+    def count(_):
+        disk.states.clear()
+        disk.look()
+        files = [
+            [name for name in state if name.startswith("a.zarr/status/c/") and state[name]]
+            for state in disk.states
+        ]
+        marks.append({len(found) for found in files})
+
+    st.sweep(STUDY, disk.root / "a.zarr", engine=Threads(1), progress=count)
+    assert all(len(each) == 1 for each in marks)
+    assert max(marks[-1]) == STUDY.layout.tasks
+
+
+@pytest.mark.parametrize("name", ["status", "message", "peak_force", "force_trace"])
+@pytest.mark.parametrize("left", [0, 3, None])
+def test_a_block_that_lacks_something_is_done_again(tmp_path, name, left):
+    st.sweep(STUDY, tmp_path / "a.zarr")
+    right = xr.open_zarr(tmp_path / "a.zarr").load()
+    chunk = tmp_path / "a.zarr" / name / "c" / "1"
+    chunk = chunk / "0" if chunk.is_dir() else chunk
+    chunk.unlink() if left is None else chunk.write_bytes(chunk.read_bytes()[:left])
+    if name != "status" or left is not None:
+        with pytest.raises(st.ResultError, match=f"is damaged: {name}/c/1"):
+            st.open_study(tmp_path / "a.zarr")
+    tallies = []
+    assert st.sweep(STUDY, tmp_path / "a.zarr", progress=tallies.append).pending == 0
+    assert len(tallies) == 1
+    xr.testing.assert_identical(xr.open_zarr(tmp_path / "a.zarr").load(), right)
+
+
+def test_two_sweeps_of_one_new_store_share_it(tmp_path, monkeypatch):
+    """The second one has begun when the first one makes the store; each does a part."""
+    from stiction.study.store import creation
+
+    done, place = {"first": [], "second": []}, creation.place
+    path = tmp_path / "a.zarr"
+
+    def second(tally):
+        done["second"].append(tally)
+
+    def late(made):
+        monkeypatch.setattr(creation, "place", place)
+        st.sweep(STUDY, path, progress=second)  # it is faster
+        place(made)
+
+    monkeypatch.setattr(creation, "place", late)
+    first = st.sweep(STUDY, path, progress=done["first"].append)
+    assert first.pending == 0
+    assert len(done["second"]) == STUDY.layout.tasks
+    assert not done["first"]
+    assert [each.name for each in tmp_path.iterdir()] == ["a.zarr"]
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="Windows cannot tell who is alive")
+def test_a_second_sweep_begins_at_the_other_end(tmp_path):
+    def stop(_):
+        raise KeyboardInterrupt
+
+    store = create(STUDY, tmp_path / "a.zarr")
+    first, *_, last = (store.layout.region(task) for task in range(store.layout.tasks))
+    with held(store.path, alone=True), pytest.raises(KeyboardInterrupt):
+        st.sweep(STUDY, store.path, engine=Threads(1), progress=stop)
+    assert store.has(last)
+    assert not store.has(first)

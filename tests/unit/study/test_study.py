@@ -1,0 +1,294 @@
+"""Studies: described, laid out, run, stopped, gone on with."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import stiction as st
+from stiction.study.execution.cluster import Processes
+from stiction.study.execution.engines import Threads
+from stiction.study.parameters import unit, varied
+from stiction.study.store.blocks import Layout, laid_out, places
+from stiction.study.store.creation import create
+from stiction.study.store.seal import seal
+
+PAPER = st.presets.nakano_popov_2020()
+BASE = st.Description(PAPER, st.Initial(), st.Settings(duration="30 ms"))
+AXES = {
+    "phi": st.Grid("1 deg", "5 deg", 5),
+    "drive.velocity": st.Grid("1 mm/s", "100 mm/s", 3, spacing="log"),
+}
+MEASURES = ("peak_force", "stick_count", "time_stuck")
+
+
+@pytest.fixture
+def study() -> st.Study:
+    return st.Study(base=BASE, axes=AXES, measures=MEASURES)
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """A study with runs that fail among others, done undisturbed."""
+    path = tmp_path_factory.mktemp("study") / "a.zarr"
+    return path, st.sweep(st.Study(base=BASE, axes=AXES, measures=MEASURES), path)
+
+
+def test_each_value_is_that_of_the_run_by_itself(finished):
+    """The solver is deterministic: no tolerance."""
+    data = xr.open_zarr(finished[0])
+    assert dict(data.sizes) == {"phi": 5, "drive.velocity": 3}
+    assert (data["status"] == 0).all()
+    for index in ((0, 0), (4, 2), (2, 1)):
+        at = data.isel(dict(zip(data["status"].dims, index, strict=True)))
+        slider = PAPER.replace(
+            phi=f"{float(at['phi'])} deg", drive=st.ConstantVelocity(float(at["drive.velocity"]))
+        )
+        run = st.simulate(slider, "30 ms")
+        assert int(at["stick_count"]) == run.statistics.stick_count
+        assert float(at["time_stuck"]) == pytest.approx(run.statistics.time_stuck, rel=1e-9)
+
+
+def test_the_store_explains_itself(finished, study):
+    data = st.open_study(finished[0])
+    np.testing.assert_array_equal(data["phi"], [1.0, 2.0, 3.0, 4.0, 5.0])
+    np.testing.assert_allclose(data["drive.velocity"], [1e-3, 1e-2, 1e-1], rtol=1e-15)
+    assert data["phi"].attrs == {"units": "deg", "long_name": "phi"}
+    assert data["drive.velocity"].attrs["units"] == "m/s"
+    for name in MEASURES:
+        assert {"units", "long_name"} <= data[name].attrs.keys()
+    meanings = data["status"].attrs["flag_meanings"].split()
+    assert len(meanings) == len(data["status"].attrs["flag_values"])
+    assert st.Study.from_json(data.attrs["description"]).to_json() == study.to_json()
+
+
+def test_a_run_that_fails_is_data(tmp_path):
+    """Contact is lost where the load's modulation exceeds it; mu_static below mu_0 is refused."""
+    shaken = PAPER.replace(load=st.LoadProgram(modulation=st.Modulation("1 N", "50 Hz")))
+    axes = {
+        "load.modulation.amplitude": st.Values([1.0, 11.0]),
+        "friction.mu_static": st.Values([0.22, 0.18]),
+        "friction.mu_0": st.Values([0.2, 0.17]),
+    }
+    base = BASE._replace(slider=shaken)
+    result = st.sweep(st.Study(base=base, axes=axes, measures=["peak_force"]), tmp_path / "a.zarr")
+    data = xr.open_zarr(tmp_path / "a.zarr").load()
+    meanings = dict(enumerate(data["status"].attrs["flag_meanings"].split(), -1))
+    found = [meanings[int(code)] for code in data["status"].values.ravel()]
+    lost = ["contact_lost", "contact_lost", "refused", "contact_lost"]
+    assert found == ["completed", "completed", "refused", "completed", *lost]
+    np.testing.assert_array_equal(np.isfinite(data["peak_force"]), data["status"] == 0)
+    np.testing.assert_array_equal(data["message"] == "", data["status"] == 0)
+    assert result.failed == {"contact_lost": 3, "refused": 2}
+    assert result.first.end == "refused"
+    assert "mu_static" in result.first.message
+    assert "friction.mu_static = 0.18, friction.mu_0 = 0.2:" in str(result.first)
+
+
+def test_what_was_stopped_goes_on_and_comes_out_the_same(tmp_path, study, finished):
+    def stop(tally):
+        if tally.now >= 4:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        st.sweep(study, tmp_path / "a.zarr", engine=Threads(2), progress=stop)
+    part = xr.open_zarr(tmp_path / "a.zarr").load()
+    left = int((part["status"] == -1).sum())
+    assert 0 < left < 15
+    tallies = []
+    result = st.sweep(study, tmp_path / "a.zarr", progress=tallies.append)
+    assert (result.pending, result.failed) == (0, {})
+    assert tallies[-1].now == left
+    assert tallies[-1].before == 15 - left
+    whole = xr.open_zarr(tmp_path / "a.zarr").load()
+    xr.testing.assert_identical(whole, xr.open_zarr(finished[0]).load())
+    assert st.sweep(study, tmp_path / "a.zarr") == result  # nothing left to do
+
+
+def test_another_study_s_store_is_refused(finished, tmp_path):
+    other = st.Study(base=BASE, axes={"phi": AXES["phi"]}, measures=MEASURES)
+    with pytest.raises(st.ResultError, match="another study"):
+        st.sweep(other, finished[0])
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(st.ResultError, match="not the store of a study"):
+        st.sweep(other, tmp_path / "empty")
+    with pytest.raises(st.ResultError, match="make it first"):
+        st.sweep(other, tmp_path / "no" / "a.zarr")
+    with pytest.raises(st.ResultError, match="no such store"):
+        st.open_study(tmp_path / "a.zarr")
+
+
+def test_every_fault_of_a_study_is_told_at_once():
+    axes = {
+        "phi": st.Grid("1 deg", 5, 3),
+        "drive.velocty": st.Grid(1e-3, 1e-2, 3),
+        "mass": st.Grid("0 kg", "1 kg", 3, spacing="log"),
+        "k_x": st.Values(["1 N"]),
+        "run.multiscale": st.Values([1]),
+    }
+    with pytest.raises(st.DescriptionError) as error:
+        st.Study(base=BASE, axes=axes)
+    text = str(error.value)
+    assert "Study.axes.phi.to: degree or radian? write '5 deg' or '5 rad'" in text
+    assert "Study.axes.drive.velocty: unknown parameter 'velocty'; did you mean 'velocity'" in text
+    assert "Study.axes.mass: logarithms need values of one sign" in text
+    assert "Study.axes.k_x.1: '1 N' is in N, not a unit of" in text
+    assert "run.multiscale is not one number" in text
+
+
+@pytest.mark.parametrize(
+    ("axes", "says"),
+    [
+        ({}, "one axis at least"),
+        ({"phi": st.Grid("1 deg", "95 deg", 3)}, "must lie between -90 deg and 90 deg, is 95 deg"),
+        ({"phi": {"from": "1 deg", "count": 3}}, "axes.phi.to: missing"),
+        ({"phi": {"from": "1 deg", "to": "2 deg", "count": 0}}, "axes.phi.count: must not be"),
+        ({"phi": {"values": []}}, "is not a list of values"),
+        ({"phi": {"sampling": "sobl"}}, "did you mean 'sobol'"),
+        ({"phi": 3}, "3 is not an axis"),
+        ({"phi": st.Values(["1 deg"], "regime")}, "axes.phi.along: cannot be 'regime'"),
+        ({"phi": st.Values(["1 deg"], "../a")}, "axes.phi.along: cannot be '../a'"),
+        ({"k_x, mass": st.Values([1.0])}, "cannot share one value"),
+        ({"k_x": st.Values([1.0]), "k_x, k_y": st.Values([1.0])}, "has an axis already"),
+        (
+            {"k_x": st.Values([1.0], "a"), "k_y": st.Values([1.0, 2.0], "a")},
+            "has 2 values and k_x has 1 along 'a'",
+        ),
+    ],
+)
+def test_an_axis_that_cannot_be(axes, says):
+    with pytest.raises(st.DescriptionError) as error:
+        st.Study(base=BASE, axes=axes)
+    assert says in str(error.value)
+
+
+def test_axes_along_one_dimension_go_together(tmp_path):
+    axes = {
+        "k_x": st.Grid("1 kN/m", "3 kN/m", 3, along="spring"),
+        "k_y": st.Values([1e6, 2e6, 4e6], along="spring"),
+        "friction.mu_0, friction.mu_inf": st.Values([0.1, 0.2]),
+    }
+    study = st.Study(base=BASE, axes=axes, measures=["peak_force"])
+    slider = study.description((1, 0)).slider
+    assert (slider.k_x, slider.k_y) == (2e3, 2e6)
+    assert (slider.law.mu_0, slider.law.mu_inf) == (0.1, 0.1)
+    st.sweep(study, tmp_path / "a.zarr")
+    data = xr.open_zarr(tmp_path / "a.zarr")
+    assert data["peak_force"].dims == ("spring", "friction.mu_0, friction.mu_inf")
+    assert data["k_y"].dims == ("spring",)
+    assert "k_y" in data.coords
+
+
+@pytest.mark.parametrize("kind", [st.Random, st.Sobol])
+def test_samples_depend_on_the_seed_and_their_place_alone(kind):
+    def made(count, seed):
+        axes = {"phi": kind("1 deg", "9 deg", count), "k_x": kind(1e2, 1e4, count, "log")}
+        found = st.Study(base=BASE, axes=axes, seed=seed).coordinates
+        assert {each.dim for each in found.values()} == {"sample"}
+        return np.array([found["phi"].values, found["k_x"].values])
+
+    few, many, other = made(32, 1), made(64, 1), made(64, 2)
+    np.testing.assert_array_equal(few, many[:, :32])
+    assert not np.isin(many, other).any()
+    assert many[0].min() >= 1.0
+    assert many[0].max() <= 9.0
+    assert not np.array_equal((many[0] - 1.0) / 8.0, np.log(many[1] / 1e2) / np.log(1e2))
+    # half of the values lie below the middle: to within 4 standard deviations, exactly for Sobol
+    below = [(many[0] < 5.0).sum(), (many[1] < 1e3).sum()]
+    assert below == [32, 32] if kind is st.Sobol else np.abs(np.array(below) - 32).max() <= 16
+
+
+def test_any_parameter_can_vary():
+    grain = PAPER.replace(
+        friction=st.Anisotropic(PAPER.law, 1.2, "30 deg"),
+        drive=st.DriveProgram(
+            velocity="1 mm/s",
+            program=[st.Constant(duration=1.0), st.Ramp("2 mm/s", "1 s")],
+            across=st.Modulation("0.1 mm/s", "50 Hz", "90 deg"),
+        ),
+        load=st.LoadProgram(program=[st.Ramp("20 N", "1 s")]),
+    )
+    base = st.Description(grain, st.Initial(u_x="1 um"), st.Settings(duration=1.0))
+    for path, its, value, read in (
+        ("c_x", "N*s/m", 0.5, lambda d: d.slider.c_x),
+        ("friction.mu_inf", "", 0.1, lambda d: d.slider.law.law.mu_inf),
+        ("friction.ratio", "", 1.5, lambda d: d.slider.law.ratio),
+        ("friction.angle", "deg", 45.0, lambda d: np.degrees(d.slider.law.angle)),
+        ("drive.program.2.to", "m/s", 3e-3, lambda d: d.slider.drive.program[1].to),
+        ("drive.across.amplitude", "m/s", 2e-4, lambda d: d.slider.drive.across.amplitude),
+        ("drive.across.frequency", "Hz", 60.0, lambda d: d.slider.drive.across.frequency),
+        ("load.program.1.to", "N", 15.0, lambda d: d.slider.load.program[0].to),
+        ("initial.u_x", "m", 2e-6, lambda d: d.initial.u_x),
+        ("run.rtol", "", 1e-8, lambda d: d.run.rtol),
+        ("run.regularisation", "m/s", 1e-9, lambda d: d.run.regularisation),
+    ):
+        assert unit(base, path) == its, path
+        new = varied(base, {path: (value, its)})
+        assert read(new) == pytest.approx(value, rel=1e-15), path
+        if read(base) is not None:
+            assert varied(new, {path: (read(base), its)}).slider == base.slider, path
+
+
+@pytest.mark.parametrize("shape", [(1,), (7,), (1000,), (100, 100), (3, 1000), (5, 7, 11), (10, 1)])
+@pytest.mark.parametrize("seconds", [1e-4, 1e-2, 10.0])
+def test_blocks_cover_each_run_once(shape, seconds):
+    layout: Layout = laid_out({f"d{i}": n for i, n in enumerate(shape)}, seconds)
+    counted = np.zeros(shape, int)
+    for task in range(layout.tasks):
+        for index in places(layout.region(task)):
+            counted[index] += 1
+    assert (counted == 1).all()
+    assert layout.tasks <= 4096 * 2
+
+
+def test_a_million_runs_are_few_tasks():
+    layout = laid_out({"a": 1000, "b": 1000}, 1e-2)
+    assert layout.tasks <= 4096 * 1.1
+
+
+def test_traces_are_kept_decimated(tmp_path):
+    axes = {"phi": st.Values(["1 deg", "95 deg", "3 deg"])}
+    base = BASE._replace(run=st.Settings(duration="0.5 s", sample_rate="2 kHz"))
+    study = st.Study(
+        base=base, axes=axes, measures=[], traces=["force", "position"], trace_samples=26
+    )
+    st.sweep(study, tmp_path / "a.zarr")
+    data = xr.open_zarr(tmp_path / "a.zarr").load()
+    assert data["force_trace"].dims == ("phi", "time")
+    assert data["time"].attrs["units"] == "s"
+    assert np.isnan(data["position_trace"].isel(phi=1)).all()
+    run = st.simulate(PAPER.replace(phi="3 deg"), "0.5 s", sample_rate="2 kHz").data
+    whole = run.sel(time=data["time"].values, method="nearest")
+    # both are samples of the same solution at the same times, but for rounding of the times
+    np.testing.assert_allclose(data["force_trace"][2], whole["spring_x"], atol=1e-9)
+    np.testing.assert_allclose(data["position_trace"][2], whole["X"], atol=1e-12)
+
+
+def test_a_store_of_another_version_is_refused(study, tmp_path):
+    import zarr
+
+    create(study, tmp_path / "a.zarr")
+    group = zarr.open_group(tmp_path / "a.zarr", mode="r+", use_consolidated=False)
+    group.attrs["stiction_version"] = "0.0.1"
+    seal(tmp_path / "a.zarr")
+    with pytest.raises(st.ResultError, match=r"begun by stiction 0\.0\.1"):
+        st.sweep(study, tmp_path / "a.zarr")
+    group.attrs["format"] = 99
+    with pytest.raises(st.ResultError, match="has format 99"):
+        st.open_study(tmp_path / "a.zarr")
+
+
+def test_processes_do_the_same(study, finished, tmp_path):
+    """Dask's own scheduler and workers, in processes of this machine."""
+    st.sweep(study, tmp_path / "a.zarr", engine=Processes(2))
+    xr.testing.assert_identical(
+        xr.open_zarr(tmp_path / "a.zarr").load(), xr.open_zarr(finished[0]).load()
+    )
+
+
+def test_the_example_s_file():
+    study = st.Study.from_toml(Path(__file__).parents[3] / "examples" / "study.toml")
+    assert study.layout.shape == (24, 16)
+    assert study.description((0, 15)).run.duration == 5.0
+    assert st.Study.from_dict(study.to_dict()).to_json() == study.to_json()

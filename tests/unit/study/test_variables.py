@@ -1,0 +1,166 @@
+"""What a study keeps of each run, against the same found otherwise."""
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.analysis.creep.first_slip import first_slip_time
+from stiction.analysis.motion.regime import shape
+from stiction.study.variables.fast_regime import KINDS, TRANSVERSE
+from stiction.study.variables.features import features, zigzag
+from stiction.study.variables.measures import MEASURES
+from stiction.study.variables.observation import observe
+
+PAPER = st.presets.nakano_popov_2020()
+
+
+def seen(slider, duration, **settings):
+    """Return a run as a study sees it."""
+    run = st.Settings(duration=duration, **settings)
+    return observe(st.Description(slider, st.Initial(), run), None)
+
+
+@pytest.fixture(scope="module")
+def paper():
+    return seen(PAPER, "5 s")
+
+
+def value(name, run):
+    return MEASURES[name].of(run)
+
+
+def test_the_paper_s_cycle(paper, paper_run):
+    """Against 10 kHz samples of the same solver: a parabola leans where a peak does, by 1e-4."""
+    data = paper_run.data
+    peak = float(data["spring_x"].max())
+    assert value("peak_force", paper) == pytest.approx(peak, rel=1e-4)
+    assert value("peak_velocity", paper) == pytest.approx(float(data["V_X"].max()), rel=5e-3)
+    cycles = st.find_cycles(st.record_of(paper_run))
+    assert value("cycles", paper) == cycles.sizes["cycle"]
+    period = float(cycles["period"].mean())
+    assert value("period", paper) == pytest.approx(period, rel=1e-4)
+    assert value("force_drop", paper) == pytest.approx(float(cycles["drop"].mean()), rel=1e-4)
+    # a trough is sharper than the samples: it is placed to half their distance
+    half = 0.5 * float(paper.time[1] - paper.time[0]) / period
+    share = float(cycles["rise_share"].mean())
+    assert value("rise_share", paper) == pytest.approx(share, abs=half)
+    assert value("time_stuck", paper) == paper_run.statistics.time_stuck
+    assert value("stick_count", paper) == paper_run.statistics.stick_count
+    late = data["spring_x"].sel(time=slice(3.75, None))
+    assert value("mean_force", paper) == pytest.approx(float(late.mean()), rel=1e-3)
+    assert value("amplitude", paper) == pytest.approx(0.5 * float(np.ptp(late.values)), rel=1e-3)
+
+
+def test_creep_before_the_first_slip(paper, paper_run):
+    """It begins between two samples of a study, where the mass moves at the drive's speed."""
+    data = paper_run.data
+    first = int(np.argmax(data["V_X"].values > 1e-3)) - 1
+    step = float(paper.time[1] - paper.time[0])
+    assert value("first_slip_time", paper) == pytest.approx(float(data["time"][first]), abs=step)
+    assert first_slip_time(paper_run) == float(data["time"][first])
+    crept = float(data["X"][first] - data["X"][0])
+    # X' grows on to a few V within a step
+    assert value("creep_distance", paper) == pytest.approx(crept, abs=5 * 1e-3 * step)
+
+
+@pytest.mark.parametrize("law", [PAPER.friction, st.Coulomb(mu_0=0.2)])
+@pytest.mark.parametrize("phi", [20.0, 40.0, 45.0, 60.0, 80.0, 89.0])
+def test_a_transverse_swing_is_no_slip_at_any_angle(phi, law):
+    """At 40 deg and more the mass swings faster than the drive, and stays where it was."""
+    slider = PAPER.replace(phi=f"{phi} deg", friction=law)
+    for sample_rate in (None, "10 kHz"):
+        run = seen(slider, "1 s", sample_rate=sample_rate)
+        assert np.isnan(value("first_slip_time", run))
+        assert np.isnan(value("creep_distance", run))
+    run = st.simulate(slider, "1 s", sample_rate="10 kHz")
+    assert first_slip_time(run) == 1.0
+
+
+def test_the_first_slip_of_a_mass_that_rests_begins_where_the_spring_can_hold_no_more():
+    law = st.Coulomb(mu_0=0.2, mu_static=0.5)
+    for V in ("1 mm/s", "-1 mm/s"):
+        drive = st.ConstantVelocity(V)
+        slider = PAPER.replace(phi="0 deg", friction=law, drive=drive)
+        at = 0.5 * 10.0 / 1e3 / 1e-3  # s: until the spring carries what holds the mass
+        run = seen(slider, "6 s")
+        assert value("first_slip_time", run) == pytest.approx(at, rel=1e-2)
+        assert value("creep_distance", run) == pytest.approx(0.0, abs=1e-5)
+
+
+@pytest.mark.parametrize("multiscale", [False, True])
+def test_the_mode_of_the_solver_does_not_matter(paper, multiscale):
+    """To 1e-6, the tolerance, of the largest value."""
+    other = seen(PAPER, "5 s", multiscale=multiscale)
+    for name in ("regime", "peak_force", "period", "creep_distance"):
+        assert value(name, other) == pytest.approx(value(name, paper), rel=1e-5)
+
+
+@pytest.mark.parametrize("V", [3e-4, 1e-3, 3e-3, 1e-2, 3e-2])
+@pytest.mark.parametrize("phi", [0.5, 3.0, 7.0, 8.2, 9.0, 20.0])
+def test_regimes_are_those_of_records(phi, V):
+    """Noise-free rules and those for any record agree where both see enough cycles."""
+    slider = PAPER.replace(phi=f"{phi} deg", drive=st.ConstantVelocity(V))
+    run = seen(slider, 8e-3 / V + 4.0)
+    record = st.Record(
+        time=run.time,
+        force=run.force,
+        normal_load=slider.normal_load,
+        stiffness=slider.k_x,
+        drive_velocity=V * slider.direction[0],
+        mass=slider.mass,
+    )
+    found = st.classify(record)
+    if run.regime != found.kind:  # then on the bound between two kinds of cycles
+        beside = {shape(value("rise_share", run) + off) for off in (-0.01, 0.01)}
+        assert {run.regime, found.kind} <= beside, f"{run.regime} against {found}"
+    assert run.regime in KINDS
+
+
+def test_a_transverse_oscillation_goes_on_when_the_slow_motion_has_settled():
+    """Drawn nearly along the stiff axis, the fast oscillation is the one that weakening drives."""
+    slider = PAPER.replace(phi="80 deg")
+    run = seen(slider, "5 s")
+    assert run.regime == TRANSVERSE
+    late = st.simulate(slider, "5 s", sample_rate="100 kHz").data.sel(time=slice(4.97, None))
+    rate = 0.5 * float(np.ptp(late["v_y"].values)) / (1e-3 * np.sin(np.radians(80.0)))
+    assert run.transverse_oscillation == pytest.approx(rate, rel=0.05)  # 16 samples a period
+    slow = seen(PAPER.replace(phi="30 deg"), "5 s")
+    assert slow.transverse_oscillation == pytest.approx(0.0, abs=1e-3)
+
+
+def test_turning_points_of_a_known_signal():
+    """A sine's extrema are found to within the error of a parabola, (omega dt)^4/..., 1e-5."""
+    t = np.arange(0.0, 1.0, 1.0 / 320.0)
+    signal = np.sin(2.0 * np.pi * 10.0 * t + 0.3) + 1e-4 * np.sin(2.0 * np.pi * 100.0 * t)
+    found = features(t, signal, np.gradient(signal, t), np.zeros(len(t)), 0.01)
+    exact = (np.pi / 2 - 0.3 + np.pi * np.arange(20)) / (2.0 * np.pi * 10.0)
+    np.testing.assert_allclose(found.turn_time, exact, atol=1e-4)
+    np.testing.assert_allclose(np.abs(found.turn_value), 1.0, atol=3e-4)
+    assert not found.trough
+    assert found.peak == pytest.approx(1.0, abs=3e-4)
+
+
+@pytest.mark.parametrize("values", [[], [1.0], [1.0, 1.0], [1.0, 2.0, 3.0], [3.0, 1.0]])
+def test_what_does_not_turn_has_no_turning_points(values):
+    assert len(zigzag(np.array(values), 0.1)) == 0
+
+
+@pytest.mark.parametrize("name", MEASURES)
+def test_every_measure_of_a_run_that_hardly_began(name):
+    run = seen(PAPER, "1 us")
+    assert np.isscalar(value(name, run))
+    assert run.regime in ("stuck", "undetermined")
+
+
+def test_what_never_slips_is_stuck():
+    assert seen(PAPER.replace(drive=st.ConstantVelocity(0.0)), "5 s").regime == "stuck"
+
+
+def test_two_swings_and_then_quiet_are_a_transient():
+    """They are too few to be seen getting smaller, but none follows in fifty periods."""
+    slider = PAPER.replace(phi="14.5 deg", drive=st.ConstantVelocity("3.16 mm/s"))
+    run = seen(slider, "6.5 s")
+    assert len(run.swings.drop) == 2
+    assert run.end - run.swings.end > 50 * run.swings.period.max()
+    assert run.regime == "settling"
+    assert st.linear_stability.growth_rate(slider) < 0.0

@@ -1,0 +1,169 @@
+"""Maps of studies, drawn from their stores."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import stiction as st
+from stiction import theory
+from stiction.cli import main
+from stiction.plotting.maps import Side
+from stiction.plotting.page.canvas import figure_of
+from stiction.study.presets import PRESETS, preset
+from stiction.study.store.seal import seal
+from stiction.study.view.boundaries import PHI_C, ZETA, plane
+
+PAPER = st.presets.nakano_popov_2020()
+BASE = st.Description(PAPER, st.Initial(), st.Settings(duration="4 s"))
+AXES = {
+    "phi": st.Grid("4 deg", "12 deg", 9),
+    "drive.velocity": st.Grid("1 mm/s", "4 mm/s", 3, "log"),
+    "friction.mu_inf": st.Values([0.15, 0.18]),
+}
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory):
+    path = tmp_path_factory.mktemp("map") / "a.zarr"
+    st.sweep(st.Study(base=BASE, axes=AXES), path)
+    return path
+
+
+def drawn(fig):
+    return {text.get_text() for legend in fig.legends for text in legend.get_texts()}
+
+
+def test_a_map_of_regimes_with_both_boundaries(store):
+    fig = figure_of(st.map(store, at={"friction.mu_inf": 0.15}).plot)
+    found = drawn(fig)
+    assert {PHI_C, ZETA, "stick-slip", "settling"} <= found
+    (ax,) = fig.axes
+    assert (ax.get_xlabel(), ax.get_ylabel()) == (r"$\varphi$ (deg)", "$V$ (mm/s)")
+    assert (ax.get_xscale(), ax.get_yscale()) == ("linear", "log")
+    (mesh,) = ax.collections[:1]
+    data = xr.open_zarr(store).sel({"friction.mu_inf": 0.15})
+    kinds = np.array(data["regime"].attrs["flag_meanings"].split())
+    names = [*dict.fromkeys(kinds[data["regime"].values.ravel() + 1])]
+    assert len(np.unique(np.asarray(mesh.get_array()))) == len(names)
+
+
+def test_measures_and_slices(store):
+    fig = figure_of(st.map(store, ["amplitude", "period"], {"friction.mu_inf": 0.149}).plot)
+    assert [ax.get_ylabel() for ax in fig.axes[2:]] == ["amplitude (N)", "period (s)"]
+    cut = {"friction.mu_inf": 0.15, "drive.velocity": "1.1 mm/s"}
+    fig = figure_of(st.map(store, at=cut).plot)
+    (ax,) = fig.axes
+    data = xr.open_zarr(store)["peak_force"].isel({"drive.velocity": 0, "friction.mu_inf": 0})
+    x, y = ax.lines[0].get_data()
+    np.testing.assert_allclose(x, data["phi"])
+    np.testing.assert_allclose(y, data)
+
+
+def test_theory_over_the_plane(store):
+    """Where the fields vanish, against the closed forms."""
+    study = st.Study(base=BASE, axes=AXES)
+    found = plane(study, "phi", "drive.velocity", {"friction.mu_inf": 0})
+    row = found.y.tolist().index(min(found.y, key=lambda V: abs(V - 1e-3)))
+    growth, damping = (field[:, row] for field in found.fields.values())
+    phi = [np.interp(0.0, -growth, found.x), np.interp(0.0, damping, found.x)]
+    weakening = 0.05 / 0.01 * np.exp(-0.1)
+    closed = np.degrees(np.arctan(np.sqrt(1e-3 * weakening / (0.15 + 0.05 * np.exp(-0.1)))))
+    # the curves bend within a step of 8/64 deg; k_y is finite: 0.002 deg
+    assert phi[0] == pytest.approx(closed, abs=0.005)
+    A = theory.damping_number(2.0, 1e-3, np.radians(phi[1]), 0.25, 1e3)
+    assert theory.damping_ratio(A, np.radians(phi[1])) == pytest.approx(1.0, abs=0.005)
+
+
+@pytest.mark.parametrize(
+    ("measures", "cut", "says"),
+    [
+        ([], {}, "3 dimensions are left; cut it at a value"),
+        (["amplitud"], {"friction.mu_inf": 0.15}, "did you mean 'amplitude'"),
+        ([], {"friction.mu_in": 0.15}, "did you mean 'friction.mu_inf'"),
+        ([], {"phi": 3}, "degree or radian"),
+    ],
+)
+def test_what_cannot_be_drawn(store, measures, cut, says):
+    with pytest.raises(st.DescriptionError) as error:
+        st.map(store, measures, cut).plot()
+    assert says in str(error.value)
+
+
+def test_failed_and_missing_runs_are_hatched(tmp_path):
+    shaken = PAPER.replace(load=st.LoadProgram(modulation=st.Modulation("1 N", "50 Hz")))
+    axes = {
+        "phi": st.Values(["2 deg", "20 deg"]),
+        "load.modulation.amplitude": st.Values([1.0, 12.0]),
+    }
+    base = st.Description(shaken, st.Initial(), st.Settings(duration="0.5 s"))
+    st.sweep(st.Study(base=base, axes=axes), tmp_path / "a.zarr")
+    fig = figure_of(st.map(tmp_path / "a.zarr").plot)
+    assert "no result" in drawn(fig)
+
+
+def test_the_command(store, tmp_path, capsys):
+    target = tmp_path / "map.png"
+    with pytest.raises(SystemExit) as end:
+        main(["map", str(store), "--at", "friction.mu_inf = 0.15", "-o", str(target)])
+    assert end.value.code == 0
+    assert target.read_bytes().startswith(b"\x89PNG")
+    with pytest.raises(SystemExit) as end:
+        main(["map", str(store), "--at", "friction.mu_inf", "-o", str(target)])
+    assert end.value.code == 2
+    assert "write for example 'phi = 1 deg'" in capsys.readouterr().err
+    with pytest.raises(SystemExit) as end:
+        main(["map", str(tmp_path / "no.zarr"), "-o", str(target)])
+    assert end.value.code == 2
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_presets_can_be_run(name):
+    study = preset(name)
+    assert study.layout.runs >= 500
+    last = study.description(tuple(n - 1 for n in study.layout.shape))
+    assert last.run.duration > 4.0
+    assert st.Study.from_json(study.to_json()).to_json() == study.to_json()
+
+
+def test_the_damping_diagram_s_samples_lie_on_a_grid_of_A():
+    study = preset("damping-diagram")
+    index = (30,)
+    slider = study.description(index).slider
+    A = theory.damping_number(slider.F_0, slider.drive.velocity, slider.phi, 0.25, 1e3)
+    wanted = np.geomspace(1, 1e4, 25)
+    assert np.abs(np.log(wanted / float(A))).min() < 1e-9
+
+
+def test_a_preset_by_a_wrong_name(tmp_path, capsys):
+    with pytest.raises(SystemExit) as end:
+        main(["sweep", "--preset", "yaw-angel", "-o", str(tmp_path / "a.zarr")])
+    assert end.value.code == 2
+    assert "did you mean 'yaw-angle'" in capsys.readouterr().err
+
+
+def test_edges_of_cells_lie_between_the_values():
+    side = Side(None, np.array([1.0, 10.0, 100.0]), True)
+    np.testing.assert_allclose(side.edges, 10.0 ** np.array([-0.5, 0.5, 1.5, 2.5]))
+    assert len(Side(None, np.array([3.0]), False).edges) == 2
+
+
+def test_a_measure_by_its_old_name_is_that_by_its_new_one(tmp_path):
+    base = st.Description(
+        st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="5 ms")
+    )
+    renamed = "the measure 'song' is now called 'transverse_oscillation'"
+    with pytest.warns(DeprecationWarning, match=renamed):
+        study = st.Study(base=base, axes={"phi": st.Values(["1 deg", "2 deg"])}, measures=["song"])
+    assert study.measures == ("transverse_oscillation",)
+    store = tmp_path / "a.zarr"
+    st.sweep(study, store)
+    assert (st.open_study(store)["transverse_oscillation"] > 0.0).all()
+    with pytest.warns(DeprecationWarning, match=renamed):
+        found = st.map(store, "song")
+    assert found.measures == ("transverse_oscillation",)
+    (store / "transverse_oscillation").rename(store / "song")  # as an older version wrote it
+    (store / "zarr.json").write_text(
+        (store / "zarr.json").read_text().replace("transverse_oscillation", "song")
+    )
+    seal(store)
+    assert "transverse_oscillation" in st.open_study(store)

@@ -1,0 +1,231 @@
+"""Results: the contract's variables, units, stick intervals, files."""
+
+import h5netcdf
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.result.dataset import VARIABLES
+from stiction.simulation import automatic_times
+
+
+@pytest.fixture(scope="module")
+def run(slider):
+    return st.simulate(slider, "50 ms", sample_rate="10 kHz")
+
+
+def test_variables_and_units(run):
+    assert set(run.data.variables) == {*VARIABLES, "time"}
+    for name, (unit, _) in VARIABLES.items():
+        assert run.data[name].attrs["units"] == unit
+        assert run.data[name].attrs["long_name"]
+    assert run.data["time"].attrs["units"] == "s"
+    assert dict(run.data.sizes) == {"time": 501}
+    assert run.data["u_x"].dims == ("time",)
+
+
+def test_sticks_are_a_table_of_their_own(run):
+    assert dict(run.sticks.sizes) == {"stick": run.statistics.stick_count}
+    assert set(run.sticks.variables) == {"stick_start", "stick_end", "stick_duration"}
+    for variable in run.sticks.values():
+        assert variable.attrs["units"] == "s"
+        assert variable.attrs["long_name"]
+    start, end = run.stick_intervals.T
+    assert np.array_equal(run.sticks["stick_start"], start)
+    assert np.array_equal(run.sticks["stick_end"], end)
+    assert np.array_equal(run.sticks["stick_duration"], end - start)
+
+
+def test_tables_of_pandas_have_one_row_a_sample_and_one_a_stick(run):
+    samples, sticks = run.to_dataframe(), run.sticks.to_dataframe()
+    assert len(samples) == run.data.sizes["time"] == 501
+    assert samples.index.name == "time"
+    assert set(samples.columns) == set(VARIABLES)
+    assert len(sticks) == run.statistics.stick_count
+
+
+def test_sticks_do_not_need_the_samples(slider):
+    lazy = st.simulate(slider, "20 ms", sample_rate="1 kHz")
+    assert lazy.sticks.sizes["stick"] == 9
+    assert "data" not in vars(lazy)
+
+
+def test_mu_is_the_law_s_coefficient_in_steady_sliding():
+    law = st.ExponentialWeakening(mu_0=0.2, mu_inf=0.3, v_f=0.01)
+    slider = st.presets.nakano_popov_2020().replace(friction=law, phi="30 deg", c_x=5.0, c_y=5.0)
+    run = st.simulate(slider, "40 s", sample_rate="10 Hz")
+    assert float(run.final["mu"]) == pytest.approx(law.coefficient(1e-3), rel=1e-4)
+    d = run.data
+    along = np.hypot(d["spring_x"], d["spring_y"]) * np.cos(
+        np.arctan2(d["spring_y"], d["spring_x"]) - slider.phi
+    )
+    np.testing.assert_allclose(d["mu"], along / d["normal_load"], rtol=1e-12, atol=1e-15)
+
+
+def test_variables_belong_together(run):
+    d, s = run.data, run.slider
+    c, n = s.direction
+    V = 1e-3
+    np.testing.assert_allclose(d["spring_x"], s.k_x * d["u_x"])
+    np.testing.assert_allclose(d["slip_speed"], np.hypot(d["slip_x"], d["slip_y"]), rtol=1e-15)
+    np.testing.assert_allclose(d["v_x"] + d["slip_x"], V * c, rtol=1e-12)
+    np.testing.assert_allclose(d["v_y"] + d["slip_y"], V * n, rtol=1e-12)
+    np.testing.assert_allclose(d["psi"], d["theta"] - 1.0, atol=1e-12)
+    np.testing.assert_allclose(  # Eq. (6)
+        d["X"], V * d["time"] - d["u_x"] * c - d["u_y"] * n, atol=1e-18
+    )
+    np.testing.assert_allclose(d["Y"], d["u_x"] * n - d["u_y"] * c, atol=1e-18)
+    # the force points along the slip, Eq. (2)
+    moving = d["slip_speed"].values > 0
+    angle = np.degrees(np.arctan2(d["slip_y"], d["slip_x"]))
+    np.testing.assert_allclose(d["theta"].values[moving], angle.values[moving], atol=1e-9)
+
+
+def test_sticking(run):
+    d = run.data
+    time, stuck = d["time"].values, d["sticking"].values.astype(bool)
+    inside = np.zeros_like(stuck)
+    for start, end in run.stick_intervals:
+        inside |= (time > start) & (time < end)
+    assert np.array_equal(stuck, inside)
+    assert (d["slip_speed"].values[stuck] == 0).all()
+    # while stuck, friction is the force that holds: it balances the spring, up to mu_0 W
+    np.testing.assert_allclose(
+        d["friction"].values[stuck],
+        np.hypot(d["spring_x"], d["spring_y"]).values[stuck],
+        rtol=1e-12,
+    )
+    assert (d["friction"].values <= run.slider.F_0 * (1 + 1e-12)).all()
+    assert (run.stick_intervals[:, 1] > run.stick_intervals[:, 0]).all()
+    assert run.statistics.stick_count == len(run.stick_intervals)
+    assert run.statistics.time_stuck == pytest.approx(np.diff(run.stick_intervals).sum(), rel=1e-12)
+
+
+def test_the_paper_s_own_start_sticks_at_once(run):
+    # slip of 1e-9 m/s is stopped by f = 8 m/s^2 in 1.25e-10 s
+    assert float(run.data["slip_speed"][0]) == pytest.approx(1e-9, rel=1e-12)
+    assert run.stick_intervals[0, 0] == pytest.approx(1.25e-10, rel=1e-6)
+
+
+def test_save_and_load(run, tmp_path):
+    path = run.save(tmp_path / "run.nc")
+    again = st.load(path)
+    assert again.data.identical(run.data)
+    assert again.sticks.identical(run.sticks)
+    assert np.array_equal(again.stick_intervals, run.stick_intervals)
+    assert again.description == run.description
+    assert again.statistics == run.statistics
+    assert again.status is run.status
+    with h5netcdf.File(path) as file:  # the contract, as another program sees it
+        assert set(file.dimensions) == {"time"}
+        assert set(file.groups) == {"sticks"}
+        assert set(file["sticks"].variables) == {"stick_start", "stick_end", "stick_duration"}
+        assert file.attrs["status"] == "COMPLETED"
+        assert file.attrs["stiction_version"]
+        assert file.attrs["solver"]
+
+
+@pytest.mark.parametrize("duration", ["50 ms", "1e-11 s"])  # with sticks and without
+def test_files_of_version_0_4_load(slider, tmp_path, duration):
+    run = st.simulate(slider, duration, sample_rate="10 kHz")
+    sticks = {name: ("stick", run.sticks[name].values) for name in ("stick_start", "stick_end")}
+    beside = run.data.drop_vars("mu").assign(sticks)  # mu came later
+    beside.to_netcdf(tmp_path / "old.nc", engine="h5netcdf")
+    again = st.load(tmp_path / "old.nc")
+    assert again.data.equals(run.data)
+    assert again.data["mu"].attrs == run.data["mu"].attrs
+    assert again.sticks.identical(run.sticks)
+
+
+def test_save_and_load_refuse(run, tmp_path):
+    with pytest.raises(st.ResultError, match="make it first"):
+        run.save(tmp_path / "no" / "run.nc")
+    assert list(tmp_path.iterdir()) == []
+    with pytest.raises(st.ResultError, match="no such file"):
+        st.load(tmp_path / "none.nc")
+    (tmp_path / "text.nc").write_text("not netcdf")
+    with pytest.raises(st.ResultError, match=r"not a NetCDF file; .*st\.Record"):
+        st.load(tmp_path / "text.nc")
+    run.data.drop_vars("psi").to_netcdf(tmp_path / "half.nc", engine="h5netcdf")
+    with pytest.raises(st.ResultError, match="lacks psi"):
+        st.load(tmp_path / "half.nc")
+    run.data.to_netcdf(tmp_path / "no-sticks.nc", engine="h5netcdf")
+    with pytest.raises(st.ResultError, match="lacks stick_start, stick_end"):
+        st.load(tmp_path / "no-sticks.nc")
+
+
+def test_without_sampling(slider):
+    run = st.simulate(slider, 0.05, sample_rate=0)
+    assert run.data["time"].values.tolist() == [0.0, 0.05]
+    assert len(run.stick_intervals) > 10
+
+
+def test_too_many_steps_keeps_what_was_computed(slider):
+    run = st.simulate(slider, 5.0, sample_rate=1e4, max_steps=1000)
+    assert run.status is st.Status.TOO_MANY_STEPS
+    assert "max_steps" in run.status.value
+    assert 0.05 < float(run.data["time"][-1]) < 1.0
+    full = st.simulate(slider, 0.05, sample_rate=1e4)
+    n = full.data.sizes["time"]
+    assert np.array_equal(run.data["u_y"].values[: n - 5], full.data["u_y"].values[: n - 5])
+
+
+def test_pausing_changes_nothing(slider, monkeypatch):
+    from stiction.solver import integrate
+
+    whole = st.simulate(slider, 0.1, sample_rate=1e4)
+    monkeypatch.setattr(integrate, "BUDGET", 7)
+    fractions: list[float] = []
+    paused = st.simulate(slider, 0.1, sample_rate=1e4, progress=fractions.append)
+    assert paused.data.identical(whole.data)
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1.0
+
+
+def largest_change(run):
+    """Of u_y between samples, over its span: small where the transverse motion is resolved."""
+    u_y = run.data["u_y"].values
+    return np.abs(np.diff(u_y)).max() / np.ptp(u_y)
+
+
+def test_without_a_rate_the_motion_is_resolved(slider):
+    run = st.simulate(slider, 0.05)
+    time = run.data["time"].values
+    assert time[0] == 0.0
+    assert time[-1] == 0.05
+    wanted = 20 * slider.natural_frequencies[1] * 0.05
+    assert wanted <= len(time) - 1 < wanted + 1
+    assert largest_change(run) < 0.2
+    # samples influence nothing
+    same = st.simulate(slider, 0.05, sample_rate=20e3)
+    assert np.array_equal(run.stick_intervals, same.stick_intervals)
+
+
+@pytest.mark.parametrize(
+    ("changes", "duration", "samples"),
+    [
+        ({}, 1e-6, 1_000),  # however short
+        ({}, 100.0, 200_000),  # the transverse motion only in part
+        ({"k_y": 1e3}, 10.0, 3_222),
+        ({"k_x": 1e7}, 100.0, 1_000_000),  # the slow motion, but not for ever
+        ({"k_x": 1e6}, 30.0, 305_578),  # the slow motion, at 32 a period
+    ],
+)
+def test_automatic_samples_are_limited(slider, changes, duration, samples):
+    settings = st.Settings(duration=duration)
+    description = st.Description(slider.replace(**changes), st.Initial(), settings)
+    assert len(automatic_times(description)) == samples + 1
+
+
+def test_automatic_samples_show_what_is_shaken_and_not_the_multiscale_mode(slider):
+    modulation = st.Modulation("0.1 mm/s", "50 kHz")
+    shaken = slider.replace(drive=st.DriveProgram(velocity="1 mm/s", along=modulation))
+    settings = st.Settings(duration=0.01)
+    assert len(automatic_times(st.Description(shaken, st.Initial(), settings))) == 10_001
+    assert st.simulate(slider, 0.2, multiscale=True).data.sizes["time"] == 2
+
+
+def test_samples_far_from_zero_are_apart(slider):
+    settings = st.Settings(duration=1e-9)
+    late = st.Description(slider, st.Initial(time=1e6), settings)
+    assert (np.diff(automatic_times(late)) > 0).all()

@@ -1,0 +1,158 @@
+"""Units as people write them: what is read, and what is refused."""
+
+import numpy as np
+import pint
+import pytest
+
+from stiction.text.quantity_text import quantity_text
+from stiction.text.unit_text import LONGEST
+from stiction.text.units import FORCE, VELOCITY, Kind, PydanticCustomError, in_words, to_si
+
+DAMPING = Kind("a damping constant", "N*s/m", "0.5 N*s/m")
+ANGLE = Kind("an angle", "rad", "1 deg")
+FREQUENCY = Kind("a frequency", "Hz", "10 kHz")
+LENGTH = Kind("a length", "m", "0.1 mm")
+
+DAMPINGS = """
+40 N s/m | 40 N*s/m | 40 N·s/m | 40 N⋅s/m | 40 N.s/m | 40 Ns/m | 40 kg/s | 40N s/m | 4e1 kg s^-1
+40 N * s / m | 40 N s m^-1 | 40 N s m-1 | 40 N·s·m⁻¹ | 40 N/(m/s) | 0.04 N / (mm / s)
+40 newton second / meter | 0.04 kN s/m | 40 N*s*m**-1 |  40   N  s/m  | 40 N/m*s
+"""
+
+
+@pytest.mark.parametrize("text", DAMPINGS.strip().replace("\n", "|").split("|"))
+def test_a_damping_constant_is_read_however_it_is_written(text):
+    assert to_si(text, DAMPING) == pytest.approx(40.0, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "value"),
+    [
+        ("1 mm s^-1", VELOCITY, 1e-3),
+        ("1 m s-1", VELOCITY, 1.0),
+        ("3 µm/s", VELOCITY, 3e-6),  # the micro sign
+        ("3 μm/s", VELOCITY, 3e-6),  # the Greek letter
+        ("57 um", LENGTH, 57e-6),
+        ("−2 mm", LENGTH, -2e-3),
+        ("90°", ANGLE, np.pi / 2),
+        ("30 arcmin", ANGLE, np.pi / 360),
+        ("5 1/s", FREQUENCY, 5.0),
+        ("5 /s", FREQUENCY, 5.0),
+        ("1 kgf", FORCE, 9.80665),
+        (np.float64(3.0), FORCE, 3.0),
+        (np.int64(3), FORCE, 3.0),
+        (np.array(3.0), FORCE, 3.0),
+        (pint.UnitRegistry().Quantity(3, "kN"), FORCE, 3e3),
+        (pint.UnitRegistry().Quantity(np.float64(2.0), "mm / s"), VELOCITY, 2e-3),
+    ],
+)
+def test_other_quantities(text, kind, value):
+    assert to_si(text, kind) == pytest.approx(value, rel=1e-15)
+
+
+def test_what_is_written_in_decimals_becomes_the_nearest_float():
+    for number in range(1, 2000):
+        assert to_si(f"{number} um", LENGTH) == float(f"{number}e-6")
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "words"),
+    [
+        ("40 N/m s", DAMPING, "two ways; put it in brackets"),
+        ("1 rad/s", FREQUENCY, "not a unit of a frequency"),  # off by 2 pi
+        ("60 rpm", FREQUENCY, "not a unit of a frequency"),
+        ("1 m", FORCE, "is in m, not a unit of a force"),
+        ("1 m/m", LENGTH, "no unit, not a unit of a length"),
+        ("1 n", FORCE, "capitals matter"),
+        ("1 dBm m", LENGTH, "'dBm m' is no unit that can be converted"),
+        ("1 nan", LENGTH, "'nan' is no unit that can be converted"),
+        ("1 N**9999999", FORCE, "not one number and its unit"),
+        ("1 N^" + "9" * 40, FORCE, "not one number and its unit"),
+        ("1 " + "m*" * LONGEST + "m", LENGTH, "longer than"),
+        ("1 (" * 20, LENGTH, "not one number and its unit"),
+        ("1 m/", LENGTH, "breaks off"),
+        ("1 m)", LENGTH, "')'"),
+        ("2 * 3 m", LENGTH, "not one number and its unit"),
+        ("1 __class__", LENGTH, "not one number and its unit"),
+        ("1,5 mm", LENGTH, "the decimal sign is a point"),
+        ("1 2 m", LENGTH, "not one number and its unit"),
+        ("1 m 2", LENGTH, "not one number and its unit"),
+        ("mm", LENGTH, "not one number and its unit"),
+        ("5", LENGTH, "has no unit"),
+        ("nan m", LENGTH, "not finite"),
+        (True, LENGTH, "is not a length"),
+        (None, LENGTH, "is not a length"),
+        (np.array([1.0, 2.0]), LENGTH, "is not a length"),
+        (np.float64(1.0), ANGLE, "degree or radian"),
+    ],
+)
+def test_what_is_unclear_is_refused(text, kind, words):
+    with pytest.raises(PydanticCustomError) as error:
+        to_si(text, kind)
+    assert words in error.value.message()
+
+
+def test_what_is_said_in_words_is_read_again():
+    for unit in ("m", "N", "s", "m/s", "N/m", "kg", "N*s/m", "Hz"):
+        for value in (1.0, 0.0123, 4.5e-7, 6.7e5):
+            text = in_words(value, unit)
+            assert to_si(text, Kind("such a quantity", unit, "")) == pytest.approx(value, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (1.5e-3, "1/s", "0.0015 1/s"),  # not 1.5 1/ks
+        (2e4, "%", "2e+04 %"),
+        (0.25, "kg", "250 g"),
+        (999.97, "N", "1 kN"),
+        (40.0, "N*s/m", "40 N s/m"),
+        (-3e-7, "m", "-300 nm"),
+        (0.0, "kg", "0 kg"),
+        (0.25, "1", "0.25"),
+        (1500.0, "s", "1500 s"),  # not 1.5 ks
+    ],
+)
+def test_words_have_a_prefix_where_the_unit_can(value, unit, text):
+    assert in_words(value, unit) == text
+
+
+SYSTEM = ("kg", "N/m", "N*s/m", "N", "m", "m/s", "s", "Hz", "rad", "s/m")
+
+
+def test_what_is_written_is_read_again_to_the_last_digit():
+    random = np.random.default_rng(1)
+    for unit in SYSTEM:
+        kind = Kind("such a quantity", unit, "")
+        for value in (*10.0 ** random.uniform(-9, 9, 300), *np.arange(-5.0, 5.0), 1e-59, 1e59):
+            assert to_si(quantity_text(float(value), unit), kind) == value
+        for digits in range(1, 1000):
+            assert to_si(quantity_text(digits / 1e4, unit), kind) == digits / 1e4
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (0.001, "m/s", "1 mm/s"),
+        (0.01, "m/s", "10 mm/s"),
+        (1e3, "N/m", "1 kN/m"),
+        (1e7, "N/m", "10 MN/m"),
+        (10.0, "N", "10 N"),
+        (0.08, "kg", "80 g"),
+        (1e-11, "kg", "10 ng"),
+        (40.0, "N*s/m", "40 N s/m"),
+        (0.0, "N*s/m", "0 N s/m"),
+        (5.0, "s", "5 s"),
+        (np.radians(3.5), "rad", "3.5 deg"),
+        (-np.radians(90), "rad", "-90 deg"),
+        (0.1, "rad", "0.1 rad"),
+        (0.5, "s/m", "0.5 s/m"),
+    ],
+)
+def test_quantities_are_written_as_people_write_them(value, unit, text):
+    assert quantity_text(value, unit) == text
+
+
+def test_degrees_need_no_registry():
+    for degrees in np.arange(-90, 90.1, 0.37):
+        assert to_si(f"{degrees} deg", ANGLE) == to_si(f"{degrees}°", ANGLE)
