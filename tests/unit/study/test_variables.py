@@ -132,7 +132,7 @@ def test_turning_points_of_a_known_signal():
     """A sine's extrema are found to within the error of a parabola, (omega dt)^4/..., 1e-5."""
     t = np.arange(0.0, 1.0, 1.0 / 320.0)
     signal = np.sin(2.0 * np.pi * 10.0 * t + 0.3) + 1e-4 * np.sin(2.0 * np.pi * 100.0 * t)
-    found = features(t, signal, np.gradient(signal, t), np.zeros(len(t)), 0.01)
+    found = features(t, signal, np.gradient(signal, t), np.zeros(len(t)), 0.01, 0.0)
     exact = (np.pi / 2 - 0.3 + np.pi * np.arange(20)) / (2.0 * np.pi * 10.0)
     np.testing.assert_allclose(found.turn_time, exact, atol=1e-4)
     np.testing.assert_allclose(np.abs(found.turn_value), 1.0, atol=3e-4)
@@ -156,11 +156,46 @@ def test_what_never_slips_is_stuck():
     assert seen(PAPER.replace(drive=st.ConstantVelocity(0.0)), "5 s").regime == "stuck"
 
 
-def test_two_swings_and_then_quiet_are_a_transient():
-    """They are too few to be seen getting smaller, but none follows in fifty periods."""
+def test_swings_after_which_it_is_quiet_are_a_transient():
+    """They are seen down to the tolerance; none follows in many periods."""
     slider = PAPER.replace(phi="14.5 deg", drive=st.ConstantVelocity("3.16 mm/s"))
     run = seen(slider, "6.5 s")
-    assert len(run.swings.drop) == 2
-    assert run.end - run.swings.end > 50 * run.swings.period.max()
+    assert run.end - run.swings.end > 20 * run.swings.period.max()
     assert run.regime == "settling"
+    assert len(run.swings.drop) > 0 == len(run.cycles.drop)
     assert st.linear_stability.growth_rate(slider) < 0.0
+
+
+PIN = st.Slider(
+    mass="80 g", k_x="2.3 kN/m", k_y="0.9 MN/m", phi="8 deg", normal_load="4 N",
+    friction=st.ExponentialWeakening(mu_0=0.6, mu_inf=0.45, v_f="10 mm/s"),
+    drive=st.ConstantVelocity("0.5 mm/s"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("phi", "V"), [(8.0, 5e-4), (18.0, 5e-4), (20.0, 2e-4)])
+def test_a_small_vibration_on_both_springs(phi, V):
+    """Of 2e-3 and less of the force; below 1e-3 of it a study saw none.
+
+    It is quicker than the mass can swing on the softer spring alone: the stiffer one swings as
+    well. An analysis counts the same cycles, but for where those begin that build up: when they
+    reach half of the median, on which the smallest that either sees have a part.
+    """
+    slider = PIN.replace(phi=f"{phi} deg", drive=st.ConstantVelocity(V))
+    run = seen(slider, "8 s")
+    assert run.regime == TRANSVERSE
+    found = st.analyse(st.simulate(slider, "8 s", sample_rate="10 kHz"))
+    assert found.regime.kind in ("harmonic vibration", "transitional oscillation")
+    assert found.cycles["period"].mean() < 0.9 / slider.natural_frequencies[0]
+    assert found.cycles["drop"].mean() < 5e-3 * found.record.force.max()
+    count = found.cycles.sizes["cycle"]
+    assert value("cycles", run) == pytest.approx(count, rel=0.05)
+    assert value("period", run) == pytest.approx(float(found.cycles["period"].mean()), rel=0.02)
+
+
+def test_swings_that_grow_with_the_load_and_then_die_out_are_a_transient():
+    """Steady sliding is stable: swings of a quick mode grow while it loads, and are gone then."""
+    slider = PIN.replace(phi="20 deg", drive=st.ConstantVelocity("2 mm/s"))
+    assert st.linear_stability.growth_rate(slider) < -5.0
+    assert st.classify(st.simulate(slider, "8 s", sample_rate="10 kHz")).kind == "settling"
+    assert seen(slider, "8 s").regime == "settling"

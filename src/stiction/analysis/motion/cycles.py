@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.motion.decay import dies_out
+from stiction.analysis.motion.decay import built_up, dies_out
 from stiction.analysis.motion.hesitations import take_out
 from stiction.analysis.motion.rest import STICKING, rest_share
 from stiction.analysis.record import Record, recorded
@@ -69,9 +69,7 @@ def find_cycles(source: Trajectory | Record) -> xr.Dataset:
     quarter of its period without a sample; so is the first loading of a run that starts unloaded,
     as no slip comes before it.
 
-    A study (`stiction.Study`) counts the same cycles in the same run but for one sort: swings below
-    a thousandth of the span of the force, its first loading included, which are counted here where
-    they stand apart, and not there.
+    A study (`stiction.Study`) counts the same cycles in the same run.
 
     Parameters
     ----------
@@ -148,8 +146,10 @@ class Swings(NamedTuple):
 
     @property
     def cycles(self) -> xr.Dataset:
-        """The table, empty if the swings die out."""
-        return self.table.isel(cycle=slice(0)) if self.dying else self.table
+        """Those that are cycles: none if the swings die out, and none that only build up."""
+        left = slice(0) if self.dying else built_up(self.table["drop"].values)
+        table = self.table.isel(cycle=left)
+        return table.assign_coords(cycle=self.table["cycle"][: table.sizes["cycle"]].values)
 
 
 def swings(record: Record) -> Swings:

@@ -1,4 +1,4 @@
-"""Swings that die out: a transient on the way to steady sliding, no cycles."""
+"""Swings that die out, a transient and no cycles; and those that build up to cycles."""
 
 from __future__ import annotations
 
@@ -11,12 +11,18 @@ ORDERED = -0.9  # rank correlation of size and number: each smaller than the las
 # Swings in such order, how many, and what is left of the first: by chance once in a thousand
 # records; fewer do where no swing follows for three periods, which is evidence by itself.
 MANY, LEFT = 8, 1 / 3
-FEW, LEFT_BEFORE_QUIET = 3, 1 / 2
+FEW, LEFT_BEFORE_QUIET = 3, 1 / 2  # counted from the largest, if it is quiet for long after
 QUIET = 3.0
+# Swings that build up: less than half the median, so many in succession (by chance once in a
+# thousand records where a quarter of all are so small)
+BELOW, BUILDING = 0.5, 5
 
 
 def dies_out(drop: ArrayLike, period: ArrayLike, rest: float) -> bool:
     """Return whether swings get smaller and smaller until (nearly) nothing is left.
+
+    They may grow before, while the spring is loaded, if it is quiet afterwards for longer than they
+    lasted.
 
     Parameters
     ----------
@@ -27,8 +33,33 @@ def dies_out(drop: ArrayLike, period: ArrayLike, rest: float) -> bool:
     """
     size = np.asarray(drop, dtype=np.float64)
     quiet = len(size) > 0 and rest > QUIET * float(np.max(period))
+    if quiet and rest > float(np.sum(period)):
+        size = size[int(np.argmax(size)) :]
     enough, left = (FEW, LEFT_BEFORE_QUIET) if quiet else (MANY, LEFT)
     return len(size) >= enough and order(size) <= ORDERED and bool(size[-1] < left * size[0])
+
+
+def built_up(drop: ArrayLike) -> slice:
+    """Return which swings are left without those that build up before, or ebb away after.
+
+    How many of these are seen depends on samples and noise: they are no cycles of the motion.
+
+    Parameters
+    ----------
+    drop : array
+        (n,) of each swing, in any unit.
+    """
+    size = np.asarray(drop, dtype=np.float64)
+    first, last = (_building(each) for each in (size, size[::-1]))
+    return slice(first, len(size) - last)
+
+
+def _building(size: np.ndarray) -> int:
+    """Return how many swings build up at the beginning."""
+    if not len(size):
+        return 0
+    count = int(np.argmax(size >= BELOW * np.median(size)))
+    return count if count >= BUILDING else 0
 
 
 def order(values: np.ndarray) -> float:

@@ -187,7 +187,7 @@ def regime_of(record: Record, found: Swings) -> Regime:
 
 
 def _by_shape(record: Record, found: Swings) -> Regime:
-    table, count = found.table, found.table.sizes["cycle"]
+    table, count = found.cycles, found.cycles.sizes["cycle"]
     step = float(np.median(np.diff(record.time)))
     shares = table["rise_share"].values
     other = ""
@@ -210,8 +210,7 @@ def _by_shape(record: Record, found: Swings) -> Regime:
     }
     drop = table["drop"].values
     if kind == HARMONIC:
-        span = np.subtract(*np.percentile(drop, (90.0, 10.0)))
-        evidence["drop_spread"] = float(span / np.median(drop))
+        evidence["drop_spread"] = drop_spread(drop)
     evidence |= _natural_period(record, table)
     if found.noise > NOISE_SHOWS * np.median(drop):
         evidence["drop_over_noise"] = float(np.median(drop)) / found.noise
@@ -225,7 +224,7 @@ def _by_shape(record: Record, found: Swings) -> Regime:
     confidence = max(counted, _chance(shares, kind, step / float(table["period"].mean())))
     if other:  # as likely
         return Regime(kind, 0.5 * confidence, evidence, other)
-    irregular = _irregular(evidence, drop) if kind == HARMONIC else 0.0
+    irregular = irregularity(evidence["period_spread"], drop) if kind == HARMONIC else 0.0
     if irregular > 0.5:
         return Regime(IRREGULAR, irregular * confidence, evidence, HARMONIC)
     confidence *= 1.0 - irregular
@@ -251,7 +250,13 @@ def _chance(shares: Floats, kind: str, resolution: float) -> float:
     return float(below[1] - below[0])
 
 
-def _irregular(evidence: dict[str, float], drop: Floats) -> float:
+def drop_spread(drop: Floats) -> float:
+    """Return the span of the drops over their median, a tenth left out at each end."""
+    low, middle, high = np.percentile(drop, (10.0, 50.0, 90.0))
+    return float((high - low) / middle)
+
+
+def irregularity(period_spread: float, drop: Floats) -> float:
     """Return how likely swings are irregular, by how much their periods and drops differ.
 
     By periods: whether more of them would differ by more than `REGULAR`. By drops: of the two
@@ -262,8 +267,8 @@ def _irregular(evidence: dict[str, float], drop: Floats) -> float:
     from scipy.special import ndtr
 
     count = len(drop)
-    periods = log(max(evidence["period_spread"] / REGULAR, 1e-9)) * sqrt(count) / SPREAD_ERROR
-    spread = evidence["drop_spread"]
+    periods = log(max(period_spread / REGULAR, 1e-9)) * sqrt(count) / SPREAD_ERROR
+    spread = drop_spread(drop)
     if abs(order(drop)) >= -ORDERED or spread == 0.0:  # it grows, or is quite even
         return float(ndtr(periods))
     error = hypot(SPREAD_ERROR / sqrt(count), IRREGULAR_SPREAD[1])

@@ -23,9 +23,11 @@ def map(
     """Draw what the study in the store STUDY found, finished or not.
 
     Over two parameters a map of the kind of motion: stick-slip, transitional oscillation,
-    harmonic vibration, settling, steady sliding, transverse oscillation. Two lines over it say
-    what theory expects: where steady sliding loses its stability, and where the damping ratio at
-    slip is 1. Over one parameter a curve; samples over phi and V as points in the damping diagram.
+    harmonic vibration, irregular vibration, settling, steady sliding, stuck; and transverse
+    oscillation, which is quicker than the mass can swing on the softer spring alone, so that the
+    stiffer one swings as well. Two lines over it say what theory expects: where steady sliding
+    loses its stability, and where the damping ratio at slip is 1. Over one parameter a curve;
+    samples over phi and V as points in the damping diagram.
 
     For example, after `stiction sweep --preset yaw-angle -o yaw.zarr`:
 

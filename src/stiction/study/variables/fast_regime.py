@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.motion import regime
-from stiction.analysis.motion.decay import QUIET, dies_out
+from stiction.analysis.motion.decay import QUIET, built_up, dies_out
 from stiction.analysis.motion.hesitations import take_out
 from stiction.analysis.motion.level import QUARTER
 from stiction.study.variables.features import PARTS, Features
@@ -39,6 +39,9 @@ FORMERLY = {
     "song": TRANSVERSE,
 }
 FEWEST = 2  # swings that tell a kind: one may be the end of a transient
+# Of the period of the mass on the softer spring alone: a vibration of a lesser one has the stiffer
+# spring swing as well, as friction that turns couples them. On one spring friction only prolongs it
+QUICK = 0.9
 OSCILLATES = 0.1  # of the largest that the fast oscillation can be before the slip reverses
 
 
@@ -62,6 +65,11 @@ class Swings(NamedTuple):
     rise_share: Floats
     end: float
 
+    def some(self, which: slice) -> Swings:
+        """Return some of them."""
+        end = self.end - float(self.period[which.stop :].sum())
+        return Swings(self.drop[which], self.period[which], self.rise_share[which], end)
+
 
 def swings(found: Features) -> Swings:
     """Return the complete swings between turning points, hesitations taken out."""
@@ -76,7 +84,13 @@ def swings(found: Features) -> Swings:
 
 
 def kind_of(
-    found: Features, cycles: Swings, start: float, end: float, drive: float, oscillation: float
+    found: Features,
+    cycles: Swings,
+    start: float,
+    end: float,
+    drive: float,
+    oscillation: float,
+    own: float,
 ) -> str:
     """Return the kind of motion.
 
@@ -92,17 +106,50 @@ def kind_of(
         Rate of the force while the mass sticks: stiffness times drive velocity, N/s.
     oscillation : float
         How strong the fast oscillation is at the end, in units of the drive's velocity along it.
+    own : float
+        Period of the mass on the softer spring alone, s.
     """
-    count = len(cycles.drop)
-    # a cheap condition first, which must hold as well
-    dying = count > 0 and bool(cycles.drop[-1] < 0.5 * cycles.drop[0])
-    dying = dying and dies_out(cycles.drop, cycles.period, end - cycles.end)
-    over = count > 0 and end - cycles.end > QUIET * float(cycles.period.max())
-    if count >= FEWEST and not dying and not over:
-        return regime.shape(float(np.sort(cycles.rise_share)[count // 2]))
+    lasting = cycles_among(cycles, end)
+    if len(lasting.drop) >= FEWEST:
+        return by_shape(lasting, own)
+    dying = die_out(cycles, end)
     kind = regime.SETTLING if dying else course(found, start, end, drive)
     calm = kind in (regime.SETTLING, regime.STEADY)
     return TRANSVERSE if calm and oscillation > OSCILLATES else kind
+
+
+def cycles_among(found: Swings, end: float) -> Swings:
+    """Return those that are cycles, by the rules of `stiction.find_cycles`, of a run's swings."""
+    none = is_over(found, end) or die_out(found, end)
+    return found.some(slice(0, 0) if none else built_up(found.drop))
+
+
+def is_over(found: Swings, end: float) -> bool:
+    """Return whether no swing follows for long before the run ends."""
+    return len(found.drop) > 0 and end - found.end > QUIET * float(found.period.max())
+
+
+def die_out(cycles: Swings, end: float) -> bool:
+    """Return whether swings die out in a run that ends then: they are a transient, no cycles."""
+    drop = cycles.drop
+    # a cheap condition first, which must hold as well
+    dying = len(drop) > 0 and bool(drop[-1] < 0.5 * drop.max())
+    return dying and dies_out(drop, cycles.period, end - cycles.end)
+
+
+def by_shape(cycles: Swings, own: float) -> str:
+    """Return the kind of cycles, by their shape, their size and how quick they are."""
+    count = len(cycles.drop)
+    kind = regime.shape(float(np.sort(cycles.rise_share)[count // 2]))
+    if kind in (regime.TRANSITIONAL, regime.HARMONIC) and cycles.period.mean() < QUICK * own:
+        return TRANSVERSE
+    return regime.IRREGULAR if kind == regime.HARMONIC and irregular(cycles) else kind
+
+
+def irregular(cycles: Swings) -> bool:
+    """Return whether vibrations are irregular, by the rule of `stiction.analysis.regime`."""
+    periods, drops = cycles.period, cycles.drop
+    return regime.irregularity(float(periods.std() / periods.mean()), drops) > 0.5
 
 
 def course(found: Features, start: float, end: float, drive: float) -> str:

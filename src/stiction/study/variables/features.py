@@ -54,6 +54,7 @@ def features(
     rate: np.ndarray,
     velocity: np.ndarray,
     reversal: float,
+    least: float,
 ) -> Features:
     """Return what evenly spaced samples show.
 
@@ -62,7 +63,9 @@ def features(
     time, force, rate, velocity : ndarray
         (n,), s, N, N/s, m/s; positive along the drive.
     reversal : float
-        Smallest reversal of the force that counts, of its span.
+        Smallest reversal of the force that counts, of its span in the last quarter.
+    least : float
+        The same, of the largest force: what is less is the solver's error.
     """
     n = len(time)
     low, high, fastest = force[0], force[0], velocity[0]
@@ -78,7 +81,8 @@ def features(
         begin, end = part * n // PARTS, max((part + 1) * n // PARTS, part * n // PARTS + 1)
         for i in range(begin, end):
             means[part] += force[min(i, n - 1)] / (end - begin)
-    index = zigzag(force, reversal * (high - low))
+    height = max(reversal * (late_high - late_low), least * max(high, -low))
+    index = zigzag(force, height)
     turn_time, turn_value = np.empty(len(index)), np.empty(len(index))
     trough = len(index) > 0 and force[index[0]] < force[0]
     for k, i in enumerate(index):

@@ -52,13 +52,13 @@ MEASURES: dict[str, Measure] = {
     ),
     "cycles": Measure(
         "1",
-        "number of complete cycles, in which the force falls by a thousandth of its span or more",
-        lambda run: float(len(run.swings.drop)),
+        "number of complete cycles",
+        lambda run: float(len(run.cycles.drop)),
     ),
-    "period": Measure("s", "mean time from trough to trough", lambda run: _mean(run.swings.period)),
-    "force_drop": Measure("N", "mean force drop of the cycles", lambda run: _mean(run.swings.drop)),
+    "period": Measure("s", "mean time from trough to trough", lambda run: _mean(run.cycles.period)),
+    "force_drop": Measure("N", "mean force drop of the cycles", lambda run: _mean(run.cycles.drop)),
     "rise_share": Measure(
-        "1", "share of a cycle in which the force rises", lambda run: _mean(run.swings.rise_share)
+        "1", "share of a cycle in which the force rises", lambda run: _mean(run.cycles.rise_share)
     ),
     "peak_velocity": Measure(
         "m/s", "largest velocity of the mass along X", lambda run: run.features.peak_velocity

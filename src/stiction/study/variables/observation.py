@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from math import ceil, nan
+from math import ceil, nan, pi, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +14,9 @@ from stiction.analysis.creep.first_slip import loading
 from stiction.analysis.motion.regime import STUCK
 from stiction.drive import ConstantVelocity
 from stiction.simulation import sample_times, solve
+from stiction.slider import Slider
 from stiction.solver.integrate import Solution
-from stiction.study.variables.fast_regime import Swings, kind_of, swings
+from stiction.study.variables.fast_regime import Swings, cycles_among, kind_of, swings
 from stiction.study.variables.features import Features, features
 from stiction.system.description import Description
 
@@ -24,12 +25,13 @@ Floats = NDArray[np.float64]
 # A peak found by a parabola through samples this dense is right to 1e-5 of the amplitude for a
 # harmonic, to 1e-4 for the paper's. Samples cost time of their own: here one part in a hundred.
 PER_SLOW_PERIOD = 32
+PER_COUPLED_PERIOD = 16  # of the mass along the drive, on both springs, where friction holds it
 LEAST_SAMPLES, MOST_SAMPLES = 64, 1_000_000  # of one run
 # The fast oscillation is looked at over its last periods.
 FAST_PERIODS, PER_FAST_PERIOD = 32, 16
-# Smallest reversal of the force that counts, of its span: ten times what the fast oscillation
-# makes of it in the paper's system, and small enough to see swings die out. An analysis counts
-# smaller ones where they stand apart from all that are smaller still.
+# Smallest reversal of the force that counts, of its span in the last quarter: ten times what the
+# fast oscillation makes of it in the paper's system, and small enough to see swings die out. It is
+# no less than the solver's tolerance of the largest force.
 REVERSAL = 1e-3
 
 
@@ -117,7 +119,8 @@ class Observed:
     @cached_property
     def features(self) -> Features:
         """What the evenly spaced samples show."""
-        found: Features = features(self.time, self.force, self.rate, self.velocity, REVERSAL)
+        least = self.description.run.rtol
+        found: Features = features(self.time, self.force, self.rate, self.velocity, REVERSAL, least)
         return found
 
     @cached_property
@@ -135,6 +138,11 @@ class Observed:
     def swings(self) -> Swings:
         """Complete swings of the force."""
         return swings(self.features)
+
+    @cached_property
+    def cycles(self) -> Swings:
+        """The swings that are cycles."""
+        return cycles_among(self.swings, self.end)
 
     @cached_property
     def transverse_oscillation(self) -> float:
@@ -156,15 +164,17 @@ class Observed:
             return STUCK
         slider = self.description.slider
         drive = slider.k_x * abs(slider.motion.velocity * slider.direction[0])
-        oscillation = self.transverse_oscillation
-        return kind_of(self.features, self.swings, self.start, self.end, drive, oscillation)
+        oscillation, own = self.transverse_oscillation, 1.0 / slider.natural_frequencies[0]
+        return kind_of(self.features, self.swings, self.start, self.end, drive, oscillation, own)
 
 
 def observe(description: Description, report: Callable[[float], None] | None) -> Observed:
     """Run a description, sampled as measures need it: as it says, or by its slow period."""
     start, duration = description.initial.time, description.run.duration
     slow, fast = description.slider.natural_frequencies
-    wanted = description.run.sample_rate or max(PER_SLOW_PERIOD * slow, LEAST_SAMPLES / duration)
+    along = PER_COUPLED_PERIOD * coupled_frequency(description.slider)
+    least = max(PER_SLOW_PERIOD * slow, along, LEAST_SAMPLES / duration)
+    wanted = description.run.sample_rate or least
     rate = min(wanted, MOST_SAMPLES / duration)
     even = sample_times(start, duration, rate)
     parts = max(ceil(PER_FAST_PERIOD * fast / rate), 1)
@@ -174,6 +184,12 @@ def observe(description: Description, report: Callable[[float], None] | None) ->
     dense = even[fine] + np.arange(steps * parts + 1) / (rate * parts)
     times = np.minimum(np.concatenate([even[:fine], dense]), start + duration)
     return Observed(description, solve(description, times, progress=report), fine, parts)
+
+
+def coupled_frequency(slider: Slider) -> float:
+    """Return the frequency (Hz) of the mass along the drive, if friction lets it go so only."""
+    c, s = slider.direction
+    return sqrt((slider.k_x * c**2 + slider.k_y * s**2) / slider.mass) / (2.0 * pi)
 
 
 def seconds_of(description: Description) -> float:
