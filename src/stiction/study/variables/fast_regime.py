@@ -147,7 +147,7 @@ def by_shape(cycles: Swings, own: float) -> str:
 
 
 def irregular(cycles: Swings) -> bool:
-    """Return whether vibrations are irregular, by the rule of `stiction.analysis.regime`."""
+    """Return whether vibrations are irregular, by the rule of `stiction.analysis.motion.regime`."""
     periods, drops = cycles.period, cycles.drop
     return regime.irregularity(float(periods.std() / periods.mean()), drops) > 0.5
 

@@ -14,11 +14,11 @@ from stiction.analysis.creep.first_slip import loading
 from stiction.analysis.motion.regime import STUCK
 from stiction.drive import ConstantVelocity
 from stiction.simulation import sample_times, solve
-from stiction.slider import Slider
 from stiction.solver.integrate import Solution
 from stiction.study.variables.fast_regime import Swings, cycles_among, kind_of, swings
 from stiction.study.variables.features import Features, features
 from stiction.system.description import Description
+from stiction.system.slider import Slider
 
 Floats = NDArray[np.float64]
 
