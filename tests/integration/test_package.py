@@ -1,10 +1,9 @@
 """The package as a whole: light imports, public names, compiled cache, examples."""
 
-import doctest
+import ast
 import os
 import subprocess
 import sys
-from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -13,7 +12,6 @@ from tests.waiting import PATIENCE
 import stiction as st
 
 ROOT = Path(__file__).parents[2]
-SOURCE = ROOT / "src/stiction"
 HEAVY = {"numba", "scipy", "xarray", "matplotlib", "pint", "pandas"}
 
 
@@ -51,15 +49,25 @@ def test_names_survive_their_modules():
     assert run_python(f"{code}; print(callable(st.simulate), callable(st.load))") == "True True\n"
 
 
-@pytest.mark.parametrize(
-    "path", [path for path in sorted(SOURCE.rglob("*.py")) if ">>> " in path.read_text("utf-8")]
-)
-def test_every_docstring_example_runs(path, monkeypatch):
-    monkeypatch.setenv("MPLBACKEND", "Agg")
-    name = ".".join(path.relative_to(SOURCE.parent).with_suffix("").parts)
-    result = doctest.testmod(import_module(name.removesuffix(".__init__")))
-    assert result.attempted > 0
-    assert result.failed == 0
+def asserts(function: ast.FunctionDef, helpers: set[str]) -> bool:
+    """Return whether a function has an assertion, or calls something that has."""
+    nodes = list(ast.walk(function))
+    called = {
+        getattr(n.func, "id", getattr(n.func, "attr", "")) for n in nodes if type(n) is ast.Call
+    }
+    own = any(type(n) is ast.Assert for n in nodes)
+    return own or any(name in helpers or name.startswith("assert_") for name in called)
+
+
+def test_every_test_asserts_something():
+    """Or calls one of its own helpers that does; a test that only runs code holds nothing."""
+    trees = [ast.parse(path.read_text("utf-8")) for path in (ROOT / "tests").rglob("*.py")]
+    found = [n for tree in trees for n in ast.walk(tree) if type(n) is ast.FunctionDef]
+    helpers = {"raises", "warns", "check_law"}
+    for _ in range(3):  # helpers of helpers
+        helpers |= {each.name for each in found if asserts(each, helpers)}
+    silent = {each.name for each in found if each.name.startswith("test_")} - helpers
+    assert not silent
 
 
 def test_readme_example_runs(tmp_path, monkeypatch):

@@ -332,7 +332,12 @@ def test_few_samples_and_no_drive_are_drawn(described: st.Description, rate: str
     still = described.slider.replace(drive=st.ConstantVelocity(0.0))
     settings = st.Settings(duration=0.2, **({} if rate is None else {"sample_rate": rate}))
     runs = st.compare(st.Description(still, st.Initial(), settings), ["coulomb"])
-    panels(figure_of(plot_comparison, runs))
+    ax = panels(figure_of(plot_comparison, runs))
+    assert len(ax["force"].lines) == len(runs)
+    assert not any(np.any(line.get_ydata()) for line in ax["force"].lines)  # it rests all the time
+    for row in range(len(runs)):
+        held = ax["rest"].patches[row].get_data()
+        assert max(held.values - held.baseline) == pytest.approx(0.8)
 
 
 def test_legends_are_broken_between_parameters() -> None:

@@ -92,7 +92,8 @@ def slope(law: FrictionLaw, v: float) -> float:
 
 def coefficient_and_slope(law: FrictionLaw, v: float) -> tuple[float, float]:
     """Return the friction coefficient and its derivative at slip speed `v`."""
-    return law.coefficient(v), law.slope(v)
+    own = getattr(law, "coefficient_and_slope", None)
+    return own(v) if own is not None else (law.coefficient(v), law.slope(v))
 
 
 def static(law: FrictionLaw) -> float:

@@ -5,10 +5,14 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import minimize
 from tests.drawn import inside
+from tests.entry import entry
 
 import stiction as st
+from stiction.solver import surface
 from stiction.solver.problem import Elliptic, Problem
-from stiction.solver.surface import Tensor, flow, friction_along, takeoff
+from stiction.solver.surface import Tensor
+
+flow, friction_along, takeoff = map(entry, (surface.flow, surface.friction_along, surface.takeoff))
 
 WEAKENING = st.ExponentialWeakening(0.2, 0.15, 0.01)
 
@@ -127,9 +131,9 @@ def test_slip_starts_towards_what_friction_leaves(ratio, angle, pull_angle, exce
     M = turn.T @ np.diag([1.0, ratio]) @ turn
     a = (1 + excess) * max(1.0, ratio) * np.array([np.cos(pull_angle), np.sin(pull_angle)])
     problem = problem_with(M @ M)
-    y = np.array(takeoff.py_func(problem, tuple(a), 1.0))
+    y = np.array(takeoff(problem, tuple(a), 1.0))
     e = y / np.hypot(*y)
-    friction = np.array(friction_along.py_func(problem, *e))
+    friction = np.array(friction_along(problem, *e))
     rest = a - friction
     assert e[0] * rest[1] - e[1] * rest[0] == pytest.approx(0.0, abs=1e-12 * np.hypot(*a))
     assert rest @ e > 0.0
@@ -149,11 +153,11 @@ def test_flow_and_its_derivatives(ratio, angle, w):
     problem, own = problem_with(N), Tensor(N[0, 0], N[0, 1], N[1, 1])
     direction = np.array([1.0, w])
     n = N @ direction / np.sqrt(direction @ N @ direction)
-    got = flow.py_func(problem, own, w)
+    got = flow(problem, own, w)
     assert got.n_1 == pytest.approx(n[0], rel=1e-12, abs=1e-12)
     assert got.tau == pytest.approx(n[1] - w * n[0], rel=1e-12, abs=1e-12)
     step = 1e-5
-    low, high = (flow.py_func(problem, own, w + d) for d in (-step, step))
+    low, high = (flow(problem, own, w + d) for d in (-step, step))
     assert got.dn_1 == pytest.approx((high.n_1 - low.n_1) / (2 * step), abs=1e-7)
     assert got.dtau == pytest.approx((high.tau - low.tau) / (2 * step), abs=1e-7)
 

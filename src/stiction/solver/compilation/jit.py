@@ -1,4 +1,7 @@
-"""How the solver is compiled."""
+"""How the solver is compiled; with NUMBA_DISABLE_JIT=1 it runs as the Python that it is.
+
+That takes some 200 times as long, and is for debuggers and for `benchmarks.mutation`.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,10 @@ from stiction.solver.compilation.interrupt import uninterrupted
 from stiction.solver.compilation.machine_code import Shelf
 
 njit: Any = numba.njit
+config: Any = numba.config
 F = TypeVar("F", bound=Callable[..., Any])
+
+INTERPRETED = bool(config.DISABLE_JIT)
 
 # sums may be contracted to fused multiply-adds and divisions by a common divisor shared;
 # nothing is reordered, and infinities and NaN keep their meaning
@@ -46,7 +52,14 @@ def piece(function: F) -> F:
     return _part(function, _nrt=False)
 
 
+def uncompiled(function: F) -> F:
+    """Return the Python function of a compiled one."""
+    return cast(F, getattr(function, "py_func", function))
+
+
 def _part(function: F, **options: bool) -> F:
+    if INTERPRETED:
+        return function
     made: Any = njit(nogil=True, **options, **ARITHMETIC, **PART)(function)
 
     def refuse(*_: Any, **__: Any) -> Any:
@@ -66,10 +79,13 @@ def compiled_for(function: Any, digest: str | None) -> Any:
 
     None is for what has no text to tell it by: that is compiled anew in each process.
     """
-    return _entry(function.py_func, None if digest is None else Shelf(function.py_func, digest))
+    own = uncompiled(function)
+    return _entry(own, None if digest is None else Shelf(own, digest))
 
 
 def _entry(function: F, shelf: Shelf | None) -> F:
+    if INTERPRETED:
+        return function
     made: Any = njit(nogil=True, **ARITHMETIC)(function)
     if shelf is not None:
         made._cache = shelf

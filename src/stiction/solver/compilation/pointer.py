@@ -2,7 +2,8 @@
 
 The machine code of a function and the fields of a law are two addresses. Compiled code calls the
 one with the other, for some 2 ns, and is the same code for all laws; merged into it, each law would
-take its compiling anew.
+take its compiling anew. Where nothing is compiled (see `jit`) the function and the law stand there
+themselves.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ import numpy as np
 from numba.core.registry import cpu_target
 
 from stiction.friction.user.source import text_of
-from stiction.solver.compilation.jit import compiled, compiled_for
+from stiction.solver.compilation.jit import INTERPRETED, compiled, compiled_for
 
 context: Any = cpu_target.target_context
 cgutils: Any = numba.core.cgutils
@@ -30,17 +31,19 @@ intrinsic: Any = numba.extending.intrinsic
 typeof: Any = numba.typeof
 
 
-def address(function: Any, law: Any, *arguments: Any) -> int:
+def address(function: Any, law: Any, *arguments: Any) -> Any:
     """Return where the machine code of a compiled function for a law lies.
 
     The function's first argument is a pointer to the law's fields (see `pointee`), `arguments` are
     the types of its others. It is compiled if a law of this type is met for the first time.
     """
-    return _address(function, typeof(law), *arguments)
+    return function if INTERPRETED else _address(function, typeof(law), *arguments)
 
 
-def memory(law: Any) -> np.ndarray:
+def memory(law: Any) -> Any:
     """Return the fields of a law as compiled code finds them, and keep its arrays alive."""
+    if INTERPRETED:
+        return law
     kind = typeof(law)
     room: Any = (ctypes.c_char * _size(kind))()
     room.law = law
@@ -106,7 +109,7 @@ def _pointee(_: Any, pointer: Any) -> Any:
     return pointer.dtype(pointer), generate
 
 
-pointee: Any = intrinsic(_pointee)
+pointee: Any = (lambda law: law) if INTERPRETED else intrinsic(_pointee)
 
 
 def caller(result: Any, *kinds: Any) -> Any:
@@ -135,6 +138,8 @@ def caller(result: Any, *kinds: Any) -> Any:
 
         return signature, generate
 
+    if INTERPRETED:
+        return lambda code, memory, arguments: code(memory, *arguments)
     return intrinsic(call)
 
 

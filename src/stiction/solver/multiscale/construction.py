@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from math import inf, nan, sqrt
-from typing import Any
 
 import numpy as np
 
-from stiction.solver.compilation.jit import inlined, piece
+from stiction.solver.compilation.jit import inlined, piece, uncompiled
 from stiction.solver.exact import loop
 from stiction.solver.multiscale.interpolant import POINTS, interpolated
 from stiction.solver.multiscale.return_map import NEAR, NODES, Cycle, Returns
@@ -28,9 +27,8 @@ from stiction.solver.stick import stick_duration
 NODE_STEPS = 10_000
 FINER = 0.1  # tolerance of a node's steps over that of others: their noise is below what closes
 
-_loop: Any = loop.advance
 # as a part of what calls it, so that a user's own law is kept with that alone
-advance = piece(_loop.py_func)
+advance = piece(uncompiled(loop.advance))
 
 
 @inlined

@@ -53,4 +53,4 @@ def lead(problem: Problem, theta: float) -> float:
 @inlined
 def wrapped(angle: float) -> float:
     """Return a difference of angles, -pi to pi."""
-    return angle if abs(angle) <= pi else angle - 2.0 * pi * round(angle / (2.0 * pi))
+    return angle - 2.0 * pi * round(angle / (2.0 * pi)) if abs(angle) > pi else angle

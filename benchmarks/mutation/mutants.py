@@ -1,0 +1,142 @@
+"""What can be changed in a source file, and a random sample of it."""
+
+from __future__ import annotations
+
+import hashlib
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from cosmic_ray.ast import ast_nodes, get_ast
+from cosmic_ray.mutating import mutate_code
+from cosmic_ray.operators.operator import Operator
+from cosmic_ray.plugins import get_operator
+
+from ..explore.draw import Draw
+
+ARITHMETIC = ("Add", "Sub", "Mul", "Div")
+COMPARISONS = ("Eq", "NotEq", "Lt", "LtE", "Gt", "GtE")
+# what is left out of Cosmic Ray's: bits of floats, which any run refuses; decorators, which do
+# nothing in plain Python; types of exceptions, whose messages have tests of their own
+NAMES = (
+    *(f"ReplaceBinaryOperator_{a}_{b}" for a in ARITHMETIC for b in ARITHMETIC if a != b),
+    *(f"ReplaceBinaryOperator_Pow_{b}" for b in ("Mul", "Div")),
+    *(f"ReplaceComparisonOperator_{a}_{b}" for a in COMPARISONS for b in COMPARISONS if a != b),
+    "ReplaceComparisonOperator_Is_IsNot",
+    "ReplaceComparisonOperator_IsNot_Is",
+    "ReplaceUnaryOperator_Delete_USub",
+    "ReplaceUnaryOperator_Delete_Not",
+    "AddNot",
+    "ReplaceTrueWithFalse",
+    "ReplaceFalseWithTrue",
+    "ReplaceAndWithOr",
+    "ReplaceOrWithAnd",
+    "ReplaceBreakWithContinue",
+    "ReplaceContinueWithBreak",
+    "ZeroIterationForLoop",
+    "NumberReplacer",
+)
+EXTREMES = {"min": "max", "max": "min"}
+
+
+class ReplaceExtreme(Operator):
+    """The lesser in place of the greater, and the reverse."""
+
+    def mutation_positions(self, node: Any) -> Iterator[tuple[Any, Any]]:
+        """Yield where a name is one of the two."""
+        if node.type == "name" and node.value in EXTREMES:
+            yield node.start_pos, node.end_pos
+
+    def mutate(self, node: Any, index: int) -> Any:
+        """Put the other one in its place."""
+        node.value = EXTREMES[node.value]
+        return node
+
+    @classmethod
+    def examples(cls) -> tuple[()]:
+        """Return none: they are for Cosmic Ray's own tests."""
+        return ()
+
+
+@cache
+def operators() -> dict[str, Operator]:
+    """Return the operators by name."""
+    return {name: get_operator(f"core/{name}")() for name in NAMES} | {"Extreme": ReplaceExtreme()}
+
+
+class Mutant(NamedTuple):
+    """A change of one place: the file and the line in it, the operator and its occurrence there.
+
+    `before` and `after` are the changed lines; `made_from` is a digest of the file.
+    """
+
+    path: str
+    line: int
+    operator: str
+    occurrence: int
+    before: str
+    after: str
+    made_from: str
+
+    @property
+    def key(self) -> tuple[str, str, str]:
+        """Return what stays the same wherever the line is moved in its file."""
+        return self.path, self.before, self.after
+
+
+def digest(text: str) -> str:
+    """Return what to know a source by."""
+    return hashlib.sha256(text.encode()).hexdigest()[:12]
+
+
+def mutated(text: str, operator: str, occurrence: int) -> str:
+    """Return the changed text of a source."""
+    changed: str | None = mutate_code(text, operators()[operator], occurrence)
+    assert changed is not None
+    return changed
+
+
+def mutant(path: str, text: str, operator: str, occurrence: int) -> Mutant:
+    """Return the change with the lines in which it shows."""
+    old, new = text.splitlines(), mutated(text, operator, occurrence).splitlines()
+    if len(old) == len(new):
+        lines = [i for i, pair in enumerate(zip(old, new, strict=True)) if pair[0] != pair[1]]
+        first, last = lines[0], lines[-1]
+    else:  # one that joins or splits lines
+        first = next(i for i, pair in enumerate(zip(old, new, strict=False)) if pair[0] != pair[1])
+        last = first
+    before, after = (" ".join(x.strip() for x in y[first : last + 1]) for y in (old, new))
+    return Mutant(path, first + 1, operator, occurrence, before, after, digest(text))
+
+
+def places(text: str) -> list[list[tuple[str, int]]]:
+    """Return for each place of a source what can be done there: operator and occurrence."""
+    found: dict[Any, list[tuple[str, int]]] = defaultdict(list)
+    seen: dict[str, int] = defaultdict(int)
+    for node in ast_nodes(get_ast(text)):
+        for name, operator in operators().items():
+            for place in operator.mutation_positions(node):
+                found[place].append((name, seen[name]))
+                seen[name] += 1
+    return [found[place] for place in sorted(found)]
+
+
+def files(paths: Iterable[Path]) -> list[Path]:
+    """Return the sources in files and folders."""
+    found = {file for path in paths for file in ([path] if path.is_file() else path.rglob("*.py"))}
+    return sorted(found)
+
+
+def drawn(sources: Sequence[Path], count: int, seed: int) -> list[Mutant]:
+    """Return `count` changes at places drawn evenly, none of them twice."""
+    texts = {path: path.read_text(encoding="utf-8") for path in sources}
+    every = [(path, ways) for path, text in texts.items() for ways in places(text)]
+    draw, left = Draw(seed, 0), list(range(len(every)))
+    chosen = []
+    while left and len(chosen) < count:
+        path, ways = every[left.pop(int(draw.random() * len(left)))]
+        operator, occurrence = draw.among(ways)
+        chosen.append(mutant(path.as_posix(), texts[path], operator, occurrence))
+    return chosen
