@@ -19,7 +19,17 @@ from .reach import Test, fitting, kept, watched
 from .report import equivalent, told
 from .trial import apart, load_libraries, run_tests
 
-SOURCES = ("src/stiction/solver", "src/stiction/friction", "src/stiction/analysis/signals")
+SOURCES = (
+    "src/stiction/solver",
+    "src/stiction/friction",
+    "src/stiction/analysis/motion/cycles.py",
+    "src/stiction/analysis/motion/cycle_summary.py",
+    "src/stiction/analysis/motion/hesitations.py",
+    "src/stiction/analysis/signals/gap.py",
+    "src/stiction/analysis/signals/peak_refinement.py",
+    "src/stiction/analysis/signals/reversals.py",
+    "src/stiction/analysis/signals/turning_points.py",
+)
 TESTS = ("tests",)
 WHOLE = 4 * 3600.0  # s, for all tests together
 ROOM, TIMES = 15.0, 4.0  # s, and multiples of what the tests take: then it is endless
