@@ -1,7 +1,7 @@
 """``python -m benchmarks.mutation``: change one place at a time, and see whether a test fails.
 
 Goes on where it was stopped: what was found is kept in a folder, under the change and a digest of
-the sources. A sample depends on the seed and on the sources. Exit status 1 if more than a share of
+the file. A sample depends on the seed and on the sources. Exit status 1 if more than a share of
 the mutants survive that are not known to be equivalent.
 """
 
@@ -14,10 +14,13 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from .mutants import Mutant, digest, drawn, files, mutated
-from .reach import Test, fitting, kept, watched
+from .python import change
+from .reach import Test, fitting, watched
 from .report import equivalent, told
-from .trial import apart, load_libraries, run_tests
+from .session import Answer, apart, first_failure, with_tests
 
 SOURCES = (
     "src/stiction/solver",
@@ -30,9 +33,16 @@ SOURCES = (
     "src/stiction/analysis/signals/reversals.py",
     "src/stiction/analysis/signals/turning_points.py",
 )
-TESTS = ("tests",)
+TESTS = (
+    "tests/unit/solver",
+    "tests/unit/friction",
+    "tests/unit/drive",
+    "tests/unit/analysis/motion",
+    "tests/unit/analysis/signals",
+    "tests/integration/test_verification.py",
+)
 WHOLE = 4 * 3600.0  # s, for all tests together
-ROOM, TIMES = 15.0, 4.0  # s, and multiples of what the tests take: then it is endless
+ROOM, TIMES = 5.0, 4.0  # s, and multiples of what the tests take: then it is endless
 ALLOWED = 0.05  # of the mutants
 KILLED, SURVIVED, TIMEOUT, UNREACHED = "killed", "survived", "timeout", "unreached"
 
@@ -48,56 +58,58 @@ def main() -> int:
     parser.add_argument("--mutants", type=int, default=500, help="how many")
     parser.add_argument("--seed", type=int, default=1, help="of the sample")
     parser.add_argument("--results", type=Path, default=Path("mutation"), help="folder to keep")
-    parser.add_argument("--longest", type=float, default=3.0, help="CPU s that a test may take")
-    parser.add_argument("--most", type=float, default=60.0, help="CPU s of tests for one mutant")
+    parser.add_argument("--longest", type=float, default=2.0, help="CPU s that a test may take")
+    parser.add_argument("--most", type=float, default=30.0, help="CPU s of tests for one mutant")
     parser.add_argument("--again", action="store_true", help="try those that survived again")
     options = parser.parse_args()
     options.results.mkdir(parents=True, exist_ok=True)
-    load_libraries()
-    tests = reached(options)
-    without = {path for each in options.without for path in files([each])}
-    sources = [path for path in files(map(Path, options.sources)) if path not in without]
-    sample = drawn(sources, options.mutants, options.seed)
-    rows = list(tried(sample, tests, options))
+    rows: list[Row] = []
+    with_tests(options.tests, lambda items: rows.extend(tried(items, options)))
     left = told(rows, equivalent())
     return 0 if left <= ALLOWED * len(rows) else 1
 
 
-def reached(options: argparse.Namespace) -> list[Test]:
-    """Return the tests with the lines that they run, from the folder or by running them."""
-    path = options.results / "tests.json"
-    known = kept(path)
-    if known is None:
-        sources = [Path(each).as_posix() for each in options.sources]
-        found = apart(lambda: watched(sources, options.tests, options.longest), WHOLE).answer
-        if found is None:
-            raise SystemExit("the tests have not come to an end")
-        path.write_text(json.dumps(found))
-        known = kept(path) or []
-        for name in found["left_out"]:
-            print(f"left out, too long or of compiled code: {name}")
-    print(f"{len(known)} tests, {sum(each.seconds for each in known):.0f} s", flush=True)
-    return known
-
-
-def tried(
-    sample: Sequence[Mutant], tests: Sequence[Test], options: argparse.Namespace
-) -> Iterator[Row]:
+def tried(items: Sequence[pytest.Item], options: argparse.Namespace) -> Iterator[Row]:
     """Yield what came of each mutant, known from before or tried now."""
+    without = {path for each in options.without for path in files([each])}
+    sources = [path for path in files(map(Path, options.sources)) if path not in without]
+    sample = drawn(sources, options.mutants, options.seed)
     path = options.results / "mutants.jsonl"
     lines = path.read_text().splitlines() if path.exists() else []
     known = {tuple(row["mutant"]): row for row in map(json.loads, lines)}
+    tests: list[Test] | None = None
+    by_name = {item.nodeid: item for item in items}
     with path.open("a") as file:
         for number, mutant in enumerate(sample):
             row = known.get(mutant)
             if row is None or (options.again and row["outcome"] in (SURVIVED, UNREACHED)):
-                row = outcome(mutant, tests, options.most)
+                tests = tests or reached(items, options)
+                row = outcome(mutant, tests, by_name, options.most)
                 print(json.dumps(row), file=file, flush=True)
                 print(f"{number + 1}: {row['outcome']}", *mutant[:2], mutant.after, flush=True)
             yield row
 
 
-def outcome(mutant: Mutant, tests: Sequence[Test], most: float) -> Row:
+def reached(items: Sequence[pytest.Item], options: argparse.Namespace) -> list[Test]:
+    """Return the tests with the lines that they run, from the folder or by running them."""
+    path = options.results / "tests.json"
+    if not path.exists():
+        sources = [Path(each).as_posix() for each in options.sources]
+        found = apart(lambda: watched(items, sources, options.longest), WHOLE).answer
+        if found is None:
+            raise SystemExit("the tests have not come to an end")
+        path.write_text(json.dumps(found))
+        for name in found["left_out"]:
+            print(f"left out, as it takes long or is of compiled code: {name}")
+    names = {item.nodeid for item in items}
+    known = [Test(*row) for row in json.loads(path.read_text())["tests"] if row[0] in names]
+    print(f"{len(known)} tests, {sum(each.seconds for each in known):.0f} s", flush=True)
+    return known
+
+
+def outcome(
+    mutant: Mutant, tests: Sequence[Test], items: dict[str, pytest.Item], most: float
+) -> Row:
     """Try a mutant."""
     chosen, seconds = fitting(tests, mutant.path, mutant.line, most)
     row: Row = {"mutant": mutant, "tests": len(chosen), "by": ""}
@@ -107,16 +119,20 @@ def outcome(mutant: Mutant, tests: Sequence[Test], most: float) -> Row:
     text = path.read_text(encoding="utf-8")
     if digest(text) != mutant.made_from:
         raise SystemExit(f"{path} was changed meanwhile: begin again")
-    changed = path, mutated(text, mutant.operator, mutant.occurrence)
-    answer, stopped = apart(lambda: run_tests(chosen, changed), ROOM + TIMES * seconds)
+    changed = mutated(text, mutant.operator, mutant.occurrence)
+
+    def task() -> Answer:
+        try:
+            change(path, changed)
+        except Exception as error:
+            return {"failed": f"as it is imported: {error!r}"}
+        return {"failed": first_failure([items[name] for name in chosen])}
+
+    answer, stopped = apart(task, ROOM + TIMES * seconds)
     if stopped:
         return row | {"outcome": TIMEOUT}
-    if answer is None:
-        return row | {"outcome": KILLED, "by": "the process died"}
-    if answer["status"] not in (0, 1, 2):
-        raise SystemExit(f"pytest ended with status {answer['status']} for {mutant}")
-    survived = answer["status"] == 0
-    return row | {"outcome": SURVIVED if survived else KILLED, "by": answer["failed"]}
+    failed = "the process died" if answer is None else answer["failed"]
+    return row | {"outcome": KILLED if failed else SURVIVED, "by": failed}
 
 
 if __name__ == "__main__":

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import signal
-import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from .trial import QUIET, Answer
+import pytest
+from coverage import Coverage
+
+from .session import Answer, run
 
 
 class Test(NamedTuple):
@@ -34,58 +35,32 @@ def stop(*_: Any) -> None:
     raise TooSlow
 
 
-class Watch:
-    """A plugin of pytest that notes of each test how long it takes and which lines it runs."""
-
-    def __init__(self, sources: Sequence[str], longest: float) -> None:
-        """Take files and folders to watch, and how long a test may take (s)."""
-        from coverage import Coverage
-
-        self.coverage = Coverage(data_file=None, include=[f"{each}*" for each in sources])
-        self.longest = longest
-        self.passed: dict[str, float] = {}
-        self.failed: set[str] = set()
-
-    def pytest_runtest_protocol(self, item: Any) -> None:
-        """Begin a test."""
-        self.coverage.switch_context(item.nodeid)
-        self.began = time.process_time()
-        signal.setitimer(signal.ITIMER_VIRTUAL, self.longest)
-
-    def pytest_runtest_logfinish(self, nodeid: str) -> None:
-        """End a test."""
-        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
-        self.passed[nodeid] = time.process_time() - self.began
-
-    def pytest_runtest_logreport(self, report: Any) -> None:
-        """Look at how a test went."""
-        if not report.passed:
-            self.failed.add(report.nodeid)
-
-    def tests(self) -> Iterator[Test]:
-        """Yield the tests that have passed, with what they have run."""
-        data = self.coverage.get_data()
-        lines: dict[str, dict[str, list[int]]] = {}
-        for path in data.measured_files():
-            relative = Path(path).relative_to(Path.cwd()).as_posix()
-            for line, names in data.contexts_by_lineno(path).items():
-                for name in names:
-                    lines.setdefault(name, {}).setdefault(relative, []).append(line)
-        for name, seconds in self.passed.items():
-            if name not in self.failed:
-                yield Test(name, seconds, lines.get(name, {}))
-
-
-def watched(sources: Sequence[str], tests: Sequence[str], longest: float) -> Answer:
-    """Run tests, each for so many seconds at most; return those that pass."""
-    import pytest
-
+def watched(items: Sequence[pytest.Item], sources: Sequence[str], longest: float) -> Answer:
+    """Run tests, each for so many CPU seconds at most; return those that pass, and the others."""
     signal.signal(signal.SIGVTALRM, stop)
-    watch = Watch(sources, longest)
-    watch.coverage.start()
-    pytest.main([*QUIET, *tests], plugins=[watch])
-    watch.coverage.stop()
-    return {"tests": list(watch.tests()), "left_out": sorted(watch.failed)}
+    coverage = Coverage(data_file=None, include=[f"{each}*" for each in sources])
+    coverage.start()
+    passing, others = {}, []
+    coverage.switch_context(items[0].nodeid)
+    signal.setitimer(signal.ITIMER_VIRTUAL, longest)
+    names = [*(item.nodeid for item in items[1:]), ""]
+    for (item, passed, seconds), following in zip(run(items), names, strict=True):
+        if passed:
+            passing[item.nodeid] = seconds
+        else:
+            others.append(item.nodeid)
+        coverage.switch_context(following)
+        signal.setitimer(signal.ITIMER_VIRTUAL, longest if following else 0.0)
+    coverage.stop()
+    lines: dict[str, dict[str, list[int]]] = {}
+    data = coverage.get_data()
+    for path in data.measured_files():
+        relative = Path(path).relative_to(Path.cwd()).as_posix()
+        for line, contexts in data.contexts_by_lineno(path).items():
+            for name in contexts:
+                lines.setdefault(name, {}).setdefault(relative, []).append(line)
+    found = [Test(name, seconds, lines.get(name, {})) for name, seconds in passing.items()]
+    return {"tests": found, "left_out": others}
 
 
 def fitting(tests: Sequence[Test], path: str, line: int, most: float) -> tuple[list[str], float]:
@@ -102,15 +77,8 @@ def fitting(tests: Sequence[Test], path: str, line: int, most: float) -> tuple[l
             by_file.setdefault(each.file, []).append(each)
     chosen, total = [], 0.0
     for group in sorted(by_file.values(), key=lambda group: sum(each.seconds for each in group)):
-        for each in sorted(group, key=lambda each: path not in each.lines):
+        for each in group:
             if total + each.seconds <= most:
                 chosen.append(each.name)
                 total += each.seconds
     return chosen, total
-
-
-def kept(path: Path) -> list[Test] | None:
-    """Return what was seen before."""
-    if not path.exists():
-        return None
-    return [Test(*row) for row in json.loads(path.read_text())["tests"]]
