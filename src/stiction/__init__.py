@@ -68,10 +68,10 @@ if TYPE_CHECKING:
     from stiction.plotting.door import plot
     from stiction.reproduction.reproduce import paper
     from stiction.simulation import run, simulate
-    from stiction.study.axes import Grid, Random, Sobol, Values
     from stiction.study.execution.refine import refine
     from stiction.study.execution.sweep import sweep
-    from stiction.study.plan import Study
+    from stiction.study.plan.axes import Grid, Random, Sobol, Values
+    from stiction.study.plan.study import Study
     from stiction.study.store.store import open_study
     from stiction.study.view.mapping import Map, map
     from stiction.system.description import Description, Settings
@@ -98,7 +98,7 @@ _HOME = {
     "DriveProgram": "drive",
     "ExponentialWeakening": "friction",
     "Free": "drive",
-    "Grid": "study.axes",
+    "Grid": "study.plan.axes",
     "Harmonic": "drive",
     "Hold": "drive",
     "HyperbolicWeakening": "friction",
@@ -108,7 +108,7 @@ _HOME = {
     "Map": "study.view.mapping",
     "Modulation": "drive",
     "Ramp": "drive",
-    "Random": "study.axes",
+    "Random": "study.plan.axes",
     "RateStateAgeing": "friction",
     "RateStateAgeing2": "friction",
     "RateStateSlip": "friction",
@@ -119,16 +119,16 @@ _HOME = {
     "Reversal": "drive",
     "Settings": "system.description",
     "Slider": "system.slider",
-    "Sobol": "study.axes",
+    "Sobol": "study.plan.axes",
     "Stability": "linear_stability.examination",
     "Status": "errors",
     "Step": "drive",
     "StictionError": "errors",
     "Stribeck": "friction",
-    "Study": "study.plan",
+    "Study": "study.plan.study",
     "Table": "friction",
     "Trajectory": "trajectory",
-    "Values": "study.axes",
+    "Values": "study.plan.axes",
     "analyse": "analysis.report",
     "analyze": "analysis.report",
     "audit": "auditing.report",

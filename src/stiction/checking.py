@@ -12,7 +12,7 @@ from stiction.result.checksums import intact_description
 from stiction.result.file import read_tables
 from stiction.simulation import run
 from stiction.storage.isolation import apart
-from stiction.study.store.repair import damage_of, restore, stores_in
+from stiction.study.execution.repair import damage_of, restore, stores_in
 from stiction.study.view.view import broken_changes
 from stiction.system.description import Description
 from stiction.text.sections import Section, as_text

@@ -13,7 +13,7 @@ from stiction.analysis.slip import outcome
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import Law, name_of, parameters
 from stiction.laws import exchanged, read_laws
-from stiction.memory import shortage
+from stiction.machine import shortage
 from stiction.simulation import automatic_times, run
 from stiction.system.description import SAMPLE, Description, description_of
 from stiction.text.sections import Section, Table, as_html, as_text

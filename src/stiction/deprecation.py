@@ -105,3 +105,22 @@ def old_attributes(function: Callable[..., Any], renamed: Mapping[str, str]) -> 
     """
     for old, new in renamed.items():
         setattr(function, old, _Moved(f"stiction.{function.__name__}.{old}", new))
+
+
+def old_method(old: str, new: str) -> Callable[..., Any]:
+    """Return a method in whose place there is a function of the package now, which it warns of.
+
+    Parameters
+    ----------
+    old : str
+        The call as it was, for example ``"Study.run(store)"``.
+    new : str
+        The function's public name, for example ``"sweep"``; it is given the instance first.
+    """
+
+    def method(self: Any, *args: Any, **values: Any) -> Any:
+        warn_renamed(old, f"stiction.{new}")
+        return getattr(import_module("stiction"), new)(self, *args, **values)
+
+    method.__doc__ = f"Deprecated: `stiction.{new}`."
+    return method

@@ -27,7 +27,7 @@ from stiction.plotting.page.save import save, write
 from stiction.plotting.page.style import BLUE, PURPLE, new_figure, style
 from stiction.plotting.page.words import plain
 from stiction.plotting.run.overview import plot_run
-from stiction.plotting.run.time_series import cut_open, draw_line, envelope, prefixed
+from stiction.plotting.run.time_series import cut_open, draw_line, envelope
 from stiction.plotting.stability.damping import draw_damping_map
 from stiction.reproduction.creep import creep
 from stiction.reproduction.figure3 import figure3
@@ -35,6 +35,7 @@ from stiction.reproduction.figure4 import figure4
 from stiction.reproduction.figure5 import HALF, clear_of, figure5
 from stiction.reproduction.schematic import schematic
 from stiction.reproduction.zero_slip import zero_slip
+from stiction.text.quantity_text import prefixed
 
 
 def drawn(fig: Figure) -> Figure:

@@ -7,12 +7,13 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stiction.analysis.report import Analysis
 from stiction.storage.files import placeable, whole
 from stiction.storage.table_files import with_units, write_tables
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from stiction.analysis.report import Analysis
 
 FRICTIONS = ("break_away", "static", "kinetic")
 # of each of them, with its unit

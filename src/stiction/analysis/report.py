@@ -11,6 +11,7 @@ from stiction.analysis.creep.divergence import Divergence
 from stiction.analysis.creep.findings import find_creep, tried
 from stiction.analysis.creep.misalignment import Misalignment
 from stiction.analysis.energy import energy_budget
+from stiction.analysis.export import export
 from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.motion.cycle_summary import summary
 from stiction.analysis.motion.cycles import swings
@@ -23,6 +24,7 @@ from stiction.analysis.transverse_oscillation import (
     oscillation_by_phase,
     transverse_oscillation,
 )
+from stiction.analysis.words import sections
 from stiction.deprecation import warn_renamed
 from stiction.errors import ResultError
 from stiction.text.sections import Section, as_html, as_text
@@ -109,14 +111,10 @@ class Analysis(NamedTuple):
 
     def tables(self) -> list[Section]:
         """Return the report in sentences and tables, part by part."""
-        from stiction.analysis.words import sections
-
         return sections(self)
 
     def export(self, path: str | Path) -> list[Path]:
         """Write its tables for another program, see `stiction.analysis.export.export`."""
-        from stiction.analysis.export import export
-
         return export(self, path)
 
     def plot(self, axes: Any = None) -> Any:

@@ -18,7 +18,6 @@ from stiction.analysis.motion.regime import (
     STUCK,
     TRANSITIONAL,
 )
-from stiction.analysis.report import Analysis
 from stiction.analysis.signals.hum import of_mains
 from stiction.analysis.transverse_oscillation import hides
 from stiction.text.columns import Quantity, grid
@@ -28,6 +27,8 @@ from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from stiction.analysis.report import Analysis
 
 SHOWN = 8  # cycles in the terminal; files hold all
 COLUMNS = {

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from math import hypot
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from stiction.analysis.creep.curve import creep_curves, mean_creep
-from stiction.auditing.report import Audit
 from stiction.auditing.words import HARDLY, NAMES, VIBRATES
 from stiction.friction import has_state
 from stiction.linear_stability import boundary
@@ -19,6 +19,9 @@ from stiction.plotting.page.canvas import figure_of
 from stiction.plotting.stability.boundary import plot_boundary
 from stiction.reproduction.figure5 import figure5
 from stiction.text.units import in_words
+
+if TYPE_CHECKING:
+    from stiction.auditing.report import Audit
 
 
 def test(found: Audit) -> Figure | None:

@@ -5,18 +5,20 @@ from __future__ import annotations
 from base64 import b64encode
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from jinja2 import Environment, PackageLoader
 from matplotlib.figure import Figure
 
 import stiction
 from stiction.auditing import figures
-from stiction.auditing.report import Audit
 from stiction.auditing.words import sections
 from stiction.errors import ResultError
 from stiction.plotting.page.save import png
 from stiction.storage.files import placeable, whole
+
+if TYPE_CHECKING:
+    from stiction.auditing.report import Audit
 
 SUFFIXES = (".html", ".htm")
 

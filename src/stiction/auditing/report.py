@@ -17,6 +17,7 @@ from stiction.auditing.observation import (
     observe,
 )
 from stiction.auditing.prediction import Prediction, predict
+from stiction.auditing.words import sections
 from stiction.deprecation import old_attributes
 from stiction.linear_stability import Critical, Linearisation, critical, steady_sliding
 from stiction.system.description import Description
@@ -82,8 +83,6 @@ class Audit(NamedTuple):
 
     def tables(self) -> list[Section]:
         """Return the report in sentences and tables, part by part."""
-        from stiction.auditing.words import sections
-
         return sections(self)
 
     def plot(self, axes: Any = None) -> Any:

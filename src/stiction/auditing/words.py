@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import cos, degrees, isfinite, nan
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,11 +27,13 @@ from stiction.auditing.observation import (
     Observation,
 )
 from stiction.auditing.prediction import suppositions
-from stiction.auditing.report import Audit
 from stiction.friction import has_state
 from stiction.linear_stability.linear import STABLE, UNSTABLE
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words
+
+if TYPE_CHECKING:
+    from stiction.auditing.report import Audit
 
 VIBRATES = (HARMONIC, IRREGULAR)  # about steady sliding: nothing sticks or creeps
 HARDLY = 0.05  # of the time: what creeps or rests less than that hardly does

@@ -26,8 +26,9 @@ if TYPE_CHECKING:
     from stiction.plotting.run.comparison import plot_comparison
     from stiction.plotting.run.law import plot_law
     from stiction.plotting.run.overview import plot_run
-    from stiction.plotting.stability.boundary import plot_boundary, plot_stability
+    from stiction.plotting.stability.boundary import plot_boundary
     from stiction.plotting.stability.damping import plot_damping
+    from stiction.plotting.stability.examination import plot_stability
     from stiction.plotting.stability.modes import plot_modes
     from stiction.plotting.stability.onset import plot_onset
     from stiction.study.view.mapping import plot_map
@@ -49,7 +50,7 @@ _HOME = {
     "plot_run": "plotting.run.overview",
     "plot_slider": "plotting.apparatus.schematic",
     "plot_spectrogram": "plotting.analysis.spectrogram",
-    "plot_stability": "plotting.stability.boundary",
+    "plot_stability": "plotting.stability.examination",
     "plot_trials": "plotting.analysis.trials",
 }
 

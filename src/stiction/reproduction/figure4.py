@@ -12,7 +12,8 @@ from stiction.analysis.creep.first_slip import first_slip_time
 from stiction.analysis.signals.spectrum import rate_spectrogram
 from stiction.plotting.analysis.spectrogram import draw_spectrogram, mark_frequency
 from stiction.plotting.page.style import COLUMN, RED, new_figure, panel_letter, style
-from stiction.plotting.run.time_series import draw_line, draw_rate, prefixed
+from stiction.plotting.run.time_series import draw_line, draw_rate
+from stiction.text.quantity_text import prefixed
 from stiction.trajectory import Trajectory
 
 

@@ -17,7 +17,7 @@ from stiction.plotting.page.style import (
     new_figure,
     style,
 )
-from stiction.plotting.run.time_series import prefixed
+from stiction.text.quantity_text import prefixed
 from stiction.trajectory import Trajectory
 
 

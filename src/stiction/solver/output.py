@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stiction.errors import DescriptionError, Fault
-from stiction.memory import shortage
+from stiction.machine import shortage
 
 STICK = 80.0  # bytes of memory that a stick interval takes, in all tables and on the way there
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from stiction.errors import ResultError, StictionError, one_line
-from stiction.memory import shortage
+from stiction.machine import shortage
 
 UNREADABLE = "not a NetCDF file that can be read"
 

@@ -13,8 +13,8 @@ import numpy as np
 
 from stiction.errors import DescriptionError, Fault
 from stiction.presets import nakano_popov_2020
-from stiction.study.axes import Axis, Floats, Grid, Values
-from stiction.study.plan import Study
+from stiction.study.plan.axes import Axis, Floats, Grid, Values
+from stiction.study.plan.study import Study
 from stiction.system.description import Description, Settings
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider

@@ -13,7 +13,7 @@ from pydantic import Field, StrictBool, model_validator
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import law_table, read_law
 from stiction.friction.user.loading import Find, held, is_own, named
-from stiction.memory import shortage
+from stiction.machine import shortage
 from stiction.system.initial import Initial
 from stiction.system.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider
 from stiction.system.writing import described, slider_tables

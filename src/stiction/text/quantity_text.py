@@ -5,6 +5,9 @@ from __future__ import annotations
 from decimal import Decimal
 from math import floor, log10, pi, radians
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 SI = dict(zip(range(-10, 11), [*"qryzafpnµm", "", *"kMGTPEZYRQ"], strict=True))  # of thousands
 BARE = ("", "1", "%", "1/s", "deg")  # units that take no prefix
 DIGITS = 4  # of a number in words
@@ -85,3 +88,12 @@ def _plain(value: Decimal) -> str:
 
 def _number(text: str) -> float:
     return float(text.split()[0])
+
+
+def prefixed(values: ArrayLike) -> tuple[float, str]:
+    """Return factor and prefix (n, µ, m, none, k) of a unit in which values are 0.2 to 200."""
+    largest = np.fmax.reduce(np.abs(np.asarray(values, dtype=np.float64)), initial=0.0)
+    if not 0 < largest < np.inf:
+        return 1.0, ""
+    power = min(max(thousands(5.0 * largest, "m"), -8), 2)
+    return 1000.0**-power, SI[power]

@@ -30,7 +30,7 @@ import os, resource, sys
 import stiction as st
 from stiction.study.execution.cluster import Scheduler
 from stiction.study.execution.engines import Threads
-from stiction.study.store.blocks import laid_out
+from stiction.study.plan.layout import laid_out
 import distributed, xarray, zarr
 
 study = st.Study.from_json(sys.argv[1])

@@ -9,8 +9,8 @@ import xarray as xr
 import stiction as st
 from stiction.study.execution.cluster import Processes
 from stiction.study.execution.engines import Threads
-from stiction.study.parameters import unit, varied
-from stiction.study.store.blocks import Layout, laid_out, places
+from stiction.study.plan.layout import Layout, laid_out, places
+from stiction.study.plan.parameters import unit, varied
 from stiction.study.store.creation import create
 from stiction.study.store.seal import seal
 

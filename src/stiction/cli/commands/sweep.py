@@ -13,7 +13,7 @@ from stiction.cli.terminal import say
 
 if TYPE_CHECKING:
     from stiction.study.execution.engines import Engine
-    from stiction.study.plan import Study
+    from stiction.study.plan.study import Study
 
 
 def sweep(
@@ -118,7 +118,7 @@ def described(
     """Return the study that is asked for, with other values of some parameters."""
     from stiction.errors import StictionError
     from stiction.study import presets
-    from stiction.study.plan import Study
+    from stiction.study.plan.study import Study
     from stiction.text.paths import with_changes
 
     if (config is None) == (preset is None):

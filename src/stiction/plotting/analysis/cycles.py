@@ -14,7 +14,8 @@ from stiction.analysis.motion.regime import regime_of
 from stiction.analysis.record import Record, recorded
 from stiction.plotting.page.canvas import canvas, fixed, listed
 from stiction.plotting.page.style import BLUE, GREY, PAGE, PALE, RED, style
-from stiction.plotting.run.time_series import draw_line, name_time, prefixed
+from stiction.plotting.run.time_series import draw_line, name_time
+from stiction.text.quantity_text import prefixed
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:

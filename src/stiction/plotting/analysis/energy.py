@@ -24,7 +24,7 @@ from stiction.plotting.page.style import (
     panel_letter,
     style,
 )
-from stiction.plotting.run.time_series import prefixed
+from stiction.text.quantity_text import prefixed
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -14,7 +14,8 @@ from stiction.analysis.signals.reversals import standing_out
 from stiction.analysis.signals.turning_points import FINE, as_counts
 from stiction.plotting.page.canvas import canvas, fixed, listed
 from stiction.plotting.page.style import BLUE, GREY, PAGE, style
-from stiction.plotting.run.time_series import draw_line, name_time, prefixed
+from stiction.plotting.run.time_series import draw_line, name_time
+from stiction.text.quantity_text import prefixed
 
 PANEL = 1.35  # height of a row, in
 ACROSS = 2

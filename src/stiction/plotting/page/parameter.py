@@ -10,7 +10,7 @@ from matplotlib.ticker import FuncFormatter
 from numpy.typing import ArrayLike, NDArray
 
 from stiction.plotting.page.words import symbol
-from stiction.plotting.run.time_series import prefixed
+from stiction.text.quantity_text import prefixed
 
 SYMBOLS = {"phi": r"$\varphi$", "drive.velocity": "$V$", "normal_load": "$W$", "mass": "$m$"}
 PLAIN = FuncFormatter(lambda value, _: f"{value:g}")  # 0.1, 1, 10: units are chosen to suit

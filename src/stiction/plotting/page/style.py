@@ -21,6 +21,7 @@ PURPLE = "#CC79A7"
 GREY = "#6E6E6E"
 PALE = "#E9E9E9"
 FLOOR = "#F5F4F0"
+UNSTABLE = "#F9E3C5"  # where steady sliding is
 
 COLUMN = 3.375  # width of one column of Phys. Rev. E, in
 PAGE = 7.0  # width of both, in

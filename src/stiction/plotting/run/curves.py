@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 
 from stiction.analysis.slip import Slip
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY
-from stiction.plotting.run.time_series import averaged, envelope, prefixed
+from stiction.plotting.run.time_series import averaged, envelope
+from stiction.text.quantity_text import prefixed
 from stiction.trajectory import Trajectory
 
 COLOURS = (BLACK, RED, BLUE, GREEN, ORANGE, SKY, PURPLE)

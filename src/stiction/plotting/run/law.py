@@ -10,8 +10,8 @@ from stiction.friction import has_state
 from stiction.friction.law import static_coefficient
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.style import COLUMN, PURPLE, style
-from stiction.plotting.run.time_series import prefixed
 from stiction.system.slider import Slider
+from stiction.text.quantity_text import prefixed
 
 
 def plot_law(slider: Slider, fastest: float | None = None, ax: Axes | None = None) -> Axes:

@@ -23,6 +23,7 @@ from stiction.plotting.page.words import (
 from stiction.plotting.run import time_series
 from stiction.plotting.run.law import draw_law
 from stiction.plotting.run.time_series import Floats
+from stiction.text.quantity_text import prefixed
 from stiction.trajectory import Trajectory
 
 LINE, GAP = 10.5, 3.0  # of what is written, pt
@@ -144,7 +145,7 @@ def _series(run: Trajectory) -> dict[str, Callable[[Axes, Trajectory], Any]]:
 def _forces(ax: Axes, run: Trajectory) -> None:
     """Draw both spring forces."""
     forces = [run.data[f"spring_{axis}"].values for axis in "xy"]
-    factor, prefix = time_series.prefixed(np.concatenate(forces))
+    factor, prefix = prefixed(np.concatenate(forces))
     times = run.data["time"].values
     for axis, color, force in zip("xy", (RED, ORANGE), forces, strict=True):
         line = time_series.draw_line(ax, times, force * factor, color)

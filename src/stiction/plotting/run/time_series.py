@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from stiction.analysis.slip import Slip, averaged_slip
 from stiction.analysis.stuck import stuck_until
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED
-from stiction.text.quantity_text import SI, thousands
+from stiction.text.quantity_text import prefixed
 from stiction.trajectory import Trajectory
 
 Floats = NDArray[np.float64]
@@ -133,15 +133,6 @@ def imposed(run: Trajectory) -> list[tuple[str, Floats, str, str]]:
         for name, each, symbol in found
         if np.ptp(each.values) > 0
     ]
-
-
-def prefixed(values: ArrayLike) -> tuple[float, str]:
-    """Return factor and prefix (n, µ, m, none, k) of a unit in which values are 0.2 to 200."""
-    largest = np.fmax.reduce(np.abs(np.asarray(values, dtype=np.float64)), initial=0.0)
-    if not 0 < largest < np.inf:
-        return 1.0, ""
-    power = min(max(thousands(5.0 * largest, "m"), -8), 2)
-    return 1000.0**-power, SI[power]
 
 
 def name_time(ax: Axes) -> None:

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike, NDArray
 
-from stiction.linear_stability import Stability
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.parameter import PLAIN, Scale, scale_of
-from stiction.plotting.page.style import BLACK, BLUE, COLUMN, style
+from stiction.plotting.page.style import BLACK, BLUE, COLUMN, UNSTABLE, style
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -19,24 +18,6 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 PIXELS = 161  # each way, of the signed distance to the boundary
-UNSTABLE = "#F9E3C5"
-
-
-def plot_stability(found: Stability, axes: Any = None) -> Any:
-    """Draw the modes over one parameter, or the boundary in the plane of two.
-
-    Parameters
-    ----------
-    found : Stability
-        From `stiction.stability`.
-    axes : Axes, optional
-        As of `plot_modes` (two of them) or `plot_boundary` (one).
-    """
-    if len(found.criticals) == 2:
-        return plot_boundary(found.boundary, ax=axes)
-    from stiction.plotting.stability.modes import plot_modes
-
-    return plot_modes(found.modes, found.criticals[0], axes)
 
 
 def plot_boundary(

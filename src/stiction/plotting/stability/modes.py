@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from stiction.linear_stability import Critical
 from stiction.plotting.page.canvas import canvas, fixed, listed
 from stiction.plotting.page.parameter import PLAIN, Scale, scale_of
-from stiction.plotting.page.style import BLUE, COLUMN, GREY, ORANGE, style
-from stiction.plotting.stability.boundary import UNSTABLE
+from stiction.plotting.page.style import BLUE, COLUMN, GREY, ORANGE, UNSTABLE, style
 
 if TYPE_CHECKING:
     import xarray as xr

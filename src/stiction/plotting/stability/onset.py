@@ -13,7 +13,7 @@ from stiction.analysis.onset import Onset
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.parameter import PLAIN, scale_of
 from stiction.plotting.page.style import BLUE, COLUMN, GREY, PALE, RED, style
-from stiction.plotting.run.time_series import prefixed
+from stiction.text.quantity_text import prefixed
 
 LOOKS: dict[str, dict[str, Any]] = {
     "up": {"color": BLUE, "marker": "^", "markersize": 4.0},

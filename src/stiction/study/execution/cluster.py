@@ -12,7 +12,8 @@ from typing import Any, NamedTuple, TypeVar
 from uuid import uuid4
 
 from stiction.errors import StictionError
-from stiction.study.execution.engines import AHEAD, Work
+from stiction.study.execution.engines import Work
+from stiction.study.plan.layout import AHEAD
 
 T = TypeVar("T")
 AGAIN = "what is written is whole, and the same command goes on"

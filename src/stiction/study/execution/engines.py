@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import os
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from itertools import islice
 from typing import NamedTuple, Protocol, TypeVar
 
-T = TypeVar("T")
-AHEAD = 2  # tasks handed out for each worker: one in hand, one waiting
-PATIENCE = 0.2  # s; on some systems a thread that waits without end cannot be interrupted
+from stiction.machine import CORES
+from stiction.study.plan.layout import AHEAD
 
-# of those that this process may use: a batch system lends some of the machine's
-CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+T = TypeVar("T")
+PATIENCE = 0.2  # s; on some systems a thread that waits without end cannot be interrupted
 
 # does a task; the second argument tells whether it is no longer wanted
 Work = Callable[[int, Callable[[], bool]], T]

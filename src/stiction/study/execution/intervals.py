@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from stiction.study.axes import Floats
-from stiction.study.plan import Study
+from stiction.study.plan.axes import Floats
+from stiction.study.plan.study import Study
 from stiction.study.view.view import kinds
 
 if TYPE_CHECKING:

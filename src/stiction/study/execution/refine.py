@@ -17,16 +17,16 @@ from pydantic_core import PydanticCustomError
 from stiction.deprecation import by_new_names
 from stiction.errors import DescriptionError, Fault
 from stiction.storage.files import place, workshop
-from stiction.study.axes import Floats, Values
 from stiction.study.execution.engines import Engine
 from stiction.study.execution.intervals import Intervals, changes, half_way, halved, widest
 from stiction.study.execution.sweep import Tally, sweep
-from stiction.study.parameters import number
-from stiction.study.plan import Study
+from stiction.study.plan.axes import Floats, Values
+from stiction.study.plan.parameters import number
+from stiction.study.plan.study import Study
+from stiction.study.store.kept import UNKNOWN, flagged
 from stiction.study.store.seal import seal
 from stiction.study.store.store import open_study, told
 from stiction.study.variables.fast_regime import FORMERLY, KINDS
-from stiction.study.variables.registry import UNKNOWN, flagged
 from stiction.study.view.view import CHANGES, REFINED, REGIME, kinds
 from stiction.text.paths import canonical_path
 from stiction.text.validation import unknown

@@ -11,8 +11,8 @@ from typing import NamedTuple
 from stiction.storage.files import held
 from stiction.study.execution.engines import Engine, Threads
 from stiction.study.execution.task import done
-from stiction.study.plan import Study
-from stiction.study.store.blocks import runs_of
+from stiction.study.plan.layout import runs_of
+from stiction.study.plan.study import Study
 from stiction.study.store.creation import create
 from stiction.study.store.store import Store, opened
 from stiction.study.view.summary import Summary, summary

@@ -8,11 +8,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.errors import STATUSES, DescriptionError
-from stiction.study.plan import Study
-from stiction.study.store.blocks import Index, places, runs_of, size_of
+from stiction.study.plan.layout import Index, places, runs_of, size_of
+from stiction.study.plan.study import Study
+from stiction.study.store.kept import Kept, kept
 from stiction.study.store.store import COMPLETED, ERROR, REFUSED, Block, Store
 from stiction.study.variables.observation import observe
-from stiction.study.variables.registry import Kept, kept
 
 
 class Unwanted(Exception):

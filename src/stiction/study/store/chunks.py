@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 from zarr.storage import LocalStore, WrapperStore
 
 from stiction.storage.checksums import without_checksum
-from stiction.study.store.seal import ROOT
-from stiction.study.store.store import damage
+from stiction.study.store.seal import ROOT, damage
 
 if TYPE_CHECKING:
     from zarr.abc.store import ByteRequest

@@ -10,10 +10,10 @@ import numpy as np
 
 from stiction.errors import ResultError
 from stiction.storage.files import place, workshop
-from stiction.study.plan import Study
+from stiction.study.plan.study import Study
+from stiction.study.store.kept import TIME, flagged, kept, trace_times
 from stiction.study.store.seal import seal
 from stiction.study.store.store import CHECKED, ENDS, PENDING, Store, opened, told, version
-from stiction.study.variables.registry import TIME, flagged, kept, trace_times
 
 if TYPE_CHECKING:
     import zarr

@@ -7,12 +7,18 @@ how chunks are to be read have none in zarr.
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from stiction.errors import ResultError
 from stiction.storage import checksums
 
 ROOT, SEAL, DESCRIPTION = "zarr.json", "checksums", "description"
+ANEW = (
+    "its description is damaged, too, so nothing can be computed again: do the study anew, in "
+    "another store"
+)
 
 
 def seal(folder: Path) -> None:
@@ -38,6 +44,14 @@ def broken(folder: Path) -> list[str]:
     files = {name: folder / name for name in names}
     parts = {name: each.read_bytes() for name, each in files.items() if each.is_file()}
     return checksums.broken(sealed, parts | own)
+
+
+def damage(path: str | Path, files: Sequence[object]) -> ResultError:
+    """Return what is said of a store that is not whole."""
+    names = ", ".join(map(str, files[:3])) + (f" and {len(files) - 3} more" * (len(files) > 3))
+    again = f"compute it again with: stiction check {path} --repair"
+    lost = {ROOT, DESCRIPTION} <= {*map(str, files)}
+    return ResultError(f"{path}: is damaged: {names}; {ANEW if lost else again}")
 
 
 def _own(root: Any) -> dict[str, bytes]:

@@ -23,11 +23,11 @@ from stiction.errors import ResultError
 from stiction.storage.checksums import LENGTH, with_checksum, without_checksum
 from stiction.storage.files import place, workshop
 from stiction.storage.foreign import opening, refuse_links, refuse_size
-from stiction.study.plan import Study
+from stiction.study.plan.layout import MANY_TASKS, Index, Layout, Region
+from stiction.study.plan.study import Study
 from stiction.study.store import seal
-from stiction.study.store.blocks import MANY_TASKS, Index, Layout, Region
+from stiction.study.store.kept import Kept, names_kept
 from stiction.study.variables.measures import FORMERLY
-from stiction.study.variables.registry import Kept, names_kept
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,10 +41,6 @@ MOST_TASKS = 256 * MANY_TASKS  # each is looked at: what a store says of itself 
 ENDS = (*(status.name.lower() for status in errors.Status), "refused", "error")
 COMPLETED, REFUSED, ERROR = 0, ENDS.index("refused"), ENDS.index("error")
 STATUS, MESSAGE = "status", "message"
-ANEW = (
-    "its description is damaged, too, so nothing can be computed again: do the study anew, in "
-    "another store"
-)
 
 
 class Block(NamedTuple):
@@ -245,20 +241,12 @@ def store_at(path: str | Path, mode: Literal["r", "r+"]) -> Store:
         layout = Layout(tuple(status.metadata.dimension_names), status.shape, status.chunks)
         arrays: dict[str, Any] = {name: group[name] for name in (*names_kept(study), STATUS)}
     except (KeyError, ValueError, TypeError, AttributeError) as error:
-        raise damage(path, lost or [f"it lacks {error}"]) from None
+        raise seal.damage(path, lost or [f"it lacks {error}"]) from None
     if lost:
-        raise damage(path, lost)
+        raise seal.damage(path, lost)
     if layout.tasks > MOST_TASKS:
         raise ResultError(f"{path}: is damaged: no study has {layout.tasks:,} blocks of runs")
     return Store(Path(path), group, layout, {name: each.chunks for name, each in arrays.items()})
-
-
-def damage(path: str | Path, files: Sequence[object]) -> ResultError:
-    """Return what is said of a store that is not whole."""
-    names = ", ".join(map(str, files[:3])) + (f" and {len(files) - 3} more" * (len(files) > 3))
-    again = f"compute it again with: stiction check {path} --repair"
-    lost = {seal.ROOT, seal.DESCRIPTION} <= {*map(str, files)}
-    return ResultError(f"{path}: is damaged: {names}; {ANEW if lost else again}")
 
 
 def group_at(path: str | Path, mode: Literal["r", "r+"]) -> zarr.Group:
@@ -275,7 +263,7 @@ def group_at(path: str | Path, mode: Literal["r", "r+"]) -> zarr.Group:
         raise ResultError(f"{path}: no such store; write one with 'stiction sweep'")
     refuse_links(path)
     was = (Path(path) / STATUS / seal.ROOT).is_file()
-    what = f"is damaged: {seal.ROOT}; {ANEW}" if was else "is not the store of a study"
+    what = f"is damaged: {seal.ROOT}; {seal.ANEW}" if was else "is not the store of a study"
     with opening(path, what):  # of zarr's format 2 pickles are a part
         group = zarr.open_group(Path(path), mode=mode, zarr_format=3, use_consolidated=False)
         known = group.attrs.get("format")
@@ -310,7 +298,7 @@ def open_study(path: str | Path) -> xr.Dataset:
     layout = store.layout
     lost = [file for task in range(layout.tasks) for file in store.damaged(layout.region(task))]
     if lost:
-        raise damage(path, [file.relative_to(path) for file in lost])
+        raise seal.damage(path, [file.relative_to(path) for file in lost])
     files: Any = WholeChunks(LocalStore(path, read_only=True)) if store.checked else path
     with opening(path, "is damaged"):
         data: xr.Dataset = xr.open_zarr(files, zarr_format=3)

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from stiction.study.axes import Floats
+import numpy as np
+from numpy.typing import NDArray
+
 from stiction.study.variables.observation import Observed
 
 
@@ -14,7 +16,7 @@ class Trace(NamedTuple):
 
     unit: str
     long_name: str
-    of: Callable[[Observed], Floats]
+    of: Callable[[Observed], NDArray[np.float64]]
 
 
 TRACES: dict[str, Trace] = {

@@ -12,9 +12,9 @@ from stiction import linear_stability as stability
 from stiction import theory as closed_forms
 from stiction.drive import ConstantVelocity
 from stiction.errors import StictionError
-from stiction.study.axes import Floats
-from stiction.study.parameters import varied
-from stiction.study.plan import Study
+from stiction.study.plan.axes import Floats
+from stiction.study.plan.parameters import varied
+from stiction.study.plan.study import Study
 from stiction.system.slider import Slider
 
 FINE = 60  # points each way, at least as many as there are runs

@@ -23,7 +23,7 @@ from stiction.plotting.page.canvas import canvas, fixed, listed, panel
 from stiction.plotting.page.parameter import Scale, in_unit, parameter_symbol
 from stiction.plotting.page.style import COLUMN, PAGE, style
 from stiction.plotting.stability.damping import draw_damping_map
-from stiction.study.store.blocks import Index
+from stiction.study.plan.layout import Index
 from stiction.study.view.boundaries import Plane, damping_number, plane
 from stiction.study.view.view import REGIME, View, chosen, kinds, label, viewed
 

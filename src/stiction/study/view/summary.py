@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.study.plan import Study
+from stiction.study.plan.study import Study
 from stiction.study.store.store import COMPLETED, ENDS, PENDING, Store
 from stiction.text.sections import Section, as_text
 

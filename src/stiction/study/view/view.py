@@ -12,13 +12,13 @@ from pydantic_core import PydanticCustomError
 from stiction.deprecation import by_new_names
 from stiction.errors import DescriptionError, Fault, ResultError
 from stiction.storage.foreign import opening, refuse_size
-from stiction.study.parameters import number
-from stiction.study.plan import Study
+from stiction.study.plan.parameters import number
+from stiction.study.plan.study import Study
 from stiction.study.store import seal
+from stiction.study.store.kept import kept
 from stiction.study.store.store import CHECKED, group_at, open_study
 from stiction.study.variables.fast_regime import KINDS
 from stiction.study.variables.measures import FORMERLY
-from stiction.study.variables.registry import kept
 from stiction.text.paths import canonical_path
 from stiction.text.validation import unknown
 

@@ -6,10 +6,9 @@ from collections.abc import Iterator, Mapping
 from math import prod
 
 from stiction.errors import Fault
-from stiction.memory import shortage
-from stiction.study.axes import Axis, Sobol
-from stiction.study.execution.engines import AHEAD, CORES
-from stiction.study.store.blocks import Layout
+from stiction.machine import CORES, shortage
+from stiction.study.plan.axes import Axis, Sobol
+from stiction.study.plan.layout import AHEAD, Layout
 
 NUMBER = 8  # bytes
 COPIES = 6  # of an axis' values while they are made

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.study.axes import Floats
-from stiction.study.plan import Study
+from stiction.study.plan.axes import Floats
+from stiction.study.plan.study import Study
 from stiction.study.variables.measures import MEASURES
 from stiction.study.variables.observation import Observed
 from stiction.study.variables.traces import TRACES

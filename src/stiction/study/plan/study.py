@@ -7,19 +7,19 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, lru_cache
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Self
+from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
-from stiction.deprecation import warn_renamed
+from stiction.deprecation import old_method
 from stiction.errors import DescriptionError, Fault
 from stiction.friction.user.loading import Find, held, named
-from stiction.study.axis_table import axis_table
-from stiction.study.parameters import varied
-from stiction.study.reading import axes_of, is_description, measures_of, traces_of
-from stiction.study.store.blocks import Index, Layout, laid_out
-from stiction.study.store.coordinates import Coordinate, coordinate_faults, coordinates, zip_faults
-from stiction.study.store.memory import axis_faults, run_faults
+from stiction.study.plan.axis_table import axis_table
+from stiction.study.plan.coordinates import Coordinate, coordinate_faults, coordinates, zip_faults
+from stiction.study.plan.layout import Index, Layout, laid_out
+from stiction.study.plan.memory import axis_faults, run_faults
+from stiction.study.plan.parameters import varied
+from stiction.study.plan.reading import axes_of, is_description, measures_of, traces_of
 from stiction.study.variables.measures import DEFAULT
 from stiction.study.variables.observation import seconds_of
 from stiction.system.description import Description
@@ -27,13 +27,6 @@ from stiction.system.writing import parameter_table, slider_tables
 from stiction.text.sections import Section, Table, as_html
 from stiction.text.toml import folder_of, read_json, read_toml
 from stiction.text.validation import Described, faulty
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from stiction.study.execution.engines import Engine
-    from stiction.study.execution.sweep import Tally
-    from stiction.study.view.summary import Summary
 
 
 class Study(Described):
@@ -45,7 +38,7 @@ class Study(Described):
         What each run has in common.
     axes : mapping of str to axis
         For the path of a parameter (``phi``, ``drive.velocity``, ``friction.mu_0``, ``k_x, k_y``
-        for two that share a value; see `stiction.study.parameters`) a `Grid`, `Values`,
+        for two that share a value; see `stiction.study.plan.parameters`) a `Grid`, `Values`,
         `Random` or `Sobol`, or a table of the same.
     measures : sequence of str, optional
         What to keep of each run, see `stiction.study.variables.measures.MEASURES`.
@@ -156,36 +149,8 @@ class Study(Described):
             ]
         )
 
-    def run(
-        self,
-        path: str | Path,
-        *,
-        engine: Engine | None = None,
-        progress: Callable[[Tally], None] | None = None,
-    ) -> Summary:
-        """Deprecated: `stiction.sweep`."""
-        from stiction.study.execution.sweep import sweep
-
-        warn_renamed("Study.run(store)", "stiction.sweep(study, store)")
-
-        return sweep(self, path, engine=engine, progress=progress)
-
-    def refine(
-        self,
-        path: str | Path,
-        along: str,
-        to: float | str,
-        *,
-        apart: Sequence[str] | None = None,
-        engine: Engine | None = None,
-        progress: Callable[[Tally], None] | None = None,
-    ) -> xr.Dataset:
-        """Deprecated: `stiction.refine`."""
-        from stiction.study.execution.refine import refine
-
-        warn_renamed("Study.refine(store)", "stiction.refine(study, store)")
-
-        return refine(self, path, along, to, apart=apart, engine=engine, progress=progress)
+    run: ClassVar[Callable[..., Any]] = old_method("Study.run(store)", "sweep")
+    refine: ClassVar[Callable[..., Any]] = old_method("Study.refine(store)", "refine")
 
     @classmethod
     def from_toml(

@@ -9,10 +9,10 @@ from typing import NamedTuple
 from stiction.errors import ResultError
 from stiction.storage.files import place, workshop
 from stiction.study.execution.sweep import do
-from stiction.study.plan import Study
+from stiction.study.plan.study import Study
 from stiction.study.store import seal
 from stiction.study.store.creation import lay_out
-from stiction.study.store.store import CHECKED, Store, damage, group_at, store_at, version
+from stiction.study.store.store import CHECKED, Store, group_at, store_at, version
 from stiction.study.view.view import REFINED
 
 
@@ -50,7 +50,7 @@ def damage_of(path: Path) -> Damage:
     group = group_at(path, "r")
     head = seal.broken(path) if group.attrs["format"] == CHECKED else []
     if {seal.ROOT, seal.DESCRIPTION} <= {*head}:
-        raise damage(path, head)
+        raise seal.damage(path, head)
     if head:
         return Damage(head, {}, 0)
     store = store_at(path, "r")

@@ -1,4 +1,7 @@
-"""How much memory this machine lends: what takes more is refused before it is asked for."""
+"""What this machine lends: how many cores, and how much memory.
+
+What takes more memory is refused before it is asked for.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +14,8 @@ try:
 except ImportError:  # Windows
     resource = None  # type: ignore[assignment]
 
+# of those that this process may use: a batch system lends some of the machine's
+CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 SHARE = 0.5  # of the memory, to one thing: the rest is for copies of it, and for others
 UNKNOWN = 8e9  # bytes, where the machine does not say
 LIMITS = (  # of a container or a batch system

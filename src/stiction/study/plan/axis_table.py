@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any, cast
 
 from stiction.errors import DescriptionError, Fault
-from stiction.study.axes import Axis, Grid, Random, Sobol, Values
+from stiction.study.plan.axes import Axis, Grid, Random, Sobol, Values
 from stiction.text.validation import unknown
 
 SAMPLINGS: dict[str, type[Any]] = {"grid": Grid, "random": Random, "sobol": Sobol}

@@ -13,6 +13,7 @@ Region = tuple[slice, ...]
 # A block is one task, written at once. It takes about a second: then handing it out and writing
 # it costs a hundredth of its runs, and a kill loses no more.
 SECOND = 1.0
+AHEAD = 2  # tasks handed out for each worker: one in hand, one waiting
 FEW_TASKS, MANY_TASKS = 32, 4096  # wanted at least, for many workers, and kept to at most
 
 

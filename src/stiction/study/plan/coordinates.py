@@ -10,8 +10,8 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from stiction.errors import DescriptionError, Fault
-from stiction.study.axes import Axis, Floats, Range
-from stiction.study.parameters import number, unit
+from stiction.study.plan.axes import Axis, Floats, Range
+from stiction.study.plan.parameters import number, unit
 from stiction.study.variables.measures import MEASURES
 from stiction.system.description import Description
 

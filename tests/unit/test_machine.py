@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction import memory
+from stiction import machine
 from stiction.solver.output import Output
 
 BASE = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="5 ms"))
@@ -13,7 +13,7 @@ BASE = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(
 @pytest.fixture(autouse=True)
 def small(monkeypatch):
     """Any machine is one that lends 1 GB."""
-    monkeypatch.setattr(memory, "lent", lambda: 1e9)
+    monkeypatch.setattr(machine, "lent", lambda: 1e9)
 
 
 def told(make) -> str:
@@ -68,7 +68,7 @@ def test_sticks_are_refused_before_there_is_room_for_them():
 
 
 def test_a_multiscale_run_ends_before_it_fills_the_memory(monkeypatch):
-    monkeypatch.setattr(memory, "lent", lambda: 1e6)  # room for some thousand sticks
+    monkeypatch.setattr(machine, "lent", lambda: 1e6)  # room for some thousand sticks
     said = told(lambda: st.simulate(BASE.slider, 1e9, multiscale=True))
     assert said.startswith("run.duration: more than 8192 sticks")
 
@@ -99,8 +99,8 @@ def test_what_the_machine_lends_is_half_of_the_least_it_says(monkeypatch, tmp_pa
     monkeypatch.undo()
     (tmp_path / "max").write_text("max\n")
     (tmp_path / "some").write_text("2000000000\n")
-    monkeypatch.setattr(memory, "_physical", lambda: 3e9)
-    monkeypatch.setattr(memory, "_of_process", lambda: float("inf"))
+    monkeypatch.setattr(machine, "_physical", lambda: 3e9)
+    monkeypatch.setattr(machine, "_of_process", lambda: float("inf"))
     for file, lent in (("max", 1.5e9), ("none", 1.5e9), ("some", 1e9)):
-        monkeypatch.setattr(memory, "LIMITS", (tmp_path / file,))
-        assert memory.lent.__wrapped__() == lent
+        monkeypatch.setattr(machine, "LIMITS", (tmp_path / file,))
+        assert machine.lent.__wrapped__() == lent
