@@ -18,9 +18,8 @@ from time import perf_counter, process_time
 from typing import TYPE_CHECKING, NamedTuple
 from unittest.mock import patch
 
-from stiction.study.engines import Threads
-
 import stiction as st
+from stiction.study.execution.engines import Threads
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

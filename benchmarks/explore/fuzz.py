@@ -28,7 +28,7 @@ import stiction as st
 from benchmarks.explore.draw import Draw
 from stiction.cli import main as main_line
 from stiction.cli.options import value as option
-from stiction.laws import read_laws
+from stiction.comparison import read_laws
 from stiction.result import checksums
 from stiction.result.file import opened
 from stiction.study.store.seal import seal

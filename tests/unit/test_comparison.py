@@ -16,8 +16,8 @@ import stiction as st
 from stiction import comparison
 from stiction.analysis.slip import averaged_slip, outcome
 from stiction.cli import main
+from stiction.comparison import exchanged, read_laws, shared_traits
 from stiction.friction.equivalent import like, traits
-from stiction.laws import exchanged, read_laws, shared_traits
 from stiction.plotting.page.canvas import figure_of
 from stiction.plotting.page.words import wrapped
 from stiction.plotting.run.comparison import legend_text, plot_comparison

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.motion.decay import built_up, dies_out
+from stiction.analysis.motion.course import built_up, dies_out
 from stiction.analysis.motion.hesitations import take_out
 from stiction.analysis.motion.rest import STICKING, rest_share
 from stiction.analysis.record import Record, recorded

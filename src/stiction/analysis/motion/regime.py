@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.motion.band import highest_hump
+from stiction.analysis.motion.course import MANY, ORDERED, PARTS, course, order
 from stiction.analysis.motion.cycles import Swings, swings
-from stiction.analysis.motion.decay import MANY, ORDERED, order
-from stiction.analysis.motion.level import PARTS, course
 from stiction.analysis.motion.rest import STICKING, rest_share, rise_share
 from stiction.analysis.record import Record, recorded
 from stiction.analysis.signals.hum import samples_per_period

@@ -7,8 +7,7 @@ from typing import Any
 
 from stiction.deprecation import by_new_names
 from stiction.errors import DescriptionError, Fault
-from stiction.study.plan.axes import Axis
-from stiction.study.plan.axis_table import read_axis
+from stiction.study.plan.axes import Axis, read_axis
 from stiction.study.variables.measures import FORMERLY, MEASURES
 from stiction.study.variables.traces import TRACES
 from stiction.system.description import Description

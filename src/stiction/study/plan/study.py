@@ -14,7 +14,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 from stiction.deprecation import old_method
 from stiction.errors import DescriptionError, Fault
 from stiction.friction.user.loading import Find, held, named
-from stiction.study.plan.axis_table import axis_table
+from stiction.study.plan.axes import axis_table
 from stiction.study.plan.coordinates import Coordinate, coordinate_faults, coordinates, zip_faults
 from stiction.study.plan.layout import Index, Layout, laid_out
 from stiction.study.plan.memory import axis_faults, run_faults

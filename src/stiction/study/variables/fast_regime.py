@@ -14,9 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.motion import regime
-from stiction.analysis.motion.decay import QUIET, built_up, dies_out
+from stiction.analysis.motion.course import QUARTER, QUIET, built_up, dies_out
 from stiction.analysis.motion.hesitations import take_out
-from stiction.analysis.motion.level import QUARTER
 from stiction.study.variables.features import PARTS, Features
 
 Floats = NDArray[np.float64]

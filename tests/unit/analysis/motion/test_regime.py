@@ -13,7 +13,7 @@ from tests.measured import bare, measured
 
 import stiction as st
 from stiction.analysis.motion.band import highest_hump
-from stiction.analysis.motion.decay import dies_out
+from stiction.analysis.motion.course import dies_out
 from stiction.analysis.motion.rest import rest_share
 
 TRANSITIONAL = "transitional oscillation"

@@ -1,11 +1,14 @@
-"""Swings that die out, a transient and no cycles; and those that build up to cycles."""
+"""The course of a force that has no cycles: does it load, settle, stay, or die out?"""
 
 from __future__ import annotations
 
 from math import nan
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
+
+Floats = NDArray[np.float64]
 
 ORDERED = -0.9  # rank correlation of size and number: each smaller than the last, but for noise
 # Swings in such order, how many, and what is left of the first: by chance once in a thousand
@@ -16,6 +19,8 @@ QUIET = 3.0
 # Swings that build up: less than half the median, so many in succession (by chance once in a
 # thousand records where a quarter of all are so small)
 BELOW, BUILDING = 0.5, 5
+QUARTER = 8  # medians in each quarter of a record: few enough to be free of noise
+PARTS = 4 * QUARTER
 
 
 def dies_out(drop: ArrayLike, period: ArrayLike, rest: float) -> bool:
@@ -71,3 +76,50 @@ def order(values: np.ndarray) -> float:
         return nan
     ranks = np.argsort(np.argsort(values))
     return float(np.corrcoef(ranks, np.arange(len(values)))[0, 1])
+
+
+class Course(NamedTuple):
+    """How the force of a record goes, from its medians over 32 equal parts.
+
+    Parameters
+    ----------
+    change : float
+        From the first part to the last, N.
+    span : float
+        Highest less lowest, N.
+    late_span : float
+        That of the last quarter, N.
+    one_way : float
+        Size of `change` over the sum of all ups and downs: 1 if it goes one way only.
+    early_rate, late_rate : float
+        Mean rates over the first and the last quarter, N/s.
+    scatter : float
+        Standard deviation of the samples about the medians, N.
+    """
+
+    change: float
+    span: float
+    late_span: float
+    one_way: float
+    early_rate: float
+    late_rate: float
+    scatter: float
+
+
+def course(time: Floats, force: Floats) -> Course:
+    """Return how the force goes; there are at least `PARTS` samples."""
+    edges = np.linspace(0, len(time), PARTS + 1).astype(np.intp)[1:-1]
+    parts = np.split(force, edges)
+    f = np.array([np.median(part) for part in parts])
+    t = np.array([part.mean() for part in np.split(time, edges)])
+    scatter = np.sqrt(np.mean(np.concatenate([p - m for p, m in zip(parts, f, strict=True)]) ** 2))
+    ups_and_downs = float(np.abs(np.diff(f)).sum())
+    return Course(
+        change=float(f[-1] - f[0]),
+        span=float(np.ptp(f)),
+        late_span=float(np.ptp(f[-QUARTER:])),
+        one_way=abs(float(f[-1] - f[0])) / ups_and_downs if ups_and_downs else 0.0,
+        early_rate=float((f[QUARTER] - f[0]) / (t[QUARTER] - t[0])),
+        late_rate=float((f[-1] - f[-1 - QUARTER]) / (t[-1] - t[-1 - QUARTER])),
+        scatter=float(scatter),
+    )

@@ -1,0 +1,27 @@
+"""The tree: rooms stay small, and what benchmarks import is there."""
+
+import ast
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+DOZEN = 12
+TREES = ("src/stiction", "tests", "benchmarks")
+BENCHMARKS = sorted((ROOT / "benchmarks").rglob("*.py"))
+
+
+def test_no_room_has_more_than_a_dozen_files():
+    rooms = {path.parent for tree in TREES for path in (ROOT / tree).rglob("*.py")}
+    sizes = {room: len({*room.glob("*.py")} - {room / "__init__.py"}) for room in rooms}
+    assert {str(room): size for room, size in sizes.items() if size > DOZEN} == {}
+
+
+@pytest.mark.parametrize("path", BENCHMARKS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_what_a_benchmark_imports_of_ours_is_there(path):
+    tree = ast.walk(ast.parse(path.read_text("utf-8")))
+    froms = [node for node in tree if isinstance(node, ast.ImportFrom) and node.module]
+    ours = [each for each in froms if each.module.split(".")[0] in ("stiction", "benchmarks")]
+    missing = [each.module for each in ours if find_spec(each.module) is None]
+    assert missing == []
