@@ -115,12 +115,14 @@ def old_method(old: str, new: str) -> Callable[..., Any]:
     old : str
         The call as it was, for example ``"Study.run(store)"``.
     new : str
-        The function's public name, for example ``"sweep"``; it is given the instance first.
+        The same call of a public function, ``"sweep(study, store)"``; it is given the instance
+        first.
     """
 
     def method(self: Any, *args: Any, **values: Any) -> Any:
         warn_renamed(old, f"stiction.{new}")
-        return getattr(import_module("stiction"), new)(self, *args, **values)
+        function = getattr(import_module("stiction"), new.partition("(")[0])
+        return function(self, *args, **values)
 
     method.__doc__ = f"Deprecated: `stiction.{new}`."
     return method

@@ -149,8 +149,8 @@ class Study(Described):
             ]
         )
 
-    run: ClassVar[Callable[..., Any]] = old_method("Study.run(store)", "sweep")
-    refine: ClassVar[Callable[..., Any]] = old_method("Study.refine(store)", "refine")
+    run: ClassVar[Callable[..., Any]] = old_method("Study.run(store)", "sweep(study, store)")
+    refine: ClassVar[Callable[..., Any]] = old_method("Study.refine(store)", "refine(study, store)")
 
     @classmethod
     def from_toml(
