@@ -1,66 +1,70 @@
-"""One parameter of a slider by its name: what it is, and the slider with another value of it.
+"""One parameter of a slider, or of a whole description, by its name.
 
-A path is a field of `Slider` (``phi``, ``c_x``), or one of its drive's or of its friction law's
-(``drive.velocity``, ``friction.mu_inf``); several that share one value are joined by commas, as
-``"k_x, k_y"`` for a spring that is equally stiff in all directions. ``V`` is short for
-``drive.velocity``, ``W`` for ``normal_load``, ``m`` for ``mass``.
+A path is a field of `Slider` (``phi``, ``c_x``) or one of its drive's, its load's or its friction
+law's (``drive.velocity``, ``friction.mu_inf``, ``load.program.1.to``); in a description also one
+of the start or of the settings (``initial.u_x``, ``run.rtol``). Several that share one value are
+joined by commas, as ``"k_x, k_y"`` for a spring that is equally stiff in all directions. Elements
+of a list count from 1. ``V`` is short for ``drive.velocity``, ``W`` for ``normal_load``, ``m``
+for ``mass``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, get_type_hints
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from typing import Any, TypeVar, cast, get_args, get_type_hints
 
+from stiction.drive.pieces import LEVELS
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import Anisotropic
-from stiction.system.slider import Apparatus, Slider
+from stiction.system.description import Description
+from stiction.system.slider import Slider
 from stiction.text.paths import canonical
 from stiction.text.units import unit_of
 from stiction.text.validation import made, unknown
 
+Owner = TypeVar("Owner", Slider, Description)
+LEVEL_UNITS = {"drive": "m/s", "load": "N"}  # of pieces, which do not know their quantity
 
-def units(slider: Slider) -> dict[str, str]:
+
+def units(owner: Slider | Description) -> dict[str, str]:
     """Return the path of every parameter that is one number, and its SI unit ('' for none).
 
     Those of an anisotropic law are listed with those of the law that it holds.
     """
-    law: Any = slider.law
-    own = {f"friction.{name}": unit for name, unit in _units(law).items()}
-    held = _units(law.law) if isinstance(law, Anisotropic) else {}
-    return {
-        **{name: unit for name, unit in _units(slider).items() if name in Apparatus.model_fields},
-        "drive.velocity": "m/s",
-        **{f"friction.{name}": unit for name, unit in held.items()},
-        **own,
-    }
+    return dict(_numbers(owner, ()))
 
 
-def unit(slider: Slider, path: str) -> str:
+def unit(owner: Slider | Description, path: str) -> str:
     """Return the SI unit of a parameter, '' for a number without one.
 
     Raises
     ------
     DescriptionError
-        If the slider has no such parameter, or those that are joined differ in their unit.
+        If there is no such parameter, or those that are joined differ in their unit.
     """
-    known = units(slider)
-    joined = names(path)
-    found = [Fault(name, unknown("parameter", name, known)) for name in joined if name not in known]
-    if found:
-        raise DescriptionError(found)
-    if len({known[name] for name in joined}) > 1:
-        listed = ", ".join(f"{name} ({known[name] or 'a number'})" for name in joined)
+    found: dict[str, str] = {}
+    faults: list[Fault] = []
+    for name in names(path):
+        try:
+            found[name] = _unit(owner, name)
+        except DescriptionError as error:
+            faults += error.faults
+    if faults:
+        raise DescriptionError(faults)
+    if len(set(found.values())) > 1:
+        listed = ", ".join(f"{name} ({its or 'a number'})" for name, its in found.items())
         raise DescriptionError([Fault(path, f"cannot share one value: {listed}; name one of them")])
-    return known[joined[0]]
+    return next(iter(found.values()))
 
 
-def read(slider: Slider, path: str) -> float:
+def read(owner: Slider | Description, path: str) -> float:
     """Return the value of a parameter, in SI.
 
     Raises
     ------
     DescriptionError
-        If the slider has no such parameter, or those that are joined differ in value.
+        If there is no such parameter, it has no value, or those that are joined differ in value.
 
     Examples
     --------
@@ -68,21 +72,21 @@ def read(slider: Slider, path: str) -> float:
     >>> read(st.presets.nakano_popov_2020(), "friction.v_f")
     0.01
     """
-    unit(slider, path)
-    values = {name: float(_value(slider, name)) for name in names(path)}
+    unit(owner, path)
+    values = {name: _value(owner, name) for name in names(path)}
     if len(set(values.values())) > 1:
         listed = ", ".join(f"{name} is {value:g}" for name, value in values.items())
         raise DescriptionError([Fault(path, f"has no one value: {listed}; set both first")])
     return next(iter(values.values()))
 
 
-def changed(slider: Slider, path: str, value: float | str) -> Slider:
-    """Return the slider with another value of a parameter.
+def changed(owner: Owner, path: str, value: float | str) -> Owner:
+    """Return a slider or description with another value of a parameter.
 
     Parameters
     ----------
-    slider : Slider
-        The system.
+    owner : Slider or Description
+        What is changed.
     path : str
         Which parameter.
     value : float or str
@@ -91,7 +95,7 @@ def changed(slider: Slider, path: str, value: float | str) -> Slider:
     Raises
     ------
     DescriptionError
-        If the slider has no such parameter, or it cannot have this value.
+        If there is no such parameter, or it cannot have this value.
 
     Examples
     --------
@@ -99,14 +103,30 @@ def changed(slider: Slider, path: str, value: float | str) -> Slider:
     >>> changed(st.presets.nakano_popov_2020(), "drive.velocity", "2 mm/s").drive.velocity
     0.002
     """
-    unit(slider, path)
-    for name in names(path):
-        room, _, field = name.rpartition(".")
-        part = {field: value}
-        if room:
-            part = {room: _remade(getattr(slider, room), field, value)}
-        slider = slider.replace(**part)
-    return slider
+    unit(owner, path)
+    return varied(owner, {path: value})
+
+
+def varied(owner: Owner, changes: Mapping[str, float | str]) -> Owner:
+    """Return a slider or description with other values of known parameters, validated together.
+
+    Raises
+    ------
+    DescriptionError
+        With every parameter that cannot have its value.
+    """
+    tree: dict[str, Any] = {}
+    for path, value in changes.items():
+        for name in names(path):
+            *rooms, field = _keys(owner, name)
+            branch = tree
+            for room in rooms:
+                branch = branch.setdefault(room, {})
+            branch[field] = value
+    if isinstance(owner, Description):
+        parts = {room: _remade(getattr(owner, room), tree[room]) for room in tree}
+        return owner._replace(**parts)
+    return cast(Owner, _remade(owner, tree))
 
 
 def placed(slider: Slider, path: str, value: float) -> Slider:
@@ -115,11 +135,7 @@ def placed(slider: Slider, path: str, value: float) -> Slider:
     The path must be known, and the value lie between two that `changed` takes.
     """
     for name in names(path):
-        room, _, field = name.rpartition(".")
-        new: Any = value
-        if room:
-            field, new = room, _replaced(getattr(slider, room), field, value)
-        slider = slider.model_copy(update={field: new})
+        slider = _placed(slider, name.split("."), value)
     return slider
 
 
@@ -128,50 +144,125 @@ def names(path: str) -> list[str]:
     return [canonical(name) for name in path.split(",")]
 
 
-def _units(owner: Any) -> dict[str, str]:
-    """Return the fields of a description or of a law that are one number, with their units."""
-    hints = get_type_hints(type(owner), include_extras=True)
-    fields = owner._fields if hasattr(owner, "_fields") else type(owner).model_fields
-    return {
-        name: unit_of(hints.get(name))
-        for name in fields
-        if isinstance(getattr(owner, name), float | int)
+def _keys(owner: Slider | Description, name: str) -> list[str]:
+    """Return the fields that lead to a parameter."""
+    keys = name.split(".")
+    return keys if isinstance(owner, Slider) or keys[0] in ("initial", "run") else ["slider", *keys]
+
+
+def _unit(owner: Slider | Description, name: str) -> str:
+    *rooms, field = _keys(owner, name)
+    part: Any = owner
+    for room in rooms:
+        part = _member(owner, part, room, name)
+    value = _member(owner, part, field, name)
+    its = _unit_of(part, rooms, field)
+    if not _is_number(value) and (value is not None or not its):
+        raise DescriptionError([Fault(name, f"is not one number, it is {value!r}")])
+    return its
+
+
+def _unit_of(part: Any, rooms: list[str], field: str) -> str:
+    hint = _hints(_holder(part, field)).get(field)
+    its = next((u for each in (hint, *get_args(hint)) if (u := unit_of(each))), "")
+    room = next((each for each in rooms if each in LEVEL_UNITS), "")
+    return its or (LEVEL_UNITS.get(room, "") if field in LEVELS else "")
+
+
+def _member(owner: Slider | Description, part: Any, key: str, name: str) -> Any:
+    """Return a part of a part by its key; a list's elements count from 1."""
+    if key not in _fields(part):
+        raise DescriptionError([Fault(name, unknown("parameter", name, units(owner)))])
+    return _part(part, key)
+
+
+def _numbers(part: Any, keys: tuple[str, ...]) -> Iterator[tuple[str, str]]:
+    """Yield each parameter below some keys that is one number, and no count: path and unit."""
+    for key in _fields(part):
+        value = _part(part, key)
+        if isinstance(value, float):
+            yield canonical(".".join([*keys, key])), _unit_of(part, list(keys), key)
+        else:
+            yield from _numbers(value, (*keys, key))
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _value(owner: Slider | Description, name: str) -> float:
+    part: Any = owner
+    for key in _keys(owner, name):
+        part = _part(part, key)
+    if part is None:
+        raise DescriptionError([Fault(name, "is not given")])
+    return float(part)
+
+
+def _hints(part: Any) -> dict[str, Any]:
+    return _hints_of(cast(Any, type(part)))
+
+
+@lru_cache(maxsize=256)
+def _hints_of(kind: Any) -> dict[str, Any]:
+    return get_type_hints(kind, include_extras=True)
+
+
+def _fields(part: Any) -> tuple[str, ...]:
+    """Return the keys of a part of a description, none of what has no parts."""
+    if isinstance(part, Anisotropic):
+        return (*part.law._fields, "ratio", "angle")
+    if hasattr(part, "_fields"):
+        return tuple(part._fields)
+    if isinstance(part, tuple):
+        return tuple(str(count) for count in range(1, len(part) + 1))
+    return tuple(getattr(type(part), "model_fields", ()))
+
+
+def _part(part: Any, key: str) -> Any:
+    return part[int(key) - 1] if key.isdigit() else getattr(_holder(part, key), key)
+
+
+def _holder(part: Any, key: str) -> Any:
+    """Return what has a field: of an anisotropic law, maybe the law that it holds."""
+    return part.law if isinstance(part, Anisotropic) and key not in part._fields else part
+
+
+def _remade(part: Any, changes: Mapping[str, Any]) -> Any:
+    """Return a part of a description with changes in it, read and checked anew."""
+    if isinstance(part, Anisotropic):
+        inner = {key: value for key, value in changes.items() if key not in part._fields}
+        own = {key: value for key, value in changes.items() if key in part._fields}
+        law = _remade(part.law, inner) if inner else part.law
+        return Anisotropic(**{**_given(part), **own, "law": law})
+    new = {
+        key: _remade(_part(part, key), value) if isinstance(value, Mapping) else value
+        for key, value in changes.items()
     }
+    if hasattr(part, "replace"):
+        return part.replace(**new)
+    if isinstance(part, tuple) and not hasattr(part, "_fields"):
+        return [new.get(str(count), each) for count, each in enumerate(part, 1)]
+    if isinstance(part, tuple):
+        return made(type(part), {**_given(part), **new})
+    return type(part)(**{**_given(part), **new})
 
 
-def _holder(part: Any, field: str) -> bool:
-    """Return whether a parameter belongs to the law that an anisotropic one holds."""
-    return isinstance(part, Anisotropic) and field not in part._fields
-
-
-def _value(slider: Slider, name: str) -> Any:
-    room, _, field = name.rpartition(".")
-    part = getattr(slider, room) if room else slider
-    return getattr(part.law if _holder(part, field) else part, field)
-
-
-def _remade(part: Any, field: str, value: float | str) -> Any:
-    """Return a drive or a law with another value of a field, read and checked anew."""
-    if _holder(part, field):
-        return _remade(part, "law", _remade(part.law, field, value))
-    if not hasattr(part, "_asdict"):  # a drive's program
-        return type(part)(**{**_given(part), field: value})
-    return made(type(part), {**_written(part), field: value})
-
-
-def _replaced(part: Any, field: str, value: float) -> Any:
-    if _holder(part, field):
-        return part._replace(law=part.law._replace(**{field: value}))
+def _placed(part: Any, keys: list[str], value: float) -> Any:
+    key, *rest = keys
+    if _holder(part, key) is not part:
+        return part._replace(law=_placed(part.law, keys, value))
+    new: Any = _placed(_part(part, key), rest, value) if rest else value
+    if key.isdigit():
+        return tuple(new if str(count) == key else each for count, each in enumerate(part, 1))
     replace = getattr(part, "_replace", None)
-    return part.model_copy(update={field: value}) if replace is None else replace(**{field: value})
+    return part.model_copy(update={key: new}) if replace is None else replace(**{key: new})
 
 
-def _given(part: Any) -> Mapping[str, Any]:
-    return {name: getattr(part, name) for name in part.model_fields_set}
-
-
-def _written(part: Any) -> Mapping[str, Any]:
-    """Return a law's or a drive's fields as they are read: angles with their unit."""
-    angles = [name for name, its in _units(part).items() if its == "rad"]
-    values: dict[str, Any] = part._asdict()
+def _given(part: Any) -> dict[str, Any]:
+    """Return what a part of a description was made of, as it is read: angles with their unit."""
+    hints = _hints(part)
+    given = getattr(part, "_fields", None) or part.model_fields_set
+    values = {name: getattr(part, name) for name in given}
+    angles = [name for name in given if unit_of(hints.get(name)) == "rad"]
     return {**values, **{name: f"{values[name]!r} rad" for name in angles}}

@@ -9,8 +9,8 @@ import xarray as xr
 import stiction as st
 from stiction.study.execution.cluster import Processes
 from stiction.study.execution.engines import Threads
+from stiction.study.plan.coordinates import unit, varied
 from stiction.study.plan.layout import Layout, laid_out, places
-from stiction.study.plan.parameters import unit, varied
 from stiction.study.store.creation import create
 from stiction.study.store.seal import seal
 
@@ -131,10 +131,10 @@ def test_every_fault_of_a_study_is_told_at_once():
         st.Study(base=BASE, axes=axes)
     text = str(error.value)
     assert "Study.axes.phi.to: degree or radian? write '5 deg' or '5 rad'" in text
-    assert "Study.axes.drive.velocty: unknown parameter 'velocty'; did you mean 'velocity'" in text
+    assert "Study.axes.drive.velocty: unknown parameter 'drive.velocty'; did you mean" in text
     assert "Study.axes.mass: logarithms need values of one sign" in text
     assert "Study.axes.k_x.1: '1 N' is in N, not a unit of" in text
-    assert "run.multiscale is not one number" in text
+    assert "Study.axes.run.multiscale: is not one number" in text
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ from stiction.study.execution.engines import Engine
 from stiction.study.execution.intervals import Intervals, changes, half_way, halved, widest
 from stiction.study.execution.sweep import Tally, sweep
 from stiction.study.plan.axes import Floats, Values
-from stiction.study.plan.parameters import number
+from stiction.study.plan.coordinates import number
 from stiction.study.plan.study import Study
 from stiction.study.store.kept import UNKNOWN, flagged
 from stiction.study.store.seal import seal

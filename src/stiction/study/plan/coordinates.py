@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from math import radians
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,9 +12,10 @@ from pydantic_core import PydanticCustomError
 
 from stiction.errors import DescriptionError, Fault
 from stiction.study.plan.axes import Axis, Floats, Range
-from stiction.study.plan.parameters import number, unit
 from stiction.study.variables.measures import MEASURES
+from stiction.system import parameter
 from stiction.system.description import Description
+from stiction.text.units import Kind, to_si
 
 TAKEN = {"status", "message", "time", *MEASURES}  # names in a store
 NAME = re.compile(r"\w[\w ,.-]*")
@@ -25,6 +27,53 @@ class Coordinate(NamedTuple):
     dim: str
     values: Floats
     unit: str
+
+
+def unit(base: Description, path: str) -> str:
+    """Return the unit in which an axis gives a parameter: SI, and degrees.
+
+    Raises
+    ------
+    DescriptionError
+        As of `stiction.system.parameter.unit`.
+    """
+    its = parameter.unit(base, path)
+    return "deg" if its == "rad" else its
+
+
+def number(value: Any, unit: str) -> float:
+    """Return a number or a string with its unit as a number in `unit`.
+
+    Raises
+    ------
+    PydanticCustomError
+        With the rule, the offending value and the remedy.
+    """
+    if unit == "deg" and not isinstance(value, str):
+        return to_si(value, Kind("an angle", "rad", "1 deg"))  # says what to write instead
+    return to_si(value, Kind("such a quantity", unit, f"1 {unit}".rstrip()))
+
+
+def varied(base: Description, changes: Mapping[str, tuple[float, str]]) -> Description:
+    """Return a description with other values of some parameters, all of it validated.
+
+    Parameters
+    ----------
+    base : Description
+        What is varied.
+    changes : mapping of str to (float, str)
+        For each path the value and its unit, as `unit` returns it.
+
+    Raises
+    ------
+    DescriptionError
+        With every parameter that cannot have its value.
+    """
+    given: dict[str, float | str] = {
+        path: f"{radians(value)!r} rad" if its == "deg" else value
+        for path, (value, its) in changes.items()
+    }
+    return parameter.varied(base, given)
 
 
 def coordinates(base: Description, axes: Mapping[str, Axis], seed: int) -> dict[str, Coordinate]:

@@ -15,10 +15,15 @@ from stiction.deprecation import old_method
 from stiction.errors import DescriptionError, Fault
 from stiction.friction.user.loading import Find, held, named
 from stiction.study.plan.axes import axis_table
-from stiction.study.plan.coordinates import Coordinate, coordinate_faults, coordinates, zip_faults
+from stiction.study.plan.coordinates import (
+    Coordinate,
+    coordinate_faults,
+    coordinates,
+    varied,
+    zip_faults,
+)
 from stiction.study.plan.layout import Index, Layout, laid_out
 from stiction.study.plan.memory import axis_faults, run_faults
-from stiction.study.plan.parameters import varied
 from stiction.study.plan.reading import axes_of, is_description, measures_of, traces_of
 from stiction.study.variables.measures import DEFAULT
 from stiction.study.variables.observation import seconds_of
@@ -38,7 +43,7 @@ class Study(Described):
         What each run has in common.
     axes : mapping of str to axis
         For the path of a parameter (``phi``, ``drive.velocity``, ``friction.mu_0``, ``k_x, k_y``
-        for two that share a value; see `stiction.study.plan.parameters`) a `Grid`, `Values`,
+        for two that share a value; see `stiction.study.plan.coordinates`) a `Grid`, `Values`,
         `Random` or `Sobol`, or a table of the same.
     measures : sequence of str, optional
         What to keep of each run, see `stiction.study.variables.measures.MEASURES`.

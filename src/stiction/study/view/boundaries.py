@@ -13,7 +13,7 @@ from stiction import theory as closed_forms
 from stiction.drive import ConstantVelocity
 from stiction.errors import StictionError
 from stiction.study.plan.axes import Floats
-from stiction.study.plan.parameters import varied
+from stiction.study.plan.coordinates import varied
 from stiction.study.plan.study import Study
 from stiction.system.slider import Slider
 

@@ -12,7 +12,7 @@ from pydantic_core import PydanticCustomError
 from stiction.deprecation import by_new_names
 from stiction.errors import DescriptionError, Fault, ResultError
 from stiction.storage.foreign import opening, refuse_size
-from stiction.study.plan.parameters import number
+from stiction.study.plan.coordinates import number
 from stiction.study.plan.study import Study
 from stiction.study.store import seal
 from stiction.study.store.kept import kept
