@@ -105,6 +105,9 @@ def check(path: str | Path, *, repair: bool = False, trust: bool = False) -> Che
 
 
 def _check_result(path: Path, repair: bool, trust: bool) -> Check:
+    if path.suffix.lower() in (".toml", ".csv", ".parquet", ".mat") and os.path.isfile(path):
+        wrote = "what stiction run or stiction sweep wrote"
+        raise ResultError(f"{path}: a {path.suffix} file is no result; check tells of {wrote}")
     try:
         read_tables(path)
         return Check(path, [])

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.markers import MarkerStyle
 from matplotlib.patches import FancyArrowPatch
 
 import stiction as st
@@ -24,7 +25,7 @@ from stiction.plotting.apparatus.schematic import draw_schematic
 from stiction.plotting.apparatus.shapes import Points
 from stiction.plotting.page.canvas import figure_of
 from stiction.plotting.page.save import save, write
-from stiction.plotting.page.style import BLUE, PURPLE, new_figure, style
+from stiction.plotting.page.style import BLACK, BLUE, PURPLE, new_figure, style
 from stiction.plotting.page.words import plain
 from stiction.plotting.run.overview import plot_run
 from stiction.plotting.run.time_series import cut_open, draw_line, envelope
@@ -188,6 +189,23 @@ def test_schematic_draws_the_misalignment(slider: st.Slider, phi: float) -> None
     assert r"\psi" in words(ax) or phi in (0, 90, -90)
 
 
+@pytest.mark.parametrize("phi", [1, 24, -30, 45, 60, 90])
+def test_names_of_springs_and_dampers_stand_beside_them(slider: st.Slider, phi: float) -> None:
+    """However large the letters are beside the drawing."""
+    with style():
+        fig = new_figure(2.4, 2.4)
+        ax = draw_schematic(fig.subplots(), slider.replace(phi=f"{phi} deg", c_x=1.0, c_y=0.5))
+    drawn(fig)
+    named = [text for text in ax.texts if "c_" in text.get_text()]
+    assert len(named) == 2
+    look = (BLACK, "-")
+    dampers = [line for line in ax.lines if (line.get_color(), line.get_linestyle()) == look]
+    for text in named:
+        box = text.get_window_extent()
+        for line in dampers:
+            assert not line.get_path().transformed(line.get_transform()).intersects_bbox(box, False)
+
+
 def way(arrow: FancyArrowPatch) -> float:
     """Direction of an arrow, in deg."""
     tail, head = arrow._posA_posB  # type: ignore[attr-defined]
@@ -344,6 +362,18 @@ def test_trials_show_what_is_small_beside_the_loading() -> None:
     low, high = ax.get_ylim()
     assert 3.5 < low < 3.57
     assert 3.63 < high < 3.7
+
+
+def test_marks_of_a_small_force_leave_it_to_be_seen() -> None:
+    """They touch it with their tips: that of a peak stands above, that of a trough below."""
+    time = np.arange(0.0, 40.0, 0.01)
+    force = np.minimum(time, 3.6) + 0.01 * np.sin(10.0 * time) * (time > 4.0)
+    ax = drawn(figure_of(plot_cycles, st.Record(time=time, force=force))).axes[0]
+    for label, side in (("peak", 1.0), ("trough", -1.0)):
+        (marks,) = [line for line in ax.lines if line.get_label() == label]
+        look = MarkerStyle(marks.get_marker())
+        corners = look.get_path().transformed(look.get_transform()).vertices[:, 1]
+        assert (side * corners).min() == pytest.approx(0.0, abs=1e-9)
 
 
 def test_times_of_milliseconds_are_written_so() -> None:

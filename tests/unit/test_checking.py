@@ -271,3 +271,9 @@ def test_a_store_without_checksums_goes_on(store, tmp_path):
     assert len(done) == 2
     assert xr.open_zarr(path).load().drop_attrs(deep=False).identical(right)
     assert st.check(path).ok
+
+
+def test_what_is_no_result_by_its_name_is_not_called_a_broken_one(tmp_path):
+    (tmp_path / "rig.toml").write_text("[slider]\n")
+    with pytest.raises(st.ResultError, match=r"a \.toml file is no result"):
+        st.check(tmp_path / "rig.toml")

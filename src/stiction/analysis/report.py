@@ -208,7 +208,7 @@ def _meant(cycles: xr.Dataset, kind: str, missing: dict[str, str]) -> xr.Dataset
             "the force rises faster than stiffness and drive velocity, as stated, allow"
         )
         return cycles.assign(creep_distance=cycles["creep_distance"].where(False))
-    why = f"the mass does not stick: this is {kind}"
+    why = f"they are of stick-slip, and this is {kind}"
     missing |= dict.fromkeys(OF_STICKING, why)
     return cycles.assign({name: cycles[name].where(False) for name in OF_STICKING})
 

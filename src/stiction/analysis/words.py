@@ -12,6 +12,7 @@ from stiction.analysis.motion.friction import Measured
 from stiction.analysis.motion.regime import (
     HARMONIC,
     IRREGULAR,
+    QUICK,
     SETTLING,
     STEADY,
     STICK_SLIP,
@@ -19,6 +20,7 @@ from stiction.analysis.motion.regime import (
     TRANSITIONAL,
 )
 from stiction.analysis.signals.hum import of_mains
+from stiction.analysis.stuck import stuck_until
 from stiction.analysis.transverse_oscillation import hides
 from stiction.text.columns import Quantity, grid
 from stiction.text.sections import Section, Table
@@ -62,6 +64,7 @@ FRICTIONS = {
     "kinetic": "kinetic, mean while it slides",
 }
 SLIGHT = 1e-3  # of a velocity: an error that is less is not worth a word
+RESTING = "it rests"
 SURE = 2.0  # standard errors that a fit must be away from nothing
 
 
@@ -92,20 +95,43 @@ def plainly(found: Analysis) -> str:
             STICK_SLIP: f"The mass sticks and slips {times}{every}; {size}",
             TRANSITIONAL: f"The mass slips {times}{every}, between stick-slip and plain "
             f"vibration; {size}",
-            HARMONIC: f"The mass swings {times}{every}, without sticking; {size}",
+            HARMONIC: f"The mass swings {times}{every}{_stuck(found)}; {size}",
         }
         if kind in plain:
             each = " each time" if count > 1 else ""
-            return f"{plain[kind]}{each}."
+            return f"{plain[kind]}{each}.{_quick(found, period)}"
     slides = found.friction.kinetic
     at = f", at a force of {in_words(slides.force, 'N')}" if slides is not None else ""
     plain = {
         STEADY: f"The mass slides steadily{at}.",
         SETTLING: f"The motion dies down, and the mass comes to slide steadily{at}.",
         STUCK: "The mass sticks for the whole record: the force only rises.",
-        IRREGULAR: "The mass vibrates irregularly, without sticking.",
+        IRREGULAR: "The mass vibrates irregularly.",
     }
     return plain.get(kind, "What the mass does cannot be told from this record.")
+
+
+def _stuck(found: Analysis) -> str:
+    """Say of a run how long it sticks in its cycles; a force alone does not tell."""
+    run, ends = found.source, found.cycles
+    if not isinstance(run, Trajectory):
+        return ""
+    time = np.array([ends["start"].values[0], ends["trough_time"].values[-1]])
+    share = float(np.diff(stuck_until(time, run.stick_intervals))[0] / np.diff(time)[0])
+    return f", and sticks for {100.0 * share:.2g}% of that time" if share else ", without sticking"
+
+
+def _quick(found: Analysis, period: float) -> str:
+    """Say of a run whether its cycles are too quick for the softer spring alone."""
+    if not isinstance(found.source, Trajectory) or found.regime.kind == STICK_SLIP:
+        return ""
+    own = 1.0 / found.source.slider.natural_frequencies[0]
+    if period >= QUICK * own:
+        return ""
+    return (
+        f" That is quicker than the {in_words(own, 's')} in which it swings on the softer spring "
+        "alone: the stiffer one swings as well (a study calls this transverse oscillation)."
+    )
 
 
 def friction(found: Analysis) -> Section:
@@ -189,11 +215,11 @@ def creep(found: Analysis) -> Section:
     long, short = (in_words(float(row["begin"]), "s") for row in (far, near))
     phases = int(found.creep["phases"].max())
     V = drive_speed(found.source, found.record) or 0.0
-    lines = [
-        f"At {long} before {_end(found)} {_creeping(far, V)}, in the last {short} "
-        f"{_creeping(near, V)}; "
-        f"{phases} stick phase{'s' * (phases != 1)}."
-    ]
+    first, last = _creeping(far, V), _creeping(near, V)
+    several = f"{phases} stick phase{'s' * (phases != 1)}"
+    lines = [f"At {long} before {_end(found)} {first}, in the last {short} {last}; {several}."]
+    if first == last == RESTING and found.regime.kind == STUCK:
+        return Section("Creep", ["None: it rests from beginning to end."])
     d, phi = found.divergence, found.misalignment
     if found.record.position is None and phi is None:
         lines.append("Counted from the even loading in the first half of each rise.")
@@ -318,7 +344,7 @@ def _creeping(row: xr.Dataset, V: float) -> str:
     """Say how fast it creeps in a bin, and to how much that is known if it is worth a word."""
     value, error = float(row["velocity"]), float(row["velocity_error"])
     if abs(value) + SURE * np.nan_to_num(error) < RESTS * V:
-        return "it rests"
+        return RESTING
     if value <= SURE * error:
         most = max(value, 0.0) + SURE * error
         return f"it creeps no faster than {in_words(most, 'm/s')} (two standard errors)"

@@ -14,12 +14,14 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from stiction.plotting.page.parameter import PLAIN, Scale
+from stiction.plotting.page.parameter import PLAIN, SPARSE, Scale
 from stiction.plotting.page.style import BLACK, BLUE, GREEN
 
 Floats = NDArray[np.float64]
 CASING = [patheffects.withStroke(linewidth=3.0, foreground="white")]
 DECADES = 30.0  # a measure that spans more than such a factor is drawn in decades
+PLAINLY = 1e3  # such a factor, from least to largest, is still written without powers of ten
+NO_RESULT = "no result"
 DEEPEST = 1e6  # of the largest value: what is less is nothing
 
 # light for what is calm, dark and warm for what is violent, told apart without colour as well
@@ -45,15 +47,14 @@ class Side(NamedTuple):
 
     @property
     def edges(side) -> Floats:
-        """Borders of the cells around the values."""
+        """Borders of the cells around the values: between them, and the first and the last."""
         at = np.log(side.values) if side.log else side.values
         if len(at) == 1:
             half = np.array([-0.5, 0.5]) * (1.0 if side.log or at[0] == 0.0 else abs(at[0]))
             found = at[0] + half
         else:
             middle = 0.5 * (at[1:] + at[:-1])
-            first, last = 1.5 * at[0] - 0.5 * at[1], 1.5 * at[-1] - 0.5 * at[-2]
-            found = np.concatenate([[first], middle, [last]])
+            found = np.concatenate([at[:1], middle, at[-1:]])
         return np.asarray(np.exp(found) if side.log else found)
 
 
@@ -89,29 +90,37 @@ def draw_regimes(ax: Axes, x: Side, y: Side, kinds: NDArray[np.object_]) -> list
         for name in present
     ]
     if failed.any():
-        patches.append(
-            Patch(facecolor="white", edgecolor="#777777", hatch="xxxx", label="no result")
-        )
+        patches.append(Patch(facecolor="white", edgecolor="#777777", hatch="xxxx", label=NO_RESULT))
     return patches
 
 
-def draw_measure(ax: Axes, x: Side, y: Side, values: Floats) -> QuadMesh:
-    """Draw a measure as a heat map, in decades where it spans many; return what is coloured.
+def draw_measure(
+    ax: Axes, x: Side, y: Side, values: Floats, label: str
+) -> tuple[QuadMesh, list[Patch]]:
+    """Draw a measure as a heat map, in decades where it spans many, with a bar of its colours.
 
-    Parameters are those of `draw_regimes`; where there is no value it is hatched.
+    Parameters are those of `draw_regimes`, and the name of the measure; where there is no value it
+    is hatched. Returned is what is coloured, and a patch for the legend if some of it is hatched.
     """
     found = values[np.isfinite(values)]
     positive = len(found) > 0 and found.min() > 0.0
     log = positive and found.max() > DECADES * found.min()
+    hatched = []
     if len(found) < values.size:
-        ax.patch.set(hatch="////", edgecolor="#BBBBBB")
+        look = {"hatch": "////", "edgecolor": "#BBBBBB"}
+        ax.patch.set(**look)
+        hatched = [Patch(facecolor="white", label="no value", **look)]
     mesh = ax.pcolormesh(
         x.edges, y.edges, np.ma.masked_invalid(values.T), cmap="cividis",
         norm=LogNorm(max(found.min(), found.max() / DEEPEST), found.max()) if log else None,
         rasterized=True,
     )  # fmt: skip
     _framed(ax, x, y)
-    return mesh
+    bar = ax.figure.colorbar(mesh, ax=ax, label=label, pad=0.02)
+    if log and found.max() < PLAINLY * found.min():
+        for formatted in (bar.ax.yaxis.set_major_formatter, bar.ax.yaxis.set_minor_formatter):
+            formatted(SPARSE)
+    return mesh, hatched
 
 
 def draw_theory(ax: Axes, x: Side, y: Side, fields: Mapping[str, Floats]) -> list[Line2D]:
@@ -155,6 +164,31 @@ def draw_slice(ax: Axes, x: Side, values: Floats, label: str) -> None:
     ax.set_ylabel(label)
 
 
+def draw_kinds(ax: Axes, x: Side, kinds: Sequence[str]) -> None:
+    """Draw the kind of motion over one parameter: a row for each kind, in the order of `COLORS`.
+
+    Parameters
+    ----------
+    ax : Axes
+        Drawn on.
+    x : Side
+        n values.
+    kinds : sequence of str
+        n names as in `COLORS`; others (a run that failed, or is not done) have no result.
+    """
+    names = [name if name in COLORS else NO_RESULT for name in kinds]
+    rows = [name for name in (*COLORS, NO_RESULT) if name in names]
+    for row, name in enumerate(rows):
+        here = np.array([each == name for each in names])
+        ax.plot(
+            x.values[here], np.full(here.sum(), row), "o", markersize=5.0, markeredgewidth=0.4,
+            markeredgecolor=BLACK, color=COLORS.get(name, "white"),
+        )  # fmt: skip
+    _named(ax, x, "x")
+    ax.set(yticks=range(len(rows)), yticklabels=rows, ylim=(len(rows) - 0.5, -0.5))
+    ax.tick_params(axis="y", which="both", length=0.0)
+
+
 def draw_points(ax: Axes, x: Floats, y: Floats, kinds: Sequence[str]) -> list[Line2D]:
     """Draw a point for each run, coloured by its kind of motion; return a marker a kind."""
     made = []
@@ -176,5 +210,6 @@ def _framed(ax: Axes, x: Side, y: Side) -> None:
 
 def _named(ax: Axes, side: Side, way: str) -> None:
     ax.set(**{f"{way}scale": "log" if side.log else "linear", f"{way}label": side.scale.label})
-    if side.log and side.values.max() < 1e3 * side.values.min():
+    if side.log and side.values.max() < PLAINLY * side.values.min():
         getattr(ax, f"{way}axis").set_major_formatter(PLAIN)
+        getattr(ax, f"{way}axis").set_minor_formatter(SPARSE)

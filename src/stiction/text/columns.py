@@ -9,8 +9,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stiction.text.quantity_text import DIGITS, SI, thousands
+from stiction.text.quantity_text import DIGITS, MEASURABLE, SI, thousands
 from stiction.text.sections import Table
+
+PICO = -4  # the power of a thousand
 
 
 class Quantity(NamedTuple):
@@ -42,10 +44,15 @@ def grid(quantities: Mapping[str, Quantity], rows: int, alike: str = "") -> Tabl
 
 
 def scale(values: Sequence[float], unit: str) -> tuple[int, int]:
-    """Return a power of a thousand, and decimals, for four digits of the largest value."""
+    """Return a power of a thousand, and decimals, for four digits of the largest value.
+
+    Lengths that no instrument can measure are zero picometres.
+    """
     largest = max((abs(value) for value in values if isfinite(value)), default=0.0)
     # as the largest is written, so that 999.97 is 1000.0 of the next prefix
     size = floor(log10(float(f"{largest:.{DIGITS - 1}e}"))) if largest > 0.0 else 0
+    if unit == "m" and largest < MEASURABLE:
+        return PICO, 0
     power = thousands(largest, unit)
     return power, max(0, DIGITS - 1 - (size - 3 * power))
 

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 SI = dict(zip(range(-10, 11), [*"qryzafpnµm", "", *"kMGTPEZYRQ"], strict=True))  # of thousands
 BARE = ("", "1", "%", "1/s", "deg")  # units that take no prefix
 DIGITS = 4  # of a number in words
+MEASURABLE = 1e-12  # m, a hundredth of an atom: no instrument follows a mass so closely
 PREFIXES = {3 * power: "u" if letter == "µ" else letter for power, letter in SI.items()}
 # unit: what stands in its place with a prefix, and the powers of ten that it may have
 SMALL, BOTH = (0, -3, -6, -9), (9, 6, 3, 0, -3, -6, -9)

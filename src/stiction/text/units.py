@@ -17,7 +17,7 @@ from typing import Annotated, Any, NamedTuple, Union, get_args, get_origin
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
 from pydantic_core import PydanticCustomError
 
-from stiction.text.quantity_text import DIGITS, SI, angle_text, thousands
+from stiction.text.quantity_text import DIGITS, MEASURABLE, SI, angle_text, thousands
 from stiction.text.unit_text import UnitError, factor, short
 
 
@@ -210,10 +210,14 @@ SampleRate = Annotated[float, reader("a frequency", "Hz", "10 kHz"), Field(ge=0)
 def in_words(value: float, unit: str, digits: int = DIGITS) -> str:
     """Return a value in an SI unit as text, with a prefix that suits it; an angle in degrees.
 
+    Of a length that no instrument can measure, only that is said.
+
     Examples
     --------
     >>> in_words(3.49e-5, "m"), in_words(0.0174533, "rad"), in_words(float("nan"), "N")
     ('34.9 µm', '1 deg', 'none')
+    >>> in_words(4e-14, "m")
+    '< 1 pm'
     >>> in_words(0.0123456, "kg", 6), in_words(0.02, "1/s")
     ('12.3456 g', '0.02 1/s')
     """
@@ -223,6 +227,8 @@ def in_words(value: float, unit: str, digits: int = DIGITS) -> str:
         return "∞" if value > 0.0 else "-∞"
     if unit == "rad":
         return f"{value * 180.0 / pi:.{digits}g} deg"
+    if unit == "m" and 0.0 < abs(value) < MEASURABLE:
+        return "< 1 pm"
     if unit == "kg" and value != 0.0:
         value, unit = 1e3 * value, "g"
     power = thousands(value, unit, digits)

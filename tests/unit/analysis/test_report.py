@@ -147,3 +147,37 @@ def test_old_names_go_on_working_with_a_warning(run, found) -> None:
         assert st.song_by_phase is st.oscillation_by_phase
     with pytest.warns(DeprecationWarning, match="oscillation"):
         assert found.song is found.oscillation
+
+
+RIG = st.Slider(
+    mass="80 g", k_x="2.3 kN/m", k_y="0.9 MN/m", phi="8 deg", normal_load="4 N",
+    friction=st.ExponentialWeakening(mu_0=0.6, mu_inf=0.45, v_f="10 mm/s"),
+    drive=st.ConstantVelocity("0.5 mm/s"),
+)  # fmt: skip
+
+
+def test_a_vibration_that_sticks_is_not_said_not_to() -> None:
+    run = st.simulate(RIG, "8 s", sample_rate="10 kHz")
+    text = str(st.analyse(run))
+    late = run.statistics.time_stuck / 8.0
+    assert 0.3 < late < 0.5
+    assert "and sticks for 4" in text
+    assert "without sticking" not in text
+    assert "quicker than the 37.06 ms in which it swings on the softer spring alone" in text
+    assert "they are of stick-slip, and this is harmonic vibration" in text
+    measured = st.Record(time=run.data["time"].values, force=run.data["spring_x"].values)
+    assert "stick" not in str(st.analyse(measured)).partition("Friction")[0]
+
+
+def test_a_confidence_of_one_leaves_no_other_kind() -> None:
+    assert "else" not in str(st.Regime("stick-slip", 0.996, {}, "harmonic vibration"))
+    assert "(confidence 0.99; else" in str(st.Regime("stick-slip", 0.99, {}, "harmonic vibration"))
+
+
+def test_a_mass_that_never_slips_does_not_creep_before_slip() -> None:
+    run = st.simulate(
+        RIG.replace(friction=st.Coulomb(mu_0=0.6), phi="0 deg"), "1 s", sample_rate="1 kHz"
+    )
+    text = str(st.analyse(run))
+    assert "rests from beginning to end" in text
+    assert "before" not in text.partition("Creep")[2].partition("Oscillation")[0]

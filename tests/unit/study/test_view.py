@@ -11,6 +11,7 @@ from stiction.plotting.maps import Side
 from stiction.plotting.page.canvas import figure_of
 from stiction.study.presets import PRESETS, preset
 from stiction.study.store.seal import seal
+from stiction.study.variables.fast_regime import KINDS
 from stiction.study.view.boundaries import PHI_C, ZETA, plane
 
 PAPER = st.presets.nakano_popov_2020()
@@ -57,6 +58,27 @@ def test_measures_and_slices(store):
     x, y = ax.lines[0].get_data()
     np.testing.assert_allclose(x, data["phi"])
     np.testing.assert_allclose(y, data)
+
+
+def test_a_map_ends_where_its_study_does(store):
+    """No cell stands for values that were not run: an axis of misalignments begins at the first."""
+    (ax,) = figure_of(st.map(store, at={"friction.mu_inf": 0.15}).plot).axes
+    np.testing.assert_allclose([*ax.get_xlim(), *ax.get_ylim()], [4.0, 12.0, 1.0, 4.0])
+
+
+def test_kinds_over_one_parameter_are_named(store):
+    cut = {"friction.mu_inf": 0.15, "drive.velocity": "1 mm/s"}
+    (ax,) = figure_of(st.map(store, "regime", cut).plot).axes
+    rows = [text.get_text() for text in ax.get_yticklabels()]
+    data = xr.open_zarr(store)["regime"].sel({"friction.mu_inf": 0.15}).isel({"drive.velocity": 0})
+    assert {*rows} == {KINDS[code] for code in data.values.tolist()}
+    assert len(rows) > 1
+    assert sum(len(line.get_xdata()) for line in ax.lines) == 9
+
+
+def test_what_has_no_value_is_explained(store):
+    fig = figure_of(st.map(store, "period", {"friction.mu_inf": 0.15}).plot)
+    assert "no value" in drawn(fig)
 
 
 def test_theory_over_the_plane(store):
@@ -143,7 +165,7 @@ def test_a_preset_by_a_wrong_name(tmp_path, capsys):
 
 def test_edges_of_cells_lie_between_the_values():
     side = Side(None, np.array([1.0, 10.0, 100.0]), True)
-    np.testing.assert_allclose(side.edges, 10.0 ** np.array([-0.5, 0.5, 1.5, 2.5]))
+    np.testing.assert_allclose(side.edges, 10.0 ** np.array([0.0, 0.5, 1.5, 2.0]))
     assert len(Side(None, np.array([3.0]), False).edges) == 2
 
 

@@ -47,3 +47,8 @@ def test_a_folder_that_cannot_be_made_says_so(tmp_path) -> None:
         make_folder(tmp_path / "file" / "folder")
     assert make_folder(tmp_path / "new").is_dir()
     assert make_folder(tmp_path / "new").is_dir()
+
+
+def test_lengths_that_no_instrument_can_measure_are_none() -> None:
+    table = grid({"creep": Quantity([5.5e-14, -1e-21, float("nan")], "m")}, 3)
+    assert table == (("creep (pm)",), [("0",), ("0",), ("none",)])

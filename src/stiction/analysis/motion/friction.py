@@ -111,7 +111,7 @@ def find_friction(record: Record, kind: str, cycles: xr.Dataset) -> Friction:
     if kind in (STICK_SLIP, TRANSITIONAL) and count:
         static = _over(cycles["peak"].values, load)
     else:
-        missing["static"] = "the mass does not stick again and again; see the break-away"
+        missing["static"] = f"it is the mean of the peaks of stick-slip, and this is {kind}"
     kinetic = None
     if kind in (STICK_SLIP, TRANSITIONAL, HARMONIC, IRREGULAR) and count:
         kinetic = _over(0.5 * (cycles["peak"].values + cycles["trough"].values), load)

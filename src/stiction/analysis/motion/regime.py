@@ -55,6 +55,10 @@ FEWEST, ENOUGH = 3.5, 8.0  # samples a cycle: below the first it is not known, n
 # of four samples falls for two
 QUICK, SLOWEST = 1.6, 3.0
 RIPPLE = 1e-3  # of the force's span: a vibration that is less is no motion of its own
+CERTAIN = 0.995  # a confidence that is written as 1.00: it leaves no room for another kind
+# Of the period of the mass on the softer spring alone: a vibration of a lesser one has the stiffer
+# spring swing as well, as friction that turns couples them. On one spring friction only prolongs it
+QUICK = 0.9
 GROWN = 0.1  # of a force drop: less is not worth a word
 NOISE_SHOWS = 1e-3  # of a force drop; what is less is no noise of a load cell
 
@@ -143,7 +147,7 @@ class Regime(NamedTuple):
 
     def __str__(self) -> str:
         """Say it in words."""
-        other = f"; else {self.runner_up}" if self.runner_up else ""
+        other = f"; else {self.runner_up}" if self.runner_up and self.confidence < CERTAIN else ""
         said = ((*WORDS[name], value) for name, value in self.evidence.items())
         reasons = "; ".join(text.format(written(value)) for text, written, value in said)
         return f"{self.kind} (confidence {self.confidence:.2f}{other}): {reasons}"

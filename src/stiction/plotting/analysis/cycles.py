@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.markers import CARETDOWN, CARETUP
 from numpy.typing import NDArray
 
 from stiction.analysis.motion.cycles import swings
@@ -82,11 +83,13 @@ def draw_cycles(ax: Axes, record: Record, cycles: xr.Dataset) -> None:
     low_time = np.append(cycles["start"].values[:1], cycles["trough_time"].values)
     low = np.append(cycles["start_force"].values[:1], cycles["trough"].values)
     for time, force, color, marker, name in (
-        (cycles["peak_time"].values, cycles["peak"].values, RED, "v", "peak"),
-        (low_time, low, BLUE, "^", "trough"),
+        # their tips are where the force is, so that a small one is seen between two rows of them
+        (cycles["peak_time"].values, cycles["peak"].values, RED, CARETDOWN, "peak"),
+        (low_time, low, BLUE, CARETUP, "trough"),
     ):
         if len(time):
-            ax.plot(time, factor * force, marker, color=color, markersize=size, label=name)
+            look = {"marker": marker, "linestyle": "none", "color": color, "markersize": size}
+            ax.plot(time, factor * force, label=name, **look)
     if cycles.sizes["cycle"]:
         ax.legend(
             loc="lower right",

@@ -106,13 +106,11 @@ def _draw_spring(ax: Axes, lab: Placement, slider: Slider) -> list[Points]:
     ):
         ends, offset = np.outer([BLOCK, length], along), (0.3 if c > 0 else 0.0) * across
         shapes.line(ax, lab(shapes.spring_path(*(ends + offset))))
-        text = f"$k_{axis}$"
-        beside = ends.mean(axis=0) - 0.55 * across
+        text, edge = f"$k_{axis}$", 0.3
         if c > 0:
             shapes.dashpot(ax, *lab(ends - offset))
-            text += f", $c_{axis}$"
-            beside -= offset * (1 + 1.5 * abs(lab(across)[0]))  # a text is wider than high
-        shapes.name(ax, lab(beside), text)
+            text, edge = f"{text}, $c_{axis}$", 0.6
+        shapes.beside(ax, lab(ends.mean(axis=0) - edge * across), -lab(across), text)
     return [bracket]
 
 

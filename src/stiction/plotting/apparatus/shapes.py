@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from stiction.plotting.page.style import BLACK, PALE
 
 Points = NDArray[np.float64]
+SIDEWAYS = 0.3  # of a unit vector: a part that is less does not shift a text beside a point
 
 
 def line(
@@ -72,6 +73,16 @@ def name(ax: Axes, point: ArrayLike, text: str, color: str = BLACK, size: float 
     """Write `text` centred at `point`; `size` in pt."""
     x, y = np.asarray(point)
     return ax.text(x, y, text, color=color, fontsize=size, ha="center", va="center", zorder=6)
+
+
+def beside(ax: Axes, point: ArrayLike, way: ArrayLike, text: str) -> Text:
+    """Write `text` on that side of `point` which the vector `way` leads to, whatever its size."""
+    (x, y), (right, up) = np.asarray(point), np.asarray(way) / np.hypot(*np.asarray(way))
+    drawn = name(ax, (x, y), text)
+    sides = {"ha": ("right", "center", "left"), "va": ("top", "center", "bottom")}
+    for (key, side), part in zip(sides.items(), (right, up), strict=True):
+        drawn.set(**{key: side[1 + int(np.sign(part)) * (abs(part) > SIDEWAYS)]})
+    return drawn
 
 
 def spring_path(start: ArrayLike, end: ArrayLike, width: float = 0.22, turns: int = 5) -> Points:

@@ -15,6 +15,9 @@ from stiction.text.quantity_text import prefixed
 SYMBOLS = {"phi": r"$\varphi$", "drive.velocity": "$V$", "normal_load": "$W$", "mass": "$m$"}
 PLAIN = FuncFormatter(lambda value, _: f"{value:g}")  # 0.1, 1, 10: units are chosen to suit
 
+# the same where ticks stand closely, as those of a decade do: one, two and five
+SPARSE = FuncFormatter(lambda value, _: f"{value:g}" if f"{value:.0e}"[0] in "125" else "")
+
 
 def parameter_symbol(path: str) -> str:
     """Return how a parameter is printed, several that share one value with equals signs."""

@@ -38,9 +38,6 @@ FORMERLY = {
     "song": TRANSVERSE,
 }
 FEWEST = 2  # swings that tell a kind: one may be the end of a transient
-# Of the period of the mass on the softer spring alone: a vibration of a lesser one has the stiffer
-# spring swing as well, as friction that turns couples them. On one spring friction only prolongs it
-QUICK = 0.9
 OSCILLATES = 0.1  # of the largest that the fast oscillation can be before the slip reverses
 
 
@@ -140,7 +137,7 @@ def by_shape(cycles: Swings, own: float) -> str:
     """Return the kind of cycles, by their shape, their size and how quick they are."""
     count = len(cycles.drop)
     kind = regime.shape(float(np.sort(cycles.rise_share)[count // 2]))
-    if kind in (regime.TRANSITIONAL, regime.HARMONIC) and cycles.period.mean() < QUICK * own:
+    if kind in (regime.TRANSITIONAL, regime.HARMONIC) and cycles.period.mean() < regime.QUICK * own:
         return TRANSVERSE
     return regime.IRREGULAR if kind == regime.HARMONIC and irregular(cycles) else kind
 

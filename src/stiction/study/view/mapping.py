@@ -13,6 +13,7 @@ from stiction.errors import DescriptionError, Fault
 from stiction.plotting.maps import (
     Side,
     draw_changes,
+    draw_kinds,
     draw_measure,
     draw_points,
     draw_regimes,
@@ -25,7 +26,7 @@ from stiction.plotting.page.style import COLUMN, PAGE, style
 from stiction.plotting.stability.damping import draw_damping_map
 from stiction.study.plan.layout import Index
 from stiction.study.view.boundaries import Plane, damping_number, plane
-from stiction.study.view.view import REGIME, View, chosen, kinds, label, viewed
+from stiction.study.view.view import REGIME, View, chosen, kinds, viewed
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -169,6 +170,15 @@ def _maps(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
     return list(panels[: len(measures)])
 
 
+def in_words(data: xr.Dataset, name: str) -> tuple[np.ndarray, str]:
+    """Return a measure in a unit that suits its largest value, and its name with that unit."""
+    values = data[name].values
+    known = np.abs(values[np.isfinite(values)])
+    largest = known.max() if len(known) else 1.0
+    factor, unit = in_unit(largest, str(data[name].attrs.get("units", "1")))
+    return factor * values, f"{name.replace('_', ' ')} ({unit})"
+
+
 def _map(ax: Axes, view: View, name: str, theory: Plane) -> list[Any]:
     """Draw one map with the theory over it; return what the legend tells."""
     x, y = (side(view, str(dim)) for dim in view.data[name].dims)
@@ -176,8 +186,7 @@ def _map(ax: Axes, view: View, name: str, theory: Plane) -> list[Any]:
     if name == REGIME:
         handles += draw_regimes(ax, x, y, kinds(view.data))
     else:
-        mesh = draw_measure(ax, x, y, view.data[name].values)
-        ax.figure.colorbar(mesh, ax=ax, label=label(view.data, name), pad=0.02)
+        handles += draw_measure(ax, x, y, *in_words(view.data, name))[1]
     x_dim, y_dim = (str(dim) for dim in view.data[name].dims)
     fine = side(view, x_dim, theory.x), side(view, y_dim, theory.y)
     for found in view.changes:
@@ -194,7 +203,10 @@ def _curves(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
     else:
         panels = listed(axes)
     for ax, name in zip(panels, measures, strict=True):
-        draw_slice(ax, side(view, str(dim)), view.data[name].values, label(view.data, name))
+        if name == REGIME:
+            draw_kinds(ax, side(view, str(dim)), list(kinds(view.data)))
+        else:
+            draw_slice(ax, side(view, str(dim)), *in_words(view.data, name))
         if ax is not panels[-1]:
             ax.set_xlabel("")
     return list(panels)

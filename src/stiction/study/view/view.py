@@ -147,9 +147,3 @@ def kinds(data: xr.Dataset) -> np.ndarray:
     names = np.array([*KINDS, ""], dtype=object)
     found: np.ndarray = names[data[REGIME].values.astype(int)]  # -1 is the last
     return found
-
-
-def label(data: xr.Dataset, name: str) -> str:
-    """Return a measure's name and unit."""
-    unit = data[name].attrs.get("units", "1")
-    return f"{name.replace('_', ' ')} ({unit})"
