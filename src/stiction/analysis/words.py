@@ -20,7 +20,7 @@ from stiction.analysis.motion.regime import (
     TRANSITIONAL,
 )
 from stiction.analysis.signals.hum import of_mains
-from stiction.analysis.stuck import stuck_until
+from stiction.analysis.slip import stuck_until
 from stiction.analysis.transverse_oscillation import hides
 from stiction.text.columns import Quantity, grid
 from stiction.text.sections import Section, Table

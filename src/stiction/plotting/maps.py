@@ -107,9 +107,8 @@ def draw_measure(
     log = positive and found.max() > DECADES * found.min()
     hatched = []
     if len(found) < values.size:
-        look = {"hatch": "////", "edgecolor": "#BBBBBB"}
-        ax.patch.set(**look)
-        hatched = [Patch(facecolor="white", label="no value", **look)]
+        ax.patch.set(hatch="////", edgecolor="#BBBBBB")
+        hatched = [Patch(facecolor="white", edgecolor="#BBBBBB", hatch="////", label="no value")]
     mesh = ax.pcolormesh(
         x.edges, y.edges, np.ma.masked_invalid(values.T), cmap="cividis",
         norm=LogNorm(max(found.min(), found.max() / DEEPEST), found.max()) if log else None,

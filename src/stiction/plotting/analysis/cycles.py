@@ -88,8 +88,8 @@ def draw_cycles(ax: Axes, record: Record, cycles: xr.Dataset) -> None:
         (low_time, low, BLUE, CARETUP, "trough"),
     ):
         if len(time):
-            look = {"marker": marker, "linestyle": "none", "color": color, "markersize": size}
-            ax.plot(time, factor * force, label=name, **look)
+            (marks,) = ax.plot(time, factor * force, color=color, markersize=size, label=name)
+            marks.set(marker=marker, linestyle="none")
     if cycles.sizes["cycle"]:
         ax.legend(
             loc="lower right",
