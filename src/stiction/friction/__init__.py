@@ -16,7 +16,7 @@ from stiction.friction.laws.anisotropic import Anisotropic, anisotropy_table, re
 from stiction.friction.laws.coulomb import Coulomb
 from stiction.friction.laws.exponential_weakening import ExponentialWeakening
 from stiction.friction.laws.hyperbolic_weakening import HyperbolicWeakening
-from stiction.friction.laws.lugre import LuGre, bending
+from stiction.friction.laws.lugre import LuGre, bending, bending_gradient
 from stiction.friction.laws.rate_and_state import FUNCTIONS as _RATE_AND_STATE
 from stiction.friction.laws.rate_and_state_one import RateStateAgeing, RateStateSlip
 from stiction.friction.laws.rate_and_state_two import RateStateAgeing2, RateStateSlip2
@@ -26,7 +26,7 @@ from stiction.friction.user.loading import Find, is_own, named, own_table, read_
 from stiction.text.toml import choose
 
 # plain functions that laws call, to be compiled with them
-FUNCTIONS = (*_RATE_AND_STATE, bending)
+FUNCTIONS = (*_RATE_AND_STATE, bending, bending_gradient)
 
 LAWS: dict[str, type[Any]] = {
     "coulomb": Coulomb,

@@ -60,7 +60,9 @@ class StateLaw(Protocol):
 
     A law whose friction varies over many decades of slip speed may say, by a method
     ``grain(law, state)``, below which slip speed (m/s) it is proportional to it; the solver
-    then works with the logarithm of the slip speed above.
+    then works with the logarithm of the slip speed above. By a method ``gradient(law, slip, load,
+    state)`` it may give the derivatives of force x, y and of each state's change, a tuple for each
+    of these, by slip x, y and each state; without it the solver takes differences, which is slower.
     """
 
     @property

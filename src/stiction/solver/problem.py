@@ -111,6 +111,14 @@ def change(law: StateLaw, slip: Vector, load: float, state: tuple[float, ...]) -
     return law.change(slip, load, state)
 
 
+def gradient(
+    law: Any, slip: Vector, load: float, state: tuple[float, ...]
+) -> tuple[tuple[float, ...], ...]:
+    """Return the derivatives of a law's force and change, if it gives them."""
+    rows: tuple[tuple[float, ...], ...] = law.gradient(slip, load, state)
+    return rows
+
+
 def grain(law: StateLaw, state: tuple[float, ...]) -> float:
     """Return the slip speed below which friction is proportional to it."""
     own: Callable[..., float] | None = getattr(law, "grain", None)
@@ -184,6 +192,7 @@ for _function in (
     slope,
     force,
     change,
+    gradient,
     travel,
     rate,
     rate_change,

@@ -16,6 +16,8 @@ STEADY = (1e-6, 1e-4, 1e-2, 1.0)  # m/s, where steady sliding is computed
 SLOWEST = 1e-9  # m/s; the state that zero slip is looked at with
 FORGOTTEN = 1.0  # m of slip, after which any friction has settled
 OFF = 1.37
+APART = 1e-5  # of a slip speed or a state: central differences are off by its square
+SLOPE = 1e-5  # relative: how well derivatives agree with them
 SETTLED = 1e-4  # relative: how well friction after that slip is the steady one
 
 
@@ -117,6 +119,50 @@ def steady_state(law: Any, point: Point) -> tuple[float, ...]:
     return tuple(map(float, done.y[:, -1]))
 
 
+def derivatives(law: Any, speeds: Sequence[float]) -> Iterator[str]:
+    """What a law gives as derivatives are those of its force and change, where it gives any."""
+    if not hasattr(law, "gradient"):
+        return
+    found = []
+    for point in points([v for v in STEADY if min(speeds) <= v <= max(speeds)]):
+        try:
+            state = tuple(OFF * each for each in steady_state(law, point))
+            rows = law.gradient(*point, state)
+        except Exception as error:
+            found.append(f"gradient {point} raises {said(error)}")
+            continue
+        wanted = _differences(law, point, state)
+        if [len(row) for row in rows] != [len(row) for row in wanted]:
+            found.append(f"gradient {point} must be {len(wanted)} rows of {len(wanted)} numbers")
+            continue
+        for one, other in zip(rows, wanted, strict=True):
+            units = [hypot(*point.slip)] * 2 + [abs(each) for each in state]
+            parts = [(a * u, b * u) for a, b, u in zip(one, other, units, strict=True)]
+            scale = max(abs(b) for _, b in parts)
+            if not all(abs(a - b) <= SLOPE * scale for a, b in parts):
+                found.append(f"gradient {point} has the row {one}, differences give {other}")
+    yield from first(found)
+
+
+def _differences(law: Any, point: Point, state: tuple[float, ...]) -> list[list[float]]:
+    """Return the rows of `gradient` by central differences."""
+    v = hypot(*point.slip)
+
+    def flow(x: Sequence[float]) -> list[float]:
+        where = (x[0], x[1]), point.load, tuple(x[2:])
+        return [*law.force(*where), *law.change(*where)]
+
+    columns = []
+    for k, value in enumerate((*point.slip, *state)):
+        step = APART * (v if k < 2 else max(abs(value), 1e-3))
+        ahead, behind = ([*point.slip, *state] for _ in range(2))
+        ahead[k], behind[k] = value + step, value - step
+        columns.append(
+            [(a - b) / (2.0 * step) for a, b in zip(flow(ahead), flow(behind), strict=True)]
+        )
+    return [list(row) for row in zip(*columns, strict=True)]
+
+
 def compiled(law: Any, speeds: Sequence[float]) -> Iterator[str]:
     """What is compiled gives what Python gives."""
     import numba
@@ -148,4 +194,9 @@ def _calling(function: Callable[..., Any]) -> Callable[..., Any]:
     return lambda law, slip, load, state: function(law, slip, load, state)
 
 
-WITH_STATE = {"finite": finite, "dissipative": dissipative, "compiled": compiled}
+WITH_STATE = {
+    "finite": finite,
+    "dissipative": dissipative,
+    "derivatives": derivatives,
+    "compiled": compiled,
+}

@@ -11,6 +11,7 @@ from math import acos, asinh, atan2, cos, exp, hypot, inf, log, pi, sin, sqrt, t
 from pathlib import Path
 from typing import NamedTuple
 
+import numba
 import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
@@ -19,15 +20,21 @@ from tests.entry import entry
 
 import stiction as st
 import stiction.solver
+from stiction.solver.block_algebra import solved
 from stiction.solver.compilation.jit import called
 from stiction.solver.exact.loop import steps
 from stiction.solver.integrate import accuracy, tolerance
 from stiction.solver.law import pointed
-from stiction.solver.problem import kinds_of
+from stiction.solver.problem import Elliptic, Isotropic, kinds_of
 from stiction.solver.segments import stretches
 from stiction.solver.smooth import loop as smooth_loop
 from stiction.solver.smooth.coordinate import coordinate, risen, slip_at, slip_slope
+from stiction.solver.smooth.dispatch import Smoothed, friction_and_gradient
+from stiction.solver.smooth.elimination import correct_states, residuals_without
 from stiction.solver.smooth.method import Smooth
+from stiction.solver.smooth.newton import factors, linear
+from stiction.solver.smooth.right_hand_side import Stages
+from stiction.solver.smooth.workspace import workspace
 from stiction.solver.state import Motion, State, named, start
 from stiction.solver.stick import stick_duration, to_spare
 from stiction.solver.surface import takeoff
@@ -38,6 +45,8 @@ SOLVER = Path(stiction.solver.__file__).parent
 
 coordinate, risen, slip_at, slip_slope = map(entry, (coordinate, risen, slip_at, slip_slope))
 stick_duration, takeoff, to_spare = map(entry, (stick_duration, takeoff, to_spare))
+
+SMOOTHED = numba.njit(lambda law, slip, load: friction_and_gradient(law, slip, load))
 
 NEWTON = 1e-11  # what corrections are iterated to here, so that residuals vanish
 C = np.array([(4 - sqrt(6)) / 10, (4 + sqrt(6)) / 10, 1.0])
@@ -697,7 +706,7 @@ def test_the_slope_of_the_slip_coordinate(q):
 
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
 def test_a_damped_update(share):
-    """(M68), to a thousandth, as iterates need."""
+    """(M69), to a thousandth, as iterates need."""
     q, rise = 3.0, 5.0
     up = risen(q, rise, share)
     left = share * (np.sinh(up) - np.sinh(q)) / np.cosh(q) + (1 - share) * (up - q)
@@ -713,6 +722,91 @@ def test_the_logarithmic_state(law):
     x = slip * theta / law.D_c
     wanted = (1 - x if isinstance(law, st.RateStateAgeing) else -x * log(x)) / theta
     assert law.change((slip, 0.0), 1.0, (zeta,)) == pytest.approx((wanted,), rel=1e-13)
+
+
+@pytest.mark.parametrize("slip", [(3e-7, -4e-7), (2e-3, 1e-3), (0.0, 0.0)])
+@pytest.mark.parametrize("surface", [Isotropic(), Elliptic(1.0, 0.2, 0.6)])
+def test_the_derivatives_of_a_smoothed_law(slip, surface):
+    """Those of (M60), by differences: what is compiled has both from one call."""
+    law, load, delta = PAPER.law, 10.0, 1e-6
+    smoothed = Smoothed(law, surface, delta)
+    compiled = SMOOTHED(smoothed, slip, load)
+    assert compiled[:2] == pytest.approx(smoothed.force(slip, load, ()), rel=1e-14)
+    h = 1e-5 * max(delta, hypot(*slip))
+    sides = [
+        (smoothed.force((slip[0] + x, slip[1] + y), load, ()), (x or y))
+        for x, y in ((h, 0.0), (-h, 0.0), (0.0, h), (0.0, -h))
+    ]
+    (ahead, _), (behind, _), (up, _), (down, _) = sides
+    by_x, by_y = (np.subtract(a, b) / (2 * h) for a, b in ((ahead, behind), (up, down)))
+    wanted = [by_x[0], by_y[0], by_x[1], by_y[1]]
+    assert compiled[2:] == pytest.approx(wanted, abs=1e-7 * np.abs(wanted).max())
+
+
+@numba.njit(error_model="numpy")
+def eliminated_and_solved(h, k, c, slope, friction, flow, right):
+    """Return the solution of (M68) for slip x, slip y and the states, as the solver has it."""
+    n = right.shape[0] - 2
+    w = workspace(n)
+    for i in range(3):
+        w.jacobian[i + 1] = flow[i]
+        for z in range(2, n + 2):
+            w.flow[i + 1, z] = -right[z, i] / h  # all that residuals of states are, at z = z_0
+    at = Stages(
+        (0.0, 0.0, 0.0),
+        (0.0, 0.0, 0.0),
+        (0.0, 0.0, 0.0),
+        (0.0, 0.0, 0.0),
+        (slope[0, 0, 0], slope[1, 0, 0], slope[2, 0, 0]),
+        (slope[0, 0, 1], slope[1, 0, 1], slope[2, 0, 1]),
+        (slope[0, 1, 1], slope[1, 1, 1], slope[2, 1, 1]),
+        (friction[0, 0, 0], friction[1, 0, 0], friction[2, 0, 0]),
+        (friction[0, 0, 1], friction[1, 0, 1], friction[2, 0, 1]),
+        (friction[0, 1, 0], friction[1, 1, 0], friction[2, 1, 0]),
+        (friction[0, 1, 1], friction[1, 1, 1], friction[2, 1, 1]),
+    )
+    x = linear(h, k[0], c[0], 0.0, (0.0, 0.0, 0.0))
+    y = linear(h, k[1], c[1], 0.0, (0.0, 0.0, 0.0))
+    m = factors(h, x, y, at, w)
+    r_x = right[0, 0], right[0, 1], right[0, 2]
+    r_y = right[1, 0], right[1, 1], right[1, 2]
+    if n > 0:
+        r_x, r_y = residuals_without(h, r_x, r_y, w)
+    d_x, d_y = solved(m, r_x, r_y)
+    if n > 0:
+        correct_states(d_x, d_y, w)
+    return d_x, d_y, -w.values[1:4, 2:]
+
+
+@pytest.mark.parametrize("damped", [False, True])
+@pytest.mark.parametrize("number", [0, 1, 2, 3])
+def test_elimination_solves_the_printed_equations(number, damped):
+    """(M68): all blocks at once by NumPy, against the states eliminated one after the other."""
+    draw, n, h = np.random.default_rng(number), number, 1e-3
+    size = 2 + n
+    flow = draw.normal(size=(3, size, size))
+    for k in range(2, size):
+        flow[:, k, k] = -np.abs(flow[:, k, k]) / h  # states decay
+    slope = draw.normal(size=(3, 2, 2)) * 0.1
+    slope = slope + slope.transpose(0, 2, 1) + np.eye(2)
+    k, c = draw.uniform(1e4, 1e6, 2), draw.uniform(0.0, 1e2, 2) * damped
+    friction = flow[:, :2, :2] @ slope
+    matrix = np.zeros((size, 3, size, 3))
+    for a in range(2):
+        linear = D + h * h * k[a] * A + h * c[a] * np.eye(3)
+        for b in range(2):
+            matrix[a, :, b] = linear * slope[:, a, b] + np.diag(h * friction[:, a, b])
+    for z in range(2, size):
+        for b in range(2):
+            matrix[z, :, b] = np.diag(-h * np.einsum("ij,ij->i", flow[:, z, :2], slope[:, :, b]))
+            matrix[b, :, z] = np.diag(h * flow[:, b, z])
+        for other in range(2, size):
+            matrix[z, :, other] = (D if z == other else 0.0) - np.diag(h * flow[:, z, other])
+    right = draw.normal(size=(size, 3))
+    wanted = np.linalg.solve(matrix.reshape(3 * size, -1), right.ravel()).reshape(size, 3)
+    d_x, d_y, states = eliminated_and_solved(h, k, c, slope, friction, flow, right)
+    found = np.vstack([d_x, d_y, states.T])
+    assert found == pytest.approx(wanted, rel=1e-9, abs=1e-9 * np.abs(wanted).max())
 
 
 def test_the_printed_residuals_of_a_smooth_step_vanish():

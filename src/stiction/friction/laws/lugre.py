@@ -80,9 +80,37 @@ class LuGre(NamedTuple):
         give = bending(law, s_x, s_y, load)
         return s_x - give * z_x, s_y - give * z_y
 
+    def gradient(
+        law, slip: Vector, load: float, state: tuple[float, ...]
+    ) -> tuple[tuple[float, ...], ...]:
+        """Return the derivatives of force and change by slip x, y and the deflection."""
+        (s_x, s_y), (z_x, z_y) = slip, state
+        give = bending(law, s_x, s_y, load)
+        by_x, by_y = bending_gradient(law, s_x, s_y, load)
+        xx, xy, yx, yy = 1.0 - by_x * z_x, -by_y * z_x, -by_x * z_y, 1.0 - by_y * z_y
+        one, two, by_z = law.sigma_1, law.sigma_2, law.sigma_0 - law.sigma_1 * give
+        return (
+            (one * xx + two, one * xy, by_z, 0.0),
+            (one * yx, one * yy + two, 0.0, by_z),
+            (xx, xy, -give, 0.0),
+            (yx, yy, 0.0, -give),
+        )
+
 
 def bending(law: LuGre, s_x: float, s_y: float, load: float) -> float:
     """Return sigma_0 |s|/g, the rate at which bristles give way, per second."""
     square = s_x * s_x + s_y * s_y
     g = law.mu_c + (law.mu_s - law.mu_c) * exp(-square / (law.v_s * law.v_s))
     return law.sigma_0 * sqrt(square) / (load * g)
+
+
+def bending_gradient(law: LuGre, s_x: float, s_y: float, load: float) -> Vector:
+    """Return the derivatives of `bending` by the slip velocity, per metre; zero at zero slip."""
+    square = s_x * s_x + s_y * s_y
+    if square == 0.0:
+        return 0.0, 0.0
+    narrow = 1.0 / (law.v_s * law.v_s)
+    weakened = (law.mu_s - law.mu_c) * exp(-square * narrow)
+    share = 1.0 / square + 2.0 * narrow * weakened / (law.mu_c + weakened)
+    f = bending(law, s_x, s_y, load) * share
+    return f * s_x, f * s_y

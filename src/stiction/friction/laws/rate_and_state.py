@@ -18,7 +18,7 @@ The internal states of the solver are log_theta_i = ln(V* theta_i/D_i).
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import asinh, exp, hypot, log
+from math import asinh, exp, hypot, log, sqrt
 from typing import NamedTuple
 
 SLOWEST = 1e-12  # m/s: there is no steady state at rest; this is steady sliding by 30 um a year
@@ -44,6 +44,29 @@ def friction_force(
     return f * slip[0], f * slip[1]
 
 
+def friction_gradient(
+    a: float, V_star: float, psi: float, slip: tuple[float, float], load: float
+) -> tuple[float, float, float, float, float]:
+    """Return the derivatives of `friction_force`: xx, xy and yy by slip, x and y by psi."""
+    V = hypot(slip[0], slip[1])
+    if V == 0.0:
+        stiff = a * load / grain_of(a, V_star, psi)
+        return stiff, 0.0, stiff, 0.0, 0.0
+    n_x, n_y = slip[0] / V, slip[1] / V
+    x = log(V / (2.0 * V_star)) + psi / a
+    e = exp(min(x, FIRM))
+    by_psi = load * e / sqrt(1.0 + e * e)
+    across = a * asinh_of_exp(x) * load / V
+    more = a * by_psi / V - across
+    return (
+        across + more * n_x * n_x,
+        more * n_x * n_y,
+        across + more * n_y * n_y,
+        by_psi * n_x,
+        by_psi * n_y,
+    )
+
+
 def grain_of(a: float, V_star: float, psi: float) -> float:
     """Return the slip speed below which friction is proportional to it, m/s."""
     return 2.0 * V_star * exp(-psi / a)
@@ -59,6 +82,26 @@ def slipping(log_theta: float, V: float, V_star: float, D: float) -> float:
     if V == 0.0:
         return 0.0
     return -V / D * (log(V / V_star) + log_theta)
+
+
+def ageing_gradient(
+    log_theta: float, slip: tuple[float, float], V_star: float, D: float
+) -> tuple[float, float, float]:
+    """Return the derivatives of `ageing` by slip x, y and the state."""
+    V = hypot(slip[0], slip[1])
+    f = -1.0 / (D * V) if V > 0.0 else 0.0
+    return f * slip[0], f * slip[1], -V_star * exp(-log_theta) / D
+
+
+def slipping_gradient(
+    log_theta: float, slip: tuple[float, float], V_star: float, D: float
+) -> tuple[float, float, float]:
+    """Return the derivatives of `slipping` by slip x, y and the state; zero at zero slip."""
+    V = hypot(slip[0], slip[1])
+    if V == 0.0:
+        return 0.0, 0.0, 0.0
+    f = -(log(V / V_star) + log_theta + 1.0) / (D * V)
+    return f * slip[0], f * slip[1], -V / D
 
 
 def faults(a: float, b: float, mu_star: float) -> Iterator[tuple[str, str]]:
@@ -112,4 +155,13 @@ def comparable(static: float, kinetic: float, speed: float) -> Comparable:
 
 
 # what the laws' methods call, to be compiled with them
-FUNCTIONS = (asinh_of_exp, friction_force, grain_of, ageing, slipping)
+FUNCTIONS = (
+    asinh_of_exp,
+    friction_force,
+    friction_gradient,
+    grain_of,
+    ageing,
+    ageing_gradient,
+    slipping,
+    slipping_gradient,
+)

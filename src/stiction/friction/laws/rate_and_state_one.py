@@ -9,12 +9,15 @@ from typing import NamedTuple, Self
 from stiction.friction.law import Internal, Vector
 from stiction.friction.laws.rate_and_state import (
     ageing,
+    ageing_gradient,
     comparable,
     faults,
     friction_force,
+    friction_gradient,
     grain_of,
     settled,
     slipping,
+    slipping_gradient,
     steady,
 )
 from stiction.text.units import Coefficient, PositiveLength, PositiveNumber, PositiveSpeed
@@ -91,6 +94,18 @@ class RateStateAgeing(OneState):
         V = hypot(slip[0], slip[1])
         return (ageing(state[0], V, law.V_star, law.D_c),)
 
+    def gradient(
+        law, slip: Vector, load: float, state: tuple[float, ...]
+    ) -> tuple[tuple[float, ...], ...]:
+        """Return the derivatives of force and change by slip x, y and the state."""
+        psi = law.mu_star + law.b * state[0]
+        xx, xy, yy, x, y = friction_gradient(law.a, law.V_star, psi, slip, load)
+        return (
+            (xx, xy, law.b * x),
+            (xy, yy, law.b * y),
+            ageing_gradient(state[0], slip, law.V_star, law.D_c),
+        )
+
 
 class RateStateSlip(OneState):
     """Rate-and-state friction, slip law (Ruina 1983).
@@ -120,3 +135,15 @@ class RateStateSlip(OneState):
         """Return d(log_theta)/dt, per second."""
         V = hypot(slip[0], slip[1])
         return (slipping(state[0], V, law.V_star, law.D_c),)
+
+    def gradient(
+        law, slip: Vector, load: float, state: tuple[float, ...]
+    ) -> tuple[tuple[float, ...], ...]:
+        """Return the derivatives of force and change by slip x, y and the state."""
+        psi = law.mu_star + law.b * state[0]
+        xx, xy, yy, x, y = friction_gradient(law.a, law.V_star, psi, slip, load)
+        return (
+            (xx, xy, law.b * x),
+            (xy, yy, law.b * y),
+            slipping_gradient(state[0], slip, law.V_star, law.D_c),
+        )

@@ -9,12 +9,15 @@ from typing import NamedTuple, Self
 from stiction.friction.law import Internal, Vector
 from stiction.friction.laws.rate_and_state import (
     ageing,
+    ageing_gradient,
     comparable,
     faults,
     friction_force,
+    friction_gradient,
     grain_of,
     settled,
     slipping,
+    slipping_gradient,
     steady,
 )
 from stiction.text.units import Coefficient, PositiveLength, PositiveNumber, PositiveSpeed
@@ -104,6 +107,21 @@ class RateStateAgeing2(TwoStates):
             ageing(state[1], V, law.V_star, law.D_2),
         )
 
+    def gradient(
+        law, slip: Vector, load: float, state: tuple[float, ...]
+    ) -> tuple[tuple[float, ...], ...]:
+        """Return the derivatives of force and change by slip x, y and the states."""
+        psi = law.mu_star + law.b_1 * state[0] + law.b_2 * state[1]
+        xx, xy, yy, x, y = friction_gradient(law.a, law.V_star, psi, slip, load)
+        one_x, one_y, one = ageing_gradient(state[0], slip, law.V_star, law.D_1)
+        two_x, two_y, two = ageing_gradient(state[1], slip, law.V_star, law.D_2)
+        return (
+            (xx, xy, law.b_1 * x, law.b_2 * x),
+            (xy, yy, law.b_1 * y, law.b_2 * y),
+            (one_x, one_y, one, 0.0),
+            (two_x, two_y, 0.0, two),
+        )
+
 
 class RateStateSlip2(TwoStates):
     """Rate-and-state friction with two states, slip law (Ruina 1983).
@@ -136,4 +154,19 @@ class RateStateSlip2(TwoStates):
         return (
             slipping(state[0], V, law.V_star, law.D_1),
             slipping(state[1], V, law.V_star, law.D_2),
+        )
+
+    def gradient(
+        law, slip: Vector, load: float, state: tuple[float, ...]
+    ) -> tuple[tuple[float, ...], ...]:
+        """Return the derivatives of force and change by slip x, y and the states."""
+        psi = law.mu_star + law.b_1 * state[0] + law.b_2 * state[1]
+        xx, xy, yy, x, y = friction_gradient(law.a, law.V_star, psi, slip, load)
+        one_x, one_y, one = slipping_gradient(state[0], slip, law.V_star, law.D_1)
+        two_x, two_y, two = slipping_gradient(state[1], slip, law.V_star, law.D_2)
+        return (
+            (xx, xy, law.b_1 * x, law.b_2 * x),
+            (xy, yy, law.b_1 * y, law.b_2 * y),
+            (one_x, one_y, one, 0.0),
+            (two_x, two_y, 0.0, two),
         )

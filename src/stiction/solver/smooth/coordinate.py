@@ -1,24 +1,25 @@
 """The slip coordinate q, in which friction is nearly linear: s = eps sinh(|q|) q/|q| (M64).
 
 Rate-and-state friction is proportional to the slip velocity below a speed eps, which may
-be 1e-30 m/s, and to its logarithm above. With eps = 1e6 m/s, q is the slip velocity itself
-in other units.
+be 1e-30 m/s, and to its logarithm above. With eps infinite, q is the slip velocity itself.
 """
 
 from __future__ import annotations
 
-from math import asinh, cosh, exp, hypot, log, sinh, sqrt
+from math import asinh, cosh, exp, hypot, inf, log, sinh, sqrt
 
-from stiction.solver.compilation.jit import piece
+from stiction.solver.compilation.jit import inlined, piece
 
 SMALL = 1e-4  # below, sinh(x)/x = 1 + x^2/6 to the last digit
 LARGEST = 700.0  # sinh of more is no float
 ROUNDS = 30
 
 
-@piece
+@inlined
 def slip_at(eps: float, q_x: float, q_y: float) -> tuple[float, float]:
     """Return the slip velocity (m/s)."""
+    if eps == inf:
+        return q_x, q_y
     square = q_x * q_x + q_y * q_y
     if square < SMALL * SMALL:
         f = eps * (1.0 + square / 6.0)
@@ -28,30 +29,36 @@ def slip_at(eps: float, q_x: float, q_y: float) -> tuple[float, float]:
     return f * q_x, f * q_y
 
 
-@piece
+@inlined
 def coordinate(eps: float, s_x: float, s_y: float) -> tuple[float, float]:
     """Return q at a slip velocity (m/s)."""
+    if eps == inf:
+        return s_x, s_y
     s = hypot(s_x, s_y)  # whose square may be no float
     f = asinh(s / eps) / s if s > 0.0 else 0.0
     return f * s_x, f * s_y
 
 
-@piece
+@inlined
 def slip_slope(eps: float, q_x: float, q_y: float) -> tuple[float, float, float]:
     """Return ds/dq (M65): xx, xy and yy (m/s)."""
+    if eps == inf:
+        return 1.0, 0.0, 1.0
     square = q_x * q_x + q_y * q_y
     if square < SMALL * SMALL:
         f, outer = eps * (1.0 + square / 6.0), eps / 3.0
     else:
         q = sqrt(square)
-        f = eps * sinh(min(q, LARGEST)) / q
-        outer = (eps * cosh(min(q, LARGEST)) - f) / square
+        up = 0.5 * exp(min(q, LARGEST))
+        down = 0.25 / up
+        f = eps * (up - down) / q
+        outer = (eps * (up + down) - f) / square
     return f + outer * q_x * q_x, outer * q_x * q_y, f + outer * q_y * q_y
 
 
 @piece
 def risen(q: float, rise: float, share: float) -> float:
-    """Return |q| after an update by `rise` > 0 of which `share` is meant for s, not for q (M68).
+    """Return |q| after an update by `rise` > 0 of which `share` is meant for s, not for q (M69).
 
     What resists in Newton's equations is inertia, exponential in q, and friction, about
     linear in it. The update would be right if both were linear; this solves

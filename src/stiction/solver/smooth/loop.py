@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from math import hypot, isfinite
+from math import hypot, inf, isfinite
 
 import numpy as np
 
+from stiction.solver.block_algebra import dot
 from stiction.solver.compilation.jit import compiled, piece
 from stiction.solver.problem import Problem, in_principal_axes, travel
-from stiction.solver.radau import step_factor
+from stiction.solver.radau import A, step_factor
 from stiction.solver.smooth.coordinate import coordinate
-from stiction.solver.smooth.law import flow, grain_of
-from stiction.solver.smooth.newton import A
-from stiction.solver.smooth.rates import Outset, measure, moving, prepare
+from stiction.solver.smooth.dispatch import grain_of
+from stiction.solver.smooth.right_hand_side import Outset, evaluate, measure, moving, pull
 from stiction.solver.smooth.sampling import sample
 from stiction.solver.smooth.state import Memory, Motion, State
 from stiction.solver.smooth.step import remember, step
-from stiction.solver.smooth.workspace import START, Workspace, workspace
+from stiction.solver.smooth.workspace import LAST, START, Workspace, workspace
 from stiction.solver.state import (
     COMPLETED,
     NON_FINITE,
@@ -33,37 +33,36 @@ COARSEST = 1e12  # of the slip speed that is resolved: a slip coordinate that is
 @piece
 def begin(
     problem: Problem, motion: Motion, z: np.ndarray, w: Workspace, accuracy: Accuracy
-) -> Outset:
-    """Write the first row of a step, and return where it starts."""
+) -> tuple[Outset, float, float]:
+    """Write the first row of a step; return where it starts, and its slip coordinate."""
     t, u_x, u_y, s_x, s_y = motion
     speed = accuracy.speed
-    w.values[START, 0] = s_x
-    w.values[START, 1] = s_y
+    w.values[START, 0], w.values[START, 1] = s_x, s_y
     for k in range(len(z)):
-        w.values[START, 2 + k] = w.y[START, 2 + k] = z[k]
-    eps = min(grain_of(problem.law, w.values, START), COARSEST * speed)
-    w.y[START, 0], w.y[START, 1] = coordinate(eps, s_x, s_y)
-    start = Outset(t, u_x, u_y, eps, min(1.0, speed / eps), 1.0)
-    prepare(problem, start, 0.0, w, START)
-    if len(z) > 0:
-        measure(problem, start, w)
-    else:
-        slip, weight, per_mass = (s_x, s_y), w.weight[START], problem.system.per_mass
-        flow(problem.law, slip, weight, per_mass, w.values, START, w.flow)
-    share = min(1.0, moving(problem, t, w, accuracy) / (speed + hypot(s_x, s_y)))
-    return Outset(t, u_x, u_y, eps, start.unit, share)
+        w.values[START, 2 + k] = z[k]
+        w.size[2 + k] = 1.0
+    grain = grain_of(problem.law, w.values, START)
+    w.size[0] = w.size[1] = min(grain, speed)
+    eps = grain if len(z) > 0 and grain < COARSEST * speed else inf
+    unit = min(grain, speed) if eps == inf else min(1.0, speed / eps)
+    q_x, q_y = coordinate(eps, s_x, s_y)
+    start = Outset(t, u_x, u_y, eps, unit, 1.0)
+    acting = pull(problem, start, 0.0)
+    at = evaluate(problem, eps, acting.load, q_x, q_y, w, START, len(z) > 0)
+    measure(problem, acting.load, w)
+    share = min(1.0, moving(problem, t, acting, at, accuracy) / (speed + hypot(s_x, s_y)))
+    return Outset(t, u_x, u_y, eps, unit, share), q_x, q_y
 
 
 @piece
 def ended(problem: Problem, start: Outset, h: float, end: float, w: Workspace) -> Motion:
     """Return the motion at the end of a step."""
     d_x, d_y = in_principal_axes(problem, travel(problem.drive, start.t, h))
-    slid_x = slid_y = 0.0
-    for j in range(3):
-        slid_x += h * A[2, j] * w.values[j + 1, 0]
-        slid_y += h * A[2, j] * w.values[j + 1, 1]
+    v = w.values
+    slid_x = h * dot(A[2], (v[1, 0], v[2, 0], v[3, 0]))
+    slid_y = h * dot(A[2], (v[1, 1], v[2, 1], v[3, 1]))
     u_x, u_y = start.u_x + (d_x - slid_x), start.u_y + (d_y - slid_y)
-    return Motion(end, u_x, u_y, w.values[3, 0], w.values[3, 1])
+    return Motion(end, u_x, u_y, v[LAST, 0], v[LAST, 1])
 
 
 @piece
@@ -103,11 +102,10 @@ def advance(
         if not finite(motion, z):
             code = NON_FINITE
             break
-        start = begin(problem, motion, z, w, accuracy)
-        w.past[:, :] = past
-        remember(w, start.eps)
+        start, q_x, q_y = begin(problem, motion, z, w, accuracy)
+        remember(w, past, start.eps)
         done, taken, error, rejected, iterations = step(
-            problem, start, t_end, h, h_last, warm, w, accuracy
+            problem, start, q_x, q_y, t_end, h, h_last, warm, w, accuracy
         )
         counts = counted(counts, rejected, iterations)
         turns += 1
@@ -118,9 +116,9 @@ def advance(
         end = t_end if start.t + taken >= t_end else start.t + taken
         motion = ended(problem, start, taken, end, w)
         for i in range(len(z)):
-            z[i] = w.values[3, 2 + i]
+            z[i] = w.values[LAST, 2 + i]
         past[:, :] = w.values[:4, :]
-        following = taken * step_factor(error, GROWTH)
+        following = taken * step_factor(error, GROWTH if rejected == 0 else 1.0)
         h = min(max(h, following) if end == t_end else following, accuracy.longest)
         h_last, warm = taken, end < t_end
     if motion.t >= t_end:

@@ -14,7 +14,7 @@ from stiction.solver.output import Output
 from stiction.solver.problem import Isotropic, Problem, at, force
 from stiction.solver.segments import friction_of
 from stiction.solver.smooth import loop
-from stiction.solver.smooth.law import Smoothed, pointed
+from stiction.solver.smooth.dispatch import Smoothed, pointed
 from stiction.solver.smooth.state import Memory, Motion, State
 from stiction.solver.state import NOTHING, Accuracy, first_step
 from stiction.system.description import Description

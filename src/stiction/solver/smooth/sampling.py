@@ -8,18 +8,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from stiction.solver.compilation.jit import piece
+from stiction.friction.law import Vector
+from stiction.solver.block_algebra import dot
+from stiction.solver.compilation.jit import inlined, piece
 from stiction.solver.exact.sampling import COLUMNS
-from stiction.solver.problem import Problem, in_principal_axes, travel
-from stiction.solver.radau import C
+from stiction.solver.problem import Problem, at, in_principal_axes, travel
+from stiction.solver.radau import A, C, cubic
 from stiction.solver.smooth.coordinate import coordinate
-from stiction.solver.smooth.inside import balance, on_cubic
-from stiction.solver.smooth.newton import A, solve
-from stiction.solver.smooth.rates import Outset
-from stiction.solver.smooth.workspace import INSIDE, START, Workspace
+from stiction.solver.smooth.dispatch import flow
+from stiction.solver.smooth.error_estimate import balance, less_error, within
+from stiction.solver.smooth.newton import solve
+from stiction.solver.smooth.right_hand_side import Outset
+from stiction.solver.smooth.workspace import INSIDE, LAST, START, Workspace
 from stiction.solver.state import Accuracy
-
-LAST = 3  # row of the last stage
 
 
 @piece
@@ -39,19 +40,22 @@ def sample(
         dt = min(times[k] - start.t, h)
         x = dt / h
         d_x, d_y = in_principal_axes(problem, travel(problem.drive, start.t, dt))
+        u_x, u_y = start.u_x + d_x, start.u_y + d_y
         if dt > 0.0 and shorter(problem, start, x, h, w, inner, accuracy):
-            slid_x = slid_y = 0.0
-            for j in range(3):
-                slid_x += dt * A[2, j] * inner.values[j + 1, 0]
-                slid_y += dt * A[2, j] * inner.values[j + 1, 1]
-            write(
-                problem, start.u_x + d_x - slid_x, start.u_y + d_y - slid_y, inner, LAST, samples, k
-            )
+            v = inner.values
+            u_x -= dt * dot(A[2], (v[1, 0], v[2, 0], v[3, 0]))
+            u_y -= dt * dot(A[2], (v[1, 1], v[2, 1], v[3, 1]))
+            slip, load = (v[LAST, 0], v[LAST, 1]), at(problem.load, start.t + dt)
+            f = flow(problem.law, slip, load, problem.system.per_mass, inner, LAST, False)
+            write(problem, u_x, u_y, slip, (f[0], f[1]), samples, k)
+            write_states(inner, LAST, samples, k)
         else:  # the weight grows from zero at the start: there the polynomial is right
-            balance(problem, start, h, x, x, w, accuracy.newton)
-            u_x = start.u_x + d_x - h * on_cubic(w, 0, x)[2]
-            u_y = start.u_y + d_y - h * on_cubic(w, 1, x)[2]
-            write(problem, u_x, u_y, w, INSIDE, samples, k)
+            p = less_error(w, within(w, x), x)
+            _, there = balance(problem, start, h, x, x, p, w, accuracy.newton)
+            u_x, u_y = u_x - h * p.slid_x, u_y - h * p.slid_y
+            slip, friction = (there.s_x, there.s_y), (there.f_x, there.f_y)
+            write(problem, u_x, u_y, slip, friction, samples, k)
+            write_states(w, INSIDE, samples, k)
         k += 1
     return k
 
@@ -67,33 +71,41 @@ def shorter(
     accuracy: Accuracy,
 ) -> bool:
     """Solve the first part x of a step by itself, into `inner`; return whether it converges."""
-    n = w.y.shape[1]
+    n = w.size.shape[0]
     for k in range(n):
         inner.size[k] = w.size[k]
         inner.values[START, k] = w.values[START, k]
-        inner.y[START, k] = w.y[START, k]
-    for i in range(3):
-        c = C[i] * x
-        inner.y[i + 1, 0], inner.y[i + 1, 1] = coordinate(
-            start.eps, on_cubic(w, 0, c)[0], on_cubic(w, 1, c)[0]
-        )
-        for k in range(2, n):
-            inner.y[i + 1, k] = on_cubic(w, k, c)[0]
-    return bool(solve(problem, start, x * h, inner, accuracy)[0])
+    c = C[0] * x, C[1] * x, C[2] * x
+    p0, p1, p2 = within(w, c[0]), within(w, c[1]), within(w, c[2])
+    a_x, a_y = coordinate(start.eps, p0.s_x, p0.s_y)
+    b_x, b_y = coordinate(start.eps, p1.s_x, p1.s_y)
+    c_x, c_y = coordinate(start.eps, p2.s_x, p2.s_y)
+    for k in range(2, n):
+        z = w.values[START, k], w.values[1, k], w.values[2, k], w.values[3, k]
+        for i in range(3):
+            inner.values[i + 1, k] = cubic(z, c[i])
+    q_x, q_y = (a_x, b_x, c_x), (a_y, b_y, c_y)
+    return bool(solve(problem, start, x * h, q_x, q_y, inner, accuracy)[0])
 
 
-@piece
+@inlined
 def write(
-    problem: Problem, u_x: float, u_y: float, w: Workspace, i: int, samples: np.ndarray, k: int
+    problem: Problem,
+    u_x: float,
+    u_y: float,
+    slip: Vector,
+    friction: Vector,
+    samples: np.ndarray,
+    k: int,
 ) -> None:
-    """Write one row from the values in row `i`."""
-    m = problem.system.mass
-    samples[k, 0] = u_x
-    samples[k, 1] = u_y
-    samples[k, 2] = w.values[i, 0]
-    samples[k, 3] = w.values[i, 1]
-    samples[k, 4] = w.flow[i, 0] * m
-    samples[k, 5] = w.flow[i, 1] * m
-    samples[k, 6] = 0.0
-    for j in range(2, w.y.shape[1]):
+    """Write one row, but for the states."""
+    m, row = problem.system.mass, samples[k]
+    row[0], row[1], row[2], row[3] = u_x, u_y, slip[0], slip[1]
+    row[4], row[5], row[6] = friction[0] * m, friction[1] * m, 0.0
+
+
+@inlined
+def write_states(w: Workspace, i: int, samples: np.ndarray, k: int) -> None:
+    """Write the states in row `i` into one row of the samples."""
+    for j in range(2, w.size.shape[0]):
         samples[k, COLUMNS + j - 2] = w.values[i, j]

@@ -2,41 +2,72 @@
 
 from __future__ import annotations
 
-from stiction.solver.compilation.jit import piece
+import numpy as np
+
+from stiction.solver.block_algebra import Triple
+from stiction.solver.compilation.jit import inlined, piece
 from stiction.solver.exact.step import ATTEMPTS, RESOLUTION
 from stiction.solver.problem import Problem
 from stiction.solver.radau import C, cubic, step_factor
 from stiction.solver.smooth.coordinate import coordinate
-from stiction.solver.smooth.inside import local_error
+from stiction.solver.smooth.error_estimate import local_error
 from stiction.solver.smooth.newton import solve
-from stiction.solver.smooth.rates import Outset
+from stiction.solver.smooth.right_hand_side import Outset
 from stiction.solver.smooth.workspace import START, Workspace
 from stiction.solver.state import Accuracy
 
 
-@piece
-def predict(w: Workspace, x: float, warm: bool) -> None:
-    """Write a first guess of the stages: the last step's unknowns, continued `x` steps of it."""
-    n = w.y.shape[1]
-    for i in range(3):
-        for k in range(n):
-            w.y[i + 1, k] = w.y[START, k]
+@inlined
+def predict(w: Workspace, q_x: float, q_y: float, x: float, warm: bool) -> tuple[Triple, Triple]:
+    """Return a first guess of q at the stages, and write one of the states.
+
+    That is what held at the start or, if the last step predicts it, that step continued by `x` of
+    its size. Where it would turn back, friction brings it to rest, or nearly: it starts from there.
+    """
+    for k in range(2, w.size.shape[0]):
+        for i in range(3):
+            w.values[i + 1, k] = w.values[START, k]
             if warm:
-                last = (w.past[0, k], w.past[1, k], w.past[2, k], w.past[3, k])
-                w.y[i + 1, k] = cubic(last, 1.0 + C[i] * x)
+                w.values[i + 1, k] = cubic(last(w, k), 1.0 + C[i] * x)
+    if not warm:
+        return (q_x, q_x, q_x), (q_y, q_y, q_y)
+    a, b = continued(last(w, 0), x), continued(last(w, 1), x)
+    k1, k2, k3 = (
+        1.0 if a[0] * q_x + b[0] * q_y > 0.0 else 0.0,
+        1.0 if a[1] * q_x + b[1] * q_y > 0.0 else 0.0,
+        1.0 if a[2] * q_x + b[2] * q_y > 0.0 else 0.0,
+    )
+    return (k1 * a[0], k2 * a[1], k3 * a[2]), (k1 * b[0], k2 * b[1], k3 * b[2])
 
 
-@piece
-def remember(w: Workspace, eps: float) -> None:
-    """Turn the slip velocities of the last step into the slip coordinate of this one."""
+@inlined
+def last(w: Workspace, k: int) -> tuple[float, float, float, float]:
+    """Return a column at the start and the stages of the last step."""
+    return w.past[0, k], w.past[1, k], w.past[2, k], w.past[3, k]
+
+
+@inlined
+def continued(values: tuple[float, float, float, float], x: float) -> Triple:
+    """Return a cubic at the stages of the next step, `x` times as long."""
+    a, b, c = 1.0 + C[0] * x, 1.0 + C[1] * x, 1.0 + C[2] * x
+    return cubic(values, a), cubic(values, b), cubic(values, c)
+
+
+@inlined
+def remember(w: Workspace, past: np.ndarray, eps: float) -> None:
+    """Write the slip coordinate and the states of the last step from its slip velocities."""
     for i in range(4):
-        w.past[i, 0], w.past[i, 1] = coordinate(eps, w.past[i, 0], w.past[i, 1])
+        w.past[i, 0], w.past[i, 1] = coordinate(eps, past[i, 0], past[i, 1])
+        for k in range(2, w.size.shape[0]):
+            w.past[i, k] = past[i, k]
 
 
 @piece
 def step(
     problem: Problem,
     start: Outset,
+    q_x: float,
+    q_y: float,
     t_stop: float,
     h: float,
     h_last: float,
@@ -51,12 +82,12 @@ def step(
             h = t_stop - start.t
         elif not h > RESOLUTION * abs(start.t):
             break
-        predict(w, h / h_last, warm)
-        converged, count = solve(problem, start, h, w, accuracy)
+        x, y = predict(w, q_x, q_y, h / h_last, warm)
+        converged, count = solve(problem, start, h, x, y, w, accuracy)
         iterations += count
         factor = 0.3
         if converged:
-            error = local_error(problem, start, h, w, accuracy.speed) / accuracy.tolerance
+            error = local_error(problem, start, h, w, accuracy) / accuracy.tolerance
             if error <= 1.0:
                 return True, h, error, rejected, iterations
             factor = step_factor(error, 1.0)

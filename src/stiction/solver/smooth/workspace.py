@@ -1,7 +1,8 @@
 """The room in which a step is computed, made once for each call of the loop.
 
 Rows are points in time: the step's start, its three stages, a point inside it, and one for
-trials. Columns are slip x, y and the internal states z.
+trials. Columns are slip x, y and the internal states z. Only what is there for any number of
+states lies here; slip and friction of a step are numbers of their own.
 """
 
 from __future__ import annotations
@@ -14,35 +15,30 @@ from stiction.solver.compilation.jit import allocating
 
 ROWS = 6
 # stages: 1, 2, 3; numbers of numpy, or numba would compile for each of them anew
-START, INSIDE, TRIAL = (cast(int, np.int64(row)) for row in (0, 4, 5))
+START, LAST, INSIDE, TRIAL = (cast(int, np.int64(row)) for row in (0, 3, 4, 5))
 
 
 class Workspace(NamedTuple):
     """Arrays over rows and columns.
 
-    y : unknowns, slip coordinate q and z; values : slip velocity (m/s) and z; flow : friction
-    over mass and dz/dt; jacobian : their derivatives by y, ``[row, of, by]``; pull : what acts on
-    the mass beside friction and what slip changes (m/s^2); weight : normal load (N); share : of
-    inertia in what resists a change of q; size : what z is held against; cubic : coefficients of
-    values inside the step, ``[power, column]``; error : its estimated error; past : values of
-    the last step; matrix, right, order, scale : linear equations.
+    values : slip velocity (m/s) and z; flow : friction over mass (only where something asks for
+    it) and dz/dt; jacobian : derivatives of the flow by values, ``[row, of, by]``; size : what
+    values are held against; error : estimated error of values inside the step; past : slip
+    coordinate and z of the last step; cubic : values inside the step and their derivative
+    times h, ``[which, column]``; blocks, point, right : linear equations of a step and of a
+    point inside it, see `elimination`.
     """
 
-    y: np.ndarray
     values: np.ndarray
     flow: np.ndarray
     jacobian: np.ndarray
-    pull: np.ndarray
-    weight: np.ndarray
-    share: np.ndarray
     size: np.ndarray
-    cubic: np.ndarray
     error: np.ndarray
     past: np.ndarray
-    matrix: np.ndarray
+    cubic: np.ndarray
+    blocks: np.ndarray
+    point: np.ndarray
     right: np.ndarray
-    order: np.ndarray
-    scale: np.ndarray
 
 
 @allocating
@@ -52,17 +48,12 @@ def workspace(n: int) -> Workspace:
     return Workspace(
         np.zeros((ROWS, n)),
         np.zeros((ROWS, n)),
-        np.zeros((ROWS, n)),
         np.zeros((ROWS, n, n)),
-        np.zeros((ROWS, 2)),
-        np.zeros(ROWS),
-        np.zeros(ROWS),
         np.ones(n),
-        np.zeros((4, n)),
         np.zeros(n),
         np.zeros((4, n)),
-        np.zeros((3 * n, 3 * n)),
-        np.zeros(3 * n),
-        np.zeros(3 * n, np.int64),
-        np.zeros(3 * n),
+        np.zeros((2, n)),
+        np.zeros((n, n, 9)),
+        np.zeros((n, n)),
+        np.zeros((n, 3)),
     )

@@ -1,0 +1,335 @@
+"""What the smooth solver asks of a law, by the law's type; a set-valued law made smooth.
+
+One call returns friction and its derivatives. What internal states do is written to arrays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba.extending import overload, register_jitable
+
+from stiction.friction.law import Vector, states
+from stiction.solver.compilation.interrupt import uninterrupted
+from stiction.solver.compilation.jit import compiled, inlined
+from stiction.solver.compilation.pointer import address, caller, memory, pointee, types
+from stiction.solver.problem import (
+    Elliptic,
+    Isotropic,
+    change,
+    coefficient,
+    coefficient_and_slope,
+    force,
+    gradient,
+    grain,
+)
+from stiction.solver.smooth.workspace import TRIAL, Workspace
+
+FINEST = 1e-300  # m/s
+INCREMENT = 1.5e-8  # of a difference: the root of the rounding error
+
+# friction x and y, and their derivatives by slip: xx, xy, yx, yy
+Friction = tuple[float, float, float, float, float, float]
+
+
+class Smoothed(NamedTuple):
+    """F N s/sqrt(s.N s + delta^2) (M60): a set-valued law F without what happens at zero slip.
+
+    Parameters
+    ----------
+    law : FrictionLaw
+        The set-valued law.
+    surface : Isotropic or Elliptic
+        The tensor N, see `stiction.solver.surface`; 1 for an isotropic surface.
+    delta : float
+        m/s.
+    """
+
+    law: Any
+    surface: Isotropic | Elliptic
+    delta: float
+
+    def force(law, slip: Vector, load: float, state: tuple[float, ...]) -> Vector:
+        """Return the friction force (N)."""
+        x, y = slip
+        n = law.surface
+        n_x, n_y = n.xx * x + n.xy * y, n.xy * x + n.yy * y
+        size = sqrt(x * n_x + y * n_y + law.delta * law.delta)
+        f = coefficient(law.law, sqrt(x * x + y * y)) * load / size
+        return f * n_x, f * n_y
+
+    def grain(law, state: tuple[float, ...]) -> float:
+        """Return delta: friction is proportional to the slip velocity below."""
+        return law.delta
+
+    def friction_and_gradient(law, slip: Vector, load: float) -> Friction:
+        """Return the friction force (N) and its derivatives by the slip velocity (N s/m)."""
+        x, y = slip
+        n = law.surface
+        n_x, n_y = n.xx * x + n.xy * y, n.xy * x + n.yy * y
+        v = sqrt(x * x + y * y)
+        per = 1.0 / sqrt(x * n_x + y * n_y + law.delta * law.delta)
+        mu, slope = coefficient_and_slope(law.law, v)
+        f, along = mu * load * per, slope * load * per / v if v > 0.0 else 0.0
+        # d(f n)/ds, n = N s: f N + n (mu'/mu s/v - n per^2) f
+        turn = f * per * per
+        by_x, by_y = along * x - turn * n_x, along * y - turn * n_y
+        return (
+            f * n_x,
+            f * n_y,
+            f * n.xx + n_x * by_x,
+            f * n.xy + n_x * by_y,
+            f * n.xy + n_y * by_x,
+            f * n.yy + n_y * by_y,
+        )
+
+
+class PointedFlow(NamedTuple):
+    """A law as the smooth solver takes it: compiled functions, and its fields.
+
+    Parameters
+    ----------
+    flow_code, grain_code : int
+        Addresses of `flow_at` (without states, `friction_at`) and `grain_at`, compiled for this
+        law.
+    fields : ndarray
+        Memory with the law's fields.
+    unitless : ndarray of bool
+        Whether what stands in a column has no unit, for slip x, y and the internal states.
+    """
+
+    flow_code: int
+    grain_code: int
+    fields: np.ndarray
+    unitless: np.ndarray
+
+
+def pointed(law: Any) -> PointedFlow:
+    """Return a law as the smooth solver takes it."""
+    plain = np.array([True, True, *(state.unit == "1" for state in states(law))])
+    own = (flow_at, *FLOW) if states(law) else (friction_at, *FRICTION)
+    with uninterrupted():
+        flows, grains = address(own[0], law, *own[1:]), address(grain_at, law, *GRAIN)
+        return PointedFlow(flows, grains, memory(law), plain)
+
+
+@inlined
+def flow(
+    law: PointedFlow, slip: Vector, load: float, per_mass: float, w: Workspace, i: int, wanted: bool
+) -> Friction:
+    """Return friction over mass, and its derivatives by slip if they are wanted.
+
+    Parameters
+    ----------
+    slip, load, per_mass
+        m/s, N, 1/kg.
+    w : Workspace
+        Row `i` of the values has the internal states; how they change, and the derivatives of
+        that and of friction, are written to the rows `i` of flow and jacobian.
+    """
+    found: Friction
+    if w.size.shape[0] == 2:
+        found = call_friction(law.flow_code, law.fields, (slip[0], slip[1], load, per_mass))
+    else:
+        found = call_flow(
+            law.flow_code,
+            law.fields,
+            (slip[0], slip[1], load, per_mass, wanted, i, w.values, w.flow, w.jacobian, w.size),
+        )
+    return found
+
+
+@inlined
+def grain_of(law: PointedFlow, values: np.ndarray, i: int) -> float:
+    """Return the slip speed below which friction is proportional to it, at a row's states."""
+    found: float = call_grain(law.grain_code, law.fields, (values, i))
+    return found
+
+
+ROWS, SQUARES = types.float64[:, ::1], types.float64[:, :, ::1]
+FRICTION = (types.float64,) * 4
+FLOW = (*FRICTION, types.boolean, types.intp, ROWS, ROWS, SQUARES, types.float64[::1])
+GRAIN = (ROWS, types.intp)
+FOUND = types.UniTuple(types.float64, 6)
+call_friction: Any = caller(FOUND, *FRICTION)
+call_flow: Any = caller(FOUND, *FLOW)
+call_grain: Any = caller(types.float64, *GRAIN)
+
+
+@compiled
+def friction_at(law: Any, s_x: float, s_y: float, load: float, per_mass: float) -> Friction:
+    """Do as `flow` for the law without states at a pointer."""
+    f, g, xx, xy, yx, yy = friction_and_gradient(pointee(law), (s_x, s_y), load)
+    m = per_mass
+    return f * m, g * m, xx * m, xy * m, yx * m, yy * m
+
+
+@compiled
+def flow_at(
+    law: Any,
+    s_x: float,
+    s_y: float,
+    load: float,
+    per_mass: float,
+    wanted: bool,
+    i: int,
+    values: np.ndarray,
+    to: np.ndarray,
+    jacobian: np.ndarray,
+    size: np.ndarray,
+) -> Friction:
+    """Do as `flow` for the law with states at a pointer."""
+    found: Any = pointee(law)
+    slip = (s_x, s_y)
+    write_flow(found, slip, load, per_mass, values, i, to)
+    if wanted:
+        write_gradient(found, slip, load, per_mass, values, i, to, jacobian, size)
+    m = jacobian[i]
+    return to[i, 0], to[i, 1], m[0, 0], m[0, 1], m[1, 0], m[1, 1]
+
+
+@compiled
+def grain_at(law: Any, values: np.ndarray, i: int) -> float:
+    """Do as `grain_of` for the law at a pointer."""
+    found: Any = pointee(law)
+    return max(grain(found, states_in(found, values, i)), FINEST)
+
+
+def friction_and_gradient(law: Any, slip: Vector, load: float) -> Friction:
+    """Return the friction force (N) of a law without states, and its derivatives by slip."""
+    found: Friction = law.friction_and_gradient(slip, load)
+    return found
+
+
+def write_flow(
+    law: Any, slip: Vector, load: float, per_mass: float, values: np.ndarray, i: int, to: np.ndarray
+) -> None:
+    """Write friction over mass and the internal states' rates of change to ``to[i]``."""
+    z = states_in(law, values, i)
+    to[i, :2] = np.array(force(law, slip, load, z)) * per_mass
+    to[i, 2:] = change(law, slip, load, z)
+
+
+def write_gradient(
+    law: Any,
+    slip: Vector,
+    load: float,
+    per_mass: float,
+    values: np.ndarray,
+    i: int,
+    flow: np.ndarray,
+    jacobian: np.ndarray,
+    size: np.ndarray,
+) -> None:
+    """Write the derivatives of what stands in ``flow[i]`` to ``jacobian[i]``.
+
+    They are the law's own, or forward differences.
+    """
+    rows = np.array(gradient(law, slip, load, states_in(law, values, i)))
+    jacobian[i] = rows * np.where(np.arange(len(rows)) < 2, per_mass, 1.0)[:, None]
+
+
+def states_in(law: Any, values: np.ndarray, i: int) -> tuple[float, ...]:
+    """Return the law's internal states in row `i`."""
+    return tuple(values[i, 2:])
+
+
+def _states(n: int) -> Callable[..., Any]:
+    """Return a compiled function that makes a tuple of the n states in a row."""
+    if n == 0:
+        return register_jitable(lambda values, i: ())
+    before, last = _states(n - 1), n + 1
+    return register_jitable(
+        lambda values, i: before(values, i) + (values[i, last],)  # noqa: RUF005
+    )
+
+
+def _count(law: Any) -> int:
+    return len(getattr(law.instance_class, "states", tuple)())
+
+
+@overload(friction_and_gradient, strict=False)
+def _friction_and_gradient(law: Any, slip: Any, load: Any) -> Any:
+    return law.instance_class.friction_and_gradient
+
+
+@overload(states_in, strict=False)
+def _states_in(law: Any, values: Any, i: Any) -> Callable[..., Any]:
+    found = _states(_count(law))
+    return lambda law, values, i: found(values, i)
+
+
+@overload(write_flow, strict=False)
+def _write_flow(
+    law: Any, slip: Any, load: Any, per_mass: Any, values: Any, i: Any, to: Any
+) -> Callable[..., None]:
+    n = _count(law)
+
+    def write(law: Any, slip: Any, load: Any, per_mass: Any, values: Any, i: Any, to: Any) -> None:
+        z = states_in(law, values, i)
+        f = force(law, slip, load, z)
+        to[i, 0], to[i, 1] = f[0] * per_mass, f[1] * per_mass
+        dz = change(law, slip, load, z)
+        for k in range(n):
+            to[i, 2 + k] = dz[k]
+
+    return write
+
+
+@overload(write_gradient, strict=False)
+def _write_gradient(
+    law: Any,
+    slip: Any,
+    load: Any,
+    per_mass: Any,
+    values: Any,
+    i: Any,
+    flow: Any,
+    jacobian: Any,
+    size: Any,
+) -> Callable[..., None]:
+    n = _count(law) + 2
+
+    def own(
+        law: Any,
+        slip: Any,
+        load: Any,
+        per_mass: Any,
+        values: Any,
+        i: Any,
+        flow: Any,
+        jacobian: Any,
+        size: Any,
+    ) -> None:
+        rows = gradient(law, slip, load, states_in(law, values, i))
+        for j in range(n):
+            for k in range(n):
+                jacobian[i, j, k] = rows[j][k] * per_mass if j < 2 else rows[j][k]
+
+    def differences(
+        law: Any,
+        slip: Any,
+        load: Any,
+        per_mass: Any,
+        values: Any,
+        i: Any,
+        flow: Any,
+        jacobian: Any,
+        size: Any,
+    ) -> None:
+        at = values[TRIAL]
+        at[:] = values[i]
+        at[0], at[1] = slip
+        for k in range(n):
+            before = at[k]
+            at[k] = before + INCREMENT * (size[k] + abs(before))
+            per = 1.0 / (at[k] - before)
+            write_flow(law, (at[0], at[1]), load, per_mass, values, TRIAL, flow)
+            for j in range(n):
+                jacobian[i, j, k] = (flow[TRIAL, j] - flow[i, j]) * per
+            at[k] = before
+
+    return own if hasattr(law.instance_class, "gradient") else differences

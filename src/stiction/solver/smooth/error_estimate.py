@@ -1,0 +1,156 @@
+"""Inside a step: the collocation cubic, its error, and what friction makes of it.
+
+The cubic through the start and the stages misses the equations by a defect, which goes as
+pi(c) = (c - c_1)(c - c_2)(c - 1); so its error goes as the integral of pi. Where friction
+or a state is stiff the error is less, as an implicit step from the cubic shows (M70).
+"""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+from typing import NamedTuple
+
+from numpy.polynomial import Polynomial
+
+from stiction.solver.compilation.jit import inlined, piece
+from stiction.solver.problem import Problem
+from stiction.solver.radau import DEFECT_WEIGHT, INTERIOR, C, cubic, cubic_slope, integral
+from stiction.solver.smooth.coordinate import coordinate
+from stiction.solver.smooth.elimination import correct_states_inside, slip_without_states
+from stiction.solver.smooth.newton import corrected, larger
+from stiction.solver.smooth.right_hand_side import Outset, Point, evaluate, inertia_share, pull
+from stiction.solver.smooth.workspace import INSIDE, START, Workspace
+from stiction.solver.state import Accuracy
+
+ITERATIONS = 20
+# how the error goes inside a step, 1 in magnitude at c_1, where it is largest
+_PI = Polynomial.fromroots(C).integ()
+ERROR = tuple(float(x) for x in (_PI / abs(_PI(C[0]))).coef[1:])
+
+
+class Within(NamedTuple):
+    """The collocation polynomials of slip at a point of a step.
+
+    Value (m/s), its derivative times h, and the distance slid over h.
+    """
+
+    s_x: float
+    s_y: float
+    d_x: float
+    d_y: float
+    slid_x: float
+    slid_y: float
+
+
+@inlined
+def within(w: Workspace, c: float) -> Within:
+    """Return the polynomials at `c`; write those of the states."""
+    v = w.values
+    x0, x1, x2, x3 = v[START, 0], v[1, 0], v[2, 0], v[3, 0]
+    y0, y1, y2, y3 = v[START, 1], v[1, 1], v[2, 1], v[3, 1]
+    for k in range(2, w.size.shape[0]):
+        z = v[START, k], v[1, k], v[2, k], v[3, k]
+        w.cubic[0, k], w.cubic[1, k] = cubic(z, c), cubic_slope(z, c)
+    return Within(
+        cubic((x0, x1, x2, x3), c),
+        cubic((y0, y1, y2, y3), c),
+        cubic_slope((x0, x1, x2, x3), c),
+        cubic_slope((y0, y1, y2, y3), c),
+        integral((x1, x2, x3), c),
+        integral((y1, y2, y3), c),
+    )
+
+
+@inlined
+def less_error(w: Workspace, p: Within, c: float) -> Within:
+    """Return the polynomials at `c` less their estimated error, but for the distance slid."""
+    e1, e2, e3, e4 = ERROR
+    shape = c * (e1 + c * (e2 + c * (e3 + c * e4)))
+    slope = e1 + c * (2.0 * e2 + c * (3.0 * e3 + c * 4.0 * e4))
+    for k in range(2, w.size.shape[0]):
+        w.cubic[0, k] -= w.error[k] * shape
+        w.cubic[1, k] -= w.error[k] * slope
+    x, y = w.error[0], w.error[1]
+    return Within(
+        p.s_x - x * shape,
+        p.s_y - y * shape,
+        p.d_x - x * slope,
+        p.d_y - y * slope,
+        p.slid_x,
+        p.slid_y,
+    )
+
+
+@piece
+def balance(
+    problem: Problem,
+    start: Outset,
+    h: float,
+    c: float,
+    weight: float,
+    p: Within,
+    w: Workspace,
+    enough: float,
+) -> tuple[bool, Point]:
+    """Solve for what slip and states are at `c` in the step; states go into the row `INSIDE`.
+
+    That is x with x - p + weight (p' - h f(x)) = 0, p being the polynomial and f the equations:
+    p itself up to its error where f is gentle, what balances where f is stiff.
+    """
+    n, system, eps = w.size.shape[0], problem.system, start.eps
+    a_x, a_y, load = pull(problem, start, c * h)
+    a_x -= system.k_x * system.per_mass * h * p.slid_x
+    a_y -= system.k_y * system.per_mass * h * p.slid_y
+    q_x, q_y = coordinate(eps, p.s_x, p.s_y)
+    for k in range(2, n):
+        w.values[INSIDE, k] = w.cubic[0, k]
+    g = weight * h
+    damping_x, damping_y = g * system.c_x * system.per_mass, g * system.c_y * system.per_mass
+    given_x, given_y = p.s_x - weight * p.d_x + g * a_x, p.s_y - weight * p.d_y + g * a_y
+    x, y = 1.0 + damping_x, 1.0 + damping_y
+    at = evaluate(problem, eps, load, q_x, q_y, w, INSIDE, True)
+    for _ in range(ITERATIONS):
+        r_x, r_y = x * at.s_x + g * at.f_x - given_x, y * at.s_y + g * at.f_y - given_y
+        xx, xy = x * at.s_xx + g * at.f_xx, x * at.s_xy + g * at.f_xy
+        yx, yy = y * at.s_xy + g * at.f_yx, y * at.s_yy + g * at.f_yy
+        if n > 2:
+            xx, xy, yx, yy, r_x, r_y = slip_without_states(
+                g, weight, at, (xx, xy, yx, yy, r_x, r_y), w
+            )
+        per = 1.0 / (xx * yy - xy * yx)
+        d_x, d_y = (yy * r_x - xy * r_y) * per, (xx * r_y - yx * r_x) * per
+        share = 1.0
+        if eps < inf:
+            slope, friction = (at.s_xx, at.s_xy, at.s_yy), (at.f_xx, at.f_xy, at.f_yy)
+            share = inertia_share(problem, g, 1.0, (q_x, q_y), slope, friction)
+        q_x, q_y, _, size = corrected(start, share, start.unit, q_x, q_y, d_x, d_y)
+        if n > 2:
+            size = larger(correct_states_inside(d_x, d_y, w), size)
+        if not size < 1e100:
+            return False, at
+        at = evaluate(problem, eps, load, q_x, q_y, w, INSIDE, True)
+        if size < enough or size * size < enough:
+            return True, at
+    return False, at
+
+
+@piece
+def local_error(
+    problem: Problem, start: Outset, h: float, w: Workspace, accuracy: Accuracy
+) -> float:
+    """Return the relative error of the step's cubic, and write the error itself.
+
+    Where the motion about steady sliding is slower than the slip, relative to that.
+    """
+    p = within(w, INTERIOR)
+    found, at = balance(problem, start, h, INTERIOR, DEFECT_WEIGHT, p, w, 0.1)
+    if not found:
+        return inf
+    e_x, e_y = p.s_x - at.s_x, p.s_y - at.s_y
+    w.error[0], w.error[1] = e_x, e_y
+    speed = accuracy.speed + sqrt(at.s_x * at.s_x + at.s_y * at.s_y)
+    error = sqrt(e_x * e_x + e_y * e_y) / speed
+    for k in range(2, w.size.shape[0]):
+        w.error[k] = w.cubic[0, k] - w.values[INSIDE, k]
+        error = max(error, abs(w.error[k]) / w.size[k])
+    return error / start.share

@@ -1,0 +1,167 @@
+"""What acts on the mass and what its law says, at one point in time."""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import NamedTuple
+
+from stiction.solver.block_algebra import Triple
+from stiction.solver.compilation.jit import inlined
+from stiction.solver.problem import Problem, at, in_principal_axes, rate, rate_change, travel
+from stiction.solver.smooth.coordinate import slip_at, slip_slope
+from stiction.solver.smooth.dispatch import flow
+from stiction.solver.smooth.workspace import START, Workspace
+from stiction.solver.state import Accuracy
+from stiction.solver.stick import holding
+
+NOTICED = 0.01  # change of the friction coefficient by which the size of a state is judged
+
+
+class Outset(NamedTuple):
+    """A step's start: time (s), elongation (m), the speed eps of the slip coordinate (m/s) and
+    the unit in which q counts, where it is smaller; by what errors are held against less than the
+    slip speed, where the motion about steady sliding is slower."""
+
+    t: float
+    u_x: float
+    u_y: float
+    eps: float
+    unit: float
+    share: float
+
+
+class Pull(NamedTuple):
+    """What acts at a point without slip, over mass (m/s^2), and the normal load (N)."""
+
+    x: float
+    y: float
+    load: float
+
+
+class Point(NamedTuple):
+    """Slip velocity (m/s) and friction over mass (m/s^2) at a point.
+
+    Then their derivatives by the slip coordinate q.
+    """
+
+    s_x: float
+    s_y: float
+    f_x: float
+    f_y: float
+    s_xx: float
+    s_xy: float
+    s_yy: float
+    f_xx: float
+    f_xy: float
+    f_yx: float
+    f_yy: float
+
+
+class Stages(NamedTuple):
+    """The same at the three stages of a step."""
+
+    s_x: Triple
+    s_y: Triple
+    f_x: Triple
+    f_y: Triple
+    s_xx: Triple
+    s_xy: Triple
+    s_yy: Triple
+    f_xx: Triple
+    f_xy: Triple
+    f_yx: Triple
+    f_yy: Triple
+
+
+@inlined
+def pull(problem: Problem, start: Outset, dt: float) -> Pull:
+    """Return what acts `dt` after the step's start, as if nothing had slipped since."""
+    d_x, d_y = in_principal_axes(problem, travel(problem.drive, start.t, dt))
+    a_x, a_y = holding(problem, start.t + dt, start.u_x + d_x, start.u_y + d_y)
+    return Pull(a_x, a_y, at(problem.load, start.t + dt))
+
+
+@inlined
+def evaluate(
+    problem: Problem,
+    eps: float,
+    load: float,
+    q_x: float,
+    q_y: float,
+    w: Workspace,
+    i: int,
+    wanted: bool,
+) -> Point:
+    """Return slip and friction at a slip coordinate and the states in row `i`.
+
+    Derivatives only if they are wanted. What the states do is written to row `i`.
+    """
+    s = slip_at(eps, q_x, q_y)
+    f_x, f_y, xx, xy, yx, yy = flow(problem.law, s, load, problem.system.per_mass, w, i, wanted)
+    s_xx, s_xy, s_yy = slip_slope(eps, q_x, q_y) if wanted else (1.0, 0.0, 1.0)
+    return Point(
+        s[0],
+        s[1],
+        f_x,
+        f_y,
+        s_xx,
+        s_xy,
+        s_yy,
+        xx * s_xx + xy * s_xy,
+        xx * s_xy + xy * s_yy,
+        yx * s_xx + yy * s_xy,
+        yx * s_xy + yy * s_yy,
+    )
+
+
+@inlined
+def inertia_share(
+    problem: Problem, h: float, a: float, q: tuple[float, float], s: Triple, f: Triple
+) -> float:
+    """Return which share of what resists a change of |q| is inertia (M69).
+
+    `a` is the factor of the slip velocity in the equation; `s` and `f` are derivatives of slip and
+    friction by q: xx, xy + yx over two, yy.
+    """
+    square = q[0] * q[0] + q[1] * q[1]
+    if square == 0.0:
+        return 1.0
+    system, per = problem.system, 1.0 / square
+    xx, xy, yy = q[0] * q[0] * per, q[0] * q[1] * per, q[1] * q[1] * per
+    inertia = a * (xx * s[0] + 2.0 * xy * s[1] + yy * s[2])
+    inertia *= 1.0 + h * (system.c_x * xx + system.c_y * yy) * system.per_mass
+    friction = h * (xx * f[0] + 2.0 * xy * f[1] + yy * f[2])
+    return inertia / (inertia + max(friction, 0.0) + 1e-300)
+
+
+@inlined
+def moving(problem: Problem, t: float, p: Pull, at_start: Point, accuracy: Accuracy) -> float:
+    """Return how fast the system moves about steady sliding at a step's start, m/s.
+
+    As `stiction.solver.exact.error_estimate.moving`.
+    """
+    system, (s_x, s_y) = problem.system, (at_start.s_x, at_start.s_y)
+    v_x, v_y = in_principal_axes(problem, rate(problem.drive, t))
+    g_x, g_y = in_principal_axes(problem, rate_change(problem.drive, t))
+    by_x = g_x - (p.x - system.c_x * s_x * system.per_mass - at_start.f_x)
+    by_y = g_y - (p.y - system.c_y * s_y * system.per_mass - at_start.f_y)
+    x, y = v_x - s_x, v_y - s_y
+    square = by_x * by_x * accuracy.square_x + by_y * by_y * accuracy.square_y
+    return max(sqrt(x * x + y * y + square), accuracy.least)
+
+
+@inlined
+def measure(problem: Problem, load: float, w: Workspace) -> None:
+    """Write what errors of the internal states are held against, from the row `START`.
+
+    Each is relative to the state itself; near zero, to what changes the friction coefficient
+    by `NOTICED`, or to 1 if that is less and the state has no unit.
+    """
+    enough = NOTICED * load * problem.system.per_mass
+    for k in range(2, w.size.shape[0]):
+        x, y = w.jacobian[START, 0, k], w.jacobian[START, 1, k]
+        effect = sqrt(x * x + y * y)
+        least = enough / effect if effect > 0.0 else 1.0
+        if problem.law.unitless[k]:
+            least = min(1.0, least)
+        w.size[k] = least + abs(w.values[START, k])
