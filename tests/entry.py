@@ -1,8 +1,30 @@
 """Parts of compiled code, to be called from a test."""
 
+from functools import cache
+from types import FunctionType
+
 import numba
 
 
 def entry(part):
     """Return what Python can call in place of `part`, which compiled code alone can call."""
     return numba.njit(lambda *arguments: part(*arguments))
+
+
+@cache
+def plain(part):
+    """Return `part` as the Python that it is written in, with all parts that it calls.
+
+    That costs no compiling. That compiled code does the same is held by whole runs.
+    """
+    function = getattr(part, "py_func", None)
+    if function is None:  # nothing is compiled
+        return part
+    scope, code = dict(function.__globals__), function.__code__
+    scope |= {name: plain(scope[name]) for name in code.co_names if is_compiled(scope.get(name))}
+    return FunctionType(code, scope, code.co_name, function.__defaults__)
+
+
+def is_compiled(value):
+    """Return whether a value is a compiled function."""
+    return hasattr(value, "py_func")

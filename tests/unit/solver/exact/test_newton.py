@@ -1,0 +1,109 @@
+"""Newton's method for a step: where it ends, and when it stops."""
+
+from math import inf
+
+import numpy as np
+import pytest
+from tests.entry import plain
+from tests.unit.solver.exact.test_collocation import begun, residuals
+from tests.unit.solver.systems import SLIDERS, problem_of
+
+from stiction.solver.exact import newton, oscillation, slip_frame
+from stiction.solver.state import Accuracy
+
+SLIDES = [(1e-3, 1e-5, 3e-2, 1e-2), (-1e-3, 2e-5, 1e-2, 4e-2)]
+ALL = pytest.mark.parametrize(("name", "drawn"), [(n, d) for n in SLIDERS for d in SLIDES])
+SPEED = 1e-4  # m/s, below which corrections are absolute
+
+
+def held_to(tolerance):
+    """Return an accuracy of which only this counts."""
+    return Accuracy(1e-6, tolerance, SPEED, 0.0, 0.0, inf, inf, 1.0, 1.0, 0.0, 0.0)
+
+
+def solved(name, drawn, tolerance, share=0.3, motion=1.0, guess=1.0):
+    """Solve a step from a slip as at its start; return what `solve` does, and the step."""
+    problem, frame, o, _, h = begun(name, drawn, "laid over the oscillation")
+    h, p = share * h, (guess * frame.r,) * 3
+    s = plain(oscillation.swing)(o, h, False)
+    w, accuracy = (0.0, 0.0, 0.0), held_to(tolerance)
+    found = plain(newton.solve)(problem, frame, o, s, h, False, p, w, accuracy, motion)
+    return found, (problem, frame, o, h)
+
+
+@ALL
+def test_the_residuals_vanish(name, drawn):
+    (converged, _, p, w, h, count), step = solved(name, drawn, 1e-13)
+    assert converged
+    assert h == step[-1]
+    assert 1 < count <= newton.ITERATIONS
+    found, terms = (np.abs(residuals(*step, *map(np.array, x))) for x in ((p, w), (p, (0.3,) * 3)))
+    assert found.max() < 1e-11 * terms.max()
+
+
+@ALL
+def test_it_stops_where_what_is_left_is_less_than_asked_for(name, drawn):
+    """(M33): what is left is less than the tolerance, as far as the next correction tells.
+
+    With a tolerance of ten times the first correction, one iteration is enough.
+    """
+    (_, _, p, w, _, most), (_, frame, _, _) = solved(name, drawn, 1e-13)
+    for tolerance in (1e-3, 1e-6, 1e-9):
+        (converged, _, rough, turn, _, count), _ = solved(name, drawn, tolerance)
+        assert converged
+        off = np.subtract(rough, p) / (SPEED + np.abs(p))
+        assert max(np.abs(off).max(), np.abs(np.subtract(turn, w)).max()) < 10 * tolerance
+        assert count <= most
+    first = np.abs([*(np.array(p) / frame.r - 1.0), *w]).max()
+    assert solved(name, drawn, 10 * first)[0][-1] == 1
+    assert solved(name, drawn, 1e-3 * first)[0][-1] > 1
+    # held to a motion that is slower than the slip, by as much more
+    part = 1e-3 * (SPEED + frame.r)
+    assert solved(name, drawn, 10 * first, motion=part)[0][-1] > 1
+
+
+@ALL
+def test_it_converges_fast(name, drawn):
+    """Quadratically at first, by a tenth at least then: 13 digits in less than ten iterations."""
+    (converged, *_, count), _ = solved(name, drawn, 1e-13)
+    assert converged
+    assert count < 10
+
+
+@pytest.mark.parametrize("name", ["steady", "ellipse", "program"])
+def test_a_landing_is_a_step_of_unknown_size(name):
+    """p = 0 at its end, where the residuals vanish, from a size that is off by a fifth."""
+    problem, frame, o, _, _ = begun(name, (1e-3, 1e-5, 3e-4, 1e-4), "not")
+    outset = plain(slip_frame.outset)(problem, frame)
+    guess = frame.r / (outset.f - outset.a_1)
+    assert guess > 0.0
+    ends = []
+    for part in (0.8, 1.0, 1.2):
+        h = part * guess
+        p = (0.8 * frame.r, 0.3 * frame.r, 0.0)
+        s = plain(oscillation.swing)(o, h, True)
+        accuracy, w = held_to(1e-12), (0.0, 0.0, 0.0)
+        converged, s, p, w, h, _ = plain(newton.solve)(
+            problem, frame, o, s, h, True, p, w, accuracy, 1.0
+        )
+        assert converged
+        assert p[2] == 0.0
+        assert s == plain(oscillation.swing)(o, h, True)
+        found = np.abs(residuals(problem, frame, o, h, np.array(p), np.array(w)))
+        assert found.max() < 1e-10 * h * outset.f
+        ends.append(h)
+    assert ends == pytest.approx([ends[0]] * 3, rel=1e-9)
+
+
+def test_it_gives_up():
+    """Where corrections grow or are no numbers, or a landing would be before its start."""
+    (converged, *_), _ = solved("steady", SLIDES[0], 1e-12, guess=np.nan)
+    assert not converged
+    (converged, *_, count), _ = solved("steady", SLIDES[0], 0.0)  # no correction is small enough
+    assert (converged, count <= newton.ITERATIONS) == (False, True)
+    problem, frame, o, _, h = begun("steady", SLIDES[0], "not")
+    rising = problem._replace(load=problem_of("steady").load._replace(force=1e-9))
+    s, p = plain(oscillation.swing)(o, h, True), (frame.r, frame.r, 0.0)
+    pulled = frame._replace(spring_1=1e3)  # it speeds up: there is no landing
+    found = plain(newton.solve)(rising, pulled, o, s, h, True, p, (0.0,) * 3, held_to(1e-12), 1.0)
+    assert not found[0] or found[4] < 0.0

@@ -1,0 +1,107 @@
+"""What zero slip takes, how long friction can hold it, and what it has to spare."""
+
+from math import inf, sqrt
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
+from tests.entry import plain
+from tests.unit.solver.systems import MOTIONS, SLIDERS, Printed, motion_of, problem_of
+
+from stiction.solver import stick
+
+HELD = [(0.3 * u_x, 0.3 * u_y) for u_x, u_y, _, _ in MOTIONS]
+
+
+def margin_of(name, t, u):
+    """(M6), with N and f_s of the problem."""
+    problem = problem_of(name)
+    printed = Printed(problem, motion_of(*u, 1.0, 0.0, t))
+    n = problem.surface
+    a, N = printed.held(t, np.array(u)), np.array([[n.xx, n.xy], [n.xy, n.yy]])
+    f = problem.law.coefficient(0.0) * problem.load.at(t) / printed.m
+    return a @ np.linalg.solve(N, a) - f * f
+
+
+def moved(name, t, u, dt):
+    """(M5)."""
+    printed = Printed(problem_of(name), motion_of(*u, 1.0, 0.0, t))
+    return np.array(u) + printed.drive("travel", t, dt)
+
+
+@pytest.mark.parametrize("name", SLIDERS)
+@pytest.mark.parametrize("u", HELD)
+def test_the_margin_and_its_rate_of_change(name, u):
+    """(M6), the latter by differences."""
+    problem, t, step = problem_of(name), 0.35, 1e-6
+    excess, half, square = plain(stick.margin)(problem, t, *u)
+    assert excess == pytest.approx(margin_of(name, t, u), rel=1e-12)
+    before, after = (margin_of(name, t + dt, moved(name, t, u, dt)) for dt in (-step, step))
+    assert 2 * half == pytest.approx((after - before) / (2 * step), rel=1e-4, abs=1e-7 * square)
+    f = problem.law.coefficient(0.0) * problem.load.at(t) / problem.system.mass
+    assert square == pytest.approx(f * f, rel=1e-14)
+
+
+@pytest.mark.parametrize("name", SLIDERS)
+@pytest.mark.parametrize("u", HELD)
+def test_a_stick_lasts_until_the_margin_is_used_up(name, u):
+    """(M7) in closed form, (M9) in steps; by a search for the first change of sign."""
+    t = 0.35
+    times = np.linspace(0.0, 0.4, 401)
+    margins = [margin_of(name, t + dt, moved(name, t, u, dt)) for dt in times]
+    duration, ends = plain(stick.stick_duration)(problem_of(name), t, *u, inf)
+    assert ends
+    first = int(np.argmax(np.array(margins) > 0.0))
+    if margins[0] > 0.0:
+        assert duration == 0.0
+    elif first > 0:
+        wanted = brentq(
+            lambda dt: margin_of(name, t + dt, moved(name, t, u, dt)), *times[first - 1 : first + 1]
+        )
+        assert duration == pytest.approx(wanted, rel=1e-9)
+    else:
+        assert duration > times[-1]
+
+
+def test_a_stick_under_a_program_that_outlasts_the_stretch():
+    """It is then infinite; in closed form the caller looks at the end itself."""
+    u, t = (0.0, 0.0), 0.35
+    duration, _ = plain(stick.stick_duration)(problem_of("program"), t, *u, inf)
+    assert 0.0 < duration < inf
+    for share in (0.5, 0.999, 1.001):
+        found = plain(stick.stick_duration)(problem_of("program"), t, *u, t + share * duration)
+        assert found == ((inf, True) if share < 1.0 else (pytest.approx(duration), True))
+
+
+@pytest.mark.parametrize("name", ["steady", "ellipse"])
+def test_what_a_short_stick_has_to_spare(name):
+    """(M10): the integral of f_s - |a|, to the share of the margin in f_s^2."""
+    problem, t = problem_of(name), 0.35
+    # a little before the end of a stick
+    duration, _ = plain(stick.stick_duration)(problem, t, 0.0, 0.0, inf)
+    u = moved(name, t, (0.0, 0.0), 0.999 * duration)
+    left, _ = plain(stick.stick_duration)(problem, t, *u, inf)
+    f = problem.law.coefficient(0.0) * problem.load.at(t) / problem.system.mass
+
+    def spare(dt):
+        return f - sqrt(margin_of(name, t + dt, moved(name, t, u, dt)) + f * f)
+
+    wanted, _ = quad(spare, 0.0, left)
+    assert plain(stick.to_spare)(problem, t, *u, left) == pytest.approx(wanted, rel=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("constant", "linear", "quadratic"),
+    [(-3.0, 2.0, 5.0), (-3.0, -2.0, 5.0), (-3.0, 0.0, 5.0), (-1e-12, 2.0, 5.0), (0.0, -2.0, 5.0)],
+)
+def test_the_positive_root(constant, linear, quadratic):
+    """(M7), without cancellation."""
+    found = plain(stick.used_up)(constant, linear, quadratic)
+    roots = np.roots([quadratic, 2 * linear, constant])
+    assert found == pytest.approx(roots.max(), rel=1e-12)
+
+
+def test_the_root_of_a_line():
+    assert plain(stick.used_up)(-3.0, 2.0, 0.0) == 0.75
+    assert plain(stick.used_up)(-3.0, -2.0, 0.0) == inf
