@@ -126,7 +126,7 @@ def taken_off(name, static):
 
 @pytest.mark.parametrize("static", [1.0, 1.5])
 def test_a_take_off_is_guessed_along_its_branch(static):
-    """(M19) without damping: the guess comes to the solution as the step goes to zero, by one order."""
+    """(M19) without damping: the error of the guess goes to zero with the step size."""
     problem, frame, start = taken_off("steady", static)
     o, off = plain(oscillation.oscillator)(frame, start), []
     if static == 1.0:

@@ -1,0 +1,120 @@
+"""Over which angles a patch of the map is tried, and whether it pays."""
+
+import numpy as np
+import pytest
+from tests.entry import plain
+from tests.unit.solver.systems import problem_of
+
+from stiction.solver.multiscale import construction, loop, replay
+from stiction.solver.multiscale.return_map import (
+    CLOSING,
+    NODES,
+    PATCHES,
+    WIDEST,
+    Cycle,
+    Hold,
+    unknown,
+)
+from stiction.solver.multiscale.section import elongation_held
+from stiction.solver.state import Accuracy, Counts, Memory, Motion, State
+
+CYCLE, HOLD = Cycle(0.01, 1.0, 0.4), Hold(0.5, 1.0, 0.3)
+
+
+def test_nothing_is_known_at_first():
+    known = unknown(1e-6)
+    assert known.closing == CLOSING * 1e-6
+    assert known.patches.shape == (PATCHES, 3)
+    assert known.coefficients.shape == (PATCHES, NODES, 3)
+    assert (known.width.tolist(), known.sizes.tolist()) == ([WIDEST], [0] * 5)
+    assert np.isnan(known.last).all()
+    assert np.isnan(known.patches).all()
+    assert known.stick.shape == (1, 2)
+    assert len(known.never) == len(known.nowhere) == 0
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_how_far_a_patch_is_tried(way):
+    """Half way to an edge, a quarter after a try in vain, and up to another patch."""
+    known, theta, turn = unknown(1e-6), 0.3, way * 0.01
+    reach = plain(loop.reach)
+    known.edges[:2] = theta + way * 0.5, theta - way * 0.1  # one of them behind
+    assert reach(known, theta, turn) == way * WIDEST
+    known.sizes[1] = 2
+    assert reach(known, theta, turn) == pytest.approx(way * 0.25)
+    known.width[0] = 0.2
+    assert reach(known, theta, turn) == pytest.approx(way * 0.2)
+    known.width[0] = 1.0
+    known.patches[0, 0] = theta - turn  # the one to fill next
+    assert reach(known, theta, turn) == pytest.approx(way * 0.125)
+    known.patches[:3, 0] = theta + way * 0.2, theta + way * 0.05, theta - way * 0.1
+    known.sizes[0] = 3
+    assert reach(known, theta, turn) == pytest.approx(way * 0.2)  # 0.05 is near: beyond that
+    known.patches[:2, 0] = theta + way * 0.076, theta
+    assert reach(known, theta, turn) == pytest.approx(way * 0.076)
+    known.patches[0, 0] = theta + way * 0.074
+    assert reach(known, theta, turn) == pytest.approx(way * 0.25)
+
+
+def test_a_patch_pays_if_it_is_good_for_eight_cycles():
+    """Over its angles and in the time that is left; and if not too many were in vain."""
+    known, pays = unknown(1e-6), plain(loop.pays)
+    assert pays(known, HOLD, CYCLE, 0.0801, 100.0)
+    assert pays(known, HOLD, CYCLE, -0.0801, 100.0)
+    assert pays(known, HOLD, CYCLE._replace(turn=-0.01), -0.0801, 100.0)
+    assert not pays(known, HOLD, CYCLE, 0.0799, 100.0)
+    assert pays(known, HOLD, CYCLE, 1.0, 9.01)
+    assert not pays(known, HOLD, CYCLE, 1.0, 8.99)
+    for place in (0, 1):
+        known.sizes[:] = 0
+        known.sizes[place] = PATCHES
+        assert not pays(known, HOLD, CYCLE, 1.0, 100.0)
+        known.sizes[place] = PATCHES - 1
+        assert pays(known, HOLD, CYCLE, 1.0, 100.0)
+    known.sizes[:] = [0, 0, 0, loop.VAIN, 0]
+    assert pays(known, HOLD, CYCLE, 1.0, 100.0)
+    known.sizes[3] += 1
+    assert not pays(known, HOLD, CYCLE, 1.0, 100.0)
+    known.sizes[4] = loop.VAIN_EACH
+    assert pays(known, HOLD, CYCLE, 1.0, 100.0)
+    known.sizes[3] += 1
+    assert not pays(known, HOLD, CYCLE, 1.0, 100.0)
+
+
+def test_counts_of_what_the_map_has_found():
+    counts = Counts(5, 2, 20, 3, 0.7, 1)
+    found = plain(loop.with_sticks)(counts, 7, 0.2)
+    assert found == pytest.approx((5, 2, 20, 7, 0.9, 5))
+    other = Counts(50, 20, 200, 30, 7.0, 10)
+    assert plain(construction.added)(counts, other) == (55, 22, 220, 3, 0.7, 1)
+
+
+def test_a_node_s_steps_are_finer():
+    accuracy = Accuracy(*range(1, 12))
+    found = plain(construction.finer)(accuracy)
+    part = construction.FINER
+    wanted = accuracy._replace(tolerance=part * 1, newton=part * 2, least=11 / part)
+    assert found == pytest.approx(wanted)
+
+
+@pytest.mark.parametrize("name", ["steady", "ellipse"])
+def test_from_a_landing_to_the_angle_of_its_stick_and_back(name):
+    problem, theta = problem_of(name), 0.2
+    u = plain(elongation_held)(problem, theta)
+    v = problem.system.cos_phi * 2e-3, problem.system.sin_phi * 2e-3
+    landing = Motion(0.7, u[0] - 0.01 * v[0], u[1] - 0.01 * v[1], 0.0, 0.6, 0.8)
+    hold = plain(replay.hold_of)(problem, landing)
+    assert hold == pytest.approx((0.7, 0.71, theta), rel=1e-9)
+    memory = Memory(1.0, (0.3,) * 8, 5, 2.0, 1.1, True, (1.0,) * 4, (2.0,) * 4)
+    counts = Counts(1, 2, 3, 4, 5.0, 6)
+    state = State(landing._replace(t=0.1, u_x=0.0, u_y=0.0), memory, counts)
+    found = plain(replay.landed)(problem, state, hold)
+    assert found.motion == pytest.approx(landing, rel=1e-9)
+    assert found.memory == memory._replace(h=0.3, place=0, warm=False)
+    assert found.counts == counts
+    beyond = landing._replace(u_x=1.1 * u[0], u_y=1.1 * u[1])  # friction cannot hold
+    assert np.isnan(plain(replay.hold_of)(problem, beyond).theta)
+    standing = problem._replace(drive=problem.drive._replace(velocity=0.0))
+    hold = plain(replay.hold_of)(standing, landing)
+    assert np.isnan(hold.theta)
+    assert hold.end == np.inf
