@@ -101,7 +101,7 @@ def accuracy(
     )
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=256, typed=True)  # laws of two classes may be equal tuples
 def steepest_weakening(law: Hashable, speed: float) -> float:
     """Return the largest -slope of a set-valued law between rest and ten times `speed`, in s/m.
 

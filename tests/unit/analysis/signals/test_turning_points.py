@@ -1,0 +1,307 @@
+"""Reversals, the gap among their heights, turning points: each against a slow, plain count."""
+
+import numpy as np
+import pytest
+from scipy.stats import binom
+from tests.drawn import inside
+
+from stiction.analysis.signals import gap, peak_refinement, reversals, turning_points
+from stiction.analysis.signals.piecewise_fit import fitted
+
+WALKS = [np.rint(np.cumsum(each) * 40).astype(np.int64) for each in inside(4, *[(-1.0, 1.0)] * 60)]
+
+
+def turns_of(values):
+    """Return where a signal turns, one sample after the other, and both ends."""
+    found, way = [0], 0
+    for i in range(1, len(values)):
+        step = np.sign(values[i] - values[i - 1])
+        if step and way and step != way:
+            first = i - 1
+            while values[first - 1] == values[first]:  # of equal neighbours, the first
+                first -= 1
+            found.append(first)
+        way = step or way
+    return [*found, len(values) - 1]
+
+
+def by_one(values, below=np.inf):
+    """Take out reversals, always the smallest of all; return points and heights."""
+    points, heights = turns_of(values), []
+    while len(points) > 3:
+        legs = np.abs(np.diff(values[points]))
+        inner = [i for i in range(1, len(legs) - 1) if legs[i] <= min(legs[i - 1], legs[i + 1])]
+        inner = [i for i in inner if legs[i] < below]
+        if not inner:
+            break
+        smallest = min(inner, key=lambda i: legs[i])
+        heights.append(int(legs[smallest]))
+        del points[smallest : smallest + 2]
+    return points, sorted(heights)
+
+
+@pytest.mark.parametrize("walk", WALKS)
+@pytest.mark.parametrize("below", [np.inf, 30, 60])
+def test_reversals(walk, below):
+    assert reversals.extrema(walk).tolist() == turns_of(walk)
+    points, heights = reversals.taken_out(walk, below)
+    wanted_points, wanted = by_one(walk, below)
+    assert sorted(heights.tolist()) == wanted
+    assert walk[points].tolist() == walk[wanted_points].tolist()
+
+
+def test_the_ends_of_a_signal():
+    assert reversals.extrema(np.array([], dtype=np.int64)).tolist() == []
+    assert reversals.extrema(np.array([5])).tolist() == [0]
+    assert reversals.extrema(np.array([5, 5])).tolist() == [0, 1]
+    assert reversals.extrema(np.array([0, 3, 3, 3, 1, 1, 2, 2])).tolist() == [0, 1, 4, 7]
+    assert reversals.extrema(np.array([2, 2, 3])).tolist() == [0, 2]
+
+
+@pytest.mark.parametrize("walk", WALKS)
+def test_all_heights_are_those_taken_out_and_half_of_the_rest(walk):
+    points, heights = by_one(walk)
+    rest = sorted(np.abs(np.diff(walk[points]))[1:-1])[::2]
+    assert sorted(reversals.all_heights(walk).tolist()) == sorted([*heights, *rest])
+
+
+@pytest.mark.parametrize(
+    ("values", "wanted"),
+    [
+        ([0, 9, 0, 9, 0], [1, 2, 3]),  # the outer ends of the cut legs are not known
+        ([0, 9, 0, 9, 6], [1, 2, 3]),  # the last leg is cut, and enough
+        ([0, 9, 0, 9, 8], [1, 2]),  # and here not: nor is known where the leg before it ends
+        ([0, 9, 0, 9, 0, 9, 6, 8], [1, 2, 3, 4, 5]),
+        ([5, 9, 0, 9, 0, 2], [1, 2, 3]),
+        ([0, 1, 0, 1, 0], []),
+        ([7, 9, 0, 9, 8, 9, 0], [2, 3]),
+    ],
+)
+def test_what_stands_out(values, wanted):
+    """Legs of 5 at least, of those that may be cut 3."""
+    assert reversals.standing_out(np.array(values), 5, 3).tolist() == wanted
+
+
+@pytest.mark.parametrize(("found", "among", "chance"), [(7, 10, 0.3), (3, 40, 0.01), (40, 50, 0.5)])
+def test_a_chance_is_bounded(found, among, chance):
+    """Chernoff: the bound has the right exponent; of what is no surprise it tells nothing."""
+    worth = float(gap._surprise(found, among, chance))
+    exact = -binom.logsf(found - 1, among, chance)
+    assert worth <= exact <= worth + np.log(among + 1)
+    assert gap._surprise(2, 10, 0.3) == 0.0
+    assert gap._surprise(0, 0, 0.3) == 0.0
+
+
+@pytest.mark.parametrize(("small", "large"), [(1.0, 20.0), (3.0, 10.0)])
+def test_the_widest_gap_lies_between_two_kinds_of_heights(small, large):
+    """It is found wherever it is, and so much clearer, the more heights there are above it."""
+    clear = []
+    for number in (5, 50):
+        heights = [*np.linspace(0.5, 1.0, 200) * small, *np.linspace(1.0, 1.3, number) * large]
+        found = gap.widest_gap(heights, 0.1, 60)
+        assert 0.8 * small <= found.low <= 1.2 * small + 0.1  # edges are 2^(1/4) apart
+        assert 0.8 * large <= found.high <= 1.2 * large
+        assert found.middle == pytest.approx((found.low * found.high) ** 0.5)
+        clear.append(found.clearness)
+    assert clear[1] > 5 * clear[0] > 5 * 3
+    assert gap.widest_gap(heights, 0.1, 40).clearness < clear[1]  # no more than so many are large
+    # the counts of two steps and more alone, and none where all are as small
+    assert gap.widest_gap(heights, large, 60) == gap.NO_GAP
+    assert gap.widest_gap([], 0.1, 60) == gap.NO_GAP
+    assert gap.widest_gap(heights, 0.0, 60) == gap.NO_GAP
+
+
+def test_a_gap_is_as_unlikely_as_a_random_walk_makes_it():
+    """n (a/b)^2 of n heights above a are above b; each end lies 2 x 0.583 steps farther."""
+    heights, step = [*[2.0] * 99, 16.0, 16.0, 16.0, 16.0], 0.5
+    found = gap.widest_gap(heights, step, 50)
+    beyond = 2 * 0.583 / 0.674 * step
+    share = ((found.low + beyond) / (found.high + beyond)) ** 2
+    assert found.clearness == pytest.approx(-4 * np.log(share))  # all four
+    assert 2.0 + step < found.low < 1.2 * (2.0 + step)
+    assert found.high == 16.0
+
+
+def test_a_walk_has_no_clear_gap():
+    """At most one of 400 would."""
+    for walk in inside(6, *[(-1.0, 1.0)] * 400):
+        points = turning_points.turning_points(np.cumsum(walk))
+        assert len(points.index) == 0
+        assert points.clearness < turning_points.CLEAR
+
+
+# --- levels -------------------------------------------------------------------------------------
+
+
+def test_counts_are_the_same_in_any_unit():
+    values = np.array([0.3, -1.7, 2.4, 0.1])
+    counts = turning_points.as_counts(values)
+    assert counts.dtype == np.int64
+    assert (counts.min(), counts.max()) == (0, turning_points.FINE)
+    back = values.min() + counts * np.ptp(values) / turning_points.FINE
+    assert back == pytest.approx(values, abs=0.6 * np.ptp(values) / turning_points.FINE)
+    assert turning_points.as_counts(-3e-7 * values + 5e-8).tolist() == [
+        turning_points.FINE - each for each in counts
+    ]
+    assert turning_points.as_counts(np.full(3, 7.0)).tolist() == [0, 0, 0]
+    assert turning_points.as_counts(np.zeros(0)).tolist() == []
+
+
+def test_a_wild_sample_is_limited_to_where_its_neighbours_lead():
+    """By their values and their straight lines; a peak, a corner and the ends stay."""
+    smooth = np.cos(np.linspace(-2, 2, 21))
+    assert turning_points.without_spikes(smooth) == pytest.approx(smooth, abs=1e-15)
+    saw = np.concatenate([np.arange(10.0), np.arange(10.0)[::-1]])
+    assert turning_points.without_spikes(saw).tolist() == saw.tolist()
+    line = np.arange(9.0)
+    for place in range(2, 7):
+        for wild in (-50.0, 50.0):
+            values = line.copy()
+            values[place] = wild
+            found = turning_points.without_spikes(values)[place]
+            # the larger of its neighbours, or the smaller; their lines lead to its own place
+            assert found == (place + 1 if wild > 0 else place - 1)
+    bent = np.array([0.0, 1.0, 50.0, 8.0, 9.0])
+    assert turning_points.without_spikes(bent)[2] == 8.0
+    steep = np.array([0.0, 5.0, 50.0, 8.0, 9.0])
+    assert turning_points.without_spikes(steep)[2] == 10.0  # 2 x 5 - 0
+    steep = np.array([9.0, 8.0, 50.0, 5.0, 0.0])
+    assert turning_points.without_spikes(steep)[2] == 10.0
+    assert turning_points.without_spikes(line[:4]).tolist() == [0.0, 1.0, 2.0, 3.0]
+
+
+def test_sums_of_two_four_eight_samples():
+    counts = np.array([*np.arange(70), 1000, *np.arange(71, 129)])  # a wild one
+    levels = list(turning_points.averaged(counts))
+    assert [len(each) for each in levels] == [129, 64, 32, 16]
+    assert levels[0] is counts
+    pairs = [2 * i + 0.5 for i in range(64)]
+    assert levels[1] / 2 == pytest.approx(pairs, abs=2.1)  # a median of three is a neighbour's
+    assert np.abs(levels[1] / 2 - pairs).max() < 2.1
+    assert list(turning_points.averaged(np.arange(15))) == []
+    assert len(list(turning_points.averaged(np.arange(16)))) == 1
+
+
+def test_the_typical_step_and_the_reach_of_noise():
+    assert turning_points.typical_step(np.array([0, 0, 3, 3, 8, 7, 7])) == 3.0
+    assert turning_points.typical_step(np.array([4, 4, 4])) == 0.0
+    noise = np.rint(np.array(inside(1, *[(-1.0, 1.0)] * 3000)[0]) * 1e6).astype(np.int64)
+    _, heights = by_one(noise[:200], 5e5)
+    reach = turning_points.noise_reach(noise[:200], 5e5)
+    assert reach == pytest.approx(6 * sum(heights) / 200)
+    assert turning_points.noise_reach(np.zeros(0, np.int64), 1.0) == 0.0
+
+
+def test_few_samples_a_cycle():
+    """Turning points are those of cycles if nearly all legs and all periods are alike."""
+    time = np.arange(120)
+    alike = np.rint(1e6 * np.sin(2 * np.pi * time / 5.3 + 0.2)).astype(np.int64)
+    found = turning_points.coarse_points(alike)
+    assert found.tolist() == turns_of(alike)[1:-1]
+    noise = np.rint(np.array(inside(1, *[(-1.0, 1.0)] * 120)[0]) * 1e6).astype(np.int64)
+    assert len(turning_points.coarse_points(noise)) == 0
+    growing = np.rint(alike * np.linspace(0.1, 1.0, 120)).astype(np.int64)
+    assert len(turning_points.coarse_points(growing)) == 0
+    chirp = np.rint(1e6 * np.sin(2 * np.pi * time**2 / 700)).astype(np.int64)
+    assert len(turning_points.coarse_points(chirp)) == 0
+
+
+@pytest.mark.parametrize("count", [12, 11])
+def test_as_many_turning_points_as_are_needed(count):
+    values = np.array([0, 10] * ((count + 2) // 2) + [0] * (count % 2))
+    assert len(turns_of(values)) - 2 == count
+    assert len(turning_points.coarse_points(values)) == (count if count >= 12 else 0)
+
+
+@pytest.mark.parametrize("unit", [1.0, -1e-6])
+@pytest.mark.parametrize("noise", [0.0, 0.02])
+def test_a_sawtooth_turns_where_it_does(unit, noise):
+    """Every trough and peak but those at the ends; values and noise in the signal's unit."""
+    time = np.arange(4000)
+    random = np.random.Generator(np.random.Philox(5)).normal(size=4000)
+    signal = np.where(time % 400 < 350, time % 400 / 350, (400 - time % 400) / 50)
+    points = turning_points.turning_points(unit * (signal + noise * random))
+    at = np.array(sorted([*range(350, 4000, 400), *range(400, 4000, 400)]))
+    assert (points.index + 0.5) * points.width - 0.5 == pytest.approx(
+        at[: len(points.index)], abs=25 if noise else 2
+    )
+    assert len(points.index) in (18, 19)
+    assert points.trough.tolist() == [(k % 2 == 1) == (unit > 0) for k in range(len(points.index))]
+    assert points.clearness > turning_points.CLEAR
+    assert points.noise == pytest.approx(2 * noise * abs(unit) / points.width**0.5, rel=0.6)
+    assert points.noise / abs(unit) < points.least / abs(unit) < 1.0
+    scaled = points.values / unit
+    assert (scaled.min(), scaled.max()) == pytest.approx((0.0, 1.0), abs=6 * noise + 0.02)
+    assert abs(points.before / unit) == pytest.approx(0.0, abs=0.15)
+
+
+def test_before_and_after():
+    """The farthest that the signal is from the first point, and from the last one."""
+    values = np.array([3.0, 1.0, 5.0, 0.0, 4.0, 2.0, 6.0, 5.0])
+    of = turning_points.TurningPoints
+    points = of(np.array([2, 3, 4]), np.array([False, True, False]), values, 1, 0.0, 99.0)
+    assert (points.before, points.after) == (1.0, 2.0)
+    points = of(np.array([3, 4, 5]), np.array([True, False, True]), values, 1, 0.0, 99.0)
+    assert (points.before, points.after) == (5.0, 6.0)
+
+
+# --- their places -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("width", [1, 4])
+def test_a_smooth_top_is_placed_between_samples(sign, width):
+    """By a parabola, which a parabola's top is exactly; in means over some samples too."""
+    time = 0.7 + 0.01 * np.arange(400)
+    top = 0.5 * (time[0] + time[-1]) + 0.0037
+    signal = sign * (2.0 - (time - top) ** 2)
+    means = signal.reshape(-1, width).mean(axis=1)
+    low = int(np.argmin(sign * means[: len(means) // 2]))
+    index = np.array([low + 1, int(np.argmax(sign * means)), len(means) - 2])
+    trough = np.array([True, False, True]) if sign > 0 else np.array([False, True, False])
+    points = turning_points.TurningPoints(index, trough, means, width, 1e-3, 99.0)
+    found = peak_refinement.vertices(time, points)
+    assert found.time[1] == pytest.approx(top, abs=1e-9)
+    off = np.mean((np.arange(width) - (width - 1) / 2) ** 2) * 0.01**2  # what means take off
+    assert found.value[1] == pytest.approx(sign * (2.0 - off), abs=1e-9)
+
+
+def test_a_corner_stays_where_it_is_sampled():
+    """It bends more than twice as much as next to it; a parabola would lie beside."""
+    values = np.array([0.0, 1.0, 2.0, 3.0, 4.0, 1.0, 0.5, 0.2, 1.0, 2.0, 3.0])
+    points = turning_points.TurningPoints(
+        np.array([4, 7]), np.array([False, True]), values, 1, 0.0, 99.0
+    )
+    found = peak_refinement.vertices(np.arange(11.0) * 0.1, points)
+    assert (found.time[0], found.value[0]) == pytest.approx((0.4, 4.0))
+
+
+def test_the_top_of_a_parabola_within_its_piece():
+    slope, bend = (
+        np.array([1.0, 1.0, -1.0, 3.0, 0.0, -2.0]),
+        np.array([-1.0, 1.0, 1.0, -1.0, 1.0, 0.0]),
+    )
+    wanted = [0.5, 1.0, -1.0, 1.0, 0.0, -1.0]
+    assert peak_refinement._top(slope, bend).tolist() == wanted
+
+
+def test_second_derivatives_of_uneven_samples():
+    time = np.array([0.0, 0.1, 0.3, 0.4, 0.8])
+    values = 3.0 * time**2 - time
+    assert peak_refinement._bend(time, values, np.array([1, 2, 3])) == pytest.approx([6.0] * 3)
+
+
+@pytest.mark.parametrize("degree", [0, 1, 2])
+def test_fits_of_pieces(degree):
+    """Least squares, piece by piece, as NumPy's."""
+    time, values = np.linspace(2.0, 3.0, 40), np.array(inside(1, *[(-1.0, 1.0)] * 40)[0])
+    first, last = np.array([0, 5, 20]), np.array([9, 12, 39])
+    fits = fitted(time, values, first, last, degree)
+    for i, (a, b) in enumerate(zip(first, last, strict=True)):
+        x = (time[a : b + 1] - 0.5 * (time[a] + time[b])) / (0.5 * (time[b] - time[a]))
+        wanted = np.polynomial.polynomial.polyfit(x, values[a : b + 1], degree)
+        assert fits.coefficients[i] == pytest.approx(wanted, rel=1e-9, abs=1e-12)
+        assert fits.at(np.full(3, 0.3))[i] == pytest.approx(np.polyval(wanted[::-1], 0.3))
+        assert (fits.middle[i], fits.half[i]) == pytest.approx(
+            (0.5 * (time[a] + time[b]), 0.5 * (time[b] - time[a]))
+        )
