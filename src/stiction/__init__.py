@@ -83,7 +83,7 @@ if TYPE_CHECKING:
 
 __version__ = "0.5.0"
 
-# where each public name lives; imported when first used, so that `import stiction` is light
+# module of each public name, imported at first use, so that `import stiction` is fast
 _HOME = {
     "Analysis": "analysis.report",
     "Anisotropic": "friction",
@@ -166,7 +166,7 @@ _HOME = {
     "sweep": "study.execution.sweep",
     "transverse_oscillation": "analysis.transverse_oscillation",
 }
-# old public names, which go on working for one version
+# old public names, which work for one more version
 _RENAMED = {"hear_song": "transverse_oscillation", "song_by_phase": "oscillation_by_phase"}
 _ROOMS = ("linear_stability", "plotting", "presets", "theory")
 

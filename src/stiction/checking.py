@@ -1,4 +1,4 @@
-"""check(path): is a result, or a study's store, as it was written?"""
+"""check(path): find damage in a result or a study's store."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ from stiction.text.sections import Section, as_text
 
 
 class Check(NamedTuple):
-    """What a check found.
+    """The findings of a check.
 
     Parameters
     ----------
     path : Path
-        Of what.
+        The result or the store.
     damaged : sequence of str
-        What is, or was, not as it was written.
+        Names of the parts that are damaged, or were before a repair.
     repaired : bool
-        Whether it was computed again.
+        Whether the damaged parts were computed again.
     pending : int
-        Blocks of a study that are not done yet.
+        Number of blocks of a study that are not computed yet.
     """
 
     path: Path
@@ -40,20 +40,20 @@ class Check(NamedTuple):
 
     @property
     def ok(self) -> bool:
-        """Whether all is whole now."""
+        """Whether nothing is damaged now."""
         return self.repaired or not self.damaged
 
     def __repr__(self) -> str:
-        """Say whether it is whole."""
+        """Return a one-line summary."""
         state = "repaired" if self.repaired else "whole" if self.ok else "damaged"
         return f"<Check {self.path}: {state}>"
 
     def __str__(self) -> str:
-        """Return the same as text."""
+        """Return the report as text."""
         return as_text(self.tables())
 
     def tables(self) -> list[Section]:
-        """Return in sentences what is damaged, and what to do."""
+        """Return the damaged parts and the remedy, as sentences."""
         lines = [f"damaged: {name}" for name in self.damaged] or ["All is as it was written."]
         if self.repaired:
             lines.append("It was computed again.")
@@ -65,31 +65,31 @@ class Check(NamedTuple):
 
 
 def check(path: str | Path, *, repair: bool = False, trust: bool = False) -> Check:
-    """Look whether a result, or the store of a study, is as it was written.
+    """Check a result, or the store of a study, for damage.
 
-    What versions before 0.5 wrote has no checksums: of it only missing and cut parts are seen.
+    Versions before 0.5 wrote no checksums: in their files, only missing and truncated parts show.
 
     Parameters
     ----------
     path : str or Path
-        What `stiction.run` or `stiction.sweep` wrote.
+        A result of `stiction.run` or a store of `stiction.sweep`.
     repair : bool, optional
-        Whether to compute again what is damaged: a result, from the description in it; of a
-        study, the blocks that are damaged.
+        Whether to compute damaged parts again: a result from the description in it, a study
+        block by block.
     trust : bool, optional
-        Whether the text of a friction law that is kept there may be run for that; see
+        Whether a repair may run the text of a friction law that is stored there; see
         `stiction.load`.
 
     Returns
     -------
     Check
-        What is damaged.
+        The findings.
 
     Raises
     ------
     ResultError
-        If it is neither a result nor a store, or its description, from which it would be
-        computed again, is damaged itself.
+        If `path` is neither a result nor a store, or a repair needs a description that is
+        damaged too.
 
     Examples
     --------

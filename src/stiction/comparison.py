@@ -30,14 +30,14 @@ HEADINGS = (
     "law", "sticks", "stuck (s)", "largest k_x u_x/W", "fastest slip (m/s)",
     "slowest in load-up (m/s)", "median in load-up (m/s)",
 )  # fmt: skip
-REST = 1e-9  # of the drive's speed: what is slower rests, in any test
-BRISTLES = 100.0  # of the stiffness along x, as Canudas de Wit et al. (1995) beside our 1 kN/m
-MEMORY = 200.0  # in a slip length, as 10 µm in the 2 mm of Nakano & Popov
+REST = 1e-9  # of the drive's speed: slower motion counts as rest
+BRISTLES = 100.0  # of the stiffness along x: sigma_0 of Canudas de Wit et al. (1995) over 1 kN/m
+MEMORY = 200.0  # memory lengths in a slip length: 10 µm in the 2 mm of Nakano & Popov
 EXAMPLE = """'{law = "coulomb", mu_0 = 0.15}'"""
 
 
 class Comparison(dict[str, Trajectory]):
-    """Runs of one apparatus under several friction laws, by the name of the law.
+    """Runs of one apparatus under several friction laws, by the law's name.
 
     The description's own law is the first.
     """
@@ -76,7 +76,7 @@ class Comparison(dict[str, Trajectory]):
 
 
 def row(label: str, run: Trajectory) -> tuple[str, ...]:
-    """Return the row of one law."""
+    """Return the table row of one law."""
     o = outcome(run)
     least = REST * float(np.hypot(run.data["drive_X"], run.data["drive_Y"]).max())
     speeds = (f"{v if v > least else 0.0:.3g}" for v in (o.fastest, o.slowest, o.creep))
@@ -85,9 +85,9 @@ def row(label: str, run: Trajectory) -> tuple[str, ...]:
 
 
 def sampled(description: Description) -> Description:
-    """Return the description with a sample rate, which a figure over time needs.
+    """Return the description with a sample rate for figures over time.
 
-    Where it asks for none it is that of `simulate`, of the description's own law for all.
+    If it has none, all laws use the rate that `simulate` chooses for the description's own law.
     """
     if description.run.sample_rate:
         return description
@@ -108,28 +108,28 @@ def compare(
     Parameters
     ----------
     description : Description, str or Path
-        What is run, or its file; only its friction law is exchanged.
+        The description, or its file; only its friction law is replaced.
     laws : sequence of law, mapping, str or Path
-        Each a friction law; a table as in a description; the same written as text, e.g.
-        ``'{law = "coulomb", mu_0 = 0.15}'``; a description file, of which the table [friction]
-        is taken; ``file.py:Class``; or a law's bare name, e.g. ``"coulomb"``. A law given by
-        name alone gets parameters that make it comparable with the description's own, see
-        `comparable`; the name of the description's own law means that one, which is run once.
+        Each is a friction law; a table as in a description; the same as text, e.g.
+        ``'{law = "coulomb", mu_0 = 0.15}'``; a description file, whose table [friction] is
+        used; ``file.py:Class``; or a law's name, e.g. ``"coulomb"``. A name alone gets
+        parameters that make the law comparable with the description's own, see `comparable`;
+        the name of the description's own law means that law, which is run once.
     max_steps : int, optional
-        Each run gives up after so many steps.
+        Limit of the steps of each run.
     progress : callable, optional
         Called with the fraction of all runs done.
 
     Returns
     -------
     Comparison
-        A mapping: the run by the name of the law, with the parameters that differ where a name
-        occurs twice; the description's own law first. With ``tables()`` and ``plot()``.
+        The runs by the name of the law, the description's own first. Where a name occurs twice,
+        the parameters that differ are added to it. It has ``tables()`` and ``plot()``.
 
     Raises
     ------
     DescriptionError
-        With every law that cannot be read, at once.
+        With every law that cannot be read.
     """
     description = sampled(description_of(description))
     own = description.slider.law
@@ -148,12 +148,12 @@ def compare(
 
 
 def share(progress: Callable[[float], None], done: int, runs: int) -> Callable[[float], None]:
-    """Return what reports the progress of one run as a part of that of all."""
+    """Return a callback that turns one run's progress into that of all runs."""
     return lambda fraction: progress((done + fraction) / runs)
 
 
 def labels(laws: Sequence[Law]) -> list[str]:
-    """Return a name for each law, with the parameters that differ where a name occurs twice."""
+    """Return a name for each law; equal names get the parameters that differ."""
     names = [name_of(law) for law in laws]
     written = [
         {key: f"{v:.6g}" for key, v in parameters(law).items() if isinstance(v, int | float)}
@@ -175,7 +175,7 @@ def labels(laws: Sequence[Law]) -> list[str]:
 def exchanged(description: Description, law: Law) -> Description:
     """Return the same description with another friction law.
 
-    Internal states at the start belong to the law that they were given for.
+    Initial internal states are kept only for a law of the same type.
     """
     initial = description.initial
     if initial.states is not None and type(law) is not type(description.slider.law):
@@ -185,7 +185,7 @@ def exchanged(description: Description, law: Law) -> Description:
 
 
 def read_laws(description: Description, laws: Sequence[Any]) -> list[Law]:
-    """Return the laws that are meant; `stiction.compare` tells the forms."""
+    """Read the laws in any form that `stiction.compare` accepts."""
     made: list[Law] = []
     found: list[Fault] = []
     for count, value in enumerate(laws, 1):
@@ -200,7 +200,7 @@ def read_laws(description: Description, laws: Sequence[Any]) -> list[Law]:
 
 
 def within(fault: Fault, text: str) -> Iterator[str]:
-    """Yield where inside a law a fault is, unless it is the law or its file as a whole."""
+    """Yield the path of a fault inside its law, if it has one, and the message."""
     key = ".".join(fault.path.split(".")[1:])
     if key not in ("", "law", "friction") and fault.path != text:
         yield key
@@ -208,18 +208,18 @@ def within(fault: Fault, text: str) -> Iterator[str]:
 
 
 def read(description: Description, value: Any) -> Law:
-    """Return the law that one entry of the list means."""
+    """Read the law of one list entry."""
     if isinstance(value, Mapping):
         return read_law(dict(value))
     if not isinstance(value, str | Path):
-        law: Law = value  # the slider says so if it is not one
+        law: Law = value  # the slider refuses anything else
         return law
     text = str(value).strip()
     if text.startswith("{"):
         return read_law(inline(text))
     if text.endswith(".toml"):
         return read_law(friction_table(text), named(Path(text).parent))
-    if ":" in text:  # not from a file: the user says so
+    if ":" in text:  # named by the user, not by a file
         return read_law({"law": text}, named(Path(), trust=True))
     if text in LAWS:
         return comparable(LAWS[text], description)
@@ -228,19 +228,19 @@ def read(description: Description, value: Any) -> Law:
 
 
 def comparable(kind: Any, description: Description) -> Law:
-    """Return the law of this kind that is like the description's own; that itself if it is one.
+    """Return a law of `kind` that is comparable with the description's own.
 
-    What the coefficients do not say is in proportion to the apparatus: bristles are a hundred
-    times as stiff as its soft spring, and critically damped; memory lasts for a two hundredth of
-    the slip length, or for as long as that of the described law. For the apparatus of Nakano &
-    Popov these are the published values of both laws.
+    The description's own law is returned if it is of that kind. Bristles are a hundred times as
+    stiff as the soft spring, and critically damped; the memory length is a two-hundredth of the
+    slip length, or that of the described law. For the apparatus of Nakano & Popov these are the
+    published values of both laws.
     """
     slider = description.slider
     if isinstance(slider.law, kind):
         described: Law = slider.law
         return described
     made: Any = like(kind, shared_traits(description))
-    known = slider.law._asdict() if hasattr(slider.law, "_asdict") else {}  # a class of one's own
+    known = slider.law._asdict() if hasattr(slider.law, "_asdict") else {}  # a user's class
     sigma_0, memory = BRISTLES * slider.k_x, slider.F_0 / slider.k_x / MEMORY
     own = {"sigma_0": sigma_0, "sigma_1": 2.0 * sqrt(sigma_0 * slider.mass)}
     own |= {"D_c": memory, "D_1": memory, "D_2": 10.0 * memory}
@@ -254,7 +254,7 @@ def comparable(kind: Any, description: Description) -> Law:
 
 
 def inline(text: str) -> dict[str, Any]:
-    """Return the inline TOML table that a text holds."""
+    """Return the inline TOML table in a text."""
     try:
         table: dict[str, Any] = tomllib.loads(f"law = {text}")["law"]
     except (ValueError, RecursionError) as error:
@@ -274,7 +274,7 @@ def friction_table(path: str) -> dict[str, Any]:
 def shared_traits(description: Description) -> Traits:
     """Return the traits of the description's own law, at the speeds of the apparatus.
 
-    The fastest slip is that of the drive and of the mass that flies off its loaded spring.
+    The fastest slip is the drive's speed plus that of the mass released by its loaded spring.
     """
     slider, start = description.slider, description.initial.time
     times = np.linspace(start, start + description.run.duration, 513)

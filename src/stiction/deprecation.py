@@ -1,4 +1,4 @@
-"""Old public names go on working for one version, with a warning that names the new one."""
+"""Old public names: they work for one more version, with a warning that names the new one."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ def warn_renamed(old: str, new: str, *, stacklevel: int = 3) -> None:
 
 
 def by_new_names(names: Iterable[str], formerly: Mapping[str, str], what: str) -> list[str]:
-    """Return names of data, old ones replaced; warn who called the public function of each.
+    """Replace old names of data by new ones; warn the caller of the public function.
 
     Parameters
     ----------
     names : iterable of str
-        As they were given.
+        The given names.
     formerly : mapping
         From each old name to the new one.
     what : str
-        What they name, for example "measure".
+        The kind of name, for example "measure".
     """
     given = list(names)
     for name in dict.fromkeys(given):
@@ -36,17 +36,17 @@ def by_new_names(names: Iterable[str], formerly: Mapping[str, str], what: str) -
 def old_names(
     module: str, renamed: Mapping[str, str], otherwise: Callable[[str], Any] | None = None
 ) -> Callable[[str], Any]:
-    """Return a module's ``__getattr__`` that knows old names.
+    """Return a ``__getattr__`` for a module that resolves its old names.
 
     Parameters
     ----------
     module : str
         The module's ``__name__``.
     renamed : mapping
-        From each old name to the new one, an attribute of the same module, or written with dots
-        from the package on (``"stiction.plotting.run"``).
+        From each old name to the new one: an attribute of the same module, or a full dotted
+        path (``"stiction.plotting.run"``).
     otherwise : callable, optional
-        Asked for any other name; an `AttributeError` when left out.
+        Resolves all other names; by default they raise `AttributeError`.
 
     Examples
     --------
@@ -68,7 +68,7 @@ def old_names(
 
 
 class _Moved:
-    """Stands where a function or class was: called, asked for or tested against, it warns."""
+    """Placeholder for a moved function or class, which warns at each use."""
 
     def __init__(self, old: str, new: str) -> None:
         self._old, self._new = old, new
@@ -88,35 +88,35 @@ class _Moved:
         return issubclass(kind, self._found())
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("__"):  # pytest, doctest and the like ask functions for these
+        if name.startswith("__"):  # pytest, doctest and others look these up on functions
             raise AttributeError(name)
         return getattr(self._found(), name)
 
 
 def old_attributes(function: Callable[..., Any], renamed: Mapping[str, str]) -> None:
-    """Let a function that took the place of a module answer to what the module held.
+    """Give a function that replaced a module the attributes of that module.
 
     Parameters
     ----------
     function : callable
         For example `stiction.audit`.
     renamed : mapping
-        From each old name in the module to the new one, written from the package on.
+        From each old name in the module to the full path of the new one.
     """
     for old, new in renamed.items():
         setattr(function, old, _Moved(f"stiction.{function.__name__}.{old}", new))
 
 
 def old_method(old: str, new: str) -> Callable[..., Any]:
-    """Return a method in whose place there is a function of the package now, which it warns of.
+    """Return a deprecated method that warns and calls the function that replaced it.
 
     Parameters
     ----------
     old : str
-        The call as it was, for example ``"Study.run(store)"``.
+        The old call, for example ``"Study.run(store)"``.
     new : str
-        The same call of a public function, ``"sweep(study, store)"``; it is given the instance
-        first.
+        The same call of a public function, ``"sweep(study, store)"``; the instance is its first
+        argument.
     """
 
     def method(self: Any, *args: Any, **values: Any) -> Any:

@@ -1,4 +1,4 @@
-"""What can go wrong, and how a run ended."""
+"""Errors, and the status of a run."""
 
 from __future__ import annotations
 
@@ -6,38 +6,38 @@ from collections.abc import Sequence
 from enum import Enum
 from typing import NamedTuple
 
-LONGEST = 2000  # characters of a message; more would hide what it says
+LONGEST = 2000  # characters of a message
 
 
 def one_line(error: BaseException) -> str:
-    """Return another's error in one line."""
+    """Return the error of another library in one line."""
     return " ".join(f"{type(error).__name__}: {error}".split())[:LONGEST]
 
 
 def visible(text: str) -> str:
-    """Return a text with each character that a terminal would act on written out: ``\\x1b``.
+    """Escape the control characters of a text, which a terminal would act on: ``\\x1b``.
 
-    Names and values in a file are its writer's choice.
+    Names and values in a file come from whoever wrote it.
     """
     return "".join(x if x.isprintable() or x == "\n" else ascii(x)[1:-1] for x in text)
 
 
 class StictionError(Exception):
-    """Any error that this package raises on purpose; its text is meant for the user."""
+    """Base class of the package's errors; the text is meant for the user."""
 
     def __str__(self) -> str:
-        """Return the text, of which nothing acts on a terminal."""
+        """Return the text with control characters escaped."""
         return visible(super().__str__())
 
 
 class Fault(NamedTuple):
-    """One thing wrong with a description: where it is, and what to write instead."""
+    """One fault of a description: its path, and what to write instead."""
 
     path: str
     message: str
 
     def __str__(self) -> str:
-        """Return ``path: message``, not longer than can be read."""
+        """Return ``path: message``, shortened if very long."""
         text = f"{self.path}: {self.message}" if self.path else self.message
         return (
             text if len(text) <= LONGEST else f"{text[: LONGEST // 2]} ... {text[-LONGEST // 2 :]}"
@@ -45,7 +45,7 @@ class Fault(NamedTuple):
 
 
 class DescriptionError(StictionError, ValueError):
-    """A description that cannot be simulated, with every fault in it at once.
+    """A description cannot be simulated; carries all of its faults.
 
     Attributes
     ----------
@@ -54,23 +54,23 @@ class DescriptionError(StictionError, ValueError):
     """
 
     def __init__(self, faults: Sequence[Fault]) -> None:
-        """Join the faults to one message, a line each."""
+        """Join the faults into one message, a line each."""
         self.faults = tuple(faults)
         super().__init__("\n".join(str(fault) for fault in self.faults))
 
     def __reduce__(self) -> tuple[type[DescriptionError], tuple[tuple[Fault, ...]]]:
-        """Pickle by the faults, not by the text."""
+        """Pickle the faults, not the text."""
         return type(self), (self.faults,)
 
 
 class ResultError(StictionError, ValueError):
-    """A file that is not a result of this package, or does not hold what is asked of it."""
+    """A file is not a result of this package, or lacks the requested data."""
 
 
 class Status(Enum):
-    """How a run ended; each value is the message that explains it.
+    """How a run ended; each value explains it.
 
-    The order is the contract with the compiled loop, which returns the position in `STATUSES`.
+    The order matters: the compiled loop returns a position in `STATUSES`.
     """
 
     COMPLETED = "the run reached its duration"
@@ -87,7 +87,7 @@ class Status(Enum):
 
     @property
     def ok(self) -> bool:
-        """Whether the run came to its intended end."""
+        """Whether the run reached its intended end."""
         return self is Status.COMPLETED
 
 

@@ -1,6 +1,6 @@
-"""What this machine lends: how many cores, and how much memory.
+"""Cores and memory that this process may use.
 
-What takes more memory is refused before it is asked for.
+Work that needs more memory is refused before it starts.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ try:
 except ImportError:  # Windows
     resource = None  # type: ignore[assignment]
 
-# of those that this process may use: a batch system lends some of the machine's
+# a batch system may lend only some of the machine's cores
 CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-SHARE = 0.5  # of the memory, to one thing: the rest is for copies of it, and for others
-UNKNOWN = 8e9  # bytes, where the machine does not say
-LIMITS = (  # of a container or a batch system
+SHARE = 0.5  # of the memory for one object; the rest is for copies and other programs
+UNKNOWN = 8e9  # bytes, where the machine does not tell
+LIMITS = (  # files with the limit of a container or batch system
     Path("/sys/fs/cgroup/memory.max"),
     Path("/sys/fs/cgroup/memory/memory.limit_in_bytes"),
 )
@@ -26,12 +26,12 @@ LIMITS = (  # of a container or a batch system
 
 @cache
 def lent() -> float:
-    """Return how many bytes one thing may take."""
+    """Return how many bytes one object may occupy."""
     return SHARE * min(_physical(), *map(_limit, LIMITS), _of_process())
 
 
 def shortage(size: float) -> str:
-    """Return what is said of something that takes `size` bytes; '' if there is room for it."""
+    """Return why `size` bytes are too many, as part of a sentence; '' if they fit."""
     if size <= lent():
         return ""
     return f"takes {size / 1e9:.3g} GB of memory, and this machine lends {lent() / 1e9:.3g} GB"
@@ -46,7 +46,7 @@ def _physical() -> float:
 
 def _limit(file: Path) -> float:
     try:
-        return float(file.read_text())  # "max" where there is none
+        return float(file.read_text())  # ValueError for "max": no limit
     except (OSError, ValueError):
         return float("inf")
 

@@ -1,4 +1,4 @@
-"""Named systems to start from."""
+"""Published systems as starting points."""
 
 from __future__ import annotations
 

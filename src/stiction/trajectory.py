@@ -1,4 +1,4 @@
-"""What a run gives back: labelled arrays, stick intervals, how it ended, what it took."""
+"""The result of a run: labelled arrays, stick intervals, status and statistics."""
 
 from __future__ import annotations
 
@@ -29,20 +29,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Statistics:
-    """What a run took.
+    """The cost of a run.
 
     Parameters
     ----------
     steps, rejected : int
-        Slip steps taken, and tries that were not accurate enough.
+        Slip steps accepted, and steps rejected as not accurate enough.
     iterations : int
         Newton iterations.
     stick_count : int
-        Stick intervals.
+        Number of stick intervals.
     time_stuck : float
-        Their sum, s.
+        Their total duration, s.
     mapped : int
-        How many of them `multiscale` found, without steps.
+        How many of them `multiscale` interpolated.
     """
 
     steps: int
@@ -60,15 +60,15 @@ class Trajectory:
     Parameters
     ----------
     description : Description
-        What was run.
+        The description of the run.
     arrays : callable
-        Returns `data`, which is made when it is first asked for.
+        Returns `data`, at first use.
     stick_intervals : ndarray
-        Stick intervals, (n, 2): start and end of each, in s; `sticks` as a plain array.
+        Start and end of each stick, (n, 2), in s; `sticks` as a plain array.
     status : Status
         How the run ended.
     statistics : Statistics
-        What it took.
+        The cost of the run.
     """
 
     description: Description
@@ -78,7 +78,7 @@ class Trajectory:
     statistics: Statistics
 
     def __repr__(self) -> str:
-        """Say how far the run came and what is in it."""
+        """Return a one-line summary."""
         n, end = self.data.sizes["time"], float(self.data["time"][-1])
         sticks = self.statistics.stick_count
         return f"<Trajectory to {end:g} s, {n} samples, {sticks} sticks, {self.status.name}>"
@@ -101,9 +101,9 @@ class Trajectory:
         return stick_table(self.stick_intervals)
 
     def to_dataframe(self) -> pd.DataFrame:
-        """Return the samples as a table of pandas, one row a sample, indexed by time.
+        """Return the samples as a pandas data frame, indexed by time.
 
-        Stick intervals are a table of their own: ``run.sticks.to_dataframe()``.
+        Stick intervals have a data frame of their own: ``run.sticks.to_dataframe()``.
 
         Examples
         --------
@@ -125,22 +125,22 @@ class Trajectory:
         return self.data.isel(time=-1)
 
     def export(self, path: str | Path) -> list[Path]:
-        """Write samples and sticks as CSV, Parquet or MATLAB, see `stiction.export`."""
+        """Write samples and sticks as CSV, Parquet or MATLAB; see `stiction.export`."""
         return export(self, path)
 
     def plot(self, axes: Any = None) -> Any:
-        """Draw the run, all of it or on given axes; see `stiction.plotting.plot_run`."""
+        """Draw the run; see `stiction.plotting.plot_run`."""
         from stiction.plotting import plot_run
 
         return plot_run(self, axes)
 
     def state(self, time: float | str) -> Initial:
-        """Return the state at the sample nearest to `time` (s), to start another run from.
+        """Return the state at the sample nearest to `time` (s), as the start of another run.
 
         Raises
         ------
         ResultError
-            If the run was not there at that time.
+            If `time` lies outside the run.
         """
         wanted = Initial(time=time).time
         first, last = (float(self.data["time"][i]) for i in (0, -1))
@@ -174,17 +174,17 @@ def export(result: Trajectory | str | Path, path: str | Path, *, trust: bool = F
     result : Trajectory, str or Path
         A run, or its file.
     path : str or Path
-        With the suffix .csv or .parquet: the samples, and beside them the stick intervals
-        (``run-sticks.csv``). With .mat: all in one file, as the structs ``samples``, ``sticks``
-        and ``units``. Units stand in the heads of CSV columns and in Parquet's metadata.
+        With .csv or .parquet, the samples go there and the stick intervals beside it
+        (``run-sticks.csv``). With .mat, one file holds the structs ``samples``, ``sticks`` and
+        ``units``. CSV has units in its column heads, Parquet in its metadata.
     trust : bool, optional
-        Of a file, see `load`.
+        For a file; see `load`.
 
     Raises
     ------
     ResultError
-        If the format is not known, needs what is not installed (Parquet needs pyarrow: install
-        ``stiction[parquet]``), or cannot be written there.
+        If the format is unknown, needs a missing package (Parquet needs pyarrow: install
+        ``stiction[parquet]``), or the file cannot be written.
 
     Examples
     --------
@@ -204,12 +204,12 @@ def export(result: Trajectory | str | Path, path: str | Path, *, trust: bool = F
 
 
 def writable(path: str | Path) -> Path:
-    """Return the path of a result, if one can be written there.
+    """Return a path, if a result can be written there.
 
     Raises
     ------
     ResultError
-        If it has another suffix than .nc, no folder, or is something else than a file.
+        If its suffix is not .nc, its folder does not exist, or it is not a file.
     """
     target = Path(path)
     if target.suffix != ".nc":
@@ -225,14 +225,14 @@ def load(path: str | Path, *, trust: bool = False) -> Trajectory:
     path : str or Path
         Written by ``run.save`` or ``stiction run``.
     trust : bool, optional
-        Whether the text of a friction law that stands in the file may be run. It is needed
-        only for a law of one's own that this process has not loaded already, from the same
-        text: a result by itself never has anything run.
+        Whether the text of a friction law in the file may be run. Needed only for a user's law
+        that this process has not loaded already from the same text: without it, a file never
+        runs code.
 
     Raises
     ------
     ResultError
-        If there is no such file, or it is not a result of this package.
+        If the file does not exist, or is not a result of this package.
     """
     data, sticks = read_tables(path)
     try:
@@ -256,7 +256,7 @@ def load(path: str | Path, *, trust: bool = False) -> Trajectory:
 
 
 def _with_mu(data: xr.Dataset, slider: Slider) -> xr.Dataset:
-    """Return the samples as read, with the apparent coefficient if they are of version 0.4."""
+    """Add the apparent friction coefficient to samples of version 0.4."""
     if "mu" in data:
         return data
     mu = apparent_friction(slider, data)

@@ -1,1 +1,1 @@
-"""The result of a run: labelled tables, and the file that holds them."""
+"""The result of a run: labelled tables and their file."""

@@ -1,10 +1,10 @@
-"""What a result file knows of itself: checksums of all that is read back from it.
+"""Checksums of everything that is read back from a result file.
 
-Each array has HDF5's own (fletcher32), which any program heeds. It does not hold for names, for
-attributes, and for what says where in the file an array is: those of all this are in an attribute.
-The checksum of the whole file stands behind what is HDF5's, where no reader looks. It tells a file
-that is as it was written without HDF5, which must not be asked: it trips over damage. What others
-write into the file takes it away.
+Each array has HDF5's own checksum (fletcher32), which every program verifies. It does not protect
+names, attributes, or the tables that locate an array in the file: one attribute holds the checksums
+of these. The checksum of the whole file stands behind the end of HDF5's data, where no reader
+looks. It shows that a file is intact without HDF5, which may crash on damage. Other programs that
+write into the file remove it.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ if TYPE_CHECKING:
     import xarray as xr
 
 SEAL, DESCRIPTION = "checksums", "description"  # attributes of the file
-CHUNK = 2**16  # samples that share a checksum
-MARK = b"stiction crc-32c"  # stands before the checksum of a whole file
+CHUNK = 2**16  # samples per checksum
+MARK = b"stiction crc-32c"  # precedes the checksum of a whole file
 
 
 def sealed(tables: Mapping[str, xr.Dataset]) -> str:
-    """Return the checksums of tables, as they are kept in the attribute."""
+    """Return the checksums of tables as the text of an attribute."""
     return seal(_parts(tables))
 
 
 def checked(table: xr.Dataset) -> dict[Any, dict[str, Any]]:
-    """Return how the arrays of a table are encoded: with HDF5's checksums."""
+    """Return the encoding of a table's arrays, with HDF5's checksums."""
     return {
         name: {"fletcher32": True, "chunksizes": (min(each.size, CHUNK),)}
         for name, each in table.variables.items()
@@ -45,7 +45,7 @@ def checked(table: xr.Dataset) -> dict[Any, dict[str, Any]]:
 
 
 def damaged(known: str | None, tables: Mapping[str, xr.Dataset]) -> list[str]:
-    """Return the names of what is not as it was written; older versions kept no checksums."""
+    """Return the names of damaged parts; none for files of versions without checksums."""
     if known is None:
         arrays = [each for table in tables.values() for each in table.variables.values()]
         return [SEAL] if any(each.encoding.get("fletcher32") for each in arrays) else []
@@ -53,12 +53,12 @@ def damaged(known: str | None, tables: Mapping[str, xr.Dataset]) -> list[str]:
 
 
 def intact_description(path: str | Path) -> str:
-    """Return the description in a result file of which other parts are damaged.
+    """Return the description from a result file whose other parts are damaged.
 
     Raises
     ------
     ResultError
-        If it is damaged itself, or has no checksum.
+        If the description is damaged too, or has no checksum.
     """
     h5py: Any = import_module("h5py")  # slow to import
     with opening(path, "not a result that can be mended"), h5py.File(path) as file:
@@ -70,7 +70,7 @@ def intact_description(path: str | Path) -> str:
 
 
 def _parts(tables: Mapping[str, xr.Dataset]) -> dict[str, Any]:
-    """Return all that is in tables: the numbers of each array, and every attribute together."""
+    """Return the contents of tables: each array's numbers, and all attributes together."""
     numbers: dict[str, Any] = {}
     attributes: dict[str, Any] = {}
     for name, table in tables.items():
@@ -85,7 +85,7 @@ def _parts(tables: Mapping[str, xr.Dataset]) -> dict[str, Any]:
 
 
 def _plain(attributes: Mapping[Any, Any]) -> dict[str, Any]:
-    """Return attributes as they are in any format: numbers, texts and lists of them."""
+    """Return attributes as plain numbers, texts and lists, independent of the file format."""
     plain = {str(name): np.asarray(value).tolist() for name, value in attributes.items()}
     return {
         name: value[0] if isinstance(value, list) and len(value) == 1 else value
@@ -94,14 +94,14 @@ def _plain(attributes: Mapping[Any, Any]) -> dict[str, Any]:
 
 
 def sign(path: str | Path) -> None:
-    """Put a file's checksum at its end."""
+    """Append a file's checksum to it."""
     own = crc_of_file(path)
     with open(path, "ab") as file:
         file.write(MARK + own)
 
 
 def as_written(path: str | Path) -> bool | None:
-    """Return whether a file has the bytes that were written; None if it has no such checksum."""
+    """Return whether a file matches its appended checksum; None if it has none."""
     end = len(MARK) + LENGTH
     with open(path, "rb") as file:
         size = file.seek(0, os.SEEK_END)

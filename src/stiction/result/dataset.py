@@ -1,4 +1,4 @@
-"""From the solver's numbers to two tables: samples, and stick intervals; names and units."""
+"""From the solver's arrays to two datasets with names and units: samples, stick intervals."""
 
 from __future__ import annotations
 
@@ -55,13 +55,13 @@ def dataset(
     Parameters
     ----------
     description : Description
-        What was run.
+        The description of the run.
     times : ndarray
         (n,), s.
     samples : ndarray
         (n, 7 + internal states); the columns of `stiction.solver.exact.sampling`, then the states.
     attributes : dict
-        Attributes of the dataset beside the description.
+        Further attributes of the dataset.
     """
     import xarray as xr
 
@@ -109,10 +109,10 @@ def dataset(
 def apparent_friction(slider: Slider, values: Mapping[Any, Any]) -> Any:
     """Return the spring force along the drive direction X over the normal load.
 
-    That is what a friction test reports; in steady sliding it is the coefficient of the law.
+    A friction test reports this ratio; in steady sliding it is the law's coefficient.
     """
     c, s = slider.direction
-    with np.errstate(divide="ignore", invalid="ignore"):  # a load may vanish at the end of a run
+    with np.errstate(divide="ignore", invalid="ignore"):  # the load may vanish at the end of a run
         return (values["spring_x"] * c + values["spring_y"] * s) / values["normal_load"]
 
 

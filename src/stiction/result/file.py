@@ -1,4 +1,4 @@
-"""The file of a run: nothing in it is believed before it was looked at."""
+"""The file of a run, which is checked before it is used."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from stiction.storage.isolation import apart
 if TYPE_CHECKING:
     import xarray as xr
 
-SIGNATURE = b"\x89HDF\r\n\x1a\n"  # of HDF5, in which NetCDF 4 is written
-STICK_GROUP = "sticks"  # of a result file
+SIGNATURE = b"\x89HDF\r\n\x1a\n"  # of HDF5, the format below NetCDF 4
+STICK_GROUP = "sticks"  # group of a result file
 ENDS = ("stick_start", "stick_end")
 TEXTS = ("description", "status", "stiction_version")
 SHORTEST = 1e-100  # s, between two samples
@@ -28,7 +28,7 @@ LATER = {"mu", "stick_duration"}  # columns that older versions did not write
 
 
 def write_result(data: xr.Dataset, sticks: xr.Dataset, path: Path) -> None:
-    """Write samples and sticks, with checksums of all that is in them."""
+    """Write samples and sticks with checksums."""
     tables = {"samples": data, "sticks": sticks}
     whole = data.assign_attrs({SEAL: sealed(tables)})
     whole.to_netcdf(path, engine="h5netcdf", encoding=checked(data))
@@ -54,7 +54,7 @@ def read_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
         whole = as_written(path)
     if whole is False:
         raise _damage(path, ["its bytes are not those that were written"])
-    if whole is None:  # HDF5 may trip over it
+    if whole is None:  # HDF5 may crash on it
         apart(read_through, path)
     with opening(path, UNREADABLE):
         refuse_other_files(path)
@@ -84,7 +84,7 @@ def _damage(path: str | Path, lost: Sequence[str]) -> ResultError:
 
 
 def _refuse_what_is_no_netcdf(path: str | Path) -> None:
-    """Refuse a file that is none of NetCDF's, as a table of a measured record."""
+    """Refuse a file that is not NetCDF, such as a measured record."""
     with open(path, "rb") as file:
         if file.read(len(SIGNATURE)) != SIGNATURE:
             record = "a measured record is analysed in Python: st.analyse(st.Record(...))"
@@ -92,7 +92,7 @@ def _refuse_what_is_no_netcdf(path: str | Path) -> None:
 
 
 def age(data: xr.Dataset) -> str:
-    """Return what is to be said of a file that another version wrote, '' of this one's."""
+    """Return a note on the version that wrote a file, '' if it is this one."""
     wrote, this = data.attrs.get("stiction_version"), version("stiction")
     if wrote is None or str(wrote) == this:
         return ""
@@ -100,7 +100,7 @@ def age(data: xr.Dataset) -> str:
 
 
 def opened(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
-    """Return the two tables of a file; up to version 0.4 both stood in the root group."""
+    """Return the two tables of a file; up to version 0.4 both are in the root group."""
     import xarray as xr
 
     how: dict[str, Any] = {"engine": "h5netcdf", "decode_times": False, "phony_dims": "sort"}
@@ -109,7 +109,7 @@ def opened(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
         return data.drop_dims("stick"), data.drop_dims("time", errors="ignore")
     try:
         sticks = xr.load_dataset(path, group=STICK_GROUP, **how)
-    except OSError:  # there is no such group
+    except OSError:  # no such group
         return data, xr.Dataset()
     return data, sticks
 
@@ -119,7 +119,7 @@ def _lacking(table: xr.Dataset, names: Iterable[str]) -> list[str]:
 
 
 def _wrong(table: xr.Dataset, dim: str, names: Iterable[str]) -> Iterator[str]:
-    """Yield what is wrong with columns of numbers along one dimension."""
+    """Yield the faults of numeric columns along one dimension."""
     for name in names:
         if name not in table:
             continue

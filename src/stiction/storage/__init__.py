@@ -1,1 +1,1 @@
-"""Files: written whole, summed, and looked at before anything in them is believed."""
+"""Files: written whole or not at all, with checksums, and checked before they are read."""

@@ -1,4 +1,4 @@
-"""Checksums (CRC-32C, as in zarr's chunks): damage is told from data."""
+"""Checksums (CRC-32C, as in zarr's chunks), which reveal damaged data."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ BLOCK = 2**20  # bytes of a file that are read at a time
 
 
 def crc(content: Any) -> int:
-    """Return the checksum of bytes, or of an array's."""
+    """Return the checksum of bytes or of an array."""
     return int(google_crc32c.value(content))
 
 
 def with_checksum(content: bytes) -> bytes:
-    """Return bytes with their checksum behind them."""
+    """Append the checksum to bytes."""
     return content + crc(content).to_bytes(LENGTH, "little")
 
 
 def crc_of_file(path: str | Path, size: float = inf) -> bytes:
-    """Return the checksum of a file, or of its first bytes."""
+    """Return the checksum of a file, or of its first `size` bytes."""
     found, left = 0, size
     with open(path, "rb") as file:
         while left > 0 and (block := file.read(int(min(left, BLOCK)))):
@@ -35,7 +35,7 @@ def crc_of_file(path: str | Path, size: float = inf) -> bytes:
 
 
 def without_checksum(content: bytes) -> bytes | None:
-    """Return bytes without their checksum; None if they are not those that it was made of."""
+    """Return bytes without their checksum; None if the checksum does not match."""
     inner = content[:-LENGTH]
     return inner if with_checksum(inner) == content else None
 
@@ -46,7 +46,7 @@ def seal(parts: Mapping[str, Any]) -> str:
 
 
 def broken(sealed: str, parts: Mapping[str, Any]) -> list[str]:
-    """Return the parts that are not what they were when they were sealed, or are missing."""
+    """Return the parts that have changed since they were sealed, or are missing."""
     try:
         known = dict(json.loads(sealed))
     except (ValueError, TypeError):
@@ -56,7 +56,7 @@ def broken(sealed: str, parts: Mapping[str, Any]) -> list[str]:
 
 
 def bytes_of(values: np.ndarray) -> Any:
-    """Return an array's values as bytes, in one order on any machine."""
+    """Return an array's values as bytes, in the same byte order on every machine."""
     if values.dtype.kind in "OUST":  # text
         return "\0".join(map(str, values.ravel())).encode()
     return np.ascontiguousarray(values.astype(values.dtype.newbyteorder("<"), copy=False))

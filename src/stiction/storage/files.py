@@ -1,7 +1,7 @@
-"""Files and folders that are written whole or not at all, and that a power cut does not take.
+"""Files and folders that are written whole or not at all, and that survive a power cut.
 
-What is new is made in a workshop, a hidden folder beside its place. It takes its name when the
-disk has all of it. A process that is killed leaves its workshop: the next one takes it away.
+New files are made in a workshop, a hidden folder beside their destination, and are renamed once
+the disk has all of them. A killed process leaves its workshop behind; the next one removes it.
 """
 
 from __future__ import annotations
@@ -20,21 +20,21 @@ from stiction.errors import ResultError
 
 try:
     import fcntl
-except ImportError:  # Windows: no process can tell whether another one is alive
+except ImportError:  # Windows: a process cannot lock a folder
     fcntl = None  # type: ignore[assignment]
 
-WORKSHOP = ".stiction-"  # how the names of workshops begin
-AT_ONCE = 32  # files synced side by side: the disk takes hardly longer for them than for one
-UNSYNCABLE = (errno.EINVAL, errno.ENOTSUP)  # what some file systems say of a folder
+WORKSHOP = ".stiction-"  # prefix of a workshop's name
+AT_ONCE = 32  # files synced at a time: this takes a disk hardly longer than one file
+UNSYNCABLE = (errno.EINVAL, errno.ENOTSUP)  # errors of file systems that cannot sync a folder
 
 
 def placeable(path: str | Path) -> Path:
-    """Return a path, if a file can be put there, in place of what is there.
+    """Return a path, if a file can be written there or replaced.
 
     Raises
     ------
     ResultError
-        If there is no such folder, or something else than a file is there.
+        If its folder does not exist, or something other than a file is there.
     """
     target = Path(path)
     if not target.parent.is_dir():
@@ -45,12 +45,12 @@ def placeable(path: str | Path) -> Path:
 
 
 def usable_folder(folder: Path) -> None:
-    """Refuse a folder for results that is none, or that cannot be made.
+    """Refuse a path that is not a folder and cannot become one.
 
     Raises
     ------
     ResultError
-        If something else is there, or there is no folder to make it in.
+        If something else is there, or its parent folder does not exist.
     """
     if folder.exists() and not folder.is_dir():
         raise ResultError(f"{folder}: is there, and is not a folder; choose another name")
@@ -59,7 +59,7 @@ def usable_folder(folder: Path) -> None:
 
 
 def make_folder(folder: Path) -> Path:
-    """Make a folder, if it is not there; return it.
+    """Make a folder unless it exists; return it.
 
     Raises
     ------
@@ -75,12 +75,12 @@ def make_folder(folder: Path) -> Path:
 
 @contextmanager
 def whole(target: Path) -> Iterator[Path]:
-    """Yield a path to write to, which takes the place of `target` when all is written.
+    """Yield a temporary path, which replaces `target` once it is written completely.
 
     Raises
     ------
     ResultError
-        If it cannot be written there.
+        If `target` cannot be written.
     """
     try:
         with workshop(target.parent) as room:
@@ -92,12 +92,12 @@ def whole(target: Path) -> Iterator[Path]:
 
 
 def place(made: Mapping[Path, Path]) -> None:
-    """Give files and folders of a workshop their names: the disk has first the one, then the other.
+    """Move files and folders out of a workshop, each after its content is on the disk.
 
     Parameters
     ----------
     made : mapping of Path to Path
-        What was made, and the path that it takes; a file that is there is replaced.
+        From each path in the workshop to its destination; existing files are replaced.
     """
     sync(each for part in made for each in (part, *(part.rglob("*") if part.is_dir() else ())))
     changed = {target.parent for target in made.values()}
@@ -108,27 +108,27 @@ def place(made: Mapping[Path, Path]) -> None:
 
 
 def make_folders(folder: Path) -> list[Path]:
-    """Make a folder, and those that it lies in; return the ones that were not there."""
+    """Make a folder and its missing parents; return those that were made."""
     new = [each for each in (folder, *folder.parents) if not each.exists()]
     folder.mkdir(parents=True, exist_ok=True)
     return new
 
 
 def sync(paths: Iterable[Path]) -> None:
-    """Wait until the disk has the content of files, and the names in folders."""
+    """Wait until the content of files and the entries of folders are on the disk."""
     for _ in _pool(os.getpid()).map(_sync, paths):
         pass
 
 
 @cache
 def _pool(_: int) -> ThreadPoolExecutor:
-    """Return the threads of a process that sync its files; a fork has none of its parent's."""
+    """Return this process's threads for syncing; a fork does not inherit its parent's."""
     return ThreadPoolExecutor(AT_ONCE)
 
 
 def _sync(path: Path) -> None:
     folder = path.is_dir()
-    if folder and os.name == "nt":  # it cannot be opened there
+    if folder and os.name == "nt":  # Windows cannot open a folder
         return
     handle = os.open(path, os.O_RDWR if os.name == "nt" else os.O_RDONLY)
     try:
@@ -142,9 +142,9 @@ def _sync(path: Path) -> None:
 
 @contextmanager
 def workshop(folder: Path) -> Iterator[Path]:
-    """Yield a hidden folder inside `folder` to make something in; it is gone afterwards.
+    """Yield a hidden folder inside `folder` for work in progress; remove it afterwards.
 
-    Those of processes that were killed are taken away first.
+    Workshops of killed processes are removed first.
     """
     for left in folder.glob(f"{WORKSHOP}*"):
         with held(left, alone=True) as mine:
@@ -153,7 +153,7 @@ def workshop(folder: Path) -> Iterator[Path]:
     while True:
         room = Path(tempfile.mkdtemp(dir=folder, prefix=WORKSHOP))
         with held(room):
-            if not room.exists():  # another process took it for one that was left
+            if not room.exists():  # another process took it for an abandoned one
                 continue
             try:
                 yield room
@@ -164,10 +164,10 @@ def workshop(folder: Path) -> Iterator[Path]:
 
 @contextmanager
 def held(folder: Path, *, alone: bool = False) -> Iterator[bool]:
-    """Hold a folder, together with others or alone; yield whether it could be held.
+    """Lock a folder, shared or `alone`; yield whether this succeeded.
 
-    What others hold is not waited for. The system lets go of a folder when the process ends,
-    however it does. Where folders cannot be held, as on Windows, nobody holds one alone.
+    It does not wait for others. The system releases the lock when the process ends, however it
+    ends. Where folders cannot be locked, as on Windows, an exclusive lock never succeeds.
     """
     handle = None
     with suppress(OSError):

@@ -1,4 +1,4 @@
-"""What is looked at before a file from others is opened: where it lies, and how large it is."""
+"""Checks of a foreign file before it is opened: links, other files, damage and size."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ UNREADABLE = "not a NetCDF file that can be read"
 
 @contextmanager
 def opening(path: str | Path, what: str) -> Iterator[None]:
-    """Turn whatever a library raises of a file that is damaged, or none, into a message.
+    """Turn whatever a library raises on a damaged or wrong file into a `ResultError`.
 
     Raises
     ------
     ResultError
-        Saying `what` the file is.
+        With `what` is wrong with the file.
     """
     try:
         yield
@@ -33,12 +33,12 @@ def opening(path: str | Path, what: str) -> Iterator[None]:
 
 
 def refuse_links(folder: str | Path) -> None:
-    """Refuse a store with links in it, which lead reading and writing elsewhere.
+    """Refuse a store that contains links, which redirect reading and writing.
 
     Raises
     ------
     ResultError
-        Naming the first.
+        Naming the first link.
     """
     for link in _links(folder):
         raise ResultError(
@@ -48,7 +48,7 @@ def refuse_links(folder: str | Path) -> None:
 
 
 def _links(folder: str | Path) -> Iterator[str]:
-    with suppress(FileNotFoundError), os.scandir(folder) as entries:  # others may work there
+    with suppress(FileNotFoundError), os.scandir(folder) as entries:  # others may delete files
         for entry in entries:
             if entry.is_symlink():
                 yield entry.path
@@ -57,7 +57,7 @@ def _links(folder: str | Path) -> Iterator[str]:
 
 
 def refuse_other_files(path: str | Path) -> None:
-    """Refuse an HDF5 file that has other files read with it, or calls one thing by two names.
+    """Refuse an HDF5 file that refers to other files, or names one object twice.
 
     Raises
     ------
@@ -87,12 +87,12 @@ def refuse_other_files(path: str | Path) -> None:
 
 
 def read_through(path: str | Path) -> None:
-    """Read all that is in an HDF5 file.
+    """Read everything in an HDF5 file.
 
     Raises
     ------
     ResultError
-        If it cannot be read, or is refused for what is in it.
+        If it cannot be read, or contains what `refuse_other_files` refuses.
     """
     h5py: Any = import_module("h5py")
 
@@ -109,12 +109,12 @@ def read_through(path: str | Path) -> None:
 
 
 def refuse_size(path: str | Path, size: float) -> None:
-    """Refuse to read so many bytes of a file, if there is no memory for them.
+    """Refuse to read `size` bytes of a file that do not fit into memory.
 
     Raises
     ------
     ResultError
-        If this machine does not lend as much.
+        If they exceed what this machine lends.
     """
     if short := shortage(size):
         raise ResultError(f"{path}: to read it {short}; read a part of it, with xarray")

@@ -1,6 +1,6 @@
-"""Reading in a process of its own: what a file does to the library that reads it ends there.
+"""Reading in a separate process, so that a damaged file cannot crash or hang this one.
 
-HDF5 is C and believes what a file says of itself: of some damaged files it reads without end.
+HDF5 trusts the sizes that a file states: in some damaged files it reads without end.
 """
 
 from __future__ import annotations
@@ -21,26 +21,26 @@ from stiction.errors import ResultError, StictionError, one_line
 try:
     import resource
     from signal import SIGXCPU
-except ImportError:  # Windows: seconds are those of a clock there
+except ImportError:  # Windows: wall-clock seconds there
     resource = None  # type: ignore[assignment]
 
 ENDLESS = "reading it does not end"
 CHILD = "from stiction.storage.isolation import answer; answer()"
-PATIENCE, PER_BYTE = 30.0, 1e-6  # s of the processor, for any file and for each byte of it: ample
+PATIENCE, PER_BYTE = 30.0, 1e-6  # processor time, s: for any file, and for each byte; ample
 
 T = TypeVar("T")
 
 
 def apart(work: Callable[[str], T], path: str | Path) -> T:
-    """Return what a function returns of a file, text or None; another process calls it.
+    """Call a function on a file in another process; return its result, text or None.
 
     Raises
     ------
     ResultError
-        What the function raises, or that its process crashes or does not end.
+        If the function raises one, or its process crashes or does not end.
     """
     seconds = ceil(PATIENCE + PER_BYTE * os.path.getsize(path))
-    # -P: nothing is imported from the working folder
+    # -P: import nothing from the working folder
     command = [sys.executable, "-P", "-c", CHILD, work.__module__, work.__qualname__, str(path)]
     try:
         done = subprocess.run(
@@ -65,12 +65,12 @@ def apart(work: Callable[[str], T], path: str | Path) -> T:
 
 
 def answer() -> None:
-    """Call a function as `apart` asks for it, and write out what it returns or raises."""
+    """Call the function that `apart` names, and write out its result or error."""
     module, name, path, seconds = sys.argv[1:]
     if resource is not None:
         most = resource.getrlimit(resource.RLIMIT_CPU)[1]
         resource.setrlimit(resource.RLIMIT_CPU, (int(seconds), most))
-    out = os.dup(sys.stdout.fileno())  # nothing else is to be written there
+    out = os.dup(sys.stdout.fileno())  # only the answer goes there
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     try:
         answered = False, getattr(import_module(module), name)(path)

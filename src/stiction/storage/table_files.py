@@ -1,4 +1,4 @@
-"""Tables to files that other programs read: CSV, Parquet, MATLAB."""
+"""Export of tables to CSV, Parquet and MATLAB."""
 
 from __future__ import annotations
 
@@ -17,26 +17,25 @@ Tables = Mapping[str, "xr.Dataset"]
 
 
 def write_tables(tables: Tables, path: str | Path, attributes: Mapping[str, str]) -> list[Path]:
-    """Write tables to the kind of file that the suffix names; return the paths.
+    """Write tables in the format of the path's suffix; return the paths.
 
-    CSV (a unit in the head of each column: ``u_x [m]``) and Parquet (units among the metadata of
-    each column) hold one table a file: the first at `path`, the others beside it, under their
-    names (``run-sticks.csv``). MATLAB has them all in one file, a struct each, the units in
-    another.
+    CSV (units in the column heads: ``u_x [m]``) and Parquet (units in the columns' metadata) hold
+    one table a file: the first at `path`, the others beside it with their names appended
+    (``run-sticks.csv``). MATLAB holds all in one file: a struct for each, and one of the units.
 
     Parameters
     ----------
     tables : mapping of str to Dataset
-        By their names.
+        Tables by name.
     path : str or Path
         With the suffix .csv, .parquet or .mat.
     attributes : mapping of str to str
-        What is to be known of them all, where the format has a place for it.
+        Metadata of all tables, where the format has a place for them.
 
     Raises
     ------
     ResultError
-        If the format is not known, needs what is not installed, or cannot be written there.
+        If the format is unknown, needs a missing package, or the file cannot be written.
     """
     first = exportable(path)
     write = FORMATS[first.suffix.lower()]
@@ -54,7 +53,7 @@ def write_tables(tables: Tables, path: str | Path, attributes: Mapping[str, str]
 
 
 def exportable(path: str | Path) -> Path:
-    """Return the path of tables, if they can be written there; see `write_tables`."""
+    """Return a path, if `write_tables` can write there."""
     target = Path(path)
     if target.suffix.lower() not in FORMATS:
         known = ", ".join(FORMATS)
@@ -63,7 +62,7 @@ def exportable(path: str | Path) -> Path:
 
 
 def with_units(table: xr.Dataset) -> Any:
-    """Return a table as a data frame, its columns named with their units: ``peak [N]``."""
+    """Return a table as a data frame with units in the column names: ``peak [N]``."""
     units = {
         name: f"{name} [{unit}]" for name, unit in units_of(table).items() if unit not in ("", "1")
     }
@@ -71,7 +70,7 @@ def with_units(table: xr.Dataset) -> Any:
 
 
 def units_of(table: xr.Dataset) -> dict[str, str]:
-    """Return the unit of each column, '' where there is none."""
+    """Return the unit of each column, '' for none."""
     return {str(name): str(v.attrs.get("units", "")) for name, v in table.variables.items()}
 
 
@@ -112,7 +111,7 @@ def _mat(tables: Tables, path: Path, attributes: Mapping[str, str]) -> None:
 
 
 def _name(name: object) -> str:
-    """Return a name that MATLAB takes."""
+    """Return a valid MATLAB name."""
     return str(name).replace("-", "_")
 
 

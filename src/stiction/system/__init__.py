@@ -1,1 +1,1 @@
-"""What is simulated: slider, start and settings, read from a description and written back."""
+"""Slider, initial state and settings of a run, read from a description and written back."""

@@ -1,4 +1,4 @@
-"""A whole run in one place: slider, start, duration, tolerance; from TOML, to JSON and back."""
+"""Description of a whole run: slider, initial state, settings; to TOML and JSON and back."""
 
 from __future__ import annotations
 
@@ -21,27 +21,27 @@ from stiction.text.toml import Reader, folder_of, gather, read_json, read_toml, 
 from stiction.text.units import Duration, Number, SampleRate, Velocity
 from stiction.text.validation import Described, faulty
 
-SAMPLE = 300.0  # bytes of memory that a sample takes, in all its columns and on the way there
-Smoothing = Annotated[Velocity, Field(ge=1e-11)]  # below, each step is a boundary layer
+SAMPLE = 300.0  # bytes of memory per sample, for all columns and intermediate arrays
+Smoothing = Annotated[Velocity, Field(ge=1e-11)]  # below, steps resolve a thin layer
 
 
 class Settings(Described):
-    """How long, how densely sampled and how exactly a run is computed.
+    """Duration, sample rate, tolerance and method of a run.
 
     Parameters
     ----------
     duration : float or str
         s.
     sample_rate : float or str, optional
-        Output samples per second, Hz; 0 for the first and last state only. When left out, a
-        rate that suits the system, see `stiction.simulate`.
+        Output samples per second, Hz; 0 for the first and last state only. By default a rate
+        that suits the system, see `stiction.simulate`.
     rtol : float, optional
         Relative tolerance; see `stiction.simulate`.
     regularisation : float or str, optional
-        delta of the regularised law s/sqrt(|s|^2 + delta^2), m/s, 1e-11 at least; exact when
-        left out.
+        delta of the regularised law s/sqrt(|s|^2 + delta^2), m/s, at least 1e-11; by default
+        the law is set-valued.
     multiscale : bool, optional
-        Whether to take many cycles of stick and slip at once; see `stiction.simulate`.
+        Whether to interpolate between cycles of stick and slip; see `stiction.simulate`.
     """
 
     duration: Duration
@@ -79,7 +79,7 @@ class Description(NamedTuple):
     ) -> Self:
         """Read a description file, or a text of several lines as `to_toml` writes it.
 
-        A friction law of the user's own is run from its file, after all else was found right.
+        The file of a user's friction law is run only if everything else is valid.
 
         Parameters
         ----------
@@ -89,13 +89,13 @@ class Description(NamedTuple):
             Other values of some parameters, by their paths: ``{"drive.velocity": "2 mm/s"}``;
             see `stiction.text.paths`.
         trust : bool, optional
-            Whether the file of a law may lie outside the description's folder (of a text: the
-            working one).
+            Whether the file of a law may lie outside the description's folder (for a text: the
+            working folder).
 
         Raises
         ------
         DescriptionError
-            Naming every fault with its path, or why the file cannot be read.
+            With every fault and its path, or the reason why the file cannot be read.
         """
         return cls.from_dict(read_toml(path, changes), find=named(folder_of(path), trust))
 
@@ -105,9 +105,9 @@ class Description(NamedTuple):
     ) -> Self:
         """Read a description from nested tables, as in the TOML file.
 
-        `find` says where the file of a law of the user's own is looked for, see
-        `stiction.friction.user.loading`; in the working folder when left out. It is not run where
-        there are other faults, the `known` ones among them, which are told with those found.
+        `find` locates the file of a user's law, see `stiction.friction.user.loading`; by default
+        in the working folder. The file is not run if there are other faults, including the
+        `known` ones, which are reported with the rest.
         """
         tables: dict[str, Reader] = {**TABLES, "friction": partial(read_law, find=find)}
         last = ("friction",) if is_own(raw.get("friction")) else ()
@@ -119,13 +119,13 @@ class Description(NamedTuple):
     def from_json(cls, text: str, *, trust: bool = False) -> Self:
         """Read back what `to_json` wrote.
 
-        A law of the user's own is one that this process has loaded already, from the same text;
-        with `trust`, the text that the JSON holds is run otherwise.
+        A user's law must have been loaded by this process from the same text; otherwise `trust`
+        permits running the text in the JSON.
         """
         return cls.from_dict(read_json(text), find=held(trust))
 
     def to_toml(self) -> str:
-        """Return the description as TOML, with units; `from_toml` reads the same again."""
+        """Return the description as TOML with units, which `from_toml` reads back."""
         tables = {
             **slider_tables(self.slider),
             "initial": described(self.initial, type(self.initial).model_fields),
@@ -134,7 +134,7 @@ class Description(NamedTuple):
         return toml_text({name: table for name, table in tables.items() if table})
 
     def to_dict(self) -> dict[str, dict[str, Any]]:
-        """Return nested tables of SI numbers, as `from_dict` reads them."""
+        """Return nested tables of SI numbers, which `from_dict` reads."""
         return {
             "slider": self.slider.model_dump(mode="json", exclude={"friction", "drive", "load"}),
             "friction": law_table(self.slider.law),
@@ -150,7 +150,7 @@ class Description(NamedTuple):
 
 
 def description_of(source: Description | str | Path) -> Description:
-    """Return a description, or that in a file.
+    """Return a description as it is, or read it from a file.
 
     Raises
     ------
@@ -164,7 +164,7 @@ def description_of(source: Description | str | Path) -> Description:
 
 
 def table(value: Any) -> dict[str, Any]:
-    """Return a drive or a load as a table that can be read back."""
+    """Return a drive or a load as a table of a description."""
     made: dict[str, Any] = value.to_table() if hasattr(value, "to_table") else value._asdict()
     return made
 

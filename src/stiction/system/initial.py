@@ -1,4 +1,4 @@
-"""The state in which a run starts."""
+"""The initial state of a run."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from stiction.text.validation import Described, unknown
 
 
 class Initial(Described):
-    """Where a run starts: by default with the paper's initial condition.
+    """The initial state of a run: by default the paper's.
 
     Parameters
     ----------
     epsilon : float, optional
-        The paper's X'(0) = epsilon V, Y'(0) = 0 (caption of Fig. 3), 1e-6 unless told.
+        The paper's X'(0) = epsilon V, Y'(0) = 0 (caption of Fig. 3); 1e-6 by default.
     u_x, u_y : float or str, optional
         Spring elongations, m.
     v_x, v_y : float or str, optional
-        Elongation rates, m/s; both or none, and then in place of epsilon.
+        Elongation rates, m/s; both, in place of epsilon, or neither.
     states : mapping, optional
-        Internal states of the friction law by name, in SI, all of them; where the law's own
-        ``settled`` has them unless told.
+        All internal states of the friction law by name, in SI; by default those of the law's
+        method ``settled``.
     time : float or str, optional
         The time at which the run starts, s; the drive moves from t = 0 on.
     """
@@ -54,7 +54,7 @@ class Initial(Described):
         Raises
         ------
         DescriptionError
-            If other states are given than the law has.
+            If the given states are not those of the law.
         """
         law = slider.law
         names = [state.name for state in states(law)]
@@ -85,5 +85,5 @@ class Initial(Described):
         (c, s), (rate_X, rate_Y) = slider.direction, slider.motion.rate(self.time)
         if self.v_x is not None and self.v_y is not None:
             return rate_X * c - rate_Y * s - self.v_x, rate_X * s + rate_Y * c - self.v_y
-        # the slip velocity is the velocity of the mass over the floor: X' along X
+        # the slip velocity is that of the mass over the floor: X' along X
         return self.epsilon * rate_X * c, self.epsilon * rate_X * s

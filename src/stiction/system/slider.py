@@ -1,4 +1,4 @@
-"""The described system: a mass on a plane, pulled by a spring with two stiffnesses."""
+"""The system: a mass on a plane, pulled by a spring with two stiffnesses."""
 
 from __future__ import annotations
 
@@ -98,21 +98,21 @@ class Slider(Apparatus):
     phi : str
         Misalignment angle between x and X, within 90 degrees of zero; ``slider.phi`` is in rad.
     normal_load : float or str
-        W, N; what a program of the load starts from.
+        W, N; the initial value of a load program.
     friction : FrictionLaw
         For example `ExponentialWeakening` or `Coulomb`.
     drive : ConstantVelocity or DriveProgram
         The drive velocity in time.
     load : LoadProgram, optional
-        The normal load in time, where it is not constant.
+        The normal load in time, if it is not constant.
     c_x, c_y : float or str, optional
         Damping constants of the spring along x and y, N s/m; none in the paper.
     driven : {"plate", "spring"}, optional
-        What the drive moves: the plate under a mass whose spring is held (Fig. 1, and Eq. (1)
-        to the letter), or the far end of the spring over a plate at rest (Fig. 2). At a steady
-        drive they are the same. Where the drive accelerates, a driven plate adds the inertia
-        m dv_d/dt to what the friction must hold, and where its velocity jumps, the slip
-        velocity jumps with it; with a driven spring end neither is so.
+        What the drive moves: the plate, with the far end of the spring fixed (Fig. 1 and
+        Eq. (1)), or the far end of the spring, with the plate at rest (Fig. 2). At constant
+        velocity both are equivalent. When a driven plate accelerates, friction must also carry
+        the inertia m dv_d/dt; when its velocity jumps, the slip velocity jumps with it. With a
+        driven spring end, neither happens.
 
     Raises
     ------
@@ -179,8 +179,8 @@ class Slider(Apparatus):
 
     @property
     def F_0(self) -> float:
-        """Friction force at vanishing slip, mu_0 W, in N; at the slip speed of the drive for a
-        law with internal state, which may have none at rest."""
+        """Friction force at vanishing slip, mu_0 W, in N; for a law with internal state, which may
+        have none at rest, at the slip speed of the drive."""
         speed = abs(self.motion.rate(0.0)[0]) if has_state(self.law) else 0.0
         return self.law.coefficient(speed) * self.normal_load
 
@@ -200,7 +200,7 @@ class Slider(Apparatus):
         return tuple(part.frequency for part in parts if hasattr(part, "frequency"))
 
     def weight(self, t: Any) -> Any:
-        """Return the normal load at time `t` (float or array, s), in N; W until it changes."""
+        """Return the normal load at time `t` (float or array, s), in N."""
         return load_at(self.normal_load, self.load, t)
 
     def replace(self, **changes: Any) -> Self:
@@ -217,7 +217,7 @@ class Slider(Apparatus):
         *,
         trust: bool = False,
     ) -> Slider:
-        """Read the slider of a description; `Description` reads the whole of it.
+        """Read only the slider of a description; `Description` reads all of it.
 
         Parameters
         ----------
@@ -242,9 +242,9 @@ class Slider(Apparatus):
         return as_html([Section("Slider", [], parameter_table(slider_tables(self)))])
 
     def to_toml(self) -> str:
-        """Return the slider as a description, with units; `from_toml` reads the same again.
+        """Return the slider as TOML with units, which `from_toml` reads back.
 
-        A friction law of one's own is named by its file and class.
+        A user's friction law is named by its file and class.
 
         Examples
         --------
@@ -271,7 +271,7 @@ class Slider(Apparatus):
 
     @classmethod
     def from_parts(cls, parts: Mapping[str, Any]) -> Slider:
-        """Put together what the readers in `SLIDER_TABLES` returned."""
+        """Make a slider from the parts that the readers in `SLIDER_TABLES` returned."""
         apparatus: Apparatus = parts["slider"]
         return cls(
             **apparatus.model_dump(mode="json"),
@@ -282,12 +282,12 @@ class Slider(Apparatus):
 
 
 def slider_of(source: Any) -> Slider:
-    """Return a slider: as given, of a description or a run, or that in a file.
+    """Return the slider that is given, or the one of a description, a run or a file.
 
     Raises
     ------
     DescriptionError
-        If it is none of these.
+        If `source` is none of these.
     """
     found = getattr(source, "slider", source)
     return found if isinstance(found, Slider) else Slider.from_toml(source)

@@ -1,4 +1,4 @@
-"""A commented description to start from."""
+"""A commented description as a starting point."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from stiction.storage.files import whole
 
 
 def init(path: str | Path = "slider.toml", *, force: bool = False) -> Path:
-    """Write a commented description of the paper's apparatus, to be made yours; return its path.
+    """Write a commented description of the paper's apparatus to adapt; return its path.
 
     Parameters
     ----------
     path : str or Path, optional
         The file to write.
     force : bool, optional
-        Write over a file that is there.
+        Whether to overwrite an existing file.
 
     Raises
     ------
     StictionError
-        If it cannot be written there, or a file is there already.
+        If the file exists, or cannot be written.
     """
     target = Path(path)
     if target.is_dir():

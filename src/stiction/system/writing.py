@@ -1,4 +1,4 @@
-"""From a slider to the tables of a description, with units as people write them."""
+"""From a slider to the tables of a description, with readable units."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def slider_tables(slider: Slider) -> dict[str, Table]:
 
 
 def parameter_table(tables: Mapping[str, Table]) -> Rows:
-    """Return a description's tables as one: a row for each parameter, as it is written."""
+    """Return the parameters of all tables of a description as rows of path and text."""
     rows = [
         (f"{name}.{key}", str(value))
         for name, table in tables.items()
@@ -41,7 +41,7 @@ def parameter_table(tables: Mapping[str, Table]) -> Rows:
 
 
 def described(value: Any, names: Iterable[str]) -> Table:
-    """Return fields of a description that differ from their defaults, with units."""
+    """Return the fields of a description that differ from their defaults, with units."""
     fields, hints = type(value).model_fields, get_type_hints(type(value), include_extras=True)
     return {
         name: _written(getattr(value, name), kind_of(hints[name]))
@@ -51,7 +51,7 @@ def described(value: Any, names: Iterable[str]) -> Table:
 
 
 def _written(value: Any, kind: Kind | None) -> Any:
-    """Return a value with its unit, if it is a quantity that has one."""
+    """Return a value with its unit, if it has one."""
     value = value.tolist() if hasattr(value, "tolist") else value  # a number of NumPy
     if kind is not None and kind.unit and isinstance(value, float):
         return quantity_text(value, kind.unit)
@@ -93,7 +93,7 @@ def _program(program: Any, known: Mapping[str, type[Any]], kind: Kind) -> Table:
 
 
 def _piece(piece: Any, kind: Kind) -> Table:
-    """Return the parameters of a piece, whose levels are of one quantity."""
+    """Return the parameters of a piece, whose levels have the unit of `kind`."""
     return {
         name: _written(value, kind) if name in LEVELS else value
         for name, value in _named(piece).items()

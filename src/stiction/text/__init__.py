@@ -1,1 +1,1 @@
-"""Text: quantities with units, TOML, faults by path, and what reports are made of."""
+"""Text: quantities with units, TOML, faults with their paths, sections of reports."""

@@ -1,4 +1,4 @@
-"""Columns of numbers that can be compared at a glance: one unit, one number of decimals in each."""
+"""Columns of numbers, each with one unit and one number of decimals, for easy comparison."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ class Quantity(NamedTuple):
 
 
 def grid(quantities: Mapping[str, Quantity], rows: int, alike: str = "") -> Table:
-    """Return a table of quantities by their headings, its first rows, each in a unit that suits.
+    """Return a table of the first `rows` of some quantities, each in a suitable unit.
 
-    All that have the unit `alike` are written alike, to be compared and added.
+    Columns in the unit `alike` share one prefix, so that they can be compared and added.
 
     Examples
     --------
@@ -49,7 +49,7 @@ def scale(values: Sequence[float], unit: str) -> tuple[int, int]:
     Lengths that no instrument can measure are zero picometres.
     """
     largest = max((abs(value) for value in values if isfinite(value)), default=0.0)
-    # as the largest is written, so that 999.97 is 1000.0 of the next prefix
+    # of the rounded value, so that 999.97 is 1.000 of the next prefix
     size = floor(log10(float(f"{largest:.{DIGITS - 1}e}"))) if largest > 0.0 else 0
     if unit == "m" and largest < MEASURABLE:
         return PICO, 0
@@ -58,5 +58,5 @@ def scale(values: Sequence[float], unit: str) -> tuple[int, int]:
 
 
 def cell(value: float, decimals: int) -> str:
-    """Return a number with so many decimals, and no sign if they are all zero."""
+    """Return a number with fixed decimals, zero without a sign, or 'none' if not finite."""
     return f"{round(value, decimals) + 0.0:.{decimals}f}" if isfinite(value) else "none"

@@ -1,4 +1,4 @@
-"""How a parameter is named: a path through a description's tables, or a short name for one.
+"""Paths of parameters: through a description's tables, or as a short name.
 
 ``phi`` and ``slider.phi`` are the same, so are ``V`` and ``drive.velocity``; ``mu_0`` is a number
 of the friction law, ``duration`` a setting of the run. Elements of a list count from 1, as in
@@ -26,16 +26,16 @@ TABLES = ("slider", "friction", "drive", "load", "initial", "run", "study", "axe
 
 
 def canonical(name: str) -> str:
-    """Return the name under which a parameter is known: short names and ``slider.`` resolved."""
+    """Resolve a parameter's short name, and drop a leading ``slider.``."""
     bare = name.strip().removeprefix("slider.")
     return ALIASES.get(bare, bare)
 
 
 def canonical_path(path: str) -> str:
-    """Return a path, of several parameters that share one value too, short names resolved."""
+    """Return a path, or several joined by commas, with short names resolved."""
     names = [name.strip() for name in path.split(",")]
     if not any(name in ALIASES for name in names):
-        return path  # as it was written: stores are named by it
+        return path  # as written: stores are named after it
     return ", ".join(ALIASES.get(name, name) for name in names)
 
 
@@ -45,7 +45,7 @@ def with_changes(raw: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str
     Raises
     ------
     DescriptionError
-        With every path that leads nowhere.
+        With every path that does not exist.
     """
     tables, found = deepcopy(dict(raw)), []
     for name, value in changes.items():
@@ -59,7 +59,7 @@ def with_changes(raw: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str
 
 
 def keys_of(tables: Mapping[str, Any], name: str) -> list[str]:
-    """Return the way to a parameter through a description's tables, table first."""
+    """Return the keys that lead to a parameter in a description, its table first."""
     bare = name.strip()
     keys = ALIASES.get(bare, bare).split(".")
     if len(keys) > 1 and keys[0] in TABLES:
@@ -75,7 +75,7 @@ def keys_of(tables: Mapping[str, Any], name: str) -> list[str]:
 
 
 def known(tables: Mapping[str, Any]) -> Iterator[str]:
-    """Yield names that lead somewhere."""
+    """Yield the names of all parameters of a description."""
     yield from (*ALIASES, *MECHANICAL, *SETTINGS)
     for title, table in tables.items():
         if isinstance(table, Mapping):
@@ -83,7 +83,7 @@ def known(tables: Mapping[str, Any]) -> Iterator[str]:
 
 
 def put(owner: Any, keys: list[str], value: Any) -> None:
-    """Put a value where the keys lead; a table that is not there is made."""
+    """Put a value where the keys lead; make missing tables."""
     key, rest = first(owner, keys)
     if rest:
         put(member(owner, key), rest, value)
@@ -96,7 +96,7 @@ def put(owner: Any, keys: list[str], value: Any) -> None:
 
 
 def first(owner: Any, keys: list[str]) -> tuple[str, list[str]]:
-    """Return the first key and the rest; a key that is there may have dots in it."""
+    """Return the first key and the rest; an existing key may contain dots."""
     for count in range(len(keys), 1, -1):
         if isinstance(owner, dict) and (joined := ".".join(keys[:count])) in owner:
             return joined, keys[count:]
@@ -104,7 +104,7 @@ def first(owner: Any, keys: list[str]) -> tuple[str, list[str]]:
 
 
 def member(owner: Any, key: str) -> Any:
-    """Return a part of a table, made if it is not there, or an element of a list."""
+    """Return a part of a table, made if missing, or an element of a list."""
     if isinstance(owner, list):
         return owner[place(owner, key)]
     if not isinstance(owner, dict):
@@ -113,7 +113,7 @@ def member(owner: Any, key: str) -> Any:
 
 
 def place(owner: list[Any], key: str) -> int:
-    """Return the place of an element that is counted from 1."""
+    """Return the index of an element that is counted from 1."""
     if not key.isdigit() or not 1 <= int(key) <= len(owner):
         raise IndexError(f"{key!r} is no element of a list of {len(owner)}; they count from 1")
     return int(key) - 1

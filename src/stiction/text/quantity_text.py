@@ -1,4 +1,4 @@
-"""From a number in SI to the text of a quantity, exact to the last digit when it is read again."""
+"""From a number in SI to the text of a quantity, which reads back to the last digit."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from numpy.typing import ArrayLike
 
 SI = dict(zip(range(-10, 11), [*"qryzafpnµm", "", *"kMGTPEZYRQ"], strict=True))  # of thousands
 BARE = ("", "1", "%", "1/s", "deg")  # units that take no prefix
-DIGITS = 4  # of a number in words
+DIGITS = 4  # of a number in a sentence
 MEASURABLE = 1e-12  # m, a hundredth of an atom: no instrument follows a mass so closely
 PREFIXES = {3 * power: "u" if letter == "µ" else letter for power, letter in SI.items()}
-# unit: what stands in its place with a prefix, and the powers of ten that it may have
+# unit: the name that takes the prefix, and the powers of ten that are used
 SMALL, BOTH = (0, -3, -6, -9), (9, 6, 3, 0, -3, -6, -9)
 PREFIXED = {
     "kg": ("g", (3, 0, -3, -6, -9, -12)),  # of a gram
@@ -28,7 +28,7 @@ PREFIXED = {
 
 
 def quantity_text(value: float, unit: str) -> str:
-    """Return a value in an SI unit as a description has it: the shortest text that says it.
+    """Return a value in an SI unit as the shortest exact text, for a description.
 
     Examples
     --------
@@ -44,14 +44,14 @@ def quantity_text(value: float, unit: str) -> str:
     name, powers = PREFIXED[unit]
     exact = Decimal(repr(float(value))).scaleb(3 if unit == "kg" else 0)
     texts = [f"{_plain(exact.scaleb(-power))} {PREFIXES[power]}{name}" for power in powers]
-    # among the shortest the one with the number nearest to one
+    # among the shortest, prefer a number from 1 to 1000
     return min(texts, key=lambda text: (len(text.split()[0]), not 1 <= abs(_number(text)) < 1000))
 
 
 def thousands(value: float, unit: str, digits: int = DIGITS) -> int:
-    """Return the power of a thousand of which a value is 1 to 1000; 0 for a unit without prefix.
+    """Return the power of a thousand that leaves 1 to 1000; 0 for a unit without prefix.
 
-    The value is taken as it is written, so that 999.97 is 1 of the next prefix.
+    The value is rounded first, so that 999.97 is 1 of the next prefix.
 
     Examples
     --------
@@ -60,12 +60,12 @@ def thousands(value: float, unit: str, digits: int = DIGITS) -> int:
     """
     if value == 0.0 or unit in BARE:
         return 0
-    most = 0 if unit == "s" else 10  # nobody counts in kiloseconds
+    most = 0 if unit == "s" else 10  # nobody writes kiloseconds
     return min(max(floor(log10(float(f"{abs(value):.{digits - 1}e}"))) // 3, -10), most)
 
 
 def angle_text(value: float) -> str:
-    """Return an angle in degrees if these say it exactly, else in radians.
+    """Return an angle in degrees if these are exact, else in radians.
 
     Examples
     --------
@@ -92,7 +92,7 @@ def _number(text: str) -> float:
 
 
 def prefixed(values: ArrayLike) -> tuple[float, str]:
-    """Return factor and prefix (n, µ, m, none, k) of a unit in which values are 0.2 to 200."""
+    """Return factor and prefix (n, µ, m, none, k) that bring values to 0.2 to 200."""
     largest = np.fmax.reduce(np.abs(np.asarray(values, dtype=np.float64)), initial=0.0)
     if not 0 < largest < np.inf:
         return 1.0, ""

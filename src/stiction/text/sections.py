@@ -1,4 +1,4 @@
-"""What reports are made of, for any page or terminal: sections of sentences and tables."""
+"""Sections of sentences and tables, of which reports consist, on a page or terminal."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Table(NamedTuple):
 
 
 class Section(NamedTuple):
-    """A part of a report: title, sentences, and a table if there is one."""
+    """A part of a report: title, sentences, and perhaps a table."""
 
     title: str
     sentences: list[str]
@@ -37,7 +37,7 @@ class Section(NamedTuple):
 
 
 def table_lines(table: Table) -> list[str]:
-    """Return a table as lines of text, its columns as wide as they must be."""
+    """Return a table as lines of text with aligned columns."""
     rows = [table.headings, *table.rows]
     widths = [max(len(row[at]) for row in rows) for at in range(len(table.headings))]
     lines = ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)) for row in rows]

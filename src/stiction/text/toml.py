@@ -1,4 +1,4 @@
-"""Reading a description's tables, and gathering the faults of all of them."""
+"""Reading of a description's tables, with the faults of all of them."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ BITS = 64  # of an integer, as TOML has it
 
 
 def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """Read a TOML file, or a text of several lines in TOML, with other values of some parameters.
+    """Read a TOML file, or a TOML text of several lines, and change some parameters.
 
     Parameters
     ----------
     path : str or Path
         The file, or the text.
     changes : mapping, optional
-        For the path of a parameter (see `stiction.text.paths`) its value.
+        From the path of a parameter (see `stiction.text.paths`) to its value.
 
     Raises
     ------
     DescriptionError
-        Saying why the file cannot be read, or which parameter is none; or that it is no path.
+        If the file cannot be read, a parameter does not exist, or `path` is not a path.
     """
     if not isinstance(path, str | PathLike):
         message = f"{type(path).__name__} is no description; give its file, or its text in TOML"
@@ -49,7 +49,7 @@ def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dic
         message = f"{error.strerror or 'cannot be read'}; write a description with 'stiction init'"
     except UnicodeDecodeError:
         message = "is not text in UTF-8; write a description with 'stiction init'"
-    except ValueError as error:  # what is not TOML, and integers of thousands of digits
+    except ValueError as error:  # invalid TOML, and integers of thousands of digits
         unquoted = (
             "; a value with a unit goes in quotes" if "Expected newline" in str(error) else ""
         )
@@ -61,12 +61,12 @@ def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dic
 
 
 def read_json(text: str) -> dict[str, Any]:
-    """Return the tables that a text in JSON holds.
+    """Return the tables of a JSON text.
 
     Raises
     ------
     DescriptionError
-        If it holds none.
+        If it has none.
     """
     try:
         raw = json.loads(text)
@@ -78,12 +78,12 @@ def read_json(text: str) -> dict[str, Any]:
 
 
 def tame(raw: dict[str, Any], where: str) -> dict[str, Any]:
-    """Return tables, if they can be followed and written out without exhausting the machine.
+    """Return tables, if they are small enough to process.
 
     Raises
     ------
     DescriptionError
-        If they are nested too deeply, or hold integers too long for any computer's.
+        If they are nested too deeply, or hold integers of more than 64 bits.
     """
     level: list[tuple[str, Any]] = list(raw.items())
     found = []
@@ -104,7 +104,7 @@ def tame(raw: dict[str, Any], where: str) -> dict[str, Any]:
 
 
 def _text_of(path: Path) -> str:
-    """Return the text of a file, of which no more is read than a description may have."""
+    """Return the text of a file, if it is not larger than a description may be."""
     try:
         with path.open("rb") as file:
             content = file.read(LARGEST + 1)
@@ -116,12 +116,12 @@ def _text_of(path: Path) -> str:
 
 
 def folder_of(path: str | Path) -> Path:
-    """Return the folder of what `read_toml` reads: the working one for a text."""
+    """Return the folder of a file that `read_toml` reads; for a text, the working one."""
     return Path() if isinstance(path, str) and "\n" in path else Path(path).parent
 
 
 def toml_text(tables: Mapping[str, Mapping[str, Any]]) -> str:
-    """Return tables of numbers, texts, lists and tables of these as TOML."""
+    """Return tables as TOML; they hold numbers, texts, lists and tables of these."""
     parts = []
     for name, table in tables.items():
         lines = [f"{key} = {_value(value)}" for key, value in table.items()]
@@ -152,14 +152,14 @@ def gather(
 ) -> dict[str, Any]:
     """Read every table with its reader.
 
-    A table that is not there is an error, or read as an empty one if it is `optional`, or
-    left out of what is returned if it may be `absent`. Those that come `last`, which run what
-    they name, are read only where there is no fault in any other, nor a `known` one.
+    A missing table is an error, unless it is `optional` (then it is read as an empty one) or may
+    be `absent` (then it is left out). Tables that come `last`, because they run a user's code, are
+    read only if no other table has a fault and there is no `known` one.
 
     Raises
     ------
     DescriptionError
-        With every fault in every table, each below the table's name, after the known ones.
+        With the known faults, then those of every table, each below the table's name.
     """
     found = [*known]
     strange = [name for name in raw if name not in readers]
@@ -189,7 +189,7 @@ def gather(
 def choose(
     table: dict[str, Any], key: str, known: Mapping[str, type[Any]], default: str | None = None
 ) -> Any:
-    """Make the kind of law or drive that ``table[key]`` names, from the rest of the table."""
+    """Make the law or drive that ``table[key]`` names from the rest of the table."""
     name = table.pop(key, default)
     if not isinstance(name, str) or name not in known:
         listed = f"missing; known: {', '.join(known)}"

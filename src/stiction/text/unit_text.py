@@ -1,4 +1,4 @@
-"""The text of a unit, as people write it, to its factor in SI.
+"""From the text of a unit, as people write it, to its factor in SI.
 
 Products are written with ``*``, ``·``, ``.`` or a space, quotients with ``/``, powers with ``^``,
 ``**``, small digits, or digits alone (``m s-1``). Nothing else is evaluated: the registry of units
@@ -20,12 +20,12 @@ TOKEN = re.compile(
     r"|(?P<one>1)(?=\s*/)|(?P<sign>[*/·⋅×.()]))\s*"
 )
 SMALL = str.maketrans("⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "+-0123456789")
-# what the registry would misread or not know: a newton second is no plural of newton
+# units that the registry misreads or does not know: Ns is not the plural of newton
 SPELLED = {"°": ("degree",), "Ns": ("newton", "second"), "Nm": ("newton", "meter")}
 
 
 class UnitError(ValueError):
-    """A unit that cannot be read; the message says why."""
+    """A unit cannot be read; the message says why."""
 
 
 @cache
@@ -38,14 +38,14 @@ def registry() -> Any:
 
 @lru_cache(maxsize=1024)
 def factor(text: str, wanted: str) -> float | None:
-    """Return how many of the unit `wanted` one of the unit `text` is; None if they do not match.
+    """Return the factor from the unit `text` to the unit `wanted`; None if they do not match.
 
-    A radian counts as a unit: ``rad/s`` is no frequency in Hz, which would be off by 2 pi.
+    A radian counts as a unit: ``rad/s`` does not convert to Hz, which would be off by 2 pi.
 
     Raises
     ------
     UnitError
-        If the text is no unit.
+        If the text is not a unit.
 
     Examples
     --------
@@ -69,7 +69,7 @@ def short(text: str) -> str:
 
 
 def plain(text: str) -> str:
-    """Return a unit as a product of names to whole powers, or refuse it."""
+    """Return a unit as a product of whole powers of names, or refuse it."""
     if len(text) > LONGEST:
         raise UnitError(f"it is longer than {LONGEST} characters")
     tokens = _tokens(text)
@@ -93,7 +93,7 @@ def _tokens(text: str) -> Iterator[re.Match[str]]:
 def _product(tokens: Iterator[re.Match[str]], text: str, closing: str) -> Counter[str]:
     """Return the power of each name in a product, to the end or to the closing bracket."""
     powers: Counter[str] = Counter()
-    sign = ""  # what stands before the next factor; nothing: a space
+    sign = ""  # the sign before the next factor; '' for a space
     divided = wanted = False  # whether a quotient has begun; whether a factor must follow
     for token in tokens:
         if token["sign"] == ")" and closing and not wanted:

@@ -1,4 +1,4 @@
-"""Units at the boundary: ``"10 mm/s"`` becomes SI; inside there are floats only.
+"""Units at the boundary: ``"10 mm/s"`` becomes SI; inside the package are only floats.
 
 Each name below is a type for a field of a description. A number is taken as SI,
 a string must carry its unit, and an angle must be a string, because a bare number
@@ -30,11 +30,11 @@ class Kind(NamedTuple):
 
 
 LONGEST = 200  # characters of a number and its unit
-LARGEST, SMALLEST = 1e60, 1e-60  # in SI; what is smaller is zero. A product of five is a number
+LARGEST, SMALLEST = 1e60, 1e-60  # in SI; smaller ones are zero. Products of five stay finite
 VELOCITY = Kind("a velocity", "m/s", "1 mm/s")
 FORCE = Kind("a force", "N", "10 N")
 
-# one number, then whatever is its unit: nothing to calculate, no decimal comma
+# one number, then its unit: no arithmetic, no decimal comma
 QUANTITY = re.compile(
     r"\s*([+−-]?(?:\d+\.?\d*|\.\d+|nan|inf)(?:[eE][+−-]?\d+)?)(?![\d,])(.*)", re.S
 )
@@ -46,15 +46,15 @@ def to_si(value: object, kind: Kind) -> float:
     Parameters
     ----------
     value : float, int or str
-        A bare number in SI, or a string of a number and a unit; NumPy's numbers and pint's
-        quantities are read as these.
+        A bare number in SI, or a string of a number and a unit; also a number of NumPy or a
+        quantity of pint.
     kind : Kind
-        The quantity that is wanted.
+        The expected quantity.
 
     Raises
     ------
     PydanticCustomError
-        With the rule, the offending value and what to write instead.
+        With the rule, the offending value and the remedy.
     """
     value = _bare(value)
     angle = kind.unit == "rad"
@@ -76,7 +76,7 @@ def to_si(value: object, kind: Kind) -> float:
 
 
 def as_float(value: Any) -> float:
-    """Return a number as a float, infinity for an integer that is too large for one."""
+    """Return a number as a float; infinity for an integer too large for a float."""
     try:
         return float(value)
     except OverflowError:
@@ -84,7 +84,7 @@ def as_float(value: Any) -> float:
 
 
 def _bare(value: object) -> object:
-    """Return a number of NumPy as Python's, a quantity of pint as text, others as they are."""
+    """Turn a NumPy number into a Python number and a pint quantity into text."""
     if hasattr(value, "magnitude") and hasattr(value, "units"):
         return f"{_bare(value.magnitude)!r} {value.units}"
     return value.item() if hasattr(value, "item") and getattr(value, "shape", None) == () else value
@@ -101,7 +101,7 @@ def _parse(text: str, kind: Kind) -> float:
         )
     number, unit = float(found[1].replace("−", "-")), found[2].strip()
     if unit == kind.unit:
-        return number  # many runs are described in SI
+        return number  # the usual case in large studies
     if unit == "deg" and kind.unit == "rad":
         return number * radians(1.0)
     if not unit:
@@ -123,7 +123,7 @@ def _parse(text: str, kind: Kind) -> float:
 
 
 def _times(text: str, size: float) -> float:
-    """Return a number times a factor: where that is a decimal prefix, the float nearest to it."""
+    """Return a number times a factor; exactly rounded where that is a decimal prefix."""
     number = float(text)
     up, down = round(size), round(1.0 / size)
     if number == 0.0 or not isfinite(number):
@@ -137,14 +137,14 @@ def _times(text: str, size: float) -> float:
 
 def fault(message: str) -> PydanticCustomError:
     """Return the error for a value that cannot be read."""
-    # braces would be read as fields of a template
+    # pydantic reads braces as fields of a template
     return PydanticCustomError("unit", message.replace("{", "(").replace("}", ")"))
 
 
 def kind_of(hint: Any) -> Kind | None:
-    """Return the quantity of a field annotated with one of the types below, None for others.
+    """Return the quantity of a field with one of the types below, None for others.
 
-    A field that may be left out, ``Velocity | None``, is one of them.
+    An optional field, ``Velocity | None``, counts too.
     """
     inner = [each for each in get_args(hint) if each is not type(None)]
     if get_origin(hint) in (Union, UnionType) and len(inner) == 1:
@@ -157,7 +157,7 @@ def kind_of(hint: Any) -> Kind | None:
 
 
 def unit_of(hint: Any) -> str:
-    """Return the SI unit of a field annotated with one of the types below, '' for others."""
+    """Return the SI unit of a field with one of the types below, '' for others."""
     kind = kind_of(hint)
     return "" if kind is None else kind.unit
 
@@ -168,7 +168,7 @@ def reader(name: str, unit: str, example: str) -> BeforeValidator:
 
 
 def _listed(value: object) -> object:
-    """Return an array as a list; refuse what is one value."""
+    """Return an array as a list; refuse a single value."""
     value = value.tolist() if hasattr(value, "tolist") else value
     if not isinstance(value, list | tuple):
         raise fault(f"{value!r} is not a list of values; write them in brackets: [..., ...]")
@@ -208,7 +208,7 @@ SampleRate = Annotated[float, reader("a frequency", "Hz", "10 kHz"), Field(ge=0)
 
 
 def in_words(value: float, unit: str, digits: int = DIGITS) -> str:
-    """Return a value in an SI unit as text, with a prefix that suits it; an angle in degrees.
+    """Return a value in an SI unit as text with a suitable prefix; an angle in degrees.
 
     Of a length that no instrument can measure, only that is said.
 

@@ -1,4 +1,4 @@
-"""From pydantic's errors to faults with a path, a rule, the offending value and a remedy."""
+"""Turn pydantic's errors into faults: path, rule, offending value and remedy."""
 
 from __future__ import annotations
 
@@ -23,24 +23,24 @@ else:
     ModelMetaclass = type(BaseModel)
 
 T = TypeVar("T")
-READS = "reads_parameters"  # marks the constructors that `validated` makes
+READS = "reads_parameters"  # marks constructors made by `validated`
 
 
 class _Presented(ModelMetaclass):
-    """Lists a class without what it inherits from the library: `dir` and `help` ask this."""
+    """Hides inherited library members of a class from `dir` and `help`."""
 
     def __dir__(cls) -> list[str]:
         return _own_names(cls, super().__dir__())
 
 
 class Described(BaseModel, metaclass=_Presented):
-    """A frozen piece of a description; a bad one raises `DescriptionError` with every fault."""
+    """A frozen part of a description; invalid values raise one `DescriptionError`."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
-        """Show names, units and defaults as the signature, not how each is read."""
+        """Show names, units and defaults in the signature, not the validators."""
         hints, plain = get_type_hints(cls, include_extras=True), get_type_hints(cls)
         parameters = [
             Parameter(
@@ -59,22 +59,22 @@ class Described(BaseModel, metaclass=_Presented):
         collect(type(self).__name__, super().__init__, type(self).model_fields, values)
 
     def __dir__(self) -> list[str]:
-        """List the fields, and what the class adds."""
+        """List the fields and the members of this package."""
         return _own_names(type(self), super().__dir__())
 
     def __repr__(self) -> str:
-        """Return what makes it again, exactly."""
+        """Return the call that makes an equal object."""
         hints = get_type_hints(type(self), include_extras=True)
         fields = type(self).model_fields
         return _call(self, {name: hints.get(name) for name in fields}, _defaults(fields))
 
     def __str__(self) -> str:
-        """Return the same, angles with their unit; the library would give bare numbers."""
+        """Return the same as `repr`; the library would give angles without units."""
         return repr(self)
 
 
 def _own_names(cls: Any, names: Iterable[str]) -> list[str]:
-    """Return the names without those of the library that reads descriptions."""
+    """Return the names without those of pydantic."""
     own = {name for kind in cls.__mro__ if kind is not BaseModel for name in vars(kind)}
     inherited = {name for name in dir(BaseModel) if name.startswith("_") or name not in own}
     plain = {*dir(object), *(name for name in names if not name.startswith(("__", "model_")))}
@@ -86,19 +86,19 @@ def _defaults(fields: Mapping[str, FieldInfo]) -> dict[str, Any]:
 
 
 def _call(value: Any, hints: Mapping[str, Any], defaults: Mapping[str, Any]) -> str:
-    """Return the text that makes a value again: its fields that differ from their defaults."""
+    """Return the call that makes a value: its fields that differ from their defaults."""
     written = []
     for name, hint in hints.items():
         its = getattr(value, name)
         default = defaults.get(name)
-        same = type(its) is type(default) and its == default  # no array is a default
+        same = type(its) is type(default) and its == default  # a default is never an array
         if name not in defaults or not same:
             written.append(f"{name}={quoted(its, hint)}")
     return f"{type(value).__name__}({', '.join(written)})"
 
 
 def quoted(value: Any, hint: Any) -> str:
-    """Return a field's value as Python has it: an angle with its unit, of an array its size."""
+    """Return a field's value as Python code; angles have units, arrays show their size."""
     if isinstance(value, float) and unit_of(hint) == "rad":
         return repr(angle_text(value))
     if getattr(value, "shape", None) == ():  # a number of NumPy
@@ -107,7 +107,7 @@ def quoted(value: Any, hint: Any) -> str:
 
 
 class _Annotation(str):
-    """Stands for a type in a signature, where it is shown as it is."""
+    """Text in place of a type in a signature, shown without quotes."""
 
     __slots__ = ()
 
@@ -116,9 +116,9 @@ class _Annotation(str):
 
 
 def _shown(hint: Any, plain: Any) -> Any:
-    """Return how a parameter is annotated for a reader: what may be given, and its unit.
+    """Return the annotation of a parameter that a reader sees: accepted types and unit.
 
-    `plain` is its type without what reads it; a text beside that goes before.
+    `plain` is the type without its validator; a text in the annotation takes precedence.
     """
     texts = [item for item in getattr(hint, "__metadata__", ()) if isinstance(item, str)]
     kind = kind_of(hint)
@@ -133,7 +133,7 @@ def _shown(hint: Any, plain: Any) -> Any:
 
 
 def faulty(found: Sequence[Fault]) -> PydanticCustomError:
-    """Return the error for faults found inside one field, each with its path below it."""
+    """Return one error for the faults inside one field, with their paths below it."""
     return PydanticCustomError("faults", "several faults", {"found": list(found)})
 
 
@@ -151,7 +151,7 @@ def faults(error: ValidationError, path: str, known: Iterable[str]) -> list[Faul
     """Return each fault of a pydantic error below `path`; `known` are the keys allowed there."""
     found = []
     for detail in error.errors():
-        # lists are counted from 1, as their readers count them
+        # lists count from 1
         keys = (str(key + 1) if isinstance(key, int) else key for key in detail["loc"])
         at = ".".join([path, *keys])
         if detail["type"] == "faults":
@@ -188,7 +188,7 @@ def _message(detail: ErrorDetails, known: tuple[str, ...]) -> str:
 
 
 def unknown(what: str, name: str, known: Iterable[str]) -> str:
-    """Return the message for a name that is not one of `known`, with the nearest that is."""
+    """Return the message for a name that is not `known`, with the nearest known one."""
     known = sorted(known)
     near = get_close_matches(name, known, 1)
     remedy = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(known)}"
@@ -216,10 +216,10 @@ def fields(kind: Any) -> type[Described]:
 
 
 def made(kind: type[T], values: Mapping[str, Any]) -> T:
-    """Make a NamedTuple from a table of parameters, checked whether or not it is `validated`.
+    """Make a NamedTuple from a table of parameters, and check it.
 
-    A field annotated as a plain float takes a number, in SI; one with a type of
-    `stiction.text.units` reads units.
+    A plain float field takes a number in SI; one with a type of `stiction.text.units` reads
+    units. The tuple need not be `validated`.
     """
     if hasattr(kind.__new__, READS):
         return kind(**values)
@@ -252,12 +252,11 @@ Plain = Annotated[float, BeforeValidator(_number)]
 
 
 def validated(kind: type[T]) -> type[T]:
-    """Class decorator: a NamedTuple whose parameters are read, with units, when it is made.
+    """Decorate a NamedTuple so that its constructor reads parameters with units.
 
-    The compiled solver takes the tuple as it is: floats in SI. The parameters are
-    declared once, as the tuple's annotated fields; what must hold between them is checked
-    by a method ``faults``, which yields a field and a message for each fault. A class derived
-    from it is read likewise.
+    The compiled solver takes the tuple as it is: floats in SI. The tuple's annotated fields
+    declare the parameters; a method ``faults`` may check them against each other, and yields a
+    field and a message for each fault. Derived classes behave likewise.
     """
     plain: Any = kind.__new__
     names = tuple(signature(plain).parameters)[1:]
@@ -280,7 +279,7 @@ def validated(kind: type[T]) -> type[T]:
 
 
 def _signature(constructor: Any, kind: Any) -> Signature:
-    """Return the signature of a NamedTuple with what may be given, and units."""
+    """Return the signature of a NamedTuple with accepted types and units."""
     hints, plain = get_type_hints(kind, include_extras=True), get_type_hints(kind)
     return Signature(
         [
@@ -291,11 +290,11 @@ def _signature(constructor: Any, kind: Any) -> Signature:
 
 
 def _written(value: Any) -> str:
-    """Return what makes a NamedTuple again, exactly."""
+    """Return the call that makes an equal NamedTuple."""
     hints = get_type_hints(type(value), include_extras=True)
     return _call(value, {name: hints.get(name) for name in value._fields}, value._field_defaults)
 
 
 def _reduced(value: Any) -> tuple[Any, ...]:
-    """Return how to unpickle or copy what has been read already: as it is."""
+    """Unpickle or copy values as they are, without reading them again."""
     return type(value)._make, (tuple(value),)
