@@ -1,8 +1,8 @@
-"""What pulls and what presses: motion of the drive, and normal load, in time.
+"""Motion of the drive and normal load in time.
 
 A drive moves in the laboratory plane (X along the nominal drive direction, Y across it).
-A program is composed of pieces; the solver takes it as smooth stretches, one after the
-other. What an accelerated drive does depends on which body it drives, see `Slider`.
+A program consists of pieces; the solver takes it as a sequence of smooth stretches. The effect
+of an accelerated drive depends on which body it moves, see `Slider`.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ Stretches = tuple[tuple[float, Any], ...]
 
 
 def drive_stretches(drive: Drive) -> Stretches:
-    """Return the smooth stretches of a drive: when each ends (s), and what the solver takes."""
+    """Return the smooth stretches of a drive: the end of each (s), and its velocity."""
     return ((inf, drive),) if isinstance(drive, ConstantVelocity) else drive.stretches
 
 
 def jump(drive: Drive, t: float) -> tuple[float, float]:
-    """Return by how much a drive's velocity (X, Y) jumps at time `t`, in m/s."""
+    """Return the jump of a drive's velocity (X, Y) at time `t`, in m/s."""
     stretches = drive_stretches(drive)
     before = bisect_left(stretches, t, key=_end)
     if stretches[before][0] != t:
@@ -45,7 +45,7 @@ def jump(drive: Drive, t: float) -> tuple[float, float]:
 
 
 def ahead(stretches: Stretches, t: float) -> tuple[float, Any]:
-    """Return the stretch that goes on after time `t`."""
+    """Return the stretch that holds just after time `t`."""
     return stretches[bisect_right(stretches, t, key=_end)]
 
 
@@ -54,19 +54,19 @@ def _end(stretch: tuple[float, Any]) -> float:
 
 
 def load_stretches(normal_load: float, program: LoadProgram | None) -> Stretches:
-    """Return the smooth stretches of a normal load, as `drive_stretches`."""
+    """Return the smooth stretches of a normal load, like `drive_stretches`."""
     if program is None:
-        return ((inf, ConstantLoad._make((normal_load,))),)  # a slider's, which has been read
+        return ((inf, ConstantLoad._make((normal_load,))),)  # not validated: it comes from a slider
     return program.stretches(normal_load)
 
 
 def load_at(normal_load: float, program: LoadProgram | None, t: Any) -> Any:
-    """Return the normal load at `t` (float or array, s), in N; before the jump where it jumps."""
+    """Return the normal load at `t` (float or array, s), in N; at a jump, the value before."""
     return pick(load_stretches(normal_load, program), t, lambda load, at, _: (load.at(at),))[0]
 
 
 def read_drive(table: dict[str, Any]) -> Drive:
-    """Read a description's table [drive]; with ``velocity`` alone it is constant."""
+    """Read the table [drive] of a description; ``velocity`` alone means a constant drive."""
     if table.keys() <= {"velocity"} and table:
         return ConstantVelocity(**table)
     return DriveProgram(**table)

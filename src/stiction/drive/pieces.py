@@ -1,9 +1,9 @@
-"""The pieces that a program of drive velocity or of normal load is made of.
+"""Pieces of a program of drive velocity or normal load.
 
-Each says by ``shape(base, present, still)`` what the value does for its ``duration`` (s; for
-ever if None), given the program's base value, the value that the piece before it ended with,
-and that of a hold, in SI; a jump between two pieces happens at once. A new piece is a class
-here and a line in `DRIVE_PIECES` or `LOAD_PIECES`.
+The method ``shape(base, present, still)`` returns the value over the piece's ``duration`` (s; None
+for ever). It is given, in SI, the program's base value, the final value of the preceding piece, and
+the value of a hold; jumps between pieces are instantaneous. A new piece is a class here and a line
+in `DRIVE_PIECES` or `LOAD_PIECES`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def _level(value: Any) -> Any:
     return value
 
 
-# a velocity or a force: which one is known to the program that the piece stands in
+# a velocity or a force, depending on the program that contains the piece
 Level = Annotated[Any, AfterValidator(_level), "float (m/s or N) | str"]
 Phase = Annotated[float, reader("an angle", "rad", "90 deg")]
 
@@ -40,7 +40,7 @@ class Shape(NamedTuple):
 
 @validated
 class Constant(NamedTuple):
-    """A constant value, taken at once.
+    """A constant value, reached by a jump.
 
     Parameters
     ----------
@@ -54,13 +54,13 @@ class Constant(NamedTuple):
     duration: Duration | None = None
 
     def shape(piece, base: float, present: float, still: float) -> Shape:
-        """Return the value."""
+        """Return the constant."""
         return Shape(base if piece.value is None else piece.value)
 
 
 @validated
 class Step(NamedTuple):
-    """A jump by an amount, then constant.
+    """A jump of the present value, then constant.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class Step(NamedTuple):
     duration: Duration | None = None
 
     def shape(piece, base: float, present: float, still: float) -> Shape:
-        """Return the present value and the jump."""
+        """Return the present value plus the jump."""
         return Shape(present + piece.by)
 
 
@@ -128,7 +128,7 @@ class Free(NamedTuple):
 
 @validated
 class Reversal(NamedTuple):
-    """The present velocity, turned round at once.
+    """An instantaneous reversal of the present velocity.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ class Harmonic(NamedTuple):
     frequency : float or str
         Hz.
     phase : str, optional
-        Angle at the start of the piece, with its unit; none when left out.
+        Angle at the start of the piece, with its unit; zero by default.
     duration : float or str, optional
         s; to the end when left out, which only the last piece may.
     """
@@ -180,7 +180,7 @@ class Modulation(NamedTuple):
     frequency : float or str
         Hz.
     phase : str, optional
-        Angle at t = 0, with its unit; none when left out.
+        Angle at t = 0, with its unit; zero by default.
     """
 
     amplitude: Level

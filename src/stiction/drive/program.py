@@ -30,11 +30,11 @@ class DriveProgram(Described):
     Parameters
     ----------
     velocity : float or str, optional
-        The base velocity along X, m/s: what a `Constant` without a value has, and what the
-        first piece starts from; without pieces, the velocity for good.
+        The base velocity along X, m/s: the value of a `Constant` without one, and the start of
+        the first piece; without pieces, the velocity at all times.
     program : sequence, optional
         The pieces one after the other from t = 0 on: `Constant`, `Step`, `Ramp`, `Hold`,
-        `Reversal`, `Harmonic`, `Free`. After the last one its final velocity stays.
+        `Reversal`, `Harmonic`, `Free`. After the last piece, its final velocity stays.
     repeat : int, optional
         How often the program is gone through.
     along, across : Modulation, optional
@@ -54,7 +54,7 @@ class DriveProgram(Described):
 
     @cached_property
     def stretches(self) -> tuple[tuple[float, Any], ...]:
-        """The smooth stretches: when each ends (s), and what the solver takes for it."""
+        """The smooth stretches: the end of each (s), and its velocity."""
         sideways = waved(Signal(0.0, 0.0), self.across)
         return tuple(
             (end, _course(waved(signal, self.along), sideways))
@@ -62,12 +62,12 @@ class DriveProgram(Described):
         )
 
     def rate(self, t: Times) -> tuple[Any, Any]:
-        """Return the velocity (X, Y) at `t`, in m/s; before the jump where it jumps."""
+        """Return the velocity (X, Y) at `t`, in m/s; at a jump, the value before."""
         X, Y = pick(self.stretches, t, lambda course, at, _: course.rate(at))
         return X, Y
 
     def travel(self, t: float, dt: Times) -> tuple[Any, Any]:
-        """Return the displacement (X, Y) from time `t` on for `dt`, in m."""
+        """Return the displacement (X, Y) from time `t` to `t + dt`, in m."""
         there, here = self._distance(t + np.asarray(dt)), self._distance(t)
         return there[0] - here[0], there[1] - here[1]
 
@@ -83,7 +83,7 @@ class DriveProgram(Described):
 
     @cached_property
     def _milestones(self) -> tuple[Any, Any, Any]:
-        """When each stretch starts (s), and how far the drive has come by then (X, Y; m)."""
+        """The start of each stretch (s), and the drive's displacement until then (X, Y; m)."""
         rows = [(0.0, 0.0, 0.0)]
         for end, course in self.stretches[:-1]:
             start, X, Y = rows[-1]
@@ -104,7 +104,7 @@ class LoadProgram(Described):
     ----------
     program : sequence, optional
         The pieces one after the other from t = 0 on: `Constant`, `Step`, `Ramp`, `Hold`,
-        `Harmonic`; they start from the slider's ``normal_load``, and end in what stays.
+        `Harmonic`; they start from the slider's ``normal_load``. The final value stays.
     repeat : int, optional
         How often the program is gone through.
     modulation : Modulation, optional
@@ -121,7 +121,7 @@ class LoadProgram(Described):
         return self
 
     def stretches(self, base: float) -> tuple[tuple[float, Any], ...]:
-        """Return the smooth stretches for a base load (N): end (s) and what the solver takes."""
+        """Return the smooth stretches for a base load (N): the end of each (s), and its load."""
         return tuple(
             (end, _loading(waved(signal, self.modulation)))
             for end, signal in signals(self.program, self.repeat, base, still=None)
@@ -133,7 +133,7 @@ class LoadProgram(Described):
 
 
 def must_end(program: Sequence[Any], repeat: int) -> None:
-    """Refuse a program that goes on for ever but is to be repeated."""
+    """Refuse to repeat a program without an end."""
     if repeat > 1 and program and program[-1].duration is None:
         name = type(program[-1]).__name__.lower()
         raise ValueError(
@@ -145,7 +145,7 @@ def must_end(program: Sequence[Any], repeat: int) -> None:
 def signals(
     program: Sequence[Any], repeat: int, base: float, still: float | None
 ) -> Iterator[tuple[float, Signal]]:
-    """Yield the stretches of a program: when each ends (s), and the signal until then.
+    """Yield the stretches of a program: the end of each (s), and its signal.
 
     A hold has the value `still`, or the present one if that is None.
     """
@@ -174,9 +174,9 @@ def waved(signal: Signal, modulation: Any) -> Signal:
 
 
 def _course(along: Signal, across: Signal) -> Any:
-    """Return the plainest type that describes a stretch: it is the fastest to compute."""
+    """Return the simplest type that describes a stretch, which computes fastest."""
     if _flat(along) and _flat(across) and across.value == 0.0:
-        return ConstantVelocity._make([along.value])  # as it is: it has been read
+        return ConstantVelocity._make([along.value])  # not validated again
     return Course(along, across)
 
 
@@ -190,9 +190,9 @@ def _flat(signal: Signal) -> bool:
 
 
 def pick(stretches: Sequence[tuple[float, Any]], t: Times, value: Any) -> tuple[Any, ...]:
-    """Return values in time from the stretch that holds each time, its end included.
+    """Return values in time, each from the stretch that contains the time or ends at it.
 
-    ``value(stretch, times, start)`` is asked for them, `start` being when the stretch begins.
+    ``value(stretch, times, start)`` computes them; `start` is the beginning of the stretch.
     """
     times = np.asarray(t, dtype=np.float64)
     ends = np.array([end for end, _ in stretches])
@@ -209,13 +209,13 @@ def pick(stretches: Sequence[tuple[float, Any]], t: Times, value: Any) -> tuple[
 
 
 def _grouped(which: Any, order: Any) -> tuple[Any, list[Any]]:
-    """Return the values of a sorted array, and of `order` the part that belongs to each."""
+    """Return the distinct values of a sorted array, and the part of `order` for each."""
     kinds, first = np.unique(which, return_index=True)
     return kinds, np.split(order, first[1:])
 
 
 def table_of(program: Described, known: Mapping[str, type[Any]]) -> dict[str, Any]:
-    """Return a program as a table that can be read back: what differs from its default."""
+    """Return the fields of a program that differ from their defaults, as a table."""
     names = {kind: name for name, kind in known.items()}
     table: dict[str, Any] = {}
     for name in program.model_fields_set:
@@ -230,7 +230,7 @@ def table_of(program: Described, known: Mapping[str, type[Any]]) -> dict[str, An
 
 
 def written(piece: Any) -> dict[str, Any]:
-    """Return a piece's parameters as they are read: an angle with its unit, nothing for None."""
+    """Return a piece's parameters, ready to be read: angles with a unit, None left out."""
     values = {name: value for name, value in piece._asdict().items() if value is not None}
     if "phase" in values:
         values["phase"] = f"{values['phase']!r} rad"

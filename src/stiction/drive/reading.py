@@ -1,4 +1,4 @@
-"""Reading the pieces of a program: tables or objects in, objects in SI out, every fault named."""
+"""Reading of a program's pieces, tables or objects, into objects in SI, with all faults."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from stiction.text.validation import faulty
 
 
 class Reading(NamedTuple):
-    """Which pieces a program may have, and what quantity their levels are."""
+    """The pieces that a program may have, and the quantity of their levels."""
 
     known: Mapping[str, type[Any]]
     kind: Kind
@@ -77,7 +77,7 @@ def _piece(value: Any, known: Mapping[str, type[Any]]) -> Any:
 
 
 def _in_si(piece: Any, kind: Kind) -> Any:
-    """Return the piece with its levels, which are all of one quantity, in SI."""
+    """Return a piece with its levels, all of one quantity, in SI."""
     levels, found = {}, []
     for name in LEVELS:
         value = getattr(piece, name, None)

@@ -1,9 +1,9 @@
-"""A smooth stretch of a drive or of a normal load, as the compiled solver takes it.
+"""A smooth stretch of a drive or of a normal load, for the compiled solver.
 
-Between two instants at which a program jumps or bends, the drive velocity and the normal
-load are a straight line in time plus harmonics; the solver is handed one such stretch
-after the other and never sees a jump. The plain functions here work on floats, on arrays
-of times, and in compiled code.
+Between the instants at which a program jumps or bends, the drive velocity and the normal load
+are a straight line in time plus harmonics; the solver integrates one such stretch after the other
+and never meets a jump. The plain functions here work on floats, on arrays of times, and in
+compiled code.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 class Signal(NamedTuple):
     """value + slope (t - start) + two harmonics, each amplitude sin(omega t + phase).
 
-    Units are those of what it describes; t and start in s, omega in rad/s, phase in rad.
+    Units are those of the quantity; t and start in s, omega in rad/s, phase in rad.
     """
 
     start: float
@@ -61,7 +61,7 @@ def signal_curve(s: Signal, t: float) -> float:
 
 
 def signal_sum(s: Signal, t: float, dt: float) -> float:
-    """Return the integral from `t` to `t + dt`, without cancellation however short `dt`."""
+    """Return the integral from `t` to `t + dt`, without cancellation for short `dt`."""
     middle = t + 0.5 * dt
     y = (s.value + s.slope * (middle - s.start)) * dt
     if s.amplitude != 0.0:
@@ -84,7 +84,7 @@ def signal_sum(s: Signal, t: float, dt: float) -> float:
 
 
 def signal_bounds(s: Signal, start: float, end: float) -> tuple[float, float, float, float]:
-    """Return bounds of the magnitude of the value and of its first three derivatives."""
+    """Return bounds of the magnitudes of the value and its first three derivatives."""
     line = max(abs(s.value + s.slope * (t - s.start)) for t in (start, end))
     bounds = [line, abs(s.slope), 0.0, 0.0]
     for amplitude, omega in ((s.amplitude, s.omega), (s.amplitude_2, s.omega_2)):
@@ -116,7 +116,7 @@ class Course(NamedTuple):
         return signal_curve(drive.along, t), signal_curve(drive.across, t)
 
     def steady(drive) -> bool:
-        """Return whether the velocity is constant, as is known when this is compiled."""
+        """Return whether the velocity is constant; the compiler knows the answer."""
         return False
 
 
@@ -130,13 +130,13 @@ class Loading(NamedTuple):
         return signal_at(load.force, t)
 
     def drift(load, t: float) -> float:
-        """Return its rate of change, in N/s."""
+        """Return the rate of change of the load, in N/s."""
         return signal_change(load.force, t)
 
     def constant(load) -> bool:
-        """Return whether the load is constant, as is known when this is compiled."""
+        """Return whether the load is constant; the compiler knows the answer."""
         return False
 
 
-# what the methods above call, to be compiled with them
+# called by the methods above, compiled with them
 FUNCTIONS = (signal_at, signal_change, signal_curve, signal_sum)

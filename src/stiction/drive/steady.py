@@ -1,4 +1,4 @@
-"""A constant drive velocity and a constant normal load: stretches that never end."""
+"""Constant drive velocity and constant normal load: stretches without end."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class ConstantVelocity(NamedTuple):
         return 0.0, 0.0
 
     def steady(drive) -> bool:
-        """Return that the velocity is constant."""
+        """Return True."""
         return True
 
 
@@ -62,5 +62,5 @@ class ConstantLoad(NamedTuple):
         return 0.0
 
     def constant(load) -> bool:
-        """Return that the load is constant."""
+        """Return True."""
         return True

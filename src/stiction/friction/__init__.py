@@ -1,8 +1,8 @@
-"""Friction laws: how large the friction force is, given the slip speed.
+"""Friction laws: the friction force as a function of the slip velocity.
 
 A law is a NamedTuple of floats with two methods, ``coefficient(law, v)`` and
 ``slope(law, v)``, in plain Python with `math`; the solver compiles them. A new law
-is one file here and one line in `LAWS`; functions that its methods call go into `FUNCTIONS`.
+is one file in `laws` and one line in `LAWS`; functions that its methods call go into `FUNCTIONS`.
 A law whose friction depends on more than the slip velocity has internal states, see `StateLaw`.
 """
 
@@ -25,7 +25,7 @@ from stiction.friction.laws.table import Table
 from stiction.friction.user.loading import Find, is_own, named, own_table, read_own
 from stiction.text.toml import choose
 
-# plain functions that laws call, to be compiled with them
+# plain functions that laws call, compiled with them
 FUNCTIONS = (*_RATE_AND_STATE, bending, bending_gradient)
 
 LAWS: dict[str, type[Any]] = {
@@ -43,9 +43,9 @@ LAWS: dict[str, type[Any]] = {
 
 
 def read_law(table: dict[str, Any], find: Find | None = None) -> Law:
-    """Read a description's table [friction], with its table [friction.anisotropy] if any.
+    """Read the table [friction] of a description, including [friction.anisotropy].
 
-    `find` finds a law of the user's own.
+    `find` locates a user's law.
     """
     surface, own = table.pop("anisotropy", None), is_own(table)
     law: Law = read_own(table, find or named(Path())) if own else choose(table, "law", LAWS)
@@ -53,11 +53,11 @@ def read_law(table: dict[str, Any], find: Find | None = None) -> Law:
 
 
 def law_table(law: Any) -> dict[str, Any]:
-    """Return a law as a table [friction] that can be read back, of numbers and lists."""
+    """Return a law as a table [friction] of numbers and lists, which `read_law` reads."""
     if isinstance(law, Anisotropic):
         return {**law_table(law.law), "anisotropy": anisotropy_table(law)}
     name = registered_name(law)
-    values = {  # numbers of NumPy as Python's, which JSON knows
+    values = {  # NumPy numbers become Python numbers, for JSON
         key: value.tolist() if hasattr(value, "tolist") else value
         for key, value in law._asdict().items()
     }
@@ -65,19 +65,19 @@ def law_table(law: Any) -> dict[str, Any]:
 
 
 def name_of(law: Any) -> str:
-    """Return a law's registered name, or that of a user's own class."""
+    """Return a law's registered name, or the name of a user's class."""
     if isinstance(law, Anisotropic):
         return f"anisotropic {name_of(law.law)}"
     return registered_name(law) or type(law).__name__
 
 
 def registered_name(law: Any) -> str | None:
-    """Return the name in `LAWS`, None for a law of the user's own."""
+    """Return the name in `LAWS`, None for a user's law."""
     return next((name for name, kind in LAWS.items() if kind is type(law)), None)
 
 
 def parameters(law: Any) -> dict[str, Any]:
-    """Return a law's parameters, those of an anisotropic one with the law's that it holds."""
+    """Return a law's parameters; for an anisotropic one, including those of its inner law."""
     values: dict[str, Any] = law._asdict()
     if isinstance(law, Anisotropic):
         return parameters(values.pop("law")) | values

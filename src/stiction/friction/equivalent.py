@@ -1,4 +1,4 @@
-"""What laws share when they are compared: friction at rest, in fast slip, and in between."""
+"""Traits that comparable laws share: friction at rest, in fast slip, and in between."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from stiction.errors import DescriptionError, Fault
 from stiction.friction.law import Law, has_state, static_coefficient
 
 CHANGED = 1.0 - exp(-1.0)
-ABRUPT = 1e-3  # of the fastest slip: what has changed at once, changes over this speed
+ABRUPT = 1e-3  # of the fastest slip: the speed of a change that is abrupt
 
 
 class Traits(NamedTuple):
@@ -20,9 +20,9 @@ class Traits(NamedTuple):
     Parameters
     ----------
     static, kinetic : float
-        Coefficient at rest; that within reach of slip which differs most from it.
+        Coefficient at rest; the coefficient within reach of slip that differs most from it.
     speed : float
-        Slip speed at which 1 - 1/e of the change is done, m/s.
+        Slip speed at which the coefficient has made 1 - 1/e of the change, m/s.
     """
 
     static: float
@@ -31,12 +31,11 @@ class Traits(NamedTuple):
 
 
 def traits(law: Law, drive: float, fastest: float) -> Traits:
-    """Return what another law must have in common with `law` to be comparable with it.
+    """Return the traits that another law must share with `law` to be comparable.
 
-    The coefficient is looked at up to the fastest slip that the apparatus can reach: what the
-    law does beyond plays no part. One that weakens and then strengthens counts as the minimum
-    between. A law with internal state may have no coefficient at rest; that of steady sliding
-    at a thousandth of the drive's speed stands for it.
+    Only slip speeds that the apparatus can reach count. For a law that weakens and then
+    strengthens, the minimum counts. A law with internal state may have no coefficient at rest;
+    steady sliding at a thousandth of the drive's speed replaces it.
 
     Parameters
     ----------
@@ -50,7 +49,7 @@ def traits(law: Law, drive: float, fastest: float) -> Traits:
     Raises
     ------
     DescriptionError
-        If the coefficient is not finite there.
+        If the coefficient is not finite within these speeds.
     """
     slowest = ABRUPT * (drive or fastest) if has_state(law) else 1e-9 * fastest
     speeds = np.geomspace(slowest, fastest, 2001)
@@ -71,12 +70,12 @@ def traits(law: Law, drive: float, fastest: float) -> Traits:
 
 
 def like(kind: Any, shared: Traits) -> Law:
-    """Return the law of this `kind` that has the traits.
+    """Return the law of a `kind` with the given traits.
 
     Raises
     ------
     DescriptionError
-        If there is none, with what to write instead.
+        If there is none, with the remedy.
     """
     required = [name for name in kind._fields if name not in kind._field_defaults]
     remedy = f"write a table with its parameters: {', '.join(required)}"
@@ -84,7 +83,7 @@ def like(kind: Any, shared: Traits) -> Law:
         message = f"takes no parameters from another law; {remedy}"
         raise DescriptionError([Fault("law", message)])
     try:
-        made: Law = kind.like(*(float(f"{value:.4g}") for value in shared))  # as it is written
+        made: Law = kind.like(*(float(f"{value:.4g}") for value in shared))  # as written
     except (ArithmeticError, ValueError) as error:
         wanted = f"{shared.static:.4g} at rest, {shared.kinetic:.4g} in fast slip"
         message = f"cannot be given friction coefficients {wanted} ({error}); {remedy}"

@@ -1,12 +1,12 @@
-"""What the solver asks of a friction law, with and without internal state.
+"""The interface of friction laws, with and without internal state.
 
 Laws are NamedTuples with methods in plain Python, which the solver compiles: they may use
 floats, tuples, `math` and the law's own fields. Their first argument is the law itself,
-named ``law``; a function of the user's own that they call must be compiled (`numba.njit`).
+named ``law``; a user's function that they call must be compiled (`numba.njit`).
 
-They must end for every argument, one that is no number too. Nothing ends a loop in compiled code,
-Ctrl-C neither: bound each, as ``for _ in range(50)``. What loops at some ten probed speeds is told
-when a law is read, or by `stiction.check_law`; what loops elsewhere is not.
+They must end for every argument, NaN included. Not even Ctrl-C ends a loop in compiled code: bound
+each, as in ``for _ in range(50)``. Reading a law, and `stiction.check_law`, find endless loops only
+at the few speeds that they probe.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ Vector = tuple[float, float]
 
 
 class FrictionLaw(Protocol):
-    """A set-valued law: at zero slip friction is whatever holds, up to a limit.
+    """A set-valued law: at zero slip, friction balances the other forces up to a limit.
 
-    The limit is ``coefficient(0)`` times the normal load; where the law has a field
-    ``mu_static``, it is that coefficient if it is the larger one.
+    The limit is ``coefficient(0)`` times the normal load, or ``mu_static`` times it if the law
+    has such a field and it is larger.
     """
 
     @property
@@ -37,15 +37,16 @@ class FrictionLaw(Protocol):
 
     @classmethod
     def like(kind, static: float, kinetic: float, speed: float) -> Self:
-        """Return a law of this kind that is comparable with another.
+        """Return a law of this kind that has the traits of another.
 
-        `static` and `kinetic` are friction coefficients at rest and in fast slip, `speed` (m/s)
-        is over which the one becomes the other. Optional: only comparisons ask for it.
+        `static` and `kinetic` are the friction coefficients at rest and in fast slip; `speed`
+        (m/s) is the slip speed over which the one becomes the other. Optional: only comparisons
+        need it.
         """
 
 
 class Internal(NamedTuple):
-    """An internal state of a law: its name in results, its unit, and what it is."""
+    """An internal state of a law: its name in results, its unit, and its meaning."""
 
     name: str
     unit: str
@@ -58,9 +59,9 @@ class StateLaw(Protocol):
     Vectors are (x, y) in the slider's principal axes; `state` is a tuple of floats, one for
     each of ``states()``.
 
-    A law whose friction varies over many decades of slip speed may say, by a method
-    ``grain(law, state)``, below which slip speed (m/s) it is proportional to it; the solver
-    then works with the logarithm of the slip speed above. By a method ``gradient(law, slip, load,
+    If friction varies over many decades of slip speed, a method ``grain(law, state)`` may return
+    the slip speed (m/s) below which friction is proportional to it; above, the solver then works
+    with the logarithm of the slip speed. By a method ``gradient(law, slip, load,
     state)`` it may give the derivatives of force x, y and of each state's change, a tuple for each
     of these, by slip x, y and each state; without it the solver takes differences, which is slower.
     """
@@ -72,13 +73,13 @@ class StateLaw(Protocol):
 
     @staticmethod
     def states() -> tuple[Internal, ...]:
-        """Return what the internal states are."""
+        """Return the names, units and meanings of the internal states."""
 
     def coefficient(law, v: float) -> float:
         """Return the friction coefficient of steady sliding at slip speed `v` (m/s)."""
 
     def settled(law, speed: float) -> tuple[float, ...]:
-        """Return the state to start from where nothing else is said, given the drive's speed."""
+        """Return the default initial state, given the drive's speed."""
 
     def force(law, slip: Vector, load: float, state: tuple[float, ...]) -> Vector:
         """Return the friction force (N) at slip velocity `slip` (m/s) and normal load (N)."""
@@ -101,7 +102,7 @@ def has_state(law: Any) -> TypeGuard[StateLaw]:
 
 
 def states(law: Any) -> tuple[Internal, ...]:
-    """Return what the internal states of a law are, none for a set-valued law."""
+    """Return the internal states of a law, none for a set-valued law."""
     return tuple(Internal(*each) for each in getattr(law, "states", tuple)())
 
 
@@ -111,7 +112,7 @@ def static_coefficient(law: Any) -> float:
 
 
 def static_fault(law: FrictionLaw) -> Iterator[tuple[str, str]]:
-    """Yield what is wrong with a law's separate static coefficient: its field and a message."""
+    """Check a law's separate static coefficient; yield field and message of a fault."""
     static, kinetic = float(getattr(law, "mu_static", 0.0)), law.coefficient(0.0)
     if 0.0 < static < kinetic:
         yield (

@@ -1,4 +1,4 @@
-"""A parameter that is varied: its range, read with units, and its scale, linear or logarithmic."""
+"""Axis of a parameter: its range, read with units, and its linear or logarithmic scale."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from stiction.system.parameter import changed, placed, read, unit
 from stiction.system.slider import Slider
 from stiction.text.paths import canonical_path
 
-DECADES = 3.0  # either way from a parameter's own value, where no range is given
-WIDE = 10.0  # ratio of the ends beyond which the scale is logarithmic
+DECADES = 3.0  # in both directions from a parameter's own value, the default range
+WIDE = 10.0  # the scale is logarithmic above this ratio of the ends
 
 
 class Axis(NamedTuple):
-    """A parameter by its path, its SI unit, and the range (SI) that 0 to 1 stand for."""
+    """A parameter's path, its SI unit, and the range (SI) that is mapped to 0 to 1."""
 
     path: str
     unit: str
@@ -25,11 +25,11 @@ class Axis(NamedTuple):
 
     @property
     def logarithmic(self) -> bool:
-        """Whether equal steps are equal ratios."""
+        """Whether the scale is logarithmic."""
         return self.low * self.high > 0.0 and self.high / self.low > WIDE
 
     def value(self, fraction: float) -> float:
-        """Return the value (SI) at a fraction of the range; at its ends, the very ends."""
+        """Return the value (SI) at a fraction of the range; exact at the ends."""
         if fraction in (0.0, 1.0):
             return self.high if fraction else self.low
         if self.logarithmic:
@@ -37,7 +37,7 @@ class Axis(NamedTuple):
         return self.low + fraction * (self.high - self.low)
 
     def fraction(self, value: float) -> float:
-        """Return where in the range a value (SI) lies; 0 to 1 inside."""
+        """Return the position of a value (SI) in the range; 0 to 1 inside."""
         if self.logarithmic:
             ratio = value / self.low
             return -inf if ratio <= 0.0 else log(ratio) / log(self.high / self.low)
@@ -58,13 +58,13 @@ def axis(slider: Slider, path: str, between: Sequence[float | str] | None = None
     path : str
         The parameter, see `stiction.system.parameter`.
     between : pair of float or str, optional
-        Its range; when left out, 0 to 90 degrees for an angle, else three decades either way
-        from its present value.
+        Its range; by default 0 to 90 degrees for an angle, else three decades below and above
+        its present value.
 
     Raises
     ------
     DescriptionError
-        If the range is none, or not all of it is allowed.
+        If the range is invalid, or contains forbidden values.
     """
     path = canonical_path(path)
     ends = default(slider, path) if between is None else between
@@ -83,7 +83,7 @@ def axis(slider: Slider, path: str, between: Sequence[float | str] | None = None
 
 
 def default(slider: Slider, path: str) -> tuple[float | str, float | str]:
-    """Return the range of a parameter where none is given."""
+    """Return the default range of a parameter."""
     if unit(slider, path) == "rad":
         return "0 deg", "90 deg"
     value = read(slider, path)

@@ -1,4 +1,4 @@
-"""The boundary of stability as a curve in two parameters, followed from point to point."""
+"""The boundary of stability as a curve in two parameters, traced from point to point."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from stiction.system.slider import Slider
 if TYPE_CHECKING:
     import xarray as xr
 
-LINES = (0.0, 0.25, 0.5, 0.75, 1.0)  # across both ranges, on which curves are looked for
-LOOKS = 33  # points on each
+LINES = (0.0, 0.25, 0.5, 0.75, 1.0)  # across both ranges, searched for points of curves
+LOOKS = 33  # points on each line
 
 
 def boundary(
@@ -34,11 +34,11 @@ def boundary(
 ) -> xr.Dataset:
     """Follow the boundary of stable steady sliding through the plane of two parameters.
 
-    Where the growth rate is zero is looked for on a few lines across the plane, the slider's own
-    among them. From there each curve is followed both ways: the next point is where the growth
-    rate changes sign on a small circle about the present one, near straight on. A circle meets
-    every curve, whichever way it turns: folds and corners (where one mode takes over from
-    another) need no care. It ends at the edge of the plane, or where it closes.
+    Zeros of the growth rate are found on a few lines across the plane, including those through the
+    slider's own parameters. From each zero, the curve is traced in both directions: the next point
+    is the change of sign, nearest to straight ahead, on a small circle about the present point. A
+    circle meets every curve, so that folds and corners (where another mode takes over) need no
+    special treatment. A curve ends at the edge of the plane, or where it closes.
 
     Parameters
     ----------
@@ -54,9 +54,9 @@ def boundary(
     -------
     Dataset
         Over ``point``: the parameters by their paths (SI), ``frequency`` of the critical mode
-        (Hz), and the number ``branch`` of the connected curve that it belongs to; along each,
-        steady sliding is unstable on the left, with x to the right and y upwards. The growth
-        rate is zero there to 1e-9 of the ranges or better. Attributes: ``x``, ``y``, their ranges
+        (Hz), and the number ``branch`` of the connected curve. Along each curve, steady sliding
+        is unstable on the left, with x to the right and y upwards. The points are accurate to
+        1e-9 of the ranges or better. Attributes: ``x``, ``y``, their ranges
         ``x_range``, ``y_range``, ``x_scale``, ``y_scale`` ("log" or "linear"), and the slider's
         own ``x_own``, ``y_own`` (SI) and ``growth_rate`` (1/s).
 
@@ -90,7 +90,7 @@ def boundary(
 
 
 def own(slider: Slider, path: str) -> float:
-    """Return a slider's own value of a parameter, SI; NaN where several that are joined differ."""
+    """Return a slider's own value of a parameter, SI; NaN if joined parameters differ."""
     try:
         return read(slider, path)
     except DescriptionError:
@@ -98,7 +98,7 @@ def own(slider: Slider, path: str) -> float:
 
 
 def seeds(growth: Growth, x: float, y: float) -> Iterator[Point]:
-    """Yield points at which the growth rate is zero: on lines across the plane, and on x, y."""
+    """Yield zeros of the growth rate, on lines across the plane and through (x, y)."""
     for level in (y, *LINES):
         if 0.0 <= level <= 1.0:
             for found in sign_changes(lambda a, b=level: growth((a, b)), LOOKS)[0]:  # type: ignore[misc]

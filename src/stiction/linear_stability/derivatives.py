@@ -1,4 +1,4 @@
-"""How friction and a law's internal states answer to a small change of slip and of state."""
+"""Derivatives of friction and of a law's internal states by slip and state."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from stiction.system.slider import Slider
 Floats = NDArray[np.float64]
 
 ROUNDING = float(np.finfo(np.float64).eps)
-SMALL = 4.0 * ROUNDING  # of what takes a few operations
-NEIGHBOUR = 1e-9  # relative distance of arguments whose values differ by slope and rounding
-FIRST, COLUMNS = 2, 6  # of Richardson's scheme: errors in the sixth to twelfth power of the step
-RATIO = 2.0  # of one step to the next
-SHARE = 1.0 / 16.0  # of a change from step to step: from the sixth power on, the next is a 64th
+SMALL = 4.0 * ROUNDING  # relative rounding error after a few operations
+NEIGHBOUR = 1e-9  # relative distance of neighbours; functions are linear but for rounding
+FIRST, COLUMNS = 2, 6  # of Richardson's scheme: errors of order six to twelve in the step
+RATIO = 2.0  # of successive steps
+SHARE = 1.0 / 16.0  # error as a share of the last change; at sixth order, the next change is 1/64
 
 
 class Response(NamedTuple):
@@ -32,7 +32,7 @@ class Response(NamedTuple):
     slopes : ndarray
         (2 + n, 2 + n): their derivatives by the slip velocity (x, y; m/s) and the states.
     error : ndarray
-        Of `slopes`, an estimate of each.
+        Estimated errors of `slopes`.
     """
 
     value: Floats
@@ -69,7 +69,7 @@ def set_valued(slider: Slider, slip: Floats) -> Response:
     mu, slope = law.coefficient(v), law.slope(v)
     along = np.outer(push, slip) * (slope / (q * v))
     turned = np.array([-slip[1], slip[0]])
-    # N - (N s)(N s)^T/q^2, which is of two nearly equal terms
+    # equal to N - (N s)(N s)^T/q^2, without its cancellation
     across = float(np.linalg.det(N)) / q**2 * np.outer(turned, turned) * (mu / q)
     slopes = slider.normal_load * (along + across)
     doubt = np.abs(np.outer(push, slip)) * ((SMALL * abs(slope) + noise(law.slope, v, v)) / (q * v))
@@ -78,7 +78,7 @@ def set_valued(slider: Slider, slip: Floats) -> Response:
 
 
 def with_state(slider: Slider, slip: Floats, state: Floats) -> Response:
-    """Return the response of a law with internal state, which gives no derivatives itself."""
+    """Return the response of a law with internal state, by numerical differentiation."""
     law: Any = slider.law
 
     def response(at: Floats) -> Floats:
@@ -89,8 +89,8 @@ def with_state(slider: Slider, slip: Floats, state: Floats) -> Response:
     speed = hypot(*slip)
     columns = [derivative(response, at, i, 0.5 * speed, 2.0**-9 * speed) for i in range(2)]
     for i in range(2, len(at)):
-        # a state is a number of any size: from about one, or its own size if larger, to far below;
-        # what rounding leaves of a logarithm, ln 1, is no size
+        # steps from about one, or the state's own size if larger, down to far below it;
+        # the rounding error of a logarithm, ln 1, does not count as a size
         size = abs(float(at[i]))
         least = size if size > SMALL else 1e-4
         columns.append(derivative(response, at, i, 0.5 * max(size, 1.0), 2.0**-13 * least))
@@ -101,13 +101,12 @@ def with_state(slider: Slider, slip: Floats, state: Floats) -> Response:
 def derivative(
     function: Callable[[Floats], Floats], at: Floats, i: int, widest: float, narrowest: float
 ) -> tuple[Floats, Floats]:
-    """Return the derivative of a vector function by variable `i`, and an estimate of its error.
+    """Return the derivative of a vector function by variable `i`, and its estimated error.
 
-    Central differences over ever shorter steps, from `widest` to about `narrowest`, extrapolated
-    to a step of zero; of all extrapolations each component takes the one with the least error
-    (Ridders, Adv. Eng. Software 4 (1982), 75): a share of what it changed with the last step, as
-    the next change is smaller by more than that, and rounding. Steps at which the function has no
-    value are passed over.
+    Central differences over ever shorter steps, from `widest` to about `narrowest`, are
+    extrapolated to a step of zero (Ridders, Adv. Eng. Software 4 (1982), 75). Each component takes
+    the extrapolation with the smallest error, which is estimated as a share of the last change plus
+    rounding. Steps at which the function is undefined are skipped.
     """
     unit = np.eye(len(at))[i]
     steps = widest * RATIO ** -np.arange(np.ceil(log(widest / narrowest, RATIO)) + 1.0)
@@ -133,16 +132,16 @@ def derivative(
 
 
 def noise(function: Callable[[float], Any], at: float, scale: float) -> Any:
-    """Return the rounding error that a smooth function shows over a few neighbours of a place.
+    """Return the rounding error of a smooth function near a place.
 
-    Second differences: over steps that are so small beside its scale nothing else is in them.
+    Second differences over steps far below the function's scale contain nothing else.
     """
     values = [function(at + step * NEIGHBOUR * scale) for step in range(-4, 5)]
     return np.abs(np.diff(values, 2, axis=0)).max(axis=0)
 
 
 def tried(function: Callable[[Floats], Floats], at: Floats) -> Floats:
-    """Return the value of a function, not-a-number where a law of the user's own has none."""
+    """Return the value of a function; NaN where a user's law raises an error."""
     try:
         return function(at)
     except (ArithmeticError, ValueError):

@@ -1,4 +1,4 @@
-"""Eigenvalues of a small real matrix, refined, and how far errors of its entries move them."""
+"""Refined eigenvalues of a small real matrix, with bounds from errors of its entries."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from stiction.linear_stability.derivatives import ROUNDING, Floats
 Complex = NDArray[np.complex128]
 
 EXTENDED = float(np.finfo(np.longdouble).eps)
-REFINEMENTS = 3  # Newton steps: each gains some ten digits where the eigenvalue is a simple one
+REFINEMENTS = 3  # Newton steps; each gains about ten digits of a simple eigenvalue
 
 
 class Eigenvalues(NamedTuple):
-    """Eigenvalues, fastest growth first, their vectors (columns), and bounds of their errors.
+    """Eigenvalues, fastest growth first, their vectors (columns), and error bounds.
 
-    `uncertainty` is that of an eigenvalue in the complex plane, `growth_uncertainty` that of its
-    real part, which may be far less: an error of a stiffness moves a frequency, and no growth.
+    `uncertainty` bounds the error of an eigenvalue in the complex plane, `growth_uncertainty` that
+    of its real part. The latter may be far smaller: errors of a stiffness shift only frequencies.
     """
 
     values: Complex
@@ -32,9 +32,9 @@ class Eigenvalues(NamedTuple):
 def eigenvalues(matrix: Floats, error: Floats) -> Eigenvalues:
     """Return the eigenvalues of a matrix whose entries are uncertain by `error`.
 
-    The matrix is balanced first: its unknowns have different units, and sizes that differ by many
-    orders. Each eigenvalue with its vector is refined by Newton's method, residuals in extended
-    precision, so that those much smaller than the largest one have as many right digits.
+    The matrix is balanced first, because its unknowns differ in units, and by many orders of
+    magnitude. Newton's method, with residuals in extended precision, then refines each eigenvalue
+    and its vector, so that small eigenvalues have as many correct digits as large ones.
 
     References
     ----------
@@ -63,8 +63,8 @@ def eigenvalues(matrix: Floats, error: Floats) -> Eigenvalues:
 def refine(matrix: Floats, value: complex, vector: Complex, gap: float) -> tuple[complex, Complex]:
     """Return an eigenvalue and its vector after a few steps of Newton's method.
 
-    Of the vector the largest component is kept. A step that would lead nearer to another
-    eigenvalue, `gap` away, is not taken.
+    The vector's largest component stays fixed. Steps that lead nearer to another eigenvalue, `gap`
+    away, are rejected.
     """
     n, top = len(vector), int(np.argmax(np.abs(vector)))
     exact: Any = matrix.astype(np.longdouble)
@@ -90,7 +90,7 @@ def refine(matrix: Floats, value: complex, vector: Complex, gap: float) -> tuple
 def bound(
     matrix: Floats, doubt: Floats, value: complex, vector: Complex, adjoint: Complex, gap: float
 ) -> tuple[float, float]:
-    """Return bounds of an eigenvalue's error, and of its real part's.
+    """Return error bounds of an eigenvalue and of its real part.
 
     To first order an error dA of the matrix moves an eigenvalue by w^H dA v/(w^H v) (Horn &
     Johnson, Matrix Analysis, 6.3.12); R takes each entry's error at its largest. The bound is
@@ -100,7 +100,7 @@ def bound(
     is that of first order and, as above, at most 4 R^2/d.
     """
     v, w = np.abs(vector), np.abs(adjoint)
-    left = EXTENDED * (np.abs(matrix) + abs(value) * np.eye(len(v)))  # by Newton's method
+    left = EXTENDED * (np.abs(matrix) + abs(value) * np.eye(len(v)))  # left by Newton's method
     reach, size = float(w @ (doubt + left) @ v), float(np.sqrt((w @ w) * (v @ v)))
     meeting = sqrt(reach / size * float(np.abs(matrix).max()))
     product = adjoint.conj() @ vector

@@ -1,4 +1,4 @@
-"""Is steady sliding stable, and at which parameters does that change: all in one object."""
+"""Examination of steady sliding: its modes, its stability, and critical parameters."""
 
 from __future__ import annotations
 
@@ -34,27 +34,27 @@ if TYPE_CHECKING:
     from stiction.system.description import Description
 
 OVER = ("phi", "drive.velocity")
-DIGITS = 6  # of a critical value
+DIGITS = 6  # shown of a critical value
 Ends = Sequence[float | str]
 
 
 @dataclass(frozen=True, repr=False)
 class Stability:
-    """Steady sliding, its modes, and where they begin to grow.
+    """Steady sliding, its modes, and the parameters at which they begin to grow.
 
     Parameters
     ----------
     sliding : Linearisation
-        Steady sliding of the slider as it is, and its modes.
+        Steady sliding of the given slider, and its modes.
     criticals : tuple of Critical
-        For each parameter that is varied, the values at which stability changes.
+        For each varied parameter, the values at which stability changes.
     """
 
     sliding: Linearisation
     criticals: tuple[Critical, ...]
 
     def __repr__(self) -> str:
-        """Say whether it slides steadily, and what was varied."""
+        """Return a one-line summary."""
         return f"<Stability: {self.sliding.verdict}; over {', '.join(self.over)}>"
 
     def __str__(self) -> str:
@@ -71,7 +71,7 @@ class Stability:
 
     @property
     def over(self) -> tuple[str, ...]:
-        """The parameters that are varied."""
+        """The varied parameters."""
         return tuple(each.path for each in self.criticals)
 
     @property
@@ -94,7 +94,7 @@ class Stability:
         return boundary(self.slider, x.path, y.path, x_between=ends(x), y_between=ends(y))
 
     def tables(self) -> list[Section]:
-        """Return the modes and the critical values, in sentences and tables."""
+        """Return the modes and the critical values as sentences and tables."""
         return [modes_section(self.sliding), critical_section(self.slider, self.criticals)]
 
     def plot(self, axes: Any = None) -> Any:
@@ -112,7 +112,7 @@ def stability(
     over: str | Sequence[str] = OVER,
     between: Ends | Sequence[Ends | None] | None = None,
 ) -> Stability:
-    """Say whether a slider slides steadily, and at which values of parameters that changes.
+    """Examine whether a slider slides steadily, and at which parameters this changes.
 
     Steady sliding is linearised: each mode of a small disturbance grows or decays.
 
@@ -123,8 +123,8 @@ def stability(
     over : str or two of them, optional
         The parameters to vary, for example ``"c_x"``; see `stiction.linear_stability.critical`.
     between : pair of float or str, or such a pair for each parameter, optional
-        The ranges, in SI or with units; 0 to 90 degrees for an angle, else three decades either
-        way, when left out.
+        The ranges, in SI or with units; by default 0 to 90 degrees for an angle, else three
+        decades below and above the present value.
 
     Returns
     -------
@@ -158,13 +158,13 @@ def stability(
 
 
 def ends(found: Critical) -> tuple[float | str, float | str]:
-    """Return the range that was searched, as it is read."""
+    """Return the searched range, with the unit of an angle."""
     low, high = found.between
     return (f"{low!r} rad", f"{high!r} rad") if found.unit == "rad" else (low, high)
 
 
 def modes_section(linear: Linearisation) -> Section:
-    """Return the verdict, and a row for each mode; of a conjugate pair one."""
+    """Return the verdict, and a row for each mode, one for a conjugate pair."""
     decays = "every small disturbance decays" if linear.stable else "not every disturbance decays"
     modes = zip(linear.eigenvalues, linear.frequencies, linear.damping_ratios, strict=True)
     rows = [
@@ -184,7 +184,7 @@ def modes_section(linear: Linearisation) -> Section:
 
 
 def critical_section(slider: Slider, found: Sequence[Critical]) -> Section:
-    """Return, for each parameter, where steady sliding is stable and where it is not."""
+    """Return, for each parameter, the ranges in which steady sliding is stable or not."""
     own = {each.path: present(slider, each.path) for each in found}
     now = ", ".join(
         f"{each.path} = {in_words(own[each.path], each.unit, DIGITS)}"
@@ -197,7 +197,7 @@ def critical_section(slider: Slider, found: Sequence[Critical]) -> Section:
 
 
 def present(slider: Slider, path: str) -> float:
-    """Return the value of a parameter; not a number where joined ones have no one value."""
+    """Return the value of a parameter; NaN if joined parameters differ."""
     try:
         return read(slider, path)
     except DescriptionError:
@@ -205,9 +205,9 @@ def present(slider: Slider, path: str) -> float:
 
 
 def stretches(found: Critical, now: float) -> Iterator[tuple[str, ...]]:
-    """Yield a row for each stretch of a parameter: its ends, what sliding is, what sets in.
+    """Yield a row for each stretch of a parameter: ends, stability, oscillation at its end.
 
-    The stretch in which the parameter is `now` is marked.
+    The stretch that contains the value `now` is marked.
     """
     borders = [found.between[0], *map(float, found.values), found.between[1]]
     sets_in = [in_words(f, "Hz") if f > 0.0 else "none" for f in map(float, found.frequencies)]

@@ -1,8 +1,7 @@
-"""Following a curve through the plane on which a function is zero, whichever way it turns.
+"""Tracing of a curve on which a function in the plane is zero, through folds and corners.
 
-From one point to the next by a spherical constraint: the function changes sign somewhere on a
-circle about the present point, and that is the next one (Yamamura, IEEE Trans. Circuits Syst. I
-40 (1993), 448). The plane is the unit square.
+The next point is the change of sign on a circle about the present point (a spherical constraint:
+Yamamura, IEEE Trans. Circuits Syst. I 40 (1993), 448). The plane is the unit square.
 """
 
 from __future__ import annotations
@@ -16,16 +15,16 @@ import numpy as np
 from stiction.linear_stability.derivatives import Floats
 
 Point = tuple[float, float]
-Growth = Callable[[Point], float]  # beyond an edge of the plane, what it is at the edge
+Growth = Callable[[Point], float]  # beyond an edge of the plane, its value at the edge
 
 LONGEST, SHORTEST = 0.02, 1e-4  # steps along the curve
-STRAIGHT = 0.3  # rad: where the curve turns more in a step, a shorter one is tried
-AHEAD = (0.4, 1.0, 1.6, 2.2)  # rad to either side of straight on, in which it is looked for
+STRAIGHT = 0.3  # rad; where the curve turns more in a step, the step is shortened
+AHEAD = (0.4, 1.0, 1.6, 2.2)  # rad to both sides of straight ahead, searched in this order
 MOST = 4000  # steps along one curve
 
 
 def near(point: Point, branch: Floats) -> bool:
-    """Return whether a point lies on a curve that is known."""
+    """Return whether a point lies on a known curve."""
     a, b = branch[:-1], branch[1:]
     along = b - a
     length = np.maximum(np.sum(along**2, axis=1), 1e-30)
@@ -58,7 +57,7 @@ def farthest(ways: Sequence[float]) -> float:
 
 
 def followed(growth: Growth, seed: Point, way: float) -> Iterator[Point]:
-    """Yield the points of a curve from `seed` on, to the edge of the plane or back to `seed`."""
+    """Yield the points of a curve from `seed` to the edge of the plane, or back to `seed`."""
     here, step, gone, start = seed, LONGEST, 0.0, way
     for _ in range(MOST):
         found = ahead(growth, here, way, step)
@@ -72,13 +71,13 @@ def followed(growth: Growth, seed: Point, way: float) -> Iterator[Point]:
         last, here = here, beside(here, way, step)
         gone += step
         if not all(0.0 <= each <= 1.0 for each in here):
-            # beyond the edge the growth rate is what it is there: the curve leaves squarely
+            # beyond the edge the growth rate stays constant: the curve leaves at a right angle
             edge = min(max(here[0], 0.0), 1.0), min(max(here[1], 0.0), 1.0)
-            if hypot(edge[0] - last[0], edge[1] - last[1]) > SHORTEST**2:  # not there already
+            if hypot(edge[0] - last[0], edge[1] - last[1]) > SHORTEST**2:  # not yet at the edge
                 yield edge
             return
         back = gone > 2.0 * LONGEST and hypot(seed[0] - last[0], seed[1] - last[1]) < step
-        if back and abs(turn(start, way)) < pi / 2.0:  # not past it, the other way
+        if back and abs(turn(start, way)) < pi / 2.0:  # `start` is ahead, not behind
             yield seed
             return
         yield here
@@ -86,7 +85,7 @@ def followed(growth: Growth, seed: Point, way: float) -> Iterator[Point]:
 
 
 def ahead(growth: Growth, here: Point, way: float, step: float) -> float | None:
-    """Return the direction (rad) in which the curve goes on, None if it does not."""
+    """Return the direction (rad) of the next point, None if there is none."""
     for angle in AHEAD if step <= SHORTEST else AHEAD[:1]:
         values = [growth(beside(here, way + side, step)) for side in (-angle, angle)]
         if values[0] * values[1] < 0.0:
@@ -95,7 +94,7 @@ def ahead(growth: Growth, here: Point, way: float, step: float) -> float | None:
 
 
 def zero(growth: Growth, here: Point, step: float, low: float, high: float) -> float:
-    """Return the direction between two at which the growth rate is zero, a step away."""
+    """Return the direction between two in which the growth rate is zero a step away."""
     from scipy.optimize import brentq
 
     return float(
@@ -104,7 +103,7 @@ def zero(growth: Growth, here: Point, step: float, low: float, high: float) -> f
 
 
 def beside(point: Point, angle: float, step: float) -> Point:
-    """Return the point a step away in a direction."""
+    """Return the point one step away in a direction."""
     return point[0] + step * cos(angle), point[1] + step * sin(angle)
 
 
@@ -114,7 +113,7 @@ def turn(before: float, after: float) -> float:
 
 
 def directed(growth: Growth, curve: Floats) -> Floats:
-    """Return a curve in the direction in which the growth rate is positive on the left."""
+    """Orient a curve so that the growth rate is positive on its left."""
     middle = len(curve) // 2
     (x, y), (dx, dy) = curve[middle], curve[middle] - curve[middle - 1]
     left = atan2(dy, dx) + pi / 2.0

@@ -1,4 +1,4 @@
-"""Steady sliding, and what becomes of a small disturbance of it."""
+"""Steady sliding, and the growth of small disturbances of it."""
 
 from __future__ import annotations
 
@@ -30,22 +30,22 @@ class Linearisation:
 
         m u'' + (C + dF/ds) u' + K u = (dF/dz) z,   z' = (dG/dz) z - (dG/ds) u',
 
-    where z' = G(s, z) is how the law's internal states change, if it has any. Sums of
-    exp(lambda t) solve this; each eigenvalue lambda is a mode.
+    where z' = G(s, z) is the rate of the law's internal states, if it has any. The solutions are
+    sums of exp(lambda t); each eigenvalue lambda belongs to a mode.
 
     Attributes
     ----------
     slider : Slider
         The system.
     names : tuple of str
-        Of the n unknowns: ``u_x, u_y`` (m), ``v_x, v_y`` (m/s), then the internal states.
+        Names of the n unknowns: ``u_x, u_y`` (m), ``v_x, v_y`` (m/s), then internal states.
     state : ndarray
         (n,): their values in steady sliding.
     matrix : ndarray
         (n, n): the rate of change of a disturbance is `matrix` times it.
     error : ndarray
-        (n, n): an estimate of the error of each entry of `matrix`; rounding, but for laws with
-        internal state, whose derivatives are found by differences.
+        (n, n): the estimated error of each entry of `matrix`: rounding, and for laws with
+        internal state the error of numerical differentiation.
     """
 
     slider: Slider
@@ -55,7 +55,7 @@ class Linearisation:
     error: Floats
 
     def __repr__(self) -> str:
-        """Say what becomes of a small disturbance."""
+        """Return a one-line summary."""
         f, zeta = self.frequencies[0], self.damping_ratios[0]
         rate = f"{self.growth_rate:.4g} /s at {f:.4g} Hz"
         return f"<Steady sliding, {self.verdict}: fastest growth {rate}, damping ratio {zeta:.3g}>"
@@ -71,12 +71,12 @@ class Linearisation:
 
     @property
     def uncertainty(self) -> Floats:
-        """A bound of the error of each eigenvalue (1/s), from that of the matrix, (n,)."""
+        """An error bound of each eigenvalue (1/s), from the error of the matrix, (n,)."""
         return self._modes.uncertainty
 
     @property
     def growth_uncertainty(self) -> float:
-        """A bound of the error of `growth_rate`, 1/s."""
+        """An error bound of `growth_rate`, 1/s."""
         highest = self.growth_rates + self._modes.growth_uncertainty
         return float(max(self._modes.growth_uncertainty[0], highest.max() - self.growth_rate))
 
@@ -92,7 +92,7 @@ class Linearisation:
 
     @property
     def frequencies(self) -> Floats:
-        """Frequencies, Hz, (n,), of a conjugate pair both; zero where a mode does not oscillate."""
+        """Frequencies, Hz, (n,); equal for a conjugate pair, zero without oscillation."""
         return np.abs(self.eigenvalues.imag) / (2.0 * pi)
 
     @property
@@ -103,30 +103,30 @@ class Linearisation:
 
     @property
     def growth_rate(self) -> float:
-        """The largest growth rate, 1/s: steady sliding is stable where it is negative."""
+        """The largest growth rate, 1/s; negative if steady sliding is stable."""
         return float(self.growth_rates[0])
 
     @property
     def stable(self) -> bool:
-        """Whether every small disturbance decays, beyond doubt: see `growth_uncertainty`."""
+        """Whether every small disturbance decays, by more than `growth_uncertainty`."""
         return self.verdict == STABLE
 
     @property
     def verdict(self) -> str:
-        """What becomes of small disturbances: "stable", "unstable" or "on the boundary ..."."""
+        """The stability in words: "stable", "unstable" or "on the boundary ..."."""
         if abs(self.growth_rate) <= self.growth_uncertainty:
             return BOUNDARY
         return STABLE if self.growth_rate < 0.0 else UNSTABLE
 
     def disturbed(self, size: float = 1e-3, mode: int = 0) -> Initial:
-        """Return steady sliding with a small disturbance, to start a run from.
+        """Return steady sliding with a small disturbance, as the start of a run.
 
         Parameters
         ----------
         size : float, optional
             Amplitude of the elongation rate, relative to the drive's speed.
         mode : int, optional
-            Which mode is disturbed; the fastest growing when left out.
+            The disturbed mode; by default the fastest growing.
         """
         shape = self.shapes[:, mode]
         speed = hypot(*self.slider.motion.rate(0.0))
@@ -144,7 +144,7 @@ def steady_sliding(slider: Slider) -> Linearisation:
     Parameters
     ----------
     slider : Slider
-        With a steady drive, not at rest, and a constant load. Any friction law.
+        With a moving, steady drive, a constant load, and any friction law.
 
     Returns
     -------
@@ -154,9 +154,9 @@ def steady_sliding(slider: Slider) -> Linearisation:
     Raises
     ------
     DescriptionError
-        If drive or load are not steady: then there is no steady sliding.
+        If drive or load is not steady.
     StictionError
-        If the law comes to no steady sliding, or is not smooth there.
+        If the law reaches no steady sliding, or is not smooth there.
 
     References
     ----------

@@ -1,4 +1,4 @@
-"""Where steady sliding becomes unstable as one parameter changes: every such value in a range."""
+"""All values of a parameter in a range at which the stability of steady sliding changes."""
 
 from __future__ import annotations
 
@@ -13,29 +13,28 @@ from stiction.linear_stability.derivatives import Floats
 from stiction.linear_stability.linear import BOUNDARY, steady_sliding
 from stiction.system.slider import Slider
 
-POINTS = 65  # at which a range is looked at first
-CLEAR = 1e-6  # of the largest eigenvalue: the sign of a growth rate that is larger is no rounding
+POINTS = 65  # in the first scan of a range
+CLEAR = 1e-6  # of the largest eigenvalue: a larger growth rate has a certain sign
 
 
 class Critical(NamedTuple):
-    """Where steady sliding changes between stable and unstable.
+    """Values of a parameter at which steady sliding changes between stable and unstable.
 
     Parameters
     ----------
     path, unit : str
         The parameter, and its SI unit.
     between : tuple of float
-        The range that was searched, SI.
+        The searched range, SI.
     values : ndarray
-        (n,), SI, ascending; none if nothing changes in the range.
+        (n,), SI, ascending; empty if nothing changes in the range.
     frequencies : ndarray
-        (n,), Hz: with which the critical mode oscillates at each.
+        (n,), Hz: frequency of the critical mode at each value.
     stable : tuple of bool
-        (n + 1,): whether it is stable below the first value, between the first and the second,
-        ..., above the last.
+        (n + 1,): whether sliding is stable below the first value, between the first and the
+        second, ..., above the last.
     neutral : bool
-        Whether it is neither anywhere: disturbances neither grow nor decay, within what is
-        certain.
+        Whether disturbances neither grow nor decay anywhere, within the uncertainty.
     """
 
     path: str
@@ -52,21 +51,21 @@ def critical(
 ) -> Critical:
     """Find every value of a parameter at which steady sliding becomes unstable, or stable.
 
-    The growth rate (see `growth_rate`) is computed at points over the range, and at its extrema
-    between them; where its sign changes, its zero is found by Brent's method, to rounding.
+    The growth rate (see `growth_rate`) is computed at points over the range and at its extrema
+    between them; where its sign changes, Brent's method finds the zero to rounding.
 
     Parameters
     ----------
     slider : Slider
-        The system; what it says of the parameter itself does not matter.
+        The system; its own value of the parameter does not matter.
     path : str
         The parameter, for example ``"phi"``, ``"drive.velocity"``, ``"c_x"``, ``"mass"``,
         ``"friction.mu_inf"``, or several with one value: ``"c_x, c_y"``.
     between : pair of float or str, optional
-        The range; when left out, 0 to 90 degrees for an angle, else three decades either way
-        from the parameter's present value.
+        The range; by default 0 to 90 degrees for an angle, else three decades below and above
+        the parameter's present value.
     points : int, optional
-        At how many points the range is looked at first.
+        Number of points of the first scan.
 
     Returns
     -------
@@ -101,7 +100,7 @@ def critical(
 
 
 def signed_growth(slider: Slider) -> float:
-    """Return the growth rate (1/s), exactly zero where it may have either sign."""
+    """Return the growth rate (1/s); exactly zero if its sign is uncertain."""
     linear = steady_sliding(slider)
     values = np.linalg.eigvals(linear.matrix)
     growth = float(values.real.max())
@@ -113,10 +112,10 @@ def signed_growth(slider: Slider) -> float:
 def sign_changes(
     function: Callable[[float], float], points: int
 ) -> tuple[list[float], tuple[bool, ...]]:
-    """Return where a function on 0 to 1 changes sign, and whether it is negative in between.
+    """Return the sign changes of a function on 0 to 1, and whether it is negative in between.
 
-    A function that is zero over a whole stretch changes its sign once there, if at all; one that
-    is zero everywhere never, and is not negative.
+    Over a stretch where the function is zero, it changes sign once or not at all. A function that
+    is zero everywhere never changes sign, and does not count as negative.
     """
     from scipy.optimize import brentq
 
@@ -141,9 +140,9 @@ def dip(
     after: float,
     known: dict[float, float],
 ) -> dict[float, float]:
-    """Return the extremum near `at`, if the function comes nearest to zero there.
+    """Return the extremum near `at`, if the function is nearest to zero there.
 
-    Two changes of sign can hide between neighbouring points.
+    It reveals two changes of sign between neighbouring points.
     """
     from scipy.optimize import minimize_scalar
 

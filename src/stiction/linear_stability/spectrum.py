@@ -30,13 +30,13 @@ def modes_over(
     between : pair of float or str, optional
         Its range, see `critical`.
     points : int, optional
-        How many values of it.
+        Number of values.
 
     Returns
     -------
     Dataset
         Over ``value`` (the parameter, SI) and ``mode``: ``growth_rate`` (1/s) and ``frequency``
-        (Hz). A mode is followed from one value to the next by what changes least in all.
+        (Hz). Modes are matched from value to value by linear extrapolation.
     """
     import xarray as xr
 
@@ -64,7 +64,7 @@ def modes_over(
 
 
 def matched(before: Sequence[Complex], now: Complex) -> Complex:
-    """Return eigenvalues in the order of those before, as these would go on in a straight line."""
+    """Order eigenvalues like the linear extrapolation of those before."""
     from scipy.optimize import linear_sum_assignment  # type: ignore[attr-defined]
 
     if not before:

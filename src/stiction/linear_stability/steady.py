@@ -1,4 +1,4 @@
-"""Steady sliding: the slip velocity, the internal states that no longer change, the friction."""
+"""Steady sliding: slip velocity, steady internal states, and friction."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from stiction.friction import has_state
 from stiction.linear_stability.derivatives import Floats, Response, set_valued, with_state
 from stiction.system.slider import Slider
 
-SETTLED = 1e-9  # what unsteady internal states may do to friction, relative to it
+SETTLED = 1e-9  # largest relative error of friction from unsteady internal states
 STEADY = "sliding is linearised at a steady drive and load: slider.replace("
 
 
@@ -35,7 +35,7 @@ def drive_velocity(slider: Slider) -> Floats:
 
 
 def steady_friction(slider: Slider, slip: Floats) -> tuple[Floats, Response]:
-    """Return the internal states of steady sliding, none for a set-valued law, and the response."""
+    """Return the steady internal states, none for a set-valued law, and the response."""
     law: Any = slider.law
     if not has_state(law):
         return np.zeros(0), set_valued(slider, slip)
@@ -48,7 +48,7 @@ def steady_friction(slider: Slider, slip: Floats) -> tuple[Floats, Response]:
     start = law.settled(hypot(*slip))
     state: Floats = root(change, start, tol=1e-13).x  # type: ignore[no-untyped-call]
     response = with_state(slider, slip, state)
-    # whatever the solver says of itself: how much would another step of Newton's change friction?
+    # do not trust the root finder's verdict: how much would another Newton step change friction?
     F, (F_z, G_z) = response.value, (response.slopes[:2, 2:], response.slopes[2:, 2:])
     try:
         left = F_z @ np.linalg.solve(G_z, F[2:])

@@ -1,1 +1,1 @@
-"""Friction laws, one file a law; `stiction.friction.LAWS` registers them."""
+"""Friction laws, one file for each; `stiction.friction.LAWS` registers them."""

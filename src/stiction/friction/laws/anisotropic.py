@@ -1,4 +1,4 @@
-"""A surface that rubs more in one direction than in another."""
+"""A surface with more friction in one direction than in another."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ Ratio = Annotated[float, reader("a number", "", "1.5"), Field(gt=0)]
 class Anisotropic(NamedTuple):
     """A set-valued law on a surface whose friction limit is an ellipse in the plane.
 
-    The friction force lies in (F_1/mu)^2 + (F_2/(ratio mu))^2 <= W^2, 1 and 2 along and across
-    the surface's own axis; slip is along the outward normal where it lies on the ellipse (the
-    associated flow rule), so that with s the slip velocity, M = diag(1, ratio) and mu the
-    law's coefficient at the speed |s|,
+    The friction force satisfies (F_1/mu)^2 + (F_2/(ratio mu))^2 <= W^2, with 1 and 2 along and
+    across the surface's own axis. Slip follows the outward normal of this ellipse (the associated
+    flow rule). With s the slip velocity, M = diag(1, ratio), and mu the law's coefficient at the
+    speed |s|,
 
         F = mu(|s|) W M^2 s/|M s|.
 
@@ -42,7 +42,7 @@ class Anisotropic(NamedTuple):
     law : FrictionLaw
         Friction along the surface's axis.
     ratio : float
-        Coefficient across the axis over that along it; worn or ground metal 0.7 to 1.5.
+        Coefficient across the axis over that along it; 0.7 to 1.5 for worn or ground metal.
     angle : str
         From the drive direction X to the surface's axis, towards Y, with its unit.
     """
@@ -62,7 +62,7 @@ class Anisotropic(NamedTuple):
         return inner.coefficient(v)
 
     def slope(law, v: float) -> float:
-        """Return its derivative with respect to `v`, in s/m."""
+        """Return the derivative of the coefficient with respect to `v`, in s/m."""
         inner: FrictionLaw = law.law
         return inner.slope(v)
 

@@ -31,7 +31,7 @@ class Coulomb(NamedTuple):
         return kind(min(static, kinetic), static)
 
     def faults(law) -> Iterator[tuple[str, str]]:
-        """Yield what does not fit together."""
+        """Yield contradictions between the parameters."""
         return static_fault(law)
 
     def coefficient(law, v: float) -> float:

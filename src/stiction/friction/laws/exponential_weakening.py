@@ -40,7 +40,7 @@ class ExponentialWeakening(NamedTuple):
         return kind(static, kinetic, speed)
 
     def faults(law) -> Iterator[tuple[str, str]]:
-        """Yield what does not fit together."""
+        """Yield contradictions between the parameters."""
         return static_fault(law)
 
     def coefficient(law, v: float) -> float:

@@ -35,9 +35,9 @@ class HyperbolicWeakening(NamedTuple):
 
     @classmethod
     def like(kind, static: float, kinetic: float, speed: float) -> HyperbolicWeakening:
-        """Return the law that starts from `static` and falls by the same slope at rest.
+        """Return the law with the coefficient `static` and a comparable slope at rest.
 
-        That is (static - kinetic)/speed; this law knows no plateau that it could fall to.
+        The slope is -(static - kinetic)/speed, because this law has no plateau to fall to.
         """
         if kinetic >= static:
             message = (
@@ -48,7 +48,7 @@ class HyperbolicWeakening(NamedTuple):
         return kind(static, speed * static / (static - kinetic))
 
     def faults(law) -> Iterator[tuple[str, str]]:
-        """Yield what does not fit together."""
+        """Yield contradictions between the parameters."""
         return static_fault(law)
 
     def coefficient(law, v: float) -> float:

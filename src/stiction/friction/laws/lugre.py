@@ -1,4 +1,4 @@
-"""The LuGre model: bristles that bend and give way."""
+"""The LuGre model: bristles that bend and slip."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class LuGre(NamedTuple):
         F = sigma_0 z + sigma_1 z' + sigma_2 s,   z' = s - sigma_0 |s| z/g,
         g = W [mu_c + (mu_s - mu_c) exp(-(v/v_s)^2)],   v = |s|
 
-    z is the mean deflection of bristles, a vector in the plane as is the slip velocity s
+    z is the mean deflection of bristles, a vector in the plane like the slip velocity s
     (isotropic case of Velenis, Tsiotras, Canudas de Wit & Sorine 2005,
     doi:10.1080/00423110412331290464); its components are the internal states ``z_x``, ``z_y`` in
     results. In steady sliding F = g + sigma_2 v along s.
@@ -27,11 +27,11 @@ class LuGre(NamedTuple):
     mu_c, mu_s : float
         Coulomb and static friction coefficient.
     v_s : float or str
-        Stribeck speed, over which the one becomes the other, m/s.
+        Stribeck speed, over which mu_s falls to mu_c, m/s.
     sigma_0 : float or str
         Stiffness of the bristles, N/m; 1e5 in the original paper, for forces of about 1 N.
     sigma_1 : float or str
-        Their damping constant, N s/m; the root of sigma_0 in the original paper.
+        Damping constant of the bristles, N s/m; the root of sigma_0 in the original paper.
     sigma_2 : float or str, optional
         Viscous friction, N s/m.
     """
@@ -57,12 +57,12 @@ class LuGre(NamedTuple):
         )
 
     def coefficient(law, v: float) -> float:
-        """Return g/W at slip speed `v` (m/s); viscous friction is not in proportion to the load."""
+        """Return g/W at slip speed `v` (m/s), without viscous friction, which ignores the load."""
         x = v / law.v_s
         return law.mu_c + (law.mu_s - law.mu_c) * exp(-x * x)
 
     def settled(law, speed: float) -> tuple[float, ...]:
-        """Return bristles at rest."""
+        """Return zero deflection."""
         return (0.0, 0.0)
 
     def force(law, slip: Vector, load: float, state: tuple[float, ...]) -> Vector:
@@ -98,7 +98,7 @@ class LuGre(NamedTuple):
 
 
 def bending(law: LuGre, s_x: float, s_y: float, load: float) -> float:
-    """Return sigma_0 |s|/g, the rate at which bristles give way, per second."""
+    """Return sigma_0 |s|/g, the rate at which bristles slip, per second."""
     square = s_x * s_x + s_y * s_y
     g = law.mu_c + (law.mu_s - law.mu_c) * exp(-square / (law.v_s * law.v_s))
     return law.sigma_0 * sqrt(square) / (load * g)

@@ -1,4 +1,4 @@
-"""What all rate-and-state laws share: the friction coefficient, and what is comparable.
+"""Shared parts of the rate-and-state laws: the coefficient and comparable parameters.
 
 Friction depends on the slip speed V and on states theta, contact times of the surfaces
 (Dieterich 1979, doi:10.1029/JB084iB05p02161; Ruina 1983, doi:10.1029/JB088iB12p10359):
@@ -6,9 +6,9 @@ Friction depends on the slip speed V and on states theta, contact times of the s
     mu = mu* + a ln(V/V*) + sum_i b_i ln(V* theta_i/D_i)
 
 with a direct effect a, evolution effects b_i over the slip distances D_i, and mu* the steady
-coefficient at V*. At rest the logarithm has no value. The regularised form, from the rate of
+coefficient at V*. At rest the logarithm is undefined. The regularised form, from the rate of
 thermally activated slip in both directions (Rice & Ben-Zion 1996; Lapusta et al. 2000,
-doi:10.1029/2000JB900250), is the same but for slip speeds below 2 V* exp(-psi/a):
+doi:10.1029/2000JB900250), differs only at slip speeds below 2 V* exp(-psi/a):
 
     mu = a asinh[(V/2V*) exp(psi/a)],   psi = mu* + sum_i b_i ln(V* theta_i/D_i)
 
@@ -21,9 +21,9 @@ from collections.abc import Iterator
 from math import asinh, exp, hypot, log, sqrt
 from typing import NamedTuple
 
-SLOWEST = 1e-12  # m/s: there is no steady state at rest; this is steady sliding by 30 um a year
-MOST_FOLDS = 680.0  # of slip speed by e between the smallest float and V*
-FIRM = 30.0  # beyond, asinh(exp(x)) is x + ln 2 to the last digit
+SLOWEST = 1e-12  # m/s: steady sliding by 30 um a year, because there is no steady state at rest
+MOST_FOLDS = 680.0  # e-folds of slip speed between the smallest float and V*
+FIRM = 30.0  # above, asinh(exp(x)) is x + ln 2 to the last digit
 
 
 def asinh_of_exp(x: float) -> float:
@@ -37,7 +37,7 @@ def friction_force(
     a: float, V_star: float, psi: float, slip: tuple[float, float], load: float
 ) -> tuple[float, float]:
     """Return a W asinh[(V/2V*) exp(psi/a)] along the slip, N."""
-    V = hypot(slip[0], slip[1])  # may be so small that its square is no float
+    V = hypot(slip[0], slip[1])  # hypot, because the square may underflow
     if V == 0.0:
         return 0.0, 0.0
     f = a * asinh_of_exp(log(V / (2.0 * V_star)) + psi / a) * load / V
@@ -68,7 +68,7 @@ def friction_gradient(
 
 
 def grain_of(a: float, V_star: float, psi: float) -> float:
-    """Return the slip speed below which friction is proportional to it, m/s."""
+    """Return the slip speed below which friction is proportional to slip, m/s."""
     return 2.0 * V_star * exp(-psi / a)
 
 
@@ -105,10 +105,10 @@ def slipping_gradient(
 
 
 def faults(a: float, b: float, mu_star: float) -> Iterator[tuple[str, str]]:
-    """Yield what is wrong with a direct effect: at rest, friction must be a number of floats.
+    """Check that the direct effect `a` is large enough for floats near rest.
 
-    The slip speed below which friction is proportional to it, 2 V* exp(-psi/a), must be one; 30 b
-    is for contacts that have aged for a hundred days.
+    The slip speed below which friction is proportional to slip, 2 V* exp(-psi/a), must not
+    underflow; 30 b allows for contacts that have aged for a hundred days.
     """
     least = (mu_star + 30.0 * b) / MOST_FOLDS
     if a < least:
@@ -141,20 +141,20 @@ class Comparable(NamedTuple):
 
 
 def comparable(static: float, kinetic: float, speed: float) -> Comparable:
-    """Return parameters that weaken as another law does.
+    """Return parameters with the weakening of another law.
 
-    Rate-and-state friction has no static coefficient: the steady one falls by b - a with each
-    e-fold of slip speed, for ever. The choice: it is `kinetic` at V* = `speed`, and `static` at
-    a ten-thousandth of that; b = 2 a, between what is usual in rock (b/a = 1.5) and what is
-    strongly weakening; D = 10 um, typical of laboratory surfaces. For friction that does not
-    weaken, a is 0.01 and b less.
+    Rate-and-state friction has no static coefficient: the steady one falls by b - a with every
+    e-fold of slip speed. The choice here: the steady coefficient is `kinetic` at V* = `speed` and
+    `static` at a ten-thousandth of it; b = 2 a, between the usual value for rock (b/a = 1.5) and
+    strong weakening; D = 10 um, typical of laboratory surfaces. For friction that does not
+    weaken, a is 0.01 and b is smaller.
     """
     weakening = (static - kinetic) / log(1e4)
     a = weakening if weakening > 0.0 else 0.01
     return Comparable(a, max(a + weakening, 0.0), 1e-5, kinetic, speed)
 
 
-# what the laws' methods call, to be compiled with them
+# called by the laws' methods, compiled with them
 FUNCTIONS = (
     asinh_of_exp,
     friction_force,

@@ -26,7 +26,7 @@ from stiction.text.validation import validated
 
 @validated
 class OneState(NamedTuple):
-    """What both laws share; see `stiction.friction.laws.rate_and_state` for the symbols."""
+    """Base of both laws; see `stiction.friction.laws.rate_and_state` for the symbols."""
 
     a: PositiveNumber
     b: Coefficient
@@ -40,7 +40,7 @@ class OneState(NamedTuple):
         return kind(*comparable(static, kinetic, speed))
 
     def faults(law) -> Iterator[tuple[str, str]]:
-        """Yield what does not fit together."""
+        """Yield contradictions between the parameters."""
         return faults(law.a, law.b, law.mu_star)
 
     @staticmethod
@@ -49,11 +49,11 @@ class OneState(NamedTuple):
         return (Internal("log_theta", "1", "logarithm of the state, ln(V* theta/D_c)"),)
 
     def coefficient(law, v: float) -> float:
-        """Return the coefficient of steady sliding at `v` (m/s), at 1e-12 m/s if that is less."""
+        """Return the coefficient of steady sliding at `v`, but at least 1e-12 m/s."""
         return steady(law.a, law.b, law.mu_star, law.V_star, v)
 
     def settled(law, speed: float) -> tuple[float, ...]:
-        """Return the state of steady sliding at `speed` (m/s), at V_star if that is zero."""
+        """Return the state of steady sliding at `speed` (m/s), or at V_star if it is zero."""
         return (settled(law.V_star, speed),)
 
     def force(law, slip: Vector, load: float, state: tuple[float, ...]) -> Vector:
@@ -61,7 +61,7 @@ class OneState(NamedTuple):
         return friction_force(law.a, law.V_star, law.mu_star + law.b * state[0], slip, load)
 
     def grain(law, state: tuple[float, ...]) -> float:
-        """Return the slip speed below which friction is proportional to it (m/s)."""
+        """Return the slip speed below which friction is proportional to slip (m/s)."""
         return grain_of(law.a, law.V_star, law.mu_star + law.b * state[0])
 
 
@@ -73,7 +73,7 @@ class RateStateAgeing(OneState):
 
     See `stiction.friction.laws.rate_and_state` for the symbols and the regularised form. The
     internal state in results and in ``Initial(states=...)`` is ``log_theta`` = ln(V* theta/D_c).
-    The contacts age: in hold the state grows with time (healing).
+    The contacts age: during a hold the state grows with time (healing).
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ class RateStateSlip(OneState):
 
     See `stiction.friction.laws.rate_and_state` for the symbols and the regularised form. The
     internal state in results and in ``Initial(states=...)`` is ``log_theta`` = ln(V* theta/D_c).
-    The state evolves by slip alone: without slip nothing heals.
+    The state evolves only with slip: without slip nothing heals.
 
     Parameters
     ----------

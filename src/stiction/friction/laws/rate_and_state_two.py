@@ -26,7 +26,7 @@ from stiction.text.validation import validated
 
 @validated
 class TwoStates(NamedTuple):
-    """What both laws share; see `stiction.friction.laws.rate_and_state` for the symbols."""
+    """Base of both laws; see `stiction.friction.laws.rate_and_state` for the symbols."""
 
     a: PositiveNumber
     b_1: Coefficient
@@ -38,12 +38,12 @@ class TwoStates(NamedTuple):
 
     @classmethod
     def like(kind, static: float, kinetic: float, speed: float) -> Self:
-        """Return a comparable law: as with one state, half of b over each of D and 10 D."""
+        """Return a comparable law: as with one state, with b/2 over D and b/2 over 10 D."""
         a, b, D, mu_star, V_star = comparable(static, kinetic, speed)
         return kind(a, b / 2, D, b / 2, 10 * D, mu_star, V_star)
 
     def faults(law) -> Iterator[tuple[str, str]]:
-        """Yield what does not fit together."""
+        """Yield contradictions between the parameters."""
         return faults(law.a, law.b_1 + law.b_2, law.mu_star)
 
     @staticmethod
@@ -55,11 +55,11 @@ class TwoStates(NamedTuple):
         )
 
     def coefficient(law, v: float) -> float:
-        """Return the coefficient of steady sliding at `v` (m/s), at 1e-12 m/s if that is less."""
+        """Return the coefficient of steady sliding at `v`, but at least 1e-12 m/s."""
         return steady(law.a, law.b_1 + law.b_2, law.mu_star, law.V_star, v)
 
     def settled(law, speed: float) -> tuple[float, ...]:
-        """Return the states of steady sliding at `speed` (m/s), at V_star if that is zero."""
+        """Return the states of steady sliding at `speed` (m/s), or at V_star if it is zero."""
         both = settled(law.V_star, speed)
         return (both, both)
 
@@ -69,7 +69,7 @@ class TwoStates(NamedTuple):
         return friction_force(law.a, law.V_star, psi, slip, load)
 
     def grain(law, state: tuple[float, ...]) -> float:
-        """Return the slip speed below which friction is proportional to it (m/s)."""
+        """Return the slip speed below which friction is proportional to slip (m/s)."""
         psi = law.mu_star + law.b_1 * state[0] + law.b_2 * state[1]
         return grain_of(law.a, law.V_star, psi)
 

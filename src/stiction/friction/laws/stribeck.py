@@ -1,4 +1,4 @@
-"""The Stribeck law: a peak at rest, a trough, and viscous friction above it."""
+"""The Stribeck law: a peak at rest, a trough, and viscous friction beyond it."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ class Stribeck(NamedTuple):
     """F = [mu_c + (mu_s - mu_c) exp(-(v/v_s)^d) + c v] W.
 
     Stribeck (1902) measured the trough between the solid friction of a bearing at rest and
-    the viscous friction of its film; the form with an exponent is that of Bo & Pavelescu, Wear 82
-    (1982), 277; review: Armstrong-Helouvry, Dupont & Canudas de Wit, Automatica 30 (1994), 1083.
+    the viscous friction of its film; Bo & Pavelescu, Wear 82 (1982), 277, give the form with an
+    exponent; review: Armstrong-Helouvry, Dupont & Canudas de Wit, Automatica 30 (1994), 1083.
     With d = 1 and c = 0 it is `ExponentialWeakening`.
 
     Parameters
     ----------
     mu_s : float
-        Friction coefficient at vanishing slip speed; dry metals 0.2 to 0.8, greased 0.1 to 0.2.
+        Friction coefficient at vanishing slip speed: dry metals 0.2 to 0.8, greased 0.1 to 0.2.
     mu_c : float
-        What the solid part falls to at large slip speed, some 0.6 to 0.9 of mu_s.
+        Coefficient of the solid part at large slip speed, some 0.6 to 0.9 of mu_s.
     v_s : float or str
         Stribeck velocity, m/s; 0.1 mm/s to 0.1 m/s.
     d : float, optional
@@ -52,7 +52,7 @@ class Stribeck(NamedTuple):
         return kind(static, kinetic, speed)
 
     def faults(law) -> Iterator[tuple[str, str]]:
-        """Yield what does not fit together."""
+        """Yield contradictions between the parameters."""
         return static_fault(law)
 
     def coefficient(law, v: float) -> float:

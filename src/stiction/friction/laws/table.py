@@ -1,4 +1,4 @@
-"""A measured law: friction coefficients at some slip speeds, and a smooth curve through them."""
+"""A measured law: a smooth curve through friction coefficients at given slip speeds."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from stiction.text.validation import validated
 
 @validated
 class Table(NamedTuple):
-    """F = mu(v) W through measured points, monotone between any two of them.
+    """F = mu(v) W through measured points, monotone between neighbours.
 
-    Between the points a piecewise cubic that neither overshoots nor oscillates (PCHIP: Fritsch
-    & Butland, SIAM J. Sci. Stat. Comput. 5 (1984), 300). Beyond the last point, and below
-    the first where that is not at v = 0, the coefficient is constant, and the curve runs into
-    the constant with no kink.
+    Between the points, a piecewise cubic interpolates without overshoot or oscillation (PCHIP:
+    Fritsch & Butland, SIAM J. Sci. Stat. Comput. 5 (1984), 300). Beyond the last point, and below
+    the first if it is not at v = 0, the coefficient is constant; the curve meets the constant
+    without a kink.
 
     Parameters
     ----------
     v : sequence of float or str
-        Slip speeds of the points, ascending, m/s; two at least.
+        Slip speeds of the points, ascending, m/s; at least two.
     mu : sequence of float
         Friction coefficient at each.
     mu_static : float, optional
@@ -45,14 +45,14 @@ class Table(NamedTuple):
         return kind(tuple(0.5 * speed * i for i in range(17)), mu)
 
     def faults(law) -> Iterator[tuple[str, str]]:
-        """Yield what does not fit together."""
+        """Yield contradictions between the parameters."""
         found = list(_point_faults(law))
         yield from found
         if not found:
             yield from static_fault(law)
 
     def prepared(law) -> PreparedTable:
-        """Return the curve as the solver takes it."""
+        """Return the curve in the form that the solver takes."""
         return _curve(law)
 
     def coefficient(law, v: float) -> float:
@@ -70,7 +70,7 @@ class PreparedTable(NamedTuple):
     Parameters
     ----------
     starts : ndarray
-        (n,), m/s, ascending from zero; the last cubic is constant and holds for good.
+        (n,), m/s, ascending from zero; the last cubic is constant and has no end.
     cubics : ndarray
         (n, 4), coefficients of falling powers.
     mu_static : float
@@ -110,8 +110,8 @@ def _point_faults(law: Table) -> Iterator[tuple[str, str]]:
 def _curve(law: Table) -> PreparedTable:
     """Return the piecewise cubic through the points of a table.
 
-    A further point on either side, as high as its neighbour, makes the curve meet the constant
-    with slope zero; the cubic beyond the last point is that constant.
+    An extra point on each side, as high as its neighbour, gives the curve zero slope where it
+    meets the constant; the cubic beyond the last point is that constant.
     """
     from scipy.interpolate import PchipInterpolator  # slow to import
 

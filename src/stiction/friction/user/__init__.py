@@ -1,1 +1,1 @@
-"""Laws of the user's own: found, run or not, kept with their text, and checked."""
+"""Users' laws: finding, loading, storing with their text, and checking them."""

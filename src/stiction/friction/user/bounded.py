@@ -1,7 +1,7 @@
-"""A friction law of the user's own with an endless loop is told before it runs.
+"""Detection of endless loops in a user's friction law, before it is compiled.
 
-Its methods are called in plain Python for so many lines and no more. Lines are counted, not
-seconds: a law is judged alike on any machine.
+Its methods run in plain Python for a limited number of lines. Lines are counted, not seconds, so
+that the verdict is the same on every machine.
 """
 
 from __future__ import annotations
@@ -14,17 +14,17 @@ from math import inf, nan
 from types import FrameType
 from typing import Any
 
-LINES = 100_000  # a method has some ten
-SPEEDS = (0.0, 1e-9, 1e-6, 1e-3, 1.0, inf, nan)  # m/s; the last two may occur where steps fail
+LINES = 100_000  # a method has about ten
+SPEEDS = (0.0, 1e-9, 1e-6, 1e-3, 1.0, inf, nan)  # m/s; the last two may occur in failed steps
 LOAD = 1.0  # N
 
 
 class NoEnd(BaseException):
-    """Too many lines were run; no `except Exception` of a law takes it."""
+    """Too many lines were run; a law's `except Exception` does not catch it."""
 
 
 def endless(law: Any) -> str:
-    """Return which method of a law does not end, and at which slip speed; '' if each does."""
+    """Return which method of a law does not end, and at which slip speed; '' for none."""
     for v in SPEEDS:
         for name, call in _calls(law, v).items():
             try:
@@ -34,7 +34,7 @@ def endless(law: Any) -> str:
                 return f"{name} at {v:g} m/s ran {LINES:,} lines and did not end"
             except KeyboardInterrupt:
                 raise
-            except BaseException:  # of other faults, others speak
+            except BaseException:  # other checks report other faults
                 continue
     return ""
 
@@ -52,12 +52,12 @@ def _calls(law: Any, v: float) -> dict[str, Callable[[], object]]:
 
 @contextmanager
 def bounded(kind: type) -> Iterator[None]:
-    """Let the methods of a class, and what they call, run so many lines.
+    """Limit the lines that the methods of a class, and their callees, may run.
 
     Raises
     ------
     NoEnd
-        If they ran `LINES` lines.
+        If they have run `LINES` lines.
     """
     left = LINES
 
@@ -81,9 +81,9 @@ def bounded(kind: type) -> Iterator[None]:
 
 @contextmanager
 def _in_python(kind: type) -> Iterator[set[str]]:
-    """Have what a class calls run as it is written, not compiled; yield the files that it is in."""
+    """Run a class's functions as plain Python, not compiled; yield the files they are in."""
     own = [each for each in vars(kind).values() if isfunction(each)]
-    methods = [each for each in own if each.__module__ == kind.__module__]  # others are tuple's
+    methods = [each for each in own if each.__module__ == kind.__module__]  # not tuple's
     names: dict[str, Any] = methods[0].__globals__ if methods else {}
     compiled = {name: value for name, value in names.items() if hasattr(value, "py_func")}
     plain = {name: value.py_func for name, value in compiled.items()}

@@ -1,4 +1,4 @@
-"""The parts of a script that define one name, so that they can be kept without the rest."""
+"""Excerpt of a script: the statements that define one name."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from collections.abc import Iterator
 
 
 def excerpt(text: str, name: str) -> str:
-    """Return the top-level statements that define a name and all that it refers to.
+    """Return the top-level statements that define a name and everything it refers to.
 
-    Empty if the text does not define it. The rest of a script, its runs and figures, is left
-    out.
+    The result is empty if the text does not define the name. The rest of a script, its runs and
+    figures, is left out.
 
     >>> print(excerpt("from math import exp, pi\\ndef f(): return exp(1)\\nprint(f())", "f"))
     from math import exp, pi
@@ -37,7 +37,7 @@ def excerpt(text: str, name: str) -> str:
 
 
 def _bound(statement: ast.stmt) -> Iterator[str]:
-    """Yield the names that a statement binds; ``*`` for what may bind any or changes all."""
+    """Yield the names that a statement binds; ``*`` if it may bind or change any name."""
     match statement:
         case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
             yield name

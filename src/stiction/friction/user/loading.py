@@ -1,8 +1,8 @@
-"""A law of the user's own, named by file and class: ``mylaw.py:MyLaw``.
+"""Loading of a user's law, named by file and class: ``mylaw.py:MyLaw``.
 
-A description runs the file that it names, as a script would be run: one in its own folder, unless
-more is allowed. A result is data: reading it back runs nothing. Its law is one that this process
-has loaded already, from the same text; only one who trusts a result has the text in it run.
+A description runs the file that it names, like a script; the file must lie in the description's
+folder, unless the user trusts it. A result is data: reading it runs nothing. Its law must have been
+loaded by this process from the same text, unless the user trusts the text in the result.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ from stiction.friction.user.source import Text, member, module_name, module_of, 
 from stiction.friction.user.validation import fault, is_law, law_in, tried
 from stiction.text.validation import made
 
-# from a law's name and the text kept with it, if any, to the class
+# from a law's name, and its text if stored, to the class
 Find = Callable[[str, str | None], type[Any]]
 LARGEST = 2**20  # bytes of a law's file
 
 
 def named(folder: Path, trust: bool = False) -> Find:
-    """Return how a description's law is found: its file is run, if it lies in the `folder`.
+    """Return a finder for laws of descriptions: it runs a file that lies in `folder`.
 
-    With `trust` it may lie anywhere.
+    With `trust` the file may lie anywhere.
     """
 
     def find(name: str, text: str | None) -> type[Any]:
-        if text is not None:  # not written by hand
+        if text is not None:  # stored by a program, not written by hand
             return held(trust)(name, text)
         file, kind = split(name)
         path = _there(folder, file, trust)
@@ -43,7 +43,7 @@ def named(folder: Path, trust: bool = False) -> Find:
 
 
 def held(trust: bool = False) -> Find:
-    """Return how the law of a result is found: nothing is run, unless its text is trusted."""
+    """Return a finder for laws of results: it runs nothing unless `trust` is given."""
 
     def find(name: str, text: str | None) -> type[Any]:
         file, kind = split(name)
@@ -54,7 +54,7 @@ def held(trust: bool = False) -> Find:
                 "the arrays can be read with xarray.open_dataset"
             )
         for candidate in loaded(file, kind, text):
-            return is_law(candidate, name)  # any module's text may be sent, and any class named
+            return is_law(candidate, name)  # the file may name any module and class
         if trust:
             return law_in(run(Text(_relative(file), text), f"<{file}>"), kind, name)
         raise fault(
@@ -78,13 +78,13 @@ def read_own(table: dict[str, Any], find: Find) -> Any:
 
 
 def is_own(table: Any) -> bool:
-    """Return whether a table [friction] names a file, which has to be run."""
+    """Return whether a table [friction] names a file that must be run."""
     name = table.get("law") if isinstance(table, dict) else None
     return isinstance(name, str) and ":" in name
 
 
 def own_table(law: Any) -> dict[str, Any]:
-    """Return how a law of the user's own is kept: its name and its text."""
+    """Return a user's law as a table [friction]: its name and its text."""
     kind = type(law)
     text = text_of(kind)
     if text is None:
@@ -101,7 +101,7 @@ def split(name: str) -> tuple[str, str]:
 
 
 def _there(folder: Path, file: str, trust: bool) -> Path:
-    """Return the file of a law, links resolved, if it is there and may be run."""
+    """Return the file of a law, links resolved, if it exists and may be run."""
     home, path = os.path.realpath(folder), os.path.realpath(folder / file)
     if not trust and not Path(path).is_relative_to(home):
         raise fault(
@@ -114,7 +114,7 @@ def _there(folder: Path, file: str, trust: bool) -> Path:
 
 
 def loaded(file: str, kind: str, text: str) -> Iterator[type[Any]]:
-    """Yield the classes of that name that this process has from the same text."""
+    """Yield the classes of that name that this process has loaded from the same text."""
     ours, base = module_name(Text(file, text)), Path(file).name
     for name, module in list(sys.modules.items()):
         own = vars(module).get("__file__") if isinstance(module, ModuleType) else None
@@ -126,14 +126,14 @@ def loaded(file: str, kind: str, text: str) -> Iterator[type[Any]]:
 
 
 def run(text: Text, path: str) -> ModuleType:
-    """Run a text; what it raises becomes one line."""
+    """Run a text; turn its errors into one line."""
     with told(f"{path} cannot be run"):
         return module_of(text, path)
 
 
 @contextmanager
 def told(what: str) -> Iterator[None]:
-    """Turn whatever a user's text raises into a fault; an interrupt is the user's own."""
+    """Turn errors of a user's text into faults; an interrupt passes through."""
     try:
         yield
     except (DescriptionError, KeyboardInterrupt):
@@ -152,5 +152,5 @@ def _read(path: Path) -> str:
 
 
 def _relative(file: str) -> str:
-    """Return a path to keep: one that means something elsewhere."""
+    """Return a relative path, which is meaningful on other machines."""
     return Path(file).name if Path(file).is_absolute() else file

@@ -1,4 +1,4 @@
-"""The text in which a user's law stands: from a text to a module, from a law to its text."""
+"""From the text of a user's law to a module, and from a law to its text."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ from stiction.friction.user.excerpt import excerpt
 
 
 class Text(NamedTuple):
-    """Python text: what it is called, e.g. ``laws/mylaw.py``, and what it says."""
+    """Python text: its name, e.g. ``laws/mylaw.py``, and its content."""
 
     name: str
     text: str
 
 
 class TextLoader(InspectLoader):
-    """Makes a module of a text, and keeps the text as it was when it was run."""
+    """Loader of a module from a text, which it keeps as it was when run."""
 
     def __init__(self, text: Text, path: str) -> None:
-        """Take a text, and the path of its file to show in tracebacks."""
+        """Store a text, and the path that tracebacks show."""
         self.text, self.path = text, path
 
     def get_source(self, fullname: str) -> str:
@@ -55,14 +55,14 @@ def read(path: Path) -> str:
 
 
 def module_name(text: Text) -> str:
-    """Return the name of a text's module: after its content, so that an edited one is new."""
+    """Return a module name that contains a hash of the text: an edited text gets a new one."""
     stem = re.sub(r"\W", "_", Path(text.name).stem)
     digest = hashlib.sha256(text.text.encode()).hexdigest()[:16]
     return f"stiction_law_{stem}_{digest}"
 
 
 def module_of(text: Text, path: str) -> ModuleType:
-    """Run a text, unless that has been done, and return its module.
+    """Run a text once, and return its module.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def module_of(text: Text, path: str) -> ModuleType:
         raise
     for kind in vars(module).values():
         if inspect.isclass(kind) and kind.__module__ == name and issubclass(kind, tuple):
-            copyreg.pickle(kind, _reduced)  # another process does not know the module
+            copyreg.pickle(kind, _reduced)  # another process does not have the module
     return module
 
 
@@ -100,7 +100,7 @@ def _remade(text: Text, path: str, name: str, values: tuple[Any, ...]) -> Any:
 
 
 def member(module: ModuleType, name: str) -> Any:
-    """Return what a module calls by a name, or None; nothing of the module is run for it."""
+    """Return an object of a module by name, or None; runs no code of the module."""
     found: Any = module
     for part in name.split("."):
         found = inspect.getattr_static(found, part, None)
@@ -108,9 +108,9 @@ def member(module: ModuleType, name: str) -> Any:
 
 
 def text_of(kind: type) -> Text | None:
-    """Return the text that defines a law; of a script or a notebook, the parts that it needs.
+    """Return the text that defines a law; from a script or notebook, only the parts it needs.
 
-    None if it cannot be had, or if the file has changed since it was imported.
+    None if the text is unavailable, or the file has changed since it was imported.
     """
     module = sys.modules.get(kind.__module__)
     if module is None or "<locals>" in kind.__qualname__:
@@ -129,7 +129,7 @@ def text_of(kind: type) -> Text | None:
 
 
 def _defines(text: str, kind: type, file: str) -> bool:
-    """Return whether a text has the methods of a class as they are, line for line."""
+    """Return whether a text contains the methods of a class, line for line."""
     there: set[CodeType] = set()
     codes = [compile(text, file, "exec", dont_inherit=True)]
     while codes:
@@ -148,7 +148,7 @@ def _codes(kind: type) -> Iterator[CodeType]:
 
 
 def _from_script(kind: type) -> Text | None:
-    """Return what a law in a script, a notebook or a prompt is made of, if that can be had."""
+    """Return the text of a law in a script, a notebook or a prompt, if available."""
     for file in (code.co_filename for code in _codes(kind)):
         found = excerpt("".join(linecache.getlines(file)), kind.__qualname__.split(".")[0])
         if found:
@@ -158,5 +158,5 @@ def _from_script(kind: type) -> Text | None:
 
 
 def _ended(text: str) -> str:
-    """Return a text with a line's end at its end, as `inspect` gives it."""
+    """Return a text with a final newline, as `inspect` does."""
     return text if text.endswith("\n") else f"{text}\n"

@@ -1,4 +1,4 @@
-"""What makes a class of the user's own a friction law, and how to say that it is none."""
+"""Checks that a user's class is a friction law, with messages if it is not."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ WRITE = (
     "coefficient(law, v), settled(law, speed), force and change(law, slip, load, state)"
 )
 ENDING = "bound each loop: for _ in range(50)"
-RESERVED = {"law", "source"}  # keys of [friction] that are no parameters
+RESERVED = {"law", "source"}  # keys of [friction] that are not parameters
 PROBED = (0.0, 1e-3)  # m/s
 
 
@@ -31,7 +31,7 @@ def fault(message: str, key: str = "law") -> DescriptionError:
 
 
 def law_in(module: ModuleType, kind: str, name: str) -> type[Any]:
-    """Return the law that a module calls `kind`; `name` is how the user calls it."""
+    """Return the law `kind` of a module; `name` is the user's name for it."""
     found = member(module, kind)
     if found is None:
         classes = [n for n, value in vars(module).items() if _is_its_own(value, module)]
@@ -43,7 +43,7 @@ def law_in(module: ModuleType, kind: str, name: str) -> type[Any]:
 
 
 def is_law(found: Any, name: str) -> type[Any]:
-    """Return a class, if it is a friction law; `name` is how the user calls it."""
+    """Return a class, if it is a friction law; `name` is the user's name for it."""
     write = WRITE.format(name=name.rpartition(":")[2].rpartition(".")[2])
     if not (inspect.isclass(found) and issubclass(found, tuple) and hasattr(found, "_fields")):
         raise fault(f"{name!r} is not a NamedTuple; {write}")
@@ -56,7 +56,7 @@ def is_law(found: Any, name: str) -> type[Any]:
 
 
 def tried(law: Any, name: str) -> Any:
-    """Return the law, if its methods give numbers: a slip of the pen is told at once."""
+    """Return the law, if its methods return numbers at a few speeds."""
     if said := endless(law):
         raise fault(f"{name!r}: {said}; {ENDING}")
     probes = [("coefficient", v) for v in PROBED] + [("slope", v) for v in PROBED]
