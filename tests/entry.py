@@ -1,5 +1,6 @@
 """Parts of compiled code, to be called from a test."""
 
+from dis import get_instructions
 from functools import cache
 from types import FunctionType
 
@@ -21,7 +22,8 @@ def plain(part):
     if function is None:  # nothing is compiled
         return part
     scope, code = dict(function.__globals__), function.__code__
-    scope |= {name: plain(scope[name]) for name in code.co_names if is_compiled(scope.get(name))}
+    used = {each.argval for each in get_instructions(code) if each.opname == "LOAD_GLOBAL"}
+    scope |= {name: plain(scope[name]) for name in used if is_compiled(scope.get(name))}
     return FunctionType(code, scope, code.co_name, function.__defaults__)
 
 
