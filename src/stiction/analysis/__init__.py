@@ -1,1 +1,1 @@
-"""From a trajectory to tables: spectra and creep."""
+"""Analysis of runs and measured records: motion, cycles, creep, oscillation, energy."""

@@ -1,4 +1,4 @@
-"""Where the work of the drive goes: friction, dampers, springs, motion."""
+"""Energy budget: the work of the drive, dissipation, elastic and kinetic energy."""
 
 from __future__ import annotations
 
@@ -37,33 +37,31 @@ ENERGIES = {
 
 
 def energy_budget(run: Trajectory, edges: ArrayLike | None = None) -> xr.Dataset:
-    """Return where the work of the drive goes, between each edge and the next.
+    """Return the energy budget of a run, between each edge and the next.
 
     With slip velocity s, elongation u and friction F, the mass obeys m u'' + C u' + K u = F in
-    the frame of its spring's foot; multiplied by the velocities,
+    the frame of the spring's far end; multiplied by the velocities,
 
         P = F.s + u'.C u' + d/dt (u.K u/2 + m |v|^2/2).
 
-    Over a driven plate the drive works on the plate, P = F.v_d, and the mass has v = u'. Where
-    the spring is driven it works on the spring's end, P = v_d.(K u + C u'), and v = s. At a
-    steady drive both are the same run, seen from two frames. Friction turns over within no time
-    where the slip all but vanishes, which a sum over points in time may miss; so the work on the
-    plate is found from the spring's force, which does not: P = v_d.(m u'' + C u' + K u), its first
-    part integrated by parts.
+    A driven plate: the drive works on the plate, P = F.v_d, and v = u'. A driven spring: the drive
+    works on the spring's end, P = v_d.(K u + C u'), and v = s. At a steady drive both are the same
+    run in two frames. Friction reverses within no time where slip nearly vanishes, which a
+    quadrature may miss; the spring's force does not. Therefore the work on the plate is computed as
+    P = v_d.(m u'' + C u' + K u), its first term by partial integration.
 
-    Each term is integrated by itself from the run's states, and nothing is adjusted: the residual
-    is what the solver errs by. Each step is held to a local tolerance, and so is what it gains or
-    loses of the energy it exchanges.
+    Each term is integrated independently from the run's states, and nothing is adjusted: the
+    residual is the error of the solver. The local tolerance limits the energy error of each step,
+    relative to the energy that it exchanges.
 
-    Friction does no work while the mass sticks, nor does the normal load in the plane. The
-    friction of a law with internal state can give work back: what its bristles store is part of
-    it.
+    Neither friction during stick nor the normal load does work. The friction of a law with internal
+    state can return work: it includes the energy stored in bristles.
 
     Parameters
     ----------
     run : Trajectory
-        Sampled or not: it is solved once more, with samples where the integrals need them, some
-        4 kB for each transverse period.
+        Sampled or not: it is solved again, sampled at the nodes of the quadrature, with some 4 kB
+        for each transverse period.
     edges : array, optional
         (n + 1,), s, ascending: from each to the next is an interval, e.g. a cycle. By default
         the whole run.
@@ -119,7 +117,7 @@ def energy_budget(run: Trajectory, edges: ArrayLike | None = None) -> xr.Dataset
 
 
 def _edges(run: Trajectory, edges: ArrayLike | None) -> Floats:
-    """Return the edges, or say what is wrong with them."""
+    """Return the edges, if they are valid."""
     first, last = (float(run.data["time"][i]) for i in (0, -1))
     if edges is None:
         return np.array([first, last])
@@ -151,13 +149,14 @@ def _powers(run: Trajectory, t: Floats, rows: Floats) -> Floats:
 def _carried(run: Trajectory, borders: Floats) -> Floats:
     """Return m u'.v_d over the smooth stretches of a plate's drive, end less start, J.
 
-    With the work of the spring and dampers on the plate, less the integral of m u'.a_d, it is the
-    integral of F.v_d = v_d.(m u'' + C u' + K u). The mass goes on where the plate's velocity jumps.
+    Added to the work of spring and dampers on the plate, minus the integral of m u'.a_d, it yields
+    the integral of F.v_d = v_d.(m u'' + C u' + K u). A jump of the plate's velocity leaves the mass
+    unaffected.
     """
     s = run.slider
     jumps = [end for end, _ in drive_stretches(s.motion) if borders[0] <= end < borders[-1]]
     times = np.union1d(borders, jumps)
-    d = np.reshape(_on_axes(s, s.motion.rate(times)), (2, -1))  # of a steady drive one for all
+    d = np.reshape(_on_axes(s, s.motion.rate(times)), (2, -1))  # one column for a steady drive
     momentum = s.mass * (d - states_at(run, times)[:, 2:4].T)
     carried = (momentum * d).sum(axis=0)
     leaps = np.array([_on_axes(s, jump(s.motion, t)) for t in times[:-1].tolist()]).T
@@ -168,7 +167,7 @@ def _carried(run: Trajectory, borders: Floats) -> Floats:
 
 
 def _on_axes(slider: Slider, vector: tuple[Any, ...]) -> tuple[Any, Any]:
-    """Return a vector (X, Y) by its components along the principal axes x and y."""
+    """Return the components of a vector (X, Y) along the principal axes x and y."""
     (X, Y), (c, n) = vector, slider.direction
     return X * c - Y * n, X * n + Y * c
 

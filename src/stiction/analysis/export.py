@@ -1,4 +1,4 @@
-"""The tables of an analysis as files: CSV for each, JSON for what it comes to."""
+"""The results of an analysis as files: CSV for each table, JSON for the numbers."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ FRICTION = {
 
 
 def tables(found: Analysis) -> dict[str, xr.Dataset]:
-    """Return every table that there is, by its name."""
+    """Return all tables by name."""
     named = {
         "friction": friction_table(found),
         "cycles": found.cycles,
@@ -43,7 +43,7 @@ def tables(found: Analysis) -> dict[str, xr.Dataset]:
 
 
 def friction_table(found: Analysis) -> xr.Dataset | None:
-    """Return the frictions that are known, a row each; None if there is none."""
+    """Return the known kinds of friction, a row each; None if there is none."""
     import xarray as xr
 
     known = {name: each for name in FRICTIONS if (each := getattr(found.friction, name))}
@@ -77,9 +77,9 @@ def export(found: Analysis, path: str | Path) -> list[Path]:
     found : Analysis
         From `stiction.analyse`.
     path : str or Path
-        With the suffix .csv or .parquet: the cycles, and beside them each other table
-        (``test-creep.csv``). With .mat: all in one file, a struct each. Units as of
-        `stiction.export`.
+        With .csv or .parquet, the cycles go there and the other tables beside it
+        (``test-creep.csv``). With .mat, one file holds a struct for each table. Units are given
+        as by `stiction.export`.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def export(found: Analysis, path: str | Path) -> list[Path]:
 
 
 def numbers(found: Analysis) -> dict[str, Any]:
-    """Return what an analysis comes to, in SI and rad, for JSON; null where it is not known."""
+    """Return the numbers of an analysis, in SI and rad, for JSON; null for unknown ones."""
     mean = {
         str(row): {
             "mean": _number(found.summary["mean"].sel(quantity=row)),
@@ -121,7 +121,7 @@ def numbers(found: Analysis) -> dict[str, Any]:
 
 
 def _friction(found: Analysis) -> dict[str, Any]:
-    """Return each friction as a table: force and coefficient with error and spread, or why not."""
+    """Return each friction as a table: force, coefficient, error and spread, or the reason."""
     shown: dict[str, Any] = {}
     for name in FRICTIONS:
         each = getattr(found.friction, name)

@@ -1,4 +1,4 @@
-"""The oscillation that a run settles to: how large it is, or that it dies away."""
+"""The oscillation to which a run settles: its amplitude, or its decay."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from stiction.system.slider import Slider
 if TYPE_CHECKING:
     import xarray as xr
 
-KICK = 1e-2  # of the drive's speed: the disturbance that rest is left with
+KICK = 1e-2  # of the drive's speed: the disturbance of steady sliding
 DECAYED, GROWN = 0.3, 3.0  # times the kick: below it rests, above it can be an oscillation
 PERIODS = 10.0  # of the leading mode, in a block of time
-SAMPLES = 64  # a period: a peak between two is missed by 0.1 %
-EVEN = 0.01  # how far amplitudes of settled blocks may differ
-TOLD = 3.0  # times that a small disturbance must change by meanwhile
+SAMPLES = 64  # per period: the largest error of a peak is 0.1 %
+EVEN = 0.01  # largest relative difference between settled blocks
+TOLD = 3.0  # times EVEN by which a small disturbance would change meanwhile
 FEWEST = 6  # blocks, of which the later half must be even
 REST, OSCILLATING, UNDECIDED = range(3)
 
 
 class Found(NamedTuple):
-    """What one run came to: amplitude (m), outcome, and the state in which it ended."""
+    """The result of one run: amplitude (m), outcome, and final state."""
 
     amplitude: float
     outcome: int
@@ -46,7 +46,7 @@ def settled(slider: Slider, start: Initial, most_blocks: int, rtol: float) -> Fo
         if amplitudes[-1] < DECAYED * small:
             return Found(amplitudes[-1], REST, state)
         late = amplitudes[count // 2 :]
-        told = abs(growth) * block * len(late) > TOLD * EVEN  # else a slow change looks even
+        told = abs(growth) * block * len(late) > TOLD * EVEN  # else slow change looks settled
         if (
             told
             and count >= FEWEST

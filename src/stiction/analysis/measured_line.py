@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
 PERIODS = 100.0  # of the lowest frequency, in a window
-AS_SAWTOOTH = 1.5  # times the amplitude that a sawtooth's harmonic has
+AS_SAWTOOTH = 1.5  # times the amplitude of a sawtooth's harmonic
 APART = 0.35  # of the cycles' frequency: wider lines of harmonics leave nothing between them
-LOBE = 2.5  # lines to each side that a window of Hamming spreads a sine over
+LOBE = 2.5  # lines to each side over which a Hamming window spreads a sine
 STEPS = 5  # windows that overlap at any time
 
 
@@ -31,27 +31,27 @@ def strongest_line(
     record : Record
         With samples that are equally spaced.
     low : float
-        Hz, above the frequencies of the stick-slip itself: a sawtooth has many harmonics, ten
-        times its frequency is a start.
+        Hz, above the frequencies of the stick-slip itself, a sawtooth with many harmonics; ten
+        times its frequency is a good start.
     width : float, optional
-        Of the windows, s; by default a hundred periods of `low`, and a tenth of the record at
-        most.
+        Width of the windows, s; by default a hundred periods of `low`, but at most a tenth of
+        the record.
     cycles : Dataset, optional
-        From `stiction.find_cycles`: harmonics of them are no line, see below.
+        From `stiction.find_cycles`: their harmonics do not count as lines, see below.
 
     Returns
     -------
     Dataset
-        As `stiction.follow_ridge`, with amplitudes in N. Where no line stands out of the noise,
-        the frequency is not a number; that it is so everywhere is an answer. A sawtooth of drop D
-        has the amplitude D/(pi n) at n times its frequency: what is there of `cycles` and hardly
-        larger belongs to their shape.
+        As from `stiction.follow_ridge`, with amplitudes in N. The frequency is NaN where no line
+        stands out of the noise, perhaps everywhere. A sawtooth of drop D has the amplitude
+        D/(pi n) at n times its frequency: a line there that is hardly larger belongs to the shape
+        of `cycles`.
 
     Raises
     ------
     ResultError
-        If samples are not equally spaced, `low` is not below half the sample rate, or windows of
-        that width hold too few samples.
+        If samples are not equally spaced, `low` is not below half the sample rate, or windows
+        have too few samples.
     """
     steps, rate = np.diff(record.time), record.sample_rate
     if len(steps) == 0 or np.ptp(steps) > 0.5 * steps.mean():
@@ -82,7 +82,7 @@ def strongest_line(
 
 
 def _without_harmonics(lines: xr.DataArray, cycles: xr.Dataset, low: float) -> xr.DataArray:
-    """Return a spectrogram in which harmonics of a sawtooth are as high as what lies beside."""
+    """Return a spectrogram with the harmonics of a sawtooth lowered to their surroundings."""
     frequency = lines["frequency"].values
     fundamental = 1.0 / float(cycles["period"].median())
     number = frequency / fundamental

@@ -1,10 +1,10 @@
-"""What an unstable steady sliding becomes: the amplitude of the oscillation, and how it sets in.
+"""The oscillation that replaces unstable steady sliding: its amplitude and its onset.
 
-Beyond the boundary of stability (`stiction.linear_stability`) a limit cycle is left. It can grow
-from zero (a soft onset: a supercritical Hopf bifurcation), or be there at once at full size (hard:
-a subcritical one), and then it lasts, going back, where steady sliding is stable again: hysteresis.
-Here it is found by simulation alone: a parameter is swept up and down, each run beginning where
-the last one ended.
+Beyond the boundary of stability (`stiction.linear_stability`) there is a limit cycle. It can grow
+from zero (soft onset: a supercritical Hopf bifurcation), or appear at full size (hard onset: a
+subcritical one) and then persist, on the way back, where steady sliding is stable again
+(hysteresis). This module uses simulations only: it sweeps a parameter up and down, and starts each
+run where the last one ended.
 """
 
 from __future__ import annotations
@@ -38,18 +38,18 @@ ROUGH = 0.05  # of the distance to the nearest oscillation: an error of 1 % in t
 
 
 class Onset(NamedTuple):
-    """How an oscillation sets in along a parameter.
+    """The onset of an oscillation along a parameter.
 
     Parameters
     ----------
     kind : {"soft", "hard", "not determined", "none"}
-        Soft if runs from rest and runs from an oscillation change at the same value, and the
-        amplitude goes to zero there; hard if at some value the one rests and the other
+        Soft if runs that start at rest and runs that start oscillating change at the same value,
+        where the amplitude goes to zero; hard if at some value one rests and the other
         oscillates; not determined if neither is seen; none if nothing changes.
     threshold : float
-        Where it sets in, SI. Of a soft onset where the squared amplitude, which is linear in the
-        parameter near a Hopf bifurcation, extrapolates to zero; of one that is not determined
-        the middle of the interval in which it is; NaN otherwise.
+        Value of the parameter at the onset, SI. For a soft onset, the zero of the extrapolated
+        squared amplitude, which is linear near a Hopf bifurcation; if not determined, the middle
+        of the interval that contains the onset; otherwise NaN.
     hysteresis : tuple of float
         First and last of the values (SI) at which one sweep rests and the other oscillates; NaN
         if there is none.
@@ -59,7 +59,7 @@ class Onset(NamedTuple):
         along the drive; ``outcome`` (0 rest, 1 oscillation, 2 undecided when the time was over).
         Over ``value``: ``growth_rate`` (1/s).
     uncertainty : float
-        Of `threshold`, SI: the onset lies within it.
+        Uncertainty of `threshold`, SI.
     """
 
     kind: Kind
@@ -70,7 +70,7 @@ class Onset(NamedTuple):
 
 
 class Trial(NamedTuple):
-    """What a slider comes to at one value of the parameter, swept up and swept down."""
+    """The results at one value of the parameter, swept up and swept down."""
 
     value: float
     up: Found
@@ -93,7 +93,7 @@ class Trial(NamedTuple):
 
 
 class Estimate(NamedTuple):
-    """A threshold, what it may be wrong by, and whether the amplitude goes to zero there."""
+    """A threshold, its uncertainty, and whether the amplitude goes to zero there."""
 
     threshold: float
     uncertainty: float
@@ -108,27 +108,27 @@ def find_onset(
     most_blocks: int = 40,
     rtol: float = 1e-6,
 ) -> Onset:
-    """Sweep a parameter up and down, and see where an oscillation is, how large, and since when.
+    """Sweep a parameter up and down to find the onset and amplitude of an oscillation.
 
     Parameters
     ----------
     slider : Slider
-        With a steady drive and load. Any friction law.
+        With a steady drive and load, and any friction law.
     path : str
         The parameter, see `stiction.linear_stability.critical`.
     values : sequence of float or str
-        Its values, ascending, with their units if it is an angle; from well on the stable side
-        to well on the other. Where the onset is between two of them more are added.
+        Its values, ascending, with their units if it is an angle; from well inside the stable
+        side to well inside the other. More values are added near the onset.
     most_blocks : int, optional
-        How long each run may last until its amplitude has settled. A block is ten periods of
-        the leading mode, and the time in which the drive loads the spring with the friction.
+        Longest duration of each run, in blocks. A block is ten periods of the leading mode plus
+        the time in which the drive loads the spring to the friction force.
     rtol : float, optional
         See `stiction.simulate`.
 
     Returns
     -------
     Onset
-        The kind of onset, its place and hysteresis, and the amplitudes.
+        The kind of onset, its threshold and hysteresis, and the amplitudes.
 
     Raises
     ------
@@ -137,11 +137,11 @@ def find_onset(
 
     Notes
     -----
-    A run that rests is disturbed by a hundredth of the drive's speed for the next value. It counts
-    as resting when the amplitude has fallen to a third of that, as oscillating when it is above
-    three times that and has not changed by more than 1 % over the later half of the time so far,
-    in which a small disturbance would have changed by three times as much; else as undecided.
-    Close to the boundary the changes are so slow that it remains so.
+    A resting run is disturbed by a hundredth of the drive's speed for the next value. A run counts
+    as resting when its amplitude has fallen to a third of that. It counts as oscillating when its
+    amplitude is above three times that, and has changed by at most 1 % over the later half of the
+    time, in which a small disturbance would have changed by three times as much. Otherwise it is
+    undecided, as happens close to the boundary, where changes are slow.
     """
     sliders = [changed(slider, path, value) for value in values]
     numbers = np.array([read(each, path) for each in sliders])
@@ -164,7 +164,7 @@ def find_onset(
 
 
 def swept(sliders: Sequence[Slider], most_blocks: int, rtol: float) -> list[Found]:
-    """Return what each slider comes to, beginning where the one before ended."""
+    """Return the result of each slider, each run starting where the last one ended."""
     found: list[Found] = []
     for slider in sliders:
         moving = found and found[-1].outcome != REST
@@ -176,11 +176,11 @@ def swept(sliders: Sequence[Slider], most_blocks: int, rtol: float) -> list[Foun
 def tried(
     slider: Slider, value: float, trials: Sequence[Trial], most_blocks: int, rtol: float
 ) -> Trial:
-    """Return what a slider comes to from rest, and from the oscillation at the nearest value."""
+    """Return the results from rest, and from the oscillation at the nearest value."""
     moving = min((each for each in trials if each.moves), key=lambda each: abs(each.value - value))
     rest = steady_sliding(slider).disturbed(KICK)
     found = [settled(slider, start, most_blocks, rtol) for start in (rest, moving.up.state)]
-    upward = moving.value < value  # swept up is what comes from lower values
+    upward = moving.value < value  # an upward sweep comes from lower values
     return Trial(value, *(found[::-1] if upward else found))
 
 
@@ -197,10 +197,10 @@ def change(trials: Sequence[Trial]) -> tuple[Trial, list[Trial]] | None:
 
 
 def next_value(trials: Sequence[Trial], fine: float) -> float | None:
-    """Return the value at which another trial says most; None if nothing more is to be learned.
+    """Return the most informative value for another trial, or None.
 
-    Between rest and oscillation, where a trial can be decided: there in the middle, or, once the
-    place is known, to either side of it. Where it cannot, among the oscillations next to it.
+    Between rest and oscillation, where trials are decided, it is in the middle, or, once the onset
+    is known, to either side of it. Where they are undecided, it lies among the next oscillations.
     """
     found = change(trials)
     if found is None or any(each.differs for each in trials):
@@ -226,7 +226,7 @@ def next_value(trials: Sequence[Trial], fine: float) -> float | None:
 
 
 def apart(moving: Sequence[Trial]) -> list[Trial]:
-    """Return up to three oscillations, the nearest first, that differ by more than their errors."""
+    """Return up to three distinct oscillations, the nearest first."""
     found = [moving[0]]
     for each in moving:
         if len(found) < 3 and size(each) ** 2 > APART * size(found[-1]) ** 2:
@@ -240,12 +240,11 @@ def size(trial: Trial) -> float:
 
 
 def extrapolated(rest: Trial, moving: Sequence[Trial]) -> Estimate:
-    """Return where the squared amplitude is zero, by a parabola through three of its values.
+    """Extrapolate the squared amplitude to zero by a parabola through three values.
 
-    What it may be wrong by: its difference from a straight line through two of them, and what
-    an error of 1 % in an amplitude comes to. It is between rest and oscillation in any case; if
-    the extrapolation is not, or the slopes to both sides of the middle value are not alike, it has
-    no ground.
+    Its uncertainty is the difference from a straight line through two of them, plus the effect of
+    an error of 1 % in an amplitude. The extrapolation is rejected if it does not lie between rest
+    and oscillation, or if the slopes on both sides of the middle value differ too much.
     """
     first = moving[0].value
     middle, half = 0.5 * (rest.value + first), 0.5 * abs(first - rest.value)
@@ -277,7 +276,7 @@ def extrapolated(rest: Trial, moving: Sequence[Trial]) -> Estimate:
 
 
 def judged(trials: Sequence[Trial], data: xr.Dataset) -> Onset:
-    """Return the kind of onset that the trials show."""
+    """Return the onset seen in the trials."""
     both = [each.value for each in trials if each.differs]
     if both:
         return Onset("hard", nan, (min(both), max(both)), data)

@@ -1,8 +1,8 @@
-"""Integrals over the time of a run, as exact as the run itself.
+"""Integrals over the time of a run, as accurate as the run itself.
 
-The run is made once more, with samples at the nodes of a quadrature. Samples never influence the
-steps, so both are the same run. Panels break where the motion is not smooth in time; each has
-Kronrod's fifteen points, and Gauss's seven among them say how exact it is.
+The run is repeated with samples at the nodes of a quadrature. Samples never influence the steps, so
+both runs are the same. Panels end where the motion is not smooth; each has Kronrod's fifteen
+points, and the seven Gauss points among them give the error.
 """
 
 from __future__ import annotations
@@ -66,8 +66,8 @@ class Integral(NamedTuple):
 def integrals(run: Trajectory, edges: Floats, integrand: Integrand, accuracy: float) -> Integral:
     """Integrate functions of a run's state over time, between each edge and the next.
 
-    Panels are split until their errors together are below what is wanted, or can hardly be split
-    further; the bound that is returned holds in any case.
+    Panels are split until the sum of their errors meets `accuracy`, or they can hardly be split
+    further; the returned bound holds in both cases.
 
     Parameters
     ----------
@@ -114,18 +114,17 @@ def integrals(run: Trajectory, edges: Floats, integrand: Integrand, accuracy: fl
 
 
 def _threshold(errors: Floats, left: float) -> float:
-    """Return the largest error to be accepted so that those accepted add up to `left` at most."""
+    """Return the largest error up to which errors add up to at most `left`."""
     ascending = np.sort(errors)
     within = np.searchsorted(np.cumsum(ascending), left, side="right")
     return float(ascending[within - 1]) if within else 0.0
 
 
 def panels(run: Trajectory, edges: Floats) -> tuple[Floats, Floats]:
-    """Return starts and lengths (s) of panels that no stick begins or ends inside.
+    """Return starts and lengths (s) of panels within which no stick begins or ends.
 
-    Nor does one reach over an edge, or over a jump or bend of the drive or load. None is longer
-    than the shortest period of what swings: of springs and programs while it slips, of programs
-    alone while it sticks.
+    No panel contains an edge, or a jump or bend of the drive or load. None is longer than the
+    shortest period: that of springs and programs during slip, of programs alone during stick.
     """
     slider, first, last = run.slider, edges[0], edges[-1]
     programs = [end for end, _ in drive_stretches(slider.motion)]
@@ -143,7 +142,7 @@ def panels(run: Trajectory, edges: Floats) -> tuple[Floats, Floats]:
 
 
 def split(starts: Floats, lengths: Floats, counts: NDArray[np.intp]) -> tuple[Floats, Floats]:
-    """Return starts and lengths (s) of intervals cut into so many equal parts each."""
+    """Split each interval into `counts` equal parts; return starts and lengths (s)."""
     which = np.repeat(np.arange(len(counts)), counts)
     part = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
     length = (lengths / counts)[which]
@@ -156,7 +155,7 @@ def states_at(run: Trajectory, times: Floats) -> Floats:
     Raises
     ------
     ResultError
-        If the run, made once more, does not come that far: it is not what its file says.
+        If the repeated run ends earlier: the run does not match its file.
     """
     slider, initial, settings = run.description
     span = {"duration": max(float(times[-1]) - initial.time, 1e-300)}

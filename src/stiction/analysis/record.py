@@ -1,4 +1,4 @@
-"""What the analyses read: a force over time, simulated or measured."""
+"""A record: a force over time, simulated or measured, the input of all analyses."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from stiction.trajectory import Trajectory
 Floats = NDArray[np.float64]
 
 
-LARGEST = 1e100  # of any sample, in SI: the square of it is a number, too
-SMALLEST = 1e-100  # what is smaller is taken for zero, as its square would be
+LARGEST = 1e100  # of any sample, in SI: its square must not overflow
+SMALLEST = 1e-100  # smaller values are taken as zero, because their squares underflow
 UNITS = {name: f"{name}_unit" for name in ("time", "force", "position", "slip_speed")}
 
 
 def _samples(values: Any) -> Floats:
     try:
         given = np.ma.asanyarray(values) if np.ma.isMaskedArray(values) else np.asarray(values)
-    except ValueError:  # lists of several lengths, or inside one another
+    except ValueError:  # ragged or nested lists
         raise ValueError("must be numbers, one a sample, in SI") from None
     if given.dtype.kind in "cmMSU":  # complex numbers, times of a calendar, text
         raise ValueError(f"must be numbers, one a sample, in SI, not of type {given.dtype}")
@@ -49,7 +49,7 @@ def _samples(values: Any) -> Floats:
 
 
 def _stated_unit(values: Any) -> str | None:
-    """Return the unit that an array carries itself, a pint quantity or one of xarray."""
+    """Return the unit that a pint quantity or an xarray array carries."""
     if hasattr(values, "magnitude") and hasattr(values, "units"):
         return str(values.units)
     stated = getattr(values, "attrs", {}).get("units")
@@ -57,7 +57,7 @@ def _stated_unit(values: Any) -> str | None:
 
 
 def _in_si(values: Any, unit: str, kind: Kind) -> Any:
-    """Return samples in SI, from those in a unit."""
+    """Convert samples from a unit to SI."""
     plain = getattr(values, "magnitude", values)
     plain = getattr(plain, "values", plain)
     factor = to_si(f"1 {unit}", kind)
@@ -77,7 +77,7 @@ Samples = Annotated[Any, BeforeValidator(_samples)]
 
 
 class Record(Described):
-    """A force over time, and what is known of the apparatus that it was recorded on.
+    """A force over time, and the known parameters of the apparatus.
 
     Parameters
     ----------
@@ -87,20 +87,20 @@ class Record(Described):
     force : array
         (n,), N: the spring force, positive where the spring pulls the mass along the drive.
     normal_load : float or str, optional
-        W, N; friction coefficients are not given without it.
+        W, N; needed for friction coefficients.
     stiffness : float or str, optional
-        Of the spring along the force, N/m. With `drive_velocity` it says where the mass is.
+        Of the spring along the force, N/m. With `drive_velocity` it yields the mass's position.
     drive_velocity : float or str, optional
         Along the force, m/s.
     mass : float or str, optional
         kg.
     position, slip_speed : array, optional
-        (n,), m and m/s, along the drive and of the slip, where they are known otherwise.
+        (n,), position along the drive, m, and slip speed, m/s, if they were measured.
     zero : float or str, optional
-        N, what the load cell reads without load; it is taken off the force, and 0 from then on.
+        N, reading of the load cell without load; it is subtracted from the force, then set to 0.
     time_unit, force_unit, position_unit, slip_speed_unit : str, optional
-        Units of arrays that do not carry their own: ``time_unit="ms"``. A record holds SI, and
-        says so here.
+        Units of arrays that do not carry their own: ``time_unit="ms"``. The record converts them
+        to SI.
 
     Raises
     ------
@@ -133,11 +133,11 @@ class Record(Described):
     @model_validator(mode="before")
     @classmethod
     def _to_si(cls, given: Any) -> Any:
-        """Return what was given with every array in SI."""
+        """Return the arguments with every array in SI."""
         read, wrong = dict(given), []
         for name, key in UNITS.items():
             values = given.get(name)
-            read.pop(key, None)  # a record holds SI: made again of its fields, it is the same
+            read.pop(key, None)  # a record is in SI: its fields make an equal one
             if values is None:
                 read.pop(name, None)  # as if left out
                 continue
@@ -180,17 +180,17 @@ class Record(Described):
         return self
 
     def __len__(self) -> int:
-        """Return how many samples there are."""
+        """Return the number of samples."""
         return len(self.time)
 
     @property
     def duration(self) -> float:
-        """From the first sample to the last, s."""
+        """Time from the first sample to the last, s."""
         return float(self.time[-1] - self.time[0]) if len(self) else 0.0
 
     @property
     def sample_rate(self) -> float:
-        """Samples per second, where they are equally spaced; their mean otherwise; 0 for none."""
+        """Samples per second, on average if they are unequally spaced; 0 for a single one."""
         return (len(self) - 1) / self.duration if len(self) > 1 else 0.0
 
     def plot(self, axes: Any = None) -> Any:
@@ -201,12 +201,12 @@ class Record(Described):
 
 
 def recorded(source: Trajectory | Record) -> Record:
-    """Return what was recorded, of a run or of a measurement.
+    """Return the record of a run, or a record as it is.
 
     Raises
     ------
     ResultError
-        If it is neither.
+        If `source` is neither.
     """
     if isinstance(source, Record):
         return source
@@ -219,10 +219,10 @@ def recorded(source: Trajectory | Record) -> Record:
 
 
 def record_of(run: Trajectory) -> Record:
-    """Return a run as its load cell records it: k_x u_x, with position and slip speed known.
+    """Return a run as a load cell records it: k_x u_x, with position and slip speed.
 
-    The force is turned to be positive where the spring pulls along the drive; samples that are
-    not numbers, with which a failed run can end, are left out.
+    The force is positive where the spring pulls along the drive. NaN samples at the end of a failed
+    run are left out.
     """
     slider, data = run.slider, run.data
     along = slider.motion.velocity * slider.direction[0]

@@ -1,4 +1,4 @@
-"""Everything that a run or a record says of itself."""
+"""The complete analysis of a run or a record."""
 
 from __future__ import annotations
 
@@ -33,45 +33,43 @@ from stiction.trajectory import Trajectory, load
 if TYPE_CHECKING:
     import xarray as xr
 
-HARMONICS = 10.0  # of the stick-slip, which an oscillation is sought above
+HARMONICS = 10.0  # of the stick-slip; oscillations are sought above them
 OF_STICKING = ("mu_static", "stick_slope", "stiffness", "creep_distance")  # columns of cycles
-BINS = 20.0  # that a stick phase is to have at least, to be averaged over them
+BINS = 20.0  # least number in a stick phase for averages
 
 
 class Analysis(NamedTuple):
-    """What a run or a record means; what it cannot say is None, and `missing` says why.
+    """The analysis of a run or a record; for each None, `missing` gives the reason.
 
     Parameters
     ----------
     source : Trajectory or Record
-        What was analysed.
+        The run or record that was analysed.
     record : Record
         Its force over time.
     regime : Regime
-        Which kind of motion it is, how sure that is, and why.
+        The kind of motion, its confidence and evidence.
     cycles, summary : Dataset
-        A row a cycle (`stiction.find_cycles`), and mean and spread of each quantity.
+        A row for each cycle (`stiction.find_cycles`); mean and spread of each quantity.
     curves, creep : Dataset or None
-        The creep of each stick phase, and of all together (`stiction.mean_creep`).
+        The creep of each stick phase, and the mean of all (`stiction.mean_creep`).
     divergence : Divergence or None
-        How creep diverges towards slip.
+        The divergence of creep towards slip.
     misalignment : Misalignment or None
-        The misalignment that the creep implies.
+        The misalignment implied by the creep.
     oscillation : Dataset or None
-        The transverse oscillation over time (`stiction.transverse_oscillation`); of a record,
+        The transverse oscillation over time (`stiction.transverse_oscillation`); for a record,
         its strongest fast line (`stiction.strongest_line`).
     phases : Dataset or None
-        How rest and ring-down share each stick phase (`stiction.oscillation_by_phase`); of runs
-        only.
+        Rest and ring-down in each stick phase (`stiction.oscillation_by_phase`); for runs only.
     energy : Dataset or None
-        Where the work of the drive goes, in each cycle (`stiction.energy_budget`); of runs only.
+        The energy budget of each cycle (`stiction.energy_budget`); for runs only.
     missing : dict
-        For each part that is None, and each column that is not given, why.
+        The reason for each part that is None, and for each missing column.
     friction : Friction
-        Of the break-away, at rest and while it slides, in any motion.
+        Friction at the break-away, static and kinetic.
     warnings : tuple of str
-        What is not as it should be: drift, numbers that cannot be true, hum that was taken off.
-        To be read first.
+        To be read first: drift, impossible numbers, hum that was subtracted.
     """
 
     source: Trajectory | Record
@@ -92,12 +90,12 @@ class Analysis(NamedTuple):
 
     @property
     def song(self) -> xr.Dataset | None:
-        """The old name of `oscillation`, which goes with the next version."""
+        """Old name of `oscillation`, which works until the next version."""
         warn_renamed("Analysis.song", "Analysis.oscillation")
         return self.oscillation
 
     def __repr__(self) -> str:
-        """Say what was found, and what is missing."""
+        """Return a one-line summary."""
         found = f"{self.regime.kind}, {self.cycles.sizes['cycle']} cycles"
         missing = f"; missing: {', '.join(self.missing)}" if self.missing else ""
         return f"<Analysis: {found}{missing}>"
@@ -110,7 +108,7 @@ class Analysis(NamedTuple):
         return as_html(self.tables())
 
     def tables(self) -> list[Section]:
-        """Return the report in sentences and tables, part by part."""
+        """Return the report as sections of sentences and tables."""
         return sections(self)
 
     def export(self, path: str | Path) -> list[Path]:
@@ -125,15 +123,15 @@ class Analysis(NamedTuple):
 
 
 def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) -> Analysis:
-    """Return everything that a run or a record says of itself.
+    """Analyse a run or a record completely.
 
     Parameters
     ----------
     source : Trajectory or Record
-        A run, sampled several times each transverse period for its creep and oscillation; or a
-        measured force, with whatever else is known of it; or the file of a run.
+        A run, sampled several times per transverse period for creep and oscillation; a measured
+        force with the known parameters of its apparatus; or the file of a run.
     trust : bool, optional
-        Of a file, see `stiction.load`.
+        For a file; see `stiction.load`.
 
     Examples
     --------
@@ -198,7 +196,7 @@ analyze = analyse
 
 
 def _meant(cycles: xr.Dataset, kind: str, missing: dict[str, str]) -> xr.Dataset:
-    """Return the table without the values of columns that mean nothing for a kind of motion."""
+    """Blank the columns of a table that are meaningless for a kind of motion."""
     if not cycles.sizes["cycle"]:
         return cycles
     if kind in (STICK_SLIP, TRANSITIONAL):
@@ -214,7 +212,7 @@ def _meant(cycles: xr.Dataset, kind: str, missing: dict[str, str]) -> xr.Dataset
 
 
 def edges(run: Trajectory, cycles: xr.Dataset) -> np.ndarray:
-    """Return times (s) at which a run begins, its cycles do, the last one ends, and it ends."""
+    """Return the times (s) that bound the run and each of its cycles, ascending."""
     first, last = (float(run.data["time"][i]) for i in (0, -1))
     if first == last:
         raise ResultError("the run has a single sample; run it longer than 1/sample_rate")
@@ -223,9 +221,9 @@ def edges(run: Trajectory, cycles: xr.Dataset) -> np.ndarray:
 
 
 def _free_of_hum(oscillation: xr.Dataset | None, cycles: xr.Dataset) -> float | None:
-    """Return bins (s) over two periods of a line that hums most of the time, which average it out.
+    """Return the width of bins (s) that average out a persistent line: two of its periods.
 
-    None where there is no such line, or stick phases are too short for it.
+    None if there is no such line, or stick phases are too short.
     """
     if oscillation is None or not cycles.sizes["cycle"]:
         return None

@@ -1,4 +1,4 @@
-"""How fast it slips: averages over short times, and what a whole run comes to."""
+"""Slip speed: averages over short times, and the outcome of a whole run."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ class Slip(NamedTuple):
 
 
 def averaged_slip(run: Trajectory, parts: int) -> Slip:
-    """Average a run over a `parts`-th of its time, with weights that fall off to both sides.
+    """Average a run over windows of a `parts`-th of its time, with tapering weights.
 
-    Samples that are farther apart than that are kept as they are.
+    Samples that are farther apart stay as they are.
     """
     size = run.data.sizes["time"]
     starts = np.unique(np.linspace(0, size, FINE * parts, endpoint=False).astype(np.intp))
@@ -64,26 +64,26 @@ def averaged_slip(run: Trajectory, parts: int) -> Slip:
 
 
 class Outcome(NamedTuple):
-    """What a run comes to.
+    """The outcome of a run.
 
     Parameters
     ----------
     status : Status
         How it ended.
     sticks : int
-        Stick intervals.
+        Number of stick intervals.
     time_stuck : float
-        Their sum, s.
+        Their total duration, s.
     peak : float
         Largest magnitude of k_x u_x, in normal loads.
     fastest : float
         Largest slip speed of the samples, m/s.
     slowest : float
-        Smallest slip speed of the samples while the spring is first loaded, m/s; zero where the
-        mass rests in that time, however shortly.
+        Smallest slip speed of the samples during the first loading, m/s; zero if the mass rests
+        then, however shortly.
     creep : float
-        Median of that time's slip speed, m/s, of means over a hundredth of it each: zero only
-        where the mass rests for half of it.
+        Median slip speed during the first loading, m/s, of means over hundredths of it: zero only
+        if the mass rests for half of it.
     steps : int
         Slip steps of the solver.
     """
@@ -99,7 +99,7 @@ class Outcome(NamedTuple):
 
 
 def outcome(run: Trajectory) -> Outcome:
-    """Return what a run comes to; the more samples it has, the closer the speeds."""
+    """Return the outcome of a run; more samples make the speeds more accurate."""
     speed, times = run.data["slip_speed"].values, run.data["time"].values
     end = first_slip_time(run)
     loading = speed[: np.searchsorted(times, end) + 1]
@@ -111,7 +111,7 @@ def outcome(run: Trajectory) -> Outcome:
         statistics.stick_count,
         statistics.time_stuck,
         float(np.fmax.reduce(np.abs(run.data["spring_x"].values))) / run.slider.normal_load,
-        float(np.fmax.reduce(speed)),  # what is not a number at the end of a run is passed over
+        float(np.fmax.reduce(speed)),  # ignores NaN at the end of a run
         0.0 if rests else float(np.fmin.reduce(loading)),
         float(np.median([part.mean() for part in parts])),
         statistics.steps,

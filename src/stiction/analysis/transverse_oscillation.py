@@ -25,7 +25,7 @@ WIDTH = 50.0  # transverse periods in a window
 STEPS = 5  # windows that overlap at any time
 LOWEST = 0.15  # of omega_y: the frequency falls no lower before it dies away
 HIGHEST = 1.2
-SILENT = 1e-3  # of V sin(phi): what swings less may be the solver's own noise
+SILENT = 1e-3  # of V sin(phi): smaller swings may be noise of the solver
 
 
 def transverse_oscillation(run: Trajectory) -> xr.Dataset:
@@ -46,10 +46,10 @@ def transverse_oscillation(run: Trajectory) -> xr.Dataset:
     -------
     Dataset
         Over ``time`` (s), the middle of windows of 50 transverse periods, which overlap:
-        ``frequency`` (Hz; not a number where no line stands out, or it
-        is below a thousandth of the bound), ``prominence`` as in
-        `stiction.follow_ridge`, ``expected`` (Hz); ``velocity`` (m/s), half the range of v_y,
-        and ``amplitude`` (m), it over the frequency; ``velocity_bound`` V sin(phi) and
+        ``frequency`` (Hz; NaN where no line stands out, or its velocity is below a thousandth of
+        the bound), ``prominence`` as in `stiction.follow_ridge`, ``expected`` (Hz); ``velocity``
+        (m/s), half the range of v_y, and ``amplitude`` (m), velocity over angular frequency;
+        ``velocity_bound`` V sin(phi) and
         ``amplitude_bound`` V sin(phi)/omega_y; ``share_stuck``, of time, and
         ``sticks_per_second`` (1/s): both are zero where the oscillation rings down freely.
 
@@ -106,7 +106,7 @@ def oscillation_spectrogram(run: Trajectory) -> xr.DataArray:
 
 
 def oscillation_by_phase(oscillation: xr.Dataset, run: Trajectory, phases: Floats) -> xr.Dataset:
-    """Return how ring-down and micro stick-slip share each stick phase.
+    """Return the shares of ring-down and micro stick-slip in each stick phase.
 
     Parameters
     ----------
@@ -155,16 +155,16 @@ def oscillation_by_phase(oscillation: xr.Dataset, run: Trajectory, phases: Float
 
 
 def hides(oscillation: xr.Dataset, cycles: xr.Dataset) -> bool:
-    """Return whether cycles follow so closely that windows hold more than half of one."""
+    """Return whether windows are longer than half a cycle."""
     if not cycles.sizes["cycle"]:
         return False
     return bool(oscillation.attrs["width"] > 0.5 * float(np.median(cycles["period"].values)))
 
 
 def apart(oscillation: xr.Dataset, cycles: xr.Dataset) -> xr.Dataset:
-    """Return an oscillation without the lines that may be harmonics of the cycles themselves.
+    """Return an oscillation without lines that may be harmonics of the cycles.
 
-    Where windows hold more than half a cycle these are all but those before the first cycle.
+    If windows are longer than half a cycle, only lines before the first cycle remain.
     """
     if not hides(oscillation, cycles):
         return oscillation

@@ -1,4 +1,4 @@
-"""An analysis in words and tables."""
+"""The report of an analysis in words and tables."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ SURE = 2.0  # standard errors that a fit must be away from nothing
 
 
 def sections(found: Analysis) -> list[Section]:
-    """Return the analysis, part by part: warnings first, then what it is in plain words."""
+    """Return the parts of the report: warnings, a plain sentence, then the details."""
     kind = str(found.regime)
     doubts = [Section("Warnings", list(found.warnings))] if found.warnings else []
     return [
@@ -84,7 +84,7 @@ def sections(found: Analysis) -> list[Section]:
 
 
 def plainly(found: Analysis) -> str:
-    """Return what the mass does, in a sentence that needs no theory."""
+    """Describe the motion in a sentence that needs no theory."""
     count, kind = found.cycles.sizes["cycle"], found.regime.kind
     if count:
         drop, period = (float(found.cycles[name].mean()) for name in ("drop", "period"))
@@ -112,7 +112,7 @@ def plainly(found: Analysis) -> str:
 
 
 def _stuck(found: Analysis) -> str:
-    """Say of a run how long it sticks in its cycles; a force alone does not tell."""
+    """Return how long a run sticks in its cycles, in words; '' for a record."""
     run, ends = found.source, found.cycles
     if not isinstance(run, Trajectory):
         return ""
@@ -122,7 +122,7 @@ def _stuck(found: Analysis) -> str:
 
 
 def _quick(found: Analysis, period: float) -> str:
-    """Say of a run whether its cycles are too quick for the softer spring alone."""
+    """Note that the cycles of a run are too fast for the softer spring alone."""
     if not isinstance(found.source, Trajectory) or found.regime.kind == STICK_SLIP:
         return ""
     own = 1.0 / found.source.slider.natural_frequencies[0]
@@ -181,7 +181,7 @@ def cycles(found: Analysis) -> Section:
 
 
 def _hesitations(table: xr.Dataset) -> list[str]:
-    """Say in how many cycles the force hesitates, how much, and what is not seen of it."""
+    """Return the frequency and size of hesitations, and their detection limit, in words."""
     some = int((table["hesitations"] > 0).sum())
     if not some:
         return []
@@ -208,7 +208,7 @@ def each_cycle(table: xr.Dataset) -> Table:
 
 
 def creep(found: Analysis) -> Section:
-    """Return how it creeps before slip."""
+    """Return the section on creep before slip."""
     if found.creep is None:
         return Section("Creep", [f"Not seen: {found.missing['creep']}."])
     far, near = (found.creep.isel(bin=at) for at in (-1, 0))
@@ -244,7 +244,7 @@ def creep(found: Analysis) -> Section:
 
 
 def oscillation(found: Analysis) -> Section:
-    """Return what oscillates fast, and when."""
+    """Return the section on the fast oscillation."""
     if found.oscillation is None:
         return Section("Oscillation", [f"Not seen: {found.missing['oscillation']}."])
     seen = found.oscillation["frequency"].values
@@ -282,7 +282,7 @@ def oscillation(found: Analysis) -> Section:
 
 
 def _hidden(found: Analysis) -> str:
-    """Say that cycles follow too closely for an oscillation to be told from them."""
+    """Note that cycles follow too closely to be distinguished from an oscillation."""
     oscillation = found.oscillation
     if found.phases is None or oscillation is None or not hides(oscillation, found.cycles):
         return ""
@@ -294,7 +294,7 @@ def _hidden(found: Analysis) -> str:
 
 
 def energy(found: Analysis) -> Section:
-    """Return where the work of the drive goes."""
+    """Return the section on energy."""
     if found.energy is None:
         return Section("Energy", [f"Not known: {found.missing['energy']}."])
     budget = found.energy
@@ -315,7 +315,7 @@ def _with_error(value: str, error: float, unit: str) -> str:
 
 
 def _spread(spread: float, mean: float, unit: str) -> str:
-    """Return a spread in words; of what differs by less than a run is right to, only that."""
+    """Return a spread in words, or an upper limit if it is below the accuracy of a run."""
     if not isfinite(spread):
         return ""
     if spread <= ALIKE * abs(mean):
@@ -324,14 +324,14 @@ def _spread(spread: float, mean: float, unit: str) -> str:
 
 
 def _true(found: Analysis) -> str:
-    """Return the misalignment that a run has, to hold the implied one against."""
+    """Return the true misalignment of a run, for comparison, in words."""
     if not isinstance(found.source, Trajectory):
         return ""
     return f" (the run has {degrees(abs(found.source.slider.phi)):.3g} deg)"
 
 
 def _end(found: Analysis) -> str:
-    """Return what the stick phases end with."""
+    """Return the event that ends the stick phases, in words."""
     last = np.inf if found.curves is None else float(found.curves["slip_time"][-1])
     if found.curves is not None and last >= found.record.time[-1]:
         return "the end"
@@ -341,7 +341,7 @@ def _end(found: Analysis) -> str:
 
 
 def _creeping(row: xr.Dataset, V: float) -> str:
-    """Say how fast it creeps in a bin, and to how much that is known if it is worth a word."""
+    """Return the creep velocity in a bin in words, with its error if not negligible."""
     value, error = float(row["velocity"]), float(row["velocity_error"])
     if abs(value) + SURE * np.nan_to_num(error) < RESTS * V:
         return RESTING

@@ -1,5 +1,5 @@
-"""Studies: many runs over axes of parameters, kept in a store that can be gone on with.
+"""Studies: many runs over axes of parameters, in a store that can be continued.
 
-What to run: a `plan` has `axes` over `parameters`; `presets` are ready ones. What to keep of each
-run: `variables`. Where: a `store`, in blocks. Doing it: `execution`. Looking at it: `view`.
+`plan` defines the runs; `presets` are ready plans; `variables` are kept of each run; `store` writes
+them in blocks; `execution` does the runs; `view` shows them.
 """

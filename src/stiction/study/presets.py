@@ -22,14 +22,14 @@ from stiction.text.validation import unknown
 from stiction.theory import natural_frequency
 
 MEASURES = ("regime", "peak_force", "amplitude", "period", "creep_distance", "time_stuck")
-TRAVEL = 4.0  # slip lengths that the drive moves at least: the spring is loaded, then some cycles
-PERIODS = 40.0  # and slow periods at least, for what grows or dies out to do so
+TRAVEL = 4.0  # least travel of the drive, in slip lengths: load-up, then some cycles
+PERIODS = 40.0  # least duration, in slow periods, in which motion grows or dies out
 
 
 def yaw_angle() -> Study:
-    """Return phi x V: misalignment stabilises, up to a speed that depends on it.
+    """Return the plane phi x V: misalignment stabilises, up to a speed that depends on it.
 
-    The yaw angle of Kado, Tadokoro & Nakano, cited as [22] and [23] by Nakano & Popov.
+    phi is the yaw angle of Kado, Tadokoro & Nakano, cited as [22] and [23] by Nakano & Popov.
     """
     slider, V = nakano_popov_2020(), np.geomspace(1e-4, 1e-1, 31)
     return study(
@@ -43,7 +43,7 @@ def yaw_angle() -> Study:
 
 
 def anisotropy() -> Study:
-    """Return k_y x phi with k_x = 1 kN/m: from an isotropic spring to one that is rigid across."""
+    """Return k_y x phi with k_x = 1 kN/m: springs from isotropic to rigid along y."""
     slider = nakano_popov_2020()
     return study(
         slider,
@@ -56,9 +56,9 @@ def anisotropy() -> Study:
 
 
 def damping_diagram() -> Study:
-    """Return A x theta, the plane of Fig. 5, where theta comes down to phi at last.
+    """Return A x theta, the plane of Fig. 5, in which theta finally falls to phi.
 
-    A depends on V and phi, so that its values are those of both along one dimension.
+    A depends on both V and phi, which therefore vary together along one dimension.
     """
     slider = nakano_popov_2020()
     A, phi = (each.ravel() for each in np.meshgrid(np.geomspace(1, 1e4, 25), PHI))
@@ -87,7 +87,7 @@ def preset(name: str) -> Study:
     Raises
     ------
     DescriptionError
-        If there is none of this name.
+        If there is no study of this name.
     """
     if name not in PRESETS:
         raise DescriptionError([Fault("preset", unknown("preset", name, PRESETS))])
@@ -95,12 +95,12 @@ def preset(name: str) -> Study:
 
 
 def study(slider: Slider, axes: dict[str, Axis]) -> Study:
-    """Return a study that keeps what the maps show; its axes say how long each run is."""
+    """Return a study that keeps the measures of the maps; an axis sets the durations."""
     base = Description(slider, Initial(), Settings(duration="5 s"))
     return Study(base=base, axes=axes, measures=MEASURES)
 
 
 def durations(slider: Slider, V: Floats) -> Floats:
-    """Return for each drive velocity (m/s) a time (s) in which the motion shows itself."""
+    """Return, for each drive velocity (m/s), a duration (s) that shows the motion."""
     slow = 2.0 * pi / natural_frequency(slider.k_x, slider.mass)
     return TRAVEL * slider.F_0 / slider.k_x / V + PERIODS * slow

@@ -1,11 +1,10 @@
-"""One parameter of a slider, or of a whole description, by its name.
+"""One parameter of a slider, or of a whole description, by its path: read it or change it.
 
-A path is a field of `Slider` (``phi``, ``c_x``) or one of its drive's, its load's or its friction
-law's (``drive.velocity``, ``friction.mu_inf``, ``load.program.1.to``); in a description also one
-of the start or of the settings (``initial.u_x``, ``run.rtol``). Several that share one value are
-joined by commas, as ``"k_x, k_y"`` for a spring that is equally stiff in all directions. Elements
-of a list count from 1. ``V`` is short for ``drive.velocity``, ``W`` for ``normal_load``, ``m``
-for ``mass``.
+A path is a field of `Slider` (``phi``, ``c_x``), or of its drive, load or friction law
+(``drive.velocity``, ``load.program.1.to``, ``friction.mu_inf``); in a description also of the
+initial state or the settings (``initial.u_x``, ``run.rtol``). Commas join several that share one
+value: ``"k_x, k_y"`` for a spring that is equally stiff in all directions. Elements of a list count
+from 1. ``V`` is short for ``drive.velocity``, ``W`` for ``normal_load``, ``m`` for ``mass``.
 """
 
 from __future__ import annotations
@@ -24,13 +23,13 @@ from stiction.text.units import unit_of
 from stiction.text.validation import made, unknown
 
 Owner = TypeVar("Owner", Slider, Description)
-LEVEL_UNITS = {"drive": "m/s", "load": "N"}  # of pieces, which do not know their quantity
+LEVEL_UNITS = {"drive": "m/s", "load": "N"}  # of pieces, whose quantity depends on their program
 
 
 def units(owner: Slider | Description) -> dict[str, str]:
-    """Return the path of every parameter that is one number, and its SI unit ('' for none).
+    """Return the path and SI unit ('' for none) of every parameter that is one number.
 
-    Those of an anisotropic law are listed with those of the law that it holds.
+    For an anisotropic law, the parameters of its inner law are included.
     """
     return dict(_numbers(owner, ()))
 
@@ -41,7 +40,7 @@ def unit(owner: Slider | Description, path: str) -> str:
     Raises
     ------
     DescriptionError
-        If there is no such parameter, or those that are joined differ in their unit.
+        If there is no such parameter, or joined ones differ in their unit.
     """
     found: dict[str, str] = {}
     faults: list[Fault] = []
@@ -64,7 +63,7 @@ def read(owner: Slider | Description, path: str) -> float:
     Raises
     ------
     DescriptionError
-        If there is no such parameter, it has no value, or those that are joined differ in value.
+        If there is no such parameter, it has no value, or joined ones differ in value.
 
     Examples
     --------
@@ -86,16 +85,16 @@ def changed(owner: Owner, path: str, value: float | str) -> Owner:
     Parameters
     ----------
     owner : Slider or Description
-        What is changed.
+        The system.
     path : str
-        Which parameter.
+        The parameter.
     value : float or str
         In SI, or with its unit; an angle needs its unit.
 
     Raises
     ------
     DescriptionError
-        If there is no such parameter, or it cannot have this value.
+        If there is no such parameter, or the value is invalid.
 
     Examples
     --------
@@ -108,7 +107,7 @@ def changed(owner: Owner, path: str, value: float | str) -> Owner:
 
 
 def varied(owner: Owner, changes: Mapping[str, float | str]) -> Owner:
-    """Return a slider or description with other values of known parameters, validated together.
+    """Return a slider or description with several parameters changed, validated together.
 
     Raises
     ------
@@ -132,7 +131,7 @@ def varied(owner: Owner, changes: Mapping[str, float | str]) -> Owner:
 def placed(slider: Slider, path: str, value: float) -> Slider:
     """Return the slider with a parameter at `value` (SI), unchecked: `changed` for inner loops.
 
-    The path must be known, and the value lie between two that `changed` takes.
+    The path must exist, and the value lie between two that `changed` accepts.
     """
     for name in names(path):
         slider = _placed(slider, name.split("."), value)
@@ -140,7 +139,7 @@ def placed(slider: Slider, path: str, value: float) -> Slider:
 
 
 def names(path: str) -> list[str]:
-    """Return the paths that are joined in one, short names such as ``V`` resolved."""
+    """Return the paths joined in one; short names such as ``V`` are resolved."""
     return [canonical(name) for name in path.split(",")]
 
 
@@ -170,14 +169,14 @@ def _unit_of(part: Any, rooms: list[str], field: str) -> str:
 
 
 def _member(owner: Slider | Description, part: Any, key: str, name: str) -> Any:
-    """Return a part of a part by its key; a list's elements count from 1."""
+    """Return a member of a part by its key; a list's elements count from 1."""
     if key not in _fields(part):
         raise DescriptionError([Fault(name, unknown("parameter", name, units(owner)))])
     return _part(part, key)
 
 
 def _numbers(part: Any, keys: tuple[str, ...]) -> Iterator[tuple[str, str]]:
-    """Yield each parameter below some keys that is one number, and no count: path and unit."""
+    """Yield path and unit of each parameter below some keys that is one number, not a count."""
     for key in _fields(part):
         value = _part(part, key)
         if isinstance(value, float):
@@ -209,7 +208,7 @@ def _hints_of(kind: Any) -> dict[str, Any]:
 
 
 def _fields(part: Any) -> tuple[str, ...]:
-    """Return the keys of a part of a description, none of what has no parts."""
+    """Return the keys of a part of a description; none if it has no parts."""
     if isinstance(part, Anisotropic):
         return (*part.law._fields, "ratio", "angle")
     if hasattr(part, "_fields"):
@@ -224,12 +223,12 @@ def _part(part: Any, key: str) -> Any:
 
 
 def _holder(part: Any, key: str) -> Any:
-    """Return what has a field: of an anisotropic law, maybe the law that it holds."""
+    """Return the owner of a field: for an anisotropic law, perhaps its inner law."""
     return part.law if isinstance(part, Anisotropic) and key not in part._fields else part
 
 
 def _remade(part: Any, changes: Mapping[str, Any]) -> Any:
-    """Return a part of a description with changes in it, read and checked anew."""
+    """Return a part of a description with some fields changed, and validated."""
     if isinstance(part, Anisotropic):
         inner = {key: value for key, value in changes.items() if key not in part._fields}
         own = {key: value for key, value in changes.items() if key in part._fields}
@@ -260,7 +259,7 @@ def _placed(part: Any, keys: list[str], value: float) -> Any:
 
 
 def _given(part: Any) -> dict[str, Any]:
-    """Return what a part of a description was made of, as it is read: angles with their unit."""
+    """Return the fields of a part, ready to be read: angles with their unit."""
     hints = _hints(part)
     given = getattr(part, "_fields", None) or part.model_fields_set
     values = {name: getattr(part, name) for name in given}

@@ -1,1 +1,1 @@
-"""Creep before slip: its curves, how they diverge, and the misalignment that they imply."""
+"""Creep before slip: its curves, their divergence, and the implied misalignment."""

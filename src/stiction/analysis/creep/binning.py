@@ -1,4 +1,4 @@
-"""Mean velocities in bins of time, in a run and in a noisy record."""
+"""Mean velocities in bins of time, for a run and for a noisy record."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from stiction.analysis.signals.robust import trimmed_mean
 
 Floats = NDArray[np.float64]
 
-GROWTH = 0.125  # width of a bin as a share of the time to slip, where that is wider
+GROWTH = 0.125  # least width of a bin as a share of the time to slip
 
 
 class Bins(NamedTuple):
@@ -36,9 +36,9 @@ def bin_edges(least: float, longest: float) -> Floats:
 def between_rests(
     record: Record, position: Floats, rests: Floats, times: Floats, slip: float
 ) -> Bins:
-    """Average between `times` (s, descending), each moved to a rest if one is near.
+    """Average between `times` (s, descending), each shifted to a rest if one is near.
 
-    Where none is, the oscillation is averaged out of the position at the bin's ends.
+    Otherwise the position at the bin's ends is averaged over the oscillation.
     """
     if len(times) < 2:
         return Bins(*np.zeros((5, 0)))
@@ -50,7 +50,7 @@ def between_rests(
         closest = pair[np.argmin(np.abs(pair - times), axis=0), np.arange(len(times))]
         at_rest = np.abs(closest - times) < 0.5 * reach
         edges = np.where(at_rest, closest, times)
-    # only what is near the phase, or a long record with many phases would take its length squared
+    # only samples near the phase; otherwise the time grows with the square of the record's length
     first, last = np.searchsorted(record.time, [times[-1] - 2 * reach, times[0] + 2 * reach])
     near = slice(max(0, first - 1), last + 1)
     time, position = record.time[near], position[near]

@@ -1,4 +1,4 @@
-"""Creep curves: how fast the mass moves in each stick phase, by the time that is left to slip."""
+"""Creep curves: the velocity in each stick phase as a function of the time to slip."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 FINEST = 100  # bins in a stick phase, if all were as narrow as the last
-LAG = 8  # samples, over which noise is looked at; a load cell's is not independent in successive
+LAG = 8  # samples, for the noise; successive samples of a load cell are correlated
 FEWEST = 4  # samples in a bin of a run
 AIM = 0.1  # of the drive velocity: error of the mean curve in its narrowest bins
 
@@ -37,19 +37,18 @@ CURVES = {
 def creep_curves(
     source: Trajectory | Record, cycles: xr.Dataset, width: float | None = None
 ) -> xr.Dataset:
-    """Return the velocity X' in every stick phase, averaged over bins of the time left to slip.
+    """Return the velocity X' in every stick phase, averaged over bins of the time to slip.
 
-    A stick phase lasts from a cycle's start to its peak; a run's first loading is one as well.
-    Bins become wider with the time to slip, as the velocity changes less, in multiples of the
-    narrowest one, and are the same in all phases, so that phases can be averaged: see `mean_creep`.
+    A stick phase lasts from a cycle's start to its peak; a run's first loading counts too. Bins are
+    multiples of the narrowest one, wider far from slip, where the velocity changes less. They are
+    the same in all phases, so that phases can be averaged: see `mean_creep`.
 
-    In a run, the velocity is the distance covered divided by the time, from one rest to another
-    where there are rests: so it is free of the transverse oscillation. A record's position is
-    known or is V t - F/k; there the velocity is the difference of the trimmed means of the two
-    halves of a bin over half its width, which a few wild samples do not move. With V t - F/k it
-    is off by as much of V as the stiffness and the drive velocity are off together: if creep is
-    negative long before slip, they are, and the ``stiffness`` that `stiction.find_cycles` sees
-    tells by how much.
+    In a run, the velocity is distance over time, from one rest to another where there are rests;
+    this removes the transverse oscillation. A record's position is known, or is V t - F/k; there
+    the velocity is the difference between the trimmed means of both halves of a bin over half its
+    width, which is robust against a few wild samples. An error of the stiffness or of the drive
+    velocity shifts V t - F/k by the same share of V: creep that is negative long before slip
+    reveals it, and the ``stiffness`` of `stiction.find_cycles` shows how large it is.
 
     Parameters
     ----------
@@ -58,10 +57,10 @@ def creep_curves(
     cycles : Dataset
         With ``start`` and ``peak_time`` (s) over ``cycle``, from `stiction.find_cycles`.
     width : float, optional
-        Of the narrowest bin, s. By default a hundredth of the median stick phase, and four
-        samples of a run at least; in a noisy record as much as it takes to know the mean of all
-        phases to a tenth of the drive velocity. Against the hum of the mains give it two of its
-        periods: that of a half of each bin is then averaged away.
+        Width of the narrowest bin, s. By default a hundredth of the median stick phase, and at
+        least four samples of a run; in a noisy record wide enough to determine the mean of all
+        phases to a tenth of the drive velocity. Two periods of mains hum remove it, because each
+        half of a bin then averages over one period.
 
     Returns
     -------
@@ -75,8 +74,8 @@ def creep_curves(
     Raises
     ------
     ResultError
-        If a record says neither where the mass is nor both stiffness and drive velocity, or
-        `width` is not above zero.
+        If a record has neither a position nor both stiffness and drive velocity, or `width` is
+        not above zero.
     """
     import xarray as xr
 
@@ -126,7 +125,7 @@ def mean_creep(curves: xr.Dataset) -> xr.Dataset:
     Dataset
         Over ``bin``, without bins that no phase reaches: ``velocity``, ``force``, ``begin``,
         ``end`` as in `creep_curves`; ``velocity_error`` (m/s), the standard error from the
-        scatter of the phases, and no less than their own errors leave; ``phases``, their number.
+        scatter of the phases, at least that from their own errors; ``phases``, their number.
     """
     import xarray as xr
 
@@ -161,13 +160,13 @@ def _position(record: Record) -> Floats:
 
 
 def _grain(record: Record, position: Floats) -> float:
-    """Return to how much (m) rounding leaves the position known: V t is its largest part."""
+    """Return the rounding error of the position (m), mainly that of V t."""
     travelled = (record.drive_velocity or 0.0) * np.abs(record.time).max(initial=0.0)
     return float(4.0 * np.spacing(max(travelled, np.abs(position).max(initial=0.0))))
 
 
 def _least_width(record: Record, position: Floats, length: Floats, exact: bool) -> float:
-    """Return a width (s) of bins that shows as much as the noise of so many phases allows."""
+    """Return the narrowest width (s) of bins that the noise allows, given the number of phases."""
     fine = float(np.median(length)) / FINEST if len(length) else 1.0
     if exact:  # the motion between two samples is not known
         return max(fine, FEWEST / record.sample_rate) if len(record) > 1 else fine

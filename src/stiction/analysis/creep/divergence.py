@@ -1,4 +1,4 @@
-"""How a creep curve diverges towards slip."""
+"""The divergence of a creep curve towards slip."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ class Divergence(NamedTuple):
     amplitude, amplitude_error : float
         a, m/s; V phi by Eq. (8).
     lag, lag_error : float
-        By how much the divergence comes later than the slip, s.
+        Delay of the divergence after the slip, s.
     loading_time : float
-        l_x/V, s, as it was given.
+        l_x/V, s, as given.
     """
 
     exponent: float
@@ -52,19 +52,18 @@ def fit_divergence(
     stretch: tuple[float, float] = (0.05, 0.3),
     lag: float | None = None,
 ) -> Divergence:
-    """Fit how the creep velocity diverges towards slip.
+    """Fit the divergence of the creep velocity towards slip.
 
     The model is the singular term of Eq. (8), corrected, with the exponent left free,
 
         X' = a tau (1 - tau^2)^(-n),   tau = 1 - (t_s - t)/(l_x/V),
 
-    averaged over each bin (its integral is known) and fitted by least squares for a, n and the
-    time t_s of the divergence, which comes a little after the slip. A bare power of t_s - t
-    is its limit; over a stretch wide enough to be fitted it differs by the factors tau and
-    1 + tau, which would turn 1/2 into 0.56.
+    averaged analytically over each bin. Least squares yield a, n and the time t_s of the
+    divergence, which comes a little after the slip. Its limit, a bare power of t_s - t, lacks the
+    factors tau and 1 + tau; over a stretch wide enough for a fit it would give 0.56 instead of 1/2.
 
     At a finite misalignment Eq. (7) has no divergence: its velocity grows to V, and the friction
-    force can turn no further than to phi. As theta^2 is about 2 (1 - tau), stay with the stretch
+    force turns no further than phi. Because theta^2 is about 2 (1 - tau), the stretch should stay
     above phi^2, in rad.
 
     Parameters
@@ -74,14 +73,14 @@ def fit_divergence(
     loading_time : float
         l_x/V, s: the spring's elongation that carries the whole friction over the drive velocity.
     stretch : tuple of float
-        Bins are used whose time to slip is this part of `loading_time`, from and to.
+        Range of the time to slip of the bins used, as shares of `loading_time`.
     lag : float, optional
-        By how much the divergence comes later than the slip, s; fitted unless it is given.
+        Delay of the divergence after the slip, s; fitted by default.
 
     Returns
     -------
     Divergence
-        Standard errors from the curve's own and a hundredth of the velocity for the theory.
+        Its standard errors combine the curve's with a hundredth of the velocity for the theory.
 
     Raises
     ------

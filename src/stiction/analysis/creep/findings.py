@@ -1,4 +1,4 @@
-"""What is found of the creep before slip: its curves, and what they imply."""
+"""Findings on the creep before slip: its curves, divergence and implied misalignment."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-KNOWN = 0.25  # standard error of an exponent, or of an angle over it, that still says something
+KNOWN = 0.25  # largest useful standard error, of the exponent, or of the angle relative to it
 SURE = 2.0  # standard errors
-MISSED = 0.1  # of the creep: what Eq. (7) misses by more, it does not describe
-RESTS = 1e-6  # of the drive velocity: what moves less for most of the time rests
-BACKWARD, SOME = 0.02, 0.25  # of the drive velocity; of the bins: creep the other way
+MISSED = 0.1  # of the creep: Eq. (7) does not describe curves with a larger misfit
+RESTS = 1e-6  # of the drive velocity: slower motion, most of the time, counts as rest
+BACKWARD, SOME = 0.02, 0.25  # of the drive velocity; of the bins: limits of backward creep
 
 
 class CreepFound(NamedTuple):
-    """Creep curves, their mean, and what they imply; None where `missing` says why.
+    """Creep curves, their mean, and fits to it; for each None, `missing` gives the reason.
 
-    See `stiction.Analysis`, which holds the same.
+    The fields are those of `stiction.Analysis`.
     """
 
     curves: xr.Dataset | None
@@ -42,7 +42,7 @@ class CreepFound(NamedTuple):
 
 
 def tried(missing: dict[str, str], name: str, find: Callable[[], T]) -> T | None:
-    """Return what is found; or None, and note under its name in `missing` why it is not."""
+    """Return a finding; or None, with the reason under its name in `missing`."""
     try:
         return find()
     except StictionError as error:
@@ -53,11 +53,11 @@ def tried(missing: dict[str, str], name: str, find: Callable[[], T]) -> T | None
 def find_creep(
     source: Trajectory | Record, record: Record, cycles: xr.Dataset, width: float | None
 ) -> CreepFound:
-    """Return what is found of the creep in the stick phases of these cycles.
+    """Analyse the creep in the stick phases of some cycles.
 
-    Where a record does not say where the mass is, the misalignment is found from the force alone,
-    and the creep is counted from the stiffness that is found with it; where it is not found, from
-    the even loading in the first half of each rise.
+    Without a position, the misalignment follows from the force alone, and the creep from the
+    stiffness that is fitted with it; if this fit fails, from the even loading in the first half of
+    each rise.
     """
     missing: dict[str, str] = {}
     run = source if isinstance(source, Trajectory) else None
@@ -89,7 +89,7 @@ def find_creep(
 def drive_speed(source: Trajectory | Record, record: Record) -> float | None:
     """Return V of Eq. (7), m/s; None if it is not known.
 
-    Of a run it is the drive's own, where its record has that part which loads the soft spring.
+    A run yields the drive's full velocity; its record has only the part along the soft spring.
     """
     if isinstance(source, Trajectory):
         return abs(source.slider.motion.velocity) or None
@@ -97,12 +97,11 @@ def drive_speed(source: Trajectory | Record, record: Record) -> float | None:
 
 
 def calibrated(record: Record, cycles: xr.Dataset, found: Misalignment | None = None) -> Record:
-    """Return a record with the stiffness that its own loading shows, unless it has a position.
+    """Return a record with the stiffness seen in its own loading, unless it has a position.
 
-    That which was found together with the misalignment; without it, that of the even loading in
-    the first half of each rise (the median over cycles). A few per cent between a stated
-    stiffness and that at which the force rises would hide the creep, V less the rate of force
-    over stiffness.
+    It is the stiffness fitted with the misalignment, or that of the even loading in the first half
+    of each rise (the median over cycles). Creep is V minus the rate of force over stiffness: an
+    error of a few per cent in a stated stiffness would hide it.
     """
     if record.position is not None:
         return record
@@ -116,7 +115,7 @@ def calibrated(record: Record, cycles: xr.Dataset, found: Misalignment | None = 
 
 
 def _mean(curves: xr.Dataset, record: Record) -> xr.Dataset:
-    """Return the mean creep curve, if it goes the way that creep goes."""
+    """Return the mean creep curve, if it does not go backwards."""
     if not np.isfinite(curves["velocity"].values).any():
         raise ResultError("there is no stick phase with samples enough to see it in")
     mean = mean_creep(curves)
@@ -132,7 +131,7 @@ def _mean(curves: xr.Dataset, record: Record) -> xr.Dataset:
 
 
 def _divergence(mean: xr.Dataset, loading: float) -> Divergence:
-    """Return how creep diverges, if that stands out of its uncertainty."""
+    """Return the divergence of creep, if it exceeds its uncertainty."""
     found = fit_divergence(mean, loading)
     n, error = found.exponent, found.exponent_error
     if not error < KNOWN or not found.amplitude > SURE * found.amplitude_error or n <= 0.0:
@@ -141,7 +140,7 @@ def _divergence(mean: xr.Dataset, loading: float) -> Divergence:
 
 
 def _misalignment(mean: xr.Dataset, V: float, stiffness: float) -> Misalignment:
-    """Return the misalignment that creep implies, if it stands out of its uncertainty."""
+    """Return the implied misalignment, if it exceeds its uncertainty."""
     if np.nanmedian(np.abs(mean["velocity"].values)) < RESTS * V:
         raise ResultError("not determined: the mass rests, where Eq. (7) has it creep")
     found = fit_misalignment(mean, V, stiffness)

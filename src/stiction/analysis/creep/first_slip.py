@@ -1,4 +1,4 @@
-"""The slow motion before slip, as a run shows it."""
+"""The slow motion before the first slip of a run."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-# By how much a slip gains on the drive, of its speed over the slower and over the faster angular
-# frequency: half a swing on the soft spring, half as fast again as the drive, gains as much as the
-# first; a transverse swing between rest and twice the drive's speed gains 2 of the second, and 2.1
-# has been seen at any angle.
+# Least gain of a slip on the drive, in units of the drive's speed over the slower and over the
+# faster angular frequency. Half a swing on the soft spring at 1.5 times the drive's speed gains 1
+# of the first unit; a transverse swing between rest and twice the drive's speed gains 2 of the
+# second, and at most 2.1 has been seen at any angle.
 GAINED, SWUNG = 1.0, 3.0
 
 
 class Loading(NamedTuple):
-    """How a spring is loaded from the start on.
+    """The first loading of a spring.
 
     Parameters
     ----------
     slip : int
         The sample at which the first slip begins, -1 if there is none.
     end : int
-        The sample at which creep ends: there, or where the spring is loaded but for what a slip
-        gains at least.
+        The sample at which creep ends: that of the slip, or where the elongation is within the
+        least gain of a slip of its largest value.
     """
 
     slip: int
@@ -40,21 +40,20 @@ class Loading(NamedTuple):
 
 
 def loading(slider: Slider, elongation: Floats, drive: Floats) -> Loading:
-    """Return where the first slip begins.
+    """Find the start of the first slip.
 
-    In a slip the mass gains on the drive, and the spring's elongation along it falls: by more
-    than a transverse swing makes, which can be faster than the drive as well, and by more than
-    an approach to steady sliding that overshoots a little. It begins where the elongation is
-    largest.
+    In a slip the mass gains on the drive, and the spring's elongation along the drive falls: by
+    more than in a transverse swing, which can be faster than the drive too, and by more than in a
+    small overshoot before steady sliding. The slip begins at the largest elongation.
 
     Parameters
     ----------
     slider : Slider
-        What is pulled.
+        The system.
     elongation : ndarray
-        (n,), of the spring along X, u_x cos(phi) + u_y sin(phi), m.
+        (n,), elongation of the spring along X, u_x cos(phi) + u_y sin(phi), m.
     drive : ndarray
-        (n,), its velocity along X, m/s.
+        (n,), velocity of the drive along X, m/s.
     """
     lag = np.concatenate([[0.0], np.cumsum(np.sign(drive[1:]) * np.diff(elongation))])
     slow, fast = slider.natural_frequencies
@@ -73,29 +72,28 @@ def _loading(run: Trajectory) -> Loading:
 
 
 def first_slip_time(run: Trajectory) -> float:
-    """Return when the first slip begins (s), see `loading`; the run's last time if none does."""
+    """Return the start of the first slip (s), see `loading`; the run's last time if none."""
     return float(run.data["time"].values[_loading(run).slip])
 
 
 def creep_end(run: Trajectory) -> float:
-    """Return when the creep from the start on ends (s), with a slip or without: see `Loading`."""
+    """Return the end of the initial creep (s), with or without a slip: see `Loading`."""
     return float(run.data["time"].values[_loading(run).end])
 
 
 def mean_creep_velocity(run: Trajectory, width: float = 0.02) -> xr.DataArray:
     """Return the velocity X' (m/s) averaged over the transverse oscillation, before the first slip.
 
-    The oscillation makes the creep advance in steps, about one each transverse period with a
-    rest in between. An average over whole steps, from one rest to another, is free of them: it
-    is the distance covered divided by the time. Where there are no rests it is taken over
-    intervals of equal length.
+    The oscillation makes the creep advance in steps, about one per transverse period, with rests in
+    between. Distance over time from one rest to another averages over whole steps. Where there are
+    no rests, intervals of equal length are used.
 
     Parameters
     ----------
     run : Trajectory
         Sampled several times each transverse period.
     width : float, optional
-        Least time to average over, s; many transverse periods.
+        Shortest averaging time, s; many transverse periods.
 
     Returns
     -------

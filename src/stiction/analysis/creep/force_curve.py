@@ -1,4 +1,4 @@
-"""The misalignment that a measured force implies by itself, from the shape of its rises."""
+"""The misalignment from a measured force alone, by the shape of its rises."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 GRID = 400  # angles at which the closed form is tabled
-MODEL = 1e-4  # of the drop: what Eq. (7), with the terms below, leaves out at the best
-MISSED = 4.0  # a misfit that all cycles share is as smooth as the curve: it counts this much
-WORST = 1e-3  # of the drop: with a larger misfit the rises do not have the shape
-# What a record leaves open: stated stiffness over the true one, less 1; logarithms of k_x/k_y and
-# of the weakening of friction at the drive velocity. What is assumed of each, and how widely.
+MODEL = 1e-4  # of the drop: least error of Eq. (7) with the terms below
+MISSED = 4.0  # weight of a misfit that all cycles share: it is as smooth as the curve
+WORST = 1e-3  # of the drop: with a larger misfit, the rises do not have the shape
+# Unknowns of a record, assumed value and width of each: relative error of the stated stiffness,
+# logarithms of k_x/k_y and of the weakening of friction at the drive velocity.
 TAILS = (0.0, log(1e-3), log(1e-2))
 WIDTHS = (0.02, 1.5, 1.3)
 THEORY = (
@@ -32,7 +32,7 @@ THEORY = (
 )
 KNOWN = 0.3  # relative standard error above which an angle is not determined
 EARLY = 0.5  # F_0 above the peak by this share
-SURELY = 20.0  # deg: what is known to be less is worth a word
+SURELY = 20.0  # deg: a smaller upper limit is worth a word
 LOWEST = (1e-5, log(1e-5), -0.1, log(1e-6), log(1e-5))
 HIGHEST = (0.3, 0.0, 0.1, log(0.1), 0.0)
 MOST, FIXED = 50, 1e-3  # evaluations in a fit; the width that holds a parameter
@@ -41,31 +41,31 @@ STARTS = ((0.03, log(0.02)), (0.08, log(0.1)))  # phi, and the logarithm of F_0/
 
 
 def misalignment_from_force(record: Record, cycles: xr.Dataset | None = None) -> Misalignment:
-    """Fit the misalignment with which friction, as it turns, bends the rises of a force.
+    """Fit the misalignment to the bend of a force's rises, which turning friction causes.
 
-    By Eq. (7) the force rises at k_x V_x (1 - tan(phi) cot(theta)), F = F_0 cos(theta): the less,
-    the nearer it comes to F_0. Fitted are the time that the rises take (their mean over cycles at
-    equal forces), by phi, F_0 and the stiffness, with the stated one known to 2 %; with k_x/k_y,
-    which slows the turning, and a friction that is lower the faster the creep, of both of which
-    only the order of magnitude is assumed. The standard error holds the scatter of the cycles,
-    these assumptions, the steps in which the force is read, and what the fit misses.
+    By Eq. (7) the force rises at k_x V_x (1 - tan(phi) cot(theta)), F = F_0 cos(theta): more slowly
+    as it approaches F_0. The duration of the rises (the mean over cycles at equal forces) is fitted
+    with phi, F_0 and the stiffness, assumed to be stated within 2 %; also with k_x/k_y, which slows
+    the turning, and with the weakening of friction with creep speed, for both of which only the
+    order of magnitude is assumed. The standard error includes the scatter of the cycles, these
+    assumptions, the resolution of the force, and the misfit.
 
     Parameters
     ----------
     record : Record
-        Of stick-slip, with stiffness and drive velocity.
+        A record of stick-slip, with stiffness and drive velocity.
     cycles : Dataset, optional
-        From `stiction.find_cycles`, which finds them otherwise.
+        From `stiction.find_cycles`, which is called by default.
 
     Returns
     -------
     Misalignment
-        Its size: a force alone does not tell its sign.
+        Its magnitude: a force alone does not reveal the sign.
 
     Raises
     ------
     ResultError
-        Where the record does not determine it to 30 % or so (one standard error), with the reason.
+        If the record does not determine it to about 30 % (one standard error), with the reason.
 
     References
     ----------
@@ -100,7 +100,7 @@ def misalignment_from_force(record: Record, cycles: xr.Dataset | None = None) ->
 def crept(
     force: Floats, phi: float, F_0: float, ratio: float = 0.0, weakening: float = 0.0
 ) -> Floats:
-    """Return k_x times the distance crept (N) up to each force, but for a constant, by Eq. (7).
+    """Return k_x times the distance crept (N) up to each force, up to a constant, by Eq. (7).
 
     Parameters
     ----------
@@ -125,9 +125,9 @@ def crept(
 
 
 class _Fit(NamedTuple):
-    """Parameters, their covariance, how each level moves phi (rad/N), the misfit over the drop.
+    """Parameters, covariance, sensitivity of phi to each level (rad/N), misfit over the drop.
 
-    `apart` is how far off phi (rad) lies with k_x/k_y a standard deviation to either side.
+    `apart` is the change of phi (rad) if k_x/k_y is off by a standard deviation.
     """
 
     best: Floats
@@ -180,7 +180,7 @@ def _fitted(curve: LoadingCurve) -> _Fit:
 
 
 def _over_cycles(curve: LoadingCurve, gain: Floats) -> float:
-    """Return the standard error of phi from how far each cycle by itself would move it."""
+    """Return the standard error of phi from the shift that each cycle causes."""
     from scipy.special import stdtrit  # the quantile of Student's t
 
     count = len(curve.apart)
@@ -191,7 +191,7 @@ def _over_cycles(curve: LoadingCurve, gain: Floats) -> float:
 
 
 def _refuse(phi: float, error: float, excess: float, misfit: float, off: float) -> None:
-    """Raise where the record does not determine the angle, with the reason."""
+    """Raise an error with the reason, if the record does not determine the angle."""
     if abs(off) > 2.0 * WIDTHS[0]:
         raise ResultError(
             f"not determined: the force rises at {1.0 / (1.0 + off):.3g} times stiffness times "

@@ -20,7 +20,7 @@ THEORY = 0.01  # relative accuracy of Eqs. (7) and (8): they leave out inertia a
 
 
 def used_bins(curve: xr.Dataset, low: float, high: float) -> list[Floats]:
-    """Return begin, end, velocity, its error and force of the bins inside a stretch (s)."""
+    """Return begin, end, velocity, velocity error and force of the bins in a stretch (s)."""
     names = ("begin", "end", "velocity", "velocity_error", "force")
     columns = np.stack([curve[name].values for name in names])
     begin, end, velocity, error, _ = columns
@@ -42,12 +42,12 @@ def fitted(
     start: tuple[float, ...],
     bounds: tuple[tuple[float, ...], tuple[float, ...]],
 ) -> tuple[list[float], list[float]]:
-    """Return parameters and standard errors, these scaled up where the model misses by more.
+    """Return parameters and standard errors, which are scaled up if the misfit exceeds them.
 
     Raises
     ------
     ResultError
-        If no parameters come near.
+        If the fit does not converge.
     """
     from scipy.optimize import OptimizeWarning, curve_fit
 

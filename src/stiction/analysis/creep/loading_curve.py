@@ -1,4 +1,4 @@
-"""The mean loading curve of a stick-slip force: how far the mass has crept at each force."""
+"""The mean loading curve of a stick-slip force: the distance crept at each force."""
 
 from __future__ import annotations
 
@@ -15,25 +15,24 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-LEVELS = 40  # of force, at which the curve is given
-FEWEST = 10  # bins in a rise, which has two samples a bin at least
-AFTER_TROUGH, BEFORE_SLIP = 0.1, 0.12  # of the drop: inertia is felt there
-MANY, FINE = 100_000, 1e-4  # samples that show in which steps a force is read; finer ones are none
+LEVELS = 40  # number of forces on the curve
+FEWEST = 10  # bins in a rise, each of at least two samples
+AFTER_TROUGH, BEFORE_SLIP = 0.1, 0.12  # of the drop, left out because inertia matters there
+MANY, FINE = 100_000, 1e-4  # samples examined for steps of the force; finest step
 
 
 class LoadingCurve(NamedTuple):
-    """How far the mass has crept at each force, on the average over cycles.
+    """The distance crept at each force, averaged over cycles.
 
     Parameters
     ----------
     force : ndarray
         (levels,), N; increasing.
     crept : ndarray
-        (levels,), N: k_x times the distance crept, but for a constant; it is V t - F/k_x, times
-        the stiffness as it was stated.
+        (levels,), N: k_x times the distance crept, V t - F/k_x, with the stated stiffness, up to
+        a constant.
     apart : ndarray
-        (cycles, levels), N: by how much each cycle differs from the mean, its own constant taken
-        off.
+        (cycles, levels), N: deviation of each cycle from the mean, without its own constant.
     error : ndarray
         (levels,), N: standard error of the mean.
     peak, drop : float
@@ -51,14 +50,14 @@ class LoadingCurve(NamedTuple):
 def loading_curve(record: Record, cycles: xr.Dataset) -> LoadingCurve:
     """Average the loading of all cycles at equal forces.
 
-    Quasistatic creep has no memory: how fast the mass creeps depends on the force alone. So
-    cycles that begin at different forces are averaged at equal ones. A cycle's force is scaled
-    with its peak: where friction varies from cycle to cycle, so does the whole curve.
+    Quasistatic creep has no memory: its velocity depends on the force alone. Therefore cycles that
+    begin at different forces can be averaged at equal ones. Each cycle's force is scaled by its
+    peak, because the whole curve varies with the friction from cycle to cycle.
 
     Raises
     ------
     ResultError
-        If the record says neither stiffness nor drive velocity, or the rises are too coarse.
+        If the record lacks stiffness or drive velocity, or the rises have too few samples.
     """
     rate = (record.stiffness or 0.0) * (record.drive_velocity or 0.0)
     if not rate:
@@ -94,7 +93,7 @@ def loading_curve(record: Record, cycles: xr.Dataset) -> LoadingCurve:
 def _crept(
     record: Record, start: float, top: float, scale: float, rate: float, levels: Floats
 ) -> Floats | None:
-    """Return k_x times the distance crept at each force, of one cycle; None if it is too coarse."""
+    """Return k_x times the distance crept at each force in one cycle; None if too coarse."""
     first, last = np.searchsorted(record.time, [start, top], side="left")
     count = min(LEVELS + 8, int(last - first) // 2)
     if count < FEWEST:
@@ -113,7 +112,7 @@ def _crept(
 
 
 def _scatter(apart: Floats, rows: list[Floats]) -> float:
-    """Return the standard error of the mean, from the cycles' scatter, or a single one's noise."""
+    """Return the standard error of the mean from the scatter of cycles, or the noise of one."""
     count = len(rows)
     if count == 1:
         return float(np.std(np.diff(rows[0], 3)) / 20.0**0.5)  # that of white noise, less a cubic
@@ -121,9 +120,9 @@ def _scatter(apart: Floats, rows: list[Floats]) -> float:
 
 
 def _rounding(force: Floats, width: float) -> float:
-    """Return by how much a force that is read in steps is off, on the average over a width (N).
+    """Return the error (N) of a force that is read in steps, averaged over a width.
 
-    A ramp through many steps averages them out, and so does noise as large as they are.
+    A ramp through many steps reduces it, and so does noise of their size.
     """
     some = force[:MANY]
     step = float(np.diff(np.unique(some)).min(initial=np.inf))

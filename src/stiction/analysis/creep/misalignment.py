@@ -1,4 +1,4 @@
-"""Which misalignment a creep curve implies."""
+"""The misalignment implied by a creep curve."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 
-SURE = 2.0  # standard errors that an angle must be away from nothing
+SURE = 2.0  # standard errors by which an angle must differ from zero
 
 
 class Misalignment(NamedTuple):
-    """The misalignment that creep implies (rad), F_0 (N), and their standard errors.
+    """The misalignment implied by creep (rad), F_0 (N), and their standard errors.
 
-    `stiffness` (N/m) is that at which the force rises, where it was fitted with them; `misfit`
-    is by how much of itself the creep typically differs from Eq. (7), beyond two standard errors.
+    `stiffness` (N/m) is the fitted one, if any; `misfit` is the typical relative deviation of the
+    creep from Eq. (7) beyond two standard errors.
     """
 
     phi: float
@@ -34,12 +34,12 @@ class Misalignment(NamedTuple):
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Two standard errors to each side of phi (rad), which hold it in 95 of 100 cases."""
+        """The 95 % interval of phi (rad): two standard errors to each side."""
         return self.phi - SURE * self.phi_error, self.phi + SURE * self.phi_error
 
     @property
     def stands_out(self) -> bool:
-        """Whether it is more than two standard errors away from none."""
+        """Whether phi differs from zero by more than two standard errors."""
         return abs(self.phi) > SURE * self.phi_error
 
 
@@ -49,11 +49,11 @@ def fit_misalignment(
     stiffness: float,
     stretch: tuple[float, float] = (0.05, 1.0),
 ) -> Misalignment:
-    """Fit the misalignment with which Eq. (7) gives this creep.
+    """Fit the misalignment of Eq. (7) to a creep curve.
 
-    By Eq. (7) the velocity depends on the spring force alone, whatever the loading began with:
-    X' = V sin(phi) cos(theta - phi)/sin(theta), F = F_0 cos(theta). Both phi and F_0 are
-    fitted, by least squares: near slip the force is so close to F_0 that a per mille in F_0 shows.
+    By Eq. (7) the velocity depends on the spring force alone, independent of the start of loading:
+    X' = V sin(phi) cos(theta - phi)/sin(theta), F = F_0 cos(theta). Least squares determine both
+    phi and F_0: near slip the force is so close to F_0 that an error of a per mille in F_0 shows.
 
     Parameters
     ----------
@@ -62,13 +62,13 @@ def fit_misalignment(
     drive_velocity, stiffness : float
         V, m/s, and k_x, N/m.
     stretch : tuple of float
-        Bins are used whose time to slip is this part of the loading time l_x/V, from and to;
-        nearer to slip the inertia, which Eq. (7) leaves out, is felt.
+        Range of the time to slip of the bins used, as shares of the loading time l_x/V; nearer
+        to slip the inertia matters, which Eq. (7) neglects.
 
     Returns
     -------
     Misalignment
-        Standard errors from the curve's own and a hundredth of the velocity for the theory.
+        Its standard errors combine the curve's with a hundredth of the velocity for the theory.
 
     Raises
     ------

@@ -1,1 +1,1 @@
-"""Which motion a force shows: its cycles, its regime, its friction, and what is doubtful."""
+"""The motion seen in a force: its cycles, regime and friction, with doubts."""

@@ -1,8 +1,7 @@
-"""A band of frequencies in which a force vibrates, where its swings are of every size.
+"""A band of frequencies in which a force vibrates with swings of every size.
 
-Between the smallest swings of such a vibration and noise there is no gap, so that they cannot be
-counted. In its spectrum it stands out all the same, as a hump: noise falls off to one side or to
-neither.
+Such swings cannot be counted, because no gap separates the smallest of them from noise. But the
+vibration is a hump in the spectrum, which falls off to both sides; noise falls off to one or none.
 """
 
 from __future__ import annotations
@@ -30,17 +29,16 @@ STEEP = 7.0  # power of the height with which the odds of a vibration grow
 
 
 class Hump(NamedTuple):
-    """Where a spectrum stands out most, and by how much.
+    """The highest hump of a spectrum.
 
     Parameters
     ----------
     frequency : float
         Hz.
     height : float
-        Its power over what lies to both sides, in units of what tells a vibration: above 1 the
-        force vibrates.
+        Its power over that at both sides, in units of the threshold: above 1 the force vibrates.
     rms : float
-        Root of the mean square of what vibrates, N.
+        Root mean square of the vibration, N.
     """
 
     frequency: float
@@ -49,7 +47,7 @@ class Hump(NamedTuple):
 
     @property
     def likelihood(self) -> float:
-        """How likely a vibration makes it, and not noise, 0 to 1; one half at a height of 1."""
+        """Likelihood of a vibration rather than noise, 0 to 1; one half at a height of 1."""
         odds: float = min(self.height, 1e9) ** STEEP
         return odds / (1.0 + odds)
 
@@ -58,7 +56,7 @@ NO_HUMP = Hump(np.nan, 0.0, 0.0)
 
 
 def highest_hump(time: Floats, force: Floats) -> Hump:
-    """Return the hump of a force's spectrum that stands out most; none has no height.
+    """Return the highest hump of a force's spectrum, of height zero if there is none.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The course of a force that has no cycles: does it load, settle, stay, or die out?"""
+"""The course of a force without cycles: loading, settling, staying, or dying out."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ PARTS = 4 * QUARTER
 
 
 def dies_out(drop: ArrayLike, period: ArrayLike, rest: float) -> bool:
-    """Return whether swings get smaller and smaller until (nearly) nothing is left.
+    """Return whether swings decrease until (nearly) nothing is left.
 
-    They may grow before, while the spring is loaded, if it is quiet afterwards for longer than they
-    lasted.
+    They may grow first, while the spring is loaded, if the quiet afterwards lasts longer than they
+    did.
 
     Parameters
     ----------
     drop, period : array
-        (n,) of each swing, in any unit and in that of `rest`.
+        (n,) for each swing, in any unit, and in that of `rest`.
     rest : float
         Time from the last of them to the end of the record.
     """
@@ -45,9 +45,9 @@ def dies_out(drop: ArrayLike, period: ArrayLike, rest: float) -> bool:
 
 
 def built_up(drop: ArrayLike) -> slice:
-    """Return which swings are left without those that build up before, or ebb away after.
+    """Return the slice of swings without the build-up before and the decay after them.
 
-    How many of these are seen depends on samples and noise: they are no cycles of the motion.
+    The number of these depends on sampling and noise: they are not cycles of the motion.
 
     Parameters
     ----------
@@ -68,9 +68,9 @@ def _building(size: np.ndarray) -> int:
 
 
 def order(values: np.ndarray) -> float:
-    """Return the rank correlation (Spearman's) of the values with their number: -1 for falling.
+    """Return Spearman's rank correlation of values with their index: -1 for falling.
 
-    NaN for a single value, which is in no order.
+    NaN for a single value.
     """
     if len(values) < 2:
         return nan
@@ -79,7 +79,7 @@ def order(values: np.ndarray) -> float:
 
 
 class Course(NamedTuple):
-    """How the force of a record goes, from its medians over 32 equal parts.
+    """The course of a record's force, from its medians over 32 equal parts.
 
     Parameters
     ----------
@@ -88,9 +88,9 @@ class Course(NamedTuple):
     span : float
         Highest less lowest, N.
     late_span : float
-        That of the last quarter, N.
+        Highest less lowest in the last quarter, N.
     one_way : float
-        Size of `change` over the sum of all ups and downs: 1 if it goes one way only.
+        Magnitude of `change` over the sum of all ups and downs: 1 for a monotone course.
     early_rate, late_rate : float
         Mean rates over the first and the last quarter, N/s.
     scatter : float
@@ -107,7 +107,7 @@ class Course(NamedTuple):
 
 
 def course(time: Floats, force: Floats) -> Course:
-    """Return how the force goes; there are at least `PARTS` samples."""
+    """Return the course of a force of at least `PARTS` samples."""
     edges = np.linspace(0, len(time), PARTS + 1).astype(np.intp)[1:-1]
     parts = np.split(force, edges)
     f = np.array([np.median(part) for part in parts])

@@ -1,4 +1,4 @@
-"""What a table of cycles comes to: mean and spread of each quantity."""
+"""Summary of a table of cycles: mean and spread of each quantity."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     import xarray as xr
 
-TIMES = ("start", "peak_time", "trough_time")  # when, not how much: a mean says nothing
+TIMES = ("start", "peak_time", "trough_time")  # instants, whose mean is meaningless
 
 
 def summary(cycles: xr.Dataset) -> xr.Dataset:
@@ -23,10 +23,10 @@ def summary(cycles: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     Dataset
-        Over ``quantity`` (names, with ``unit`` beside them): ``mean`` and ``standard_deviation``
-        in that unit, the latter of one cycle (divide by the square root of `number` for the
-        mean's own), and ``number``, of cycles in which the quantity is known. Not a number where
-        fewer than one, or two, are.
+        Over ``quantity`` (names, with ``unit`` beside them): ``mean``, ``standard_deviation`` of
+        a single cycle (divide by the square root of `number` for that of the mean), and
+        ``number`` of cycles in which the quantity is known. NaN if there are fewer than one, or
+        two, of them.
 
     Examples
     --------

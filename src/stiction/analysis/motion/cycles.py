@@ -1,4 +1,4 @@
-"""Stick-slip cycles of a record: a table, a row a cycle."""
+"""Stick-slip cycles of a record: a table with a row for each."""
 
 from __future__ import annotations
 
@@ -45,8 +45,8 @@ COLUMNS = {
     "hesitations": ("1", "number of hesitations, dips too small for a cycle of their own"),
     "hesitation_depth": ("N", "depth of the deepest hesitation"),
 }
-UNSEEN = 0.25  # of a period without a sample: what happened there is not known
-JUMP = 1.5  # times the step from sample to sample: less is no gap, but few samples
+UNSEEN = 0.25  # of a period without a sample: the cycle is not known
+JUMP = 1.5  # sampling steps: a shorter pause is not a gap
 LOADING = (0.1, 0.5)  # part of the rise that is straight: after the swing, before the creep
 # A line beside the motion: swings without it have so many of its periods, and are as high or stick
 SLOWER, HIGHER = 2.0, 0.75
@@ -61,13 +61,12 @@ QUARTER = 4  # of a fall, to each side: cubics through so much of half a sine ar
 def find_cycles(source: Trajectory | Record) -> xr.Dataset:
     """Find the macroscopic cycles of a record, from trough over peak to trough.
 
-    Nothing is to be tuned: a cycle is what stands apart from all smaller reversals of the force
-    (`stiction.analysis.signals.turning_points`), so noise, ripple, single wild samples and slow
-    drift make none; a dip that is small beside the fall of its cycle is a hesitation, which is
-    counted (`stiction.analysis.motion.hesitations`); swings that die out are a transient, and none
-    either. A cycle that the record's beginning or end cuts is left out, and one with a gap, a
-    quarter of its period without a sample; so is the first loading of a run that starts unloaded,
-    as no slip comes before it.
+    There is nothing to tune. Cycles stand apart from all smaller reversals of the force
+    (`stiction.analysis.signals.turning_points`): noise, ripple, single wild samples and slow drift
+    are not cycles. A dip that is small beside the fall of its cycle counts as a hesitation
+    (`stiction.analysis.motion.hesitations`), and swings that die out are a transient. Left out are
+    cycles cut by the beginning or end of the record, cycles with a gap of a quarter of their period
+    between samples, and the first loading from an unloaded spring, before which there is no slip.
 
     A study (`stiction.Study`) counts the same cycles in the same run.
 
@@ -79,7 +78,7 @@ def find_cycles(source: Trajectory | Record) -> xr.Dataset:
     Returns
     -------
     Dataset
-        Over ``cycle``, 1, 2, ...; empty if there is none. Each with ``units``:
+        Over ``cycle``, 1, 2, ...; empty if there is none. All variables have ``units``:
 
         ``start, peak_time, trough_time, period`` (s)
             Trough before loading, peak, trough after slip; from trough to trough.
@@ -88,25 +87,25 @@ def find_cycles(source: Trajectory | Record) -> xr.Dataset:
         ``rise_share``
             Of the period: 1 for a perfect sawtooth, 0.5 for a sine.
         ``mu_static, mu_kinetic``
-            Peak, and mean of peak and trough, over the normal load: a mass that slips against a
-            constant friction swings as far below it as it was above. Apparent ones: whether
-            they are the interface's is another question.
+            Peak, and mean of peak and trough, over the normal load: a mass that slips against
+            constant friction swings as far below it as it was above. These are apparent
+            coefficients, not necessarily those of the interface.
         ``stick_slope`` (N/s), ``stiffness`` (N/m)
-            Of the straight line through the loading from a tenth to half of its time; what
-            creeps then already makes them too low by its share of the drive velocity.
+            Of the straight line through the loading from a tenth to half of its time; creep in
+            that time lowers them by its share of the drive velocity.
         ``creep_distance, slip_distance`` (m)
             Moved by the mass from start to peak, and from peak to trough; from its position, or
             from V t minus the change of force over stiffness.
         ``peak_slip_speed`` (m/s)
-            The slip speed's, or V minus the rate of force over stiffness, smoothed over a
+            Of the slip speed, or of V minus the rate of force over stiffness, smoothed over a
             quarter of the fall to each side.
         ``hesitations``, ``hesitation_depth`` (N)
-            How often the force dips on its way up, or rises on its way down, without making a
-            cycle of it; and by how much at most. What turns back by less than
-            ``hesitation_depth.attrs["least"]`` (N) does not stand apart from noise and ripple,
-            and is not counted: about 5 % of a drop, 10 % under noise.
+            Number of times that the force dips on its way up, or rises on its way down, within a
+            cycle, and the largest of these reversals. Those below
+            ``hesitation_depth.attrs["least"]`` (N), about 5 % of a drop or 10 % under noise, are
+            not counted: they do not stand apart from noise and ripple.
 
-        What needs a quantity that the record lacks is not a number.
+        Columns that need a quantity which the record lacks are NaN.
 
     Examples
     --------
@@ -125,16 +124,16 @@ class Swings(NamedTuple):
     Parameters
     ----------
     table : Dataset
-        A row a swing, with the columns of `find_cycles`.
+        A row for each swing, with the columns of `find_cycles`.
     dying : bool
-        Whether they die out: then they are a transient, no cycles.
+        Whether they die out: then they are a transient, not cycles.
     turns : int
-        Peaks and troughs, those of cycles that the record cuts among them.
+        Number of peaks and troughs, including those of cut cycles.
     noise, clearness : float
-        How far noise reaches (N), and how clearly the swings stand apart from it; see
+        Reach of the noise (N), and how clearly the swings stand apart from it; see
         `stiction.analysis.signals.turning_points`.
     lines : tuple of Line
-        What was taken off the force before, such as mains hum.
+        Lines, such as mains hum, subtracted from the force beforehand.
     """
 
     table: xr.Dataset
@@ -146,7 +145,7 @@ class Swings(NamedTuple):
 
     @property
     def cycles(self) -> xr.Dataset:
-        """Those that are cycles: none if the swings die out, and none that only build up."""
+        """The swings that are cycles: none if they die out, and none that only build up."""
         left = slice(0) if self.dying else built_up(self.table["drop"].values)
         table = self.table.isel(cycle=left)
         return table.assign_coords(cycle=self.table["cycle"][: table.sizes["cycle"]].values)
@@ -155,8 +154,8 @@ class Swings(NamedTuple):
 def swings(record: Record) -> Swings:
     """Return all swings of the force that stand apart from smaller reversals.
 
-    A narrow line is taken off before if what is left shows slower swings that are larger, or of a
-    mass that sticks: then these are the motion, and the line is beside it.
+    A narrow line is subtracted first, if the rest shows slower swings that are larger, or that
+    stick: then these are the motion, and the line is a disturbance.
     """
     force = without_outliers(record.force)
     if force is not record.force:
@@ -185,10 +184,10 @@ def _without_line(record: Record, found: Swings) -> tuple[Record, Swings] | None
 
 
 def _multiplied(line: Line, without: Swings) -> bool:
-    """Return whether swings are the lesser ones of a motion of the line's own period.
+    """Return whether swings are a subharmonic of the line.
 
-    Where every second slip is larger, what is left without the line has twice its period, or
-    another whole multiple; what is independent of the line has none.
+    If every second slip is larger, the rest without the line has twice the line's period, or
+    another whole multiple of it. Independent swings have no such period.
     """
     period, drop = without.table["period"].values, without.table["drop"].values
     whole = float(np.median(np.cos(2.0 * np.pi * line.frequency * period)))
@@ -196,10 +195,10 @@ def _multiplied(line: Line, without: Swings) -> bool:
 
 
 def _beside(line: Line, without: Swings) -> bool:
-    """Return whether a line is beside the motion.
+    """Return whether a line is a disturbance of the motion.
 
-    Then swings without it are slower, and larger; or, however large it is, those of a mass that
-    sticks: such a mass does not vibrate as well.
+    Then the swings without it are slower and larger; or they stick, at any size of the line,
+    because a sticking mass does not vibrate.
     """
     period, drop, rise = (without.table[name].values for name in ("period", "drop", "rise_share"))
     motion = (drop > HIGHER * line.height) | (rest_share(rise) >= STICKING)
@@ -236,9 +235,9 @@ def _swings(record: Record) -> Swings:
 
 
 def _corners(record: Record, points: TurningPoints) -> tuple[Vertices, Vertices]:
-    """Return troughs and peaks in turn, a trough first and last; and hesitations, by their depth.
+    """Return alternating troughs and peaks, a trough first and last; and hesitations.
 
-    Of each hesitation its first point is placed.
+    A hesitation has the time of its first point, and its depth as value.
     """
     if len(points.index) < 3:
         none = Vertices(np.zeros(0), np.zeros(0))
@@ -253,7 +252,7 @@ def _corners(record: Record, points: TurningPoints) -> tuple[Vertices, Vertices]
 
 
 def _hesitated(corners: Vertices, dips: Vertices) -> dict[str, Floats]:
-    """Return how often each cycle hesitates, and how deeply."""
+    """Return number and depth of the hesitations of each cycle."""
     start = corners.time[:-1:2]
     cycle = np.searchsorted(start, dips.time, side="right") - 1
     inside = (cycle >= 0) & (dips.time < corners.time[-1])
@@ -264,7 +263,7 @@ def _hesitated(corners: Vertices, dips: Vertices) -> dict[str, Floats]:
 
 
 def _measured(record: Record, force: Floats, corners: Vertices) -> dict[str, Floats]:
-    """Return each column, from troughs and peaks in turn, a trough first and last."""
+    """Return each column, from alternating troughs and peaks, a trough first and last."""
     start, peak_time, trough_time = (corners.time[i:j:2] for i, j in _THREE)
     start_force, peak, trough = (corners.value[i:j:2] for i, j in _THREE)
     unknown = np.full(len(start), np.nan)
@@ -310,13 +309,13 @@ def _loading_rate(time: Floats, force: Floats, start: Floats, peak_time: Floats)
 
 
 def _from(time: Floats, begin: Floats) -> Indices:
-    """Return the first sample at or after each time, or nearly at it: rounding decides nothing."""
+    """Return the first sample at or after each time, within rounding."""
     place = np.interp(begin, time, np.arange(len(time)))
     return np.ceil(place - 1e-3).astype(np.intp)
 
 
 def _moved(record: Record, begin: Floats, end: Floats, gained: Floats) -> Floats:
-    """Return how far the mass moved while the force gained so much."""
+    """Return the distance that the mass moved from a time on, given the gain of force."""
     if record.position is not None:
         places = np.interp(np.stack([begin, end]), record.time, record.position)
         return np.asarray(places[1] - places[0])

@@ -1,4 +1,4 @@
-"""What cannot be true of a record, in words: numbers that do not belong together."""
+"""Warnings about a record whose numbers contradict each other."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ LEAST_MU = 0.01  # of dry friction: superlubricity aside
 FASTER, SLOWER = 1.1, 0.5  # rate of loading over stiffness times drive velocity
 LIGHTER, HEAVIER = 1.4, 0.7  # k/m by the swing over that stated; a slip is slower than a swing
 SLOW_SLIP = 0.1
-THOUSAND = 0.2  # what is within a factor of 5 of a thousand, or its square, is a unit mistaken
+THOUSAND = 0.2  # a ratio within a factor of 5 of a thousand, or its square, is a wrong unit
 FEW = 6  # samples in a slip
 UNLOADED = 0.02  # of the largest force
 NOISE = 5.0  # standard deviations
 
 
 def warnings(record: Record, kind: str, cycles: xr.Dataset, friction: Friction) -> tuple[str, ...]:
-    """Return plain sentences on what is not as it should be, most weighty first."""
+    """Return warnings as sentences, the most important first."""
     found = [
         *_friction_too_large(record, friction),
         *_loading_too_fast(record, kind, cycles),
@@ -44,7 +44,7 @@ def warnings(record: Record, kind: str, cycles: xr.Dataset, friction: Friction) 
 
 
 def taken_off(lines: tuple[Line, ...]) -> tuple[str, ...]:
-    """Return a sentence for each line that was taken off a force before its cycles were sought."""
+    """Return a sentence for each line that was subtracted from the force."""
     found = []
     for line in lines:
         hum = ", the mains' hum in all likelihood," if of_mains(line.frequency) else ""
@@ -57,7 +57,7 @@ def taken_off(lines: tuple[Line, ...]) -> tuple[str, ...]:
 
 
 def _mains(kind: str, cycles: xr.Dataset) -> Iterator[str]:
-    """Doubt a vibration with the frequency of the mains: nothing else is left to tell it from."""
+    """Doubt a vibration at the mains frequency: nothing distinguishes it from hum."""
     if kind != HARMONIC:
         return
     lasts = float(cycles["trough_time"][-1] - cycles["start"][0])
@@ -97,7 +97,7 @@ def _loading_too_fast(record: Record, kind: str, cycles: xr.Dataset) -> Iterator
 
 
 def _remedy(ratio: float) -> str:
-    """Return what is likely wrong with a rate that is so many times as large as stated."""
+    """Return the likely cause of a rate that is `ratio` times as large as stated."""
     power = log10(ratio) / 3.0 if ratio > 0.0 else 0.0
     if abs(power) > 0.5 and abs(power - round(power)) < 0.1:
         if power < 0.0:
@@ -113,7 +113,7 @@ def _remedy(ratio: float) -> str:
 
 
 def _mass(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:
-    """Doubt k/m where a swing, or half a swing in each slip, takes another time."""
+    """Doubt k/m if the period of a swing, or the duration of a slip, contradicts it."""
     if not record.mass or not record.stiffness or not cycles.sizes["cycle"]:
         return
     fall = float(np.median(cycles["trough_time"].values - cycles["peak_time"].values))
@@ -137,7 +137,7 @@ def _mass(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:
 
 
 def _remedy_of_mass(ratio: float) -> str:
-    """Return what is likely wrong with a k/m that is so many times as large as stated."""
+    """Return the likely cause of a k/m that is `ratio` times as large as stated."""
     if THOUSAND * 1e-6 < ratio < 1e-6 / THOUSAND:
         return "is the time in milliseconds? Give time_unit='ms'; or check mass and stiffness"
     return "check mass and stiffness"
@@ -168,7 +168,7 @@ def _drift(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:
 
 
 def _zero(record: Record, friction: Friction, cycles: xr.Dataset) -> Iterator[str]:
-    """Doubt the zero where a record begins unloaded, or goes where friction cannot."""
+    """Doubt the zero if a record begins unloaded, or reaches impossible values."""
     largest = float(np.abs(record.force).max(initial=0.0))
     if friction.kinetic is not None and friction.kinetic.force < 0.0:
         yield (

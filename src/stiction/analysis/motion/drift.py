@@ -1,4 +1,4 @@
-"""Whether a force drifts, and whether its zero is right."""
+"""Steady drift of a force."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 SURE = 4.0  # standard errors
-WORTH = 0.02  # of the mean force, over the record: less is not worth a word
-PARTS = 20  # means of a force without cycles, from the second half on
+WORTH = 0.02  # of the mean force, over the record: smaller drift is not reported
+PARTS = 20  # number of means of a force without cycles, over its second half
 FEWEST = 4  # cycles that show a drift
 
 
 class Drift(NamedTuple):
-    """A steady change of the force (N/s), its standard error, and by how much in all (N)."""
+    """A steady change of the force (N/s), its standard error, and the total change (N)."""
 
     rate: float
     error: float
@@ -31,9 +31,9 @@ class Drift(NamedTuple):
 
 
 def find_drift(record: Record, cycles: xr.Dataset) -> Drift:
-    """Return how fast the middle between peaks and troughs rises, or the force without cycles.
+    """Fit a line to the middles between peaks and troughs, or to a force without cycles.
 
-    A line fitted to them; its error holds for scatter that is independent from cycle to cycle.
+    The standard error assumes scatter that is independent from cycle to cycle.
     """
     if cycles.sizes["cycle"] >= FEWEST:
         at = 0.5 * (cycles["peak_time"].values + cycles["trough_time"].values)
@@ -58,13 +58,13 @@ def find_drift(record: Record, cycles: xr.Dataset) -> Drift:
 def detrended(record: Record) -> Record:
     """Return a record without the steady drift of its force.
 
-    The line is zero at the first sample: what the load cell reads there is taken for right. A
-    friction that itself changes steadily is taken for drift, too.
+    The line is zero at the first sample, which is taken as correct. Friction that changes steadily
+    is removed like drift.
 
     Parameters
     ----------
     record : Record
-        With four cycles at least, or sliding steadily in its second half.
+        With at least four cycles, or with steady sliding in its second half.
 
     Examples
     --------

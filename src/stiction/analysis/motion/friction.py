@@ -1,4 +1,4 @@
-"""The friction that a force shows, in any motion: at the break-away, at rest, while it slides."""
+"""Friction from a force: at the break-away, static and kinetic."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-PARTS = 400  # means in a record, in which its break-away is sought
-FEWEST = 32  # samples, below which nothing is said
+PARTS = 400  # number of means of a record in which its break-away is sought
+FEWEST = 32  # least number of samples
 STANDS_OUT = 4.0  # standard deviations of the noise of a mean
 PEAK = 0.02  # of the rise: the fall after a maximum that makes it a peak
 LOADED = 0.3  # of the largest force: a record that begins above shows no loading from nothing
 SHARP = 2e-3  # of the range of force: noise that is averaged away at the peak
-BLOCKS = 20  # means, whose scatter gives the standard error of a mean of samples that depend
+BLOCKS = 20  # means, whose scatter gives the standard error for correlated samples
 
 
 class Measured(NamedTuple):
@@ -61,7 +61,7 @@ class Measured(NamedTuple):
 
 
 class Friction(NamedTuple):
-    """The friction of a record; None where `missing` says why.
+    """The friction of a record; for each None, `missing` gives the reason.
 
     Parameters
     ----------
@@ -70,10 +70,10 @@ class Friction(NamedTuple):
     static : Measured or None
         Mean of the peaks before each slip, of stick-slip.
     kinetic : Measured or None
-        While it slides: the mean force after the break-away; of stick-slip and vibration the mean
-        of peak and trough, about which a mass swings that slips against a constant friction.
+        Mean force while sliding after the break-away; for stick-slip and vibration the mean of
+        peak and trough, about which a mass swings that slips against constant friction.
     missing : dict
-        Why each of them is not known.
+        Reason why each of them is unknown.
     """
 
     break_away: Measured | None
@@ -83,14 +83,14 @@ class Friction(NamedTuple):
 
 
 def find_friction(record: Record, kind: str, cycles: xr.Dataset) -> Friction:
-    """Return the friction that a record shows.
+    """Find the friction of a record.
 
     Parameters
     ----------
     record : Record
         The force.
     kind : str
-        Of motion, see `stiction.classify`.
+        The kind of motion, see `stiction.classify`.
     cycles : Dataset
         From `stiction.find_cycles`.
     """
@@ -136,7 +136,7 @@ def _means(record: Record) -> tuple[Floats, Floats, float]:
 
 
 def _first_peak(forces: Floats, noise: float) -> tuple[int | None, str]:
-    """Return which mean is the first maximum of a loading, or None and why there is none."""
+    """Return the index of the first maximum of a loading; or None and the reason."""
     highest = np.maximum.accumulate(forces)
     if forces[0] > LOADED * highest[-1]:
         return None, "the record does not begin with an unloaded spring"
@@ -150,7 +150,7 @@ def _first_peak(forces: Floats, noise: float) -> tuple[int | None, str]:
 
 
 def _break_away(record: Record, forces: Floats, at: int, noise: float) -> Measured:
-    """Return the largest force about a mean that is a maximum, averaged as far as noise asks."""
+    """Return the largest force near a maximum, averaged as much as the noise requires."""
     size, first = -(-len(record) // len(forces)), at * len(record) // len(forces)
     near = without_spikes(record.force)[max(0, first - 2 * size) : first + 3 * size]
     rough = noise * size**0.5  # of a sample
@@ -162,11 +162,11 @@ def _break_away(record: Record, forces: Floats, at: int, noise: float) -> Measur
 
 
 def _missed(values: Floats, step: int) -> float:
-    """Return by how much a peak can exceed its largest value, from the values a step apart.
+    """Return the largest excess of a peak over its largest value, from values a step apart.
 
-    A rounded peak, bent much the same on all of it, lies below the lines that continue its sides:
-    below where they meet. A corner bends more than twice as much as a side of it; it lies below
-    the rise, continued by a step.
+    A rounded peak of uniform curvature lies below the intersection of the lines that continue its
+    sides. A corner bends more than twice as much as its sides; it lies below the rise, continued by
+    one step.
     """
     top = int(np.argmax(values))
     at = np.clip(top + step * np.arange(-2, 3), 0, len(values) - 1)
@@ -178,13 +178,13 @@ def _missed(values: Floats, step: int) -> float:
 
 
 def _over(values: Floats, load: float) -> Measured:
-    """Return mean, standard error and spread of values that do not depend on each other."""
+    """Return mean, standard error and spread of independent values."""
     spread = float(values.std(ddof=1)) if len(values) > 1 else np.nan
     return Measured(float(values.mean()), spread / len(values) ** 0.5, spread, load)
 
 
 def _sliding(record: Record, times: Floats, at: int | None, kind: str, load: float) -> Measured:
-    """Return the mean force while it slides: in the last half of what follows the break-away."""
+    """Return the mean force in the last half of the sliding after the break-away."""
     begin = record.time[0] if at is None else float(times[at])
     share = 0.5 if kind != STEADY or at is not None else 0.0
     begin += share * (float(record.time[-1]) - begin)

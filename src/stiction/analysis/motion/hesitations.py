@@ -1,15 +1,14 @@
-"""What is a cycle of a force, and what is only a hesitation within one.
+"""The distinction between cycles of a force and hesitations within one.
 
 Before a slip, or within it, the mass can hesitate: the force dips, rises again, and then falls.
-Such a reversal belongs to its cycle. It is told from a cycle by its height: a cycle is a fall of
-at least half the swing. Irregular stick-slip is the exception. It has small slips among large
-ones of every size; where falls differ so, and the small ones are fewer, only one that is far below
-the others is a hesitation.
+Such a reversal belongs to its cycle. Its height distinguishes it: a cycle is a fall of at least
+half the swing. Irregular stick-slip is the exception, with slips of every size: if falls differ so
+much, and small ones are a minority, only a fall far below the others is a hesitation.
 
-Only reversals that stand apart from noise and ripple come here: of a measured force those beyond
-about 5 % of a drop, 10 % under noise. Shallower ones are not counted.
+Only reversals that stand apart from noise and ripple are considered: in a measured force those
+above about 5 % of a drop, 10 % under noise.
 
-Whatever counts cycles asks here: `stiction.analysis.motion.cycles`, an audit, and studies.
+`stiction.analysis.motion.cycles`, audits and studies all count cycles with this module.
 """
 
 from __future__ import annotations
@@ -22,9 +21,9 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-HALF = 0.5  # of the swing: a fall of so much is a cycle, where the falls are alike
-LEAST = 0.1  # of the swing: what is less is a hesitation, however much the falls differ
-AROUND = 12  # to each side with which a rise or fall is compared: amplitudes may grow, shrink
+HALF = 0.5  # of the swing: a larger fall is a cycle, if the falls are alike
+LEAST = 0.1  # of the swing: a smaller fall is a hesitation in any case
+AROUND = 12  # neighbours on each side for comparison: amplitudes may grow or shrink
 # Times as many as falls: so many reversals come with the falls and belong to them. Those below
 # LEAST do not count, as how many of them are seen depends on noise and samples.
 OFTEN = 1.1
@@ -35,14 +34,14 @@ ALIKE = 0.23
 
 
 class Hesitations(NamedTuple):
-    """Reversals taken out of a sequence of turning points, and what is left.
+    """Reversals taken out of a sequence of turning points, and the remaining points.
 
     Parameters
     ----------
     kept : ndarray
-        (n,) numbers of the points between which the cycles' rises and falls lie.
+        (n,) indices of the remaining points, the ends of the cycles' rises and falls.
     at : ndarray
-        (m,) number of the first of the two points of each reversal taken out, in order.
+        (m,) index of the first point of each reversal taken out, in order.
     depth : ndarray
         (m,) its height, in the unit of the values.
     """
@@ -58,8 +57,8 @@ def take_out(values: Floats) -> Hesitations:
     Parameters
     ----------
     values : ndarray
-        (n,) peaks and troughs in turn; first and last a value that the record reaches before and
-        after them, which shows how far its cut movements went at least.
+        (n,) alternating peaks and troughs. The first and last value are extremes before and after
+        them, lower bounds of the movements that the record cuts.
     """
     found, shallow = _below(values, HALF), _below(values, LEAST)
     change = np.diff(values[found.kept])
@@ -69,7 +68,7 @@ def take_out(values: Floats) -> Hesitations:
 
 
 def _below(values: Floats, share: float) -> Hesitations:
-    """Take out reversals that are less than a share of the swing, the smallest first."""
+    """Take out reversals below a share of the swing, the smallest first."""
     points = np.arange(len(values))
     at, depth = [np.zeros(0, np.intp)], [np.zeros(0)]
     while len(points) > 4:
@@ -97,7 +96,7 @@ def _alike(fall: Floats) -> bool:
 
 
 def swing(legs: Floats) -> Floats:
-    """Return, for each leg, what is typical around it of legs in the same direction.
+    """Return the typical size of legs in the same direction around each leg.
 
     Rises are compared with rises and falls with falls: where the force drifts they differ. The
     first leg and the last may be cut, and do not count.
@@ -110,7 +109,7 @@ def swing(legs: Floats) -> Floats:
 
 
 def typical(size: Floats) -> Floats:
-    """Return what is typical around each: those at least as large make half of all the way."""
+    """Return the typical size around each leg: half of the total path is in larger ones."""
     width = 2 * AROUND + 1
     if len(size) <= width:
         return np.full(len(size), _weighted_median(size[None, :])[0])
@@ -127,7 +126,7 @@ def _weighted_median(rows: Floats) -> Floats:
 
 
 def _whole(values: Floats, points: Indices, share: float) -> Indices:
-    """Leave out the ends, and what they cut of a hesitation: small legs before a large one."""
+    """Leave out the ends and cut hesitations: small legs before a large one."""
     inner = points[1:-1]
     for _ in range(2):
         legs = np.abs(np.diff(values[np.concatenate([points[:1], inner, points[-1:]])]))

@@ -1,4 +1,4 @@
-"""Which kind of motion a record shows, how sure that is, and why."""
+"""The kind of motion in a record, with its confidence and evidence."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ WORDS = {
 
 
 class Regime(NamedTuple):
-    """A kind of motion, and why.
+    """A kind of motion, with its confidence and evidence.
 
     Parameters
     ----------
@@ -131,13 +131,13 @@ class Regime(NamedTuple):
         apart from the noise: what is smaller is not seen), "stuck" (it loads and never slips)
         or "undetermined".
     confidence : float
-        0 to 1. With cycles: how likely one more of them has the kind's shape, from how they
-        scatter about their own or, where some have another shape, from how many do; so cycles
-        that are all alike are surer than cycles that differ, and thirty than three.
+        0 to 1. With cycles, the likelihood that another one has the kind's shape, from their
+        scatter, or from the number of those with another shape. Thus it is higher for cycles
+        that are alike than for different ones, and for thirty than for three.
     evidence : dict
-        Numbers that say why; ``str(regime)`` puts them into words.
+        Numbers behind the decision; ``str(regime)`` puts them into words.
     runner_up : str
-        The kind that most of the other cycles have; empty if there are none.
+        The second most frequent kind among the cycles; empty if there is none.
     """
 
     kind: str
@@ -146,7 +146,7 @@ class Regime(NamedTuple):
     runner_up: str = ""
 
     def __str__(self) -> str:
-        """Say it in words."""
+        """Return the kind, its confidence and the evidence in words."""
         other = f"; else {self.runner_up}" if self.runner_up and self.confidence < CERTAIN else ""
         said = ((*WORDS[name], value) for name, value in self.evidence.items())
         reasons = "; ".join(text.format(written(value)) for text, written, value in said)
@@ -154,24 +154,23 @@ class Regime(NamedTuple):
 
 
 def classify(source: Trajectory | Record) -> Regime:
-    """Tell which kind of motion a record shows.
+    """Classify the motion in a record.
 
-    Cycles decide by their shape (`stiction.analysis.motion.rest`), if there are any; if not, or if
-    they die out, the course of the force does: it loads to the end, settles, or stays about where
-    it is.
+    The shape of the cycles decides (`stiction.analysis.motion.rest`). If there are none, or they
+    die out, the course of the force decides: it rises to the end, settles, or stays about constant.
 
     Parameters
     ----------
     source : Trajectory or Record
-        A run, or what was measured. With stiffness, drive velocity and mass the rate of loading and
-        the natural period count as well; without, the shape alone.
+        A run or a measurement. With stiffness, drive velocity and mass, the rate of loading and
+        the natural period count too; otherwise only the shape.
     """
     record = recorded(source)
     return regime_of(record, swings(record))
 
 
 def regime_of(record: Record, found: Swings) -> Regime:
-    """Tell which kind of motion a record shows, of which the swings are known: see `classify`."""
+    """Classify the motion in a record with known swings: see `classify`."""
     if len(record) < PARTS:
         return Regime(UNDETERMINED, 0.0, {"samples": len(record)})
     per_cycle = 2.0 * len(record) / max(found.turns, 1)
@@ -237,7 +236,7 @@ def _by_shape(record: Record, found: Swings) -> Regime:
 
 
 def _chance(shares: Floats, kind: str, resolution: float) -> float:
-    """Return how likely one cycle more has a kind's shape, where all scatter about one shape.
+    """Return the likelihood that one more cycle has a kind's shape, if all share one shape.
 
     Student's distribution of the next of n values, about their median, whose standard deviation
     is seen with n - 1 degrees of freedom and is no less than the resolution, one sample.
@@ -260,12 +259,11 @@ def drop_spread(drop: Floats) -> float:
 
 
 def irregularity(period_spread: float, drop: Floats) -> float:
-    """Return how likely swings are irregular, by how much their periods and drops differ.
+    """Return the likelihood of irregular swings from the spread of their periods and drops.
 
-    By periods: whether more of them would differ by more than `REGULAR`. By drops: of the two
-    distributions from which their spread can be drawn, the one of irregular swings is the narrower
-    the more swings there are; where they overlap it is neither likely nor unlikely, and `EVEN`
-    decides.
+    By periods: whether more swings would exceed the spread `REGULAR`. By drops: their spread is
+    drawn from one of two distributions, of which that of irregular swings narrows with the number
+    of swings; where both overlap, `EVEN` decides.
     """
     from scipy.special import ndtr
 
@@ -287,7 +285,7 @@ def _density(value: float, typical: float, spread: float) -> float:
 
 
 def _bounds(kind: str) -> tuple[float, float]:
-    """Return between which shares of the rise a cycle is of a kind."""
+    """Return the bounds of the rise share for a kind of cycle."""
     if kind == UNDETERMINED:
         return -np.inf, BACKWARD
     ends = [np.inf, *(float(rise_share(rests)) for rests, _ in SHAPES[:-1]), BACKWARD]
@@ -296,7 +294,7 @@ def _bounds(kind: str) -> tuple[float, float]:
 
 
 def _coarse_shares(table: xr.Dataset, step: float) -> tuple[float, float]:
-    """Return the mean share of the rise in cycles of few samples, and what it can be as well.
+    """Return the mean rise share in cycles of few samples, and an alternative value.
 
     A fall quicker than a sample is seen from the last sample before it to the first after it:
     one sample longer than it is, on average. A fall of some samples may be so or not.
@@ -310,7 +308,7 @@ def _coarse_shares(table: xr.Dataset, step: float) -> tuple[float, float]:
 
 
 def shape(rise_share: float) -> str:
-    """Return the kind of cycles whose force rises for so much of the time."""
+    """Return the kind of cycles with a given rise share."""
     if rise_share < BACKWARD:
         return UNDETERMINED
     rests = rest_share(rise_share)

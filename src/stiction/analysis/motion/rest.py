@@ -1,4 +1,4 @@
-"""How long a mass rests in each cycle of a force, from the shape of the cycle."""
+"""The duration of rest in each cycle of a force, from the shape of the cycle."""
 
 from __future__ import annotations
 
@@ -15,20 +15,19 @@ RISES, RESTS = np.append(1.0 - np.pi / _CYCLE, 1.0), np.append(_GAINED / _CYCLE,
 
 
 def rest_share(rise_share: ArrayLike) -> Floats:
-    """Return for which share of a cycle the mass rests, where the force rises for `rise_share`.
+    """Return the share of rest in a cycle from the share in which the force rises.
 
-    While the mass rests the spring is loaded at the drive velocity V. When it slips, against
-    friction that is constant, it swings on its spring: u' = A omega cos(omega t) from u' = V over
-    its least to u' = V again. With sin(beta) = V/(A omega) the slip takes (pi + 2 beta)/omega, of
-    which the force falls for pi/omega; the rest makes up for that fall, 2 A cos(beta), in
-    2 cot(beta)/omega. So both shares follow from beta: a sine, in which the mass just does not
-    stop, rises for 1/2 of its period; a cycle that is half rest, for 0.613; one that is three
-    quarters rest, for 0.777. Creep counts as rest.
+    During rest the spring is loaded at the drive velocity V. During slip against constant friction
+    the mass swings on its spring, u' = A omega cos(omega t), from u' = V through the minimum back
+    to u' = V. With sin(beta) = V/(A omega), the slip takes (pi + 2 beta)/omega, and the force falls
+    for pi/omega of it. The rest compensates that fall, 2 A cos(beta), in 2 cot(beta)/omega. Thus
+    beta determines both shares. The rise share is 1/2 for a sine, in which the mass just does not
+    stop, 0.613 for a cycle with half rest, and 0.777 for three quarters. Creep counts as rest.
 
     Parameters
     ----------
     rise_share : array
-        0 to 1; what is below 1/2 falls more slowly than it rises, and has no rest.
+        0 to 1; below 1/2 the force falls more slowly than it rises, and there is no rest.
 
     References
     ----------
@@ -39,5 +38,5 @@ def rest_share(rise_share: ArrayLike) -> Floats:
 
 
 def rise_share(rest_share: ArrayLike) -> Floats:
-    """Return for which share of a cycle the force rises, where the mass rests for `rest_share`."""
+    """Return the share of a cycle in which the force rises from the share of rest."""
     return np.asarray(np.interp(np.asarray(rest_share, float), RESTS, RISES))

@@ -1,9 +1,9 @@
-"""The gap between what is small and what is large among the heights of reversals.
+"""The gap between small and large heights of reversals.
 
 A random walk has no gap: of n reversals higher than a, n (a/b)^2 are higher than b on average,
-for any a < b, since it looks the same at every scale; noise without memory falls off faster.
-That more than this are left above b is therefore a mark of two populations, and how unlikely a
-random walk is to leave so many says how clear the mark is. No threshold is set by hand.
+for any a < b, since it is self-similar; noise without memory falls off faster. More reversals above
+b therefore indicate two populations, the more clearly the less likely a random walk is to have so
+many. No threshold is set by hand.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ EACH = np.log(2.0)
 
 
 class Gap(NamedTuple):
-    """Where small and large part.
+    """The gap between small and large.
 
     Parameters
     ----------
     low, high : float
         Ends of the gap.
     clearness : float
-        How clear it is: minus the logarithm of (a bound of) the chance that a random walk
-        leaves as many above it.
+        Minus the logarithm of (a bound of) the probability that a random walk has as many above
+        it.
     """
 
     low: float
@@ -42,7 +42,7 @@ class Gap(NamedTuple):
 
     @property
     def middle(self) -> float:
-        """Between the two, on a logarithmic scale."""
+        """The middle of the gap on a logarithmic scale."""
         return float(np.sqrt(self.low * self.high))
 
 
@@ -50,16 +50,16 @@ NO_GAP = Gap(0.0, 0.0, 0.0)
 
 
 def widest_gap(heights: ArrayLike, step: float, most: float) -> Gap:
-    """Return the gap that a random walk is least likely to leave.
+    """Return the gap that is least likely in a random walk.
 
     Parameters
     ----------
     heights : array
         (n,) heights of reversals.
     step : float
-        What they are known to; nothing is looked for below two steps.
+        Resolution of the heights; gaps are sought above two steps.
     most : float
-        How many may be large.
+        Largest number of large heights.
     """
     size = np.sort(np.asarray(heights, dtype=np.float64))
     lowest = 2.0 * step

@@ -1,9 +1,9 @@
-"""A narrow line in a force, such as mains hum, estimated so that it can be taken off.
+"""Narrow lines in a force, such as mains hum, estimated to be subtracted.
 
-A line is coherent over the whole record: in its spectrum it is as narrow as the record is long,
-far above what lies beside it, and alone. Harmonics of regular stick-slip are narrow as well, but
-never alone. A vibration can be both: whether a line is the motion or beside it, cycles tell that
-are left without it (`stiction.analysis.motion.cycles`).
+A line is coherent over the whole record: in the spectrum it is as narrow as the record's length
+allows, far above its surroundings, and alone. Harmonics of regular stick-slip are narrow too, but
+never alone. A vibration can be both narrow and alone: the cycles that remain without the line
+decide whether it is the motion or a disturbance (`stiction.analysis.motion.cycles`).
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Line(NamedTuple):
     height : float
         From crest to trough, N.
     values : ndarray
-        (n,) what of the force it makes, N.
+        (n,) its contribution to the force, N.
     """
 
     frequency: float
@@ -53,7 +53,7 @@ class Line(NamedTuple):
 
 
 def narrow_lines(time: Floats, force: Floats) -> list[Line]:
-    """Return lines that are narrow and alone, at most four: those first that are most so.
+    """Return up to four lines that are narrow and alone, the clearest first.
 
     Parameters
     ----------
@@ -95,14 +95,14 @@ def _measured(
 
 
 def of_mains(frequency: float) -> bool:
-    """Return whether a frequency (Hz) is that of the mains, or twice it."""
+    """Return whether a frequency (Hz) is the mains frequency or twice it."""
     return any(abs(frequency / line - 1.0) < MAINS_VARIES for line in MAINS)
 
 
 def samples_per_period(force: Floats) -> float:
-    """Return how many samples the strongest line has a period; infinity if none makes the force.
+    """Return the samples per period of the dominant line; infinity if there is none.
 
-    A line makes the force if it is narrow and bears much of what varies.
+    A line is dominant if it is narrow and carries much of the variance.
     """
     if len(force) < 4 * PERIODS or np.ptp(force) == 0.0:
         return np.inf
@@ -146,7 +146,7 @@ def beside(power: Floats) -> Floats:
 
 
 def _alone(power: Floats, floor: Floats) -> list[int]:
-    """Return samples that stand out of those beside them, and are alone, the most so first."""
+    """Return the isolated samples that stand out of their surroundings, the clearest first."""
     candidate = power > ABOVE * np.maximum(floor, LEAST * power.max())
     candidate[:PERIODS] = candidate[-LOBE - 1 :] = False
     candidate[1:-1] &= (power[1:-1] >= power[2:]) & (power[1:-1] >= power[:-2])
@@ -161,23 +161,23 @@ def _alone(power: Floats, floor: Floats) -> list[int]:
 
 
 def _lobe(at: int) -> slice:
-    """Return the samples of a spectrum that a line takes whose highest is at one of them."""
+    """Return the samples of a spectrum in the lobe of a line with its maximum at `at`."""
     half = LOBE + round(WANDERS * at)
     return slice(max(at - half, 0), at + half + 1)
 
 
 def _middle(power: Floats, at: int) -> float:
-    """Return the place of a line between samples: the mean over its lobe, weighted by power."""
+    """Return the position of a line between samples: the power-weighted mean over its lobe."""
     lobe = _lobe(at)
     weight = np.where(power[lobe] > FAINT * power[at], power[lobe], 0.0)
     return float(np.average(np.arange(lobe.start, lobe.stop), weights=weight))
 
 
 def _envelope(turned: NDArray[np.complex128], cycles: float) -> NDArray[np.complex128]:
-    """Return a line's amplitude and phase, of a force turned back by its frequency (per sample).
+    """Return a line's amplitude and phase from a force demodulated at its frequency.
 
-    They are averaged over blocks of a few periods; of these a straight line is fitted under a
-    window around each, so that the ends of the record are as good as its middle.
+    They are averaged over blocks of a few periods. A windowed straight line is fitted around each
+    block, so that the ends of the record are as accurate as its middle.
     """
     n = len(turned)
     edges = np.linspace(0, n, max(int(n * cycles / BLOCK), 3) + 1).astype(np.intp)

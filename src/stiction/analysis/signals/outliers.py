@@ -9,21 +9,21 @@ Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 FAR = 8.0  # times the typical step from sample to sample
-FARTHER = 2.0  # than the signal moves on either side: a quick movement that is sampled is none
+FARTHER = 2.0  # times the motion on either side: a fast movement is not an outlier
 WIDEST = 4  # samples in a row: two pairs
-LONGEST = 8  # samples from the first to the last of a group, with right ones among them
-BESIDE = 3  # samples on either side that tell how far the signal moves; one of them can be wild
-PASSES = 4  # one group beside another is seen once that one is gone
+LONGEST = 8  # samples in a group from first to last, including correct ones
+BESIDE = 3  # samples on either side for the motion of the signal; one of them may be wild
+PASSES = 4  # a group beside another is seen after that one is removed
 MOST = 0.05  # of the samples: if there are more, they are the signal
 
 
 def without_outliers(values: Floats) -> Floats:
-    """Return the values with wild samples on the straight line between their neighbours.
+    """Replace wild samples by the straight line between their neighbours.
 
     Parameters
     ----------
     values : ndarray
-        (n,), in any unit; returned as it is if none is wild.
+        (n,), in any unit; returned unchanged if none is wild.
     """
     kept, wild = values, np.zeros(len(values), bool)
     for _ in range(PASSES):
@@ -40,7 +40,7 @@ def without_outliers(values: Floats) -> Floats:
 
 
 def _outliers(values: Floats) -> NDArray[np.bool_]:
-    """Return which samples belong to groups that jump off and back."""
+    """Return a mask of the samples in groups that jump off and back."""
     found, steps = np.zeros(len(values), bool), np.abs(np.diff(values))
     if not steps.any():
         return found

@@ -25,7 +25,7 @@ class Vertices(NamedTuple):
 
 
 def vertices(time: Floats, points: TurningPoints) -> Vertices:
-    """Place turning points by a parabola through all samples that noise could have made the top.
+    """Refine turning points by a parabola through all samples that may be the top under noise.
 
     These reach from the first sample, on the way up, that is within the noise of the top to the
     last one on the way down; where there is no noise they are the top and its two neighbours.

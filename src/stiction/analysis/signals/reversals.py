@@ -1,10 +1,9 @@
-"""Every reversal of a signal, and what is left once the small ones are taken out.
+"""The reversals of a signal, and its turning points without the small ones.
 
-Between two neighbouring turning points a signal makes a leg. A leg no longer than both its
-neighbours is a reversal within a larger movement: taken out, with its two points, it leaves that
-movement whole. Its height is what topology calls the persistence of the pair and fatigue
-engineers the range of a rainflow cycle. It needs no window and no reference level, so a drift
-slower than the movement itself changes nothing.
+A leg lies between two neighbouring turning points. A leg no longer than both its neighbours is a
+reversal within a larger movement, which stays whole when the leg and its two points are removed.
+Topology calls its height the persistence of the pair, fatigue engineering the range of a rainflow
+cycle. It needs no window and no reference level, so slow drift has no effect.
 
 References
 ----------
@@ -21,7 +20,7 @@ Indices = NDArray[np.intp]
 
 
 def extrema(values: Counts) -> Indices:
-    """Return where the values turn, in order, and both ends; of equal neighbours, the first."""
+    """Return the indices of extrema and both ends; of equal neighbours, the first."""
     if len(values) < 2:
         return np.arange(len(values))
     distinct = np.flatnonzero(np.diff(values, prepend=values[0] - 1))
@@ -35,8 +34,8 @@ def extrema(values: Counts) -> Indices:
 def taken_out(values: Counts, below: float = np.inf) -> tuple[Indices, Counts]:
     """Take out reversals, the smallest of each neighbourhood first.
 
-    All that have smaller neighbours on neither side go at once, so a few passes over ever fewer
-    points do it, whatever the length.
+    All local minima of height are removed at once, so that a few passes over ever fewer points
+    suffice for any length.
 
     Parameters
     ----------
@@ -48,9 +47,9 @@ def taken_out(values: Counts, below: float = np.inf) -> tuple[Indices, Counts]:
     Returns
     -------
     points : ndarray
-        Samples that are left, the two ends of the signal among them.
+        Indices of the remaining samples, including both ends of the signal.
     heights : ndarray
-        Of the reversals taken out.
+        Heights of the reversals taken out.
     """
     points, heights = extrema(values), [np.zeros(0, np.int64)]
     while len(points) > 3:
@@ -66,9 +65,9 @@ def taken_out(values: Counts, below: float = np.inf) -> tuple[Indices, Counts]:
 
 
 def all_heights(values: Counts) -> Counts:
-    """Return the height of every reversal; what is left at last are legs that grow, then shrink.
+    """Return the height of every reversal; the legs left at the end grow, then shrink.
 
-    Of these each second one counts, as each cycle has a leg up and a leg down.
+    Every second one of these counts, because a cycle has a leg up and a leg down.
     """
     points, heights = taken_out(values)
     left = np.sort(np.abs(np.diff(values[points]))[1:-1])
@@ -78,8 +77,8 @@ def all_heights(values: Counts) -> Counts:
 def standing_out(values: Counts, height: float, least: float) -> Indices:
     """Return the turning points between legs of at least `height`.
 
-    The first and the last leg of a record may be cut: of these `least` is enough. Where they
-    begin and end is not known, and their outer ends are left out.
+    The first and last leg of a record may be cut: for these `least` suffices. Their outer ends are
+    unknown, and left out.
     """
     points, _ = taken_out(values, height)
     legs = np.abs(np.diff(values[points]))

@@ -23,30 +23,30 @@ def follow_ridge(
 ) -> xr.Dataset:
     """Follow the strongest line of a spectrogram through time.
 
-    Of all paths through the lines between `low` and `high` it is the one with the largest sum of
-    log(amplitude) - stiffness (lines jumped)^2 over all windows, found by dynamic programming
-    (R. Bellman; the path of A. Viterbi, IEEE Trans. Inf. Theory 13, 260 (1967)): it does not leap
-    to a stronger line for a moment, nor lose its own where that fades. Its frequency is
-    that of the parabola through the logarithms of the largest line and its neighbours.
+    Dynamic programming (R. Bellman; the path of A. Viterbi, IEEE Trans. Inf. Theory 13, 260 (1967))
+    finds the path through the lines between `low` and `high` with the largest sum of log(amplitude)
+    - stiffness (lines jumped)^2 over all windows. It does not leap to a stronger line for a moment,
+    nor lose a line that fades. A parabola through the logarithms of the largest line and its
+    neighbours gives the frequency.
 
     Parameters
     ----------
     amplitude : DataArray
         Over ``frequency`` (Hz, equally spaced) and ``time`` (s), from `spectrogram`.
     low, high : float
-        Between which frequencies (Hz) it is sought.
+        Range of frequencies (Hz).
     jump : int, optional
-        By how many lines it may jump from one window to the next.
+        Largest jump from one window to the next, in lines.
     stiffness : float, optional
-        What a jump by one line costs.
+        Cost of a jump by one line.
 
     Returns
     -------
     Dataset
-        Over ``time``: ``frequency`` (Hz), not a number where nothing stands out; ``amplitude``
-        (unit of the spectrogram) and ``prominence``, it over the median of the 51 lines around
-        it at that time; a line stands out from 5 on, which noise alone reaches in one of some
-        10 000 windows.
+        Over ``time``: ``frequency`` (Hz), NaN where nothing stands out; ``amplitude`` (unit of
+        the spectrogram); ``prominence``, its ratio to the median of the 51 lines around it at
+        that time. A line stands out from 5 on, which noise alone reaches in one of some 10 000
+        windows.
     """
     import xarray as xr
 
@@ -79,7 +79,7 @@ def follow_ridge(
 
 
 def best_path(level: Floats, jump: int, stiffness: float) -> NDArray[np.intp]:
-    """Return the line (m,) at each time with the largest sum of levels less what jumps cost.
+    """Return the line (m,) at each time that maximises the sum of levels minus jump costs.
 
     `level` is (n lines, m times).
     """

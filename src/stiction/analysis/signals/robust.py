@@ -1,4 +1,4 @@
-"""The mean of values among which a few are wild."""
+"""A robust mean, for values among which a few are wild."""
 
 from __future__ import annotations
 
@@ -20,10 +20,9 @@ class Mean(NamedTuple):
 def trimmed_mean(values: NDArray[np.float64]) -> Mean:
     """Return the mean without the smallest and the largest tenth, and its standard error.
 
-    The error is that of the values with those left out put back at the nearest ones kept
-    (J. W. Tukey & D. H. McLaughlin, Sankhya A 25, 331 (1963)); it holds for independent values.
-    Not a number where there are none, or for the error only one. Unlike a median, the mean of
-    values in steps is finer than the steps.
+    The error is that of the winsorised values (J. W. Tukey & D. H. McLaughlin, Sankhya A 25, 331
+    (1963)), for independent values. The mean of no values, and the error of a single one, are NaN.
+    Unlike a median, the mean of discretised values resolves less than a step.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How the frequencies of a signal change in time."""
+"""Spectrograms: the frequencies of a signal over time."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def windows_of(sample_rate: float, width: float, step: float) -> Windows:
 
 
 def too_short(windows: Windows, length: int) -> str:
-    """Return what is wrong with a signal of so many samples."""
+    """Return the message for a signal of too few samples."""
     return (
         f"a window of {windows.length / windows.rate:g} s holds {windows.length} samples at "
         f"{windows.rate:g} Hz; there are {length} and at least 2 are needed"
@@ -91,9 +91,9 @@ def spectrogram(
     """Return the short-time Fourier transform of a signal, as amplitudes.
 
     A sine of amplitude a appears with a at its frequency. The straight line that fits
-    best is taken off each window first, so that a slow trend does not hide what is fast.
-    Windows that reach over an end of the signal are left out. It is what
-    `scipy.signal.ShortTimeFFT` gives with ``stft_detrend(..., "linear")``, ten times as fast.
+    best is subtracted from each window first, so that a slow trend does not hide fast components.
+    Windows that extend beyond the signal are left out. The result is that of
+    `scipy.signal.ShortTimeFFT` with ``stft_detrend(..., "linear")``, ten times as fast.
 
     Parameters
     ----------
@@ -139,13 +139,13 @@ def stream_spectrogram(
 ) -> Iterator[xr.DataArray]:
     """Yield the spectrogram of a signal that does not fit into memory, piece by piece.
 
-    The pieces one after the other are the `spectrogram` of the whole; only a block, what of the
-    last window is still needed, and a few windows are held at a time.
+    The pieces together are the `spectrogram` of the whole signal. Only one block, the rest of the
+    last window, and a few windows are in memory at a time.
 
     Parameters
     ----------
     blocks : iterable of array, or array
-        The signal in blocks of any lengths, in order; or what can be sliced and has a shape (n,):
+        The signal in blocks of any lengths, in order; or a sliceable object of shape (n,):
         `numpy.memmap`, a dataset of h5py or zarr.
     sample_rate, width, step, start : float
         As in `spectrogram`.
@@ -153,8 +153,7 @@ def stream_spectrogram(
     Yields
     ------
     DataArray
-        As of `spectrogram`, of the windows that end in a block; none for a block in which none
-        does.
+        As from `spectrogram`, for the windows that end in a block; nothing for a block without.
 
     Raises
     ------

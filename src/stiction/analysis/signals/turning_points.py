@@ -1,4 +1,4 @@
-"""Where a signal turns: the peaks and troughs that stand apart from noise and ripple."""
+"""Turning points of a signal: peaks and troughs that stand apart from noise and ripple."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ CLEAR = 12.0
 
 
 class TurningPoints(NamedTuple):
-    """Troughs and peaks in turn, and the averaged signal in which they were found.
+    """Alternating troughs and peaks, and the averaged signal in which they were found.
 
     Parameters
     ----------
     index : ndarray
-        (n,) number of each in `values`.
+        (n,) index of each in `values`.
     trough : ndarray
         (n,) whether it is a trough.
     values : ndarray
@@ -49,7 +49,7 @@ class TurningPoints(NamedTuple):
     noise : float
         How far noise reaches in `values`, see `noise_reach`.
     clearness : float
-        Of the gap between them and all smaller reversals, see `stiction.analysis.signals.gap`.
+        Clearness of the gap to all smaller reversals, see `stiction.analysis.signals.gap`.
     least : float
         Height of that gap's middle, in the unit of the values: smaller reversals are not seen.
     """
@@ -64,13 +64,13 @@ class TurningPoints(NamedTuple):
 
     @property
     def before(self) -> float:
-        """The farthest that the signal is from the first point before it."""
+        """The signal's extreme before the first point, farthest from it."""
         values = self.values[: self.index[0] + 1]
         return float(values.max() if self.trough[0] else values.min())
 
     @property
     def after(self) -> float:
-        """The farthest that the signal is from the last point after it."""
+        """The signal's extreme after the last point, farthest from it."""
         values = self.values[self.index[-1] :]
         return float(values.max() if self.trough[-1] else values.min())
 
@@ -78,14 +78,14 @@ class TurningPoints(NamedTuple):
 def turning_points(values: Floats) -> TurningPoints:
     """Find the peaks and troughs of the movements that stand apart from all smaller ones.
 
-    The signal is looked at as it is and averaged over 2, 4, 8 ... samples. At each level the
-    heights of all reversals are listed, and the gap between small and large among them is
-    sought; the level with the clearest one decides. If none is clear, there are no points.
+    The signal is averaged over 1, 2, 4, 8 ... samples. At each level the gap between small and
+    large heights of reversals is sought; the level with the clearest gap decides. If none is clear,
+    there are no points.
 
     Parameters
     ----------
     values : array
-        (n,), finite, in any unit: multiplied by a factor they have the same turning points.
+        (n,), finite, in any unit: a factor does not change the turning points.
     """
     counts = without_spikes(as_counts(values))
     levels = list(averaged(counts))
@@ -127,8 +127,8 @@ def turning_points(values: Floats) -> TurningPoints:
 def coarse_points(counts: Counts) -> Indices:
     """Return the turning points of cycles of few samples each; none unless nearly all are alike.
 
-    Of so few samples no smaller reversal can be seen to stand apart from. But noise makes
-    reversals of every height, and cycles make them of one.
+    With so few samples there are no smaller reversals to compare with. But noise has reversals of
+    every height, and cycles have only one.
     """
     found = extrema(counts)[1:-1]
     if len(found) < COARSE_TURNS:
@@ -161,7 +161,7 @@ def as_counts(values: Floats) -> Counts:
 
 
 def without_spikes(values: NDArray[Number]) -> NDArray[Number]:
-    """Limit each sample to where its neighbours' straight lines lead; a smooth peak stays."""
+    """Limit each sample to the extrapolation of its neighbours; smooth peaks stay."""
     if len(values) < 5:
         return values
     before, after = values[1:-3], values[3:-1]

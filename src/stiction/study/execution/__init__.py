@@ -1,1 +1,1 @@
-"""Doing a study: engines, the tasks they do, the sweep over what is missing, and refinement."""
+"""Execution of a study: engines, tasks, the sweep over missing runs, refinement, repair."""

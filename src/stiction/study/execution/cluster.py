@@ -1,4 +1,4 @@
-"""Processes as engines, by dask: of this machine, or of a cluster."""
+"""Engines of processes, by dask: on this machine or on a cluster."""
 
 from __future__ import annotations
 
@@ -17,25 +17,25 @@ from stiction.study.plan.layout import AHEAD
 
 T = TypeVar("T")
 AGAIN = "what is written is whole, and the same command goes on"
-# an interrupt in a terminal reaches all its processes: the client alone is to act on it
+# an interrupt in a terminal reaches all its processes; only the client should act on it
 UNINTERRUPTED = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 LOOPBACK = "127.0.0.1"
-DEATHS = 10  # of workers, that a task may see before it is taken for their cause
+DEATHS = 10  # of workers during one task, before the task is blamed
 
 
 class Processes(NamedTuple):
-    """Processes of this machine, started for the study and ended with it.
+    """Processes of this machine, which start and end with the study.
 
-    Whoever can talk to a scheduler can have its workers run anything. These listen to this
-    machine alone, and to nobody without the certificate that is made for the study.
+    Anyone with access to a scheduler can run code on its workers. These processes accept
+    connections only from this machine, with a certificate that is made for the study.
 
     Parameters
     ----------
     workers : int
-        How many; each does one run at a time, and is started anew if it dies.
+        Number of processes; each does one run at a time, and is restarted if it dies.
     dashboard : bool, optional
-        Whether dask's dashboard is shown, at http://localhost:8787 if that is free, to every user
-        of this machine.
+        Whether to show dask's dashboard to every user of this machine, at
+        http://localhost:8787 if that port is free.
     """
 
     workers: int
@@ -58,23 +58,23 @@ class Processes(NamedTuple):
                 host=LOOPBACK,
                 protocol="tls://",
                 security=temporary_certificate(),
-                # without one, any free port: another scheduler of this machine may have dask's own
+                # otherwise any free port: another scheduler may use dask's own
                 dashboard_address=f"{LOOPBACK}:{8787 if self.dashboard else 0}",
                 scheduler_kwargs={"dashboard": self.dashboard},
-                silence_logs=logging.ERROR,  # of tasks that are cancelled
+                silence_logs=logging.ERROR,  # hides the logs of cancelled tasks
             )
             with lost_and_told(), cluster, dask.Client(cluster) as client:
                 yield from handed_out(client, work, tasks)
 
 
 class Scheduler(NamedTuple):
-    """A dask scheduler that runs already, with its workers.
+    """A running dask scheduler with its workers.
 
     Parameters
     ----------
     address : str
-        As tcp://host:port, or tls://host:port with the certificates of dask's own settings. It and
-        its workers run what this process asks for, and this process believes what they answer.
+        tcp://host:port, or tls://host:port with the certificates in dask's settings. It and its
+        workers run code of this process, and this process trusts their answers.
     """
 
     address: str
@@ -105,7 +105,7 @@ def temporary_certificate() -> Any:
 
 
 def distributed() -> ModuleType:
-    """Return dask's scheduler, which is an extra."""
+    """Return the module of dask's scheduler, an optional dependency."""
     try:
         import distributed as dask
     except ImportError:
@@ -116,7 +116,7 @@ def distributed() -> ModuleType:
 
 
 def handed_out(client: Any, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
-    """Yield what comes of each task, with few handed out for each thread of the workers."""
+    """Yield the outcome of each task; few are handed out at a time per worker thread."""
     from distributed import as_completed
 
     waiting = iter(tasks)
@@ -125,7 +125,7 @@ def handed_out(client: Any, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
     def hand_out() -> None:
         threads = sum(client.nthreads().values()) or 1  # workers come and go
         for task in islice(waiting, max(AHEAD * threads - flying.count(), 0)):
-            name = f"block-{uuid4().hex}-{task}"  # as dask's dashboard shows it
+            name = f"block-{uuid4().hex}-{task}"  # shown in dask's dashboard
             flying.add(client.submit(work, task, never, pure=False, key=name))
 
     hand_out()
@@ -135,13 +135,13 @@ def handed_out(client: Any, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
 
 
 def never() -> bool:
-    """Return False: no task finds itself unwanted; what no longer is wanted, dask drops or ends."""
+    """Return False: dask itself drops or ends unwanted tasks."""
     return False
 
 
 @contextmanager
 def lost_and_told() -> Iterator[None]:
-    """Turn what dask raises, and logs, when a scheduler is lost into a message."""
+    """Turn dask's errors and logs about a lost scheduler into a message."""
     from concurrent.futures import CancelledError
 
     from distributed import KilledWorker

@@ -1,4 +1,4 @@
-"""Engines: what has tasks done, several at a time, and gives back what came of each."""
+"""Engines, which do tasks in parallel and return their outcomes."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from stiction.machine import CORES
 from stiction.study.plan.layout import AHEAD
 
 T = TypeVar("T")
-PATIENCE = 0.2  # s; on some systems a thread that waits without end cannot be interrupted
+PATIENCE = 0.2  # s; on some systems a thread that waits for ever cannot be interrupted
 
-# does a task; the second argument tells whether it is no longer wanted
+# does a task; its second argument returns whether the task is no longer wanted
 Work = Callable[[int, Callable[[], bool]], T]
 
 
 class Engine(Protocol):
-    """Has tasks done."""
+    """The interface of engines."""
 
     def results(self, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
-        """Yield what comes of each task, in any order, with few tasks in flight at a time.
+        """Yield the outcome of each task in any order, with few tasks in flight.
 
-        Closing the iterator, or an error, drops what is in flight.
+        Closing the iterator, or an error, drops the tasks in flight.
         """
 
 
@@ -34,13 +34,13 @@ class Threads(NamedTuple):
     Parameters
     ----------
     workers : int
-        How many run at a time.
+        Number of threads.
     """
 
     workers: int = CORES
 
     def results(self, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
-        """Yield what comes of each task."""
+        """Yield the outcome of each task."""
         unwanted = threading.Event()
         waiting = iter(tasks)
         with ThreadPoolExecutor(self.workers, "study") as pool:

@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 
 class Intervals(NamedTuple):
-    """Pairs of runs of different kind: values of each axis at both, and what they showed.
+    """Pairs of runs with different motion: the axes' values and the kinds of motion.
 
     Parameters
     ----------
     low, high : mapping of str to ndarray
         (n,) for each axis, in the unit of the study's store.
     below, above : ndarray
-        (n,) kinds of motion there.
+        (n,) kinds of motion at both.
     """
 
     low: Mapping[str, Floats]
@@ -33,7 +33,7 @@ class Intervals(NamedTuple):
 
 
 def changes(study: Study, data: xr.Dataset, along: str, apart: Sequence[str] | None) -> Intervals:
-    """Return the neighbours on a study's grid that differ in kind; failed runs do in none."""
+    """Return neighbouring runs of different kind on a study's grid; failed runs are skipped."""
     dims = study.layout.dims
     axis = dims.index(along)
     found = np.moveaxis(kinds(data), axis, -1)
@@ -52,24 +52,24 @@ def changes(study: Study, data: xr.Dataset, along: str, apart: Sequence[str] | N
 
 
 def side(found: np.ndarray, apart: Sequence[str] | None) -> np.ndarray:
-    """Return what is compared of kinds: they themselves, or whether they are some of them."""
+    """Return the kinds as they are compared: themselves, or whether they are in `apart`."""
     return found if apart is None else np.isin(found.astype(str), list(apart))
 
 
 def half_way(low: Floats, high: Floats) -> Floats:
-    """Return the middle of two values; they are one where an axis does not vary."""
+    """Return the middle of two values, or the value where both are equal."""
     return np.where(low == high, low, 0.5 * (low + high))
 
 
 def halved(
     found: Intervals, middle: Mapping[str, Floats], at: np.ndarray, apart: Sequence[str] | None
 ) -> Intervals:
-    """Return the half of each interval in which the change is.
+    """Return the half of each interval that contains the change.
 
-    Where a third kind lies half way, or a run that failed, it is the lower half.
+    If the middle has a third kind, or its run failed, this is the lower half.
     """
     upper = side(at, apart) == side(found.below, apart)
-    at = np.where(at == "", found.above, at)  # a run that failed tells nothing: half is a guess
+    at = np.where(at == "", found.above, at)  # no information from a failed run: guess
     return Intervals(
         {name: np.where(upper, middle[name], low) for name, low in found.low.items()},
         {name: np.where(upper, high, middle[name]) for name, high in found.high.items()},

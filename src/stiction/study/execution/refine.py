@@ -1,8 +1,7 @@
-"""Refining a study where the kind of motion changes, instead of filling a grid.
+"""Refinement of a study where the kind of motion changes, without a finer grid.
 
-Between two neighbours of the grid that differ in kind, the run half way is done, then that half
-way to where the change is, and so on. All intervals are halved at once, in a study of their own
-that lies inside the store: what was stopped goes on.
+Between neighbours of different kind on the grid, bisection finds the change. All intervals are
+halved at once, by a study inside the store, so that an interrupted refinement can be continued.
 """
 
 from __future__ import annotations
@@ -47,31 +46,31 @@ def refine(
     engine: Engine | None = None,
     progress: Callable[[Tally], None] | None = None,
 ) -> xr.Dataset:
-    """Find where the kind of motion changes along one axis of a study, for each value of others.
+    """Find the changes of motion along one axis of a study, for each value of the others.
 
     Parameters
     ----------
     study : Study
-        With a grid along the axis that is fine enough to show each change; it keeps "regime".
+        Its grid along the axis must be fine enough to show each change; it keeps "regime".
     path : str or Path
-        Its store; what is not done of it is done first.
+        Its store; missing runs are done first.
     along : str
         The axis.
     to : float or str
-        How closely a change is to be known, in the axis' unit.
+        The desired width of the interval of each change, in the axis's unit.
     apart : sequence of str, optional
-        Kinds that are told from all others, e.g. those that come to rest; each from each when
-        left out.
+        Kinds to distinguish from all others, e.g. those that come to rest; by default every
+        change of kind counts.
     engine, progress
-        As of `stiction.study.execution.sweep.sweep`.
+        Those of `stiction.sweep`.
 
     Returns
     -------
     Dataset
-        Over ``point``, each change: every axis, ``along`` in the middle of what is left of the
-        interval; ``half_width`` of it; ``below`` and ``above``, the kinds on both sides, as
-        "regime" in the store. Attribute ``runs``: how many were done in all. It is kept in the
-        store as well, in the group ``refined/ALONG/changes``, and `stiction map` draws it.
+        The changes over ``point``: the value of every axis, for ``along`` the middle of the final
+        interval; its ``half_width``; ``below`` and ``above``, the kinds on both sides, coded like
+        "regime" in the store. Attribute ``runs``: the total number of runs. The dataset is also
+        kept in the store, in the group ``refined/ALONG/changes``; `stiction map` draws it.
 
     Raises
     ------
@@ -98,7 +97,7 @@ def refine(
 
 
 def _keep(changes: xr.Dataset, target: Path) -> None:
-    """Write the changes in place of earlier ones, sealed."""
+    """Write the changes, sealed, in place of earlier ones."""
     with told(target), workshop(target.parent) as room:
         changes.to_zarr(room / CHANGES, zarr_format=3, consolidated=False)
         seal(room / CHANGES)
@@ -108,7 +107,7 @@ def _keep(changes: xr.Dataset, target: Path) -> None:
 
 
 def _asked(study: Study, along: str, to: float | str) -> float:
-    """Return the width that is asked for, if all of it can be."""
+    """Return the desired width, if the arguments are valid."""
     found = []
     if along not in study.coordinates or along not in study.layout.dims:
         found.append(Fault("along", unknown("dimension", along, study.layout.dims)))
@@ -126,7 +125,7 @@ def _asked(study: Study, along: str, to: float | str) -> float:
 
 
 def _kinds(apart: Sequence[str] | None) -> list[str] | None:
-    """Return kinds of motion by the names that they have now."""
+    """Return kinds of motion, with old names replaced."""
     if apart is None:
         return None
     now = by_new_names(apart, FORMERLY, "kind of motion")

@@ -1,4 +1,4 @@
-"""What of a study's store is damaged, and computing it again."""
+"""Repair of a study's store: find the damaged parts and compute them again."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from stiction.study.view.view import REFINED
 
 
 class Damage(NamedTuple):
-    """What of a store is not as it was written.
+    """The damage of a store.
 
     Parameters
     ----------
     head : sequence of str
-        Files that were written when it was made.
+        Damaged files of those written when the store was made.
     blocks : mapping of int to sequence of str
-        Files of each block, by its number.
+        Damaged files of each block, by its number.
     pending : int
-        Blocks that are not done.
+        Number of blocks that are not done.
     """
 
     head: Sequence[str]
@@ -35,17 +35,17 @@ class Damage(NamedTuple):
 
     @property
     def files(damage) -> list[str]:
-        """The files that are damaged."""
+        """All damaged files."""
         return [*damage.head, *(file for files in damage.blocks.values() for file in files)]
 
 
 def damage_of(path: Path) -> Damage:
-    """Return what is damaged of a store; blocks only where the rest is whole.
+    """Find the damage of a store; blocks are checked only if the rest is intact.
 
     Raises
     ------
     ResultError
-        If it is no store, or so damaged that it cannot be computed again.
+        If it is not a store, or damaged beyond repair.
     """
     group = group_at(path, "r")
     head = seal.broken(path) if group.attrs["format"] == CHECKED else []
@@ -64,12 +64,12 @@ def damage_of(path: Path) -> Damage:
 
 
 def restore(path: Path, *, trust: bool = False) -> list[str]:
-    """Compute again what of a store is damaged; return the files that were.
+    """Compute the damaged parts of a store again; return the files.
 
     Raises
     ------
     ResultError
-        If it cannot be computed again, or another version wrote it.
+        If it is damaged beyond repair, or another version wrote it.
     """
     found, files = damage_of(path), []
     if not found.files:
@@ -88,7 +88,7 @@ def restore(path: Path, *, trust: bool = False) -> list[str]:
 
 
 def _restore_head(study: Study, path: Path, names: Sequence[str]) -> None:
-    """Write again what was written when the store was made."""
+    """Write damaged initial files of a store again."""
     with workshop(path.parent) as room:
         fresh = lay_out(study, room / "store")
         files = {name for name in (*names, seal.ROOT) if (fresh / name).is_file()}
@@ -98,12 +98,12 @@ def _restore_head(study: Study, path: Path, names: Sequence[str]) -> None:
 
 
 def _restore_blocks(study: Study, store: Store, tasks: Sequence[int]) -> None:
-    """Do blocks again."""
+    """Compute blocks again."""
     for task in tasks:
         store.mark(store.layout.region(task)).unlink()
     do(study, store, tasks, None, None)
 
 
 def stores_in(path: Path) -> list[Path]:
-    """Return a store, and those of its refinement."""
+    """Return a store and the stores of its refinement."""
     return [path, *sorted(path.glob(f"{REFINED}/*/*.zarr"))]

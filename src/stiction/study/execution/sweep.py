@@ -1,4 +1,4 @@
-"""Doing a study: what is missing in its store, block by block, on an engine."""
+"""The sweep of a study: compute its missing blocks on an engine."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from stiction.study.view.summary import Summary, summary
 
 
 class Tally(NamedTuple):
-    """How far a study is.
+    """Progress of a study.
 
     Parameters
     ----------
     runs : int
-        Runs in all.
+        Number of runs.
     before : int
-        Of them done before this time.
+        Runs done before this sweep.
     now : int
-        Done this time.
+        Runs done by this sweep.
     failed : int
-        Failed this time.
+        Runs that failed in this sweep.
     seconds : float
-        Since this time began.
+        Time since this sweep began.
     """
 
     runs: int
@@ -63,26 +63,26 @@ def sweep(
     engine: Engine | None = None,
     progress: Report | None = None,
 ) -> Summary:
-    """Do all runs of a study that its store has not, and keep them there.
+    """Do all runs of a study that are missing in its store, and keep them there.
 
-    It may be stopped at any moment, and goes on where it was when it is called again. Several may
-    do the same study at once, and share the work.
+    It may be stopped at any moment; called again, it continues. Several processes may sweep the
+    same study at once, and share the work.
 
     Parameters
     ----------
     study : Study
-        What to run.
+        The study.
     path : str or Path
-        The store: a folder, made if it is not there.
+        The store: a folder, made if it does not exist.
     engine : Engine, optional
-        What does the runs: threads of this process when left out.
+        The engine for the runs; by default threads of this process.
     progress : callable, optional
         Called with a `Tally` after each task.
 
     Returns
     -------
     Summary
-        How the runs ended, of this time and before.
+        How all runs ended, including earlier ones.
 
     Raises
     ------
@@ -93,7 +93,7 @@ def sweep(
     layout = store.layout
     left = [task for task in range(layout.tasks) if not store.has(layout.region(task))]
     with held(store.path, alone=True) as first:
-        # a second one begins at the other end
+        # a second process begins at the other end
         do(study, store, left if first else left[::-1], engine, progress)
     return summary(study, store)
 
@@ -105,7 +105,7 @@ def do(
     engine: Engine | None,
     progress: Report | None,
 ) -> None:
-    """Have an engine do blocks of a study."""
+    """Do blocks of a study on an engine."""
     layout, begun = store.layout, perf_counter()
     left = sum(runs_of(layout.region(task)) for task in tasks)
     tally = Tally(layout.runs, layout.runs - left, 0, 0, 0.0)

@@ -1,4 +1,4 @@
-"""One task: the runs of one block, done and written."""
+"""A task: do the runs of one block, and write them."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from stiction.study.variables.observation import observe
 
 
 class Unwanted(Exception):
-    """Raised inside a run that is no longer wanted."""
+    """Raised in a run that is no longer wanted."""
 
 
 class Came(NamedTuple):
-    """What came of a task: how many runs, and how many of them failed."""
+    """The outcome of a task: the number of runs, and of failed ones."""
 
     runs: int
     failed: int
 
 
 class Outcome(NamedTuple):
-    """What came of a run: how it ended, why, and what is kept of it."""
+    """The outcome of a run: its status, its message, and the kept values."""
 
     status: int
     message: str
@@ -35,9 +35,9 @@ class Outcome(NamedTuple):
 
 
 def done(study: Study, store: Store, task: int, unwanted: Callable[[], bool]) -> Came:
-    """Do the runs of a block and write it, or nothing if it is no longer wanted.
+    """Do the runs of a block and write it, unless it is no longer wanted.
 
-    A worker that outlived its client may have done it meanwhile: then it is left as it is.
+    A worker that outlived its client may have written it meanwhile; then it stays as it is.
     """
     region = store.layout.region(task)
     size = size_of(region)
@@ -50,7 +50,7 @@ def done(study: Study, store: Store, task: int, unwanted: Callable[[], bool]) ->
     try:
         for place, index in zip(np.ndindex(size), places(region), strict=True):
             status[place], message[place], values = outcome(study, wanted, index, unwanted)
-            for array, value in zip(arrays, values, strict=False):  # none of a run that failed
+            for array, value in zip(arrays, values, strict=False):  # a failed run has no values
                 array[place] = value
     except Unwanted:
         return Came(0, 0)
@@ -62,7 +62,7 @@ def done(study: Study, store: Store, task: int, unwanted: Callable[[], bool]) ->
 def outcome(
     study: Study, wanted: Sequence[Kept], index: Index, unwanted: Callable[[], bool]
 ) -> Outcome:
-    """Do one run. Whatever goes wrong in it is what came of it."""
+    """Do one run; an error in it becomes its outcome."""
 
     def report(_: float) -> None:
         if unwanted():
@@ -79,5 +79,5 @@ def outcome(
         raise
     except DescriptionError as error:
         return Outcome(REFUSED, "; ".join(map(str, error.faults)), ())
-    except Exception as error:  # whatever a law of one's own raises
+    except Exception as error:  # a user's law may raise anything
         return Outcome(ERROR, f"{type(error).__name__}: {error}", ())

@@ -1,1 +1,1 @@
-"""What is to be run: a base, axes over its parameters, and how the runs lie along them."""
+"""The plan of a study: a base description, axes over its parameters, and the grid of runs."""

@@ -1,4 +1,4 @@
-"""Axes of a study: the values that one parameter takes, one after the other."""
+"""Axes of a study: the values of one parameter."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def _list(value: Any) -> Any:
     return tuple(value)
 
 
-# in which unit is known to the parameter that the axis belongs to
+# the parameter of the axis determines the unit
 Quantity = Annotated[Any, AfterValidator(_quantity)]
 Quantities = Annotated[tuple[Quantity, ...], BeforeValidator(_list)]
 Count = Annotated[int, Field(ge=1, le=MOST)]
@@ -38,38 +38,38 @@ Spacing = Literal["linear", "log"]
 
 
 class Positional(Described):
-    """Described by values in the order of its fields, or by their names."""
+    """Base of axes, which take their fields by position or by name."""
 
     def __init__(self, *given: Any, **values: Any) -> None:
-        """Read the values."""
+        """Read the fields."""
         super().__init__(**dict(zip(type(self).model_fields, given, strict=False)), **values)
 
 
 class Values(Positional):
-    """Values one by one.
+    """A list of values.
 
     Parameters
     ----------
     values : sequence
         Each a number or a string with its unit.
     along : str, optional
-        The dimension that the values lie along; the parameter's own when left out. Axes along
-        one dimension go through their values together.
+        The dimension of the axis; by default the parameter's own. Axes along one dimension take
+        their values together.
     """
 
     values: Quantities
     along: str | None = None
 
-    __init__ = Positional.__init__  # said again for type checkers, here and below
+    __init__ = Positional.__init__  # repeated for type checkers, here and below
 
     @property
     def count(self) -> int:
-        """How many values."""
+        """Number of values."""
         return len(self.values)
 
 
 class Range(Positional):
-    """Values between two: what `Grid`, `Random` and `Sobol` have in common."""
+    """Base of `Grid`, `Random` and `Sobol`: values between two ends."""
 
     start: Quantity
     stop: Quantity
@@ -78,22 +78,22 @@ class Range(Positional):
     along: str | None = None
 
     def places(self, place: int, seed: int) -> Floats:
-        """Return how far between `start` and `stop` each value lies, 0 to 1.
+        """Return the position of each value between `start` and `stop`, 0 to 1.
 
-        `place` is that of the axis among all; with the `seed` it decides what is random.
+        `place` is the index of the axis; with the `seed` it determines random values.
         """
         raise NotImplementedError
 
 
 class Grid(Range):
-    """Values at equal distances, or at equal ratios.
+    """Values at equal distances or equal ratios.
 
     Parameters
     ----------
     start, stop : float or str
         First and last value, in the parameter's unit; in a file ``from`` and ``to``.
     count : int
-        How many values.
+        Number of values.
     spacing : {"linear", "log"}, optional
         Equal distances or equal ratios.
     along : str, optional
@@ -103,19 +103,19 @@ class Grid(Range):
     __init__ = Positional.__init__
 
     def places(self, place: int, seed: int) -> Floats:
-        """Return equal distances."""
+        """Return evenly spaced positions."""
         return np.linspace(0.0, 1.0, self.count)
 
 
 class Random(Range):
-    """Values drawn at random, evenly between two or between their logarithms.
+    """Random values, uniform between the ends or between their logarithms.
 
     Parameters
     ----------
     start, stop, count, spacing
         As of `Grid`.
     along : str, optional
-        All random axes lie along ``sample`` unless told, so that each run draws all of them.
+        By default all random axes lie along ``sample``, so that each run draws all of them.
     """
 
     along: str | None = "sample"
@@ -123,7 +123,7 @@ class Random(Range):
     __init__ = Positional.__init__
 
     def places(self, place: int, seed: int) -> Floats:
-        """Return random numbers; a longer axis begins with the same."""
+        """Return random positions; a longer axis begins with the same ones."""
         return np.random.Generator(np.random.Philox([seed, place])).random(self.count)
 
 
@@ -135,7 +135,7 @@ class Sobol(Range):
     start, stop, count, spacing
         As of `Grid`; a power of two fills best.
     along : str, optional
-        All such axes lie along ``sample`` unless told, and fill their space together.
+        By default all such axes lie along ``sample``, and fill their space together.
 
     References
     ----------
@@ -150,9 +150,9 @@ class Sobol(Range):
         """Return the coordinate number `place` of the sequence."""
         from scipy.stats.qmc import Sobol as Sequence  # slow to import
 
-        # each coordinate is by itself, however many there are; shifted by the seed
+        # coordinates do not depend on their number; the seed shifts them
         sequence = Sequence(place + 1, scramble=False, bits=53)
-        with warnings.catch_warnings():  # a count that is no power of two is the user's choice
+        with warnings.catch_warnings():  # scipy warns of a count that is not a power of two
             warnings.simplefilter("ignore", UserWarning)
             points = sequence.random(self.count)[:, place]
         shift = np.random.Generator(np.random.Philox([seed, place])).integers(0, 2**53)
@@ -167,12 +167,12 @@ WRITTEN = {"start": "from", "stop": "to"}
 
 
 def read_axis(value: Any, name: str) -> Axis:
-    """Return an axis from a table of a study's file, or as it is.
+    """Return an axis as it is, or read it from a table of a study's file.
 
     Raises
     ------
     DescriptionError
-        Naming each fault below ``axes.name``.
+        With each fault, its path below ``axes.name``.
     """
     if isinstance(value, Axis):
         return value
@@ -199,7 +199,7 @@ def read_axis(value: Any, name: str) -> Axis:
 
 
 def axis_table(axis: Axis) -> dict[str, Any]:
-    """Return an axis as a table that can be read back."""
+    """Return an axis as a table, which `read_axis` reads."""
     sampling = next((name for name, kind in SAMPLINGS.items() if type(axis) is kind), "grid")
     given = axis.model_dump(mode="json", exclude_none=True)
     table = {WRITTEN.get(name, name): value for name, value in given.items()}

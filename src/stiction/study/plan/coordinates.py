@@ -17,12 +17,12 @@ from stiction.system import parameter
 from stiction.system.description import Description
 from stiction.text.units import Kind, to_si
 
-TAKEN = {"status", "message", "time", *MEASURES}  # names in a store
+TAKEN = {"status", "message", "time", *MEASURES}  # reserved names in a store
 NAME = re.compile(r"\w[\w ,.-]*")
 
 
 class Coordinate(NamedTuple):
-    """The values of a parameter: along which dimension, in SI or degrees, and their unit."""
+    """The values of a parameter: their dimension, numbers in SI or degrees, and unit."""
 
     dim: str
     values: Floats
@@ -77,7 +77,7 @@ def varied(base: Description, changes: Mapping[str, tuple[float, str]]) -> Descr
 
 
 def coordinates(base: Description, axes: Mapping[str, Axis], seed: int) -> dict[str, Coordinate]:
-    """Return the values of each axis; random ones from a stream of their own."""
+    """Return the values of each axis; each random axis has its own stream."""
     made = {}
     for place, (path, axis) in enumerate(axes.items()):
         its = unit(base, path)
@@ -86,7 +86,7 @@ def coordinates(base: Description, axes: Mapping[str, Axis], seed: int) -> dict[
 
 
 def values(axis: Axis, its: str, place: int, seed: int) -> Floats:
-    """Return the values of an axis in a unit; `place` is its place among the axes."""
+    """Return the values of an axis in a unit; `place` is its index among the axes."""
     if not isinstance(axis, Range):
         return np.array([number(value, its) for value in axis.values])
     start, stop = number(axis.start, its), number(axis.stop, its)
@@ -102,7 +102,7 @@ def values(axis: Axis, its: str, place: int, seed: int) -> Floats:
 
 
 def coordinate_faults(base: Description, axes: Mapping[str, Axis], seed: int) -> Iterator[Fault]:
-    """Yield what is wrong with each axis by itself, below its path."""
+    """Yield the faults of each axis by itself, below its path."""
     taken: dict[str, str] = {}
     for place, (path, axis) in enumerate(axes.items()):
         for name in path.split(","):
@@ -139,7 +139,7 @@ def _unreadable(path: str, axis: Axis, its: str) -> Iterator[Fault]:
 
 
 def zip_faults(axes: Mapping[str, Axis]) -> Iterator[Fault]:
-    """Yield each axis that has not as many values as the first along the same dimension."""
+    """Yield each axis whose length differs from the first axis along its dimension."""
     first: dict[str, tuple[str, int]] = {}
     for path, axis in axes.items():
         known, count = first.setdefault(axis.along or path, (path, axis.count))

@@ -1,4 +1,4 @@
-"""How the runs of a study lie along its dimensions, and in blocks of them."""
+"""Layout of a study: the grid of runs along its dimensions, cut into blocks."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from typing import NamedTuple
 Index = tuple[int, ...]
 Region = tuple[slice, ...]
 
-# A block is one task, written at once. It takes about a second: then handing it out and writing
-# it costs a hundredth of its runs, and a kill loses no more.
+# Seconds that a block should take. It is one task, and is written at once: its overhead is then a
+# hundredth of its runs, and a kill loses only a second.
 SECOND = 1.0
-AHEAD = 2  # tasks handed out for each worker: one in hand, one waiting
-FEW_TASKS, MANY_TASKS = 32, 4096  # wanted at least, for many workers, and kept to at most
+AHEAD = 2  # tasks handed out per worker: one running, one waiting
+FEW_TASKS, MANY_TASKS = 32, 4096  # of a study: desired minimum, for many workers, and maximum
 
 
 class Layout(NamedTuple):
-    """The grid of runs and the blocks that it is cut into.
+    """The grid of runs, cut into blocks.
 
     Parameters
     ----------
     dims : tuple of str
         Names of the dimensions.
     shape, block : tuple of int
-        Runs along each in all, and in one block; the last block may be smaller.
+        Number of runs along each dimension, in all and in a block; the last may be smaller.
     """
 
     dims: tuple[str, ...]
@@ -34,21 +34,21 @@ class Layout(NamedTuple):
 
     @property
     def runs(layout) -> int:
-        """How many runs there are."""
+        """Number of runs."""
         return prod(layout.shape)
 
     @property
     def tasks(layout) -> int:
-        """How many blocks there are."""
+        """Number of blocks."""
         return prod(layout.blocks)
 
     @property
     def blocks(layout) -> Index:
-        """How many blocks there are along each dimension."""
+        """Number of blocks along each dimension."""
         return tuple(ceil(n / b) for n, b in zip(layout.shape, layout.block, strict=True))
 
     def region(layout, task: int) -> Region:
-        """Return the part of the grid that is the block number `task`."""
+        """Return the part of the grid in block number `task`."""
         places = []
         for count in reversed(layout.blocks):
             task, place = divmod(task, count)
@@ -58,9 +58,9 @@ class Layout(NamedTuple):
 
 
 def laid_out(sizes: dict[str, int], seconds: float) -> Layout:
-    """Return the layout of a grid with so many runs along each dimension.
+    """Return the layout of a grid, given the number of runs along each dimension.
 
-    `seconds` is about what a run takes.
+    `seconds` is the approximate duration of a run.
     """
     shape = tuple(sizes.values())
     runs = prod(shape)
@@ -69,10 +69,10 @@ def laid_out(sizes: dict[str, int], seconds: float) -> Layout:
 
 
 def block_of(shape: Index, wanted: float) -> Index:
-    """Return the shape of blocks of about as many runs as `wanted`, as cubic as they can be."""
+    """Return the shape of blocks of about `wanted` runs, as cubic as possible."""
     block = [1] * len(shape)
     by_size = sorted(range(len(shape)), key=lambda i: shape[i])
-    for done, i in enumerate(by_size):  # what a short dimension does not take, longer ones do
+    for done, i in enumerate(by_size):  # longer dimensions take what a short one cannot
         side = wanted ** (1.0 / (len(shape) - done))
         block[i] = ceil(shape[i] / ceil(shape[i] / side))
         wanted = max(wanted / block[i], 1.0)
@@ -85,10 +85,10 @@ def places(region: Region) -> Iterator[Index]:
 
 
 def size_of(region: Region) -> Index:
-    """Return how many runs a region has along each dimension."""
+    """Return the number of runs in a region along each dimension."""
     return tuple(part.stop - part.start for part in region)
 
 
 def runs_of(region: Region) -> int:
-    """Return how many runs a region has."""
+    """Return the number of runs in a region."""
     return prod(size_of(region))

@@ -1,4 +1,4 @@
-"""Reading the parts of a study: each value as it is given, or what to write instead."""
+"""Reading of a study's parts: each valid value, or a message with the remedy."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from stiction.text.validation import faulty, unknown
 
 
 def is_description(value: Any) -> Any:
-    """Return a description, or say that it is none."""
+    """Return a description; refuse anything else."""
     if not isinstance(value, Description):
         raise ValueError(
             f"{value!r} is not a description; write for example "
@@ -26,7 +26,7 @@ def is_description(value: Any) -> Any:
 
 
 def axes_of(value: Any) -> dict[str, Axis]:
-    """Return axes by their paths, with every fault in them at once."""
+    """Return axes by their paths; report all of their faults at once."""
     if not isinstance(value, Mapping) or not value:
         raise ValueError("give one axis at least: the path of a parameter, and its values")
     axes, found = {}, []
@@ -41,7 +41,7 @@ def axes_of(value: Any) -> dict[str, Axis]:
 
 
 def named_ones(value: Any, what: str, known: Collection[str]) -> tuple[str, ...]:
-    """Return names that are all known, each once."""
+    """Return distinct names; refuse unknown ones."""
     if isinstance(value, str) or not hasattr(value, "__iter__"):
         raise ValueError(f"{value!r} is not a list of {what}s; known: {', '.join(known)}")
     wanted = tuple(dict.fromkeys(str(each) for each in value))
@@ -52,7 +52,7 @@ def named_ones(value: Any, what: str, known: Collection[str]) -> tuple[str, ...]
 
 
 def measures_of(value: Any) -> tuple[str, ...]:
-    """Return names of measures, by the names that they have now."""
+    """Return names of measures, with old names replaced."""
     known = named_ones(value, "measure", {**MEASURES, **FORMERLY})
     return tuple(dict.fromkeys(by_new_names(known, FORMERLY, "measure")))
 

@@ -1,4 +1,4 @@
-"""A study: a base description, axes over its parameters, and what to keep of each run."""
+"""A study: a base description, axes over its parameters, and the variables to keep."""
 
 from __future__ import annotations
 
@@ -40,19 +40,19 @@ class Study(Described):
     Parameters
     ----------
     base : Description
-        What each run has in common.
+        The description that all runs share.
     axes : mapping of str to axis
-        For the path of a parameter (``phi``, ``drive.velocity``, ``friction.mu_0``, ``k_x, k_y``
-        for two that share a value; see `stiction.study.plan.coordinates`) a `Grid`, `Values`,
+        From the path of a parameter (``phi``, ``drive.velocity``, ``friction.mu_0``, ``k_x, k_y``
+        for two that share a value; see `stiction.study.plan.coordinates`) to a `Grid`, `Values`,
         `Random` or `Sobol`, or a table of the same.
     measures : sequence of str, optional
-        What to keep of each run, see `stiction.study.variables.measures.MEASURES`.
+        Numbers to keep of each run, see `stiction.study.variables.measures.MEASURES`.
     traces : sequence of str, optional
-        Courses over time to keep as well: "force", "velocity", "position".
+        Time series to keep as well: "force", "velocity", "position".
     trace_samples : int, optional
-        How many samples of each, evenly spaced over the run.
+        Number of samples of each trace, evenly spaced over the run.
     seed : int, optional
-        Of random and Sobol axes.
+        Seed of random and Sobol axes.
 
     Raises
     ------
@@ -87,14 +87,15 @@ class Study(Described):
         return self
 
     def _too_large(self) -> list[Fault]:
-        """Return what there is no memory for."""
+        """Return the faults of a study that does not fit into memory."""
         kept = (len(self.measures), len(self.traces), self.trace_samples)
         return [*axis_faults(self.axes), *run_faults(self.layout, *kept)]
 
     def _refused(self) -> list[Fault]:
-        """Return what is wrong with an end of a dimension wherever the others are.
+        """Check the endpoints of each dimension.
 
-        Values that are refused in some places only are no fault: those runs are, one by one.
+        An endpoint is a fault if it is invalid at both ends of all other dimensions. Otherwise
+        only the single runs are refused.
         """
         found: dict[str, Fault] = {}
         ends = [sorted({0, size - 1}) for size in self.layout.shape]
@@ -115,7 +116,7 @@ class Study(Described):
 
     @cached_property
     def layout(self) -> Layout:
-        """How the runs lie along the dimensions."""
+        """The grid of runs and its blocks."""
         sizes = {axis.along or path: axis.count for path, axis in self.axes.items()}
         return laid_out(sizes, seconds_of(self.base))
 
@@ -130,7 +131,7 @@ class Study(Described):
         Raises
         ------
         DescriptionError
-            If the base cannot have these values together.
+            If the base cannot have this combination of values.
         """
         at = dict(zip(self.layout.dims, index, strict=True))
         changes = {
@@ -140,7 +141,7 @@ class Study(Described):
         return varied(self.base, changes)
 
     def __repr__(self) -> str:
-        """Say how many runs there are, and along which axes."""
+        """Return a one-line summary."""
         axes = " x ".join(f"{path} ({axis.count})" for path, axis in self.axes.items())
         return f"<Study of {self.layout.runs} runs: {axes}>"
 
@@ -165,15 +166,14 @@ class Study(Described):
         *,
         trust: bool = False,
     ) -> Self:
-        """Read a study's file: a description with the tables [study] and [axes] beside it.
+        """Read a study's file: a description with the additional tables [study] and [axes].
 
-        With `changes`, other values of some parameters by their paths; this and `trust` as of
-        `Description.from_toml`.
+        `changes` and `trust` are those of `Description.from_toml`.
 
         Raises
         ------
         DescriptionError
-            Naming every fault with its path, or why the file cannot be read.
+            With every fault and its path, or the reason why the file cannot be read.
         """
         return cls.from_dict(read_toml(path, changes), find=named(folder_of(path), trust))
 
@@ -196,7 +196,7 @@ class Study(Described):
 
     @classmethod
     def _faults(cls, own: Mapping[str, Any], axes: Any, base: Any) -> Sequence[Fault]:
-        """Return what is wrong with a study's own tables, whatever its base is."""
+        """Return the faults of a study's own tables, independent of its base."""
         try:
             cls._made(own, axes, base)
         except DescriptionError as error:
@@ -212,11 +212,11 @@ class Study(Described):
 
     @classmethod
     def from_json(cls, text: str, *, trust: bool = False) -> Self:
-        """Read back what `to_json` wrote; `trust` as of `Description.from_json`."""
+        """Read back what `to_json` wrote; `trust` is that of `Description.from_json`."""
         return cls.from_dict(read_json(text), find=held(trust))
 
     def to_dict(self) -> dict[str, Any]:
-        """Return nested tables, as `from_dict` reads them."""
+        """Return nested tables, which `from_dict` reads."""
         base: Description = self.base
         return {
             "study": self.model_dump(mode="json", exclude={"base", "axes"}),
@@ -229,7 +229,7 @@ class Study(Described):
         return json.dumps(self.to_dict())
 
     def __reduce__(self) -> tuple[Callable[[str], Study], tuple[str]]:
-        """Pickle by the text, which other processes can read, laws of one's own included."""
+        """Pickle as text, which other processes can read, including users' laws."""
         return _from_text, (self.to_json(),)
 
 
@@ -239,6 +239,6 @@ def _from_text(text: str) -> Study:
 
 
 def _in_file(fault: Fault) -> Fault:
-    """Return a fault with its path in a study's file."""
+    """Return a fault with its path in the file of a study."""
     path = fault.path.removeprefix("Study.")
     return Fault(path if path.startswith("axes") else f"study.{path}", fault.message)

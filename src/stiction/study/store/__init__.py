@@ -1,1 +1,1 @@
-"""The store of a study: how it is laid out, made, written, sealed, checked and repaired."""
+"""The store of a study: layout, creation, writing, sealing and checking."""

@@ -1,4 +1,4 @@
-"""The chunks of a store as they are read: one that is not as it was written is told by its name."""
+"""Reading of a store's chunks, with their checksums verified."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ if TYPE_CHECKING:
 
 
 class WholeChunks(WrapperStore[LocalStore]):
-    """A folder of zarr's in which each chunk has a checksum."""
+    """A zarr folder in which each chunk has a checksum."""
 
     async def get(
         self, key: str, prototype: BufferPrototype, byte_range: ByteRequest | None = None
     ) -> Buffer | None:
-        """Return what a file holds.
+        """Return the content of a file.
 
         Raises
         ------
         ResultError
-            If it is a chunk, and not as it was written.
+            If it is a damaged chunk.
         """
         found = await super().get(key, prototype, byte_range)
         if found is None or byte_range is not None or key.endswith(ROOT):

@@ -1,4 +1,4 @@
-"""Making the store of a study: whole or not at all, before its first run."""
+"""Creation of a study's store, whole or not at all, before its first run."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def create(study: Study, path: str | Path) -> Store:
-    """Make the store of a study that has not begun, whole or not at all; or join who is faster."""
+    """Create the store of a new study, or open it if another sweep was faster."""
     target = Path(path)
     if not target.parent.is_dir():
         raise ResultError(f"{target}: no folder {target.parent}; make it first")
@@ -29,17 +29,17 @@ def create(study: Study, path: str | Path) -> Store:
         try:
             place({part: target})
         except OSError:
-            if not target.exists():  # otherwise another sweep was faster: this one joins it
+            if not target.exists():  # otherwise another sweep was faster
                 raise
     return opened(study, target)
 
 
 def lay_out(study: Study, folder: Path) -> Path:
-    """Make a store without runs, sealed; return the folder."""
+    """Make an empty, sealed store; return the folder."""
     import zarr
 
     _make_arrays(study, zarr.create_group(folder, zarr_format=3))
-    with warnings.catch_warnings():  # of a convention that xarray and zarr share
+    with warnings.catch_warnings():  # zarr warns of consolidated metadata
         warnings.simplefilter("ignore", UserWarning)
         zarr.consolidate_metadata(folder)
     seal(folder)

@@ -1,4 +1,4 @@
-"""All that a study keeps of each run, measures and traces alike: how it is found and stored."""
+"""Variables that a study keeps, measures and traces alike: how to compute and store them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from stiction.study.variables.measures import MEASURES
 from stiction.study.variables.observation import Observed
 from stiction.study.variables.traces import TRACES
 
-UNKNOWN = "unknown"  # what -1 means where a number stands for a kind
+UNKNOWN = "unknown"  # the meaning of -1 in the code of a kind
 TIME = "time"  # dimension of traces
 
 
@@ -24,15 +24,15 @@ class Kept(NamedTuple):
     Parameters
     ----------
     name : str
-        Of the variable.
+        Name of the variable.
     of : callable
-        From what was observed of a run to its value.
+        From an observed run to its value.
     shape : tuple of int
-        Of the value: () for a number.
+        Shape of the value: () for a number.
     dtype : type
-        How it is stored.
+        Stored type.
     unknown : float
-        What stands where there is none.
+        Fill value for unknown values.
     labels : dict
         CF attributes.
     """
@@ -46,7 +46,7 @@ class Kept(NamedTuple):
 
 
 def kept(study: Study) -> list[Kept]:
-    """Return what is kept of each run of a study."""
+    """Return the variables that a study keeps of each run."""
     return [
         *(_measure(name) for name in study.measures),
         *(_trace(name, study.trace_samples) for name in study.traces),
@@ -54,7 +54,7 @@ def kept(study: Study) -> list[Kept]:
 
 
 def names_kept(study: Mapping[str, Any]) -> list[str]:
-    """Return the names of what is kept of each run, from the table of a study's description."""
+    """Return the names of the kept variables, from the table [study] of a description."""
     return [*study["measures"], *map(_trace_name, study["traces"])]
 
 
@@ -85,7 +85,7 @@ def _trace(name: str, count: int) -> Kept:
 def trace_times(study: Study) -> tuple[Floats, dict[str, str]]:
     """Return the times of the samples of traces, and their CF attributes.
 
-    In shares of the run's duration where that differs from run to run.
+    They are fractions of the duration if it differs between runs.
     """
     share = np.linspace(0.0, 1.0, study.trace_samples)
     if {"run.duration", "initial.time"} & study.coordinates.keys():

@@ -1,7 +1,7 @@
-"""The seal of a store: checksums of all that is written when it is made, in its own attributes.
+"""The seal of a store: checksums of all initial files, in its own attributes.
 
-Values have checksums of their own, chunk by chunk. Names, units, the description and what says
-how chunks are to be read have none in zarr.
+Zarr has no checksums for names, units, the description, and the metadata of arrays. The values
+have their own, chunk by chunk.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ ANEW = (
 
 
 def seal(folder: Path) -> None:
-    """Seal all that is in a new store."""
+    """Seal a new store."""
     parts = {str(each.relative_to(folder).as_posix()): each for each in sorted(folder.rglob("*"))}
     files = {name: each.read_bytes() for name, each in parts.items() if each.is_file()}
     root = json.loads(files[ROOT])
@@ -33,7 +33,7 @@ def seal(folder: Path) -> None:
 
 
 def broken(folder: Path) -> list[str]:
-    """Return the files of a store that are not what they were when it was made, or are missing."""
+    """Return the sealed files of a store that have changed or are missing."""
     try:
         root = json.loads((folder / ROOT).read_bytes())
         sealed = root["attributes"].pop(SEAL)
@@ -47,7 +47,7 @@ def broken(folder: Path) -> list[str]:
 
 
 def damage(path: str | Path, files: Sequence[object]) -> ResultError:
-    """Return what is said of a store that is not whole."""
+    """Return the error for a damaged store."""
     names = ", ".join(map(str, files[:3])) + (f" and {len(files) - 3} more" * (len(files) > 3))
     again = f"compute it again with: stiction check {path} --repair"
     lost = {ROOT, DESCRIPTION} <= {*map(str, files)}
@@ -55,7 +55,7 @@ def damage(path: str | Path, files: Sequence[object]) -> ResultError:
 
 
 def _own(root: Any) -> dict[str, bytes]:
-    """Return what stands in the store's own file, however it is laid out, and its description."""
+    """Return the root metadata of a store, independent of its formatting, and its description."""
     description = str(root["attributes"].get(DESCRIPTION, ""))
     return {
         ROOT: json.dumps(root, sort_keys=True).encode(),

@@ -1,8 +1,8 @@
-"""A study on disk: one zarr array a measure, written block by block, its status last.
+"""A study on disk: one zarr array per measure, written block by block, the status last.
 
-The status of a run is -1 until it is known. That of a block is one file, written when the disk has
-all else of that block: it is the mark that the block is done. Each chunk has a checksum, and so has
-what is written when the store is made. In stores of format 1 nothing has.
+The status of a run is -1 until it is known. The status of a block is one file, written after the
+rest of the block is on the disk: it marks the block as done. Each chunk has a checksum, and so have
+the files that are written when the store is made. Stores of format 1 have no checksums.
 """
 
 from __future__ import annotations
@@ -33,18 +33,18 @@ if TYPE_CHECKING:
     import xarray as xr
     import zarr
 
-FORMATS = (1, 2)  # of stores that can be read
-CHECKED = 2  # from this one on all has checksums; it is the one that is written
+FORMATS = (1, 2)  # of readable stores
+CHECKED = 2  # the format that is written, the first with checksums
 PENDING = -1
-MOST_TASKS = 256 * MANY_TASKS  # each is looked at: what a store says of itself is bounded
-# how a run can end: as every run, or refused before it began, or by an error of the program
+MOST_TASKS = 256 * MANY_TASKS  # that a store may claim: each block is visited
+# ends of a run in a study: those of any run, refused before it began, or an error of the program
 ENDS = (*(status.name.lower() for status in errors.Status), "refused", "error")
 COMPLETED, REFUSED, ERROR = 0, ENDS.index("refused"), ENDS.index("error")
 STATUS, MESSAGE = "status", "message"
 
 
 class Block(NamedTuple):
-    """What a region's runs came to: arrays of the region's shape, and of each value's own."""
+    """Results of a region's runs: arrays of the region's shape plus each value's shape."""
 
     values: Sequence[tuple[Kept, np.ndarray]]
     status: np.ndarray
@@ -59,11 +59,11 @@ class Store(NamedTuple):
     path : Path
         The folder.
     group : zarr.Group
-        What is in it.
+        Its content.
     layout : Layout
-        Of its runs, with the blocks in which it is written.
+        The layout of its runs and blocks.
     chunks : mapping of str to tuple of int
-        Of each array with a number for each run: the shape of its chunks, one for each block.
+        The chunk shape of each array of values per run; each block is one chunk.
     """
 
     path: Path
@@ -81,17 +81,17 @@ class Store(NamedTuple):
         return np.asarray(store._array(STATUS)[...])
 
     def has(store, region: Region) -> bool:
-        """Return whether a block is done: it is marked so, and nothing of it is missing or cut."""
+        """Return whether a block is marked as done, with no file missing or truncated."""
         return store.mark(region).is_file() and not store.damaged(region)
 
     def mark(store, region: Region) -> Path:
-        """Return the file that marks a block as done: that of its status."""
+        """Return the status file of a block, which marks it as done."""
         return store._file(STATUS, region)
 
     def damaged(store, region: Region, *, read: bool = False) -> list[Path]:
-        """Return the files of a block that are not whole, if it is marked as done.
+        """Return the damaged files of a block that is marked as done.
 
-        They are missing or have another length; where all is `read`, or another checksum.
+        They are missing or have a wrong length, or, if `read`, a wrong checksum.
         """
         mark = store.mark(region)
         if not mark.exists():
@@ -101,13 +101,13 @@ class Store(NamedTuple):
             return [mark]
         sizes = {store._file(name, region): store._size(name) for name in store.chunks}
         found = [file for file, size in sizes.items() if not store._sound(file, size, read)]
-        if (np.frombuffer(status, np.int8) > COMPLETED).any():  # then it says why
+        if (np.frombuffer(status, np.int8) > COMPLETED).any():  # failed runs have a message
             file = store._file(MESSAGE, region)
             found += [file] if store._content(file) is None else []
         return found
 
     def _size(store, name: str) -> int:
-        """Return how many bytes a chunk has on disk."""
+        """Return the size of a chunk on disk, in bytes."""
         numbers = prod(store.chunks[name]) * store._array(name).dtype.itemsize
         return int(numbers) + (LENGTH if store.checked else 0)
 
@@ -117,7 +117,7 @@ class Store(NamedTuple):
         return file.is_file() and file.stat().st_size == size
 
     def _content(store, file: Path, size: int | None = None) -> bytes | None:
-        """Return what is in a chunk, without its checksum; None if it is not whole."""
+        """Return the content of a chunk without its checksum; None if it is damaged."""
         if not file.is_file():
             return None
         content = file.read_bytes()
@@ -130,7 +130,7 @@ class Store(NamedTuple):
         return str(store._array(MESSAGE)[index])
 
     def write(store, region: Region, block: Block) -> None:
-        """Write a block, and when the disk has it the mark that it is done."""
+        """Write a block to the disk, then the mark that it is done."""
         files = {
             store._file(each.name, region): store._whole(values, each.unknown).tobytes()
             for each, values in block.values
@@ -142,9 +142,9 @@ class Store(NamedTuple):
             store._place({store.mark(region): store._whole(block.status, PENDING).tobytes()})
 
     def _place(store, files: Mapping[Path, bytes]) -> None:
-        """Write chunks, as the specification of zarr has them: bytes in files of their own.
+        """Write chunks by zarr's specification: each as a file of bytes.
 
-        Through zarr it takes the processor eight times as long, as long as a sixth of a run.
+        Writing through zarr takes eight times as long, as much as a sixth of a run.
         """
         with workshop(store.path / STATUS) as room:
             made = {}
@@ -155,14 +155,14 @@ class Store(NamedTuple):
             place(made)
 
     def _whole(store, values: np.ndarray, fill: Any) -> np.ndarray:
-        """Return a block's values in a whole chunk, which reaches beyond the runs at the edges."""
+        """Return a block's values as a full chunk, padded beyond the edges of the grid."""
         own = values.shape[len(store.layout.block) :]
         chunk = np.full((*store.layout.block, *own), fill, values.dtype.newbyteorder("<"))
         chunk[tuple(slice(0, n) for n in values.shape)] = values
         return chunk
 
     def _file(store, name: str, region: Region) -> Path:
-        """Return where the chunk of a region is; dimensions of a run's own are not cut."""
+        """Return the file of a region's chunk; only dimensions of the grid are divided."""
         pairs = zip(region, store.layout.block, strict=True)
         places = (str(part.start // b) for part, b in pairs)
         own = len(store.chunks.get(name, region)) - len(region)
@@ -172,12 +172,12 @@ class Store(NamedTuple):
         return store.group[name]
 
     def __reduce__(store) -> tuple[Any, ...]:
-        """Pickle by the path: another process opens it for itself."""
+        """Pickle the path: another process opens the store itself."""
         return _reopened, (str(store.path.absolute()),)
 
 
 def encoded(texts: np.ndarray) -> bytes:
-    """Return texts as zarr's codec vlen-utf8 has them: how many; length and content of each."""
+    """Encode texts like zarr's codec vlen-utf8: their number, then each length and content."""
     contents = [str(text).encode() for text in texts.ravel()]
     lengths = np.array([len(contents), *map(len, contents)], "<u4")
     pairs = zip(lengths[1:], contents, strict=True)
@@ -191,7 +191,7 @@ def _reopened(path: str) -> Store:
 
 @contextmanager
 def told(path: Path) -> Iterator[None]:
-    """Turn what the file system refuses into a message."""
+    """Turn errors of the file system into a message."""
     try:
         yield
     except OSError as error:
@@ -202,12 +202,12 @@ def told(path: Path) -> Iterator[None]:
 
 
 def opened(study: Study, path: str | Path) -> Store:
-    """Open the store of a study that has begun.
+    """Open the existing store of a study.
 
     Raises
     ------
     ResultError
-        If there is something else.
+        If something else is there.
     """
     store = store_at(path, "r+")
     attributes = store.group.attrs
@@ -226,12 +226,12 @@ def opened(study: Study, path: str | Path) -> Store:
 
 
 def store_at(path: str | Path, mode: Literal["r", "r+"]) -> Store:
-    """Open a store as it describes itself.
+    """Open a store by its own description.
 
     Raises
     ------
     ResultError
-        If it is none, or what was written when it was made is damaged.
+        If it is not a store, or its description or metadata are damaged.
     """
     group = group_at(path, mode)
     lost = seal.broken(Path(path)) if group.attrs["format"] == CHECKED else []
@@ -250,7 +250,7 @@ def store_at(path: str | Path, mode: Literal["r", "r+"]) -> Store:
 
 
 def group_at(path: str | Path, mode: Literal["r", "r+"]) -> zarr.Group:
-    """Return what is in the store of a study.
+    """Return the zarr group of a study's store.
 
     Raises
     ------
@@ -264,7 +264,7 @@ def group_at(path: str | Path, mode: Literal["r", "r+"]) -> zarr.Group:
     refuse_links(path)
     was = (Path(path) / STATUS / seal.ROOT).is_file()
     what = f"is damaged: {seal.ROOT}; {seal.ANEW}" if was else "is not the store of a study"
-    with opening(path, what):  # of zarr's format 2 pickles are a part
+    with opening(path, what):  # zarr's format 2 may contain pickles
         group = zarr.open_group(Path(path), mode=mode, zarr_format=3, use_consolidated=False)
         known = group.attrs.get("format")
     if known not in FORMATS:
@@ -275,15 +275,15 @@ def group_at(path: str | Path, mode: Literal["r", "r+"]) -> zarr.Group:
 
 
 def open_study(path: str | Path) -> xr.Dataset:
-    """Return a study's store, its values read when they are asked for.
+    """Open a study's store lazily: values are read when they are used.
 
-    It is ``xarray.open_zarr(path)`` after a look at whether it is one and nothing of it is missing;
-    measures of older stores have the names that they have now.
+    Like ``xarray.open_zarr(path)``, but it checks that the path is a store and that no files are
+    missing, and gives the measures of older stores their present names.
 
     Raises
     ------
     ResultError
-        If it is none, or is damaged; if only values are, when they are asked for.
+        If it is not a store, or is damaged; damaged values raise it when they are read.
     """
     import xarray as xr
     from zarr.storage import LocalStore

@@ -1,1 +1,1 @@
-"""What a study keeps of each run: measures and traces, and how they are found."""
+"""Variables that a study keeps of each run: measures and traces."""

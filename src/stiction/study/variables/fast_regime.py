@@ -1,8 +1,8 @@
-"""Which kind of motion a run shows, from the features of its clean samples.
+"""Classification of a simulated run's motion from the features of its noise-free samples.
 
-The kinds and their bounds are those of `stiction.analysis.motion.regime`, which finds them in any
-record, noisy or not, and takes a hundred times as long; a test holds the two together. Without
-noise a little more can be said: swings that no other follows for long are over, be they but two.
+The kinds and their bounds are those of `stiction.analysis.motion.regime`, which also classifies
+noisy records but takes a hundred times as long; a test keeps the two consistent. Without noise
+one more rule holds: a motion is over, even after only two swings, if no other follows for long.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ KINDS = (
     regime.STEADY,
     TRANSVERSE,
     regime.IRREGULAR,
-)  # stores hold their places: a new one goes to the end
+)  # stores keep their indices: append new ones
 FORMERLY = {
     "between stick-slip and harmonic vibration": regime.TRANSITIONAL,
     "damped approach": regime.SETTLING,
     "song": TRANSVERSE,
 }
-FEWEST = 2  # swings that tell a kind: one may be the end of a transient
-OSCILLATES = 0.1  # of the largest that the fast oscillation can be before the slip reverses
+FEWEST = 2  # swings needed for a kind: a single one may be the end of a transient
+OSCILLATES = 0.1  # of the largest amplitude of the fast oscillation without reversal of slip
 
 
 class Swings(NamedTuple):
@@ -51,7 +51,7 @@ class Swings(NamedTuple):
     period : ndarray
         From trough to trough, s.
     rise_share : ndarray
-        Of the period in which the force rises.
+        Fraction of the period in which the force rises.
     end : float
         Time of the last trough, s.
     """
@@ -62,13 +62,13 @@ class Swings(NamedTuple):
     end: float
 
     def some(self, which: slice) -> Swings:
-        """Return some of them."""
+        """Return a subset."""
         end = self.end - float(self.period[which.stop :].sum())
         return Swings(self.drop[which], self.period[which], self.rise_share[which], end)
 
 
 def swings(found: Features) -> Swings:
-    """Return the complete swings between turning points, hesitations taken out."""
+    """Return the complete swings between turning points, without hesitations."""
     kept = take_out(np.concatenate([[found.first], found.turn_value, [found.last]])).kept - 1
     kept = kept[0 if len(kept) and (kept[0] % 2 == 0) == found.trough else 1 :]
     time, value = found.turn_time[kept], found.turn_value[kept]
@@ -93,15 +93,15 @@ def kind_of(
     Parameters
     ----------
     found : Features
-        What the samples show.
+        Features of the samples.
     cycles : Swings
-        Of it.
+        The complete swings that are cycles.
     start, end : float
-        Of the run, s.
+        Start and end of the run, s.
     drive : float
         Rate of the force while the mass sticks: stiffness times drive velocity, N/s.
     oscillation : float
-        How strong the fast oscillation is at the end, in units of the drive's velocity along it.
+        Rate amplitude of the final fast oscillation over the drive's velocity along it.
     own : float
         Period of the mass on the softer spring alone, s.
     """
@@ -115,26 +115,26 @@ def kind_of(
 
 
 def cycles_among(found: Swings, end: float) -> Swings:
-    """Return those that are cycles, by the rules of `stiction.find_cycles`, of a run's swings."""
+    """Return the swings of a run that are cycles by the rules of `stiction.find_cycles`."""
     none = is_over(found, end) or die_out(found, end)
     return found.some(slice(0, 0) if none else built_up(found.drop))
 
 
 def is_over(found: Swings, end: float) -> bool:
-    """Return whether no swing follows for long before the run ends."""
+    """Return whether the run goes on for long after its last swing."""
     return len(found.drop) > 0 and end - found.end > QUIET * float(found.period.max())
 
 
 def die_out(cycles: Swings, end: float) -> bool:
-    """Return whether swings die out in a run that ends then: they are a transient, no cycles."""
+    """Return whether swings die out until `end`: a transient, not cycles."""
     drop = cycles.drop
-    # a cheap condition first, which must hold as well
+    # first a cheap necessary condition
     dying = len(drop) > 0 and bool(drop[-1] < 0.5 * drop.max())
     return dying and dies_out(drop, cycles.period, end - cycles.end)
 
 
 def by_shape(cycles: Swings, own: float) -> str:
-    """Return the kind of cycles, by their shape, their size and how quick they are."""
+    """Return the kind of cycles from their shape, size and period."""
     count = len(cycles.drop)
     kind = regime.shape(float(np.sort(cycles.rise_share)[count // 2]))
     if kind in (regime.TRANSITIONAL, regime.HARMONIC) and cycles.period.mean() < regime.QUICK * own:

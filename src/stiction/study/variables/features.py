@@ -1,6 +1,6 @@
-"""What the samples of a run show, found in one pass of compiled code, without Python's lock.
+"""Features of a run's samples, found in one pass of compiled code without Python's lock.
 
-For what a solver returns, which has no noise. `stiction.analysis` finds the same in any record.
+The samples must come from the solver, without noise; `stiction.analysis` handles any record.
 """
 
 from __future__ import annotations
@@ -15,22 +15,22 @@ PARTS = 32  # equal parts of the time, over which the force is averaged
 
 
 class Features(NamedTuple):
-    """What the samples of a run show.
+    """Features of a run's samples.
 
     Parameters
     ----------
     peak : float
         Largest force, N.
     late_mean, late_span : float
-        Mean force in the last quarter, and the span from its lowest to its highest there, N.
+        Mean force in the last quarter, and its span from lowest to highest there, N.
     peak_velocity : float
         Largest velocity of the mass along the drive, m/s.
     means : ndarray
         (32,), force averaged over equal parts of the time, N.
     turn_time, turn_value : ndarray
-        (n,), where the force turns (s, N), peaks and troughs in turn.
+        (n,), turning points of the force (s, N), alternately peaks and troughs.
     trough : bool
-        Whether the first of them is a trough.
+        Whether the first turning point is a trough.
     first, last : float
         Force at the beginning and at the end, N.
     """
@@ -56,16 +56,16 @@ def features(
     reversal: float,
     least: float,
 ) -> Features:
-    """Return what evenly spaced samples show.
+    """Return the features of evenly spaced samples.
 
     Parameters
     ----------
     time, force, rate, velocity : ndarray
         (n,), s, N, N/s, m/s; positive along the drive.
     reversal : float
-        Smallest reversal of the force that counts, of its span in the last quarter.
+        Smallest reversal of the force that counts, as a share of its span in the last quarter.
     least : float
-        The same, of the largest force: what is less is the solver's error.
+        The same as a share of the largest force: smaller ones are errors of the solver.
     """
     n = len(time)
     low, high, fastest = force[0], force[0], velocity[0]
@@ -100,10 +100,10 @@ def features(
 
 @compiled
 def bottom(time: np.ndarray, values: np.ndarray, rate: np.ndarray, i: int) -> tuple[float, float]:
-    """Return where a fall ends, and the value there.
+    """Return the time and value at the end of a fall.
 
-    The slip slows down evenly, and may stick before the next sample: from there on the rate is
-    constant. Rates and values at both samples then say when the rate was zero.
+    Slip decelerates uniformly, and may stick before the next sample, after which the rate is
+    constant. Rates and values at both samples then determine when the rate was zero.
     """
     a = i if rate[i] < 0.0 else i - 1
     before, after, step = rate[a], rate[a + 1], time[a + 1] - time[a]
@@ -116,7 +116,7 @@ def bottom(time: np.ndarray, values: np.ndarray, rate: np.ndarray, i: int) -> tu
 
 @compiled
 def vertex(time: np.ndarray, values: np.ndarray, i: int) -> tuple[float, float]:
-    """Return where the parabola through a sample and its neighbours turns, and its value there."""
+    """Return time and value of the vertex of the parabola through a sample and its neighbours."""
     bend = values[i - 1] - 2.0 * values[i] + values[i + 1]
     slope = 0.5 * (values[i + 1] - values[i - 1])
     shift = -slope / bend if bend != 0.0 else 0.0
@@ -125,12 +125,12 @@ def vertex(time: np.ndarray, values: np.ndarray, i: int) -> tuple[float, float]:
 
 @compiled
 def zigzag(values: np.ndarray, height: float) -> np.ndarray:
-    """Return the samples, in turn highest and lowest, between legs higher than `height`.
+    """Return the indices of alternating maxima and minima between legs higher than `height`.
 
-    The two ends are none of them.
+    The two ends do not count.
     """
     found = np.empty(len(values), np.int64)
-    n, way, last, high, low = 0, 0, 0, 0, 0  # way: 1 rising, -1 falling, 0 not known yet
+    n, way, last, high, low = 0, 0, 0, 0, 0  # way: 1 rising, -1 falling, 0 unknown
     for i in range(1, len(values)):
         if way == 0:
             high = i if values[i] > values[high] else high

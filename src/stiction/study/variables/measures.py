@@ -1,4 +1,4 @@
-"""What a study keeps of each run: numbers with their units, one line each."""
+"""Measures: numbers with units that a study keeps of each run, one line each."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from stiction.study.variables.observation import Observed
 
 
 class Measure(NamedTuple):
-    """A number that a run comes to.
+    """A number that describes a run.
 
     Parameters
     ----------
     unit, long_name : str
         CF attributes.
     of : callable
-        From what was observed to the number; NaN where there is none.
+        From the observed run to the number, or NaN for none.
     flags : tuple of str, optional
-        What 0, 1, ... mean, where the number stands for a kind.
+        Meanings of 0, 1, ..., if the number encodes a kind.
     """
 
     unit: str
@@ -84,5 +84,5 @@ MEASURES: dict[str, Measure] = {
     ),
     "steps": Measure("1", "slip steps of the solver", lambda run: float(run.solution.counts.steps)),
 }
-FORMERLY = {"song": "transverse_oscillation"}  # old names, which go with the next version
+FORMERLY = {"song": "transverse_oscillation"}  # old names, which work until the next version
 DEFAULT = ("regime", "peak_force", "amplitude", "period", "creep_distance", "time_stuck")

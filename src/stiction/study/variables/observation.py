@@ -1,4 +1,4 @@
-"""What the measures look at: one run's samples as plain arrays, and what they share."""
+"""An observed run, the input of the measures: its samples as plain arrays."""
 
 from __future__ import annotations
 
@@ -22,33 +22,33 @@ from stiction.system.slider import Slider
 
 Floats = NDArray[np.float64]
 
-# A peak found by a parabola through samples this dense is right to 1e-5 of the amplitude for a
-# harmonic, to 1e-4 for the paper's. Samples cost time of their own: here one part in a hundred.
+# With samples this dense, a parabola finds peaks to 1e-5 of the amplitude for a harmonic, and to
+# 1e-4 for the paper's system. The samples cost about a hundredth of the run's time.
 PER_SLOW_PERIOD = 32
-PER_COUPLED_PERIOD = 16  # of the mass along the drive, on both springs, where friction holds it
-LEAST_SAMPLES, MOST_SAMPLES = 64, 1_000_000  # of one run
-# The fast oscillation is looked at over its last periods.
+PER_COUPLED_PERIOD = 16  # of the mass moving only along the drive
+LEAST_SAMPLES, MOST_SAMPLES = 64, 1_000_000  # of a run
+# The fast oscillation is measured over its last periods.
 FAST_PERIODS, PER_FAST_PERIOD = 32, 16
-# Smallest reversal of the force that counts, of its span in the last quarter: ten times what the
-# fast oscillation makes of it in the paper's system, and small enough to see swings die out. It is
-# no less than the solver's tolerance of the largest force.
+# Smallest reversal of the force that counts, as a share of its span in the last quarter: ten times
+# the fast oscillation of the paper's system, and small enough to see swings die out. It is at least
+# the solver's tolerance for the largest force.
 REVERSAL = 1e-3
 
 
 @dataclass(frozen=True)
 class Observed:
-    """A run as the solver returns it: evenly spaced samples, and finer ones of its end.
+    """A run as the solver returns it: evenly spaced samples, denser near its end.
 
     Parameters
     ----------
     description : Description
-        What was run.
+        The description of the run.
     solution : Solution
         Samples, stick intervals and counts.
     fine : int
-        The first of the finer samples.
+        Index of the first of the denser samples.
     parts : int
-        How many of them take the place of one.
+        Number of denser samples per even one.
     """
 
     description: Description
@@ -58,12 +58,12 @@ class Observed:
 
     @property
     def start(self) -> float:
-        """When the run starts, s."""
+        """Start of the run, s."""
         return float(self.solution.times[0])
 
     @property
     def end(self) -> float:
-        """When it ends, s."""
+        """End of the run, s."""
         return float(self.solution.times[-1])
 
     @cached_property
@@ -80,31 +80,31 @@ class Observed:
 
     @cached_property
     def way(self) -> float:
-        """1 where the spring is pulled towards positive x, else -1."""
+        """1 if the spring is pulled towards positive x, else -1."""
         slider = self.description.slider
         return -1.0 if slider.motion.velocity * slider.direction[0] < 0.0 else 1.0
 
     @cached_property
     def force(self) -> Floats:
-        """Spring force k_x u_x, positive where it pulls along the drive (N)."""
+        """Spring force k_x u_x, positive along the drive (N)."""
         return self.way * self.description.slider.k_x * self.column(0)
 
     @cached_property
     def drive(self) -> Floats:
-        """Velocity of the drive along X: one value if it is constant, else one a sample (m/s)."""
+        """Velocity of the drive along X (m/s): one value if constant, else one per sample."""
         motion = self.description.slider.motion
         constant = isinstance(motion, ConstantVelocity)
         return np.array([motion.velocity]) if constant else np.asarray(motion.rate(self.time)[0])
 
     @cached_property
     def rate(self) -> Floats:
-        """Rate of the spring force, as the drive and the mass move its ends (N/s)."""
+        """Rate of the spring force (N/s)."""
         slider = self.description.slider
         return self.way * slider.k_x * (slider.direction[0] * self.drive - self.column(2))
 
     @cached_property
     def velocity(self) -> Floats:
-        """Velocity of the mass along the drive, X', positive where it follows it (m/s)."""
+        """Velocity X' of the mass, positive in the direction of the drive (m/s)."""
         c, s = self.description.slider.direction
         return self.way * c * self.column(2) + self.way * s * self.column(3)
 
@@ -118,14 +118,14 @@ class Observed:
 
     @cached_property
     def features(self) -> Features:
-        """What the evenly spaced samples show."""
+        """Features of the evenly spaced samples."""
         least = self.description.run.rtol
         found: Features = features(self.time, self.force, self.rate, self.velocity, REVERSAL, least)
         return found
 
     @cached_property
     def first_slip(self) -> tuple[float, float]:
-        """When the first slip begins (s), and how far the mass came until then (m)."""
+        """Start of the first slip (s), and the distance of the mass until then (m)."""
         slider, (c, s) = self.description.slider, self.description.slider.direction
         drive = np.broadcast_to(self.drive, self.time.shape)
         at = loading(slider, c * self.column(0) + s * self.column(1), drive).slip
@@ -146,10 +146,10 @@ class Observed:
 
     @cached_property
     def transverse_oscillation(self) -> float:
-        """Amplitude of the fast oscillation's rate at the end, over the drive's velocity along it.
+        """Rate amplitude of the final fast oscillation over the drive's velocity along it.
 
-        Half the span of the elongation rate along the stiffer axis. It is 1 at most while the
-        slip does not reverse (Nakano & Popov, below Eq. (9)).
+        This is half the span of the elongation rate along the stiffer axis, at most 1 unless the
+        slip reverses (Nakano & Popov, below Eq. (9)).
         """
         slider, samples = self.description.slider, self.solution.samples
         axis = 1 if slider.k_y >= slider.k_x else 0
@@ -160,7 +160,7 @@ class Observed:
     @cached_property
     def regime(self) -> str:
         """The kind of motion, one of `stiction.study.variables.fast_regime.KINDS`."""
-        if self.solution.counts.steps == 0:  # friction could hold all the time
+        if self.solution.counts.steps == 0:  # friction held all the time
             return STUCK
         slider = self.description.slider
         drive = slider.k_x * abs(slider.motion.velocity * slider.direction[0])
@@ -169,7 +169,7 @@ class Observed:
 
 
 def observe(description: Description, report: Callable[[float], None] | None) -> Observed:
-    """Run a description, sampled as measures need it: as it says, or by its slow period."""
+    """Run a description, sampled at its own rate, or as its slow period requires."""
     start, duration = description.initial.time, description.run.duration
     slow, fast = description.slider.natural_frequencies
     along = PER_COUPLED_PERIOD * coupled_frequency(description.slider)
@@ -180,18 +180,18 @@ def observe(description: Description, report: Callable[[float], None] | None) ->
     parts = max(ceil(PER_FAST_PERIOD * fast / rate), 1)
     steps = min(ceil(FAST_PERIODS * rate / fast), len(even) - 1)
     fine = len(even) - 1 - steps
-    # from the last even samples on, each step is cut in parts
+    # over the last even samples, each step is divided into parts
     dense = even[fine] + np.arange(steps * parts + 1) / (rate * parts)
     times = np.minimum(np.concatenate([even[:fine], dense]), start + duration)
     return Observed(description, solve(description, times, progress=report), fine, parts)
 
 
 def coupled_frequency(slider: Slider) -> float:
-    """Return the frequency (Hz) of the mass along the drive, if friction lets it go so only."""
+    """Return the frequency (Hz) of the mass if friction lets it move only along the drive."""
     c, s = slider.direction
     return sqrt((slider.k_x * c**2 + slider.k_y * s**2) / slider.mass) / (2.0 * pi)
 
 
 def seconds_of(description: Description) -> float:
-    """Return about what a run takes (s), by what the paper's takes in each fast period."""
+    """Estimate the computing time of a run (s) from that of the paper's per fast period."""
     return 1e-4 + 1.6e-6 * description.slider.natural_frequencies[1] * description.run.duration

@@ -1,4 +1,4 @@
-"""Courses over time that a study can keep of each run."""
+"""Traces: time series that a study can keep of each run."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from stiction.study.variables.observation import Observed
 
 
 class Trace(NamedTuple):
-    """A course over time: its CF attributes, and the evenly spaced samples of a run."""
+    """A time series: its CF attributes, and a function that returns its even samples."""
 
     unit: str
     long_name: str

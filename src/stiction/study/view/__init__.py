@@ -1,1 +1,1 @@
-"""What is seen of a study: cuts through it, its map, and how its runs ended."""
+"""Views of a study: cuts, maps, and a summary of how its runs ended."""

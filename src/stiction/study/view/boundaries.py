@@ -1,4 +1,4 @@
-"""What theory says over the plane of two dimensions of a study."""
+"""Theoretical boundaries in the plane of two dimensions of a study."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from stiction.study.plan.coordinates import varied
 from stiction.study.plan.study import Study
 from stiction.system.slider import Slider
 
-FINE = 60  # points each way, at least as many as there are runs
+FINE = 60  # points in each direction, or as many as there are runs
 
 PHI_C = r"steady sliding loses stability ($\varphi_c$)"
 ZETA = r"$\zeta(\theta = \varphi) = 1$"
 
 
 class Plane(NamedTuple):
-    """Fields over a plane: values along its two sides, as in the store, and the fields (n, m)."""
+    """Fields over a plane: coordinates of both sides, in the store's units, and fields (n, m)."""
 
     x: Floats
     y: Floats
@@ -32,20 +32,20 @@ class Plane(NamedTuple):
 
 
 def plane(study: Study, x: str, y: str, at: Mapping[str, int]) -> Plane:
-    """Return growth rate of steady sliding and logarithm of the damping ratio over two dimensions.
+    """Return the growth rate of steady sliding, and the logarithm of the damping ratio.
 
     Each is zero on its boundary: the linear stability of steady sliding, for any law; and
     zeta = A sin^3(phi) = 1, at the force angle at which slip begins (Nakano & Popov, Eq. (10)).
-    NaN where a theory has nothing to say, as where the drive is a program.
+    NaN where a theory does not apply, for example to a drive program.
 
     Parameters
     ----------
     study : Study
-        Of which.
+        The study.
     x, y : str
         Dimensions.
     at : mapping of str to int
-        The place along each other dimension.
+        The index along each other dimension.
     """
     sides = {dim: along(study, dim) for dim in (x, y)}
     size = tuple(len(next(iter(sides[dim].values()))) for dim in (x, y))
@@ -73,7 +73,7 @@ def plane(study: Study, x: str, y: str, at: Mapping[str, int]) -> Plane:
 
 
 def along(study: Study, dim: str) -> dict[str, Floats]:
-    """Return the values of each axis along a dimension, filled up with values in between."""
+    """Return the values of each axis along a dimension, with interpolated values added."""
     axes = {path: each.values for path, each in study.coordinates.items() if each.dim == dim}
     count = len(next(iter(axes.values())))
     parts = -(-FINE // max(count - 1, 1)) if count > 1 else 1
@@ -82,7 +82,7 @@ def along(study: Study, dim: str) -> dict[str, Floats]:
 
 
 def between(values: Floats, places: Floats) -> Floats:
-    """Return values in between, by their logarithms where there are only positive ones."""
+    """Interpolate values, logarithmically if all are positive."""
     known = np.arange(len(values))
     if (values > 0.0).all():
         return np.asarray(np.exp(np.interp(places, known, np.log(values))))

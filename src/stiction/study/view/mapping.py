@@ -1,4 +1,4 @@
-"""The map of a study: what to draw over which parameters, and the theory over it."""
+"""The map of a study: measures over one or two parameters, with theoretical boundaries."""
 
 from __future__ import annotations
 
@@ -32,35 +32,35 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-DAMPING = ("phi", "drive.velocity")  # coordinates that place a run in the damping diagram
+DAMPING = ("phi", "drive.velocity")  # coordinates that locate a run in the damping diagram
 
 
 class Map(NamedTuple):
-    """What a study found over one or two parameters, and what is drawn of it.
+    """The results of a study over one or two parameters, ready to be drawn.
 
     Parameters
     ----------
     view : View
-        The study and its store, cut down to one or two dimensions.
+        The study and its store, cut to one or two dimensions.
     measures : tuple of str
-        What is drawn.
+        The measures to draw.
     """
 
     view: View
     measures: tuple[str, ...]
 
     def __repr__(self) -> str:
-        """Say what is drawn over what."""
+        """Return a one-line summary."""
         return f"<Map of {', '.join(self.measures)} over {', '.join(self.dims)}>"
 
     @property
     def data(self) -> xr.Dataset:
-        """The store, cut down."""
+        """The dataset of the store after the cuts."""
         return self.view.data
 
     @property
     def dims(self) -> tuple[str, ...]:
-        """The dimensions that are left."""
+        """The remaining dimensions."""
         return tuple(str(dim) for dim in self.data["status"].dims)
 
     def plot(self, axes: Any = None) -> Any:
@@ -75,20 +75,19 @@ def map(
     *,
     trust: bool = False,
 ) -> Map:
-    """Return what a study found, finished or not, over one or two of its parameters.
+    """Return the results of a study, finished or not, over one or two of its parameters.
 
     Parameters
     ----------
     store : str or Path
-        What `stiction.sweep` wrote.
+        A store of `stiction.sweep`.
     of : str or sequence of str, optional
-        Measures to draw, a panel each; the regime, if it was kept, when left out.
+        Measures to draw, a panel each; by default the regime, if it was kept.
     at : mapping, optional
-        For a dimension the value at which it is cut (a number, or text with its unit); the
-        nearest that was run is taken.
+        From a dimension to the value at which it is cut (a number, or text with its unit); the
+        nearest value of the study is taken.
     trust : bool, optional
-        Whether the text of a friction law that stands in the store may be run; see
-        `stiction.load`.
+        Whether the text of a friction law in the store may be run; see `stiction.load`.
 
     Returns
     -------
@@ -98,9 +97,9 @@ def map(
     Raises
     ------
     ResultError
-        If it is no study's store.
+        If `store` is not the store of a study.
     DescriptionError
-        If it has no such measure or dimension, or more than two are left.
+        If there is no such measure or dimension, or more than two dimensions remain.
     """
     view = viewed(store, at or {}, trust)
     return Map(view, tuple(chosen(view, [of] if isinstance(of, str) else of)))
@@ -114,7 +113,7 @@ def plot_map(found: Map, axes: Any = None) -> NDArray[np.object_]:
     found : Map
         From `stiction.map`.
     axes : Axes, one for each measure, optional
-        Drawn on; a new figure when left out, as wide as a column, or as a page for several.
+        Axes to draw on; by default a new figure, as wide as a column, or as a page for several.
 
     Returns
     -------
@@ -131,7 +130,7 @@ def plot_map(found: Map, axes: Any = None) -> NDArray[np.object_]:
 
 
 def side(view: View, dim: str, values: np.ndarray | None = None) -> Side:
-    """Return a side of a map, of the study's own values or of others in the same unit."""
+    """Return a side of a map, with the study's values or others in the same unit."""
     known = view.study.coordinates
     path = dim if dim in known else next(p for p, each in known.items() if each.dim == dim)
     own, unit = known[path].values, known[path].unit
@@ -142,7 +141,7 @@ def side(view: View, dim: str, values: np.ndarray | None = None) -> Side:
 
 
 def even(values: np.ndarray) -> float:
-    """Return how unevenly values are spaced: 0 for equal distances."""
+    """Return the unevenness of values: 0 for equal distances."""
     steps = np.diff(values)
     return float(np.std(steps) / np.abs(np.mean(steps))) if np.mean(steps) else np.inf
 
@@ -180,7 +179,7 @@ def in_words(data: xr.Dataset, name: str) -> tuple[np.ndarray, str]:
 
 
 def _map(ax: Axes, view: View, name: str, theory: Plane) -> list[Any]:
-    """Draw one map with the theory over it; return what the legend tells."""
+    """Draw one map with the theory over it; return the handles of the legend."""
     x, y = (side(view, str(dim)) for dim in view.data[name].dims)
     handles: list[Any] = []
     if name == REGIME:
@@ -213,7 +212,7 @@ def _curves(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
 
 
 def _points(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
-    """Draw samples in the damping diagram, if their place there is known."""
+    """Draw samples in the damping diagram, if their position in it is known."""
     (dim,) = view.data["status"].dims
     known = view.study.coordinates
     if not set(DAMPING) <= known.keys() or REGIME not in view.data:

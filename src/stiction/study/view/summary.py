@@ -1,4 +1,4 @@
-"""How the runs of a study ended, in words."""
+"""Summary of how the runs of a study ended."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from stiction.text.sections import Section, as_text
 
 
 class Failure(NamedTuple):
-    """A run that failed: its coordinates, each with its unit, how it ended, and why."""
+    """A failed run: its coordinates with units, how it ended, and why."""
 
     at: Mapping[str, tuple[float, str]]
     end: str
     message: str
 
     def __str__(self) -> str:
-        """Name the run by its parameters."""
+        """Return the run's parameters and the message."""
         where = ", ".join(
             f"{path} = {value:.6g} {its}".rstrip() for path, (value, its) in self.at.items()
         )
@@ -36,11 +36,11 @@ class Summary(NamedTuple):
     runs, pending : int
         Runs in all, and those not done.
     failed : mapping of str to int
-        How many ended in each other way than as intended.
+        Number of failed runs for each way to fail.
     first : Failure or None
-        The first of them.
+        The first failed run.
     store : Path
-        Where the runs are kept.
+        The store of the runs.
     """
 
     runs: int
@@ -50,16 +50,16 @@ class Summary(NamedTuple):
     store: Path = Path()
 
     def __repr__(self) -> str:
-        """Say how many runs are done and failed."""
+        """Return a one-line summary."""
         failed = sum(self.failed.values())
         return f"<Sweep {self.store}: {self.runs - self.pending} of {self.runs}, {failed} failed>"
 
     def __str__(self) -> str:
-        """Return the same as text."""
+        """Return the report as text."""
         return as_text(self.tables())
 
     def tables(self) -> list[Section]:
-        """Return in a sentence how the runs ended, and the first that failed."""
+        """Return how the runs ended, and the first failure, as sentences."""
         lines = [f"{self.runs - self.pending} of {self.runs} runs are done."]
         if self.first is not None:
             counts = (f"{count} {end.replace('_', ' ')}" for end, count in self.failed.items())
@@ -68,7 +68,7 @@ class Summary(NamedTuple):
         return [Section(str(self.store), lines)]
 
     def plot(self, axes: Any = None) -> Any:
-        """Draw what was found; see `stiction.map`."""
+        """Draw the results; see `stiction.map`."""
         from stiction.study.view.mapping import map
 
         return map(self.store).plot(axes)

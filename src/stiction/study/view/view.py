@@ -1,4 +1,4 @@
-"""What is seen of a study: its store, cut down to one or two dimensions."""
+"""A view of a study: its store, cut to one or two dimensions."""
 
 from __future__ import annotations
 
@@ -26,23 +26,23 @@ if TYPE_CHECKING:
     import xarray as xr
 
 REGIME = "regime"
-RUNS = ("status", "message")  # variables that are no measures
+RUNS = ("status", "message")  # variables that are not measures
 REFINED, CHANGES = "refined", "changes"  # folders in a store
 
 
 class View(NamedTuple):
-    """What is seen of a study.
+    """A study and its store, with some dimensions cut.
 
     Parameters
     ----------
     study : Study
         The study.
     data : Dataset
-        Its store, of which dimensions that are cut are gone.
+        Its store, without the dimensions that are cut.
     at : mapping of str to int
-        The place along each of these.
+        The index along each of these.
     changes : sequence of Dataset
-        Where the kind of motion changes, if it was refined; see `stiction.study.execution.refine`.
+        Refined changes of the kind of motion, if any; see `stiction.study.execution.refine`.
     """
 
     study: Study
@@ -52,7 +52,7 @@ class View(NamedTuple):
 
 
 def viewed(path: str | Path, cut: Mapping[str, str | float], trust: bool = False) -> View:
-    """Return what is left of a study when some of its dimensions are cut."""
+    """Return a study with some of its dimensions cut."""
     with opening(path, "is damaged"):
         data = open_study(path)
         study = Study.from_json(data.attrs["description"], trust=trust)
@@ -82,12 +82,12 @@ def viewed(path: str | Path, cut: Mapping[str, str | float], trust: bool = False
 
 
 def fitting(path: str | Path, data: xr.Dataset, study: Study) -> None:
-    """Refuse a store that holds other arrays than its study describes.
+    """Refuse a store whose arrays do not match its study.
 
     Raises
     ------
     ResultError
-        Naming them.
+        With the names of the arrays.
     """
     runs = dict(zip(study.layout.dims, study.layout.shape, strict=True))
     along = {name: {each.dim: runs[each.dim]} for name, each in study.coordinates.items()}
@@ -103,7 +103,7 @@ def fitting(path: str | Path, data: xr.Dataset, study: Study) -> None:
 
 
 def refined(path: str | Path) -> list[xr.Dataset]:
-    """Return the changes that were refined, along one axis each."""
+    """Return the refined changes of motion, one dataset for each axis."""
     import xarray as xr
 
     if lost := broken_changes(path):
@@ -122,7 +122,7 @@ def broken_changes(path: str | Path) -> list[str]:
 
 
 def chosen(view: View, measures: Sequence[str]) -> list[str]:
-    """Return what to draw."""
+    """Return the measures to draw."""
     runs = view.data["status"].dims  # traces have time as well
     kept = [
         str(name)
@@ -143,7 +143,7 @@ def chosen(view: View, measures: Sequence[str]) -> list[str]:
 
 
 def kinds(data: xr.Dataset) -> np.ndarray:
-    """Return the kind of motion of each run in words; empty where it failed or is missing."""
+    """Return the kind of motion of each run as text; '' if the run failed or is missing."""
     names = np.array([*KINDS, ""], dtype=object)
     found: np.ndarray = names[data[REGIME].values.astype(int)]  # -1 is the last
     return found
