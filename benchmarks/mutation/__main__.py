@@ -95,9 +95,9 @@ def reached(items: Sequence[pytest.Item], options: argparse.Namespace) -> list[T
     path = options.results / "tests.json"
     if not path.exists():
         sources = [Path(each).as_posix() for each in options.sources]
-        found = apart(lambda: watched(items, sources, options.longest), WHOLE).answer
-        if found is None:
-            raise SystemExit("the tests have not come to an end")
+        found = apart(lambda: watched(items, sources, options.longest), WHOLE).answer or {}
+        if "tests" not in found:
+            raise SystemExit(f"the tests have not come to an end: {found.get('died', '')}")
         path.write_text(json.dumps(found))
         for name in found["left_out"]:
             print(f"left out, as it takes long or is of compiled code: {name}")
@@ -131,7 +131,7 @@ def outcome(
     answer, stopped = apart(task, ROOM + TIMES * seconds)
     if stopped:
         return row | {"outcome": TIMEOUT}
-    failed = "the process died" if answer is None else answer["failed"]
+    failed = (answer or {"failed": "the process died"}).get("failed", "something raised")
     return row | {"outcome": KILLED if failed else SURVIVED, "by": failed}
 
 

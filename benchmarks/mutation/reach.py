@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import signal
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import pytest
 from coverage import Coverage
@@ -26,31 +25,19 @@ class Test(NamedTuple):
         return self.name.partition("::")[0]
 
 
-class TooSlow(BaseException):
-    """A test has taken longer than it may."""
-
-
-def stop(*_: Any) -> None:
-    """End the test at hand."""
-    raise TooSlow
-
-
 def watched(items: Sequence[pytest.Item], sources: Sequence[str], longest: float) -> Answer:
     """Run tests, each for so many CPU seconds at most; return those that pass, and the others."""
-    signal.signal(signal.SIGVTALRM, stop)
     coverage = Coverage(data_file=None, include=[f"{each}*" for each in sources])
     coverage.start()
-    passing, others = {}, []
     coverage.switch_context(items[0].nodeid)
-    signal.setitimer(signal.ITIMER_VIRTUAL, longest)
+    passing, others = {}, []
     names = [*(item.nodeid for item in items[1:]), ""]
-    for (item, passed, seconds), following in zip(run(items), names, strict=True):
+    for (item, passed, seconds), following in zip(run(items, longest), names, strict=True):
+        coverage.switch_context(following)
         if passed:
             passing[item.nodeid] = seconds
         else:
             others.append(item.nodeid)
-        coverage.switch_context(following)
-        signal.setitimer(signal.ITIMER_VIRTUAL, longest if following else 0.0)
     coverage.stop()
     lines: dict[str, dict[str, list[int]]] = {}
     data = coverage.get_data()

@@ -8,10 +8,12 @@ import resource
 import select
 import signal
 import time
-from collections.abc import Callable, Iterable, Sequence
+import traceback
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 import pytest
+from _pytest.runner import runtestprotocol
 
 from .python import forgiving
 
@@ -74,25 +76,43 @@ def _child(task: Callable[[], Answer], seconds: float, sending: int) -> None:
         nowhere = os.open(os.devnull, os.O_RDWR)
         for stream in (0, 1, 2):
             os.dup2(nowhere, stream)
-        answer = task()
+        try:
+            answer = task()
+        except BaseException:
+            answer = {"died": traceback.format_exc()}
         with open(sending, "w") as pipe:
             json.dump(answer, pipe)
     finally:
         os._exit(0)
 
 
-def run(items: Sequence[pytest.Item]) -> Iterable[tuple[pytest.Item, bool, float]]:
-    """Run tests; yield each with whether it passed and how long it took (CPU s)."""
+class TooSlow(BaseException):
+    """A test has taken longer than it may."""
+
+
+def stop(*_: Any) -> None:
+    """End the test at hand."""
+    raise TooSlow
+
+
+def run(
+    items: Sequence[pytest.Item], longest: float = 0.0
+) -> Iterator[tuple[pytest.Item, bool, float]]:
+    """Run tests; yield each with whether it passed and how long it took (CPU s).
+
+    One that takes longer than `longest`, if that is given, has not passed.
+    """
+    signal.signal(signal.SIGVTALRM, stop)
     for item, following in zip(items, [*items[1:], None], strict=True):
         began = time.process_time()
-        reports = _reports(item, following)
-        yield item, all(each.passed for each in reports), time.process_time() - began
-
-
-def _reports(item: pytest.Item, following: pytest.Item | None) -> list[pytest.TestReport]:
-    from _pytest.runner import runtestprotocol
-
-    return runtestprotocol(item, log=False, nextitem=following)
+        try:
+            signal.setitimer(signal.ITIMER_VIRTUAL, longest)
+            reports = runtestprotocol(item, log=False, nextitem=following)
+            signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
+            passed = all(each.passed for each in reports)
+        except TooSlow:  # between its setup and its teardown
+            passed = False
+        yield item, passed, time.process_time() - began
 
 
 def first_failure(items: Sequence[pytest.Item]) -> str:
