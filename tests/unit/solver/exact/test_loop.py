@@ -1,0 +1,181 @@
+"""Stick, take-off, slip and landing, one after the other."""
+
+from math import inf, nan
+
+import numpy as np
+import pytest
+from tests.entry import plain
+from tests.unit.solver.exact.test_predictor import COLD
+from tests.unit.solver.exact.test_step import held_to
+from tests.unit.solver.systems import SLIDERS, Printed, motion_of, problem_of
+
+import stiction as st
+from stiction.solver import stick as sticking
+from stiction.solver.exact import loop
+from stiction.solver.state import (
+    COMPLETED,
+    NON_FINITE,
+    NOTHING,
+    RUNNING,
+    STEP_UNDERFLOW,
+    Counts,
+    Motion,
+    State,
+)
+
+MEMORY = COLD._replace(h=2e-5, plan=(1e-5, *[0.0] * 7), warm=True, place=4)
+NONE = np.empty(0), np.empty((0, 7)), 0
+
+
+def at_rest_at(u, t=0.35):
+    return State(Motion(t, *u, 0.0, 0.6, 0.8), MEMORY, Counts(5, 1, 20, 1, 0.5, 0))
+
+
+def advanced(name, state, t_end, budget=1000, accuracy=None, room=50):
+    """Advance; return the code, the state, and the sticks."""
+    sticks = np.zeros((room, 2))
+    accuracy = accuracy or held_to(1e-4)
+    problem = name if not isinstance(name, str) else problem_of(name)
+    code, state, _, turns = plain(loop.advance)(
+        problem, state, t_end, accuracy, budget, *NONE, sticks
+    )
+    return code, state, sticks[: state.counts.sticks], turns
+
+
+@pytest.mark.parametrize("name", SLIDERS)
+def test_a_stick_ends_where_friction_cannot_hold_any_more(name):
+    """By (M5), and slip begins along (M18); the plan of the last take-off begins anew."""
+    problem, u, t = problem_of(name), np.array([1e-4, 2e-6]), 0.35
+    sticks, state = np.zeros((4, 2)), at_rest_at(u)
+    duration, _ = plain(sticking.stick_duration)(problem, t, *u, inf)
+    found = plain(loop.stick)(problem, state, inf, held_to(1e-4), *NONE, sticks)
+    ends, (motion, memory, counts), k = found
+    assert (ends, k) == (True, 0)
+    printed = Printed(problem, motion_of(*u, 1.0, 0.0, t))
+    end = u + printed.drive("travel", t, duration)
+    assert motion[:4] == pytest.approx((t + duration, *end, 0.0), rel=1e-12)
+    a, e = printed.held(t + duration, end), np.array(motion[4:])
+    assert e @ e == pytest.approx(1.0, rel=1e-14)
+    n = problem.surface
+    normal = np.linalg.solve(np.array([[n.xx, n.xy], [n.xy, n.yy]]), a)
+    assert e == pytest.approx(normal / np.hypot(*normal), abs=1e-7)
+    assert memory == MEMORY._replace(h=1e-5, place=0, warm=False)
+    assert counts == pytest.approx((5, 1, 20, 2, 0.5 + duration, 0))
+    assert sticks[1] == pytest.approx([t, t + duration])
+    # it does not end before the segment does
+    stop = t + 0.5 * duration
+    ends, (motion, _, counts), _ = plain(loop.stick)(
+        problem, state, stop, held_to(1e-4), *NONE, sticks
+    )
+    assert (ends, motion.t, counts.stuck) == (False, stop, pytest.approx(0.5 + 0.5 * duration))
+    # and goes on as the same stick in the next one
+    begun = State(motion, memory, counts)
+    ends, (motion, _, counts), _ = plain(loop.stick)(
+        problem, begun, inf, held_to(1e-4), *NONE, sticks
+    )
+    assert (ends, counts.sticks) == (True, 2)
+    assert sticks[1] == pytest.approx([t, t + duration], rel=1e-9)
+    assert counts.stuck == pytest.approx(0.5 + duration)
+
+
+def test_a_touch_is_no_stick():
+    """(M10): if friction has less to spare than what the slip may be in error."""
+    problem, u, t = problem_of("steady"), np.array([1e-4, 2e-6]), 0.35
+    duration, _ = plain(sticking.stick_duration)(problem, t, *u, inf)
+    spare = plain(sticking.to_spare)(problem, t, *u, duration)
+    for part, number in ((0.99, 2), (1.01, 1)):
+        sticks, held = np.zeros((4, 2)), held_to(1e-4)._replace(touch=part * spare)
+        _, (motion, _, counts), _ = plain(loop.stick)(
+            problem, at_rest_at(u), inf, held, *NONE, sticks
+        )
+        assert counts.sticks == number
+        assert counts.stuck == pytest.approx(0.5 + (number - 1) * duration)
+        assert motion.t == pytest.approx(t + duration)
+
+
+@pytest.mark.filterwarnings("ignore:invalid value:RuntimeWarning")
+def test_without_force_slip_starts_along_what_pulls_next():
+    """K v_d, or as it was where nothing is driven."""
+    bare = problem_of("steady")._replace(law=st.Coulomb(0.0))
+    # a float of NumPy: 0/0 is to be no number, as in compiled code
+    undamped = bare.system._replace(c_x=0.0, c_y=0.0, per_mass=np.float64(4.0))
+    bare = bare._replace(system=undamped)
+    sticks = np.zeros((4, 2))
+    state = at_rest_at((0.0, 0.0))
+    ends, (motion, *_), _ = plain(loop.stick)(bare, state, inf, held_to(1e-4), *NONE, sticks)
+    s = bare.system
+    pull = np.array([s.k_x * s.cos_phi, s.k_y * s.sin_phi])
+    assert ends
+    assert motion[3:] == pytest.approx((0.0, *(pull / np.hypot(*pull))))
+    still = bare._replace(drive=bare.drive._replace(velocity=0.0))
+    _, (motion, *_), _ = plain(loop.stick)(still, state, inf, held_to(1e-4), *NONE, sticks)
+    assert motion[3:] == (0.0, 0.6, 0.8)
+
+
+def test_sticks_are_recorded_or_made_longer():
+    sticks = np.zeros((3, 2))
+    counts = plain(loop.recorded)(NOTHING, 1.0, 1.5, False, sticks)
+    counts = plain(loop.recorded)(counts, 2.0, 2.25, False, sticks)
+    counts = plain(loop.recorded)(counts, 2.25, 2.5, True, sticks)
+    assert sticks.tolist() == [[1.0, 1.5], [2.0, 2.5], [0.0, 0.0]]
+    assert counts == (0, 0, 0, 2, 1.0, 0)
+
+
+@pytest.mark.parametrize(
+    ("p", "wanted"),
+    [((0.5, 0.4, 0.7), True), ((0.5, 0.7, 0.6), False), ((1.1, 0.4, 0.7), False)],
+)
+def test_a_slip_turns_up_inside_a_step(p, wanted):
+    assert plain(loop.turns_up)(1.0, p) == wanted
+
+
+def test_when_a_slip_is_zero():
+    """Below 1e-13 tol sigma; on an ellipse below 1e-3 tol sigma where friction can hold."""
+    accuracy = held_to(1e-4)
+    tolerated, rest = 1e-4 * 1e-4, plain(loop.at_rest)
+    held, pulled = (1e-5, 1e-7), (5e-3, 1e-5)
+    for r, wanted in ((0.0, True), (0.9e-13, True), (1.1e-13, False), (1e-4, False)):
+        motion = Motion(0.35, *held, r * tolerated, 1.0, 0.0)
+        assert rest(problem_of("steady"), motion, accuracy) == wanted
+    for r, u, wanted in (
+        (0.9e-3, held, True),
+        (1.1e-3, held, False),
+        (0.9e-3, pulled, False),
+        (0.0, pulled, True),
+    ):
+        motion = Motion(0.35, *u, r * tolerated, 1.0, 0.0)
+        assert rest(problem_of("ellipse"), motion, accuracy) == wanted
+
+
+@pytest.mark.parametrize("name", SLIDERS)
+def test_the_loop_ends_where_it_is_to_and_goes_on(name):
+    """In one go, or with any budget; and says why it ends."""
+    state = at_rest_at((1.9e-3, 1e-5))._replace(counts=NOTHING)
+    code, end, sticks, turns = advanced(name, state, 0.45)
+    assert (code, end.motion.t) == (COMPLETED, 0.45)
+    assert turns < 1000
+    assert end.counts.sticks == len(sticks)
+    assert end.counts.steps > 5
+    paused, table = state, np.zeros((50, 2))
+    for _ in range(1000):
+        code, paused, _, used = plain(loop.advance)(
+            problem_of(name), paused, 0.45, held_to(1e-4), 3, *NONE, table
+        )
+        assert used <= 3
+        if code != RUNNING:
+            break
+    assert code == COMPLETED
+    assert paused == end
+    assert table[: len(sticks)].tolist() == sticks.tolist()
+    assert advanced(name, end, 0.45)[0] == COMPLETED
+    assert advanced(name, state, 0.45, room=0)[0] == RUNNING
+    assert advanced(name, state, 0.45, room=0)[1] == state
+    wild = state._replace(motion=state.motion._replace(u_y=nan))
+    assert advanced(name, wild, 0.45)[0] == NON_FINITE
+    wild = state._replace(motion=state.motion._replace(r=inf))
+    assert advanced(name, wild, 0.45)[0] == NON_FINITE
+    wild = state._replace(motion=state.motion._replace(u_x=-inf))
+    assert advanced(name, wild, 0.45)[0] == NON_FINITE
+    never = held_to(1e-4)._replace(newton=0.0)
+    sliding = state._replace(motion=state.motion._replace(r=1e-2))
+    assert advanced(name, sliding, 0.45, accuracy=never)[0] == STEP_UNDERFLOW

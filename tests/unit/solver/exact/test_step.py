@@ -1,0 +1,120 @@
+"""One step of slip: as long as the tolerance allows, or to a landing."""
+
+from math import inf
+
+import numpy as np
+import pytest
+from tests.entry import plain
+from tests.unit.solver.exact.test_collocation import begun, residuals
+from tests.unit.solver.exact.test_newton import SLIDES
+from tests.unit.solver.exact.test_predictor import COLD
+from tests.unit.solver.systems import SLIDERS, motion_of, problem_of
+
+from stiction.solver.exact import error_estimate, oscillation, predictor, slip_frame
+from stiction.solver.exact.step import RESOLUTION, step
+from stiction.solver.state import Accuracy
+
+ALL = pytest.mark.parametrize(("name", "drawn"), [(n, d) for n in SLIDERS for d in SLIDES])
+
+
+def held_to(tolerance):
+    """Return an accuracy with the speeds of these sliders."""
+    speed, free = 1e-4, (0.1, 0.02)
+    return Accuracy(tolerance, 1e-3 * tolerance, speed, *free, inf, 2e-3, 2.5e-4, 6e-6, 0.0, 1e-12)
+
+
+def taken(name, drawn, accuracy, h=1e-3, t_stop=inf):
+    """Take a step; return it, and what it starts from."""
+    problem, frame, o, _, _ = begun(name, drawn, "not")
+    start = plain(slip_frame.outset)(problem, frame)
+    found = plain(step)(problem, frame, start, t_stop, COLD._replace(h=h), accuracy)
+    return found, (problem, frame, o, start)
+
+
+@ALL
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-8])
+def test_an_accepted_step_keeps_its_tolerance(name, drawn, tolerance):
+    """Its residuals vanish, and its error is the estimate's, over the tolerance."""
+    accuracy = held_to(tolerance)
+    (done, landing, s, h, p, w, error, rejected, iterations), (problem, frame, o, start) = taken(
+        name, drawn, accuracy
+    )
+    assert (done, landing) == (True, False)
+    assert iterations > rejected
+    motion = plain(error_estimate.moving)(problem, frame, start, accuracy)
+    wanted = plain(error_estimate.local_error)(problem, frame, s, h, p, w, accuracy, motion)
+    assert error == pytest.approx(wanted / tolerance)
+    assert 0.0 < error <= 1.0
+    assert s == plain(oscillation.swing)(o, h, False)
+    off = residuals(problem, frame, o, h, np.array(p), np.array(w))
+    assert np.abs(off).max() < 0.1 * tolerance * frame.r  # Newton's error, times D
+    if rejected:  # then the step could not be much longer
+        assert error > 0.05
+    else:
+        assert h == 1e-3
+
+
+@ALL
+def test_a_step_that_is_refused_is_tried_again_shorter(name, drawn):
+    """Until it is accepted; the size that was is accepted at once."""
+    (_, _, _, h, _, _, _, rejected, _), _ = taken(name, drawn, held_to(1e-9), h=3e-3)
+    assert rejected > 0
+    assert h < 3e-3
+    (_, _, _, same, *_, again, _), _ = taken(name, drawn, held_to(1e-9), h=h)
+    assert (same, again) == (h, 0)
+
+
+@ALL
+def test_a_step_ends_at_the_end_of_the_segment_at_most(name, drawn):
+    free, (_, frame, *_) = taken(name, drawn, held_to(1e-3), h=1e-4)
+    for stop, wanted in ((frame.t + 0.4e-4, 0.4e-4), (frame.t + 1.6e-4, free[3])):
+        found, _ = taken(name, drawn, held_to(1e-3), h=1e-4, t_stop=stop)
+        assert found[0]
+        assert found[3] == pytest.approx(wanted, rel=1e-9)
+    longest = held_to(1e-3)._replace(longest=3e-5)
+    assert taken(name, drawn, longest, h=1e-4)[0][3] == 3e-5
+
+
+def slowing(r, name="steady"):
+    """Return a slip along y's normal that friction ends soon, and the time until then."""
+    problem = problem_of(name)
+    frame = plain(slip_frame.frame_of)(problem, motion_of(5e-4, 1e-5, 0.9 * r, 0.4 * r))
+    start = plain(slip_frame.outset)(problem, frame)
+    o = plain(oscillation.oscillator)(frame, start)
+    return problem, frame, start, o, plain(predictor.time_to_landing)(frame, start, o, 1.0)
+
+
+@pytest.mark.parametrize("name", SLIDERS)
+def test_a_landing_is_the_end_of_a_step(name):
+    """Tried where the size to try is more than 1.1 times what is left; p = 0 there."""
+    problem, frame, start, _, until = slowing(1e-3, name)
+    accuracy = held_to(3e-2)
+    for part, lands in ((1.5, True), (1.15, True), (1.0, False), (0.3, False)):
+        memory = COLD._replace(h=part * until)
+        done, landing, _, h, p, *_, rejected, _ = plain(step)(
+            problem, frame, start, inf, memory, accuracy
+        )
+        assert (done, landing, rejected) == (True, lands, 0)
+        if lands:
+            assert p[2] == 0.0
+            assert min(p[:2]) > 0.0
+            assert h == pytest.approx(until, rel=0.2)
+        else:  # in two even steps, or its way
+            assert h == pytest.approx(0.55 * until if part == 1.0 else part * until)
+            assert p[2] > 0.0
+    # not beyond the end of the segment
+    stop = frame.t + 0.9 * h
+    memory = COLD._replace(h=1.5 * until)
+    stop = frame.t + 0.8 * until
+    done, landing, _, h, *_ = plain(step)(problem, frame, start, stop, memory, accuracy)
+    assert (done, landing) == (True, False)
+    assert h == pytest.approx(0.8 * until, rel=1e-9)
+
+
+def test_no_step_is_found_where_none_converges():
+    """Each try is 0.3 times as long, until that is no time at all."""
+    never = held_to(1e-3)._replace(newton=0.0)
+    (done, landing, *_, error, rejected, iterations), _ = taken("steady", SLIDES[0], never)
+    assert (done, landing, error) == (False, False, inf)
+    assert 1e-3 * 0.3**rejected <= RESOLUTION * 0.35 < 1e-3 * 0.3 ** (rejected - 1)
+    assert iterations >= rejected
