@@ -73,7 +73,7 @@ def tried(items: Sequence[pytest.Item], options: argparse.Namespace) -> Iterator
     """Yield what came of each mutant, known from before or tried now."""
     without = {path for each in options.without for path in files([each])}
     sources = [path for path in files(map(Path, options.sources)) if path not in without]
-    sample = drawn(sources, options.mutants, options.seed)
+    sample = drawn(sources, options.mutants, options.seed, options.results)
     path = options.results / "mutants.jsonl"
     lines = path.read_text().splitlines() if path.exists() else []
     known = {tuple(row["mutant"]): row for row in map(json.loads, lines)}

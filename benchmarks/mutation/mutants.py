@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
@@ -129,9 +130,16 @@ def files(paths: Iterable[Path]) -> list[Path]:
     return sorted(found)
 
 
-def drawn(sources: Sequence[Path], count: int, seed: int) -> list[Mutant]:
-    """Return `count` changes at places drawn evenly, none of them twice."""
+def drawn(sources: Sequence[Path], count: int, seed: int, folder: Path) -> list[Mutant]:
+    """Return `count` changes at places drawn evenly, none of them twice.
+
+    The sample is kept in a folder, as the sources have it: drawing takes a while.
+    """
     texts = {path: path.read_text(encoding="utf-8") for path in sources}
+    origin = digest(json.dumps([seed, count, *((str(path), texts[path]) for path in sources)]))
+    kept = folder / f"sample-{origin}.json"
+    if kept.exists():
+        return [Mutant(*row) for row in json.loads(kept.read_text())]
     every = [(path, ways) for path, text in texts.items() for ways in places(text)]
     draw, left = Draw(seed, 0), list(range(len(every)))
     chosen = []
@@ -139,4 +147,5 @@ def drawn(sources: Sequence[Path], count: int, seed: int) -> list[Mutant]:
         path, ways = every[left.pop(int(draw.random() * len(left)))]
         operator, occurrence = draw.among(ways)
         chosen.append(mutant(path.as_posix(), texts[path], operator, occurrence))
+    kept.write_text(json.dumps(chosen))
     return chosen

@@ -51,8 +51,9 @@ def watched(items: Sequence[pytest.Item], sources: Sequence[str], longest: float
 
 
 def fitting(tests: Sequence[Test], path: str, line: int, most: float) -> tuple[list[str], float]:
-    """Return the tests to run for a line, the shortest files first, and how long they take (s).
+    """Return the tests to run for a line, and how long they take (s).
 
+    First those of the file that has its name from the source's, then the shortest files.
     All tests of a file that runs the line: what one of them computes another may look at. For a
     line that is run as the file is imported, those that run anything of that file.
     """
@@ -62,8 +63,13 @@ def fitting(tests: Sequence[Test], path: str, line: int, most: float) -> tuple[l
     for each in tests:
         if each.file in reaching:
             by_file.setdefault(each.file, []).append(each)
+    own = f"test_{Path(path).name}"
+
+    def order(group: list[Test]) -> tuple[bool, float]:
+        return Path(group[0].file).name != own, sum(each.seconds for each in group)
+
     chosen, total = [], 0.0
-    for group in sorted(by_file.values(), key=lambda group: sum(each.seconds for each in group)):
+    for group in sorted(by_file.values(), key=order):
         for each in group:
             if total + each.seconds <= most:
                 chosen.append(each.name)

@@ -539,3 +539,58 @@ def test_slips_of_two_sizes_are_no_hum(rate: float) -> None:
     run = st.simulate(slider, 0.64, sample_rate=rate)
     assert st.find_cycles(run).sizes["cycle"] == pytest.approx(27, abs=1)  # crests, counted by eye
     assert not [each for each in st.analyse(run).warnings if "taken off" in each]
+
+
+# --- columns ---
+
+
+def test_every_column_of_a_sawtooth() -> None:
+    """The force rises by 0.2 N/s for 1.6 s and falls in 0.4 s; V = 1 mm/s, k = 500 N/m."""
+    time = np.arange(0.0, 20.0, 1e-3)
+    phase = time % 2.0
+    force = 0.5 + np.where(phase < 1.6, 0.2 * phase, 0.8 * (2.0 - phase))
+    record = st.Record(
+        time=time, force=force, normal_load=4.0, drive_velocity=1e-3, stiffness=500.0
+    )
+    found = st.find_cycles(record)
+    number = np.arange(found.sizes["cycle"])
+    assert found.sizes["cycle"] == 8  # the first and the last are cut
+    first = float(found["start"][0])
+    assert first == pytest.approx(2.0 * round(first / 2.0), abs=2e-3)
+    wanted = {
+        "start": first + 2.0 * number,
+        "peak_time": first + 1.6 + 2.0 * number,
+        "trough_time": first + 2.0 + 2.0 * number,
+        "start_force": 0.5,
+        "peak": 0.82,
+        "trough": 0.5,
+        "drop": 0.32,
+        "period": 2.0,
+        "rise_share": 0.8,
+        "mu_static": 0.82 / 4.0,
+        "mu_kinetic": 0.66 / 4.0,
+        "stick_slope": 0.2,
+        "stiffness": 200.0,
+        "creep_distance": 1.6e-3 - 0.32 / 500.0,
+        "slip_distance": 0.4e-3 + 0.32 / 500.0,
+        "peak_slip_speed": 1e-3 + 0.8 / 500.0,
+        "hesitations": 0.0,
+    }
+    for name, value in wanted.items():
+        assert found[name].values == pytest.approx(value + 0.0 * number, rel=3e-3, abs=3e-3), name
+    small = ("creep_distance", "slip_distance", "peak_slip_speed")
+    for name in small:  # a cubic through a corner overshoots by a twentieth
+        assert found[name].values == pytest.approx(wanted[name] + 0.0 * number, rel=6e-2), name
+    assert np.isnan(found["hesitation_depth"]).all()
+    bare_found = st.find_cycles(st.Record(time=time, force=force))
+    for name in ("mu_static", "mu_kinetic", "stiffness", *small):
+        assert np.isnan(bare_found[name]).all()
+    # what is measured comes before what would follow from the spring
+    moved = st.Record(time=time, force=force, position=3e-3 * time, slip_speed=np.cos(time) ** 2)
+    found = st.find_cycles(moved)
+    assert found["creep_distance"].values == pytest.approx(4.8e-3 + 0.0 * number, rel=3e-3)
+    assert found["slip_distance"].values == pytest.approx(1.2e-3 + 0.0 * number, rel=2e-2)
+    for row in number:
+        a, b = (float(found[name][row]) for name in ("peak_time", "trough_time"))
+        fastest = np.cos(np.linspace(a, b, 400)) ** 2
+        assert float(found["peak_slip_speed"][row]) == pytest.approx(fastest.max(), abs=5e-3)

@@ -1,0 +1,113 @@
+"""Which reversals are hesitations of a cycle, and which are cycles."""
+
+import numpy as np
+import pytest
+from tests.drawn import inside
+
+from stiction.analysis.motion import hesitations
+from stiction.analysis.motion.hesitations import ALIKE, AROUND, FEW, OFTEN
+
+SIZES = [np.array(each) for each in inside(3, *[(0.1, 1.0)] * 40)]
+
+
+def weighted_median(values):
+    """Return the value of those that, with all larger ones, make half of the sum."""
+    total = 0.0
+    for value in sorted(values):
+        total += value
+        if total >= 0.5 * sum(values):
+            return value
+    raise AssertionError
+
+
+@pytest.mark.parametrize("sizes", SIZES)
+def test_what_is_typical_around(sizes):
+    """The median weighted by size, of twelve to each side; at the ends, of 25 in all."""
+    found = hesitations.typical(sizes)
+    for i in range(len(sizes)):
+        middle = min(max(i, AROUND), len(sizes) - 1 - AROUND)
+        near = sizes[middle - AROUND : middle + AROUND + 1]
+        assert found[i] == weighted_median(near)
+    few = hesitations.typical(sizes[:25])
+    assert few.tolist() == [weighted_median(sizes[:25])] * 25
+    assert hesitations.typical(sizes[:26]).tolist() == [
+        *[weighted_median(sizes[:25])] * 13,
+        *[weighted_median(sizes[1:26])] * 13,
+    ]
+
+
+def test_rises_are_compared_with_rises():
+    """And falls with falls; the first leg and the last may be cut."""
+    legs = np.array([7.0, 1.0, 5.0, 1.2, 5.0, 1.0, 5.0, 9.0])
+    assert hesitations.swing(legs).tolist() == [0.0, 1.0, 5.0, 1.0, 5.0, 1.0, 5.0, 0.0]
+    assert hesitations.swing(legs[:2]).tolist() == [0.0, 0.0]
+    assert hesitations.swing(legs[:3]).tolist() == [0.0, 1.0, 0.0]
+
+
+def cycles(*drops, dip=()):
+    """Return peaks and troughs of falls from 10, with one dip of so much before each peak."""
+    values = [5.0]
+    for i, drop in enumerate(drops):
+        if i < len(dip) and dip[i]:
+            values += [8.0, 8.0 - dip[i]]
+        values += [10.0, 10.0 - drop]
+    return np.array([*values, 7.0])
+
+
+def test_a_dip_of_less_than_half_of_alike_falls_is_a_hesitation():
+    """Its first point and its height are told, and the falls are kept."""
+    for depth, number in ((0.3, 1), (2.4, 1), (2.6, 0)):
+        values = cycles(*[5.0] * 8, dip=(0, 0, 0, depth))
+        found = hesitations.take_out(values)
+        assert len(found.at) == number
+        assert len(found.kept) == 16 + 2 * (1 - number)
+        if number:
+            assert found.at.tolist() == [7]
+            assert found.depth == pytest.approx([depth])
+            assert values[found.kept].tolist() == [10.0, 5.0] * 8
+
+
+def test_several_hesitations_in_order():
+    values = cycles(*[5.0] * 8, dip=(0, 0.2, 0, 0.1, 0, 0, 0.4))
+    found = hesitations.take_out(values)
+    assert values[found.at].tolist() == [8.0] * 3
+    assert found.at.tolist() == sorted(found.at)
+    assert found.depth == pytest.approx([0.2, 0.1, 0.4])
+
+
+def test_where_falls_differ_only_a_tenth_is_a_hesitation():
+    """Then a fall of a third of the largest is a cycle, unless such come with each of them."""
+    drops = (5.0, 1.8, 5.0, 4.0, 1.5, 5.0, 3.0, 5.0)
+    found = hesitations.take_out(cycles(*drops))
+    assert (len(found.at), len(found.kept)) == (0, 16)
+    many = (5.0, 1.2, 1.3) * 8  # two lesser ones with each: they belong to it
+    found = hesitations.take_out(cycles(*many))
+    assert len(found.at) == 16
+    assert len(found.kept) == 16
+    assert OFTEN < 2
+
+
+def test_falls_of_one_size():
+    """Their standard deviation is less than 0.23 of their mean, with twice its own error added."""
+    for spread, alike in ((0.9, True), (1.1, False)):
+        falls = 1.0 + spread * ALIKE / (1 + (2 / 40) ** 0.5) * np.array([1.0, -1.0] * 20)
+        # over what is typical of them, the larger ones
+        assert hesitations._alike(falls) == alike
+    assert hesitations._alike(np.ones(FEW))
+    assert not hesitations._alike(np.ones(FEW - 1))
+
+
+def test_too_few_points_hold_no_hesitation():
+    for n in range(5):
+        values = np.array([0.0, 5.0, 4.9, 9.0, 1.0][:n] or [0.0])
+        assert len(hesitations.take_out(values).at) == 0
+
+
+@pytest.mark.parametrize("way", [1, -1])
+def test_what_the_record_cuts_of_a_hesitation_is_left_out(way):
+    """Small legs before the first large one, and after the last."""
+    values = np.array([5.0, 5.2, 5.1, 10.0, *[5.0, 10.0] * 7, 4.0])[::way]
+    found = hesitations.take_out(values)
+    inside = values[found.kept]
+    assert set(inside.tolist()) == {5.0, 10.0}
+    assert len(inside) == 15
