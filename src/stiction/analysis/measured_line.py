@@ -18,6 +18,8 @@ PERIODS = 100.0  # of the lowest frequency, in a window
 AS_SAWTOOTH = 1.5  # times the amplitude of a sawtooth's harmonic
 APART = 0.35  # of the cycles' frequency: wider lines of harmonics leave nothing between them
 LOBE = 2.5  # lines to each side over which a Hamming window spreads a sine
+SPREAD = 2.0  # standard deviations of the periods
+MEAN_OF_HAMMING = 0.54  # of its peak: of a fall in its middle a window makes as much more
 STEPS = 5  # windows that overlap at any time
 
 
@@ -85,10 +87,15 @@ def _without_harmonics(lines: xr.DataArray, cycles: xr.Dataset, low: float) -> x
     """Return a spectrogram with the harmonics of a sawtooth lowered to their surroundings."""
     frequency = lines["frequency"].values
     fundamental = 1.0 / float(cycles["period"].median())
-    number = frequency / fundamental
-    lobe = LOBE * (frequency[1] - frequency[0]) / fundamental
-    near = np.abs(number - np.round(number)) < (lobe if lobe < APART else 1.0)
-    bound = AS_SAWTOOTH * float(cycles["drop"].median()) / np.pi / np.maximum(number, 1.0)
+    number, bin_width = frequency / fundamental, frequency[1] - frequency[0]
+    # a line is as wide as the window makes it, and as the periods differ
+    spread = float(cycles["period"].std()) * fundamental
+    width = LOBE * bin_width / fundamental + SPREAD * spread * number
+    near = np.abs(number - np.round(number)) < np.where(width < APART, width, 1.0)
+    shortest = float(cycles["period"].quantile(0.1))
+    lasts = min(shortest, MEAN_OF_HAMMING / bin_width)
+    height = AS_SAWTOOTH * float(cycles["drop"].median()) / np.pi
+    bound = height / np.maximum(frequency * lasts, 1.0)
     harmonic = near[:, None] & (lines.values < bound[:, None])
     band = lines.sel(frequency=slice(low, None))
     return lines.where(~harmonic, band.median("frequency"))

@@ -100,6 +100,11 @@ def plainly(found: Analysis) -> str:
         if kind in plain:
             each = " each time" if count > 1 else ""
             return f"{plain[kind]}{each}.{_quick(found, period)}"
+    if found.regime.evidence.get("backward", 0.0) > 0.5:
+        return (
+            "The force falls slowly and rises fast: it is recorded with the other sign, in all "
+            "likelihood. Analyse it with force=-force."
+        )
     slides = found.friction.kinetic
     at = f", at a force of {in_words(slides.force, 'N')}" if slides is not None else ""
     plain = {

@@ -199,3 +199,11 @@ def test_swings_that_grow_with_the_load_and_then_die_out_are_a_transient():
     assert st.linear_stability.growth_rate(slider) < -5.0
     assert st.classify(st.simulate(slider, "8 s", sample_rate="10 kHz")).kind == "settling"
     assert seen(slider, "8 s").regime == "settling"
+
+
+def test_a_coarse_sample_rate_of_the_description_changes_no_measure():
+    """It says what a run's file holds; samples too far apart would show other, slower cycles."""
+    run, coarse = seen(PIN, "4 s"), seen(PIN, "4 s", sample_rate="70 Hz")
+    assert coarse.regime == run.regime
+    assert value("cycles", coarse) == value("cycles", run)
+    assert value("period", coarse) == value("period", run)

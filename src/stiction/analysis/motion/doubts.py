@@ -26,6 +26,9 @@ SLOW_SLIP = 0.1
 THOUSAND = 0.2  # a ratio within a factor of 5 of a thousand, or its square, is a wrong unit
 FEW = 6  # samples in a slip
 UNLOADED = 0.02  # of the largest force
+FLAT = 4  # times as many samples at the largest value as at any other, and so many at least
+FEW_CYCLES = 4  # before a change of period and after it
+CHANGED = 0.25  # logarithm of the ratio of the two periods: a quarter more or less
 NOISE = 5.0  # standard deviations
 
 
@@ -33,6 +36,8 @@ def warnings(record: Record, kind: str, cycles: xr.Dataset, friction: Friction) 
     """Return warnings as sentences, the most important first."""
     found = [
         *_friction_too_large(record, friction),
+        *_clipped(record),
+        *_changed(cycles),
         *_loading_too_fast(record, kind, cycles),
         *_mass(record, kind, cycles),
         *_mains(kind, cycles),
@@ -67,6 +72,46 @@ def _mains(kind: str, cycles: xr.Dataset) -> Iterator[str]:
             f"The force swings at {in_words(frequency, 'Hz')}, as the mains do. Record it with the "
             "drive at rest: if it swings then, that is hum, and the mass slides steadily."
         )
+
+
+def _clipped(record: Record) -> Iterator[str]:
+    """Doubt a force that stays at exactly its largest value for longer than at any other."""
+    way = 1.0 if record.force.max(initial=0.0) >= -record.force.min(initial=0.0) else -1.0
+    force = way * record.force
+    if not len(force):
+        return
+    begins = np.flatnonzero(np.diff(force, prepend=force[0] - 1.0))
+    lasts, values = np.diff(begins, append=len(force)), force[begins]
+    top = values == force.max()
+    longest = int(lasts[top].max())
+    if top.all() or longest < FLAT or longest <= FLAT * int(lasts[~top].max()):
+        return
+    yield (
+        f"The force stays at exactly {in_words(way * float(force.max()), 'N')} for up to {longest} "
+        "samples, its largest value: if that is the end of the load cell's range, peaks are cut "
+        "off, and static coefficients and drops are too small."
+    )
+
+
+def _changed(cycles: xr.Dataset) -> Iterator[str]:
+    """Doubt one mean over cycles of which the later have another period than the earlier."""
+    size = np.log(np.maximum(cycles["period"].values, 1e-300))
+    places = np.arange(FEW_CYCLES, len(size) - FEW_CYCLES + 1)
+    if not len(places):
+        return
+    total = np.cumsum(size - size.mean())[places - 1]  # the split with the smallest sum of squares
+    k = int(places[np.argmax(total**2 * (1.0 / places + 1.0 / (len(size) - places)))])
+    before, after = size[:k], size[k:]
+    change = float(np.median(after) - np.median(before))
+    spread = max(float(np.ptp(np.percentile(part, (10.0, 90.0)))) for part in (before, after))
+    if abs(change) < CHANGED or spread > 0.5 * abs(change):
+        return
+    at = in_words(float(cycles["start"].values[k]), "s")
+    first, second = (in_words(float(np.exp(np.median(part))), "s") for part in (before, after))
+    yield (
+        f"From {at} on the cycles take {second}, before {first}: if the drive or the load changed "
+        "there, analyse the two parts by themselves; means over both mean little."
+    )
 
 
 def _friction_too_large(record: Record, friction: Friction) -> Iterator[str]:

@@ -84,7 +84,7 @@ def _frequency(value: float) -> str:
 
 
 WORDS = {
-    "cycles": ("{} complete cycles", _whole),
+    "cycles": ("complete cycles: {}", _whole),
     "rise_share": ("the force rises for {} of a cycle (a sine: 50%, a sawtooth: 100%)", _percent),
     "rest_share": ("a mass that swings so rests or creeps for {} of it", _percent),
     "backward": (

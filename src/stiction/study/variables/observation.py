@@ -169,13 +169,12 @@ class Observed:
 
 
 def observe(description: Description, report: Callable[[float], None] | None) -> Observed:
-    """Run a description, sampled at its own rate, or as its slow period requires."""
+    """Run a description, sampled as measures need it: at least as often as it says."""
     start, duration = description.initial.time, description.run.duration
     slow, fast = description.slider.natural_frequencies
     along = PER_COUPLED_PERIOD * coupled_frequency(description.slider)
     least = max(PER_SLOW_PERIOD * slow, along, LEAST_SAMPLES / duration)
-    wanted = description.run.sample_rate or least
-    rate = min(wanted, MOST_SAMPLES / duration)
+    rate = min(max(description.run.sample_rate or 0.0, least), MOST_SAMPLES / duration)
     even = sample_times(start, duration, rate)
     parts = max(ceil(PER_FAST_PERIOD * fast / rate), 1)
     steps = min(ceil(FAST_PERIODS * rate / fast), len(even) - 1)

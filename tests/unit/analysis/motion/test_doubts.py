@@ -179,3 +179,50 @@ def test_a_vibration_of_the_mains_may_be_hum(frequency: float, doubted: bool) ->
     found = st.analyse(record)
     assert found.regime.kind == "harmonic vibration"
     assert ("with the drive at rest" in " ".join(found.warnings)) == doubted
+
+
+def sawtooth(cycles: np.ndarray) -> np.ndarray:
+    """Return 1 to 2 N over so many cycles, of which each falls in its last 5 %."""
+    part = cycles % 1.0
+    return 1.0 + np.where(part < 0.95, part / 0.95, (1.0 - part) / 0.05)
+
+
+def test_a_force_that_is_cut_off_is_doubted() -> None:
+    time = np.arange(0.0, 40.0, 2e-3)
+    noise = 0.01 * np.random.default_rng(1).normal(size=len(time))
+    force = sawtooth(time / 2.0) + noise
+    for sign in (1.0, -1.0):
+        said = st.analyse(st.Record(time=time, force=sign * np.minimum(force, 1.8))).warnings
+        assert ("at exactly 1.8 N" if sign > 0.0 else "at exactly -1.8 N") in " ".join(said)
+    for step in (0.0, 0.02, 0.12):  # as it is, and digitised
+        whole = np.rint(force / step) * step if step else force
+        said = st.analyse(st.Record(time=time, force=whole)).warnings
+        assert "exactly" not in " ".join(said)
+
+
+def test_a_change_of_speed_is_doubted_and_a_slow_one_is_not() -> None:
+    time = np.arange(0.0, 60.0, 2e-3)
+    for rate, changes in (
+        (np.where(time < 30.0, 0.5, 1.0), True),
+        (np.linspace(0.5, 1.0, len(time)), False),
+        (np.full(len(time), 0.7), False),
+    ):
+        force = sawtooth(np.cumsum(rate) * 2e-3)
+        said = " ".join(st.analyse(st.Record(time=time, force=force)).warnings)
+        assert ("the cycles take 1 s, before 2 s" in said) == changes
+
+
+@pytest.mark.parametrize(("duration", "chirp"), [(2.9, 0.0), (400.0, 5e-5)])
+def test_harmonics_of_few_cycles_and_of_changing_ones_are_no_oscillation(duration, chirp) -> None:
+    time = np.arange(0.0, duration, 2e-3)
+    force = sawtooth(time * (1.0 + chirp * time) / 1.2) + 0.005 * np.random.default_rng(2).normal(
+        size=len(time)
+    )
+    found = st.analyse(st.Record(time=time, force=force))
+    assert not np.isfinite(found.oscillation["frequency"].values).any()
+
+
+def test_a_force_of_the_other_sign_is_told_in_words() -> None:
+    time = np.arange(0.0, 40.0, 2e-3)
+    text = str(st.analyse(st.Record(time=time, force=-sawtooth(time / 2.0))))
+    assert "Analyse it with force=-force" in text
