@@ -10,9 +10,9 @@ import numpy as np
 from stiction.analysis.creep.findings import RESTS, drive_speed
 from stiction.analysis.motion.friction import Measured
 from stiction.analysis.motion.regime import (
+    COUPLED,
     HARMONIC,
     IRREGULAR,
-    QUICK,
     SETTLING,
     STEADY,
     STICK_SLIP,
@@ -131,7 +131,7 @@ def _quick(found: Analysis, period: float) -> str:
     if not isinstance(found.source, Trajectory) or found.regime.kind == STICK_SLIP:
         return ""
     own = 1.0 / found.source.slider.natural_frequencies[0]
-    if period >= QUICK * own:
+    if period >= COUPLED * own:
         return ""
     return (
         f" That is quicker than the {in_words(own, 's')} in which it swings on the softer spring "

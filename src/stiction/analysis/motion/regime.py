@@ -58,7 +58,7 @@ RIPPLE = 1e-3  # of the force's span: a vibration that is less is no motion of i
 CERTAIN = 0.995  # a confidence that is written as 1.00: it leaves no room for another kind
 # Of the period of the mass on the softer spring alone: a vibration of a lesser one has the stiffer
 # spring swing as well, as friction that turns couples them. On one spring friction only prolongs it
-QUICK = 0.9
+COUPLED = 0.9
 GROWN = 0.1  # of a force drop: less is not worth a word
 NOISE_SHOWS = 1e-3  # of a force drop; what is less is no noise of a load cell
 

@@ -137,7 +137,10 @@ def by_shape(cycles: Swings, own: float) -> str:
     """Return the kind of cycles from their shape, size and period."""
     count = len(cycles.drop)
     kind = regime.shape(float(np.sort(cycles.rise_share)[count // 2]))
-    if kind in (regime.TRANSITIONAL, regime.HARMONIC) and cycles.period.mean() < regime.QUICK * own:
+    if (
+        kind in (regime.TRANSITIONAL, regime.HARMONIC)
+        and cycles.period.mean() < regime.COUPLED * own
+    ):
         return TRANSVERSE
     return regime.IRREGULAR if kind == regime.HARMONIC and irregular(cycles) else kind
 
