@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from stiction.drive import ConstantVelocity
-from stiction.friction import ExponentialWeakening
+from stiction.friction.laws import ExponentialWeakening
 from stiction.system.slider import Slider
 
 

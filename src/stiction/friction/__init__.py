@@ -2,7 +2,7 @@
 
 A law is a NamedTuple of floats with two methods, ``coefficient(law, v)`` and
 ``slope(law, v)``, in plain Python with `math`; the solver compiles them. A new law
-is one file in `laws` and one line in `LAWS`; functions that its methods call go into `FUNCTIONS`.
+is one file in `friction.laws` and the line there that imports it.
 A law whose friction depends on more than the slip velocity has internal states, see `StateLaw`.
 """
 
@@ -11,35 +11,19 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from stiction.friction.law import FrictionLaw, Internal, Law, StateLaw, has_state, states
-from stiction.friction.laws.anisotropic import Anisotropic, anisotropy_table, read_anisotropy
-from stiction.friction.laws.coulomb import Coulomb
-from stiction.friction.laws.exponential_weakening import ExponentialWeakening
-from stiction.friction.laws.hyperbolic_weakening import HyperbolicWeakening
-from stiction.friction.laws.lugre import LuGre, bending, bending_gradient
-from stiction.friction.laws.rate_and_state import FUNCTIONS as _RATE_AND_STATE
-from stiction.friction.laws.rate_and_state_one import RateStateAgeing, RateStateSlip
-from stiction.friction.laws.rate_and_state_two import RateStateAgeing2, RateStateSlip2
-from stiction.friction.laws.stribeck import Stribeck
-from stiction.friction.laws.table import Table
+from stiction.friction.law import (
+    FrictionLaw,
+    Internal,
+    Law,
+    StateLaw,
+    has_state,
+    states,
+)
+from stiction.friction.laws import Anisotropic
+from stiction.friction.laws.anisotropic import anisotropy_table, read_anisotropy
+from stiction.friction.registry import FUNCTIONS, LAWS
 from stiction.friction.user.loading import Find, is_own, named, own_table, read_own
 from stiction.text.toml import choose
-
-# plain functions that laws call, compiled with them
-FUNCTIONS = (*_RATE_AND_STATE, bending, bending_gradient)
-
-LAWS: dict[str, type[Any]] = {
-    "coulomb": Coulomb,
-    "exponential-weakening": ExponentialWeakening,
-    "hyperbolic-weakening": HyperbolicWeakening,
-    "stribeck": Stribeck,
-    "table": Table,
-    "lugre": LuGre,
-    "rate-and-state-ageing": RateStateAgeing,
-    "rate-and-state-ageing-2": RateStateAgeing2,
-    "rate-and-state-slip": RateStateSlip,
-    "rate-and-state-slip-2": RateStateSlip2,
-}
 
 
 def read_law(table: dict[str, Any], find: Find | None = None) -> Law:
@@ -88,20 +72,10 @@ __all__ = [
     "FUNCTIONS",
     "LAWS",
     "Anisotropic",
-    "Coulomb",
-    "ExponentialWeakening",
     "FrictionLaw",
-    "HyperbolicWeakening",
     "Internal",
     "Law",
-    "LuGre",
-    "RateStateAgeing",
-    "RateStateAgeing2",
-    "RateStateSlip",
-    "RateStateSlip2",
     "StateLaw",
-    "Stribeck",
-    "Table",
     "has_state",
     "law_table",
     "name_of",

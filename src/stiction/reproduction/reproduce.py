@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from stiction import presets
 from stiction.errors import StictionError
-from stiction.friction import Coulomb
+from stiction.friction.laws import Coulomb
 from stiction.plotting.page.save import save
 from stiction.reproduction.creep import creep
 from stiction.reproduction.figure3 import figure3

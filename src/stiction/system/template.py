@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from importlib.resources import files
 from pathlib import Path
+from typing import get_type_hints
 
 from stiction.errors import StictionError
+from stiction.friction.registry import LAWS
 from stiction.storage.files import whole
+from stiction.text.units import unit_of
 
 
 def init(path: str | Path = "slider.toml", *, force: bool = False) -> Path:
@@ -32,6 +35,20 @@ def init(path: str | Path = "slider.toml", *, force: bool = False) -> Path:
     if target.exists() and not force:
         raise StictionError(f"{target} is there already; choose another name, or force it")
     text = files("stiction").joinpath("template.toml").read_text(encoding="utf-8")
+    text = text.replace("# {laws}\n", "".join(map(_law_lines, LAWS)))
     with whole(target) as part:
         part.write_text(text, encoding="utf-8")
     return target
+
+
+def _law_lines(name: str) -> str:
+    """Return a law as a comment: its name, what it is, and the parameters that it takes."""
+    kind = LAWS[name]
+    hints = get_type_hints(kind, include_extras=True)
+    takes: dict[bool, list[str]] = {True: [], False: []}
+    for field in kind._fields:
+        its = unit_of(hints.get(field))
+        takes[field not in kind._field_defaults].append(f"{field} ({its})" if its else field)
+    optional = f"; if you like {', '.join(takes[False])}" if takes[False] else ""
+    what = str(kind.__doc__).splitlines()[0]
+    return f'# law = "{name}"\n#     {what}\n#     takes {", ".join(takes[True])}{optional}\n'

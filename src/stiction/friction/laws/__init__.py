@@ -1,1 +1,25 @@
-"""Friction laws, one file for each; `stiction.friction.LAWS` registers them."""
+"""Friction laws, one file a law: its parameters, its equations, and where they are published.
+
+The line that imports a law here makes it known to descriptions, by the name that its file gives it.
+"""
+
+from __future__ import annotations
+
+from stiction.friction.laws.anisotropic import Anisotropic as Anisotropic
+from stiction.friction.laws.coulomb import Coulomb as Coulomb
+from stiction.friction.laws.exponential_weakening import (
+    ExponentialWeakening as ExponentialWeakening,
+)
+from stiction.friction.laws.hyperbolic_weakening import HyperbolicWeakening as HyperbolicWeakening
+from stiction.friction.laws.lugre import LuGre as LuGre
+from stiction.friction.laws.rate_and_state_one import RateStateAgeing as RateStateAgeing
+from stiction.friction.laws.rate_and_state_one import RateStateSlip as RateStateSlip
+from stiction.friction.laws.rate_and_state_two import RateStateAgeing2 as RateStateAgeing2
+from stiction.friction.laws.rate_and_state_two import RateStateSlip2 as RateStateSlip2
+from stiction.friction.laws.stribeck import Stribeck as Stribeck
+from stiction.friction.laws.table import Table as Table
+from stiction.friction.registry import LAWS
+
+
+def __dir__() -> list[str]:
+    return sorted(["Anisotropic", *(kind.__name__ for kind in LAWS.values())])

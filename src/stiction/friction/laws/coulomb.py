@@ -6,10 +6,12 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from stiction.friction.law import static_fault
+from stiction.friction.registry import registered
 from stiction.text.units import Coefficient
 from stiction.text.validation import validated
 
 
+@registered("coulomb")
 @validated
 class Coulomb(NamedTuple):
     """Constant friction coefficient: F = mu_0 W at any slip speed (Amontons, Coulomb).

@@ -7,10 +7,12 @@ from math import exp
 from typing import NamedTuple
 
 from stiction.friction.law import static_fault
+from stiction.friction.registry import registered
 from stiction.text.units import Coefficient, PositiveSpeed
 from stiction.text.validation import validated
 
 
+@registered("exponential-weakening")
 @validated
 class ExponentialWeakening(NamedTuple):
     """F = [mu_inf + (mu_0 - mu_inf) exp(-v/v_f)] W (Nakano & Popov 2020, "Methods").

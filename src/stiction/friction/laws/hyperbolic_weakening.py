@@ -7,10 +7,12 @@ from typing import NamedTuple
 
 from stiction.errors import DescriptionError, Fault
 from stiction.friction.law import static_fault
+from stiction.friction.registry import registered
 from stiction.text.units import Coefficient, PositiveSpeed
 from stiction.text.validation import validated
 
 
+@registered("hyperbolic-weakening")
 @validated
 class HyperbolicWeakening(NamedTuple):
     """F = mu_0/(1 + v/v_h) W.

@@ -6,10 +6,12 @@ from math import exp, sqrt
 from typing import NamedTuple, Self
 
 from stiction.friction.law import Internal, Vector
+from stiction.friction.registry import called_by_laws, registered
 from stiction.text.units import Damping, PositiveNumber, PositiveSpeed, Stiffness
 from stiction.text.validation import validated
 
 
+@registered("lugre")
 @validated
 class LuGre(NamedTuple):
     """The LuGre model (Canudas de Wit et al. 1995, doi:10.1109/9.376053), in two dimensions.
@@ -97,6 +99,7 @@ class LuGre(NamedTuple):
         )
 
 
+@called_by_laws
 def bending(law: LuGre, s_x: float, s_y: float, load: float) -> float:
     """Return sigma_0 |s|/g, the rate at which bristles slip, per second."""
     square = s_x * s_x + s_y * s_y
@@ -104,6 +107,7 @@ def bending(law: LuGre, s_x: float, s_y: float, load: float) -> float:
     return law.sigma_0 * sqrt(square) / (load * g)
 
 
+@called_by_laws
 def bending_gradient(law: LuGre, s_x: float, s_y: float, load: float) -> Vector:
     """Return the derivatives of `bending` by the slip velocity, per metre; zero at zero slip."""
     square = s_x * s_x + s_y * s_y

@@ -21,11 +21,14 @@ from collections.abc import Iterator
 from math import asinh, exp, hypot, log, sqrt
 from typing import NamedTuple
 
+from stiction.friction.registry import called_by_laws
+
 SLOWEST = 1e-12  # m/s: steady sliding by 30 um a year, because there is no steady state at rest
 MOST_FOLDS = 680.0  # e-folds of slip speed between the smallest float and V*
 FIRM = 30.0  # above, asinh(exp(x)) is x + ln 2 to the last digit
 
 
+@called_by_laws
 def asinh_of_exp(x: float) -> float:
     """Return asinh(exp(x)), for any x."""
     if x > FIRM:
@@ -33,6 +36,7 @@ def asinh_of_exp(x: float) -> float:
     return asinh(exp(x))
 
 
+@called_by_laws
 def friction_force(
     a: float, V_star: float, psi: float, slip: tuple[float, float], load: float
 ) -> tuple[float, float]:
@@ -44,6 +48,7 @@ def friction_force(
     return f * slip[0], f * slip[1]
 
 
+@called_by_laws
 def friction_gradient(
     a: float, V_star: float, psi: float, slip: tuple[float, float], load: float
 ) -> tuple[float, float, float, float, float]:
@@ -67,16 +72,19 @@ def friction_gradient(
     )
 
 
+@called_by_laws
 def grain_of(a: float, V_star: float, psi: float) -> float:
     """Return the slip speed below which friction is proportional to slip, m/s."""
     return 2.0 * V_star * exp(-psi / a)
 
 
+@called_by_laws
 def ageing(log_theta: float, V: float, V_star: float, D: float) -> float:
     """Return d(log_theta)/dt by the ageing law, theta' = 1 - V theta/D."""
     return (V_star * exp(-log_theta) - V) / D
 
 
+@called_by_laws
 def slipping(log_theta: float, V: float, V_star: float, D: float) -> float:
     """Return d(log_theta)/dt by the slip law, theta' = -(V theta/D) ln(V theta/D)."""
     if V == 0.0:
@@ -84,6 +92,7 @@ def slipping(log_theta: float, V: float, V_star: float, D: float) -> float:
     return -V / D * (log(V / V_star) + log_theta)
 
 
+@called_by_laws
 def ageing_gradient(
     log_theta: float, slip: tuple[float, float], V_star: float, D: float
 ) -> tuple[float, float, float]:
@@ -93,6 +102,7 @@ def ageing_gradient(
     return f * slip[0], f * slip[1], -V_star * exp(-log_theta) / D
 
 
+@called_by_laws
 def slipping_gradient(
     log_theta: float, slip: tuple[float, float], V_star: float, D: float
 ) -> tuple[float, float, float]:
@@ -155,13 +165,3 @@ def comparable(static: float, kinetic: float, speed: float) -> Comparable:
 
 
 # called by the laws' methods, compiled with them
-FUNCTIONS = (
-    asinh_of_exp,
-    friction_force,
-    friction_gradient,
-    grain_of,
-    ageing,
-    ageing_gradient,
-    slipping,
-    slipping_gradient,
-)

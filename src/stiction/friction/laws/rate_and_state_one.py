@@ -20,6 +20,7 @@ from stiction.friction.laws.rate_and_state import (
     slipping_gradient,
     steady,
 )
+from stiction.friction.registry import registered
 from stiction.text.units import Coefficient, PositiveLength, PositiveNumber, PositiveSpeed
 from stiction.text.validation import validated
 
@@ -65,6 +66,7 @@ class OneState(NamedTuple):
         return grain_of(law.a, law.V_star, law.mu_star + law.b * state[0])
 
 
+@registered("rate-and-state-ageing")
 class RateStateAgeing(OneState):
     """Rate-and-state friction, ageing law (Dieterich 1979).
 
@@ -107,6 +109,7 @@ class RateStateAgeing(OneState):
         )
 
 
+@registered("rate-and-state-slip")
 class RateStateSlip(OneState):
     """Rate-and-state friction, slip law (Ruina 1983).
 

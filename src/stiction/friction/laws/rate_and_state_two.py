@@ -20,6 +20,7 @@ from stiction.friction.laws.rate_and_state import (
     slipping_gradient,
     steady,
 )
+from stiction.friction.registry import registered
 from stiction.text.units import Coefficient, PositiveLength, PositiveNumber, PositiveSpeed
 from stiction.text.validation import validated
 
@@ -74,6 +75,7 @@ class TwoStates(NamedTuple):
         return grain_of(law.a, law.V_star, psi)
 
 
+@registered("rate-and-state-ageing-2")
 class RateStateAgeing2(TwoStates):
     """Rate-and-state friction with two states, ageing law (Dieterich 1979).
 
@@ -123,6 +125,7 @@ class RateStateAgeing2(TwoStates):
         )
 
 
+@registered("rate-and-state-slip-2")
 class RateStateSlip2(TwoStates):
     """Rate-and-state friction with two states, slip law (Ruina 1983).
 

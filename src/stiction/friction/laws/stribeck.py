@@ -7,12 +7,14 @@ from math import exp
 from typing import NamedTuple
 
 from stiction.friction.law import static_fault
+from stiction.friction.registry import registered
 from stiction.text.units import Coefficient, Exponent, PerSpeed, PositiveSpeed
 from stiction.text.validation import validated
 
 GONE = 750.0  # exp(-750) is zero in floating point
 
 
+@registered("stribeck")
 @validated
 class Stribeck(NamedTuple):
     """F = [mu_c + (mu_s - mu_c) exp(-(v/v_s)^d) + c v] W.

@@ -10,10 +10,12 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.friction.law import static_fault
+from stiction.friction.registry import registered
 from stiction.text.units import Coefficient, Coefficients, Speeds
 from stiction.text.validation import validated
 
 
+@registered("table")
 @validated
 class Table(NamedTuple):
     """F = mu(v) W through measured points, monotone between neighbours.

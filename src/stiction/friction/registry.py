@@ -1,0 +1,28 @@
+"""The friction laws that descriptions know by name, and what is compiled with them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+Kind = TypeVar("Kind", bound=type[Any])
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+LAWS: dict[str, type[Any]] = {}  # by name
+FUNCTIONS: list[Any] = []  # plain functions that laws call
+
+
+def registered(name: str) -> Callable[[Kind], Kind]:
+    """Class decorator: descriptions know the law by this name."""
+
+    def register(kind: Kind) -> Kind:
+        LAWS[name] = kind
+        return kind
+
+    return register
+
+
+def called_by_laws(function: Function) -> Function:
+    """Mark a plain function that laws call: it is compiled with them."""
+    FUNCTIONS.append(function)
+    return function
