@@ -7,10 +7,11 @@ import pytest
 
 import stiction as st
 from stiction.errors import DescriptionError
-from stiction.friction import bending, states
+from stiction.friction import states
 from stiction.friction.equivalent import CHANGED, Traits, like, traits
 from stiction.friction.law import static_coefficient
 from stiction.friction.laws import rate_and_state as rs
+from stiction.friction.laws.lugre import bending
 
 SPEEDS = [0.0, 1e-4, 3e-3, 0.02, 0.5]
 RATE = {"a": 0.01, "b": 0.015, "D_c": 1e-5, "mu_star": 0.6, "V_star": 1e-6}
