@@ -1,4 +1,4 @@
-"""What to know of an apparatus before its friction measurements are believed.
+"""Audit of an apparatus: does it measure friction, or itself?
 
 >>> import stiction as st
 >>> found = st.audit(st.presets.nakano_popov_2020().replace(phi="9.5 deg"))

@@ -1,4 +1,4 @@
-"""What to change of an apparatus, each advice tried in a simulation."""
+"""Advice on changes of an apparatus, each tried in a simulation."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from stiction.linear_stability import Critical, critical, growth_rate
 from stiction.system.parameter import changed, read, unit
 from stiction.system.slider import Slider
 
-# How far beyond a critical value to go, of it: farther where an oscillation, once there, goes on
+# Steps beyond a critical value, relative to it: larger ones for an oscillation that persists
 # although steady sliding is stable
 BEYOND = (0.15, 0.5, 1.0, 2.0)
-# Where steady sliding is stable but not reached from rest, no critical value says how far to go:
-# degrees more, shares of critical damping more, factors
+# Steps where steady sliding is stable but not reached from rest, so that there is no critical
+# value: degrees more, shares of critical damping more, factors
 MORE = {
     "phi": (2.0, 5.0, 10.0, 20.0, 40.0),
     "drive.velocity": (2.0, 4.0, 8.0, 16.0, 32.0),
@@ -24,14 +24,14 @@ MORE = {
     "k_x": (2.0, 4.0, 8.0, 16.0, 32.0),
 }
 LEVERS = ("phi", "drive.velocity", "c_x", "k_x")
-NOT_TRIED = (nan, nan, nan, None)  # of an `Advice`: nothing better found so far
-MOST_TURNED = 80.0  # degrees: nearer to a right angle the soft spring is no spring of the drive's
-LEAST_WORK = 20_000  # steps: of fewer a trial would be cut
-STRONGEST = 10.0  # times critical damping: as far as a damper is tried
+NOT_TRIED = (nan, nan, nan, None)  # fields of an `Advice` without a better value so far
+MOST_TURNED = 80.0  # degrees: near a right angle the soft spring no longer acts along the drive
+LEAST_WORK = 20_000  # steps: a trial with fewer would be cut
+STRONGEST = 10.0  # times critical damping: the strongest damper tried
 
 
 class Advice(NamedTuple):
-    """One parameter, what it is, what it takes to slide steadily, and what is seen then.
+    """One parameter, its value for steady sliding, and the simulation with that value.
 
     Parameters
     ----------
@@ -40,18 +40,18 @@ class Advice(NamedTuple):
     now : float
         Its value.
     between : tuple of float
-        The range in which a better one was looked for.
+        The range that was searched for a better value.
     critical, then : float
-        The value from which on steady sliding is stable, and the one that is advised; not a
-        number where there is none in the range.
+        The value beyond which steady sliding is stable, and the advised value; NaN if there is
+        none in the range.
     growth : float
-        The growth rate (1/s) then.
+        The growth rate (1/s) at the advised value.
     tried : Observation or None
-        The simulation with the value that is advised.
+        The simulation with the advised value.
     work : int
-        Steps and samples of all simulations with one value or another.
+        Steps and samples of all simulations of this parameter.
     cut : bool
-        Whether that was all that it may take, and values farther away were not tried.
+        Whether the limit of work was reached before all values were tried.
     """
 
     path: str
@@ -67,18 +67,18 @@ class Advice(NamedTuple):
 
     @property
     def works(self) -> bool:
-        """Whether the simulation with it, from rest, comes to slide steadily, and stays so."""
+        """Whether the simulation from rest reaches steady sliding, and keeps to it."""
         seen = self.tried
         slides = seen is not None and seen.run.status.ok and seen.comes_to == SLIDES
         return slides and self.growth < 0.0
 
 
 def advise(slider: Slider, stable: bool, work: int, progress: Progress = None) -> Iterator[Advice]:
-    """Yield, for each lever, the nearest value at which sliding is steady, and try it from rest.
+    """Yield, for each parameter, the nearest value with steady sliding, tried from rest.
 
-    Where steady sliding is `stable` already, and only not reached from rest, ever larger values
-    are tried. All simulations together take so much `work`, see `Observation.work`; what one lever
-    leaves of its share is for the next. `progress` is told the share of the levers that is done.
+    If steady sliding is already `stable`, only not reached from rest, ever larger values are tried.
+    `work` limits all simulations together, see `Observation.work`; each parameter passes the rest
+    of its share on to the next. `progress` receives the fraction of parameters done.
     """
     told = progress or (lambda fraction: None)
     for number, path in enumerate(LEVERS):
@@ -95,7 +95,7 @@ def advise(slider: Slider, stable: bool, work: int, progress: Progress = None) -
 def advise_one(
     slider: Slider, path: str, stable: bool, work: int, progress: Callable[[float], None]
 ) -> Advice:
-    """Return the nearest value of one lever at which sliding is steady, as tried from rest."""
+    """Return the nearest value of one parameter with steady sliding, tried from rest."""
     if stable:
         advice = Advice(path, unit(slider, path), read(slider, path), (nan, nan), *NOT_TRIED)
         ways = [(nan, then) for then in further(slider, path)]
@@ -109,7 +109,7 @@ def advise_one(
         def report(fraction: float, before: int = number) -> None:
             progress((before + fraction) / len(ways))
 
-        if not isfinite(then) or then == advice.then:  # nowhere, or the middle of the stretch
+        if not isfinite(then) or then == advice.then:  # nowhere, or the middle again
             break
         left = work - advice.work
         if left < LEAST_WORK:
@@ -137,7 +137,7 @@ def further(slider: Slider, path: str) -> Iterator[float]:
 
 
 def tried(slider: Slider, most_steps: int, progress: Progress) -> dict[str, Any]:
-    """Return the growth rate of a changed slider, and a simulation of it."""
+    """Return growth rate and simulation of a changed slider."""
     growth, prediction = growth_rate(slider), predict(slider)
     rate = coarse_rate(prediction)
     seen = observe(
@@ -147,7 +147,7 @@ def tried(slider: Slider, most_steps: int, progress: Progress) -> dict[str, Any]
 
 
 def limits(slider: Slider, path: str) -> tuple[float | str, float | str] | None:
-    """Return the range in which a parameter can be changed; none for that of `critical`."""
+    """Return the range of a parameter; None for the default range of `critical`."""
     if path == "phi":
         return ("-90 deg", "0 deg") if slider.phi < 0.0 else ("0 deg", "90 deg")
     if path == "c_x":
@@ -156,15 +156,15 @@ def limits(slider: Slider, path: str) -> tuple[float | str, float | str] | None:
 
 
 def written(slider: Slider, path: str, value: float) -> float | str:
-    """Return a value as a slider reads it: an angle with its unit."""
+    """Return a value that a slider reads: an angle with its unit."""
     return f"{value!r} rad" if unit(slider, path) == "rad" else value
 
 
 def nearest(found: Critical, now: float, beyond: float) -> tuple[float, float]:
-    """Return the critical value nearest to the present one, and one `beyond` it, as a share of it.
+    """Return the critical value nearest to the present one, and a value `beyond` it.
 
-    That is where sliding is stable: farther, but not past the middle of the stretch in which it
-    is. Not numbers if it is stable nowhere.
+    The latter lies in the stable stretch, by the share `beyond` of the critical value, but not past
+    the middle of the stretch. Both are NaN if sliding is stable nowhere.
     """
     borders = [found.between[0], *map(float, found.values), found.between[1]]
     best, distance = (nan, nan), inf

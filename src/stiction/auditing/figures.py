@@ -1,4 +1,4 @@
-"""The figures of an audit; none where there is nothing to draw."""
+"""The figures of an audit; None if there is nothing to draw."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 
 
 def test(found: Audit) -> Figure | None:
-    """Draw the simulated test as its load cell records it."""
+    """Draw the simulated test as a load cell records it."""
     return figure_of(plot_cycles, found.observation.record)
 
 
 def creep(found: Audit) -> Figure | None:
-    """Draw the creep before slip, and Eqs. (7) and (8); none where it hardly creeps, or slips."""
+    """Draw the creep before slip with Eqs. (7) and (8); None if there is hardly any creep."""
     seen, slider = found.observation, found.slider
     if seen.motion in VIBRATES or seen.shares.creep < HARDLY or not seen.cycles.sizes["cycle"]:
         return None
@@ -43,9 +43,9 @@ def creep(found: Audit) -> Figure | None:
 
 
 def damping(found: Audit) -> Figure | None:
-    """Draw the damping diagram, with the way of the friction force now and as is advised.
+    """Draw the damping diagram with the path of the friction force, now and as advised.
 
-    None for friction with internal state, for which there is no Eq. (10).
+    None for friction with internal state, to which Eq. (10) does not apply.
     """
     if found.slider.phi == 0.0 or has_state(found.slider.law):
         return None
@@ -54,7 +54,7 @@ def damping(found: Audit) -> Figure | None:
 
 
 def trials(found: Audit) -> Figure | None:
-    """Draw the force of the same test now and with each change."""
+    """Draw the force of the test, now and with each change."""
     tried = [
         Trial(
             f"{NAMES[each.path]} = {in_words(each.then, each.unit)}: {each.tried.motion}",
@@ -67,6 +67,6 @@ def trials(found: Audit) -> Figure | None:
 
 
 def stability(found: Audit) -> Figure | None:
-    """Draw where steady sliding is stable, over misalignment and drive velocity."""
+    """Draw the stability of steady sliding over misalignment and drive velocity."""
     curve = boundary(found.slider, "phi", "drive.velocity")
     return figure_of(plot_boundary, curve) if curve.sizes["point"] else None

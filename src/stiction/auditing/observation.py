@@ -1,4 +1,4 @@
-"""What a simulation of an apparatus shows, as its load cell would."""
+"""The simulated test of an apparatus, as its load cell would record it."""
 
 from __future__ import annotations
 
@@ -22,31 +22,31 @@ from stiction.trajectory import Trajectory
 if TYPE_CHECKING:
     import xarray as xr
 
-CYCLES = 6  # to look at, if it is to stick and slip
-LOAD_UPS = 4.0  # to wait for a force that only approaches what friction can do
-DECAYS = 8.0  # e-folds of a disturbance to wait for: it is a thousandth then
-LONGEST = 2000.0  # swings on the soft spring to wait for that at most
+CYCLES = 6  # of expected stick-slip to simulate
+LOAD_UPS = 4.0  # to wait for a force that approaches the friction limit only slowly
+DECAYS = 8.0  # e-folds of a disturbance to wait for, down to a thousandth
+LONGEST = 2000.0  # longest wait for that, in swings on the soft spring
 COARSE = 40.0  # samples in each swing on the soft spring
-ALMOST = 0.99  # of the drive's speed: it has come to slide
+ALMOST = 0.99  # of the drive's speed: the mass slides
 MOST_SAMPLES = 200_000
 MOST_WORK = 7_000_000  # steps and samples of all simulations of an audit: 2 s without states
-SHARE = 0.35  # of that for the test from rest, and as much for the one from sliding
-MANY = 50_000  # transverse periods, from which on few cycles are to stand for many
+SHARE = 0.35  # of that for each of the tests from rest and from sliding
+MANY = 50_000  # transverse periods above which fewer cycles are simulated
 
 
 Progress = Callable[[float], None] | None
 
 SMALL = "an oscillation too small for the load cell to tell"
-# what a run comes to in the end
+# final states of a run
 SLIDES, OSCILLATES, UNSETTLED = "slides", "oscillates", "unsettled"
-CALM = 0.02  # of the drive's speed: what deviates from it by less is steady sliding
-DECAYED, KEPT = 0.5, 0.8  # of a deviation after a quarter of the run: it dies out, or lasts
-LOADING = 0.5  # of the drive's speed: a mass that is never faster has not slipped
-KICK = 1e-2  # of the drive's speed: the disturbance that steady sliding is started with
+CALM = 0.02  # of the drive's speed: a smaller deviation is steady sliding
+DECAYED, KEPT = 0.5, 0.8  # of a deviation, a quarter of the run later: dies out, lasts
+LOADING = 0.5  # of the drive's speed: a mass that stays slower has not slipped
+KICK = 1e-2  # of the drive's speed: the initial disturbance of steady sliding
 
 
 class Shares(NamedTuple):
-    """What the time is spent on, as shares: at rest, creeping slower than the drive, slipping."""
+    """Shares of time at rest, creeping more slowly than the drive, and slipping."""
 
     rest: float
     creep: float
@@ -54,10 +54,10 @@ class Shares(NamedTuple):
 
 
 class Observation(NamedTuple):
-    """A simulated test: the run, what its load cell records, what can be read from that.
+    """A simulated test: the run, its record, and the analysis of the record.
 
-    `comes_to` is what the mass does in the end: it slides, oscillates, is stuck, or has come to
-    neither when the test ends ("unsettled").
+    `comes_to` is the final state of the mass: it slides, oscillates, is stuck, or is still changing
+    when the test ends ("unsettled").
     """
 
     run: Trajectory
@@ -69,7 +69,7 @@ class Observation(NamedTuple):
 
     @property
     def motion(self) -> str:
-        """The kind of motion by its name: what the load cell sees, if that is what it comes to."""
+        """The name of the final motion, as far as the load cell sees it."""
         calm = self.regime.kind in (SETTLING, STEADY)
         if self.comes_to == SLIDES:
             return self.regime.kind if calm else SETTLING
@@ -79,19 +79,19 @@ class Observation(NamedTuple):
 
     @property
     def work(self) -> int:
-        """How much the simulation took: steps of the solver, accurate or not, and samples."""
+        """The work of the simulation: solver steps, accepted or rejected, and samples."""
         steps = self.run.statistics
         return steps.steps + steps.rejected + len(self.record)
 
     @property
     def coarse(self) -> bool:
-        """Whether it is sampled too coarsely to see the transverse oscillation."""
+        """Whether the sampling is too coarse for the transverse oscillation."""
         slider = self.run.slider
         f_y = theory.natural_frequency(slider.k_y, slider.mass) / (2.0 * pi)
         return bool(self.record.sample_rate < 0.9 * SEEN * f_y)
 
     def mean(self, name: str) -> float:
-        """Return the mean of a quantity over the cycles, not a number if there are none."""
+        """Return the mean of a quantity over the cycles; NaN if there are none."""
         values = self.cycles[name].values
         return float(values.mean()) if len(values) else float("nan")
 
@@ -106,25 +106,25 @@ def observe(
     most_steps: int = int(SHARE * MOST_WORK),
     progress: Progress = None,
 ) -> Observation:
-    """Simulate a friction test, and read its record.
+    """Simulate a friction test, and analyse its record.
 
     Parameters
     ----------
     slider : Slider
         The apparatus.
     prediction : Prediction
-        Of the same; it says how long a test takes.
+        The prediction for it, which determines the duration of the test.
     growth : float
-        Growth rate (1/s) of a disturbance of steady sliding; where it is negative the test goes
-        on until that has died out.
+        Growth rate (1/s) of a disturbance of steady sliding; if negative, the test lasts until
+        the disturbance has died out.
     sample_rate : float
-        Hz; less if there would be too many samples.
+        Hz; reduced if there would be too many samples.
     start : Initial, optional
-        Where it starts; from rest, springs unloaded, when left out.
+        The initial state; by default rest with unloaded springs.
     most_steps : int, optional
-        It is cut after so many steps of the solver.
+        Limit of the solver's steps.
     progress : callable, optional
-        Told the fraction of the simulation that is done.
+        Called with the fraction done.
     """
     load_up = prediction.load_up
     slips = CYCLES * prediction.period if prediction.slips else 0.0
@@ -150,7 +150,7 @@ def observe(
 def from_sliding(
     linear: Linearisation, prediction: Prediction, progress: Progress = None
 ) -> Observation:
-    """Simulate the same test from steady sliding, disturbed by a hundredth of the speed."""
+    """Simulate the test from steady sliding, disturbed by a hundredth of the speed."""
     return observe(
         linear.slider,
         prediction,
@@ -162,9 +162,10 @@ def from_sliding(
 
 
 def outcome(run: Trajectory) -> str:
-    """Return what a run comes to: by the deviation from the drive's speed in its last quarters.
+    """Return the final state of a run, from the deviation from the drive's speed at the end.
 
-    A mass at rest deviates by all of it, and more in a slip does not count.
+    The last quarters of the run count. A mass at rest deviates by the full speed; larger deviations
+    in a slip are cut to that.
     """
     times, speed = run.data["time"].values, run.data["V_X"].values / run.slider.motion.rate(0.0)[0]
     late = times - times[0] >= 0.5 * (times[-1] - times[0])
@@ -179,12 +180,12 @@ def outcome(run: Trajectory) -> str:
 
 
 def coarse_rate(prediction: Prediction) -> float:
-    """Return the sample rate (Hz) that shows the slow motion, but not the transverse one."""
+    """Return a sample rate (Hz) for the slow motion only, not the transverse one."""
     return COARSE * prediction.f_x
 
 
 def shares(run: Trajectory, cycles: xr.Dataset) -> Shares:
-    """Return what the time is spent on in whole cycles, or while it loads up if it has none."""
+    """Return the shares of time in whole cycles, or in the loading if there are none."""
     times, (drive, _) = run.data["time"].values, run.slider.motion.rate(0.0)
     speed = run.data["V_X"].values / drive
     begin, end = times[0], times[np.argmax(speed > ALMOST)] if speed.max() > ALMOST else times[-1]

@@ -1,4 +1,4 @@
-"""An audit as one HTML page, figures inside."""
+"""An audit as one HTML page with embedded figures."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ SUFFIXES = (".html", ".htm")
 
 
 class Illustration(NamedTuple):
-    """A figure as text, and what it shows."""
+    """A figure as text, with its caption."""
 
     image: str
     caption: str
 
 
-# which figures stand below which section, and what they show
+# figures below each section, with captions
 DRAWN: dict[str, tuple[tuple[Callable[[Audit], Figure | None], str], ...]] = {
     "Verdict": ((figures.test, "The simulated test as its load cell records it."),),
     "Is it stick?": (
@@ -45,12 +45,12 @@ DRAWN: dict[str, tuple[tuple[Callable[[Audit], Figure | None], str], ...]] = {
 
 
 def writable(path: str | Path) -> Path:
-    """Return the path of a page, if one can be written there.
+    """Return a path, if a page can be written there.
 
     Raises
     ------
     ResultError
-        If it has another suffix than .html, no folder, or is something else than a file.
+        If its suffix is not .html, its folder does not exist, or it is not a file.
     """
     target = Path(path)
     if target.suffix.lower() not in SUFFIXES:
@@ -59,7 +59,7 @@ def writable(path: str | Path) -> Path:
 
 
 def write(found: Audit, path: str | Path, name: str) -> Path:
-    """Write the report of an audit as a page that needs no other file; return the path.
+    """Write the report of an audit as a self-contained page; return the path.
 
     Raises
     ------
@@ -74,7 +74,7 @@ def write(found: Audit, path: str | Path, name: str) -> Path:
 
 
 def page(found: Audit, name: str) -> str:
-    """Return the page as text; `name` is what it is an audit of."""
+    """Return the page as text; `name` is the name of the apparatus."""
     environment = Environment(
         loader=PackageLoader("stiction.auditing", "."), autoescape=True, trim_blocks=True
     )
@@ -90,7 +90,7 @@ def page(found: Audit, name: str) -> str:
 def illustrations(
     found: Audit, drawn: tuple[tuple[Callable[[Audit], Figure | None], str], ...]
 ) -> list[Illustration]:
-    """Return the figures of a section, those that there is something to draw for."""
+    """Return the non-empty figures of a section."""
     made = ((draw(found), caption) for draw, caption in drawn)
     return [
         Illustration(b64encode(png(figure)).decode("ascii"), caption)

@@ -1,4 +1,4 @@
-"""What theory says of an apparatus, from its description alone."""
+"""Theoretical prediction for an apparatus, from its description alone."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from stiction.friction.law import static_coefficient
 from stiction.system.slider import Slider
 from stiction.text.units import in_words
 
-SEEN = 10.0  # samples a transverse period: enough to see its shape, not just its frequency
-# of the time until the slip: a first stick that is longer is no short beginning, as in Eq. (7)
+SEEN = 10.0  # samples per transverse period, enough for its shape and not only its frequency
+# of the time until the slip: Eq. (7) supposes a shorter first stick
 SHORT = 0.1
-SLOWLY = 10.0  # rad of a free swing: what loads in less is no slow motion
-DAMPED = 0.2  # twice the damping ratio of a spring by itself: above, it counts beside friction
+SLOWLY = 10.0  # rad of a free swing: faster loading is not quasistatic
+DAMPED = 0.2  # twice the damping ratio of a spring: a larger one matters beside friction
 QUARTER_TURN = pi / 4.0
 
 
 class Prediction(NamedTuple):
-    """Closed forms and estimates, in SI and rad; not a number where theory has nothing to say.
+    """Closed forms and estimates, in SI and rad; NaN where the theory does not apply.
 
     Parameters
     ----------
     F_0, F_static : float
-        Friction at vanishing slip, and what holds at rest, which is more where the law has a
-        separate static coefficient, N.
+        Friction at vanishing slip, and at rest, N; the latter is larger if the law has a
+        separate static coefficient.
     f_x, f_y : float
         Natural frequencies along the soft and the stiff axis, Hz.
     A, zeta : float
@@ -36,25 +36,25 @@ class Prediction(NamedTuple):
     theta_c : float
         Force angle at which zeta = 1, where slow slip turns fast, rad.
     phi_c : float
-        Misalignment from which on steady sliding is stable, for a rigid transverse spring, rad;
-        not a number for laws with internal state or a grain: see `stiction.linear_stability`.
+        Misalignment above which steady sliding is stable with a rigid transverse spring, rad;
+        NaN for laws with internal state or anisotropy: see `stiction.linear_stability`.
     first_stick : float
-        How long the mass really rests when the drive starts, s.
+        Duration of true rest after the drive starts, s.
     load_up : float
-        From the start of the drive to the slip: Eq. (7) until theta_c, s; where zeta stays above
-        1, until the spring alone would carry friction.
+        Time from the start of the drive to the slip, s: Eq. (7) until theta_c, or, if zeta stays
+        above 1, until the spring alone would carry friction.
     creep_at_start, creep_at_slip : float
-        Velocity along the drive at both ends of that, Eq. (7), m/s.
+        Velocity along the drive at both ends of the loading, Eq. (7), m/s.
     creep_distance : float
-        How far it has crept when it slips, m.
+        Distance crept before the slip, m.
     mu_static, mu_kinetic : float
-        What would be read as coefficients of friction: largest and mean force over load.
+        Apparent coefficients of friction: largest and mean force over load.
     drop, period : float
         Fall of the force in a slip, N, and time from one slip to the next, s.
     amplitude : float
         Bound of the transverse oscillation, V sin(phi)/omega_y, m.
     sample_rate : float
-        What it takes to see the transverse oscillation, Hz.
+        Sample rate that shows the transverse oscillation, Hz.
     """
 
     F_0: float
@@ -79,15 +79,15 @@ class Prediction(NamedTuple):
 
     @property
     def slips(self) -> bool:
-        """Whether Eq. (10) has the slow motion turn fast before friction points along the drive."""
+        """Whether slow motion turns fast, by Eq. (10), before friction points along the drive."""
         return isfinite(self.drop)
 
 
 def predict(slider: Slider) -> Prediction:
-    """Return what theory says of a slider under a steady drive.
+    """Return the theoretical prediction for a slider under a steady drive.
 
-    The paper's theory is for friction that is set-valued at zero slip; for other laws F_0 is
-    taken at the drive's speed. The misalignment counts by its size, not by its sign.
+    The paper's theory supposes friction that is set-valued at zero slip; for other laws F_0 is that
+    at the drive's speed. Only the magnitude of the misalignment counts.
     """
     s, phi = slider, abs(slider.phi)
     V = hypot(*s.motion.rate(0.0))
@@ -104,10 +104,10 @@ def predict(slider: Slider) -> Prediction:
     load_up = float(theory.creep_time(turn, V, phi, l_x)) if creeps else l_x / V
     creep = theory.creep_velocity(np.array([0.0, load_up]), V, phi, l_x)
     peak = F_0 * cos(turn)
-    if phi == 0.0:  # friction does not turn: it rests until the spring carries what holds it
+    if phi == 0.0:  # friction does not turn: rest until the spring carries the static friction
         load_up, peak = first_stick, F_static
     drop, mean = stick_slip(slider, peak) if fast else (nan, peak)
-    if not drop > 0.0:  # friction does not fall below what the spring held: it comes to slide
+    if not drop > 0.0:  # friction does not fall below the spring's force: steady sliding follows
         drop, mean = nan, s.law.coefficient(V) * s.normal_load * cos(phi)
         peak = max(peak, mean) if fast else mean
     return Prediction(
@@ -134,7 +134,7 @@ def predict(slider: Slider) -> Prediction:
 
 
 def suppositions(slider: Slider, p: Prediction) -> list[str]:
-    """Return what Eqs. (7) and (10) suppose and this apparatus is not, a sentence each."""
+    """Return the assumptions of Eqs. (7) and (10) that the apparatus violates, a clause each."""
     s, phi, V = slider, abs(slider.phi), hypot(*slider.motion.rate(0.0))
     law: Any = s.law
     if has_state(law):
@@ -178,7 +178,7 @@ def critical_misalignment(slider: Slider, V: float) -> float:
 
 
 def crept(V: float, phi: float, l_x: float, t: float) -> float:
-    """Return how far the mass has moved along X by Eq. (7) at time `t` (m).
+    """Return the distance (m) that the mass has moved along X by Eq. (7) at time `t`.
 
     X = V t - u_x cos(phi) - u_y sin(phi), Eq. (6), with u_y constant from the first stick on.
     """
@@ -186,17 +186,17 @@ def crept(V: float, phi: float, l_x: float, t: float) -> float:
 
 
 def stick_slip(slider: Slider, peak: float) -> tuple[float, float]:
-    """Return by how much the force falls in a slip from `peak`, and its mean in the slip (N).
+    """Return the fall of the force in a slip from `peak`, and its mean in the slip (N).
 
-    An estimate: the slip is half a free swing of the mass on the soft spring, s = v sin(tau),
-    about the mean of friction along its way, F = (1/2) integral of F(v sin(tau)) sin(tau); the
-    fastest slip v = (peak - F)/sqrt(k_x m) + V follows from it, and it from v. It ends as far
-    below the mean as it began above it.
+    This estimate takes the slip as half a free swing of the mass on the soft spring, s = v
+    sin(tau), about the mean friction along its path, F = (1/2) integral of F(v sin(tau)) sin(tau),
+    and solves this together with the fastest slip v = (peak - F)/sqrt(k_x m) + V. The slip ends as
+    far below the mean as it began above it.
     """
     V = hypot(*slider.motion.rate(0.0))
     tau = (np.arange(64) + 0.5) * (pi / 64)
     mean = 0.5 * peak
-    for _ in range(60):  # half of the way each time: friction that weakens steeply would overshoot
+    for _ in range(60):  # damped by one half: steeply weakening friction would overshoot
         v = max(peak - mean, 0.0) / sqrt(slider.k_x * slider.mass) + V
         force = [slider.law.coefficient(v * sin(at)) * slider.normal_load for at in tau]
         mean = 0.5 * (mean + float(np.mean(force * np.sin(tau)) * pi / 2.0))

@@ -1,4 +1,4 @@
-"""The whole audit of an apparatus: predicted, simulated, and what to change."""
+"""The audit of an apparatus: prediction, simulation and advice."""
 
 from __future__ import annotations
 
@@ -24,28 +24,28 @@ from stiction.system.description import Description
 from stiction.system.slider import Slider, slider_of
 from stiction.text.sections import Section, as_html, as_text
 
-PARTS = 3 + len(LEVERS)  # of the work: two tests, an advice a lever, the critical misalignments
+PARTS = 3 + len(LEVERS)  # of the work: two tests, the advices, critical misalignments
 
 
 class Audit(NamedTuple):
-    """All that an experimenter wants to know before a friction test is trusted.
+    """The audit of an apparatus before its friction tests are trusted.
 
     Parameters
     ----------
     slider : Slider
         The apparatus.
     prediction : Prediction
-        What theory says from the description alone.
+        The theoretical prediction from the description alone.
     sliding : Linearisation
         Steady sliding and its modes.
     misalignment : Critical
-        Where steady sliding changes between unstable and stable as phi grows.
+        Misalignments at which steady sliding changes between unstable and stable.
     observation : Observation
         The simulated test, from rest.
     sliding_on : Observation
-        The same, started from steady sliding with a small disturbance.
+        The simulated test, from steady sliding with a small disturbance.
     advices : tuple of Advice
-        What would make it slide steadily, each tried from rest; none if it does.
+        Changes that would make it slide steadily, each tried from rest; empty if it does.
     """
 
     slider: Slider
@@ -57,13 +57,13 @@ class Audit(NamedTuple):
     advices: tuple[Advice, ...]
 
     def __repr__(self) -> str:
-        """Say what was simulated, and whether steady sliding is stable."""
+        """Return a one-line summary."""
         both = ", bistable" if self.bistable else ""
         return f"<Audit: {self.observation.motion}{both}; steady sliding is {self.sliding.verdict}>"
 
     @property
     def bistable(self) -> bool:
-        """Whether it oscillates from rest, and slides on if it has come to slide."""
+        """Whether it oscillates from rest, but continues to slide once sliding."""
         rest, sliding = self.observation.comes_to, self.sliding_on.comes_to
         return rest == OSCILLATES and sliding == SLIDES and self.sliding.stable
 
@@ -82,22 +82,22 @@ class Audit(NamedTuple):
         return all(each.run.status.ok for each in runs)
 
     def tables(self) -> list[Section]:
-        """Return the report in sentences and tables, part by part."""
+        """Return the report as sections of sentences and tables."""
         return sections(self)
 
     def plot(self, axes: Any = None) -> Any:
-        """Draw the simulated test as its load cell records it; see `stiction.plotting`."""
+        """Draw the simulated test as a load cell records it; see `stiction.plotting`."""
         from stiction.plotting import plot_cycles
 
         return plot_cycles(self.observation.record, axes)
 
     def write_html(self, path: str | Path, name: str = "apparatus") -> Path:
-        """Write the report as a page that needs no other file, figures inside; return the path.
+        """Write the report as a self-contained page with figures; return the path.
 
         Raises
         ------
         ResultError
-            If it cannot be written there.
+            If the file cannot be written.
         """
         from stiction.auditing.page import write
 
@@ -107,28 +107,28 @@ class Audit(NamedTuple):
 def audit(
     slider: Slider | Description | str | Path, progress: Callable[[float], None] | None = None
 ) -> Audit:
-    """Audit an apparatus: is what it will show friction, or itself?
+    """Audit an apparatus: will it measure friction, or itself?
 
     Parameters
     ----------
     slider : Slider, Description, str or Path
-        The apparatus, or the file of its description; with a steady drive and load. Its own
-        start and settings are not used.
+        The apparatus, or the file of its description, with a steady drive and load. The initial
+        state and settings of a description are ignored.
     progress : callable, optional
         Called with the fraction done.
 
     Returns
     -------
     Audit
-        What theory predicts beside what a simulated test shows, and what to change; with
-        ``tables()``, ``plot()`` and ``write_html(path)``.
+        Theoretical prediction, simulated test and advice; with ``tables()``, ``plot()`` and
+        ``write_html(path)``.
 
     Raises
     ------
     DescriptionError
-        If drive or load are not steady.
+        If drive or load is not steady.
     StictionError
-        If friction comes to no steady sliding.
+        If friction reaches no steady sliding.
 
     Examples
     --------
@@ -140,7 +140,7 @@ def audit(
     report = progress or (lambda fraction: None)
 
     def part(number: int, of: int = 1) -> Callable[[float], None]:
-        """Return what is told the fraction of some parts that is done."""
+        """Return the progress callback of some parts."""
         return lambda fraction: report((number + of * fraction) / PARTS)
 
     sliding, prediction = steady_sliding(system), predict(system)

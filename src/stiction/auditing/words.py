@@ -1,4 +1,4 @@
-"""An audit in words and tables, for any page or terminal."""
+"""The report of an audit in words and tables."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ if TYPE_CHECKING:
     from stiction.auditing.report import Audit
 
 VIBRATES = (HARMONIC, IRREGULAR)  # about steady sliding: nothing sticks or creeps
-HARDLY = 0.05  # of the time: what creeps or rests less than that hardly does
-ALMOST = 0.1  # of the force drop now: a change that leaves less is nearly a remedy
+HARDLY = 0.05  # of the time: a smaller share of creep or rest is negligible
+ALMOST = 0.1  # of the present force drop: a change that leaves less is nearly a remedy
 NAMES = {
     "phi": "misalignment φ",
     "drive.velocity": "drive velocity V",
@@ -55,7 +55,7 @@ SEEN = {  # kinds of motion, in a sentence
 
 
 def sections(found: Audit) -> list[Section]:
-    """Return the report, part by part."""
+    """Return the sections of the report."""
     return [
         Section("Verdict", verdict(found)),
         Section("Predicted and simulated", supposed(found), numbers(found)),
@@ -66,7 +66,7 @@ def sections(found: Audit) -> list[Section]:
 
 
 def verdict(found: Audit) -> list[str]:
-    """Return what the apparatus will do, and how far it is from doing otherwise."""
+    """Return the motion of the apparatus, and its margin to another one."""
     early = [each for each in (found.observation, found.sliding_on) if not each.run.status.ok]
     if early:
         return [f"The simulated test ended early: {early[0].run.status.value}.", stability(found)]
@@ -74,7 +74,7 @@ def verdict(found: Audit) -> list[str]:
 
 
 def motions(found: Audit) -> list[str]:
-    """Return what the apparatus does from rest, and once it slides, as both were simulated."""
+    """Return the simulated motions from rest and from sliding."""
     rest, sliding = found.observation, found.sliding_on
     name = SEEN.get(rest.motion, rest.motion)
     if found.bistable:
@@ -116,7 +116,7 @@ def motions(found: Audit) -> list[str]:
 
 
 def ended(seen: Observation) -> str:
-    """Return what a test comes to, in a sentence."""
+    """Return the final motion of a test, in words."""
     if seen.comes_to == SLIDES:
         return "steady sliding"
     name = SEEN.get(seen.motion, seen.motion)
@@ -140,7 +140,7 @@ def described(seen: Observation) -> str:
 
 
 def stability(found: Audit) -> str:
-    """Return what becomes of a small disturbance of steady sliding."""
+    """Return the stability of steady sliding in a sentence."""
     growth, frequency = found.sliding.growth_rate, float(found.sliding.frequencies[0])
     if found.sliding.verdict not in (STABLE, UNSTABLE):
         return (
@@ -158,7 +158,7 @@ def stability(found: Audit) -> str:
 
 
 def margin(found: Audit) -> str:
-    """Return where phi stands beside its critical values."""
+    """Return the margin of phi to its critical values in a sentence."""
     phi, values = found.slider.phi, found.misalignment.values
     closed = found.prediction.phi_c
     if not len(values):
@@ -186,7 +186,7 @@ def margin(found: Audit) -> str:
 
 
 def supposed(found: Audit) -> list[str]:
-    """Return what the theory supposes and this apparatus is not."""
+    """Return the assumptions of the theory that this apparatus violates."""
     unmet = suppositions(found.slider, found.prediction)
     if not unmet:
         return []
@@ -197,7 +197,7 @@ def supposed(found: Audit) -> list[str]:
 
 
 def numbers(found: Audit) -> Table:
-    """Return predicted quantities beside what the simulation shows."""
+    """Return the table of predicted and simulated quantities."""
     p, seen, s = found.prediction, found.observation, found.slider
     first = float(np.diff(seen.run.stick_intervals[:1]).sum())  # zero if it never sticks
     slip = first_slip_time(seen.run)
@@ -236,31 +236,31 @@ def numbers(found: Audit) -> Table:
 
 
 def crept(found: Audit, slip: float) -> float:
-    """Return how far the mass has moved when it first slips, m; not a number if it does not."""
+    """Return the distance moved until the first slip, m; NaN if there is none."""
     data = found.observation.run.data
     along = abs(data["X"].values - float(data["X"][0]))
     return float(np.interp(slip, data["time"].values, along)) if isfinite(slip) else nan
 
 
 def kinetic(seen: Observation) -> float:
-    """Return what would be read as the coefficient of kinetic friction."""
+    """Return the apparent coefficient of kinetic friction."""
     found = find_friction(seen.record, seen.motion, seen.cycles).kinetic
     return nan if found is None else found.coefficient
 
 
 def loading(seen: Observation) -> float:
-    """Return the apparent stiffness, N/m; not a number where nothing sticks while it loads."""
+    """Return the apparent stiffness, N/m; NaN if nothing sticks during loading."""
     return seen.mean("stiffness") if seen.motion in (STICK_SLIP, TRANSITIONAL) else nan
 
 
 def peak(found: Audit) -> float:
-    """Return what would be read as the coefficient of static friction."""
+    """Return the apparent coefficient of static friction."""
     largest = float(np.max(found.observation.record.force, initial=0.0))
     return largest / found.slider.normal_load
 
 
 def stick(found: Audit) -> list[str]:
-    """Return which part of what looks like stick is none."""
+    """Return how much of the apparent stick is creep."""
     seen, s = found.observation, found.slider
     rest, creep, slip = (f"{100.0 * share:.3g} %" for share in seen.shares)
     whole = "of each cycle" if seen.cycles.sizes["cycle"] else "of the time until it slides"
@@ -305,7 +305,7 @@ def stick(found: Audit) -> list[str]:
 
 
 def transverse(found: Audit) -> list[str]:
-    """Return how the mass oscillates across the drive, and what it takes to see it."""
+    """Return the transverse oscillation, and the sample rate that shows it."""
     p, seen = found.prediction, found.observation
     if p.amplitude == 0.0:
         return ["Without misalignment the transverse spring is not excited."]
@@ -335,7 +335,7 @@ def transverse(found: Audit) -> list[str]:
 
 
 def changes(found: Audit) -> tuple[list[str], Table | None]:
-    """Return what would make it slide steadily, each with its simulation from rest."""
+    """Return changes that make it slide steadily, each with its simulation from rest."""
     if not found.advices:
         return ["Nothing: it slides steadily after the start."], None
     rows = [_change(found, advice) for advice in found.advices]

@@ -1,4 +1,4 @@
-"""The command line: one file a command, one line a command here."""
+"""The command line: each command has one file, and one line here."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ COMMANDS = (
     "map",
     "check",
 )
-for _name in COMMANDS:  # light modules: what is heavy they import when they are called
+for _name in COMMANDS:  # light modules, which import heavy ones when called
     app.command(getattr(import_module(f"stiction.cli.commands.{_name}"), _name))
 app.register_install_completion_command(
     help="Let the shell (bash, zsh, fish or PowerShell) complete commands and options."
@@ -55,7 +55,7 @@ app.register_install_completion_command(
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command line; whatever the user can mend ends in one message and exit status 2."""
+    """Run the command line; user errors end with one message and exit status 2."""
     spell_out()
     show_notices()
     errors = Console(stderr=True, soft_wrap=True)
@@ -70,7 +70,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except KeyboardInterrupt:
         errors.print("interrupted; what is written is whole, the rest was not begun")
         sys.exit(130)
-    except BrokenPipeError:  # who reads has seen enough; rich ends tables so, too
+    except BrokenPipeError:  # the reader has closed the pipe; rich ends tables so, too
         give_up(sys.stdout)
         sys.exit(1)
     except OSError as error:
@@ -90,18 +90,18 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def refuse(errors: Console, what: str, message: str) -> NoReturn:
-    """Say what is wrong, whole and without a frame that would cut it, and leave with status 2."""
+    """Print an error in full, without a frame that would cut it, and exit with status 2."""
     try:
         errors.print(f"[red]error[/red] {what}:")
         for line in visible(message).splitlines():
             errors.print(f"  {line}", markup=False, highlight=False)
-    except OSError:  # nobody can be told
+    except OSError:  # nowhere to print
         give_up(sys.stderr)
     sys.exit(2)
 
 
 def in_a_law(error: BaseException) -> str | None:
-    """Return where in a user's law something was raised, None if it was elsewhere."""
+    """Return the place in a user's law that raised an error; None if it was elsewhere."""
     from stiction.friction.user.source import TextLoader
 
     modules = [vars(each) for each in list(sys.modules.values()) if isinstance(each, ModuleType)]

@@ -1,4 +1,4 @@
-"""What the package notes while it works, such as that it compiles: on standard error."""
+"""Notices of the package, such as compilation, printed to standard error."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from rich.console import Console
 
 
 class Notices(logging.Handler):
-    """Print each note on a line of its own, above a progress bar if there is one."""
+    """Print each notice on its own line, above any progress bar."""
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Print a note."""
-        console = Console(stderr=True, soft_wrap=True)  # of the standard error of this moment
+        """Print a notice."""
+        console = Console(stderr=True, soft_wrap=True)  # on the present standard error
         console.print(record.getMessage(), markup=False, highlight=False)
 
 
 def show_notices() -> None:
-    """Show notes from now on."""
+    """Show notices from now on."""
     log = logging.getLogger("stiction")
     if not any(isinstance(each, Notices) for each in log.handlers):
         log.addHandler(Notices())

@@ -1,4 +1,4 @@
-"""Options that several commands share: where to write, and other values of parameters."""
+"""Options that several commands share: output, trust, and changed parameters."""
 
 from __future__ import annotations
 
@@ -44,13 +44,13 @@ def named(text: str, option: str) -> tuple[str, str]:
 
 
 def changes(given: list[str] | None) -> dict[str, Any]:
-    """Return the values that ``--set`` gives: numbers, truth values and lists as in TOML."""
+    """Return the values of ``--set``: numbers, truth values and lists as in TOML."""
     pairs = (named(text, "--set") for text in given or ())
     return {name: value(text) for name, text in pairs}
 
 
 def value(text: str) -> Any:
-    """Return a value as TOML has it; what is none is text, as a number with its unit."""
+    """Return a TOML value, or the text itself, such as a number with its unit."""
     try:
         return tomllib.loads(f"value = {text}")["value"]
     except (ValueError, RecursionError):

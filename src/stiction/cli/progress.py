@@ -1,4 +1,4 @@
-"""Progress of anything longer than a second, with the time left."""
+"""Progress bar, with the time left, for work that takes more than a second."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ PATIENCE = 1.0  # seconds of silence before a bar appears
 
 @contextmanager
 def progress(title: str) -> Iterator[Callable[[float], None]]:
-    """Show a bar on standard error, once a second has passed; yield what takes the fraction."""
+    """Show a bar on standard error after a second; yield a function that takes the fraction."""
     console = Console(stderr=True)
     if not console.is_terminal:
         yield lambda fraction: None

@@ -13,7 +13,7 @@ from rich.text import Text
 from stiction.errors import visible
 from stiction.text.sections import Section, Table
 
-LONGEST = 24  # letters of a word that is not broken
+LONGEST = 24  # letters of the longest unbroken word
 
 
 def printed(title: str, parts: Iterable[Section]) -> None:
@@ -30,12 +30,12 @@ def printed(title: str, parts: Iterable[Section]) -> None:
 
 
 def plain(text: str, style: str = "") -> Text:
-    """Return a text of which nothing acts on the terminal."""
+    """Return a text with control characters escaped."""
     return Text(visible(text), style=style)
 
 
 def table(found: Table, room: int = 80) -> Grid:
-    """Return a table for the terminal, as wide as its text or as the `room` that there is."""
+    """Return a table for the terminal, as wide as its text or the available `room`."""
     shown = Grid(box=SIMPLE_HEAD, header_style="bold", padding=(0, 1, 0, 0), pad_edge=False)
     columns = list(zip(found.headings, *found.rows, strict=True))
     inside = room - 1 - 2 * len(columns)  # rules and padding take the rest
@@ -53,12 +53,12 @@ def table(found: Table, room: int = 80) -> Grid:
 
 
 def widths(columns: Sequence[Sequence[str]], room: int) -> list[int | None]:
-    """Return how many letters wide columns are: lines break between words where they must."""
+    """Return the widths of columns in letters; None if words must be broken too."""
     least = [narrowest(cells) for cells in columns]
     wanted = [max(map(len, cells), default=0) for cells in columns]
     left = room - sum(least)
     if left < 0:
-        return [None for _ in columns]  # words are broken as well
+        return [None for _ in columns]  # words must be broken too
     found: list[int | None] = []
     for low, high in zip(least, wanted, strict=True):
         more = max(0, min(high - low, left))
@@ -68,13 +68,13 @@ def widths(columns: Sequence[Sequence[str]], room: int) -> list[int | None]:
 
 
 def narrowest(cells: Iterable[str]) -> int:
-    """Return the width at which cells break between words, or after many letters."""
+    """Return the least width at which cells break only between words, if these are not long."""
     words = (word for text in cells for word in text.split())
     return min(max(map(len, words), default=0), LONGEST)
 
 
 def number(text: str) -> bool:
-    """Return whether a cell is a bare number, or stands for one that is not known."""
+    """Return whether a cell is a bare number, or a placeholder for one."""
     try:
         float(text)
     except ValueError:

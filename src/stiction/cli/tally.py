@@ -1,4 +1,4 @@
-"""How far a study is and how it ended: for a terminal, for a log, for a program."""
+"""Progress and outcome of a study, for a terminal, a log or a program."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
 Report = Callable[["Tally"], None]
 Conclude = Callable[[Path, "Summary"], None]
-EVERY = 1.0  # s between two lines of JSON
+EVERY = 1.0  # s between lines of JSON
 
 
 @contextmanager
 def shown(quiet: bool, json_lines: bool) -> Iterator[tuple[Report | None, Conclude]]:
-    """Yield what takes a study's tally while it runs, and what takes its summary at the end."""
+    """Yield two functions: one takes a study's tally while it runs, one its final summary."""
     if json_lines:
         yield _each(EVERY, _print_tally), _print_summary
     elif quiet:
@@ -37,7 +37,7 @@ def shown(quiet: bool, json_lines: bool) -> Iterator[tuple[Report | None, Conclu
 
 
 def _each(interval: float, report: Report) -> Report:
-    """Return a report that passes on one tally in each interval (s)."""
+    """Return a report that passes on one tally per interval (s)."""
     last = [-interval]
 
     def sometimes(tally: Tally) -> None:

@@ -1,4 +1,4 @@
-"""What the command line prints: nothing in it may act on the terminal, or end in a traceback."""
+"""Printing on the command line, safe from control characters and encoding errors."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TextIO
 
 from stiction.errors import visible
 
-# of letters that a terminal lacks
+# replacements for letters that a terminal lacks
 PLAIN = {
     "µ": "u", "φ": "phi", "θ": "theta", "ψ": "psi", "ζ": "zeta", "ω": "omega", "·": " ",
     "°": " deg", "²": "^2", "³": "^3", "∞": "inf", "−": "-", "–": "-", "±": "+-", "×": "x",
@@ -19,12 +19,12 @@ PLAIN = {
 
 
 def say(text: str, *, error: bool = False) -> None:
-    """Print a text, to standard error if it is one; escape sequences in it are written out."""
+    """Print a text with control characters escaped, to standard error if `error`."""
     print(visible(text), file=sys.stderr if error else sys.stdout)
 
 
 def spell_out() -> None:
-    """Have letters that the terminal's encoding lacks printed in others."""
+    """Replace letters that the terminal's encoding lacks."""
     codecs.register_error("spelled", _spelled)
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
@@ -38,6 +38,6 @@ def _spelled(error: UnicodeError) -> tuple[str, int]:
 
 
 def give_up(stream: TextIO | None) -> None:
-    """Write no more to a stream that takes nothing; Python would try again as it ends."""
+    """Redirect a closed stream to nowhere; Python would try to write again at exit."""
     with suppress(OSError, ValueError, AttributeError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())  # type: ignore[union-attr]

@@ -1,4 +1,4 @@
-"""Figures: a function each, which draws on the axes that it is given and returns them.
+"""Figures: each is a function that draws on given axes, and returns them.
 
 Without axes it makes a figure of its own, which a notebook or ``matplotlib.pyplot.show()`` shows.
 Nothing is shown or saved here. A figure of several panels takes and returns several axes.
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from stiction.plotting.stability.onset import plot_onset
     from stiction.study.view.mapping import plot_map
 
-# where each public name lives; imported when first used
+# module of each public name, imported at first use
 _HOME = {
     "plot_analysis": "plotting.analysis.overview",
     "plot_boundary": "plotting.stability.boundary",

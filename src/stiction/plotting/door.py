@@ -1,4 +1,4 @@
-"""One function that draws whatever it is given."""
+"""One function that draws any object with a figure."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ def plot(source: Any, axes: Any = None, *, trust: bool = False) -> Any:
     Parameters
     ----------
     source : object with a ``plot`` method, str or Path
-        What to draw, or the file of a run.
+        The object to draw, or the file of a run.
     axes : Axes, or several, optional
         Drawn on; a new figure, which pyplot shows, when left out.
     trust : bool, optional
-        Of a file, see `stiction.load`.
+        For a file; see `stiction.load`.
 
     Returns
     -------
     Axes, or several
-        What was drawn on.
+        The axes of the drawing.
 
     Raises
     ------

@@ -19,12 +19,12 @@ from stiction.plotting.page.style import BLACK, BLUE, GREEN
 
 Floats = NDArray[np.float64]
 CASING = [patheffects.withStroke(linewidth=3.0, foreground="white")]
-DECADES = 30.0  # a measure that spans more than such a factor is drawn in decades
-PLAINLY = 1e3  # such a factor, from least to largest, is still written without powers of ten
+DECADES = 30.0  # a measure that spans a larger factor is drawn in decades
+PLAINLY = 1e3  # a smaller factor is written without powers of ten
 NO_RESULT = "no result"
-DEEPEST = 1e6  # of the largest value: what is less is nothing
+DEEPEST = 1e6  # range below the largest value; smaller ones count as zero
 
-# light for what is calm, dark and warm for what is violent, told apart without colour as well
+# light for calm, dark and warm for violent motion; distinct without colour too
 COLORS = {
     "stick-slip": "#C44E00",
     "transitional oscillation": "#EE9A4D",
@@ -39,7 +39,7 @@ COLORS = {
 
 
 class Side(NamedTuple):
-    """One side of a map: its scale, the values along it (as drawn), and whether in decades."""
+    """One side of a map: its scale, its values as drawn, and whether it is logarithmic."""
 
     scale: Scale
     values: Floats
@@ -47,7 +47,7 @@ class Side(NamedTuple):
 
     @property
     def edges(side) -> Floats:
-        """Borders of the cells around the values: between them, and the first and the last."""
+        """Borders of the cells around the values."""
         at = np.log(side.values) if side.log else side.values
         if len(at) == 1:
             half = np.array([-0.5, 0.5]) * (1.0 if side.log or at[0] == 0.0 else abs(at[0]))
@@ -59,7 +59,7 @@ class Side(NamedTuple):
 
 
 def draw_regimes(ax: Axes, x: Side, y: Side, kinds: NDArray[np.object_]) -> list[Patch]:
-    """Draw which kind of motion each run shows; return a patch a kind for the legend.
+    """Draw the kind of motion of each run; return a patch per kind for the legend.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def draw_regimes(ax: Axes, x: Side, y: Side, kinds: NDArray[np.object_]) -> list
 def draw_measure(
     ax: Axes, x: Side, y: Side, values: Floats, label: str
 ) -> tuple[QuadMesh, list[Patch]]:
-    """Draw a measure as a heat map, in decades where it spans many, with a bar of its colours.
+    """Draw a measure as a heat map, logarithmic over many decades, with a colour bar.
 
     Parameters are those of `draw_regimes`, and the name of the measure; where there is no value it
     is hatched. Returned is what is coloured, and a patch for the legend if some of it is hatched.
@@ -123,7 +123,7 @@ def draw_measure(
 
 
 def draw_theory(ax: Axes, x: Side, y: Side, fields: Mapping[str, Floats]) -> list[Line2D]:
-    """Draw where each field of a theory is zero; return a line each that has such a place.
+    """Draw the zero contour of each field; return the lines of those that have one.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ def draw_theory(ax: Axes, x: Side, y: Side, fields: Mapping[str, Floats]) -> lis
 
 
 def draw_changes(ax: Axes, x: Side, y: Side) -> list[Line2D]:
-    """Draw a point where a change of the kind of motion was found; return what the legend shows."""
+    """Draw a point at each refined change of motion; return the handles of the legend."""
     return ax.plot(
         x.values, y.values, "o", color=BLACK, markersize=2.4, markeredgecolor="white",
         markeredgewidth=0.5, label="change, refined", zorder=5,
@@ -156,7 +156,7 @@ def draw_changes(ax: Axes, x: Side, y: Side) -> list[Line2D]:
 
 
 def draw_slice(ax: Axes, x: Side, values: Floats, label: str) -> None:
-    """Draw a measure over one parameter, a point a run."""
+    """Draw a measure over one parameter, a point for each run."""
     ax.plot(x.values, values, "-", color=BLUE, linewidth=0.8)
     ax.plot(x.values, values, "o", color=BLUE, markersize=2.5)
     _named(ax, x, "x")
@@ -189,7 +189,7 @@ def draw_kinds(ax: Axes, x: Side, kinds: Sequence[str]) -> None:
 
 
 def draw_points(ax: Axes, x: Floats, y: Floats, kinds: Sequence[str]) -> list[Line2D]:
-    """Draw a point for each run, coloured by its kind of motion; return a marker a kind."""
+    """Draw a point for each run, coloured by its kind of motion; return a marker per kind."""
     made = []
     for name, color in COLORS.items():
         here = np.array([kind == name for kind in kinds])

@@ -1,1 +1,1 @@
-"""The paper reproduced: its figures and numbers, each beside what is computed."""
+"""Reproduction of the paper: its figures, and its numbers beside the computed ones."""

@@ -48,7 +48,7 @@ def creep(run: Trajectory) -> Figure:
     Raises
     ------
     ValueError
-        Without misalignment or drive, where there is no creep.
+        Without misalignment or drive, because there is no creep.
     """
     slider = run.slider
     V, phi = abs(slider.motion.rate(0.0)[0]), abs(slider.phi)

@@ -12,20 +12,19 @@ from stiction.plotting.page.style import BLUE, COLUMN, GREEN, RED, new_figure, s
 from stiction.plotting.stability.damping import CLEAR, draw_damping_map, draw_force_path
 from stiction.system.slider import Slider
 
-PLACES = (0.41, 0.6, 0.75, 0.25)  # of a word in the diagram, the best first
-HALF = 0.17  # of its width, and some room
+PLACES = (0.41, 0.6, 0.75, 0.25)  # of a label in the diagram, the best first
+HALF = 0.17  # of its width, with a margin
 
 
 def figure5(slider: Slider, other_phi: float | None = radians(10)) -> Figure:
-    """Draw Fig. 5 of Nakano & Popov: the damping ratio along the way of the friction force.
+    """Draw Fig. 5 of Nakano & Popov: the damping ratio along the path of the friction force.
 
     Parameters
     ----------
     slider : Slider
         The system, misaligned and driven; its path is red.
     other_phi : float or None
-        Misalignment of the path drawn in blue, rad; everything else is the slider's. None for no
-        such path.
+        Misalignment of a second path, in blue, rad; everything else is the slider's.
 
     Returns
     -------
@@ -35,7 +34,7 @@ def figure5(slider: Slider, other_phi: float | None = radians(10)) -> Figure:
     Raises
     ------
     ValueError
-        Without misalignment or drive, for which the damping number A is not defined.
+        Without misalignment or drive, because the damping number A is undefined.
     """
     with style():
         fig = new_figure(COLUMN, 2.9)
@@ -62,7 +61,7 @@ def figure5(slider: Slider, other_phi: float | None = radians(10)) -> Figure:
 
 
 def clear_of(numbers: Sequence[float], low: float, high: float) -> float:
-    """Return a place for a word above, as a share of the axis of A: the first clear of paths."""
+    """Return the first place for the upper label, as a share of the axis of A, clear of paths."""
     taken = [log(A / low) / log(high / low) for A in numbers]
     return max(PLACES, key=lambda place: min(HALF, *(abs(place - at) for at in taken)))
 

@@ -1,8 +1,8 @@
 """Every number that the paper states, beside the computed one.
 
-A stated number is met when the computed one rounds to it: the tolerance is half a unit
-of the last digit printed. Where the paper says "almost" or "practically", the bound is
-named in the entry. The last part holds this software against the project's reference
+A stated number agrees if the computed one rounds to it: the tolerance is half a unit
+of the last printed digit. Where the paper says "almost" or "practically", the entry
+names the bound. The last part compares this software with the project's reference
 values for the set-valued solution (two independent methods), to the digits given there.
 """
 
@@ -20,9 +20,9 @@ from stiction.trajectory import Trajectory
 
 @dataclass(frozen=True)
 class Number:
-    """One number: where it is stated, what it is, its value there, here, and the tolerance.
+    """One number: its place in the paper, its meaning, both values, and the tolerance.
 
-    A `finding` is stated wrongly, as far as is known: it is shown, and must not agree.
+    A `finding` is wrong in the paper, as far as is known: it is shown, and must not agree.
     """
 
     where: str
@@ -35,7 +35,7 @@ class Number:
 
     @property
     def deviation(self) -> float:
-        """Computed less stated, in `unit`."""
+        """Computed minus stated value, in `unit`."""
         return self.computed - self.stated
 
     @property
@@ -176,7 +176,7 @@ def _ridge(run: Trajectory, start: float, end: float) -> float:
 
 
 def of_creep(run: Trajectory) -> list[Number]:
-    """Return Eq. (7) against the simulation, and Eq. (8) against Eq. (7)."""
+    """Compare Eq. (7) with the simulation, and Eq. (8) with Eq. (7)."""
     from stiction.analysis.creep.first_slip import mean_creep_velocity
 
     s, V = run.slider, run.slider.motion.rate(0.0)[0]

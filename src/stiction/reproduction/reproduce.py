@@ -1,4 +1,4 @@
-"""The paper, end to end: simulate, draw, and hold every number against the stated one."""
+"""The paper, end to end: simulate, draw, and compare every number with the stated one."""
 
 from __future__ import annotations
 
@@ -36,9 +36,9 @@ class Reproduction(NamedTuple):
     Parameters
     ----------
     files : list of Path
-        What was written: figures and tables.
+        The files written: figures and tables.
     table : Table or None
-        Every number beside the stated one; None where only one figure was asked for.
+        Every number beside the stated one; None if only one figure was requested.
     """
 
     files: list[Path]
@@ -68,16 +68,16 @@ def paper(
     Parameters
     ----------
     output : str or Path, optional
-        The folder to write to, made if it is not there.
+        The folder to write to, made if it does not exist.
     figure : {3, 4, 5}, optional
-        Only this figure; all of them, and the table, when left out.
+        Only this figure; by default all of them, and the table.
     progress : callable, optional
         Called with the fraction done.
 
     Returns
     -------
     Reproduction
-        The files that were written, and the table.
+        The written files, and the table.
 
     Raises
     ------
@@ -131,6 +131,6 @@ def reproduce(
 
 
 def finely(run: Trajectory) -> Trajectory:
-    """Return the window of zero slip, restarted from a sample of `run` and sampled finely."""
+    """Repeat the window of zero slip from a sample of `run`, finely sampled."""
     start, end = WINDOW
     return simulate(run.slider, end - start, sample_rate=FINE, rtol=RTOL, initial=run.state(start))

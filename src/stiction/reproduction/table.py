@@ -22,7 +22,7 @@ class Table:
     Parameters
     ----------
     numbers : sequence of Number
-        In the order in which they are shown.
+        The numbers in order.
     """
 
     numbers: Sequence[Number]
@@ -65,7 +65,7 @@ class Table:
 
     @property
     def summary(self) -> str:
-        """One line: how many of the numbers listed agree, and which do not."""
+        """One line: how many of the numbers agree, and which do not."""
         kinds = {
             "of the paper's numbers": [n for n in self.numbers if n.where != "reference"],
             "reference values of this project": [n for n in self.numbers if n.where == "reference"],

@@ -1,4 +1,4 @@
-"""What zero slip looks like: the rests within each transverse oscillation."""
+"""Zero slip: the rests within each transverse oscillation."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ def zero_slip(run: Trajectory, window: tuple[float, float]) -> Figure:
     """Draw a few transverse oscillations: slip speed, friction, and the friction vector's tip.
 
     The paper says that the object never stops. With friction that is set-valued at zero slip it
-    rests once each oscillation (shaded). There the force that holds is below mu_0 W, and the tip
-    of the friction vector inside the circle.
+    rests once in each oscillation (shaded). During rest, friction is below mu_0 W, and the tip of
+    the friction vector lies inside the circle.
 
     Parameters
     ----------
     run : Trajectory
         Sampled at 100 times the transverse frequency or more.
     window : tuple of float
-        Start and end of what is drawn, s.
+        Start and end of the window, s.
 
     Returns
     -------

@@ -1,6 +1,6 @@
-"""What any friction law must keep, as a base class of tests and as one function.
+"""The contract of friction laws, as a base class for tests and as one function.
 
-A test of a law of one's own is two lines, for pytest to find::
+The test of a user's law is two lines, which pytest collects::
 
     from stiction.testing import LawContract
 
@@ -25,28 +25,28 @@ Check = Callable[[Any, Sequence[float]], Iterator[str]]
 
 
 def checks_of(law: Any) -> dict[str, Check]:
-    """Return by name what is checked of a law; each check yields what is wrong, in words."""
+    """Return the checks of a law by name; each yields its faults in words."""
     return {**(WITH_STATE if has_state(law) else SET_VALUED), **COMMON}
 
 
 def check_law(law: Any, speeds: Sequence[float] = SPEEDS) -> None:
-    """Check that the solver can trust a friction law.
+    """Check that a friction law satisfies the solver's assumptions.
 
-    Its methods must end, its values be finite, its friction dissipative, its slope the derivative
-    of its coefficient, what is compiled the same as in Python; it must pickle, go through a
-    description and back, and carry the paper's system through a short run.
+    Its methods must end, its values must be finite, its friction dissipative, its slope the
+    derivative of its coefficient, and compiled results equal to Python's. It must survive pickling
+    and a round trip through a description, and work in a short run of the paper's system.
 
     Parameters
     ----------
     law : FrictionLaw or StateLaw
         With its parameters, e.g. ``MyLaw(mu=0.2)``.
     speeds : sequence of float, optional
-        Slip speeds at which it is looked at, m/s; 1 nm/s to 10 m/s by default.
+        Slip speeds at which it is checked, m/s; by default 1 nm/s to 10 m/s.
 
     Raises
     ------
     DescriptionError
-        With everything that is wrong at once.
+        With all faults.
     """
     if isinstance(law, type):
         raise DescriptionError([Fault(law.__name__, f"is a class; write {law.__name__}(...)")])
@@ -64,21 +64,21 @@ def check_law(law: Any, speeds: Sequence[float] = SPEEDS) -> None:
 
 
 class LawContract:
-    """Tests of one law: derive a class, set `law`; a test for each check comes by itself.
+    """Tests of one law: derive a class and set `law`; it gets a test for each check.
 
     Attributes
     ----------
     law : FrictionLaw or StateLaw
         With its parameters.
     speeds : sequence of float
-        Slip speeds at which it is looked at, m/s.
+        Slip speeds at which it is checked, m/s.
     """
 
     law: ClassVar[Any]
     speeds: ClassVar[Sequence[float]] = SPEEDS
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
-        """Give the class its tests."""
+        """Add the tests to the class."""
         super().__init_subclass__(**kwargs)
         for name, check in checks_of(cls.law).items() if hasattr(cls, "law") else ():
             if f"test_{name}" not in vars(cls):

@@ -1,4 +1,4 @@
-"""Checks of any law: that it can be kept, described and simulated; and what checks share."""
+"""Checks of any law: pickling, descriptions and a simulation; with shared helpers."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def first(found: Iterable[str]) -> Iterator[str]:
 
 
 def attempt(function: Callable[..., Any], *arguments: Any) -> tuple[float, str]:
-    """Return a function's value and no fault, or NaN and what it raises."""
+    """Return a function's value and no fault, or NaN and its error."""
     try:
         return float(function(*arguments)), ""
     except Exception as error:  # whatever a user's law raises
@@ -34,7 +34,7 @@ def attempt(function: Callable[..., Any], *arguments: Any) -> tuple[float, str]:
 
 
 def unfit(value: float, fault: str) -> str:
-    """Return what is wrong with a value: what was raised, or that it is not finite."""
+    """Return the fault of a value: its error, or that it is not finite."""
     if fault or isfinite(value):
         return fault
     return f"is {value}; it must be finite: look for a division by zero or an overflow"
@@ -47,7 +47,7 @@ def said(error: Exception) -> str:
 
 
 def kept(law: Any, speeds: Sequence[float]) -> Iterator[str]:
-    """It pickles, copies, compares and hashes."""
+    """Check that a law pickles, copies, compares and hashes."""
     ways: dict[str, Callable[[], Any]] = {
         "pickling it": lambda: pickle.loads(pickle.dumps(law)),
         "copying it": lambda: copy.deepcopy(law),
@@ -65,7 +65,7 @@ def kept(law: Any, speeds: Sequence[float]) -> Iterator[str]:
 
 
 def described(law: Any, speeds: Sequence[float]) -> Iterator[str]:
-    """It goes through a description to JSON and back."""
+    """Check that a law survives a description in JSON."""
     try:
         before = Description(_preset(law), Initial(), Settings(duration=1.0))
         after = Description.from_json(before.to_json())
@@ -77,7 +77,7 @@ def described(law: Any, speeds: Sequence[float]) -> Iterator[str]:
 
 
 def simulated(law: Any, speeds: Sequence[float]) -> Iterator[str]:
-    """It carries the paper's system through 20 ms: first stick, release, stick-slip."""
+    """Check that the paper's system runs for 20 ms: first stick, release, stick-slip."""
     from stiction.simulation import simulate
 
     try:

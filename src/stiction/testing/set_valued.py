@@ -16,14 +16,14 @@ REACHES = tuple(10.0 ** (-i / 2) for i in range(1, 13))  # of a difference, rela
 
 
 def finite(law: Any, speeds: Sequence[float]) -> Iterator[str]:
-    """Coefficient and slope are finite."""
+    """Check that coefficient and slope are finite."""
     for name in ("coefficient", "slope"):
         values = ((v, unfit(*attempt(getattr(law, name), v))) for v in speeds)
         yield from first(f"{name}({v:g}) {fault}" for v, fault in values if fault)
 
 
 def dissipative(law: Any, speeds: Sequence[float]) -> Iterator[str]:
-    """Friction never drives: the coefficient is not negative, nor can friction hold nothing."""
+    """Check that friction dissipates: the coefficient is not negative, and not zero at rest."""
     values = ((v, attempt(law.coefficient, v)[0]) for v in speeds)
     yield from first(
         f"coefficient({v:g}) must not be negative, is {mu:g}: friction would push the mass on"
@@ -33,7 +33,7 @@ def dissipative(law: Any, speeds: Sequence[float]) -> Iterator[str]:
 
 
 def slope(law: Any, speeds: Sequence[float]) -> Iterator[str]:
-    """The slope is the derivative of the coefficient."""
+    """Check that the slope is the derivative of the coefficient."""
     found = []
     for v in speeds:
         given, fault = attempt(law.slope, v)
@@ -47,7 +47,7 @@ def slope(law: Any, speeds: Sequence[float]) -> Iterator[str]:
 
 
 def continuous(law: Any, speeds: Sequence[float]) -> Iterator[str]:
-    """The coefficient has no jump: from speed to speed it changes by the integral of its slope."""
+    """Check that the coefficient has no jump: it changes by the integral of its slope."""
     from scipy.integrate import quad
 
     found = []
@@ -65,10 +65,10 @@ def continuous(law: Any, speeds: Sequence[float]) -> Iterator[str]:
 
 
 def derivative(function: Callable[[float], float], v: float) -> tuple[float, float]:
-    """Return the derivative by differences, and a bound of its error.
+    """Return the derivative by differences, and an error bound.
 
-    The error is that of truncation, which halving the reach shows, and of rounding. Of several
-    reaches the most exact counts. Central, from v = 0 on to the right.
+    The differences are central, one-sided at v = 0. The bound adds rounding and truncation, which
+    halving the step reveals; of several steps the most accurate counts.
     """
     best = (0.0, inf)
     for reach in REACHES:
@@ -88,7 +88,7 @@ def _difference(function: Callable[[float], float], v: float, h: float) -> float
 
 
 def compiled(law: Any, speeds: Sequence[float]) -> Iterator[str]:
-    """What is compiled gives what Python gives."""
+    """Check that compiled results equal Python's."""
     import numba
 
     from stiction.solver import problem
@@ -117,7 +117,7 @@ def _calling(function: Callable[..., float]) -> Callable[..., float]:
 
 
 def comparable(law: Any, speeds: Sequence[float]) -> Iterator[str]:
-    """Where it can be made like another law, that one has the static coefficient asked for."""
+    """Check that `like`, if any, returns the requested static coefficient."""
     if not hasattr(law, "like"):
         return
     made = type(law).like(0.2, 0.15, 0.01)

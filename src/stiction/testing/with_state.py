@@ -1,4 +1,4 @@
-"""Checks of a law with internal state: its force, how its state changes, and steady sliding."""
+"""Checks of a law with internal state: its force, its rates, and steady sliding."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from stiction.testing.common import ROUNDING, attempt, first, said, unfit
 LOADS = (1.0, 100.0)  # N
 DIRECTIONS = (0.0, 2.5)  # rad
 STEADY = (1e-6, 1e-4, 1e-2, 1.0)  # m/s, where steady sliding is computed
-SLOWEST = 1e-9  # m/s; the state that zero slip is looked at with
+SLOWEST = 1e-9  # m/s, of the state for checks at zero slip
 FORGOTTEN = 1.0  # m of slip, after which any friction has settled
 OFF = 1.37
 APART = 1e-5  # of a slip speed or a state: central differences are off by its square
@@ -22,18 +22,18 @@ SETTLED = 1e-4  # relative: how well friction after that slip is the steady one
 
 
 class Point(NamedTuple):
-    """Where a law is looked at: slip velocity (m/s) and normal load (N)."""
+    """A point at which a law is checked: slip velocity (m/s) and normal load (N)."""
 
     slip: Vector
     load: float
 
     def __str__(self) -> str:
-        """Return the point as in a message."""
+        """Return the point as part of a message."""
         return f"at slip ({self.slip[0]:g}, {self.slip[1]:g}) m/s and load {self.load:g} N"
 
 
 def points(speeds: Sequence[float]) -> Iterator[Point]:
-    """Yield every speed in every direction under every load."""
+    """Yield all combinations of speed, direction and load."""
     for v in speeds:
         for angle in DIRECTIONS:
             for load in LOADS:
@@ -41,7 +41,7 @@ def points(speeds: Sequence[float]) -> Iterator[Point]:
 
 
 def finite(law: Any, speeds: Sequence[float]) -> Iterator[str]:
-    """Force, change of state and steady coefficient are finite, of the right length."""
+    """Check that force, change and coefficient are finite and have the right length."""
     n = len(states(law))
     values = ((v, unfit(*attempt(law.coefficient, v))) for v in speeds if v > 0.0)
     yield from first(f"coefficient({v:g}) {fault}" for v, fault in values if fault)
@@ -55,7 +55,7 @@ def finite(law: Any, speeds: Sequence[float]) -> Iterator[str]:
 
 
 def _settled_faults(law: Any, speeds: Sequence[float]) -> Iterator[str]:
-    """Yield where there is no state to start from; a drive may be at rest."""
+    """Yield speeds without a valid initial state; a drive may be at rest."""
     n = len(states(law))
     for v in speeds:
         try:
@@ -83,7 +83,7 @@ def _settled(law: Any, point: Point) -> tuple[float, ...]:
 
 
 def dissipative(law: Any, speeds: Sequence[float]) -> Iterator[str]:
-    """In steady sliding friction takes energy, as much as the steady coefficient says."""
+    """Check that steady sliding dissipates as much as the steady coefficient says."""
     found = []
     for point in points([v for v in STEADY if min(speeds) <= v <= max(speeds)]):
         v = hypot(*point.slip)
@@ -102,7 +102,7 @@ def dissipative(law: Any, speeds: Sequence[float]) -> Iterator[str]:
 
 
 def steady_state(law: Any, point: Point) -> tuple[float, ...]:
-    """Return the state that is reached after a metre of steady slip."""
+    """Return the state after a metre of steady slip."""
     from scipy.integrate import solve_ivp  # type: ignore[attr-defined]
 
     v = hypot(*point.slip)
@@ -120,7 +120,7 @@ def steady_state(law: Any, point: Point) -> tuple[float, ...]:
 
 
 def derivatives(law: Any, speeds: Sequence[float]) -> Iterator[str]:
-    """What a law gives as derivatives are those of its force and change, where it gives any."""
+    """Check that `gradient`, if any, contains the derivatives of force and change."""
     if not hasattr(law, "gradient"):
         return
     found = []
@@ -164,7 +164,7 @@ def _differences(law: Any, point: Point, state: tuple[float, ...]) -> list[list[
 
 
 def compiled(law: Any, speeds: Sequence[float]) -> Iterator[str]:
-    """What is compiled gives what Python gives."""
+    """Check that compiled results equal Python's."""
     import numba
 
     from stiction.solver import problem

@@ -1,4 +1,4 @@
-"""``stiction analyse``: what a run means."""
+"""``stiction analyse``: analyse a run."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from stiction.cli.terminal import say
 def analyse(result: Path, /, *, output: MaybeOutput = None, trust: Trust = False) -> None:
     """Analyse a result: kind of motion, cycles, creep before slip, oscillation, energy.
 
-    Prints what was found and writes all of it: cycles.csv (a row a cycle), summary.csv,
-    creep.csv, oscillation.csv, energy.csv, analysis.json, and a figure of each. Nothing is to be
-    tuned. Creep and oscillation need a run that is sampled several times each transverse period.
+    Prints a report and writes the tables: cycles.csv (a row for each cycle), summary.csv,
+    creep.csv, oscillation.csv, energy.csv, analysis.json, and a figure of each. There is nothing to
+    tune. Creep and oscillation need several samples per transverse period.
 
     For example, after `stiction run my.toml -o my.nc`:
 
@@ -26,7 +26,7 @@ def analyse(result: Path, /, *, output: MaybeOutput = None, trust: Trust = False
     result
         A file written by `stiction run`.
     output
-        The folder to write to, RESULT-analysis unless told; made if it is not there.
+        The folder to write to, by default RESULT-analysis; made if it does not exist.
     """
     from stiction.analysis.export import write as write_tables
     from stiction.analysis.report import analyse as understand

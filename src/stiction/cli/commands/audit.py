@@ -1,4 +1,4 @@
-"""``stiction audit``: what to know of an apparatus before its measurements are believed."""
+"""``stiction audit``: audit an apparatus before its measurements are trusted."""
 
 from __future__ import annotations
 
@@ -11,13 +11,12 @@ from stiction.cli.terminal import say
 def audit(
     config: Path, /, *, output: MaybeOutput = None, trust: Trust = False, set: Changes = None
 ) -> int:
-    """Audit the apparatus that CONFIG describes: is what it will show friction, or itself?
+    """Audit the apparatus that CONFIG describes: will it measure friction, or itself?
 
-    Prints what theory predicts from the description alone beside what a simulated test shows:
-    damping number, critical misalignment and the margin to it, true rest and creep in what looks
-    like stick, apparent friction coefficients, period, the frequency of the transverse
-    oscillation and the sampling rate that it takes to see it; and, if it does not slide steadily,
-    what to change, each advice tried in a simulation.
+    Prints theoretical predictions beside the results of a simulated test: damping number, critical
+    misalignment and the margin to it, true rest and creep in apparent stick, apparent friction
+    coefficients, period, the frequency of the transverse oscillation and the sampling rate that
+    shows it; and, if it does not slide steadily, advice, each tried in a simulation.
 
     For example, with what `stiction init my.toml` writes:
 
@@ -25,15 +24,15 @@ def audit(
 
         stiction audit my.toml --set phi=3deg --set W=20N
 
-    The drive and the load must be steady; [run] is not used. Exit status: 0 when every
-    simulation reached its end, 1 when one ended earlier, 2 when the description cannot be audited.
+    The drive and the load must be steady; [run] is not used. Exit status: 0 if every simulation
+    reached its end, 1 if one ended earlier, 2 if the description cannot be audited.
 
     Parameters
     ----------
     config
         A description in TOML; `stiction init` writes one to start from.
     output
-        An HTML page to write the same report to, with figures, in one file.
+        An HTML page to write: the same report with figures, in one file.
     """
     from stiction.auditing.report import audit as examine
     from stiction.cli.progress import progress

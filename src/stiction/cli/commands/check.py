@@ -1,4 +1,4 @@
-"""``stiction check``: is a result, or a study's store, as it was written?"""
+"""``stiction check``: find damage in a result or a study's store."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def check(
     repair: Annotated[bool, Parameter(negative=())] = False,
     trust: Trust = False,
 ) -> int:
-    """Look whether a result, or the store of a study, is as it was written.
+    """Check a result, or the store of a study, for damage.
 
     For example:
 
@@ -26,16 +26,15 @@ def check(
 
         stiction check yaw.zarr --repair
 
-    Exit status: 0 when all is whole, or was computed again; 1 when something is damaged; 2 when it
-    is neither a result nor a store, or cannot be computed again.
+    Exit status: 0 if nothing is damaged, or all was repaired; 1 if something is damaged; 2 if PATH
+    is neither a result nor a store, or cannot be repaired.
 
     Parameters
     ----------
     path
-        What `stiction run` or `stiction sweep` wrote.
+        A result of `stiction run` or a store of `stiction sweep`.
     repair
-        Compute again what is damaged: a result from the description in it, of a study the
-        blocks of runs that are damaged.
+        Compute damaged parts again: a result from the description in it, a study block by block.
     """
     from stiction import checking
 

@@ -28,19 +28,19 @@ def compare(
 ) -> int:
     """Run the apparatus of CONFIG under its own friction law and others, and draw them together.
 
-    Spring force, position, slip speed over decades and phase portrait: the picture shows which
-    part of "stick" each law predicts. True zero slip, which no logarithmic axis holds, has a
-    row for each law below the slip speed.
+    The figure has spring force, position, slip speed on a logarithmic axis, and a phase portrait:
+    it shows which part of "stick" each law predicts. True zero slip, which a logarithmic axis
+    cannot show, has a row for each law below the slip speed.
 
     For example, with what `stiction init my.toml` writes:
 
         stiction compare my.toml --law coulomb --law '{law = "coulomb", mu_0 = 0.15}' -o laws.png
 
-    A law given by its name alone takes comparable parameters from the law in CONFIG: its
-    friction coefficient at rest, in fast slip, and the slip speed in between.
+    A law given by name alone gets parameters comparable with the law in CONFIG: the same
+    friction coefficients at rest and in fast slip, and the same slip speed in between.
 
-    Exit status: 0 when every run reached its duration, 1 when one ended earlier (it is drawn
-    all the same), 2 when a law or the description cannot be simulated.
+    Exit status: 0 if every run reached its duration, 1 if one ended earlier (it is still drawn),
+    2 if a law or the description cannot be simulated.
 
     Parameters
     ----------
@@ -48,12 +48,12 @@ def compare(
         A description in TOML; `stiction init` writes one to start from.
     law
         A law to compare with; repeat it for more. A name (coulomb), an inline table with its
-        parameters ('{law = "coulomb", mu_0 = 0.15}'), another description (other.toml), of
-        which the table [friction] is taken, or a law of your own (file.py:Class).
+        parameters ('{law = "coulomb", mu_0 = 0.15}'), another description (other.toml), whose
+        table [friction] is used, or your own law (file.py:Class).
     output
         The figure to write: .png, .pdf or .svg.
     data
-        A folder for the results as well, a NetCDF file each; made if it is not there.
+        A folder for the results too, a NetCDF file each; made if it does not exist.
     """
     from stiction import comparison
     from stiction.cli.progress import progress

@@ -1,4 +1,4 @@
-"""``stiction export``: a result for another program."""
+"""``stiction export``: write a result for another program."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def export(result: Path, /, *, output: Output, trust: Trust = False) -> None:
         A file written by `stiction run`.
     output
         The file to write: .csv or .parquet for the samples, with the stick intervals in a second
-        file beside it (my-sticks.csv); .mat for all in one.
+        file beside it (my-sticks.csv); .mat for both in one file.
     """
     from stiction import trajectory
 

@@ -1,4 +1,4 @@
-"""``stiction init``: a commented description to start from."""
+"""``stiction init``: write a commented description as a starting point."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from stiction.cli.terminal import say
 
 
 def init(path: Path = Path("slider.toml"), /, *, force: bool = False) -> None:
-    """Write a commented description of the paper's apparatus, to be made yours.
+    """Write a commented description of the paper's apparatus to adapt.
 
     For example:
 
@@ -19,7 +19,7 @@ def init(path: Path = Path("slider.toml"), /, *, force: bool = False) -> None:
     path
         The file to write.
     force
-        Write over a file that is there.
+        Overwrite an existing file.
     """
     from stiction.system.template import init as write
 

@@ -1,4 +1,4 @@
-"""``stiction map``: what a study found, drawn."""
+"""``stiction map``: draw the results of a study."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ def map(
     output: MaybeOutput = None,
     trust: Trust = False,
 ) -> None:
-    """Draw what the study in the store STUDY found, finished or not.
+    """Draw the results of the study in the store STUDY, finished or not.
 
-    Over two parameters a map of the kind of motion: stick-slip, transitional oscillation,
+    Two parameters give a map of the kind of motion: stick-slip, transitional oscillation,
     harmonic vibration, irregular vibration, settling, steady sliding, stuck; and transverse
-    oscillation, which is quicker than the mass can swing on the softer spring alone, so that the
-    stiffer one swings as well. Two lines over it say what theory expects: where steady sliding
-    loses its stability, and where the damping ratio at slip is 1. Over one parameter a curve;
-    samples over phi and V as points in the damping diagram.
+    oscillation, which is faster than the mass can swing on the softer spring alone, so that the
+    stiffer spring oscillates too. Two theoretical lines mark where steady sliding loses stability,
+    and where the damping ratio at slip is 1. One parameter gives a curve; samples over phi and V
+    are points in the damping diagram.
 
     For example, after `stiction sweep --preset yaw-angle -o yaw.zarr`:
 
@@ -44,10 +44,10 @@ def map(
     of
         A measure to draw, such as regime or peak_force; repeat it for more panels.
     at
-        A cut through a study of more dimensions, NAME=VALUE; the nearest value that was run is
-        taken. Repeat it for several.
+        A cut through a study of more dimensions, NAME=VALUE; the nearest value of the study is
+        used. Repeat it for several.
     output
-        The figure to write (.png, .pdf or .svg); STUDY.png beside the store when left out.
+        The figure to write (.png, .pdf or .svg); by default STUDY.png beside the store.
     """
     from stiction.plotting.page.canvas import figure_of
     from stiction.plotting.page.save import drawable, write

@@ -1,4 +1,4 @@
-"""``stiction paper``: everything in the paper, computed again."""
+"""``stiction paper``: reproduce the paper."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def paper(
     output: Annotated[Path, Parameter(name=("--output", "-o", "--out"))] = Path("paper-output"),
     figure: Literal[3, 4, 5] | None = None,
 ) -> int:
-    """Reproduce Nakano & Popov (2020): every figure, and every number beside the computed one.
+    """Reproduce Nakano & Popov (2020): every figure, and every number beside its computed value.
 
     Writes each figure as PNG and PDF, and the table of numbers as text, Markdown and JSON.
     For example:
@@ -24,12 +24,12 @@ def paper(
 
         stiction paper --figure 3 -o figures
 
-    Exit status: 0 when every number agrees, 1 when one does not.
+    Exit status: 0 if every number agrees, 1 if one does not.
 
     Parameters
     ----------
     output
-        The folder to write to; made if it is not there.
+        The folder to write to; made if it does not exist.
     figure
         Only this figure, without the table of numbers.
     """

@@ -1,4 +1,4 @@
-"""``stiction plot``: look at a result."""
+"""``stiction plot``: draw a result."""
 
 from __future__ import annotations
 

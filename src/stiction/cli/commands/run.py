@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from stiction.cli.options import Changes, Output, Trust, changes
 from stiction.cli.terminal import say
 
-REST = 1e-9  # of the drive velocity: what slips less rests
+REST = 1e-9  # of the drive velocity: slower slip counts as rest
 
 if TYPE_CHECKING:
     from stiction.trajectory import Trajectory
@@ -24,8 +24,8 @@ def run(config: Path, /, *, output: Output, trust: Trust = False, set: Changes =
 
         stiction run my.toml --set phi=3deg --set V=2mm/s -o other.nc
 
-    Exit status: 0 when the run reached its duration, 1 when it ended earlier (what was
-    computed is written all the same), 2 when the description cannot be simulated.
+    Exit status: 0 if the run reached its duration, 1 if it ended earlier (the part computed is
+    still written), 2 if the description cannot be simulated.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def run(config: Path, /, *, output: Output, trust: Trust = False, set: Changes =
 
 
 def said(result: Trajectory, output: Path) -> list[str]:
-    """Return what is said of a run that is written."""
+    """Return the lines of text about a written run."""
     from stiction.text.units import in_words
 
     statistics = result.statistics
@@ -79,7 +79,7 @@ def said(result: Trajectory, output: Path) -> list[str]:
 
 
 def share(result: Trajectory) -> str:
-    """Return how much of the time it stuck, in words."""
+    """Return the share of time stuck, in words."""
     times = result.data["time"].values
     lasted = float(times[-1] - times[0])
     return (
@@ -88,13 +88,13 @@ def share(result: Trajectory) -> str:
 
 
 def rested(result: Trajectory) -> bool:
-    """Return whether the mass did not move, though no law with zero slip holds it."""
+    """Return whether the mass did not move, although its law does not allow true rest."""
     V, slip = abs(result.slider.motion.velocity), result.data["slip_speed"].values
     return V > 0.0 and bool((slip[1:] < REST * V).all())
 
 
 def longer(result: Trajectory) -> str:
-    """Return how long a run must be to see the mass slip."""
+    """Return the remedy for a run that is too short for slip."""
     from stiction.text.units import in_words
 
     slider = result.slider

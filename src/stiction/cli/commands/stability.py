@@ -1,4 +1,4 @@
-"""``stiction stability``: is steady sliding stable, and where does that change?"""
+"""``stiction stability``: stability of steady sliding, and critical parameters."""
 
 from __future__ import annotations
 
@@ -23,12 +23,11 @@ def stability(
     trust: Trust = False,
     set: Changes = None,
 ) -> None:
-    """Say whether the apparatus of CONFIG slides steadily, and at which parameters that changes.
+    """Examine whether the apparatus of CONFIG slides steadily, and where this changes.
 
     Steady sliding is linearised: each mode of a small disturbance grows or decays. Where one
-    begins to grow, an oscillation sets in; in simulations it is what one hears or sees as
-    stick-slip. Weakening friction drives it; damping, and the turning of the friction vector
-    with misalignment, hold it back.
+    begins to grow, an oscillation sets in, which is heard or seen as stick-slip. Weakening friction
+    drives it; damping, and the turning of the friction vector with misalignment, suppress it.
 
     For example, with what `stiction init my.toml` writes: every critical misalignment and
     velocity, and a map of both; then the modes over the misalignment alone, at another speed:
@@ -45,10 +44,10 @@ def stability(
         A description in TOML; `stiction init` writes one to start from. Its [run] is not used.
     over
         A parameter to vary: phi, V, c_x, mass, friction.mu_inf, ..., or several with one value
-        ("k_x, k_y"). Repeat it for a second one; phi and V when left out.
+        ("k_x, k_y"). Repeat it for a second one; phi and V by default.
     between
         Its range, two values with their units; repeat it for a second one, in the same order.
-        When left out 0 to 90 degrees for an angle, three decades either way for all else.
+        By default 0 to 90 degrees for an angle, else three decades below and above the value.
     output
         The figure to write (.png, .pdf or .svg): the modes over one parameter, or the boundary
         of stability in the plane of two.
@@ -77,7 +76,7 @@ def stability(
 
 
 def number(text: str) -> Any:
-    """Return a bare number as such: it is in SI, as in a description."""
+    """Return a bare number (SI) as a number, other text as it is."""
     try:
         return float(text)
     except ValueError:

@@ -33,10 +33,10 @@ def sweep(
     trust: Trust = False,
     set: Changes = None,
 ) -> int:
-    """Do the study that CONFIG describes: many runs, kept in a zarr store.
+    """Run the study that CONFIG describes: many runs, kept in a zarr store.
 
-    CONFIG is a description, as `stiction init` writes it, with an axis for each parameter that
-    varies, and what to keep of each run:
+    CONFIG is a description, as `stiction init` writes it, with the measures to keep of each run,
+    and an axis for each parameter that varies:
 
         [study]
         measures = ["peak_force", "creep_distance"]
@@ -52,43 +52,44 @@ def sweep(
         count = 20
         spacing = "log"
 
-    There are ready ones: `stiction sweep --preset yaw-angle -o yaw.zarr`, then `stiction map
+    There are ready studies: `stiction sweep --preset yaw-angle -o yaw.zarr`, then `stiction map
     yaw.zarr`.
 
-    Stopped at any moment and started again with the same command, it does what is missing. Read
-    the store with xarray.open_zarr.
+    It may be stopped at any moment; the same command continues. Read the store with
+    xarray.open_zarr.
 
-    Exit status: 0 when every run came to its end, 1 when some failed (the store says which, and
-    why; the others are there), 2 when the study cannot be run, 130 when it was interrupted.
+    Exit status: 0 if every run reached its end, 1 if some failed (the store says which, and why),
+    2 if the study cannot be run, 130 if it was interrupted.
 
     Parameters
     ----------
     config
         The study, in TOML.
     output
-        The store to write or to go on with, a folder: study.zarr.
+        The store to write or to continue, a folder: study.zarr.
     preset
         A ready study in place of CONFIG: yaw-angle (phi x V: misalignment stabilises),
         anisotropy (k_y x phi), damping-diagram (A x theta, Fig. 5 with simulations on it).
     refine
-        An axis and how closely to find where the kind of motion changes along it, for each value
-        of the others, as "phi = 0.01 deg": by halving, not by filling the grid.
+        An axis, and the accuracy with which to find changes of motion along it, for each value of
+        the others: "phi = 0.01 deg". It bisects, instead of filling the grid.
     apart
-        With --refine, a kind of motion that is told from all others, as "settling"; repeat
-        it for more. All are told from each other when left out.
+        With --refine, a kind of motion to distinguish from all others, such as "settling"; repeat
+        it for more. By default every change of kind counts.
     threads
-        How many runs at a time in this process; as many as there are cores when left out.
+        Number of runs at a time in this process; by default the number of cores.
     workers
-        So many processes of this machine in place of threads, by dask.
+        Number of processes on this machine, by dask, in place of threads.
     scheduler
-        A dask scheduler to hand the runs to, as tcp://host:port; its workers write the store
-        themselves, so that all must see the same files.
+        A dask scheduler for the runs, tcp://host:port. Its workers write to the store themselves:
+        all must see the same files.
     dashboard
-        With --workers, dask's dashboard at http://localhost:8787, for every user of this machine.
+        With --workers, show dask's dashboard at http://localhost:8787 to every user of this
+        machine.
     quiet
-        Say nothing but what went wrong.
+        Print only errors.
     json_lines
-        Write progress and outcome to standard output as JSON, a line each, at most one a second.
+        Write progress and outcome to standard output as lines of JSON, at most one a second.
     """
     from stiction.cli.tally import shown
     from stiction.study.execution.refine import refine as halve
@@ -115,7 +116,7 @@ def sweep(
 def described(
     config: Path | None, preset: str | None, given: Mapping[str, Any], trust: bool = False
 ) -> Study:
-    """Return the study that is asked for, with other values of some parameters."""
+    """Return the requested study, with changed parameters."""
     from stiction.errors import StictionError
     from stiction.study import presets
     from stiction.study.plan.study import Study
@@ -133,7 +134,7 @@ def described(
 def engine(
     threads: int | None, workers: int | None, scheduler: str | None, dashboard: bool = False
 ) -> Engine:
-    """Return the engine that is asked for."""
+    """Return the requested engine."""
     from stiction.errors import StictionError
     from stiction.study.execution.engines import Threads
 

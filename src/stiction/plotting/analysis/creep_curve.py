@@ -1,4 +1,4 @@
-"""Creep curves: each stick phase, their mean with its uncertainty, and what theory says."""
+"""Creep curves: each stick phase, their mean with its uncertainty, and theory."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def plot_creep(
     lines: Mapping[str, Line] | None = None,
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw creep curves by the time to slip, which is at the right.
+    """Draw creep curves over the time to slip; slip is at the right.
 
     The velocity is on a logarithmic axis if the mean is above twice its error everywhere, on a
     linear one otherwise, where noise has both signs.
@@ -112,7 +112,7 @@ def plot_creep(
         ax.set(xscale="log", xlim=(to_slip[-1] * 1.05, to_slip[0]))
         if (value > 2.0 * error).all():
             ax.set(yscale="log", ylim=(0.5 * value.min() / V, 1.5))
-            if 0.5 * value.min() / V > 0.05:  # not two decades: each label is written out
+            if 0.5 * value.min() / V > 0.05:  # less than two decades: write all labels
                 ax.yaxis.set_major_formatter(PLAIN)
                 ax.yaxis.set_minor_formatter(PLAIN)
                 ax.yaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
@@ -123,7 +123,7 @@ def plot_creep(
         ax.set_xlabel("time to slip (s)")
         ax.set_ylabel(r"creep velocity $\dot{X}/V$ (1)")
         low, high = ax.get_ylim()
-        for each in ax.get_lines():  # what lies outside is not in the legend
+        for each in ax.get_lines():  # curves outside are not in the legend
             seen = np.asarray(each.get_ydata(), dtype=np.float64)
             if not ((seen > low) & (seen < high)).any():
                 each.set_label("_outside")

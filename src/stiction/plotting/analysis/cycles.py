@@ -1,4 +1,4 @@
-"""A record with its cycles marked, and what kind of motion they show."""
+"""A record with its cycles marked, and its kind of motion."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from stiction.trajectory import Trajectory
 if TYPE_CHECKING:
     import xarray as xr
 
-FEW = 12  # cycles that are seen one by one on a page's width
+FEW = 12  # cycles that can be distinguished on a page's width
 SHOWN = 6  # cycles in the close-up
 
 
@@ -31,7 +31,7 @@ def plot_cycles(
 ) -> NDArray[np.object_]:
     """Draw the force of a record with its peaks and troughs marked, and its kind of motion.
 
-    Where there are many cycles, some from the middle of the record are shown larger below.
+    If there are many cycles, some from the middle of the record are magnified below.
 
     Parameters
     ----------
@@ -79,11 +79,11 @@ def draw_cycles(ax: Axes, record: Record, cycles: xr.Dataset) -> None:
     """
     factor, prefix = prefixed(record.force)
     draw_line(ax, record.time, factor * record.force, GREY, 0.5)
-    size = float(np.clip(60.0 / max(cycles.sizes["cycle"], 1), 1.5, 4.0))  # pt: they do not touch
+    size = float(np.clip(60.0 / max(cycles.sizes["cycle"], 1), 1.5, 4.0))  # pt: they must not touch
     low_time = np.append(cycles["start"].values[:1], cycles["trough_time"].values)
     low = np.append(cycles["start_force"].values[:1], cycles["trough"].values)
     for time, force, color, marker, name in (
-        # their tips are where the force is, so that a small one is seen between two rows of them
+        # the tips are at the force, so that a small drop shows between two rows of markers
         (cycles["peak_time"].values, cycles["peak"].values, RED, CARETDOWN, "peak"),
         (low_time, low, BLUE, CARETUP, "trough"),
     ):
@@ -93,7 +93,7 @@ def draw_cycles(ax: Axes, record: Record, cycles: xr.Dataset) -> None:
     if cycles.sizes["cycle"]:
         ax.legend(
             loc="lower right",
-            bbox_to_anchor=(1.0, 1.0),  # above: it would hide troughs
+            bbox_to_anchor=(1.0, 1.0),  # above, so as not to hide troughs
             borderaxespad=0.2,
             ncols=2,
             markerscale=4.0 / size,
@@ -113,6 +113,6 @@ def _zoom(whole: Axes, part: Axes, record: Record, cycles: xr.Dataset) -> None:
     near = record.model_copy(update={"time": record.time[seen], "force": record.force[seen]})
     draw_cycles(part, near, chosen)
     if (legend := part.get_legend()) is not None:
-        legend.remove()  # it stands above, and would hide what is seen larger here
+        legend.remove()  # it would hide the magnified cycles
     part.set_title("the shaded time")
     whole.axvspan(begin, end, color=PALE, zorder=0)

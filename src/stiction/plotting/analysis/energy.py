@@ -1,4 +1,4 @@
-"""Where the work of the drive goes, interval by interval."""
+"""The energy budget, interval by interval."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from stiction.text.quantity_text import prefixed
 if TYPE_CHECKING:
     import xarray as xr
 
-# what the work becomes: label, colour, hatch, whether it is dissipated
+# terms of the budget: label, colour, hatch, whether dissipated
 PARTS = {
     "friction_x": ("friction, $x$", RED, ""),
     "friction_y": ("friction, $y$", ORANGE, "////"),
@@ -42,7 +42,7 @@ PARTS = {
 
 
 def draw_budget(ax: Axes, budget: xr.Dataset) -> None:
-    """Draw for each interval what the work became, stacked; what was taken out of it goes down.
+    """Draw the terms of each interval, stacked; released energy points down.
 
     Black ticks beside it mark the work of the drive. Parts below a thousandth of the largest
     are left out.
@@ -71,7 +71,7 @@ def draw_budget(ax: Axes, budget: xr.Dataset) -> None:
 
 
 def draw_closure(ax: Axes, budget: xr.Dataset) -> None:
-    """Draw how far each interval is from closing, as a share of the work of all."""
+    """Draw the residual of each interval as a share of the total work."""
     place = np.arange(1, budget.sizes["interval"] + 1)
     whole = float(np.abs(budget["work"].values).sum()) or 1.0
     ax.semilogy(
@@ -81,14 +81,14 @@ def draw_closure(ax: Axes, budget: xr.Dataset) -> None:
     ax.semilogy(place, bound, "_", color=RED, ms=9, mew=1.2, label="its bound")
     shown = np.concatenate([np.abs(budget["residual"].values) / whole, np.ravel(bound)])
     decades = np.log10(shown[np.isfinite(shown) & (shown > 0.0)])
-    if len(decades):  # whole ones: no other labels are needed
+    if len(decades):  # label whole decades only
         ax.set_ylim(10.0 ** np.floor(decades.min() - 0.1), 10.0 ** np.ceil(decades.max() + 0.1))
     ax.yaxis.set_minor_formatter(NullFormatter())
     ax.set_ylabel("share of work (1)")
 
 
 def plot_energy(budget: xr.Dataset, axes: Sequence[Axes] | None = None) -> NDArray[np.object_]:
-    """Draw an energy budget: (a) where the work goes, (b) how exactly that closes.
+    """Draw an energy budget: (a) its terms, (b) its residual.
 
     Parameters
     ----------

@@ -31,7 +31,7 @@ HIGHEST = 1.5  # of omega_y, drawn
 
 
 def draw_ridge(ax: Axes, oscillation: xr.Dataset) -> None:
-    """Draw over a spectrogram the frequency followed, and omega_y sin(theta) in theory."""
+    """Draw the tracked frequency, and the theoretical omega_y sin(theta), over a spectrogram."""
     time = oscillation["time"].values
     factor, _ = frequency_unit(HIGHEST * oscillation.attrs["natural_frequency"])
     natural = oscillation.attrs["natural_frequency"] * factor

@@ -23,7 +23,7 @@ def plot_analysis(found: Analysis, axes: Any = None) -> Any:
 
 
 def figures(found: Analysis) -> dict[str, Figure]:
-    """Return the figure of every part of an analysis that there is, by its name."""
+    """Return the figures of the existing parts of an analysis by name."""
     drawn = {}
     if len(found.record):
         drawn["cycles"] = figure_of(plot_cycles, found.record)
@@ -45,7 +45,7 @@ def figures(found: Analysis) -> dict[str, Figure]:
 
 
 def _loading(found: Analysis) -> float | None:
-    """Return how long the one loading of a run lasted, s; None where there are others, or none."""
+    """Return the duration of a run's only loading, s; None if there are several, or none."""
     if found.curves is None or found.curves.sizes["phase"] != 1:
         return None
     if not isinstance(found.source, Trajectory):

@@ -19,14 +19,14 @@ from stiction.text.quantity_text import prefixed
 
 PANEL = 1.35  # height of a row, in
 ACROSS = 2
-ROOM = 0.4  # of what is shown, above and below it
-MOST, FEW = 40, 8  # swings that a panel can show, and that it shows where there are more
-LEAST = 0.1  # of what is shown: a lesser movement is no swing that a reader could see
-ROUNDING = 1e-6  # of the force: what varies by less does not vary
+ROOM = 0.4  # of the visible range, above and below it
+MOST, FEW = 40, 8  # most swings in a panel, and the number shown if there are more
+LEAST = 0.1  # of the visible range: smaller swings cannot be seen
+ROUNDING = 1e-6  # of the force: smaller variations are rounding
 
 
 class Trial(NamedTuple):
-    """What was changed, in words, and what was recorded then."""
+    """The change in words, and the record after it."""
 
     title: str
     record: Record
@@ -35,7 +35,7 @@ class Trial(NamedTuple):
 def plot_trials(
     before: Record, trials: Sequence[Trial], axes: Sequence[Axes] | None = None
 ) -> NDArray[np.object_]:
-    """Draw the force of each trial over that of the test before, a panel a trial.
+    """Draw the force of each trial over that of the original test, a panel for each.
 
     Time runs as long as the trial does; where the test before is longer, it is cut, where it is
     shorter, it ends. Of a trial with more swings than a panel can show, the last few are drawn,
@@ -89,9 +89,9 @@ def plot_trials(
 
 
 def shown(before: Record, record: Record) -> tuple[float, float, int]:
-    """Return from when to when a panel shows a trial (s), and how many swings it has about.
+    """Return the time range of a panel (s), and the approximate number of swings.
 
-    Where both go on in its later half, its part ends with the first of them that ends.
+    If both motions last into its later half, the range ends with the first of them.
     """
     start, end, half = float(record.time[0]), float(record.time[-1]), len(record) // 2
     late = record.force[half:]

@@ -1,4 +1,4 @@
-"""The friction vector inside the circle of the forces that friction can bear."""
+"""The friction vector inside the circle of possible friction forces."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from stiction.trajectory import Trajectory
 
 
 def friction_vector(data: xr.Dataset) -> shapes.Points:
-    """Return the friction force (X, Y) on the mass, against its slip, shape (n, 2), in N."""
+    """Return the friction force (X, Y) on the mass, opposite to slip, shape (n, 2), in N."""
     psi = np.radians(data["psi"].values) + np.pi
     direction: shapes.Points = np.column_stack([np.cos(psi), np.sin(psi)])
     return direction * np.asarray(data["friction"].values, dtype=np.float64)[:, None]

@@ -1,4 +1,4 @@
-"""How a misalignment is drawn: where it is too small to be seen, larger, and saying so."""
+"""The drawing of a misalignment: exaggerated, with a note, if too small to be seen."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from stiction.plotting.apparatus.shapes import Points
 Placement = Callable[[ArrayLike], Points]
 
 LEAST, EXAGGERATED = radians(20), radians(24)  # a smaller misalignment is drawn like this
-STEEP = radians(60)  # one nearer to a right angle than LEAST, like this
+STEEP = radians(60)  # one within LEAST of a right angle, like this
 
 
 def drawn_misalignment(phi: float) -> float:
@@ -40,7 +40,7 @@ def drawn_slip_angle(drawn: float) -> float:
 
 
 def misalignment_note(phi: float) -> str:
-    """Return the misalignment in words, saying so where it is not drawn to scale."""
+    """Return the misalignment in words, with a note if it is not to scale."""
     drawn, size = drawn_misalignment(phi), f"{degrees(phi):.4g}°".replace("-", "−")
     if abs(drawn - phi) < 1e-9:
         return rf"$\varphi$ = {size}"

@@ -1,4 +1,4 @@
-"""The usual apparatus of a friction test: a pin on a cantilever spring, a plate that moves."""
+"""The usual apparatus of a friction test: a pin on a cantilever spring, and a moving plate."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from stiction.plotting.apparatus.shapes import Points
 from stiction.plotting.page.style import BLUE, FLOOR, RED
 from stiction.system.slider import Slider
 
-VIEW = np.array([[1.0, 0.0], [0.35, 0.62], [0.0, 0.8]])  # oblique: where X, Y and Z point
+VIEW = np.array([[1.0, 0.0], [0.35, 0.62], [0.0, 0.8]])  # oblique projection of X, Y and Z
 
 
 def draw_apparatus(ax: Axes, slider: Slider) -> Axes:
@@ -83,7 +83,7 @@ def _draw_cantilever(ax: Axes, turn: Points) -> None:
     shapes.polygon(ax, put(leaf), face="#DDE8F0", zorder=3.4)
     near, wide, bottom, top = length, 0.3, low - 0.2, high + 0.2
     far = near + 0.5
-    toward = 1 if turn[0] @ (0.35, -1.0, 0.775) > 0 else -1  # which side the eye sees
+    toward = 1 if turn[0] @ (0.35, -1.0, 0.775) > 0 else -1  # the visible side
     front = [(x, near, z) for x, z in ((-wide, bottom), (wide, bottom), (wide, top), (-wide, top))]
     side = [
         (toward * wide, y, z) for y, z in ((near, bottom), (far, bottom), (far, top), (near, top))

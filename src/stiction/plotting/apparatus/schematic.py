@@ -20,9 +20,9 @@ from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.style import BLUE, COLUMN, FLOOR, GREEN, GREY, PURPLE, RED, style
 from stiction.system.slider import Slider
 
-# half a side of the block, where the bracket stands along x and y, how far it overhangs
+# half side of the block; position of the bracket along x and y; its overhang
 BLOCK, WALL_X, WALL_Y, OVERHANG = 0.6, 3.0, 2.7, 0.75
-BACK = 3.0  # how far F and the axes reach behind the block
+BACK = 3.0  # extent of F and the axes behind the block
 
 
 def plot_slider(slider: Slider, ax: Axes | None = None) -> Axes:
@@ -80,7 +80,7 @@ def _draw_axes(ax: Axes, lab: Placement, phi: float, side: float) -> list[Points
     x = lab([(-BACK, 0), (WALL_X + 1.9, 0)])
     y = lab([(0, -1.5), (0, WALL_Y + 1.1)] if side > 0 else [(0, WALL_Y + 0.7), (0, -1.9)])
     for axis, text in ((x, "x"), (y, "y")):
-        if _coincide(text, phi):  # then X is drawn over it and bears both names
+        if _coincide(text, phi):  # X is drawn over it, with both names
             axis[1] -= 2.0 * _unit(axis)
             shapes.line(ax, axis, RED, 0.7, "-.", zorder=1)
         else:
@@ -171,7 +171,7 @@ def _unit(ends: Points) -> Points:
 
 
 def _frame(ax: Axes, points: Points, note: str) -> None:
-    """Make the axes the floor, with room for what is named at the ends."""
+    """Make the axes the floor, with room for labels at the ends."""
     (left, bottom), (right, top) = points.min(axis=0) - 0.9, points.max(axis=0) + 0.9
     ax.margins(0)
     ax.update_datalim([(left, bottom - 0.6), (right, top)])

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from stiction.plotting.page.style import BLACK, PALE
 
 Points = NDArray[np.float64]
-SIDEWAYS = 0.3  # of a unit vector: a part that is less does not shift a text beside a point
+SIDEWAYS = 0.3  # of a unit vector: a smaller component does not shift a text beside a point
 
 
 def line(
@@ -76,7 +76,7 @@ def name(ax: Axes, point: ArrayLike, text: str, color: str = BLACK, size: float 
 
 
 def beside(ax: Axes, point: ArrayLike, way: ArrayLike, text: str) -> Text:
-    """Write `text` on that side of `point` which the vector `way` leads to, whatever its size."""
+    """Write `text` beside `point`, in the direction `way`."""
     (x, y), (right, up) = np.asarray(point), np.asarray(way) / np.hypot(*np.asarray(way))
     drawn = name(ax, (x, y), text)
     sides = {"ha": ("right", "center", "left"), "va": ("top", "center", "bottom")}

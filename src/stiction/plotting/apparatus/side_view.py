@@ -48,7 +48,7 @@ def draw_side_view(ax: Axes, slider: Slider) -> Axes:
 
 
 def _draw_floor(ax: Axes) -> None:
-    """Draw the ground line with the strokes that say it does not move."""
+    """Draw the ground line with the hatching of a fixed support."""
     shapes.line(ax, [(-0.5, 0), (5.2, 0)], width=1.0)
     for x in np.arange(-0.4, 3.6, 0.2):
         shapes.line(ax, [(x, 0), (x - 0.12, -0.16)], width=0.5)

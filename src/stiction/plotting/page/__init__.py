@@ -1,1 +1,1 @@
-"""What every figure rests on: canvas, style, words and units along its axes."""
+"""Common parts of figures: canvas, style, words, and units of axes."""

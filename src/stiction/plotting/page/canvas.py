@@ -1,4 +1,4 @@
-"""Where a figure is drawn: on the axes that are given, or on a new figure."""
+"""The canvas of a figure: given axes, or those of a new figure."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ _alone: ContextVar[bool] = ContextVar("alone", default=False)
 
 
 def canvas(width: float, height: float) -> Figure:
-    """Return a new figure of a size (in) that pyplot knows, so that notebooks show it.
+    """Return a new figure of a size (in), registered with pyplot so that notebooks show it.
 
-    Inside `figure_of` nobody else knows it.
+    Inside `figure_of` it is not registered.
     """
     if _alone.get():
         return new_figure(width, height)
@@ -32,19 +32,19 @@ def canvas(width: float, height: float) -> Figure:
 
 
 def panel(ax: Axes | None, width: float, height: float) -> Axes:
-    """Return the axes that are given, or those of a new figure of a size (in)."""
+    """Return the given axes, or those of a new figure of a size (in)."""
     return fixed([canvas(width, height).subplots()])[0] if ax is None else ax
 
 
 def listed(axes: Any) -> list[Axes]:
-    """Return axes that are given one by one, as an array or as a mapping, in a list."""
+    """Return a single axes, or an array or a mapping of axes, as a list."""
     if isinstance(axes, Axes):
         return [axes]
     return list(axes.values()) if isinstance(axes, Mapping) else list(np.ravel(axes))
 
 
 def fixed(axes: Sequence[Axes]) -> Sequence[Axes]:
-    """Let the ticks of axes keep the look of the style sheet when they are drawn later."""
+    """Fix the tick style of axes, which are drawn later without the style sheet."""
     for ax in axes:
         for way in "xy":
             for which in ("major", "minor"):
@@ -61,7 +61,7 @@ def fixed(axes: Sequence[Axes]) -> Sequence[Axes]:
 
 
 def named(drawings: Mapping[str, Drawing], name: str) -> Drawing:
-    """Return what draws a panel.
+    """Return the function that draws a panel.
 
     Raises
     ------
@@ -74,7 +74,7 @@ def named(drawings: Mapping[str, Drawing], name: str) -> Drawing:
 
 
 def figure_of(draw: Callable[..., Any], *arguments: Any, **values: Any) -> Figure:
-    """Return the figure that a function of `stiction.plotting` draws, known to nobody else."""
+    """Return the figure of a function of `stiction.plotting`, unknown to pyplot."""
     token = _alone.set(True)
     try:
         axes: Iterable[Axes] = listed(draw(*arguments, **values))
@@ -84,7 +84,7 @@ def figure_of(draw: Callable[..., Any], *arguments: Any, **values: Any) -> Figur
 
 
 def whole_figure(ax: Axes) -> Figure:
-    """Return the figure that axes stand in, not a part of it."""
+    """Return the whole figure that contains axes, not a subfigure."""
     figure: Any = ax.figure
     while not isinstance(figure, Figure):
         figure = figure.figure if figure.figure is not figure else figure._parent

@@ -1,4 +1,4 @@
-"""A parameter along an axis: its symbol, and its values in a unit that suits their size."""
+"""A parameter along an axis: its symbol, and its values in a suitable unit."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from stiction.plotting.page.words import symbol
 from stiction.text.quantity_text import prefixed
 
 SYMBOLS = {"phi": r"$\varphi$", "drive.velocity": "$V$", "normal_load": "$W$", "mass": "$m$"}
-PLAIN = FuncFormatter(lambda value, _: f"{value:g}")  # 0.1, 1, 10: units are chosen to suit
+PLAIN = FuncFormatter(lambda value, _: f"{value:g}")  # 0.1, 1, 10: the units suit the values
 
-# the same where ticks stand closely, as those of a decade do: one, two and five
+# the same for close ticks within a decade: one, two and five only
 SPARSE = FuncFormatter(lambda value, _: f"{value:g}" if f"{value:.0e}"[0] in "125" else "")
 
 
 def parameter_symbol(path: str) -> str:
-    """Return how a parameter is printed, several that share one value with equals signs."""
+    """Return the printed symbol of a parameter; equals signs join several."""
     names = [name.strip() for name in path.split(",")]
     return " = ".join(SYMBOLS.get(name, symbol(name.rpartition(".")[2])) for name in names)
 
 
 def in_unit(values: ArrayLike, unit: str) -> tuple[float, str]:
-    """Return the factor from SI to the unit that suits the values, and that unit; deg for rad."""
+    """Return a suitable unit of the values, deg for rad, and the factor from SI."""
     if unit == "rad":
         return degrees(1.0), "deg"
     if unit in ("kg", "1", ""):
@@ -48,7 +48,7 @@ class Scale(NamedTuple):
         return f"{self.symbol} ({self.unit})"
 
     def drawn(self, values: ArrayLike) -> NDArray[np.float64]:
-        """Return values (SI) as they are drawn."""
+        """Return values (SI) in the unit of the drawing."""
         found: NDArray[np.float64] = np.asarray(values, dtype=np.float64) * self.factor
         return found
 
@@ -59,6 +59,6 @@ class Scale(NamedTuple):
 
 
 def scale_of(path: str, unit: str, ends: ArrayLike, *, logarithmic: bool = False) -> Scale:
-    """Return the scale of a parameter with a range (SI); a logarithmic one suits its middle."""
+    """Return the scale of a parameter over a range (SI); a logarithmic one by its middle."""
     size = np.sqrt(np.prod(np.asarray(ends, dtype=np.float64))) if logarithmic else ends
     return Scale(parameter_symbol(path), *in_unit(size, unit))

@@ -1,4 +1,4 @@
-"""Figures to files."""
+"""Writing of figures to files."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from stiction.plotting.page.style import style
 from stiction.storage.files import placeable, whole
 
 FORMATS = (".png", ".pdf", ".svg")
-# nothing that changes from one day to the next: the same figure is the same file
+# no dates: the same figure gives the same file
 METADATA: dict[str, dict[str, Any]] = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}
 
 
@@ -31,12 +31,12 @@ def write(fig: Figure, path: str | Path) -> Path:
     fig : Figure
         The figure.
     path : str or Path
-        With one of the suffixes in `FORMATS`; a file that is there is replaced.
+        With one of the suffixes in `FORMATS`; an existing file is replaced.
 
     Raises
     ------
     ResultError
-        If the format is not known, or the file cannot be written there.
+        If the format is unknown, or the file cannot be written.
     """
     target = drawable(path)
     suffix = target.suffix.lower()
@@ -46,12 +46,12 @@ def write(fig: Figure, path: str | Path) -> Path:
 
 
 def drawable(path: str | Path) -> Path:
-    """Return the path of a figure, if one can be written there.
+    """Return a path, if a figure can be written there.
 
     Raises
     ------
     ResultError
-        If the format is not known, there is no folder, or something else than a file is there.
+        If the format is unknown, the folder does not exist, or the path is not a file.
     """
     target = Path(path)
     suffix = target.suffix.lower()
@@ -61,7 +61,7 @@ def drawable(path: str | Path) -> Path:
 
 
 def png(fig: Figure) -> bytes:
-    """Return a figure as a PNG image, to be put into a page."""
+    """Return a figure as a PNG image for a page."""
     image = BytesIO()
     with style():
         fig.savefig(image, format="png")

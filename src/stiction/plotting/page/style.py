@@ -1,4 +1,4 @@
-"""How figures look: sizes of a journal's columns, colours for every eye, one style sheet."""
+"""The style of figures: column widths, colours for any colour vision, one style sheet."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-# Okabe & Ito, "Color Universal Design" (2008): told apart with any colour vision
+# Okabe & Ito, "Color Universal Design" (2008): distinct with any colour vision
 BLACK = "#000000"
 BLUE = "#0072B2"
 RED = "#D55E00"
@@ -65,16 +65,16 @@ SHEET: dict[str, Any] = {
 
 @contextmanager
 def style() -> Iterator[None]:
-    """Use the style sheet for whatever is drawn inside the ``with`` block, and only there."""
+    """Use the style sheet inside the ``with`` block only."""
     with mpl.rc_context():
-        mpl.rcdefaults()  # a user's own settings would change sizes that were chosen together
+        mpl.rcdefaults()  # a user's settings would spoil the proportions
         for name, value in SHEET.items():
             mpl.rcParams[name] = value  # type: ignore[index]
         yield
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """Return an empty figure of the given size (in), free of any global list of figures."""
+    """Return an empty figure of the given size (in), unknown to pyplot."""
     return Figure(figsize=(width, height), layout="constrained")
 
 

@@ -22,7 +22,7 @@ WIDTH = 40  # characters of a line
 
 
 def symbol(name: str) -> str:
-    """Return a parameter's name as it is printed: ``mu_0`` with its subscript."""
+    """Return the printed name of a parameter: ``mu_0`` with its subscript."""
     letter, _, subscript = name.partition("_")
     if len(letter) > 1 and letter not in LETTERS:
         return name
@@ -45,12 +45,12 @@ def system_in_words(slider: Slider) -> list[str]:
 
 
 def base_velocity(slider: Slider) -> float:
-    """Return the drive velocity that a constant drive has, or a program starts from, in m/s."""
+    """Return the velocity of a constant drive, or the base velocity of a program, in m/s."""
     return slider.motion.velocity
 
 
 def protocol_in_words(slider: Slider) -> list[str]:
-    """Return what drive and load do in time, nothing if they are constant."""
+    """Return the programs of drive and load in words, nothing if they are constant."""
     lines: list[str] = []
     drive, load = slider.motion, slider.load
     if not isinstance(drive, ConstantVelocity):
@@ -115,13 +115,13 @@ def wrapped(words: Sequence[str], width: int) -> list[str]:
 
 
 def shown(text: str) -> str:
-    r"""Return about the characters that a text with symbols such as $\mu_0$ is drawn with."""
+    r"""Return the approximate printed characters of a text with symbols such as $\mu_0$."""
     text = re.sub(r"\\(infty|mu|sigma|omega|theta)", "o", text)
     return re.sub(r"\\mathrm|[${}_\\]", "", text)
 
 
 def scales_in_words(slider: Slider) -> list[str]:
-    """Return what follows from the parameters: F_0, natural frequencies, damping number."""
+    """Return derived parameters: F_0, natural frequencies, damping number."""
     f_x, f_y = (
         float(theory.natural_frequency(k, slider.mass)) / (2 * pi) for k in (slider.k_x, slider.k_y)
     )
@@ -138,7 +138,7 @@ def scales_in_words(slider: Slider) -> list[str]:
 
 
 def plain(value: float, digits: int = DIGITS) -> str:
-    """Return a number as one writes it: with digits to a million, then with a power of ten."""
+    """Return a number in digits up to a million, beyond with a power of ten."""
     if value < 1e6:
         return f"{float(f'{value:.{digits}g}'):.10g}"
     mantissa, power = f"{value:.{digits - 1}e}".split("e")

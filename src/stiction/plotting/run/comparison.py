@@ -44,7 +44,7 @@ def plot_comparison(
     Parameters
     ----------
     runs : mapping of str to Trajectory
-        By what each is called, e.g. from `stiction.compare`.
+        The runs by label, e.g. from `stiction.compare`.
     axes : mapping of str to Axes, optional
         What to draw, and where: any of "force", "X", "speed", "rest", "portrait", "held" and
         "words". All, on a new figure as wide as a page, when left out.
@@ -100,10 +100,10 @@ def _align(ax: Mapping[str, Axes]) -> None:
 
 
 def legend_text(curve: Curve) -> str:
-    """Return what the legend says of a run: its name, its law's parameters, an early end."""
+    """Return the legend of a run: its name, its law's parameters, an early end."""
     law = curve.run.slider.law
     name = name_of(law)
-    bare = curve.label.startswith(f"{name}, ")  # what follows are parameters, written below
+    bare = curve.label.startswith(f"{name}, ")  # parameters follow, which are written below
     heading = [name] if bare else wrap(curve.label, WIDTH)
     lines = [*heading, *wrapped(parameters_in_words(law), WIDTH)]
     if not curve.run.status.ok:
@@ -114,7 +114,7 @@ def legend_text(curve: Curve) -> str:
 
 
 def write_legend(ax: Axes, curves: list[Curve], texts: list[str]) -> None:
-    """Write what each line is, what the band is, and the system that all runs share."""
+    """Write the legend of lines and band, and the system that all runs share."""
     ax.set_axis_off()
     handles = [Line2D([], [], **curve.look) for curve in curves]
     legend = ax.legend(

@@ -1,4 +1,4 @@
-"""Several runs as curves in one panel, told apart by colour and by line."""
+"""Several runs as curves in one panel, distinct in colour and line style."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ DASHES: tuple[Any, ...] = ("solid", (0, (5, 1.5)), (0, (7, 1.2, 1.2, 1.2)), (0, 
 
 
 class Curve(NamedTuple):
-    """One run, how it is called, how its lines look, and its slip averaged over short times."""
+    """One run, its label, its line style, and its slip averaged over short times."""
 
     label: str
     run: Trajectory
@@ -36,7 +36,7 @@ class Curve(NamedTuple):
 def curves_of(runs: Mapping[str, Trajectory]) -> list[Curve]:
     """Return a curve for each run; no two of the first 28 look alike.
 
-    The first is a broad line below the others: where they agree, both are seen.
+    The first is a broad line below the others, visible where they agree.
     """
     return [
         Curve(

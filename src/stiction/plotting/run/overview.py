@@ -26,7 +26,7 @@ from stiction.plotting.run.time_series import Floats
 from stiction.text.quantity_text import prefixed
 from stiction.trajectory import Trajectory
 
-LINE, GAP = 10.5, 3.0  # of what is written, pt
+LINE, GAP = 10.5, 3.0  # of text, pt
 DRAWING, LAW = 2.1, 1.7  # heights of the system's drawing and of the law, in
 
 
@@ -34,7 +34,7 @@ SERIES = ("force", "friction", "direction", "position", "speed", "stuck")
 
 
 def plot_run(run: Trajectory, axes: Mapping[str, Axes] | None = None) -> dict[str, Axes]:
-    """Draw a run: the system, its parameters, how it ended, and what it did over time.
+    """Draw a run: the system, its parameters, its end, and its motion over time.
 
     Friction law, spring forces, magnitude and direction of the friction force, position, slip
     speed, and the share of time stuck, which counts every stick interval however short.
@@ -42,7 +42,7 @@ def plot_run(run: Trajectory, axes: Mapping[str, Axes] | None = None) -> dict[st
     Parameters
     ----------
     run : Trajectory
-        Any run, of any system, ended well or not.
+        Any run, complete or not.
     axes : mapping of str to Axes, optional
         What to draw, and where: any of "system", "words", "law", "drive_X", "drive_Y",
         "normal_load" (where these change), "force", "friction", "direction", "position",
@@ -94,12 +94,12 @@ def _system(ax: Axes, run: Trajectory) -> None:
 
 
 def _law(ax: Axes, run: Trajectory) -> None:
-    drive = abs(base_velocity(run.slider))  # what slips when nothing else does
+    drive = abs(base_velocity(run.slider))  # the slip speed of steady sliding
     draw_law(ax, run.slider, max(drive, float(run.data["slip_speed"].max())))
 
 
 def _words(run: Trajectory) -> list[tuple[str, list[str], str]]:
-    """Return what is written: headings, lines below them, and their colour."""
+    """Return the text: headings, lines below them, and their colour."""
     return [
         ("System", system_in_words(run.slider), BLACK),
         ("Friction", law_in_words(run.slider), BLACK),
@@ -109,7 +109,7 @@ def _words(run: Trajectory) -> list[tuple[str, list[str], str]]:
 
 
 def _series(run: Trajectory) -> dict[str, Callable[[Axes, Trajectory], Any]]:
-    """Return what draws each quantity over time, by its name."""
+    """Return the functions that draw each quantity over time, by name."""
 
     def spaced(draw: Callable[[Axes, Trajectory], Any]) -> Callable[[Axes, Trajectory], Any]:
         def drawn(ax: Axes, run: Trajectory) -> None:
@@ -150,7 +150,7 @@ def _forces(ax: Axes, run: Trajectory) -> None:
     for axis, color, force in zip("xy", (RED, ORANGE), forces, strict=True):
         line = time_series.draw_line(ax, times, force * factor, color)
         line.set_label(f"$k_{axis} u_{axis}$")
-        line.set_zorder(2.2 if axis == "x" else 2.0)  # what swings across would hide it
+        line.set_zorder(2.2 if axis == "x" else 2.0)  # the transverse force would hide it
     ax.set_ylabel(f"spring force ({prefix}N)")
     handles: list[Artist] = [*ax.get_lines()]
     if ax.collections:

@@ -1,4 +1,4 @@
-"""Slip speeds of several runs over decades, and zero slip, which no decade holds."""
+"""Slip speeds of several runs on a logarithmic axis, with rows for zero slip."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from stiction.plotting.page.style import GREY
 from stiction.plotting.run.curves import Curve, common, mark_early_end
 from stiction.plotting.run.time_series import fastest_drive
 
-DEEPEST = 1e-6  # of the drive's speed: what is below rests, in any test
+DEEPEST = 1e-6  # of the drive's speed: slower motion counts as rest
 ROW = 0.8  # height of a filled row
 
 
 def draw_speeds(ax: Axes, curves: Sequence[Curve]) -> None:
-    """Draw slip speed (m/s) over time: its mean, and a band from there up to its maximum.
+    """Draw the slip speed (m/s) over time: its mean, and a band up to its maximum.
 
-    Down to which speed it falls is not drawn: where it comes to rest that is zero.
+    The minimum is not drawn: it is zero wherever the mass comes to rest.
     """
     ax.set_yscale("log", nonpositive="mask")
     ax.set_ylabel(r"$v_\mathrm{slip}$ (m/s)")
@@ -45,14 +45,14 @@ def draw_portrait(ax: Axes, curves: Sequence[Curve]) -> None:
 
 
 def set_speed_limits(ax: Axes, curves: Sequence[Curve]) -> None:
-    """Fit the axis of slip speed to the lines, not to the moments of a landing or to rest."""
+    """Fit the axis of slip speed to the lines, ignoring rest and the moments before it."""
     spans = [curve.slip for curve in curves]
     moving = [slip.mean[(slip.mean > 0) & (slip.rest < 0.5)] for slip in spans]
     means = np.concatenate([each[np.isfinite(each)] for each in moving])
     highs = np.concatenate([slip.high[np.isfinite(slip.high)] for slip in spans])
     top = highs.max(initial=0.0)
     if not top > 0:
-        top = 1.0  # nothing ever slips: an empty decade
+        top = 1.0  # no slip at all: an empty decade
     slowest = DEEPEST * max(fastest_drive(curve.run) for curve in curves)
     bottom = min(max(means.min(initial=top), slowest), top)
     decades = max(np.log10(top / bottom), 1.0)
@@ -63,7 +63,7 @@ def set_speed_limits(ax: Axes, curves: Sequence[Curve]) -> None:
 
 
 def draw_rests(ax: Axes, curves: Sequence[Curve], bins: int = 300) -> None:
-    """Draw when each run is at zero slip: its row is filled as high as the share of time."""
+    """Draw the share of time at zero slip over time, a filled row for each run."""
     first = curves[0].run.data["time"].values
     end = max(float(curve.run.data["time"][-1]) for curve in curves)
     edges = np.linspace(first[0], max(end, np.nextafter(first[0], np.inf)), bins + 1)
@@ -77,7 +77,7 @@ def draw_rests(ax: Axes, curves: Sequence[Curve], bins: int = 300) -> None:
 
 
 def draw_held(ax: Axes, curves: Sequence[Curve], bins: int = 120) -> None:
-    """Draw at which spring forces each run is at zero slip: the share of the time there."""
+    """Draw the share of time at zero slip over the spring force, a filled row for each run."""
     forces = [curve.run.data["spring_x"].values for curve in curves]
     factor, prefix = common(forces)
     finite = np.concatenate([force[np.isfinite(force)] for force in forces]) * factor
@@ -98,12 +98,12 @@ def draw_held(ax: Axes, curves: Sequence[Curve], bins: int = 120) -> None:
 
 
 def fill_row(ax: Axes, row: int, share: np.ndarray, edges: np.ndarray, curve: Curve) -> None:
-    """Fill a row, counted from the top, as high as the share 0 to 1."""
+    """Fill a row, counted from the top, to the height of the share 0 to 1."""
     ax.stairs(-row - 1 + ROW * share, edges, baseline=-row - 1, fill=True, color=curve.color)
 
 
 def finish_rows(ax: Axes, rows: int) -> None:
-    """Rule the rows, and take off the ticks, which have no meaning there."""
+    """Rule the rows, and remove the ticks, which are meaningless there."""
     ax.set_ylim(-rows - 0.1, 0.0)
     ax.tick_params(axis="y", left=False, right=False, labelleft=False)
     for row in range(rows):

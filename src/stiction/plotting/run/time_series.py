@@ -1,4 +1,4 @@
-"""Quantities of a run over time, one function a quantity."""
+"""Quantities of a run over time, one function for each."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from stiction.trajectory import Trajectory
 
 Floats = NDArray[np.float64]
 
-FEW = 50  # so few samples are shown as such: what happens between them is not known
+FEW = 50  # so few samples are drawn as points: the motion between them is unknown
 PARTS = 500  # of the time: finer than a printed line shows
 BINS = 1500  # more than a printed line has dots
-NEAR, HALF = 9, 5  # bins about one in which turns are counted, and in which extremes are sought
-TURNS = 5  # there: what has a period of fewer than four bins cannot be seen to oscillate
-THIN = 5e-3  # of a panel's height: a range that is less is seen as a line
-SMOOTH = 13  # bins, two of them with weight zero, over which the mean there is taken
-BAND = 0.3  # opacity of the range in which it does
-LEAST = 1e-9  # of the drive's speed, or of its way: what is less is rounding
-STILL = 1.0  # deg: an angle that changes less is drawn on an axis of this size
+NEAR, HALF = 9, 5  # bins around one for counting turns, and for the search of extremes
+TURNS = 5  # in these bins: a period below four bins cannot be resolved
+THIN = 5e-3  # of a panel's height: a smaller range looks like a line
+SMOOTH = 13  # bins of the mean, two of them with weight zero
+BAND = 0.3  # opacity of the range
+LEAST = 1e-9  # of the drive's speed, or of its path: smaller values are rounding
+STILL = 1.0  # deg: least range of the axis of an angle
 
 
 def envelope(time: ArrayLike, values: ArrayLike, bins: int = BINS) -> tuple[Floats, Floats]:
-    """Thin out a long series so that its line looks the same: extremes of each of `bins` bins.
+    """Thin out a long series without a visible change: keep the extremes of `bins` bins.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def envelope(time: ArrayLike, values: ArrayLike, bins: int = BINS) -> tuple[Floa
 
 
 def swings(values: ArrayLike, bins: int = BINS) -> tuple[NDArray[np.bool_], Floats]:
-    """Return in which bins of `envelope` values oscillate too fast to be seen, and their means."""
+    """Return the bins of `envelope` with unresolved oscillations, and their means."""
     v = np.asarray(values, dtype=np.float64)
     starts = np.linspace(0, len(v), bins, endpoint=False).astype(np.intp)
     rate = np.diff(v)
@@ -78,7 +78,7 @@ def draw_line(
 ) -> Line2D:
     """Draw values over time (s), thinned out by `envelope`; `width` in pt.
 
-    Where they oscillate too fast to be seen, the line is their mean, and a pale band their range.
+    Where oscillations are unresolved, the line is their mean, and a pale band their range.
     """
     times = np.asarray(time)
     thin, shown = envelope(times, values)
@@ -105,7 +105,7 @@ def draw_line(
 def draw_quantity(
     ax: Axes, run: Trajectory, variable: str, symbol: str, color: str = BLACK
 ) -> Line2D:
-    """Draw a variable of the run over time, in the multiple of its unit that suits its size."""
+    """Draw a variable of the run over time, in a suitable unit."""
     data = run.data[variable]
     return draw_values(ax, run, data.values, symbol, data.attrs["units"], color)
 
@@ -113,7 +113,7 @@ def draw_quantity(
 def draw_values(
     ax: Axes, run: Trajectory, values: ArrayLike, symbol: str, unit: str, color: str = BLACK
 ) -> Line2D:
-    """Draw values of one unit over the run's time, in the multiple that suits their size."""
+    """Draw values over the run's time, in a suitable multiple of their unit."""
     array = np.asarray(values, dtype=np.float64)
     factor, prefix = prefixed(array)
     ax.set_ylabel(f"{symbol} ({prefix}{unit})")
@@ -121,7 +121,7 @@ def draw_values(
 
 
 def imposed(run: Trajectory) -> list[tuple[str, Floats, str, str]]:
-    """Return what a protocol imposes and is not constant: its name, values, symbol, unit.
+    """Return the varying imposed quantities: name, values, symbol, unit.
 
     Drive velocity along X and across it, and normal load.
     """
@@ -135,7 +135,7 @@ def imposed(run: Trajectory) -> list[tuple[str, Floats, str, str]]:
 
 
 def name_time(ax: Axes) -> None:
-    """Write a time axis, whose values are in s, in the unit that suits what it shows: s, ms, ..."""
+    """Label a time axis, whose values are in s, in a suitable unit: s, ms, ..."""
     factor, prefix = prefixed(ax.get_xlim())
     factor, prefix = (factor, prefix) if factor > 1.0 else (1.0, "")
     ax.xaxis.set_major_formatter(FuncFormatter(lambda t, _: f"{factor * t:.10g}"))
@@ -148,12 +148,12 @@ def draw_spring_force(ax: Axes, run: Trajectory, axis: str, color: str = RED) ->
 
 
 def draw_friction(ax: Axes, run: Trajectory) -> Line2D:
-    """Draw the magnitude of the friction force over time; while stuck, the force that holds."""
+    """Draw the magnitude of the friction force over time."""
     return draw_values(ax, run, _after_start(run, "friction"), "$F$", "N", PURPLE)
 
 
 def _after_start(run: Trajectory, variable: str) -> Floats:
-    """Return a variable without its first value, of the instant in which the mass is let go.
+    """Return a variable without its first value, that of the release of the mass.
 
     There it moves with a millionth of the drive's speed, and friction is what it is in slip; it
     sticks, or creeps far slower, at once. Few samples, which are shown as such, keep it.
@@ -178,7 +178,7 @@ def draw_direction(ax: Axes, run: Trajectory) -> Line2D:
 
 
 def cut_open(angles: ArrayLike) -> Floats:
-    """Return angles (deg) on the turn that begins where none, or the fewest, of them lie.
+    """Return angles (deg) on the turn that begins where the fewest of them lie.
 
     Sliding back and forth has angles about 0 and 180 degrees: cut there, a line over time would
     jump from edge to edge. Cut at 180 degrees where that does as well.
@@ -194,7 +194,7 @@ def cut_open(angles: ArrayLike) -> Floats:
 
 
 def draw_position(ax: Axes, run: Trajectory) -> Line2D:
-    """Draw the position X along the drive direction over time; rounding is drawn as rest."""
+    """Draw the position X along the drive direction over time, without rounding errors."""
     X, way = run.data["X"].values, fastest_drive(run) * float(np.ptp(run.data["time"].values))
     if np.ptp(X) > LEAST * way or not way > 0.0:
         return draw_quantity(ax, run, "X", "$X$", BLUE)
@@ -209,7 +209,7 @@ def fastest_drive(run: Trajectory) -> float:
 
 
 def _say_only(ax: Axes, text: str) -> None:
-    """Write what a panel shows where there is nothing to measure on its axis."""
+    """Write the content of a panel that has no scale."""
     ax.set_yticks([])
     ax.text(0.5, 0.6, text, transform=ax.transAxes, ha="center", color=GREY, fontsize=7)
 
@@ -243,7 +243,7 @@ def draw_slip_speed(ax: Axes, run: Trajectory) -> Line2D:
 
 
 def averaged(run: Trajectory) -> Slip:
-    """Average slip over a 500th of the time, or less if a rapid slip needs it to be seen."""
+    """Average slip over a 500th of the time, or less to resolve a rapid slip."""
     times, slider = run.data["time"].values, run.slider
     rapid = pi * sqrt(slider.mass / min(slider.k_x, slider.k_y))
     parts = np.clip(5 * (times[-1] - times[0]) / rapid, PARTS, 20 * PARTS)

@@ -1,4 +1,4 @@
-"""Where steady sliding is stable: the boundary in the plane of two parameters."""
+"""The boundary of stable steady sliding in the plane of two parameters."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-PIXELS = 161  # each way, of the signed distance to the boundary
+PIXELS = 161  # in each direction, of the signed distance to the boundary
 
 
 def plot_boundary(
@@ -81,7 +81,7 @@ def draw_boundary(ax: Axes, curve: xr.Dataset) -> tuple[Scale, Scale]:
 
 
 def _name_sides(ax: Axes, curve: xr.Dataset) -> None:
-    """Tint the unstable side, and write on both what they are, far from the boundary."""
+    """Tint the unstable side, and label both sides far from the boundary."""
     grid = np.linspace(0.0, 1.0, PIXELS)
     across, up = np.meshgrid(grid, grid)
     signed = signed_distance(curve, across, up)
@@ -89,7 +89,7 @@ def _name_sides(ax: Axes, curve: xr.Dataset) -> None:
         ax.contourf(
             across, up, signed, [0.0, np.inf], colors=[UNSTABLE], transform=ax.transAxes, zorder=0
         )
-    edge = np.minimum.reduce([across / 1.6, (1 - across) / 1.6, up, 1 - up])  # words are wide
+    edge = np.minimum.reduce([across / 1.6, (1 - across) / 1.6, up, 1 - up])  # labels are wide
     for name, side in (("unstable", signed), ("stable", -signed)):
         room = np.minimum(side / 1.6, edge)
         if room.max() > 0.03:
@@ -117,7 +117,8 @@ def signed_distance(curve: xr.Dataset, across: Floats, up: Floats) -> Floats:
         part = np.clip(((across - x) * dx + (up - y) * dy) / square, 0.0, 1.0)
         gap = np.hypot(across - x - part * dx, up - y - part * dy)
         left = (dx * (up - y) - dy * (across - x)) / np.sqrt(square)
-        # of two pieces that meet in the nearest point, the one that is seen more squarely tells
+        # if two pieces meet in the nearest point, the one seen at the steeper angle decides the
+        # side
         closer = gap < nearest * (1 - 1e-9)
         squarer = (gap <= nearest * (1 + 1e-9)) & (np.abs(left) > np.abs(side))
         side = np.where(closer | squarer, left, side)

@@ -86,7 +86,7 @@ def plot_damping(
 
 
 def draw_force_path(ax: Axes, A: float, phi: float, color: str, label: str) -> Line2D:
-    """Draw how the friction force turns during creep: at constant A from 90 deg down to phi.
+    """Draw the path of the friction force during creep: at constant A from 90 deg down to phi.
 
     Where the path meets zeta = 1 a cross marks the change from slow to fast slip.
 
@@ -107,7 +107,7 @@ def draw_force_path(ax: Axes, A: float, phi: float, color: str, label: str) -> L
     crossing = float(np.degrees(theory.critical_angle(A)))
     if crossing > end:
         ax.plot([A], [crossing], color=BLACK, marker="x", markersize=7, mew=1.8, zorder=5)
-        # beside a path close to the right the label stands on the left
+        # a path close to the right has its label on the left
         others = [text.xy[0] / A for text in ax.texts if isinstance(text, Annotation)]
         left = any(1.0 <= ratio < CLOSE for ratio in others)
         ax.annotate(

@@ -1,4 +1,4 @@
-"""What was found of the stability of steady sliding, over one parameter or two."""
+"""The examination of steady sliding, over one parameter or two."""
 
 from __future__ import annotations
 

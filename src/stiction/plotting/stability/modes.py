@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-CLOSE = 0.13  # of the axis: numbers so near to each other would overlap
+CLOSE = 0.13  # of the axis: closer numbers would overlap
 
 
 def plot_modes(
@@ -78,9 +78,9 @@ def plot_modes(
 
 
 def sides(ax: Axes, values: NDArray[np.float64]) -> list[str]:
-    """Return how numbers above values are aligned: those of close neighbours away from each other.
+    """Return the alignments of numbers above values: close neighbours lean apart.
 
-    The axis has its scale and its limits already.
+    The axis must have its scale and limits already.
     """
     points = np.column_stack([values, np.zeros(len(values))])
     gaps = np.diff(ax.transAxes.inverted().transform(ax.transData.transform(points))[:, 0])
@@ -94,7 +94,7 @@ def sides(ax: Axes, values: NDArray[np.float64]) -> list[str]:
 def draw_growth_rates(ax: Axes, modes: xr.Dataset, scale: Scale) -> None:
     """Draw growth rates, dashed where a mode does not oscillate; the unstable half is tinted.
 
-    The axis is fitted to the fastest growing mode; some may decay faster than is shown.
+    The axis fits the fastest growing mode; others may decay out of sight.
     """
     growth, oscillates = modes["growth_rate"].values, modes["frequency"].values > 0
     top = np.abs(growth.max(axis=1)).max()

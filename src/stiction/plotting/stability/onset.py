@@ -1,4 +1,4 @@
-"""How an oscillation sets in: its amplitude over a parameter, swept up and down."""
+"""The onset of an oscillation: its amplitude over a parameter, swept up and down."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def plot_onset(onset: Onset, critical: float | None = None, ax: Axes | None = No
     onset : Onset
         From `stiction.find_onset`.
     critical : float, optional
-        Where linear theory has the onset, SI, from `stiction.linear_stability.critical`.
+        The onset by linear theory, SI, from `stiction.linear_stability.critical`.
     ax : Axes, optional
         Drawn on; a new figure as wide as a column when left out.
     """
