@@ -83,18 +83,19 @@ def tried(items: Sequence[pytest.Item], options: argparse.Namespace) -> Iterator
         for number, mutant in enumerate(sample):
             row = known.get(mutant)
             if row is None or (options.again and row["outcome"] in (SURVIVED, UNREACHED)):
-                tests = tests or reached(items, options)
+                tests = tests or reached(items, sources, options)
                 row = outcome(mutant, tests, by_name, options.most)
                 print(json.dumps(row), file=file, flush=True)
                 print(f"{number + 1}: {row['outcome']}", *mutant[:2], mutant.after, flush=True)
             yield row
 
 
-def reached(items: Sequence[pytest.Item], options: argparse.Namespace) -> list[Test]:
+def reached(
+    items: Sequence[pytest.Item], sources: Sequence[Path], options: argparse.Namespace
+) -> list[Test]:
     """Return the tests with the lines that they run, from the folder or by running them."""
     path = options.results / "tests.json"
     if not path.exists():
-        sources = [Path(each).as_posix() for each in options.sources]
         found = apart(lambda: watched(items, sources, options.longest), WHOLE).answer or {}
         if "tests" not in found:
             raise SystemExit(f"the tests have not come to an end: {found.get('died', '')}")

@@ -25,9 +25,9 @@ class Test(NamedTuple):
         return self.name.partition("::")[0]
 
 
-def watched(items: Sequence[pytest.Item], sources: Sequence[str], longest: float) -> Answer:
+def watched(items: Sequence[pytest.Item], sources: Sequence[Path], longest: float) -> Answer:
     """Run tests, each for so many CPU seconds at most; return those that pass, and the others."""
-    coverage = Coverage(data_file=None, include=[f"{each}*" for each in sources])
+    coverage = Coverage(data_file=None, include=[str(each) for each in sources])
     coverage.start()
     coverage.switch_context(items[0].nodeid)
     passing, others = {}, []

@@ -1,0 +1,65 @@
+"""The slip coordinate, its inverse, its slope, and the update that inertia damps."""
+
+from math import asinh, cosh, hypot, inf, sinh
+
+import numpy as np
+import pytest
+from tests.entry import plain
+
+from stiction.solver.smooth import coordinate as of
+from stiction.solver.smooth.coordinate import LARGEST, coordinate, risen, slip_at, slip_slope
+
+EPS = 1e-9
+POINTS = [(0.0, 0.0), (3e-5, -4e-5), (0.3, 0.4), (-3.0, 4.0), (30.0, 0.0), (0.0, -200.0)]
+
+
+@pytest.mark.parametrize("q", POINTS)
+def test_there_and_back(q):
+    """(M64), near zero and over many decades."""
+    s, size = plain(slip_at)(EPS, *q), hypot(*q)
+    wanted = EPS * sinh(size) / size if size else 0.0
+    assert s == pytest.approx((wanted * q[0], wanted * q[1]), rel=1e-13)
+    assert plain(coordinate)(EPS, *s) == pytest.approx(q, rel=1e-12)
+    assert plain(slip_at)(inf, *q) == plain(coordinate)(inf, *q) == q
+    assert plain(slip_slope)(inf, *q) == (1.0, 0.0, 1.0)
+
+
+def test_slip_that_is_no_float_is_the_largest_that_is():
+    assert plain(slip_at)(1.0, 800.0, 0.0)[0] == pytest.approx(sinh(LARGEST))
+    tiny = plain(coordinate)(1e-200, 3e-200, 4e-200)  # whose squares are none
+    assert tiny == pytest.approx((0.6 * asinh(5.0), 0.8 * asinh(5.0)))
+
+
+@pytest.mark.parametrize("q", [(0.0, 0.0), (3e-5, -4e-5), (0.3, 0.4), (-3.0, 4.0), (12.0, 5.0)])
+def test_the_slope(q):
+    """(M65), with its parts along q and across it: eps cosh and eps sinh(q)/q."""
+    xx, xy, yy = np.array(plain(slip_slope)(EPS, *q)) / EPS
+    found, size = np.array([[xx, xy], [xy, yy]]), hypot(*q)
+    if size == 0.0:
+        assert found == pytest.approx(np.eye(2))
+        return
+    along, across = np.array(q) / size, np.array([-q[1], q[0]]) / size
+    assert found @ along == pytest.approx(cosh(size) * along, rel=1e-9)
+    assert found @ across == pytest.approx(sinh(size) / size * across, rel=1e-9)
+
+
+def test_the_slope_does_not_jump_where_a_series_begins():
+    for part in (0.999, 1.001):
+        found = np.array(plain(slip_slope)(1.0, part * of.SMALL, 0.0))
+        x = part * of.SMALL
+        assert found == pytest.approx([1 + x * x / 2, 0.0, 1 + x * x / 6], abs=1e-9)
+
+
+@pytest.mark.parametrize("q", [0.0, 0.5, 3.0, 40.0, 690.0])
+@pytest.mark.parametrize("rise", [0.2, 5.0, 1e3])
+@pytest.mark.parametrize("share", [0.0, 1e-6, 0.5, 1.0])
+def test_a_damped_update(q, rise, share):
+    """(M69), to a thousandth, as far as floats go; a small rise is taken as it is."""
+    up = plain(risen)(q, rise, share)
+    assert up >= q
+    assert plain(risen)(q, 0.09, share) == q + 0.09
+    if up < LARGEST - 1.0:  # over cosh q, without overflow
+        grown = (np.exp(up - q) - np.exp(-up - q)) / (1 + np.exp(-2 * q)) - np.tanh(q)
+        left = share * grown + (1 - share) * (up - q)
+        slope = share * np.exp(up - q) + 1 - share
+        assert left == pytest.approx(rise, abs=2e-3 * slope + 1e-9 * rise)
