@@ -18,6 +18,9 @@ SEEN = 10.0  # samples per transverse period, enough for its shape and not only 
 SHORT = 0.1
 SLOWLY = 10.0  # rad of a free swing: faster loading is not quasistatic
 DAMPED = 0.2  # twice the damping ratio of a spring: a larger one matters beside friction
+# of the force's fall: friction that has lost so much of it to creep no longer drives a slip as it
+# would from F_0
+WEAKENED = 0.1
 QUARTER_TURN = pi / 4.0
 
 
@@ -161,6 +164,12 @@ def suppositions(slider: Slider, p: Prediction) -> list[str]:
     if phi != 0.0 and weakening > 2.0 * sqrt(s.mass * s.k_y):
         found.append(
             "friction weakens gently (here so steeply that each rest ends in a slip of its own)"
+        )
+    lost = s.F_0 - float(law.coefficient(p.creep_at_slip)) * s.normal_load if phi != 0.0 else 0.0
+    if p.slips and lost > WEAKENED * p.drop:
+        found.append(
+            f"friction is still F_0 when creep turns into slip (here, at "
+            f"{in_words(p.creep_at_slip, 'm/s')}, it has lost {in_words(lost, 'N')})"
         )
     if max(s.c_x / sqrt(s.k_x * s.mass), s.c_y / sqrt(s.k_y * s.mass)) > DAMPED:
         found.append("nothing but friction damps")

@@ -13,7 +13,7 @@ from stiction.auditing import advice, figures, observation, report, words
 from stiction.auditing.advice import advise, nearest
 from stiction.auditing.observation import OSCILLATES, SLIDES, coarse_rate, from_sliding, observe
 from stiction.auditing.page import page
-from stiction.auditing.prediction import predict
+from stiction.auditing.prediction import predict, suppositions
 from stiction.auditing.report import Audit
 from stiction.auditing.report import audit as examine
 from stiction.auditing.words import sections
@@ -399,3 +399,17 @@ def test_rules_see_what_contradicts(found):
 def test_rigs_are_drawn_by_number_alone():
     assert rig(3, 7) == rig(3, 7)
     assert rig(3, 7) != rig(3, 8)
+
+
+def test_friction_that_creep_has_weakened_makes_theory_an_orientation() -> None:
+    """Eqs. (7) and (10) hold it at F_0: the slip that they give is three times too large here."""
+    rig = st.Slider(
+        mass="63.3 g", k_x="1.835 kN/m", k_y="6.181 MN/m", phi="2.79 deg", normal_load="37 N",
+        friction=st.ExponentialWeakening(mu_0=0.583, mu_inf=0.478, v_f="8.38 mm/s"),
+        drive=st.ConstantVelocity("18.6 mm/s"),
+    )  # fmt: skip
+    (said,) = suppositions(rig, predict(rig))
+    assert "friction is still F_0 when creep turns into slip" in said
+    for slower in ("1 mm/s", "0.1 mm/s"):
+        slow = rig.replace(drive=st.ConstantVelocity(slower))
+        assert not [each for each in suppositions(slow, predict(slow)) if "still F_0" in each]
