@@ -54,7 +54,7 @@ def inverse(m: Matrix) -> Matrix:
 
 
 class Factors(NamedTuple):
-    """A 6 by 6 system in unknowns p and w, eliminated block by block: w first, then p."""
+    """Factors of a 6 by 6 system in p and w, eliminated block by block: w first, then p."""
 
     inverse_ww: Matrix
     w_by_p: Matrix

@@ -1,4 +1,4 @@
-"""From a description to samples and stick intervals, by the solver that its law needs."""
+"""Integration of a description to samples and stick intervals, by the appropriate solver."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ from stiction.system.description import Description
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
 
-LEAST = 1e-15  # of the speeds at the start: slower slip than this is none
-ROUNDING = 1e-13  # of velocities: what a step may err by in any case, well above a float's
+LEAST = 1e-15  # of the initial speeds: slower slip counts as zero
+ROUNDING = 1e-13  # of velocities: error that any step may have, well above a float's rounding
 TINY = float(np.finfo(np.float64).tiny)
-BUDGET = 100_000  # turns of the loop between two looks at the clock: some 30 ms
+BUDGET = 100_000  # turns of the loop between two progress reports: some 30 ms
 
 
 class Solution(NamedTuple):
-    """How the integration ended (an index into `Status`), what it found and what it took.
+    """The end of an integration (an index into `Status`), its results and its cost.
 
     `times` (n,) are those reached, `samples` (n, 7 or more) as in `stiction.solver.exact.sampling`
     with the internal states after them, `sticks` (m, 2) in s.
@@ -50,7 +50,7 @@ class Solution(NamedTuple):
 
 
 def tolerance(rtol: float) -> float:
-    """Return the local tolerance for a wanted relative error of the result (M39).
+    """Return the local tolerance for a desired relative error of the result (M39).
 
     The estimate of the local error falls with h^4 (the cubic inside a step), the error of
     the result with h^5 (the order of the method), hence the power 4/5: the result's error is
@@ -63,13 +63,13 @@ def tolerance(rtol: float) -> float:
 def accuracy(
     slider: Slider, initial: Initial, stretch: Stretch, start: float, rtol: float
 ) -> Accuracy:
-    """Return what each step in a stretch is held to.
+    """Return the tolerances of the steps in a stretch.
 
-    Its speed (M40): V sin(phi) is what the transverse motion slips at; without it, V; without a
-    drive, a millionth of what friction can do to the mass on its spring, and never more than
-    that whole; without either, next to nothing of the speeds at the start. Friction that weakens
-    at the rate g = -F'(0)/m per second makes slip grow out of its first k V/(m g^2), which must
-    then be resolved; k is the stiffness that acts, and g the steepest up to some V.
+    Its speed (M40) is V sin(phi), at which the transverse motion slips; without misalignment V;
+    without a drive a millionth of the speed that friction can give the mass on its spring, which is
+    also the upper limit; without either a tiny share of the initial speeds. Friction that weakens
+    at the rate g = -F'(0)/m per second lets slip grow from k V/(m g^2), which must then be
+    resolved; k is the acting stiffness, and g the steepest rate up to some V.
     """
     along, across = speeds(slider, stretch.problem.drive, start, stretch.end)
     law: Any = slider.law
@@ -89,7 +89,7 @@ def accuracy(
     weakening = 0.0 if has_state(law) else steepest_weakening(law, speed) * load
     speed = max(speed / (1.0 + weakening**2 / (k * slider.mass)), LEAST * elastic, TINY)
     local = tolerance(rtol)
-    # (M34): Newton's error must not show in a step's end, which is better than its inside
+    # (M34): Newton's error must not show at a step's end, which is more accurate than its interior
     newton = min(0.2, 100.0 * sqrt(local)) * local
     rate = fastest_swing(stretch.problem)
     longest = 0.5 * pi / rate if rate > 0.0 else inf
@@ -101,11 +101,11 @@ def accuracy(
     )
 
 
-@lru_cache(maxsize=256, typed=True)  # laws of two classes may be equal tuples
+@lru_cache(maxsize=256, typed=True)  # laws of different classes may be equal as tuples
 def steepest_weakening(law: Hashable, speed: float) -> float:
     """Return the largest -slope of a set-valued law between rest and ten times `speed`, in s/m.
 
-    Looked for ten times a decade, and again beside the steepest.
+    It is sought at ten speeds per decade, and again around the steepest.
     """
     known: Any = law
     tenths = range(-90, 11)
@@ -119,15 +119,15 @@ Report = Callable[[float], None]
 
 
 class Method(Protocol):
-    """What `integrate` asks of a solver; `columns` is the length of a sample's row.
+    """The interface of solvers; `columns` is the length of a sample's row.
 
-    What a run's state is, is the solver's own business, but for ``motion.t`` and ``counts``.
+    Each solver has its own type of state, which must have ``motion.t`` and ``counts``.
     """
 
     columns: int
 
     def begin(self, description: Description) -> Any:
-        """Return the state from which a run starts."""
+        """Return the initial state of a run."""
 
     def entered(self, state: Any, x: float, y: float) -> Any:
         """Return the state at the start of a stretch, where the slip velocity jumps by (x, y)."""
@@ -183,7 +183,7 @@ def integrate(
     assert stretch is not None
     k, counts = out.filled, Counts(*state.counts)
     times, samples = times[:k], out.samples[:k]
-    if code != COMPLETED:  # keep where it stopped, whatever the sample rate
+    if code != COMPLETED:  # always keep the state where it stopped
         earlier = times < state.motion.t
         times = np.append(times[earlier], state.motion.t)
         samples = np.vstack([samples[earlier], method.last_row(stretch.problem, state)])
@@ -191,10 +191,10 @@ def integrate(
 
 
 def slip_jump(slider: Slider, t: float) -> tuple[float, float]:
-    """Return by how much the slip velocity (x, y) jumps with the drive's at time `t`, in m/s.
+    """Return the jump of the slip velocity (x, y) with the drive's at time `t`, in m/s.
 
-    The mass keeps its velocity. That over a plate which is driven jumps with the plate's;
-    over a plate at rest it does not.
+    The mass keeps its velocity: the slip velocity jumps with that of a driven plate, but not over a
+    plate at rest.
     """
     if slider.driven != "plate":
         return 0.0, 0.0

@@ -1,4 +1,4 @@
-"""A set-valued law as the solver takes it: behind pointers."""
+"""A set-valued law behind pointers, for the compiled solver."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class PointedLaw(NamedTuple):
     fields : ndarray
         Memory with the law's fields.
     mu_static : float
-        Its largest coefficient at zero slip.
+        The law's largest coefficient at zero slip.
     """
 
     code: int
@@ -43,7 +43,7 @@ class PointedLaw(NamedTuple):
 
 
 def pointed(law: Any) -> PointedLaw:
-    """Return a set-valued law as the solver takes it."""
+    """Return a set-valued law behind pointers."""
     with uninterrupted():
         code = address(coefficient_and_slope_at, law, types.float64)
         return PointedLaw(code, memory(law), static_coefficient(law))

@@ -1,4 +1,4 @@
-"""What a run fills in on the way."""
+"""The output arrays of a run."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 from stiction.errors import DescriptionError, Fault
 from stiction.machine import shortage
 
-STICK = 80.0  # bytes of memory that a stick interval takes, in all tables and on the way there
+STICK = 80.0  # bytes of memory per stick interval, for all tables and intermediate arrays
 
 
 @dataclass
 class Output:
-    """Samples at `times` (ascending, s), stick intervals, and how far they and the run are.
+    """Samples at `times` (ascending, s), stick intervals, and the progress of both.
 
     `samples` (n, columns), `sticks` (m, 2) in s, `filled` samples, `used` steps.
     """
@@ -31,7 +31,7 @@ class Output:
         Raises
         ------
         DescriptionError
-            If there is no memory for as many.
+            If they do not fit into memory.
         """
         if sticks < len(self.sticks):
             return

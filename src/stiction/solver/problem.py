@@ -1,9 +1,8 @@
-"""What the compiled solver works on: numbers, a law, a drive and a load.
+"""The input of the compiled solver: numbers, a law, a drive and a load.
 
-The functions below are what compiled code calls; numba replaces each by the method of the type of
-its first argument when it compiles. Drives and loads are of two types, constant and varying, for
-which the loop is specialised. A law stands behind pointers there (see `stiction.solver.law`),
-so that one loop serves all.
+Compiled code calls the functions below; at compile time, numba replaces each by the method of its
+first argument's type. Drives and loads have two types, constant and varying, for which the loop is
+specialised. A law is behind pointers (see `stiction.solver.law`), so that one loop serves all laws.
 """
 
 from __future__ import annotations
@@ -37,34 +36,34 @@ class System(NamedTuple):
 
 
 class Isotropic(NamedTuple):
-    """A surface without a direction of its own: the tensor N is 1."""
+    """An isotropic surface: the tensor N is 1."""
 
     xx: float = 1.0
     xy: float = 0.0
     yy: float = 1.0
 
     def isotropic(surface) -> bool:
-        """Return that friction is along the slip: known when compiled."""
+        """Return True: friction is along the slip."""
         return True
 
 
 class Elliptic(NamedTuple):
-    """A surface with an ellipse of friction: the tensor N = M^2 in the slider's axes."""
+    """A surface with an elliptic friction limit: the tensor N = M^2 in the slider's axes."""
 
     xx: float
     xy: float
     yy: float
 
     def isotropic(surface) -> bool:
-        """Return that friction is not along the slip: known when compiled."""
+        """Return False: friction is not along the slip."""
         return False
 
 
 class Problem(NamedTuple):
     """Everything that determines the motion in a stretch of time.
 
-    `drive` and `load` are stretches (see `stiction.drive.signal`). `bend` bounds how fast a
-    stick's margin |a|^2 - f^2 can curve (m^2/s^6); see `stiction.solver.stick`.
+    `drive` and `load` are stretches (see `stiction.drive.signal`). `bend` bounds the second
+    derivative of a stick's margin |a|^2 - f^2 (m^2/s^6); see `stiction.solver.stick`.
     """
 
     system: System
@@ -120,7 +119,7 @@ def gradient(
 
 
 def grain(law: StateLaw, state: tuple[float, ...]) -> float:
-    """Return the slip speed below which friction is proportional to it."""
+    """Return the slip speed below which friction is proportional to slip."""
     own: Callable[..., float] | None = getattr(law, "grain", None)
     return EVERYWHERE if own is None else own(state)
 
@@ -160,17 +159,17 @@ def drift(load: Any, t: float) -> float:
 
 
 def steady(drive: Any) -> bool:
-    """Return whether the drive's velocity is constant: known when compiled."""
+    """Return whether the drive's velocity is constant, as known at compile time."""
     return bool(drive.steady())
 
 
 def constant(load: Any) -> bool:
-    """Return whether the load is constant: known when compiled."""
+    """Return whether the load is constant, as known at compile time."""
     return bool(load.constant())
 
 
 def isotropic(surface: Isotropic | Elliptic) -> bool:
-    """Return whether friction is along the slip: known when compiled."""
+    """Return whether friction is along the slip, as known at compile time."""
     return surface.isotropic()
 
 
@@ -178,7 +177,7 @@ EVERYWHERE = inf  # friction is smooth at any slip speed
 
 
 def _by_type(function: Callable[..., Any]) -> None:
-    """Have compiled code call the method of its first argument's type instead of `function`."""
+    """Make compiled code call the method of the first argument's type instead of `function`."""
     name = function.__name__
 
     def method(*arguments: Any) -> Any:

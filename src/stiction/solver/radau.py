@@ -39,12 +39,12 @@ def _lagrange(nodes: tuple[float, ...], i: int) -> Polynomial:
     return basis / basis(nodes[i])
 
 
-# D = A^-1: derivatives at the stages, times h, from stage values less the start value
+# D = A^-1: derivatives at the stages, times h, from stage values minus the start value
 D: Matrix = _inverse(A)
 
-# an interior point at which the collocation cubic is held against the equations; its defect
-# goes as (c - c_1)(c - c_2)(c - 1), so its error as the integral of that, which is largest
-# at c_1; DEFECT_WEIGHT is the ratio of that error to the defect at the interior point (M36)
+# an interior point at which the defect of the collocation cubic is evaluated. The defect goes as
+# (c - c_1)(c - c_2)(c - 1), and the error as the integral of that, which is largest at c_1;
+# DEFECT_WEIGHT is the ratio of that error to the defect at the interior point (M36)
 INTERIOR = 0.4
 _DEFECT = Polynomial.fromroots(C)
 DEFECT_WEIGHT = abs(float(_DEFECT.integ()(C[0]) / _DEFECT(INTERIOR)))

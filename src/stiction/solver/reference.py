@@ -1,7 +1,7 @@
-"""The exact solver once more, to be read: plain Python, NumPy and SciPy, slow and obvious.
+"""A readable reference of the exact solver: plain Python, NumPy and SciPy, slow and obvious.
 
-Nothing compiled is used; the two are there to check each other. The motion is a sequence
-of phases, each of which starts where the last one ended:
+It uses no compiled code; the two solvers check each other. The motion is a sequence of phases,
+each of which starts where the last one ended:
 
 - stick: the slip velocity s is zero, and the spring's end drags the elongation along;
 - take-off: the first moment of slip, by successive approximation;
@@ -27,7 +27,7 @@ from stiction.system.slider import Slider
 
 TAKE_OFF = 0.1  # length of a take-off, in units of the shorter natural period over 2 pi
 DEGREE = 8  # of the polynomials in time that describe it; their error is near rounding
-VANISHING = 1e-10  # slip speed, relative to the motion's own, that a landing starts with
+VANISHING = 1e-10  # slip speed at the start of a landing, relative to the motion's own
 
 State = tuple[np.ndarray, np.ndarray]  # elongation u (m) and slip velocity s (m/s)
 
@@ -47,7 +47,7 @@ class Twin(NamedTuple):
 
 
 class Phase(NamedTuple):
-    """A piece of the motion: when it ends (s), and the state at any time until then."""
+    """A piece of the motion: its end (s), and a function that returns the state until then."""
 
     end: float
     state: Callable[[float], State]
@@ -69,7 +69,7 @@ class Equations(NamedTuple):
     rate: float
 
     def pull(self, u: np.ndarray, s: np.ndarray) -> np.ndarray:
-        """Return a, what spring and damper do to the slip (m/s^2); du/dt = v_d - s, Eq. (2)."""
+        """Return the acceleration a of slip (m/s^2), Eq. (1), with du/dt = v_d - s, Eq. (2)."""
         a: np.ndarray = self.stiffness * u + self.damping * (self.drive - s)
         return a
 
@@ -91,7 +91,7 @@ def twin(
     duration : float
         s.
     times : ndarray, optional
-        Where to give the motion, ascending, s; at the start and the end when left out.
+        Output times, ascending, s; by default start and end.
     initial : Initial, optional
         The state to start from; by default the paper's.
     rtol : float, optional
@@ -157,11 +157,11 @@ def next_phase(
 
 
 def time_held(equations: Equations, u: np.ndarray) -> float:
-    """Return how long friction holds the mass: until |a| reaches f = mu_0 W/m (s).
+    """Return the time (s) that friction holds the mass: until |a| reaches f = mu_0 W/m.
 
-    While s = 0, a changes steadily with a' = K v_d/m, and |a + a' tau|^2 = f^2 is a
-    quadratic in tau; the stick ends at the root at which |a| grows. If |a| is f within
-    rounding and grows, the stick has just ended.
+    While s = 0, a changes at the constant rate a' = K v_d/m, and |a + a' tau|^2 = f^2 is quadratic
+    in tau; the stick ends at the root at which |a| grows. If |a| equals f within rounding and
+    grows, the stick has just ended.
     """
     a, change = equations.pull(u, np.zeros(2)), equations.stiffness * equations.drive
     f = equations.friction(0.0)
@@ -184,11 +184,11 @@ def take_off(equations: Equations, t: float, end: float, u: np.ndarray, part: fl
 
     In axes along and across a(0) the slip velocity is written p (1, w); then Eqs. (4) and
     (5) read p' = a_1 - F(|s|)/m/sqrt(1 + w^2), p w' = a_2 - w a_1, which is regular at
-    p = 0. From p = w = 0 on, each pass takes a from what has been slid, solves the second
-    equation for w (it is linear) and integrates the first for p, at the nodes of a
-    Chebyshev polynomial in time. After a stick p begins as d|a|/dt tau^2/2; where the
-    force is larger than friction can hold, as (|a| - f) tau. Where the polynomial does not
-    describe it (friction may change fast), half the length is tried.
+    p = 0. Starting from p = w = 0, each pass computes a from the distance slid, solves the second
+    equation for w (it is linear), and integrates the first for p, at the nodes of a Chebyshev
+    polynomial in time. After a stick p begins as d|a|/dt tau^2/2; if the force exceeds the friction
+    limit, as (|a| - f) tau. If the polynomial is not accurate, because friction changes fast, half
+    the length is tried.
     """
     length = min(t + part * TAKE_OFF / equations.rate, end) - t
     e = equations.pull(u, np.zeros(2))
@@ -237,11 +237,11 @@ def slip(
         dr/dt = a . (cos theta, sin theta) - F(r)/m
         r dtheta/dt = a . (-sin theta, cos theta)
 
-    Friction slows the slip down but cannot turn it. The direction follows a at the rate
-    |a|/r, without bound as r vanishes; hence a clock that ticks with the slip, dt = r dn, and
-    steps of a few m/F ticks at most: in longer ones an explicit method follows noisily. The
-    tolerance is relative for the elapsed time, the distance slid in the phase (u hardly
-    changes in it) and the slip speed, with a floor, and absolute for the direction.
+    Friction slows the slip down but cannot turn it. The direction follows a at the rate |a|/r,
+    which is unbounded as r vanishes. Hence the independent variable n with dt = r dn, and steps of
+    at most a few m/F in n: with longer ones an explicit method becomes noisy. The tolerance is
+    relative for the elapsed time, the distance slid in the phase (u hardly changes) and the slip
+    speed, with a floor, and absolute for the direction.
     """
 
     def state_of(y: np.ndarray) -> State:
@@ -291,10 +291,10 @@ def slip(
 def landing(equations: Equations, t: float, end: float, u: np.ndarray, s: np.ndarray) -> Phase:
     """Landing: s' = a - f s/|s| with constant a and f, the classical pursuit curve.
 
-    From d/dt (f r + a.s) = |a|^2 - f^2 zero slip follows after r (f + a.e)/(f^2 - |a|^2),
-    e = s/r. Where f is smaller than |a|, the slip came straight back along a, or all but
-    (it would not have vanished otherwise), and r/(f + |a|) is left. What is slid until
-    then, about r/2 times this time, is below rounding.
+    From d/dt (f r + a.s) = |a|^2 - f^2 zero slip follows after r (f + a.e)/(f^2 - |a|^2), e = s/r.
+    If f is smaller than |a|, the slip was (nearly) opposite to a, because otherwise it would not
+    have vanished, and the time is r/(f + |a|). The distance slid until then, about r/2 times this
+    time, is below rounding.
     """
     a, f, r = equations.pull(u, s), equations.friction(0.0), float(np.hypot(*s))
     size = float(np.hypot(*a))

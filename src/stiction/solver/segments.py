@@ -1,7 +1,7 @@
-"""From a slider to the stretches of time that the compiled solver integrates one by one.
+"""Division of a slider's drive and load into smooth stretches, which are integrated in turn.
 
-Inside a stretch drive and load are smooth; between two, either may jump or bend. The
-solver ends exactly there, so that nothing in time is ever stepped over.
+Inside a stretch drive and load are smooth; between two stretches they may jump or bend. The solver
+stops exactly there, so that it never steps over such an instant.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from stiction.system.slider import Slider
 
 
 class Stretch(NamedTuple):
-    """What the solver integrates until `end` (s); `lost` if the normal load vanishes there."""
+    """A problem to integrate until `end` (s); `lost` if the normal load vanishes there."""
 
     end: float
     problem: Problem
@@ -39,7 +39,7 @@ def stretches(slider: Slider, start: float, end: float) -> Iterator[Stretch]:
         stop = min(end, until, until_load)
         lost = vanishes(load, t, stop)
         curve = 0.0
-        if not (drive.steady() and load.constant()):  # else a stick ends in closed form
+        if not (drive.steady() and load.constant()):  # otherwise a stick ends in closed form
             curve = bend(slider, system.inertia, drive, load, t, stop)
         problem = Problem(system, law, surface, drive, load, curve)
         yield Stretch(min(stop, lost), problem, lost <= stop)
@@ -49,9 +49,9 @@ def stretches(slider: Slider, start: float, end: float) -> Iterator[Stretch]:
 
 
 def alike(drive: Any, load: Any) -> tuple[Any, Any]:
-    """Return a drive and a load both as constant, or both as varying in time.
+    """Return a drive and a load, both as constant or both as varying types.
 
-    The solver is then compiled for these two cases, not for four; the numbers are the same.
+    The solver is then compiled for two cases instead of four; the results are the same.
     """
     if drive.steady() == load.constant():
         return drive, load
@@ -68,7 +68,7 @@ def system_of(slider: Slider) -> System:
 
 
 def friction_of(slider: Slider) -> tuple[Any, Isotropic | Elliptic]:
-    """Return the law as the compiled solver takes it, and the surface."""
+    """Return the law behind pointers, and the surface."""
     law: Any = slider.law
     surface: Isotropic | Elliptic = Isotropic()
     if isinstance(law, Anisotropic):
@@ -114,7 +114,7 @@ def fastest_swing(problem: Problem) -> float:
 def bend(slider: Slider, inertia: float, drive: Any, load: Any, start: float, end: float) -> float:
     """Return a bound of the second derivative of |a|^2 - f^2 while the slip is zero (M8).
 
-    a is the friction over mass that zero slip takes, f what friction can hold; |a| <= f.
+    a is the friction over mass at zero slip, f its limit; |a| <= f.
     d^2/dt^2 = 2 |a'|^2 + 2 a.a'' - 2 f'^2 - 2 f f''. On an elliptic surface |a| is |M^-1 a|.
     """
     law: Any = slider.law
@@ -133,9 +133,9 @@ def bend(slider: Slider, inertia: float, drive: Any, load: Any, start: float, en
 
 
 def vanishes(load: Any, start: float, end: float) -> float:
-    """Return when the normal load falls to zero, infinity if it does not before `end` (s).
+    """Return the time at which the normal load vanishes; infinity if not before `end` (s).
 
-    As in a stick, a step is as long as the bounds of the load's derivatives allow.
+    As in a stick, steps are as long as the bounds of the load's derivatives allow.
     """
     if not isinstance(load, Loading):
         return inf

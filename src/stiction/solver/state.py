@@ -1,4 +1,4 @@
-"""What the loop carries from step to step, so that it can pause anywhere and go on."""
+"""The state of the loop from step to step, so that it can pause anywhere and continue."""
 
 from __future__ import annotations
 
@@ -12,18 +12,17 @@ RUNNING, COMPLETED, STEP_UNDERFLOW, NON_FINITE, TOO_MANY_STEPS, CONTACT_LOST = -
 
 
 class Accuracy(NamedTuple):
-    """What a step is held to.
+    """The tolerances of a step.
 
     tolerance : relative error of the slip velocity and of the friction's direction in a step;
-    newton : relative size of Newton corrections that do no longer matter;
-    speed : slip speed below which these are absolute, m/s; free_x, free_y : what friction alone
-    can do to the elongation rates, mu_0 W/sqrt(m k), m/s: a vigorous slip may be relative to
-    itself, but not so that the springs' own motion is lost; longest : step size that still sees
-    what drive and load do, s; drive : its speed along x, or along y
-    if it has none there, m/s, up to which a slip is held to itself;
-    square_x, square_y : of the time in which each spring swings by a radian, m/k, s^2;
-    touch : what friction must have to spare in a stick that is one, m/s; least : motion about
-    steady sliding that is still told from rounding, m/s.
+    newton : relative size of negligible Newton corrections;
+    speed : slip speed below which these are absolute, m/s; free_x, free_y : elongation rates that
+    friction alone can cause, mu_0 W/sqrt(m k), m/s: limits of the scale of a fast slip, so that the
+    springs' own motion is resolved; longest : step size that still resolves drive and load, s;
+    drive : its speed along x, or along y if it has none there, m/s, upper limit of a slip's scale;
+    square_x, square_y : m/k, the square of the time in which each spring swings by a radian, s^2;
+    touch : least spare friction of a true stick, m/s; least : smallest motion about steady sliding
+    above rounding, m/s.
     """
 
     tolerance: float
@@ -55,10 +54,10 @@ PLANNED = 8
 
 
 class Memory(NamedTuple):
-    """What the last steps teach the next one.
+    """Information of the last steps for the next one.
 
-    h : size to try next, s; plan : the same for the first steps after a stick, from the last
-    time, since one cycle is much like the next; place : how many of these have been taken;
+    h : size to try next, s; plan : sizes of the first steps after a stick, from the previous
+    cycle, which is similar; place : number of these steps taken;
     h_last : size of the last step; ease : its error over tolerance, to the power -1/4;
     warm : whether `p` and `w`, values of its cubics at 0 and the stages, predict the next.
     """
@@ -74,9 +73,9 @@ class Memory(NamedTuple):
 
 
 class Counts(NamedTuple):
-    """Steps accepted and rejected, Newton iterations, stick intervals and their sum (s).
+    """Steps accepted and rejected, Newton iterations, number and total time of sticks (s).
 
-    mapped : stick intervals that a return map found (see `multiscale`), all others steps did.
+    mapped : number of sticks found by a return map (see `multiscale`) instead of steps.
     """
 
     steps: int
@@ -91,7 +90,7 @@ NOTHING = Counts(0, 0, 0, 0, 0.0, 0)
 
 
 class State(NamedTuple):
-    """Everything that a paused run needs to go on, and come out the same."""
+    """Everything that a paused run needs to continue with the same results."""
 
     motion: Motion
     memory: Memory
@@ -105,14 +104,14 @@ Plain = tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...]]
 def plain(state: State) -> Plain:
     """Return the state as tuples without names.
 
-    They are made into Python's in a fraction of the time, and without Python's own code, in which
-    an interrupt may arrive (see `interrupt`).
+    Their conversion to Python objects takes a fraction of the time, and runs no Python code, in
+    which an interrupt could arrive (see `interrupt`).
     """
     return state.motion[:], state.memory[:], state.counts[:]
 
 
 def named(state: Plain) -> State:
-    """Return the state that `plain` was given."""
+    """Return the state from its plain tuples."""
     motion, memory, counts = state
     return State(Motion(*motion), Memory(*memory), Counts(*counts))
 
@@ -123,7 +122,7 @@ def first_step(slider: Slider) -> float:
 
 
 def start(slider: Slider, t: float, u: tuple[float, float], slip: tuple[float, float]) -> State:
-    """Return the state from which a run starts."""
+    """Return the initial state of a run."""
     r = sqrt(slip[0] ** 2 + slip[1] ** 2)
     e = (slip[0] / r, slip[1] / r) if r > 0.0 else (1.0, 0.0)
     h = first_step(slider)
@@ -134,7 +133,7 @@ def start(slider: Slider, t: float, u: tuple[float, float], slip: tuple[float, f
 
 
 def cooled(memory: Memory, h: float) -> Memory:
-    """Return a memory whose cubics predict nothing: the motion has a kink here."""
+    """Return the memory after a kink of the motion, with cubics that predict nothing."""
     return Memory(h, memory.plan, PLANNED, memory.h_last, memory.ease, False, memory.p, memory.w)
 
 
@@ -162,7 +161,7 @@ def planned(plan: Plan, place: int, h: float) -> Plan:
 
 @inlined
 def size_to_try(memory: Memory) -> float:
-    """Return the size of the next step: the plan's, if the last step does not speak against it."""
+    """Return the size of the next step: the plan's, unless the last step contradicts it."""
     if 0 < memory.place < PLANNED and memory.plan[memory.place] > 0.0:
         return min(max(memory.plan[memory.place], 0.4 * memory.h), 1.5 * memory.h)
     return memory.h

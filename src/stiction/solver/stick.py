@@ -1,4 +1,4 @@
-"""Sticking: the elongation moves with the drive until the friction that holds is used up."""
+"""Stick: the elongation moves with the drive until friction reaches its limit."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from stiction.solver.problem import (
 from stiction.solver.surface import held_product
 
 USED_UP = 1e-14  # of f^2: the margin |a|^2 - f^2 is zero within rounding
-LOOKS = 10_000  # at the margin before the loop has a turn; each as far apart as it allows
+LOOKS = 10_000  # evaluations of the margin before control returns to the loop
 
 
 @inlined
 def holding(problem: Problem, t: float, u_x: float, u_y: float) -> tuple[float, float]:
-    """Return the friction force over mass (x, y) that zero slip takes, in m/s^2.
+    """Return the friction force over mass (x, y) that keeps zero slip, in m/s^2.
 
-    Eq. (1) with du/dt = v_d: (K u + C v_d)/m + dv_d/dt, the last only where the plate is driven.
+    Eq. (1) with du/dt = v_d: (K u + C v_d)/m + dv_d/dt, the last only for a driven plate.
     """
     system = problem.system
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, t))
@@ -41,7 +41,7 @@ def holding(problem: Problem, t: float, u_x: float, u_y: float) -> tuple[float, 
 
 @inlined
 def holding_change(problem: Problem, t: float) -> tuple[float, float]:
-    """Return the rate of change of what `holding` returns, in m/s^3."""
+    """Return the rate of change of the value of `holding`, in m/s^3."""
     system = problem.system
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, t))
     g_x, g_y = in_principal_axes(problem, rate_change(problem.drive, t))
@@ -56,8 +56,8 @@ def holding_change(problem: Problem, t: float) -> tuple[float, float]:
 def margin(problem: Problem, t: float, u_x: float, u_y: float) -> tuple[float, float, float]:
     """Return |a|^2 - f^2 and half its rate of change at zero slip (M6), and f^2.
 
-    a is the friction over mass that zero slip takes, f the most that friction can hold; on an
-    elliptic surface |a|^2 is a.N^-1 a.
+    a is the friction over mass that keeps zero slip, f its limit; on an elliptic surface |a|^2 is
+    a.N^-1 a.
     """
     a, j = holding(problem, t, u_x, u_y), holding_change(problem, t)
     per_weight = static(problem.law) * problem.system.per_mass
@@ -70,11 +70,11 @@ def margin(problem: Problem, t: float, u_x: float, u_y: float) -> tuple[float, f
 def stick_duration(
     problem: Problem, t: float, u_x: float, u_y: float, t_stop: float
 ) -> tuple[float, bool]:
-    """Return how long zero slip can be held from time `t` on, and whether it ends then.
+    """Return how long friction holds zero slip from time `t` on, and whether it ends then.
 
-    Zero if friction cannot hold even now, infinite if it can until `t_stop`. In closed form
-    for a steady drive and load (M7); otherwise in steps (M9), each as long as the bound of the
-    margin's curvature guarantees that it is not used up before, which end at its first zero.
+    Zero if friction cannot hold it even now, infinite if it can until `t_stop`. The time has a
+    closed form for a steady drive and load (M7). Otherwise steps (M9) lead to the first zero of the
+    margin, each so long that, by the bound of the margin's curvature, it contains no zero.
     """
     excess, change, square = margin(problem, t, u_x, u_y)
     if excess > USED_UP * square or (excess >= 0.0 and change > 0.0):
@@ -100,10 +100,10 @@ def stick_duration(
 
 @inlined
 def to_spare(problem: Problem, t: float, u_x: float, u_y: float, duration: float) -> float:
-    """Return what slip speed friction could take away in a stick beside what it holds (M10), m/s.
+    """Return the slip speed that the spare friction of a stick could absorb (M10), m/s.
 
-    That is f - |a|, about linear in time and zero at its end, integrated over the stick. A slip
-    that comes in faster by as much does not stick.
+    That is the integral over the stick of f - |a|, which is about linear in time and zero at the
+    end. A slip that arrives faster by this amount does not stick.
     """
     excess, _, square = margin(problem, t, u_x, u_y)
     return -0.25 * excess / sqrt(square) * duration

@@ -1,12 +1,12 @@
-"""How the friction vector follows from the slip direction: along it, or by an ellipse.
+"""The friction vector as a function of the slip direction: along it, or by an ellipse.
 
 With N = M^2 (see `stiction.friction.Anisotropic`) friction over mass is f N e/|M e| for slip
-along e, and at zero slip whatever a holds a.N^-1 a <= f^2 (M4). In a step's axes, with slip
-along (1, w), the friction is f (n_1, n_2), and Eqs. (4) and (5) become
+along e, and at zero slip any a with a.N^-1 a <= f^2 (M4). In a step's axes, with slip along
+(1, w), friction is f (n_1, n_2), and Eqs. (4) and (5) become
 
     p' = a_1 - f n_1,   p w' = a_2 - w a_1 - f tau,   tau = n_2 - w n_1,    (M12) to (M14)
 
-of which the isotropic ones (N = 1, tau = 0) are a special case that costs nothing.
+The isotropic case (N = 1, tau = 0) costs nothing extra.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from stiction.solver.problem import Problem, isotropic
 
 
 class Flow(NamedTuple):
-    """Friction over f along e, and what turns the slip; and their derivatives by w."""
+    """Friction over f along e, the part that turns the slip, and their derivatives by w."""
 
     n_1: float
     tau: float
@@ -84,11 +84,11 @@ def held_product(problem: Problem, a: tuple[float, float], b: tuple[float, float
 
 @inlined
 def takeoff(problem: Problem, a: tuple[float, float], f: float) -> tuple[float, float]:
-    """Return a vector along which slip starts when a is more than f can hold (M18).
+    """Return a vector along which slip starts when a exceeds the friction limit f (M18).
 
-    What is left of a, a - f N e/|M e|, accelerates along e; so f N e/|M e| is the point of
-    the ellipse nearest to a, and e is along y = (f^2 N + t)^-1 a with f^2 y.N y = 1. The left-
-    hand side falls convexly with t: Newton's method from t = 0 climbs to the root.
+    The remainder, a - f N e/|M e|, accelerates along e; so f N e/|M e| is the point of the ellipse
+    nearest to a, and e is along y = (f^2 N + t)^-1 a with f^2 y.N y = 1. The left-hand side is
+    convex and falls with t: Newton's method from t = 0 climbs to the root.
     """
     if isotropic(problem.surface):
         return a

@@ -1,1 +1,1 @@
-"""How the solver is compiled, kept on disk, and interrupted."""
+"""Compilation of the solver, its cache on disk, and interrupts."""

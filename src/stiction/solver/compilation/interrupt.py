@@ -11,12 +11,12 @@ from typing import Any
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Hold an interrupt back until the end.
+    """Delay an interrupt until the block ends.
 
-    An interrupt that arrives while numba turns a result into Python objects, and runs Python's
-    code for it, would crash the interpreter. Only the main thread is ever interrupted; elsewhere
-    nothing is done. What interrupts are to do otherwise, at the end they do it: nothing, where
-    they are ignored, as under nohup.
+    An interrupt would crash the interpreter if it arrived while numba turns a result into Python
+    objects by running Python code. Python interrupts only the main thread; in other threads this
+    does nothing. At the end the usual handler of interrupts runs, if any: under nohup they stay
+    ignored.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

@@ -1,6 +1,6 @@
-"""How the solver is compiled; with NUMBA_DISABLE_JIT=1 it runs as the Python that it is.
+"""Compilation of the solver; with NUMBA_DISABLE_JIT=1 it runs as plain Python.
 
-That takes some 200 times as long, and is for debuggers and for `benchmarks.mutation`.
+Plain Python takes some 200 times as long; it serves debuggers and `benchmarks.mutation`.
 """
 
 from __future__ import annotations
@@ -19,36 +19,36 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 INTERPRETED = bool(config.DISABLE_JIT)
 
-# sums may be contracted to fused multiply-adds and divisions by a common divisor shared;
-# nothing is reordered, and infinities and NaN keep their meaning
+# the compiler may fuse multiply-adds and share divisions by a common divisor; it reorders nothing,
+# and infinities and NaN keep their meaning
 ARITHMETIC = {"error_model": "numpy", "fastmath": {"contract", "arcp", "nsz"}}
 
-# only compiled code calls a part, and most allocate nothing: without the code for Python callers
-# and for counting references they compile in half the time
+# only compiled code calls a part, and most parts allocate nothing: without wrappers for Python
+# callers, and without reference counts, they compile in half the time
 PART = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
 def compiled(function: F) -> F:
-    """Compile an entry point, which Python calls: kept on disk, without the GIL."""
+    """Compile an entry point that Python calls, cached on disk, without the GIL."""
     return _entry(function, Shelf(function))
 
 
 def inlined(function: F) -> F:
-    """Compile a part of the loop, and have it merged into whatever compiled code calls it.
+    """Compile a part of the loop, inlined into the compiled code that calls it.
 
-    Without this the compiler keeps the larger parts apart and passes their many numbers
-    through memory, which takes 1.7 times as long.
+    Otherwise the compiler keeps larger parts separate and passes their many numbers through memory,
+    which takes 1.7 times as long.
     """
     return _part(function, forceinline=True, _nrt=False)
 
 
 def allocating(function: F) -> F:
-    """Compile a part of the loop that makes arrays, which are counted."""
+    """Compile a part of the loop that makes arrays, with reference counts."""
     return _part(function)
 
 
 def piece(function: F) -> F:
-    """Compile a part of the loop that is called from several places or is large, by itself."""
+    """Compile a part separately because it is large or called from several places."""
     return _part(function, _nrt=False)
 
 
@@ -65,19 +65,19 @@ def _part(function: F, **options: bool) -> F:
     def refuse(*_: Any, **__: Any) -> Any:
         raise TypeError(f"{function.__name__} is called by compiled code only")
 
-    # numba would call code that is not there, and Python would crash
+    # numba would call missing code, and crash Python
     made._insert, made._compile_for_args = _nowhere, refuse
     return cast(F, made)
 
 
 def _nowhere(*_: Any, **__: Any) -> None:
-    """Enter a compiled part among what Python can call: not at all."""
+    """Do not register a compiled part for Python callers."""
 
 
 def compiled_for(function: Any, digest: str | None) -> Any:
-    """Return a function of `compiled` for what is not the package's own, kept under its digest.
+    """Return a `compiled` function for types of a user's law, cached under its digest.
 
-    None is for what has no text to tell it by: that is compiled anew in each process.
+    The digest is None if the law's text is unknown; then each process compiles it anew.
     """
     own = uncompiled(function)
     return _entry(own, None if digest is None else Shelf(own, digest))
@@ -96,11 +96,10 @@ _met: set[tuple[Any, ...]] = set()
 
 
 def called(function: Any, kinds: tuple[type, ...], *arguments: Any) -> Any:
-    """Call a compiled function; what it returns must be made of plain tuples and numbers.
+    """Call a compiled function that returns plain tuples and numbers.
 
-    The first time for arguments of these types it is compiled, or loaded, which no interrupt may
-    cut short: numba would be left with half of its parts in place, and this process could compile
-    nothing more.
+    The first call with arguments of these types compiles or loads it. No interrupt may cut this
+    short: numba would keep half of the parts, and this process could not compile any more.
     """
     if (function, kinds) in _met:
         return function(*arguments)

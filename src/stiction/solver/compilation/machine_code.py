@@ -1,9 +1,9 @@
-"""Machine code kept on disk from one process to the next.
+"""Cache of machine code on disk, shared by processes.
 
-numba keeps it too, but by the path and the date of each source file, in an index that it unpickles
-without a look: two copies of the package compile everything twice, and a damaged file stops every
-run. Here a file is named after all that its code follows from, and is read only where its checksum
-holds and nobody else can have written it. Whatever goes wrong, the code is compiled anew.
+numba's own cache goes by the path and date of each source file, in an index that it unpickles
+unchecked: two copies of the package compile everything twice, and a damaged file stops every run.
+Here the name of a file is a hash of everything that its code depends on. A file is read only if its
+checksum is right and nobody else can have written it. In all other cases the code is compiled anew.
 """
 
 from __future__ import annotations
@@ -40,33 +40,33 @@ normalize_signature: Any = _normalize
 log = logging.getLogger(__name__)
 
 CHECKSUM = 32  # bytes of a SHA-256 digest, before the code itself
-FOLDERS = 6  # versions of the package whose code stays, the last one used first
+FOLDERS = 6  # versions of the package whose code is kept, the last used ones
 
 
 class Shelf:
-    """The machine code of one function: what numba's dispatcher asks of its cache.
+    """The machine code of one function, with the interface of numba's caches.
 
     Parameters
     ----------
     function
         The Python function.
     own
-        Digest of the user's law for which it is compiled; "" for the package's own.
+        Digest of the user's law for which it is compiled; "" for the package's own laws.
     """
 
     def __init__(self, function: Callable[..., Any], own: str = "") -> None:
-        """Take a function, and what it is compiled for."""
+        """Store the function, and the digest of the user's law."""
         self._name = f"{function.__module__}.{function.__qualname__}"
         text = Path(getfile(function)).read_bytes()
         self._made_from = hashlib.sha256(text).hexdigest() + own
 
     @property
     def cache_path(self) -> str:
-        """Return the folder, as numba's statistics show it."""
+        """Return the folder, for numba's statistics."""
         return str(folder())
 
     def load_overload(self, signature: Any, context: Any) -> Any:
-        """Return what was compiled for a signature, or None if it is not there or damaged."""
+        """Return the code for a signature, or None if it is missing or damaged."""
         context.refresh()
         path = self._path(signature, context.codegen())
         code = _undamaged(path)
@@ -77,16 +77,16 @@ class Shelf:
         return rebuild(context, *pickle.loads(code))
 
     def save_overload(self, signature: Any, result: Any) -> None:
-        """Keep what was compiled; where it cannot be written, the next process compiles anew."""
+        """Store compiled code; if this fails, the next process compiles anew."""
         if result.lifted or result.library.has_dynamic_globals:
-            return  # it points into this process
+            return  # the code contains addresses of this process
         code = dumps(result._reduce())
         path = self._path(signature, result.codegen)
         with suppress(ResultError), whole(path) as part:
             part.write_bytes(hashlib.sha256(code).digest() + code)
 
     def flush(self) -> None:
-        """Forget nothing: code that is named after its origin is never out of date."""
+        """Do nothing: code that is named after its origin is never out of date."""
 
     def _path(self, signature: Any, codegen: Any) -> Path:
         arguments, _ = normalize_signature(signature)
@@ -95,7 +95,7 @@ class Shelf:
 
 
 def _undamaged(path: Path) -> bytes | None:
-    """Return the code in a file; discard what is damaged."""
+    """Return the code in a file; discard a damaged file."""
     try:
         content = path.read_bytes()
     except OSError:
@@ -108,7 +108,7 @@ def _undamaged(path: Path) -> bytes | None:
 
 
 def _in_words(signature: Any) -> str:
-    """Return what a solver is compiled for: its drive and load; "" for another function."""
+    """Return the drive and load of a solver's signature in words; "" for other functions."""
     names = dict.fromkeys(name for kind in signature for name in _chosen(kind))
     return f"the solver for {', '.join(names)}" if names else ""
 
@@ -136,8 +136,8 @@ def _told(kind: Any) -> str:
 def folder() -> Path:
     """Return the folder for this version of the package: a private one.
 
-    Below ``NUMBA_CACHE_DIR`` if that is set, else below the user's cache. What lies there is run:
-    where others may write to it, or nobody may, this process has a folder to itself, until its end.
+    It lies below ``NUMBA_CACHE_DIR`` if that is set, else below the user's cache. Its content is
+    run: if others may write to it, or nobody may, this process uses a temporary folder of its own.
     """
     chosen = os.environ.get("NUMBA_CACHE_DIR")
     root = Path(chosen) if chosen else user_cache_path("stiction")
@@ -148,7 +148,7 @@ def folder() -> Path:
             _prune(root)
             place.mkdir(mode=0o700, exist_ok=True)
         if _private(place):
-            os.utime(place)  # the one used last goes last
+            os.utime(place)  # removed last
             return place
     except OSError:
         pass
@@ -167,7 +167,7 @@ def _private(place: Path) -> bool:
 
 
 def _prune(root: Path) -> None:
-    """Remove the machine code of all versions but the last ones used, to make room for one more."""
+    """Remove the code of all versions but the last used ones, to make room for one more."""
     versions = sorted(root.glob("compiled-*"), key=lambda each: each.lstat().st_mtime)
     for old in versions[: len(versions) - FOLDERS + 1]:
         shutil.rmtree(old, ignore_errors=True)
@@ -177,7 +177,7 @@ def _prune(root: Path) -> None:
 def fingerprint() -> str:
     """Return a hash of every source file that is compiled, and of what compiles it.
 
-    An edit in any of them leads to a fresh folder: what is compiled into one function stands in
+    An edit in any of them leads to a new folder, because one compiled function contains code of
     many files.
     """
     package = Path(__file__).parent.parent.parent

@@ -1,9 +1,9 @@
-"""Code and data behind pointers, for what a user chooses and the solver need not be compiled for.
+"""Code and data behind pointers, so that one compiled solver serves all laws.
 
-The machine code of a function and the fields of a law are two addresses. Compiled code calls the
-one with the other, for some 2 ns, and is the same code for all laws; merged into it, each law would
-take its compiling anew. Where nothing is compiled (see `jit`) the function and the law stand there
-themselves.
+A law is two addresses: that of a function's machine code, and that of the law's fields. Compiled
+code calls the one with the other, in some 2 ns, and is the same for all laws; if laws were inlined,
+each would need its own compilation. Without compilation (see `jit`) the function and the law
+themselves take the place of the addresses.
 """
 
 from __future__ import annotations
@@ -32,16 +32,16 @@ typeof: Any = numba.typeof
 
 
 def address(function: Any, law: Any, *arguments: Any) -> Any:
-    """Return where the machine code of a compiled function for a law lies.
+    """Return the address of the machine code of a compiled function for a law.
 
-    The function's first argument is a pointer to the law's fields (see `pointee`), `arguments` are
-    the types of its others. It is compiled if a law of this type is met for the first time.
+    The function's first argument is a pointer to the law's fields (see `pointee`); `arguments` are
+    the types of the others. It is compiled for the first law of each type.
     """
     return function if INTERPRETED else _address(function, typeof(law), *arguments)
 
 
 def memory(law: Any) -> Any:
-    """Return the fields of a law as compiled code finds them, and keep its arrays alive."""
+    """Return the fields of a law in memory for compiled code, and keep its arrays alive."""
     if INTERPRETED:
         return law
     kind = typeof(law)
@@ -61,7 +61,7 @@ def _address(function: Any, kind: Any, *arguments: Any) -> int:
 
 @cache
 def _size(kind: Any) -> int:
-    """Return how many bytes a value takes, one at least."""
+    """Return the size of a value in bytes, at least one."""
     return max(1, int(context.get_abi_sizeof(context.get_data_type(kind))))
 
 
@@ -87,7 +87,7 @@ write_value: Any = intrinsic(_write_value)
 
 
 def _lent(context: Any, builder: Any, kind: Any, value: Any) -> Any:
-    """Return a value whose arrays are not counted: Python holds them, and frees them."""
+    """Return a value whose arrays have no reference counts here: Python owns them."""
     if isinstance(kind, types.Array):
         array = context.make_array(kind)(context, builder, value)
         for owner in ("meminfo", "parent"):
@@ -96,12 +96,12 @@ def _lent(context: Any, builder: Any, kind: Any, value: Any) -> Any:
     if isinstance(kind, types.BaseTuple):
         parts = zip(cast(Iterable[Any], kind), cgutils.unpack_tuple(builder, value), strict=True)
         return context.make_tuple(builder, kind, [_lent(context, builder, *part) for part in parts])
-    context.nrt.incref(builder, kind, value)  # whatever else is counted stays for good
+    context.nrt.incref(builder, kind, value)  # other counted objects are never freed
     return value
 
 
 def _pointee(_: Any, pointer: Any) -> Any:
-    """Return what lies at a pointer."""
+    """Return the value at a pointer."""
 
     def generate(context: Any, builder: Any, _: Any, arguments: Any) -> Any:
         return context.unpack_value(builder, pointer.dtype, arguments[0])
@@ -113,10 +113,9 @@ pointee: Any = (lambda law: law) if INTERPRETED else intrinsic(_pointee)
 
 
 def caller(result: Any, *kinds: Any) -> Any:
-    """Return a function (code, memory, arguments) for compiled code, which calls what lies there.
+    """Return a function (code, memory, arguments) for compiled code, which calls an address.
 
-    `result` and `kinds` are the types of what is returned and of the arguments. What the code
-    raises is raised.
+    `result` and `kinds` are the types of the result and of the arguments. Errors propagate.
     """
 
     def call(_: Any, code: Any, memory: Any, arguments: Any) -> Any:
@@ -147,9 +146,9 @@ def caller(result: Any, *kinds: Any) -> Any:
 def _for_own(function: Any, kind: Any) -> Any:
     """Return the compiled `function` to use with values of this type.
 
-    Code for a law that is not the package's own is kept under the content of its file: an edit
-    there is seen, and a process that does not know the law never meets it. What stands in a prompt
-    or in the script itself is compiled anew in each process.
+    Code for a user's law is cached under the content of its file, so that edits are noticed, and a
+    process without the law never loads it. A law in a prompt or in the main script is compiled anew
+    in each process.
     """
     own = [each for each in _classes(kind) if not each.__module__.startswith("stiction.")]
     if not own:
@@ -171,8 +170,8 @@ def _classes(kind: Any) -> Iterator[type]:
 
 
 def _source(kind: type) -> str:
-    """Return what to name a type's code after: its text, and its module, by which it is kept."""
+    """Return the origin of a type, after which its code is named: its module and text."""
     text = None if kind.__module__ == "__main__" else text_of(kind)
-    if text is None:  # in a script its types are new ones in each process
+    if text is None:  # in a script, each process has new types
         raise OSError(f"{kind.__module__} has no file, as it was run, to name them by")
     return f"{kind.__module__}\n{text.text}"

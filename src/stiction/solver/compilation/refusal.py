@@ -1,4 +1,4 @@
-"""Why a user's law cannot be compiled, in a line for each method."""
+"""The reasons why a user's law cannot be compiled, a line for each method."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 import numba
 from numba.core.errors import NumbaError
 
-METHODS = {  # with arguments to try them with
+METHODS = {  # with arguments for a trial
     "coefficient": (1e-3,),
     "slope": (1e-3,),
     "force": ((1e-3, 0.0), 1.0),
@@ -23,7 +23,7 @@ REMEDY = (
 
 
 def reasons(law: Any) -> Iterator[str]:
-    """Yield what is wrong with each method that cannot be compiled by itself."""
+    """Yield the reason for each method that cannot be compiled by itself."""
     law = getattr(law, "prepared", lambda: law)()
     for name, arguments in METHODS.items():
         method = getattr(type(law), name, None)
@@ -37,7 +37,7 @@ def reasons(law: Any) -> Iterator[str]:
 
 
 def reason(error: NumbaError) -> str:
-    """Return the first line of numba's message that says something, and where in the file."""
+    """Return the first informative line of numba's message, and the place in the file."""
     text = re.sub(r"\x1b\[[0-9;]*m", "", str(error))
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     telling = [line for line in lines if not line.startswith("Failed in nopython mode")]

@@ -1,7 +1,7 @@
 """One step of slip: the collocation equations and their solution by Newton's method.
 
-Unknown are p and w at the three stages (see `slip_frame`); in a step that ends in a landing
-p is zero at the last stage and the step size takes its place.
+The unknowns are p and w at the three stages (see `slip_frame`); in a step that ends in a landing,
+p is zero at the last stage, and the step size takes its place.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from stiction.solver.surface import Flow, flow
 
 
 class Stage(NamedTuple):
-    """Residuals of the two equations at one stage, and what their derivatives need."""
+    """Residuals of the two equations at one stage, and terms of their derivatives."""
 
     residual_p: float
     residual_w: float

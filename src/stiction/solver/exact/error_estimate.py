@@ -1,9 +1,8 @@
-"""How far the collocation polynomial of a step is off inside it, and against what that is held.
+"""The error of a step's collocation polynomial in its interior, and its scale.
 
-The tolerance is relative to how fast the system moves about steady sliding. A vibration of a
-micrometre while the drive slides at a metre per second is small beside that, and all that there is
-to see. While it slides steadily the springs keep their length: what they do beside that is the
-motion.
+The tolerance is relative to the motion about steady sliding, in which the springs keep their
+length. A vibration of a micrometre at a sliding speed of a metre per second is tiny beside that
+speed, and yet the only motion of interest.
 """
 
 from __future__ import annotations
@@ -29,15 +28,15 @@ from stiction.solver.radau import (
 from stiction.solver.state import Accuracy
 from stiction.solver.surface import flow
 
-LOOKS = 6  # at most, at where the slip may be least
+LOOKS = 6  # iterations at most in the search for the least slip
 
 
 @inlined
 def moving(problem: Problem, frame: Frame, start: Outset, accuracy: Accuracy) -> float:
-    """Return the speed of the springs' ends against each other at a step's start (M42), m/s.
+    """Return the relative speed of the springs' ends at a step's start (M42), m/s.
 
-    Of an oscillation, its amplitude: the elongation rate u', and u'' times what each spring takes
-    for a radian. No less than what rounding leaves of it.
+    For an oscillation this is its amplitude, from the elongation rate u', and u'' times the time of
+    a radian of each spring. It is at least the effect of rounding.
     """
     r, e_x, e_y = frame.r, frame.e_x, frame.e_y
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, frame.t))
@@ -62,8 +61,9 @@ def local_error(
 ) -> float:
     """Return the largest relative error of the collocation cubic inside the step.
 
-    Its defect at an interior point, times the step size: (M35) to (M38). In a step longer than an
-    oscillation, which the cubic may run through anyhow, that can vanish by chance: there at two.
+    It follows from the defect at an interior point, times the step size: (M35) to (M38). In a step
+    longer than an oscillation, which the cubic cannot follow, the defect may vanish by chance:
+    there two points are used.
     """
     over = s.p_in, s.rest_in, s.slid_in
     error = error_at(problem, frame, over, h, p, w, accuracy, motion, INTERIOR, DEFECT_WEIGHT)
@@ -87,13 +87,13 @@ def error_at(
     c: float,
     weight: float,
 ) -> float:
-    """Return the relative error that follows from the defect at `c` (0 to 1), of this weight.
+    """Return the relative error from the defect at `c` (0 to 1), with its `weight`.
 
-    `over` is what the oscillation adds there (see `Swing`). The defect of w is divided by how
-    stiffly w follows the force (M37). Errors are held against the slip speed, but against no more
-    than the drive's: a rapid slip is over in few steps, and its error shifts all that follows; for
-    w accordingly; and in each principal axis against what the elongation rate there can be. None is
-    held against more than the motion about steady sliding (m/s; see `moving`): (M38), (M41).
+    `over` is the contribution of the oscillation there (see `Swing`). The defect of w is divided by
+    the stiffness with which w follows the force (M37). The scale of errors is the slip speed, but
+    at most the drive's: a rapid slip takes few steps, and its error shifts all that follows. The
+    scale of w follows from it; that of each principal axis is the largest elongation rate possible
+    there. No scale exceeds the motion about steady sliding (m/s; see `moving`): (M38), (M41).
     """
     r, dt, (p_over, rest_over, slid_over) = frame.r, c * h, over
     along, turn = (r, p[0], p[1], p[2]), (0.0, w[0], w[1], w[2])
@@ -130,19 +130,19 @@ def error_at(
 
 @inlined
 def dips(o: Oscillator, s: Swing, h: float, r: float, p: Triple, margin: float) -> bool:
-    """Return whether the slip passes below a margin (m/s) inside the step and comes back.
+    """Return whether the slip falls below a margin (m/s) inside the step and rises again.
 
-    Looked for where its rate of change vanishes, in the slip as it is: the oscillation that the
-    step is laid over, and the cubic of what is left. A cubic through the slip at the stages would
-    miss what the oscillation does between them.
+    The search is for a zero of its rate of change, in the full slip: the oscillation plus the cubic
+    superposed on it. A cubic through the slip at the stages would miss the oscillation between
+    them.
     """
-    if r == 0.0 or not o.v < 0.0:  # at take-off a fall is rounding
+    if r == 0.0 or not o.v < 0.0:  # at take-off, a fall is rounding
         return False
     laid, (q0, q1, q2) = swings(o, h), less(p, s.p)
     rest = (0.0 if laid else r, q0, q1, q2)
     left, right = 0.0, 1.0
     falls, rises = h * o.v, s.dp[2] + cubic_slope(rest, 1.0)
-    if p[0] < p[1] >= p[2]:  # it may have come back before, and fall again
+    if p[0] < p[1] >= p[2]:  # it may have risen before, and fall again
         right, rises = C[1], s.dp[1] + cubic_slope(rest, C[1])
     if not rises > 0.0:
         return False
@@ -155,14 +155,14 @@ def dips(o: Oscillator, s: Swing, h: float, r: float, p: Triple, margin: float) 
             now, change = now + above, change + h * rate_above
         if now < margin:
             return True
-        # the end that stays twice counts half (Illinois): or else it would be come near to slowly
+        # an end that stays twice gets half its weight (Illinois), for fast convergence
         if change < 0.0:
             left, falls, rises = x, change, 0.5 * rises if side < 0 else rises
             side = -1
         else:
             right, rises, falls = x, change, 0.5 * falls if side > 0 else falls
             side = 1
-        # it curves upwards: no lower than where the tangent meets the other end
+        # convex: the minimum lies above the tangent's value at the other end
         if now - abs(change) * (right - left) > margin:
             return False
     return False

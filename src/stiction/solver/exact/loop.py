@@ -58,9 +58,9 @@ def stick(
     k: int,
     sticks: np.ndarray,
 ) -> tuple[bool, State, int]:
-    """Hold zero slip as long as friction can, then turn the slip direction to take-off.
+    """Keep zero slip as long as friction can hold it, then set the direction of take-off.
 
-    A slip that only touches zero may be held for a moment by its error: that is no stick.
+    A slip that only touches zero may stick for a moment because of its error; that is not counted.
     Returns whether it takes off, the state, and the next row of the samples.
     """
     motion, memory, counts = state
@@ -70,7 +70,7 @@ def stick(
     end = t_stop if t + duration >= t_stop else t + duration
     if end > t:
         row = counts.sticks
-        goes_on = row > 0 and sticks[row - 1, 1] == t  # the same stick, in another stretch
+        goes_on = row > 0 and sticks[row - 1, 1] == t  # a stick continued over stretches
         touch = to_spare(problem, t, u_x, u_y, duration) < accuracy.touch
         held = goes_on or not touch
         k = sample_stick(problem, t, u_x, u_y, end, held, times, samples, k)
@@ -82,7 +82,7 @@ def stick(
     limit = coefficient(problem.law, 0.0) * at(problem.load, end) * problem.system.per_mass
     a_x, a_y = takeoff(problem, (a_x, a_y), limit)
     a = sqrt(a_x * a_x + a_y * a_y)
-    if a == 0.0:  # nothing pulls yet, as at the start without friction: slip follows da/dt
+    if a == 0.0:  # no force yet, as at a start without friction: slip follows da/dt
         v_x, v_y = in_principal_axes(problem, rate(problem.drive, end))
         a_x, a_y = problem.system.k_x * v_x, problem.system.k_y * v_y
         a = sqrt(a_x * a_x + a_y * a_y)
@@ -93,7 +93,7 @@ def stick(
 
 @inlined
 def recorded(counts: Counts, t: float, end: float, goes_on: bool, sticks: np.ndarray) -> Counts:
-    """Write a stick interval, or make the last one longer; return the counts with it."""
+    """Write a stick interval, or extend the last one; return the updated counts."""
     row = counts.sticks
     if goes_on:
         row -= 1
@@ -135,8 +135,8 @@ def slip(
     plan = memory.plan
     if memory.place < PLANNED and end < t_stop:
         plan = planned(plan, memory.place, h * step_factor(error, 4.0))
-    # Gustafsson's predictive control (M43): errors that grow grow on; not if the step was cut, as
-    # before a landing, which it would put off for ever
+    # Gustafsson's predictive control (M43): a growing error is expected to grow on; not after a cut
+    # step, as before a landing, which it would postpone for ever
     if r > 0.0 and memory.warm and h > 0.9 * size_to_try(memory):
         trend = 0.9 * h / memory.h_last * at_ease * at_ease / memory.ease
         factor = min(factor, max(0.2, trend))
@@ -156,16 +156,16 @@ def slip(
 
 @inlined
 def turns_up(r: float, p: Triple) -> bool:
-    """Return whether the slip falls and rises again in a step: a swing ends, another begins."""
+    """Return whether the slip has a minimum in a step, between two swings."""
     return p[0] < r and p[1] < p[2]
 
 
 @inlined
 def at_rest(problem: Problem, motion: Motion, accuracy: Accuracy) -> bool:
-    """Return whether the slip is zero for every purpose.
+    """Return whether the slip is zero for all practical purposes.
 
-    On an ellipse no closed form ends a slip, and its direction goes on turning as it vanishes:
-    there a slip that friction is about to end need not be followed so far.
+    On an elliptic surface there is no closed form for the end of a slip, and its direction keeps
+    turning as it vanishes. There a slip that friction is about to end is cut off earlier.
     """
     tolerated = accuracy.tolerance * accuracy.speed
     if isotropic(problem.surface) or motion.r > 1e-3 * tolerated:
@@ -185,16 +185,16 @@ def advance(
     k: int,
     sticks: np.ndarray,
 ) -> tuple[int, State, int, int]:
-    """Advance until `t_end`, until the budget of steps is used up, or until a stick finds no room.
+    """Advance until `t_end`, until the budget of steps is used up, or until `sticks` is full.
 
     Parameters
     ----------
     problem, state
-        The system, and where it is.
+        The system, and its state.
     t_end : float
         s.
     accuracy : Accuracy
-        What each step is held to.
+        The tolerances of each step.
     budget : int
         Steps to take at most.
     times, samples : ndarray
@@ -207,7 +207,7 @@ def advance(
     Returns
     -------
     code, state, k, turns
-        `turns` of the loop were taken, at most `budget`.
+        `turns` is the number of turns of the loop, at most `budget`.
     """
     for turn in range(budget):
         motion = state.motion
@@ -251,7 +251,7 @@ def steps(
     k: int,
     sticks: np.ndarray,
 ) -> tuple[int, Plain, int, int]:
-    """Advance, and return the state as Python takes it best."""
+    """Advance, and return the state as plain tuples for Python."""
     code, state, k, turns = advance(
         problem, state, t_end, accuracy, budget, times, samples, k, sticks
     )

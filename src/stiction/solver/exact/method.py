@@ -21,23 +21,23 @@ from stiction.system.slider import Slider
 
 
 class Exact:
-    """Sticks are intervals, and what lies between them is integrated in turning axes."""
+    """Exact sticks, with slip between them integrated in turning axes."""
 
     columns = COLUMNS
 
     def __init__(self, slider: Slider) -> None:
-        """Take the slider, and have its law compiled."""
+        """Store the slider, and compile its law."""
         self.law = pointed(friction_of(slider)[0])
 
     def begin(self, description: Description) -> State:
-        """Return the state from which a run starts."""
+        """Return the initial state of a run."""
         slider, initial, _ = description
         return start(slider, initial.time, (initial.u_x, initial.u_y), initial.slip(slider))
 
     def entered(self, state: State, x: float, y: float) -> State:
         """Return the state at the start of a stretch, where the slip velocity jumps by (x, y).
 
-        The memory of earlier steps is of no use after a bend.
+        It drops the memory of earlier steps, which is useless after a bend.
         """
         memory = cooled(state.memory, min(state.memory.h, state.memory.plan[0]))
         m = state.motion
@@ -62,13 +62,13 @@ class Exact:
         return [motion.u_x, motion.u_y, *slip, *force, float(motion.r == 0.0)]
 
     def seen(self, problem: Problem) -> Problem:
-        """Return a problem as compiled code takes it: with its law behind pointers."""
+        """Return a problem for compiled code, with its law behind pointers."""
         return problem._replace(law=self.law)
 
 
 @compiled
 def force_between(problem: Problem, motion: Motion) -> tuple[float, float]:
-    """Return the friction force (x, y; N) between two steps, at zero slip that which holds."""
+    """Return the friction force (x, y; N) between two steps, during slip or stick."""
     m = problem.system.mass
     if motion.r == 0.0:
         a_x, a_y = holding(problem, motion.t, motion.u_x, motion.u_y)
@@ -88,7 +88,7 @@ def advanced(
     out: Output,
     *more: Any,
 ) -> tuple[int, State]:
-    """Call a compiled loop, and make room for further sticks."""
+    """Call a compiled loop, and make room for more sticks."""
     times, samples, sticks = out.times, out.samples, out.sticks
     arguments = problem, state, end, held, budget, times, samples, out.filled, sticks, *more
     code, now, out.filled, turns = called(function, kinds_of(problem), *arguments)

@@ -33,13 +33,13 @@ def solve(
     problem, frame, o, s, h
         The system, the step's axes, the oscillation along the slip, and the step's size (s).
     landing : bool
-        Whether the step ends at zero slip; its size is then found, from `h` on.
+        Whether the step ends at zero slip; its size is then an unknown, with `h` as first guess.
     p, w : triple of float
         First guess of the stages (m/s, 1).
     accuracy : Accuracy
         Corrections are relative to the slip speed plus ``accuracy.speed``, and for w to 1.
     motion : float
-        About steady sliding, m/s: where it is less than that, to it.
+        Motion about steady sliding, m/s; the scale of corrections if it is smaller.
 
     Returns
     -------
@@ -47,9 +47,9 @@ def solve(
 
     Notes
     -----
-    The first Jacobian is exact, but for a load that changes in a landing, and kept while it
-    contracts. One exact iteration squares the (relative) error, hence the test on the first
-    correction's square: (M32) and (M33).
+    The first Jacobian is exact, except for a changing load in a landing, and kept while the
+    iteration contracts. One exact iteration squares the relative error; hence the test on the
+    square of the first correction: (M32) and (M33).
     """
     s0 = stage(problem, frame, s, h, 0, p, w, products(p, w))
     s1 = stage(problem, frame, s, h, 1, p, w, products(p, w))

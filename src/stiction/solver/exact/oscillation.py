@@ -1,14 +1,14 @@
-"""The oscillation along the slip in closed form, over which a step lays its cubic.
+"""The oscillation along the slip in closed form, on which a step superposes its cubic.
 
 While friction keeps its direction, the slip p along it obeys a linear equation (M21),
 
     p'' + 2 beta p' + k (p - P) = 0,   k = k_11, 2 beta = c_11 + F'/m, P = (K v_d)_1/k,
 
-and its solution with the right p(0), p'(0) also has the right p''(0), unless the load changes
-or unequal dampers couple the turn. A step that
-approximates only what is left, p less this, by its collocation polynomial can be a large
-part of the oscillation's period: friction turns little in it (mixed collocation, e.g.
-Coleman & Duxbury 2000, doi:10.1016/S0377-0427(99)00340-4).
+and its solution with the right p(0), p'(0) also has the right p''(0), unless the load changes or
+unequal dampers couple the turn. A step can be a large part of the oscillation's period if its
+collocation polynomial approximates only the remainder, p minus this solution, because friction
+turns little meanwhile (mixed collocation, e.g. Coleman & Duxbury 2000,
+doi:10.1016/S0377-0427(99)00340-4).
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from stiction.solver.radau import DERIVATIVE, INTEGRAL, INTERIOR, VALUE, A, C, D
 from stiction.solver.state import Accuracy
 
 FIFTH, APART = 0.2, sqrt(6.0) / 10.0  # the stages are 2/5 -+ sqrt(6)/10 and 1
-LEAST, MOST = 1e-3, 6.25  # of k h^2: below, a cubic does as well; above, nothing swings
-STRONGEST = 0.2  # of |beta|/sqrt(k): damped more strongly, it is over before it is a swing
+LEAST, MOST = 1e-3, 6.25  # of k h^2: below, a cubic is as good; above, it replaces the swing
+STRONGEST = 0.2  # of |beta|/sqrt(k): with stronger damping it dies out within one swing
 
 
 class Oscillator(NamedTuple):
@@ -39,11 +39,10 @@ class Oscillator(NamedTuple):
 
 
 class Swing(NamedTuple):
-    """What the oscillation adds to the equations of a step; see `collocation`.
+    """The terms of the oscillation in the equations of a step; see `collocation`.
 
-    p, dp : p and h p' at the stages; what it leaves of its cubic in h p' (`rest`) and in the
-    distance over h (`slid`), and by how much these change with the step size; the same at the
-    interior point.
+    p, dp : p and h p' at the stages. rest, slid : its difference from its cubic, in h p' and in the
+    distance over h, with their derivatives by the step size; the same at the interior point.
     """
 
     p: Triple
@@ -59,7 +58,7 @@ class Swing(NamedTuple):
 
 @inlined
 def oscillator(frame: Frame, start: Outset) -> Oscillator:
-    """Return the oscillator that follows the slip from the step's start."""
+    """Return the oscillator that matches the slip at the step's start."""
     per_k = 1.0 / frame.k_11
     level = start.da_1 * per_k
     beta = 0.5 * (frame.c_11 + start.gradient)
@@ -68,27 +67,27 @@ def oscillator(frame: Frame, start: Outset) -> Oscillator:
 
 @inlined
 def swings(o: Oscillator, h: float) -> bool:
-    """Return whether a step of size `h` is laid over the oscillation."""
+    """Return whether a step of size `h` is superposed on the oscillation."""
     square = o.k * h * h
     return LEAST < square < MOST and weakly_damped(o)
 
 
 @inlined
 def weakly_damped(o: Oscillator) -> bool:
-    """Return whether the oscillation goes on for a while."""
+    """Return whether the oscillation is weakly damped."""
     return o.beta * o.beta < STRONGEST * STRONGEST * o.k
 
 
 @inlined
 def within_reach(o: Oscillator, h: float, accuracy: Accuracy, motion: float) -> float:
-    """Return the step size `h`, cut where it is more of a swing than a step can be laid over.
+    """Return the step size `h`, limited to the part of a swing that one step can cover.
 
-    `motion` about steady sliding, m/s.
+    `motion` is that about steady sliding, m/s.
     """
     if o.k * h * h < 0.99 * MOST or not weakly_damped(o):
         return h
     size = accuracy.tolerance * min(accuracy.speed + o.level + o.x, motion)
-    if o.x * o.x + o.v * o.v * o.per_k < size * size:  # nothing swings
+    if o.x * o.x + o.v * o.v * o.per_k < size * size:  # no oscillation
         return h
     return sqrt(0.99 * MOST * o.per_k)
 
@@ -106,14 +105,14 @@ def propagator(o: Oscillator, t: float) -> tuple[float, float]:
 
 @inlined
 def then(o: Oscillator, a: tuple[float, float], b: tuple[float, float]) -> tuple[float, float]:
-    """Return the propagator of two times one after the other."""
+    """Return the propagator over the sum of two times."""
     square = o.k - o.beta * o.beta
     return a[0] * b[0] - square * a[1] * b[1], a[1] * b[0] + a[0] * b[1]
 
 
 @inlined
 def moved(o: Oscillator, u: tuple[float, float], t: float) -> tuple[float, float, float]:
-    """Return p, p' and the distance slipped after `t` (M22), (M23); its propagator is `u`."""
+    """Return p, p' and the distance slipped after `t` (M22), (M23), given its propagator `u`."""
     x = o.x * u[0] + (o.v + o.beta * o.x) * u[1]
     v = o.v * u[0] - (o.beta * o.v + o.k * o.x) * u[1]
     return o.level + x, v, o.level * t + (o.v - v + 2.0 * o.beta * (o.x - x)) * o.per_k
@@ -129,7 +128,7 @@ def after(o: Oscillator, t: float) -> tuple[float, float, float]:
 
 @inlined
 def swing(o: Oscillator, h: float, landing: bool) -> Swing:
-    """Return what the oscillation adds to the equations of a step of size `h` (M25), (M46)."""
+    """Return the oscillation's terms in the equations of a step of size `h` (M25), (M46)."""
     if not swings(o, h):
         nothing = (0.0, 0.0, 0.0)
         return Swing(nothing, nothing, nothing, nothing, nothing, nothing, 0.0, 0.0, 0.0)

@@ -1,4 +1,4 @@
-"""What a step of slip starts from: when the slip may end, and first guesses of its stages."""
+"""Predictions for a step of slip: the time of landing, and first guesses of the stages."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from stiction.solver.stick import margin
 
 @inlined
 def time_to_landing(frame: Frame, start: Outset, o: Oscillator, h: float) -> float:
-    """Return when the slip speed would vanish, in s; closely if that is within reach of `h`."""
+    """Return the time to zero slip, in s; accurate only if it is comparable to `h`."""
     t = landing_of_parabola(frame, start)
     return swung_to_rest(o, t) if t < 2.5 * h else t
 
 
 @inlined
 def landing_of_parabola(frame: Frame, start: Outset) -> float:
-    """Return when the slip speed would vanish, from its first two derivatives (M47), in s."""
+    """Return the time to zero slip from its first two derivatives (M47), in s."""
     r = frame.r
     change = start.a_1 - start.f
     curvature = start.da_1 - frame.k_11 * r
@@ -40,7 +40,7 @@ def landing_of_parabola(frame: Frame, start: Outset) -> float:
 
 @inlined
 def swung_to_rest(o: Oscillator, t: float) -> float:
-    """Return a better time to landing than `t`, by a step of Newton's method."""
+    """Improve the time to landing `t` by a step of Newton's method."""
     if swings(o, t):
         p, v, _ = after(o, t)
         if v < 0.0:
@@ -50,9 +50,9 @@ def swung_to_rest(o: Oscillator, t: float) -> float:
 
 @inlined
 def passes(problem: Problem, frame: Frame, o: Oscillator, t: float) -> bool:
-    """Return whether the slip goes on where it would vanish after `t`: friction cannot hold there.
+    """Return whether the slip continues past its zero after `t`, where friction cannot hold.
 
-    It then passes close by zero, and turns as it does.
+    It then passes close to zero, and turns.
     """
     if not swings(o, t):
         return False
@@ -96,7 +96,7 @@ def predicted(
 def swung(frame: Frame, start: Outset, s: Swing, h: float) -> tuple[Triple, Triple]:
     """Return a first guess of the stages from the oscillation along the slip.
 
-    The turn w follows from its own equation, linear for given p; what it does to p is added.
+    The turn w follows from its own equation, linear for given p; its effect on p is added.
     """
     p, k_12, k_22 = s.p, frame.k_12, frame.k_22
     slid, pull = times(A, p), start.a_2 - start.turn

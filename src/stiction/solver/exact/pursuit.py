@@ -24,7 +24,7 @@ from stiction.solver.exact.slip_frame import Frame, Outset, elongation
 from stiction.solver.problem import Problem, at, constant, drift, isotropic
 from stiction.solver.state import Accuracy, Motion, State, at_takeoff
 
-INSTANT = 1e-13  # of the time so far, and of what a spring takes for a radian
+INSTANT = 1e-13  # of the time so far, and of a spring's time for a radian
 
 
 @inlined
@@ -73,10 +73,9 @@ def landing_slip(r: float, a1: float, a2: float, f: float) -> tuple[float, float
 def slip_before_landing(
     r: float, a1: float, a2: float, f: float, left: float
 ) -> tuple[float, float, float]:
-    """Return the slip speed, and the direction along and across the initial slip, at a time
-    `left` (s) before landing.
+    """Return slip speed and direction, along and across the initial slip, `left` s before landing.
 
-    The curve itself: r sin(alpha)/tan(alpha/2)^(f/|a|) is constant along it; alpha falls.
+    On the curve, r sin(alpha)/tan(alpha/2)^(f/|a|) is constant, and alpha falls.
     """
     square = a1 * a1 + a2 * a2
     a = sqrt(square)
@@ -99,10 +98,10 @@ def slip_before_landing(
 def pursuit(
     problem: Problem, frame: Frame, start: Outset, accuracy: Accuracy
 ) -> tuple[float, float, float]:
-    """Return the time (s) to landing and the slip until then (m), in closed form.
+    """Return the time (s) to landing, and the distance slipped until then (m), in closed form.
 
-    Infinite unless spring and friction stay constant until then, to a tenth of the tolerance
-    (M50), or it is over before the clock, or either spring, resolves it.
+    The time is infinite unless spring and friction stay constant until landing, to a tenth of the
+    tolerance (M50), or landing comes before floats can resolve it in time or in either spring.
     """
     r = frame.r
     a_1, a_2, da_1, da_2, f, gradient, _ = start

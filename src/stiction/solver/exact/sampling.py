@@ -1,11 +1,11 @@
-"""Output samples from dense output; they do not influence the steps.
+"""Output samples, which do not influence the steps.
 
 A row is u_x, u_y (m), slip_x, slip_y (m/s), friction_x, friction_y (N; while stuck, the
 force that holds) and 1 while sticking, else 0.
 
-The collocation polynomial of a step is less exact inside than at the end, by two orders. So a
-value inside is the end of a shorter step from the same start, for which that polynomial is a first
-guess: mostly one iteration is left, and a run that ends there would give the same.
+The collocation polynomial of a step is less accurate inside than at the end, by two orders.
+Therefore a value inside is the end of a shorter step from the same start, with that polynomial as
+first guess. This mostly takes one iteration, and equals the result of a run that ends there.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def within(
     accuracy: Accuracy,
     motion: float,
 ) -> tuple[float, float, float, float]:
-    """Return the distance slipped after `dt` along and across the step, p and w there."""
+    """Return the distance slipped after `dt` along and across the step, and p and w then."""
     if dt <= 0.0:
         return 0.0, 0.0, frame.r, 0.0
     o, x = oscillator(frame, start), dt / h
@@ -84,7 +84,7 @@ def within(
 
 @inlined
 def ended(h: float, s: Swing, p: Triple, w: Triple) -> tuple[float, float, float, float]:
-    """Return the distance slipped in a step along and across it, p and w at its end."""
+    """Return the distance slipped in a step along and across it, and p and w at its end."""
     return h * (dot(A[2], p) + s.slid[2]), h * dot(A[2], products(p, w)), p[2], w[2]
 
 
@@ -108,7 +108,7 @@ def sample_stick(
 ) -> int:
     """Fill the samples of an interval of zero slip from `t` on; return the next index.
 
-    It is a stick, or no more than a touch if not `held`.
+    It is a stick if `held`, else only a touch.
     """
     while k < len(times) and times[k] <= end:
         d_x, d_y = in_principal_axes(problem, travel(problem.drive, t, times[k] - t))
@@ -158,7 +158,7 @@ def sample_step(
     samples: np.ndarray,
     k: int,
 ) -> int:
-    """Fill the samples of a step that has some, by itself: the loop is faster without."""
+    """Fill the samples of a step, as a separate function: the loop is faster without it."""
     t, motion = frame.t, moving(problem, frame, start, accuracy)
     while k < len(times) and times[k] <= t + h:
         dt = min(times[k] - t, h)

@@ -7,7 +7,7 @@ dv_d/dt (M2) (the last only where the plate is driven) and f = F(|s|)/m, Eqs. (4
     p'   = a_1 - f/sqrt(1 + w^2)        (M13)
     p w' = a_2 - w a_1                  (M14)
 
-which is regular at p = 0: friction acts along the slip and cannot turn it.
+These are regular at p = 0: friction acts along the slip and cannot turn it.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Frame(NamedTuple):
 
     Also the surface's tensor N (see `surface`), and the step's start: time, elongation
     (u_x, u_y), slip speed r, and the spring's acceleration along and across e; for a steady
-    drive also what the drive adds to it, and how fast.
+    drive also the drive's contribution to it, and its rate.
     """
 
     e_x: float
@@ -63,8 +63,8 @@ class Frame(NamedTuple):
 
 
 class Outset(NamedTuple):
-    """What acts at a step's start: acceleration a along and across e, and its rate of change
-    with the drive alone; friction over mass against e, its slope, and what turns the slip."""
+    """Forces over mass at a step's start: acceleration a along and across e, and its rate of
+    change by the drive alone; friction against e, its slope, and the part that turns the slip."""
 
     a_1: float
     a_2: float
@@ -102,7 +102,7 @@ def frame_of(problem: Problem, motion: Motion) -> Frame:
         u_x,
         u_y,
         r,
-        # from the forces: rotating u would let rounding of u_x into the stiff direction
+        # from the forces: rotating u would carry rounding of u_x into the stiff direction
         k_x * u_x * e_x + k_y * u_y * e_y,
         k_y * u_y * e_x - k_x * u_x * e_y,
         c_x * v_x * e_x + c_y * v_y * e_y,
@@ -114,7 +114,7 @@ def frame_of(problem: Problem, motion: Motion) -> Frame:
 
 @inlined
 def outset(problem: Problem, frame: Frame) -> Outset:
-    """Return what acts at the start of a step."""
+    """Return the forces over mass at the start of a step."""
     b_1, b_2, db_1, db_2 = pull(problem, frame, 0.0)
     f, gradient = friction(problem, frame.t, frame.r)
     along = flow(problem, frame.surface, 0.0)
@@ -138,10 +138,10 @@ def in_frame(frame: Frame, vector: tuple[float, float]) -> tuple[float, float]:
 
 @inlined
 def pull(problem: Problem, frame: Frame, dt: float) -> tuple[float, float, float, float]:
-    """Return the acceleration that the drive alone gives after `dt`, b of (M17), and its change.
+    """Return the acceleration by the drive alone after `dt`, b of (M17), and its change.
 
-    The elongation there would be the one at the start plus the drive's travel; what slip
-    takes away from it is added by the caller.
+    It supposes the elongation at the start plus the drive's travel; the caller adds the effect of
+    slip.
     """
     if steady(problem.drive):
         x, y = frame.change_1, frame.change_2
@@ -171,7 +171,7 @@ def pull(problem: Problem, frame: Frame, dt: float) -> tuple[float, float, float
 def friction(problem: Problem, t: float, r: float) -> tuple[float, float]:
     """Return the friction force over mass and its slope at slip speed `r`.
 
-    Below zero the law is continued linearly: an iterate may overshoot a landing.
+    Below zero the law is extrapolated linearly: an iterate may overshoot a landing.
     """
     weight = at(problem.load, t) * problem.system.per_mass
     v = max(r, 0.0)

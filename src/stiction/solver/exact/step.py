@@ -1,4 +1,4 @@
-"""One accepted step of slip: first guess, collocation, error control."""
+"""One accepted step of slip: prediction, collocation, error control."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from stiction.solver.problem import Problem
 from stiction.solver.radau import step_factor
 from stiction.solver.state import Accuracy, Memory, size_to_try
 
-# a step that has not succeeded after so many tries will not; 0.4^100 is beyond any float
+# of a step before it fails; 0.4^100 is below the resolution of any float
 ATTEMPTS = 100
-# of the time, far below what it resolves: a boundary layer is thin, and motion goes on in it
+# of the time, far below a float's resolution: motion goes on within a thin boundary layer
 RESOLUTION = 1e-30
-ROUNDING = 1e-15  # of the time: a landing so near to the end of the stretch is at its end
+ROUNDING = 1e-15  # of the time: a landing so close to the end of the stretch is at its end
 DIRECT, EVEN = 1.1, 0.55  # of the time to landing: land at once, or in two even steps
 
 
@@ -37,11 +37,11 @@ def step(
     Returns
     -------
     done : bool
-        False if no step, however short, succeeds.
+        False if even the shortest step fails.
     landing : bool
         Whether the step ends at zero slip.
     s : Swing
-        What the step was laid over.
+        The oscillation on which the step is superposed.
     h, p, w, error
         Step size (s), stages, and error over tolerance.
     rejected, iterations : int
@@ -52,7 +52,7 @@ def step(
     landing = False
     if EVEN * until < h:
         rest = swung_to_rest(o, until)
-        # two even steps rather than a long and a short one, or where the slip passes by zero
+        # land, unless two even steps are better than a long and a short one, or slip passes by zero
         if h < DIRECT * until or passes(problem, frame, o, rest):
             h = EVEN * until
         else:
@@ -88,14 +88,14 @@ def step(
         if converged and min(p) >= 0.0:
             relative = local_error(problem, frame, s, h, p, w, accuracy, motion)
             error = relative / accuracy.tolerance
-            # a slip that is as small as its error may have been zero
+            # a slip as small as its error may have been zero
             least = 0.0 if landing else relative * min(accuracy.speed + frame.r, motion)
             if error > 1.0:
                 factor = step_factor(error, 1.0)
             elif not dips(o, s, h, frame.r, p, least):
                 return True, landing, s, h, p, w, error, rejected, iterations
         rejected += 1
-        if landing:  # once is enough: too long a landing is approached by shorter steps
+        if landing:  # try once: shorter steps approach a landing that is too far away
             may_land = False
         h, landing = min(h, tried) * factor if h > 0.0 else tried * factor, False
     return False, False, s, h, p, w, inf, rejected, iterations

@@ -1,4 +1,4 @@
-"""Charting the return map: a patch, node by node, each a cycle solved in full."""
+"""Construction of a patch of the return map, node by node, each a cycle solved in full."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ from stiction.solver.state import (
 from stiction.solver.stick import stick_duration
 
 NODE_STEPS = 10_000
-FINER = 0.1  # tolerance of a node's steps over that of others: their noise is below what closes
+FINER = 0.1  # tolerance of a node's steps over that of others; their noise is below `closing`
 
-# as a part of what calls it, so that a user's own law is kept with that alone
+# compiled as a part of its caller, so that a user's law is cached only with that
 advance = piece(uncompiled(loop.advance))
 
 
 @inlined
 def added(a: Counts, b: Counts) -> Counts:
-    """Return the counts with another's steps, but not its stick intervals."""
+    """Return the counts plus the steps of others, but not their stick intervals."""
     return Counts(
         a.steps + b.steps,
         a.rejected + b.rejected,
@@ -46,7 +46,7 @@ def added(a: Counts, b: Counts) -> Counts:
 
 @inlined
 def finer(accuracy: Accuracy) -> Accuracy:
-    """Return what the steps of a node's cycle are held to."""
+    """Return the tolerances for the steps of a node's cycle."""
     tolerance, newton = FINER * accuracy.tolerance, FINER * accuracy.newton
     return Accuracy(tolerance, newton, *accuracy[2:-1], accuracy.least / FINER)
 
@@ -62,8 +62,8 @@ def solved(
 ) -> tuple[bool, Cycle, float, State]:
     """Solve the cycle from an angle.
 
-    Returns whether it ends within `longest` (s), the cycle, by what angle the stick at its end
-    turns, and the state there.
+    Returns whether it ends within `longest` (s), the cycle, the turn during the stick at its end,
+    and the final state.
     """
     fine, early = finer(accuracy), lead(problem, theta)
     u_x, u_y = elongation_held(problem, theta)
@@ -84,9 +84,10 @@ def solved(
 
 @inlined
 def added_node(coefficients: np.ndarray, n: int, cycle: Cycle, swing: float) -> float:
-    """Add node `n` to the polynomials and return by how much they missed it before (M57).
+    """Add node `n` to the polynomials, and return their error there before (M57).
 
-    Turns are relative to themselves and to the stick's: they may be nothing where cycles repeat.
+    The error of the turn is relative to it and to the stick's turn: it may be zero if cycles
+    repeat.
     """
     c, x, product = coefficients, POINTS[n], 1.0
     turn, time, square = interpolated(c, n, x)
@@ -113,10 +114,10 @@ def chart(
     reach: float,
     longest: float,
 ) -> State:
-    """Add a patch over the angles from `theta` on, or an edge if some of them do not return.
+    """Add a patch over the angles from `theta` on, or an edge if some do not return.
 
-    The state is given back with what that took. A try that fails leaves its first node to the
-    next one from the same angle.
+    The returned state includes the cost. A failed attempt leaves its first node to the next attempt
+    from the same angle.
     """
     motion, memory, counts = state
     row, missed = known.sizes[0], inf
@@ -140,7 +141,7 @@ def chart(
             known.sizes[0] += 1
             known.sizes[3] -= n + 1
             return State(motion, memory, counts)
-        if n >= NODES // 2 and miss > sqrt(known.closing):  # the error falls geometrically
+        if n >= NODES // 2 and miss > sqrt(known.closing):  # the error should fall geometrically
             break
         missed = miss
     known.width[0] *= 0.5

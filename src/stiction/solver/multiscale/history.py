@@ -1,7 +1,7 @@
-"""Cycles that were solved before, and what they tell of one that begins near them.
+"""Solved cycles, and the prediction of a cycle that begins near them.
 
-A macroscopic slip ends at one angle whatever it began from: nothing but the time until then
-depends on how far it had come. So two of them stand for all.
+A macroscopic slip always ends at the same angle; only the time until then depends on its start.
+Therefore two such slips represent all.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from stiction.solver.multiscale.return_map import FAR, NEAR, PAST, Cycle, Return
 
 @inlined
 def remember(known: Returns, theta: float, cycle: Cycle) -> None:
-    """Keep a cycle that was solved, in the place of the oldest."""
+    """Store a solved cycle in the place of the oldest one."""
     row = known.past[known.sizes[2] % PAST]
     row[0], row[1], row[2], row[3] = theta, cycle.turn, cycle.time, cycle.held
     known.sizes[2] += 1
@@ -22,8 +22,10 @@ def remember(known: Returns, theta: float, cycle: Cycle) -> None:
 
 @inlined
 def nearest(known: Returns, theta: float, longer: bool, than: float) -> tuple[int, int]:
-    """Return the two cycles that began nearest to an angle, of those that took longer than a
-    time (s) or of the others; below zero where there is none."""
+    """Return the rows of the two cycles that began nearest to an angle; below zero for none.
+
+    They are sought among the cycles that took longer than a time (s), or among the others.
+    """
     i = j = -1
     near = next_near = inf
     for row in range(min(known.sizes[2], PAST)):
@@ -39,7 +41,7 @@ def nearest(known: Returns, theta: float, longer: bool, than: float) -> tuple[in
 
 @inlined
 def change(known: Returns, i: int, j: int, off: float) -> Cycle:
-    """Return by what a cycle differs from row i if it begins `off` from there: a line to row j."""
+    """Return the change of a cycle that begins `off` from row i, on a line to row j."""
     a, b = known.past[i], known.past[j]
     per = off / (b[0] - a[0])
     return Cycle((b[1] - a[1]) * per, (b[2] - a[2]) * per, (b[3] - a[3]) * per)
@@ -47,10 +49,11 @@ def change(known: Returns, i: int, j: int, off: float) -> Cycle:
 
 @inlined
 def under_way(known: Returns, row: int, theta: float, last: Cycle) -> bool:
-    """Return whether the cycle in a row began at an angle or a little earlier on the way to it.
+    """Return whether the cycle in a row began at an angle, or a little before it.
 
-    Or so little later that a stick before it would be shorter than times of landing may differ
-    by: it grows with the square root of the distance to the edge, and was `last.held` a turn ago.
+    Slightly later is allowed too, if the stick before it would be shorter than the tolerance of
+    landing times: its length grows with the square root of the distance to the edge, and was
+    `last.held` one cycle ago.
     """
     behind = float(theta - known.past[row, 0]) / last.turn
     shortest = NEAR * known.closing * last.time / last.held
@@ -59,10 +62,11 @@ def under_way(known: Returns, row: int, theta: float, last: Cycle) -> bool:
 
 @inlined
 def same_end(known: Returns, theta: float, last: Cycle) -> tuple[bool, Cycle]:
-    """Return the cycle from an angle if it ends as the two nearest long ones did (M59).
+    """Return the cycle from an angle, if it ends like the two nearest long ones (M59).
 
-    One of the two must have begun earlier: then the edge, up to which cycles are short, is behind.
-    The nearest is taken, less what is behind, and not the line: that would extrapolate its noise.
+    One of the two must have begun earlier: then the edge, up to which cycles are short, has been
+    passed. The nearest cycle is used, minus the turn since its start; a line through both would
+    extrapolate noise.
     """
     i, j = nearest(known, theta, True, FAR * last.time)
     if j < 0 or not (under_way(known, i, theta, last) or under_way(known, j, theta, last)):
@@ -77,10 +81,10 @@ def same_end(known: Returns, theta: float, last: Cycle) -> tuple[bool, Cycle]:
 
 @inlined
 def remembered(known: Returns, theta: float, last: Cycle) -> tuple[bool, Cycle]:
-    """Return the cycle from an angle by the two nearest that were solved.
+    """Return the cycle from an angle, predicted from the two nearest solved ones.
 
-    A long one by where they end. Any other on a line through both: it counts if that differs so
-    little from the nearest that the line does not matter.
+    A long cycle follows from their common end. Any other lies on a line through both, and is
+    accepted if it hardly differs from the nearest.
     """
     found, cycle = same_end(known, theta, last)
     if found:

@@ -1,12 +1,12 @@
-"""Patches of the return map: polynomials that stand for many cycles, and the way along them.
+"""Patches of the return map: polynomials that represent many cycles, and steps along them.
 
-Nodes are Leja points and polynomials Newton's: each further node is at the same time a fresh
-cycle, which tests the polynomial so far, about where it is worst; and none is in vain.
+The nodes are Leja points, the polynomials Newton's: each new node is a fresh cycle that tests the
+present polynomial about where it is worst, and then improves it.
 
-The third polynomial is the square of the time held. Where the map has an edge the stick that
-ends a cycle shrinks to nothing, as a grazing does: its length like a square root of the distance
-to the edge (M55), while turn and time have a slope there and then a term of the power 3/2. Its
-square is as smooth as they are.
+The third polynomial is the square of the time held. At an edge of the map, the stick at the end of
+a cycle shrinks to zero in a grazing: its length goes with the square root of the distance to the
+edge (M55), whereas turn and time have a finite slope and then a term of the power 3/2. The square
+of the length is as smooth as they are.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from stiction.solver.multiscale.section import wrapped
 
 
 def leja(count: int) -> np.ndarray:
-    """Return points on [-1, 1], each where the product of distances to those before is largest."""
+    """Return Leja points on [-1, 1]: each maximises the product of distances to earlier ones."""
     grid = np.cos(np.linspace(np.pi, 0.0, 2001))
     points = [-1.0, 1.0]
     while len(points) < count:
@@ -37,8 +37,8 @@ POINTS = leja(NODES)
 def interpolated(coefficients: np.ndarray, n: int, x: float) -> tuple[float, float, float]:
     """Return the polynomials through the first `n` nodes: turn, time (s), time held squared.
 
-    In two halves side by side, since each waits for its own sums; with `n` odd the one after
-    the last coefficients is read as well, and must be zero.
+    It sums two halves in parallel, for speed; for odd `n` the row after the last coefficients is
+    read too, and must be zero.
     """
     half = (n + 1) // 2
     turn = time = square = turn_above = time_above = square_above = 0.0
@@ -62,7 +62,7 @@ def interpolated(coefficients: np.ndarray, n: int, x: float) -> tuple[float, flo
 
 @inlined
 def place(known: Returns, theta: float) -> tuple[int, float]:
-    """Return the row of a patch with an angle, -1 if there is none, and where in it, -1 to 1."""
+    """Return the row of the patch that contains an angle, or -1, and the place in it, -1 to 1."""
     for row in range(known.sizes[0]):
         x = (theta - known.patches[row, 0]) * known.patches[row, 1] - 1.0
         if -1.0 <= x <= 1.0:
@@ -72,7 +72,7 @@ def place(known: Returns, theta: float) -> tuple[int, float]:
 
 @inlined
 def cycle_from(known: Returns, row: int, x: float) -> Cycle:
-    """Return the cycle from a place in a patch; it holds for no time where there is no stick."""
+    """Return the cycle from a place in a patch; its time held is zero without a stick."""
     n = int(known.patches[row, 2])
     turn, time, square = interpolated(known.coefficients[row], n, x)
     return Cycle(turn, time, sqrt(max(square, 0.0)))
@@ -82,18 +82,18 @@ def cycle_from(known: Returns, row: int, x: float) -> Cycle:
 def followed(
     known: Returns, hold: Hold, cycle: Cycle, sticks: np.ndarray, count: int, until: float
 ) -> tuple[Hold, Cycle, int, float]:
-    """Follow the patches from a stick on: past their ends, `until` (s), or out of room.
+    """Follow the patches from a stick until they end, time `until` (s) is reached, or room ends.
 
-    By itself, so that the loop has all registers: this is what most of a long run consists of.
+    This is a separate function so that the loop has all registers: long runs spend most time here.
 
     Returns
     -------
     hold, cycle
-        The stick arrived at, and the cycle before it.
+        The last stick, and the cycle before it.
     count : int
-        Of sticks so far, those passed by written to `sticks`.
+        Number of sticks so far; those passed are written to `sticks`.
     stuck : float
-        Their sum, s.
+        Their total duration, s.
     """
     (start, end, theta), stuck = hold, 0.0
     row, x = place(known, theta)

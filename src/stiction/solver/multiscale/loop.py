@@ -1,4 +1,4 @@
-"""The loop over strides: cycles by the return map where it is known, by steps elsewhere."""
+"""The multiscale loop: cycles by the return map where it is known, by steps elsewhere."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ from stiction.solver.state import (
     plain,
 )
 
-PAYS = 8.0  # cycles that a patch must be good for
-VAIN = 30  # nodes that may be in vain at first, and one more for each so many cycles solved
+PAYS = 8.0  # cycles that a patch must replace to pay
+VAIN = 30  # wasted nodes allowed at first, plus one for each so many solved cycles
 VAIN_EACH = 4
 
 
 @inlined
 def reach(known: Returns, theta: float, turn: float) -> float:
-    """Return over which angles from `theta` on to try a patch.
+    """Return the range of angles from `theta` on for an attempt at a patch.
 
-    Half way to an edge at most, a quarter if the last try from here was in vain, and not over
-    another patch unless that is near.
+    It is at most half way to an edge, a quarter if the last attempt from here failed, and does not
+    overlap another patch unless that is near.
     """
     way = 1.0 if turn > 0.0 else -1.0
     width = float(known.width[0])
@@ -54,9 +54,9 @@ def reach(known: Returns, theta: float, turn: float) -> float:
 
 @inlined
 def pays(known: Returns, hold: Hold, cycle: Cycle, over: float, t_end: float) -> bool:
-    """Return whether to try a patch over some angles, with the last cycle as a measure.
+    """Return whether a patch over some angles pays, judged by the last cycle.
 
-    It must be good for enough cycles, there must be room for it, and few nodes in vain so far.
+    It must replace enough cycles, there must be room for it, and few nodes may have been wasted.
     """
     left = (t_end - hold.end) / cycle.time
     return (
@@ -69,7 +69,7 @@ def pays(known: Returns, hold: Hold, cycle: Cycle, over: float, t_end: float) ->
 
 @inlined
 def with_sticks(counts: Counts, sticks: int, stuck: float) -> Counts:
-    """Return the counts with so many sticks (`stuck` s longer together) that the map has found."""
+    """Return the counts plus sticks found by the map, of a total duration `stuck` (s)."""
     return Counts(
         counts.steps,
         counts.rejected,
@@ -101,7 +101,7 @@ def mapped(
     sticks: np.ndarray,
     known: Returns,
 ) -> tuple[int, State, int]:
-    """Learn from the cycle that ends with the stick at hand, and follow the map from there."""
+    """Learn from the cycle that ends with the present stick, and follow the map from there."""
     hold, found_before = hold_of(problem, state.motion), state.counts.mapped
     theta, taken_off = known.last[0], known.last[1]
     cycle = Cycle(wrapped(hold.theta - theta), hold.end - taken_off, hold.end - hold.start)
@@ -120,7 +120,7 @@ def mapped(
             over = reach(known, hold.theta, cycle.turn)
             if not pays(known, hold, cycle, over, t_end):
                 break
-            start, over = hold.theta - cycle.turn, over + cycle.turn  # no gap after another
+            start, over = hold.theta - cycle.turn, over + cycle.turn  # no gap between patches
             state = chart(problem, accuracy, state, known, start, over, FAR * cycle.time)
             continue
         landing, end = hold.end + (following.time - following.held), hold.end + following.time
@@ -156,14 +156,14 @@ def stride(
     sticks: np.ndarray,
     known: Returns,
 ) -> tuple[int, Plain, int, int]:
-    """Advance as `stiction.solver.exact.loop.advance` does, by the return map where it is known.
+    """Advance like `stiction.solver.exact.loop.advance`, by the return map where it is known.
 
     Parameters
     ----------
     problem, state, t_end, accuracy, budget, times, samples, k, sticks
         As there; drive and load are steady.
     known : Returns
-        What is known of the map, and is added to.
+        The known part of the map, which grows.
 
     Returns
     -------

@@ -12,11 +12,11 @@ from stiction.solver.problem import Problem, constant, steady
 from stiction.solver.state import Accuracy, State
 from stiction.system.slider import Slider
 
-FINER = 0.3  # tolerance of the steps that the return map rests on, over that of others
+FINER = 0.3  # tolerance of steps for the return map, over that of others
 
 
 class Multiscale(Exact):
-    """As `Exact`, many cycles at once where the return map is smooth."""
+    """Like `Exact`, but many cycles at once where the return map is smooth."""
 
     def __init__(self, slider: Slider, rtol: float) -> None:
         """Take the slider and the tolerance."""

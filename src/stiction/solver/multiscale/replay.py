@@ -1,4 +1,4 @@
-"""Sticks that the return map has found: from a landing to its angle and back, and their samples."""
+"""Sticks found by the return map: their angles, states and samples."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ from stiction.solver.state import (
 from stiction.solver.stick import stick_duration
 
 SLIP_STEPS = 1_000_000_000
-SAME = 1e-3  # of a slip: a landing so near to another is the same
+SAME = 1e-3  # of a slip: landings closer than this are the same
 
 
 @inlined
 def hold_of(problem: Problem, motion: Motion) -> Hold:
-    """Return the stick that begins at a landing; the angle is not a number if it is none."""
+    """Return the stick that begins at a landing; its angle is NaN if it does not stick."""
     t, u_x, u_y = motion.t, motion.u_x, motion.u_y
     duration, _ = stick_duration(problem, t, u_x, u_y, inf)
     if not 0.0 < duration < inf:
@@ -64,9 +64,8 @@ def sample_cycle(
 ) -> tuple[int, State, int]:
     """Fill the samples of a stick and the slip until `landing` (s), by steps.
 
-    These find a landing of their own; where it is does not count, since samples do not
-    influence the motion. `room` is for one of their sticks. Samples after it are those of the
-    stick that follows.
+    The steps find their own landing, which does not matter, because samples do not influence the
+    motion. `room` is for one of their sticks. Later samples are those of the next stick.
     """
     start = landed(problem, state, hold)
     motion, memory, counts = start
@@ -79,7 +78,7 @@ def sample_cycle(
         until += 1
     slip, counts = landing - hold.end, state.counts
     code, alone = RUNNING, State(motion, memory, NOTHING)
-    # it may stick for a moment where the map has it just not
+    # it may stick for a moment although the map just has no stick
     while code == RUNNING and k < until and alone.motion.t < landing - SAME * slip:
         alone = State(alone.motion, alone.memory, NOTHING)
         code, alone, k, _ = advance(

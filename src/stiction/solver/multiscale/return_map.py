@@ -1,15 +1,14 @@
 """The return map: from the end of a stick to the end of the next.
 
-While drive and load are steady, the state at the end of a stick is one angle (see `section`),
-so that all that follows, until the end of the next stick, is a function of it (M53). Where that
-function is smooth, polynomials through a few cycles, each solved in full, stand for all the
-others between (`interpolant`, `construction`). Where it is not, or a cycle is too long to be
-solved so often, as a macroscopic slip is, a cycle that begins where an earlier one did ends as that
-one did (`history`).
+While drive and load are steady, one angle determines the state at the end of a stick (see
+`section`), and thus all that follows until the end of the next stick (M53). Where this function is
+smooth, polynomials through a few cycles, each solved in full, represent all others between them
+(`interpolant`, `construction`). Where it is not, or where cycles such as macroscopic slips are too
+long to be solved so often, a cycle that begins like an earlier one ends like it (`history`).
 
-Such stroboscopic maps are what multirevolution and envelope-following methods step over
-(Petzold 1981; Calvo, Jay, Montijano & Randez 2004). Theirs have fast components beside the
-slow ones; here each stick wipes those out, and the map is exact.
+Multirevolution and envelope-following methods step over such stroboscopic maps (Petzold 1981;
+Calvo, Jay, Montijano & Randez 2004). Their maps have fast components beside the slow ones; here
+each stick removes those, and the map is exact.
 """
 
 from __future__ import annotations
@@ -23,13 +22,13 @@ WIDEST = 1.0  # rad, of a patch
 NODES = 24  # of a patch at most
 PATCHES = 256
 PAST = 256  # cycles remembered
-CLOSING = 0.03  # (M58): relative error of a patch's turn and time, over rtol: they add up
-NEAR = 10.0  # over this: what a cycle that is remembered may differ by, and times of landing
-FAR = 2.0  # a cycle that takes so many times what those before took is beyond an edge
+CLOSING = 0.03  # (M58): relative error of a patch's turn and time, over rtol; errors accumulate
+NEAR = 10.0  # over this: tolerance for remembered cycles, and for times of landing
+FAR = 2.0  # a cycle so many times longer than those before is beyond an edge
 
 
 class Cycle(NamedTuple):
-    """From the end of a stick to that of the next: turn of the angle, time, time held (s)."""
+    """From the end of one stick to that of the next: turn of the angle, time, time held (s)."""
 
     turn: float
     time: float
@@ -37,7 +36,7 @@ class Cycle(NamedTuple):
 
 
 class Hold(NamedTuple):
-    """A stick that is not yet among those of the run: start, end (s) and angle at its end."""
+    """A stick not yet recorded in the run: start, end (s) and angle at its end."""
 
     start: float
     end: float
@@ -45,7 +44,7 @@ class Hold(NamedTuple):
 
 
 class Returns(NamedTuple):
-    """What is known of the map.
+    """The known part of the map.
 
     patches : angle where each starts, 2 over what it reaches over, and the number of its nodes;
     coefficients : of their polynomials for turn, time and the square of the time held; edges :
@@ -69,7 +68,7 @@ class Returns(NamedTuple):
 
 
 def unknown(rtol: float) -> Returns:
-    """Return that nothing is known yet."""
+    """Return an empty map."""
     return Returns(
         np.full((PATCHES, 3), nan),
         np.empty((PATCHES, NODES, 3)),

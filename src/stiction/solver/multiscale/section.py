@@ -1,8 +1,7 @@
-"""Where sticks end: with a steady drive and load, a closed curve, and one angle says where on it.
+"""The ends of sticks: with a steady drive and load, a closed curve with one angle on it.
 
-There friction holds all it can, |a| = f with a = (K u + C v_d)/m and f = F(0)/m; on an
-elliptic surface a.N^-1 a = f^2 (see `surface`). With N = L L^T, a = f L (cos, sin) of the angle
-(M52).
+There friction is at its limit, |a| = f with a = (K u + C v_d)/m and f = F(0)/m; on an elliptic
+surface a.N^-1 a = f^2 (see `surface`). With N = L L^T, a = f L (cos, sin) of the angle (M52).
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from stiction.solver.surface import held_product
 
 @inlined
 def angle(problem: Problem, u_x: float, u_y: float) -> float:
-    """Return the angle of what holds at an elongation, -pi to pi."""
+    """Return the angle of the limiting friction at an elongation, -pi to pi."""
     n, (a_x, a_y) = problem.surface, holding(problem, 0.0, u_x, u_y)
     x = a_x / sqrt(n.xx)
     return atan2((a_y - n.xy / sqrt(n.xx) * x) / sqrt(n.yy - n.xy * n.xy / n.xx), x)
@@ -25,7 +24,7 @@ def angle(problem: Problem, u_x: float, u_y: float) -> float:
 
 @inlined
 def held(problem: Problem, theta: float) -> tuple[float, float]:
-    """Return the most that friction can hold at an angle, over mass (x, y)."""
+    """Return the limit of friction at an angle, over mass (x, y)."""
     n, f = problem.surface, static(problem.law) * at(problem.load, 0.0) * problem.system.per_mass
     x, y = f * cos(theta) / sqrt(n.xx), f * sin(theta) * sqrt(n.yy - n.xy * n.xy / n.xx)
     return n.xx * x, n.xy * x + y
@@ -41,9 +40,9 @@ def elongation_held(problem: Problem, theta: float) -> tuple[float, float]:
 
 @inlined
 def lead(problem: Problem, theta: float) -> float:
-    """Return how long before its end at an angle a stick can be begun, 0 if none ends there.
+    """Return the largest time between a stick's start and its end at an angle; 0 if none.
 
-    Half of what the straight path of a has of the ellipse (M54).
+    It covers half of the chord of a in the ellipse (M54).
     """
     a, j = held(problem, theta), holding_change(problem, 0.0)
     rise, square = held_product(problem, a, j), held_product(problem, j, j)
