@@ -13,9 +13,10 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from stiction.solver.block_algebra import Matrix, Triple
-from stiction.solver.compilation.jit import inlined
+from stiction.solver.compilation.jit import inlined, number
 
 _S6 = sqrt(6.0)
+FIRST, SECOND, THIRD = map(number, range(3))  # the stages, as indices
 C: Triple = ((4 - _S6) / 10, (4 + _S6) / 10, 1.0)
 A: Matrix = (
     ((88 - 7 * _S6) / 360, (296 - 169 * _S6) / 1800, (-2 + 3 * _S6) / 225),

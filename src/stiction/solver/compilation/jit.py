@@ -9,9 +9,11 @@ from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
 import numba
+import numpy as np
 
 from stiction.solver.compilation.interrupt import uninterrupted
 from stiction.solver.compilation.machine_code import Shelf
+from stiction.solver.compilation.part import PartCompiler
 
 njit: Any = numba.njit
 config: Any = numba.config
@@ -26,6 +28,16 @@ ARITHMETIC = {"error_model": "numpy", "fastmath": {"contract", "arcp", "nsz"}}
 # only compiled code calls a part, and most parts allocate nothing: without wrappers for Python
 # callers, and without reference counts, they compile in half the time
 PART = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+
+def number(value: int) -> int:
+    """Return a constant to call a part with, for which numba does not compile it anew."""
+    return value if INTERPRETED else cast(int, np.int64(value))
+
+
+def switch(value: bool) -> bool:
+    """Return True or False to call a part with, for which numba does not compile it anew."""
+    return value if INTERPRETED else cast(bool, np.bool_(value))
 
 
 def compiled(function: F) -> F:
@@ -57,10 +69,12 @@ def uncompiled(function: F) -> F:
     return cast(F, getattr(function, "py_func", function))
 
 
-def _part(function: F, **options: bool) -> F:
+def _part(function: F, **options: Any) -> F:
     if INTERPRETED:
         return function
-    made: Any = njit(nogil=True, **options, **ARITHMETIC, **PART)(function)
+    made: Any = njit(nogil=True, pipeline_class=PartCompiler, **options, **ARITHMETIC, **PART)(
+        function
+    )
 
     def refuse(*_: Any, **__: Any) -> Any:
         raise TypeError(f"{function.__name__} is called by compiled code only")

@@ -14,7 +14,7 @@ from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.oscillation import Swing
 from stiction.solver.exact.slip_frame import Frame, friction, pull
 from stiction.solver.problem import Problem
-from stiction.solver.radau import A, C, D
+from stiction.solver.radau import FIRST, SECOND, THIRD, A, C, D
 from stiction.solver.surface import Flow, flow
 
 
@@ -122,9 +122,9 @@ def factors(
     s2: Stage,
 ) -> Factors:
     """Return the eliminated Jacobian at the given stages."""
-    pp0, pw0, wp0, ww0 = jacobian_rows(frame, h, 0, p, w, s0)
-    pp1, pw1, wp1, ww1 = jacobian_rows(frame, h, 1, p, w, s1)
-    pp2, pw2, wp2, ww2 = jacobian_rows(frame, h, 2, p, w, s2)
+    pp0, pw0, wp0, ww0 = jacobian_rows(frame, h, FIRST, p, w, s0)
+    pp1, pw1, wp1, ww1 = jacobian_rows(frame, h, SECOND, p, w, s1)
+    pp2, pw2, wp2, ww2 = jacobian_rows(frame, h, THIRD, p, w, s2)
     if landing:  # the last unknown is the step size
         pp0, wp0 = by_step_size(h, w[0], s0, swing.rest_by_h[0], pp0, wp0)
         pp1, wp1 = by_step_size(h, w[1], s1, swing.rest_by_h[1], pp1, wp1)

@@ -8,6 +8,7 @@ from stiction.solver.exact.collocation import factors, stage
 from stiction.solver.exact.oscillation import Oscillator, Swing, swing
 from stiction.solver.exact.slip_frame import Frame
 from stiction.solver.problem import Problem
+from stiction.solver.radau import FIRST, SECOND, THIRD
 from stiction.solver.state import Accuracy
 
 ITERATIONS = 10
@@ -51,9 +52,9 @@ def solve(
     iteration contracts. One exact iteration squares the relative error; hence the test on the
     square of the first correction: (M32) and (M33).
     """
-    s0 = stage(problem, frame, s, h, 0, p, w, products(p, w))
-    s1 = stage(problem, frame, s, h, 1, p, w, products(p, w))
-    s2 = stage(problem, frame, s, h, 2, p, w, products(p, w))
+    s0 = stage(problem, frame, s, h, FIRST, p, w, products(p, w))
+    s1 = stage(problem, frame, s, h, SECOND, p, w, products(p, w))
+    s2 = stage(problem, frame, s, h, THIRD, p, w, products(p, w))
     m = factors(frame, s, h, landing, p, w, s0, s1, s2)
     speed = accuracy.speed
     enough = accuracy.newton * min(1.0, motion / (speed + frame.r))
@@ -82,9 +83,9 @@ def solve(
             return True, s, p, w, h, iteration
         if iteration > 3 and rate > 1.0:
             return False, s, p, w, h, iteration
-        s0 = stage(problem, frame, s, h, 0, p, w, products(p, w))
-        s1 = stage(problem, frame, s, h, 1, p, w, products(p, w))
-        s2 = stage(problem, frame, s, h, 2, p, w, products(p, w))
+        s0 = stage(problem, frame, s, h, FIRST, p, w, products(p, w))
+        s1 = stage(problem, frame, s, h, SECOND, p, w, products(p, w))
+        s2 = stage(problem, frame, s, h, THIRD, p, w, products(p, w))
         if rate > 0.1:
             m = factors(frame, s, h, landing, p, w, s0, s1, s2)
         last = size

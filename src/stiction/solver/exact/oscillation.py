@@ -17,7 +17,7 @@ from math import sqrt
 from typing import NamedTuple
 
 from stiction.solver.block_algebra import Triple, dot
-from stiction.solver.compilation.jit import inlined
+from stiction.solver.compilation.jit import inlined, switch
 from stiction.solver.exact.slip_frame import Frame, Outset
 from stiction.solver.radau import DERIVATIVE, INTEGRAL, INTERIOR, VALUE, A, C, D
 from stiction.solver.state import Accuracy
@@ -124,6 +124,9 @@ def after(o: Oscillator, t: float) -> tuple[float, float, float]:
     u = propagator(o, 0.25 * t)
     u = then(o, u, u)
     return moved(o, then(o, u, u), t)
+
+
+NO_LANDING = switch(False)
 
 
 @inlined

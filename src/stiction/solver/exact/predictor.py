@@ -11,7 +11,7 @@ from stiction.solver.exact.newton import products
 from stiction.solver.exact.oscillation import Oscillator, Swing, after, swings
 from stiction.solver.exact.slip_frame import Frame, Outset, elongation
 from stiction.solver.problem import Problem
-from stiction.solver.radau import A, C, D, cubic
+from stiction.solver.radau import FIRST, SECOND, THIRD, A, C, D, cubic
 from stiction.solver.state import Memory
 from stiction.solver.stick import margin
 
@@ -101,9 +101,9 @@ def swung(frame: Frame, start: Outset, s: Swing, h: float) -> tuple[Triple, Trip
     p, k_12, k_22 = s.p, frame.k_12, frame.k_22
     slid, pull = times(A, p), start.a_2 - start.turn
     m = (
-        turn_row(start, s, 0, h, p, k_22),
-        turn_row(start, s, 1, h, p, k_22),
-        turn_row(start, s, 2, h, p, k_22),
+        turn_row(start, s, FIRST, h, p, k_22),
+        turn_row(start, s, SECOND, h, p, k_22),
+        turn_row(start, s, THIRD, h, p, k_22),
     )
     right = (
         h * (pull + h * (C[0] * start.da_2 - k_12 * (slid[0] + s.slid[0]))),

@@ -18,7 +18,7 @@ from stiction.solver.block_algebra import Triple, dot, less
 from stiction.solver.compilation.jit import inlined, piece
 from stiction.solver.exact.error_estimate import moving
 from stiction.solver.exact.newton import products, solve
-from stiction.solver.exact.oscillation import Swing, after, oscillator, swing, swings
+from stiction.solver.exact.oscillation import NO_LANDING, Swing, after, oscillator, swing, swings
 from stiction.solver.exact.slip_frame import Frame, Outset, elongation, friction
 from stiction.solver.problem import Problem, in_principal_axes, travel
 from stiction.solver.radau import A, C, cubic, integral
@@ -46,7 +46,7 @@ def within(
     if dt <= 0.0:
         return 0.0, 0.0, frame.r, 0.0
     o, x = oscillator(frame, start), dt / h
-    s = swing(o, dt, False)
+    s = swing(o, dt, NO_LANDING)
     if dt == h:
         return ended(h, s, p, w)
     rest, way = less(p, laid.p), (0.0, w[0], w[1], w[2])
@@ -70,7 +70,7 @@ def within(
         )
     turn = cubic(way, C[0] * x), cubic(way, C[1] * x), cubic(way, x)
     first = q[2], turn[2]
-    found, s, q, turn, _, _ = solve(problem, frame, o, s, dt, False, q, turn, accuracy, motion)
+    found, s, q, turn, _, _ = solve(problem, frame, o, s, dt, NO_LANDING, q, turn, accuracy, motion)
     if found and min(q) >= 0.0:
         return ended(dt, s, q, turn)
     slid = after(o, dt)[2] if swings(o, h) else 0.0

@@ -8,7 +8,7 @@ from stiction.solver.block_algebra import Triple
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.error_estimate import dips, local_error, moving
 from stiction.solver.exact.newton import solve
-from stiction.solver.exact.oscillation import Swing, oscillator, swing, within_reach
+from stiction.solver.exact.oscillation import NO_LANDING, Swing, oscillator, swing, within_reach
 from stiction.solver.exact.predictor import passes, predicted, swung_to_rest, time_to_landing
 from stiction.solver.exact.slip_frame import Frame, Outset
 from stiction.solver.problem import Problem
@@ -58,7 +58,7 @@ def step(
         else:
             h, landing = rest, True
     may_land = frame.r > 0.0
-    s = swing(o, 0.0, False)
+    s = swing(o, 0.0, NO_LANDING)
     rejected = iterations = 0
     warm = False
     p = w = (0.0, 0.0, 0.0)

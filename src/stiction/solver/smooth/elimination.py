@@ -12,7 +12,7 @@ from stiction.solver.block_algebra import Matrix, Triple, inverse, less, product
 from stiction.solver.compilation.jit import inlined, piece
 from stiction.solver.radau import D
 from stiction.solver.smooth.right_hand_side import Point, Stages
-from stiction.solver.smooth.workspace import INSIDE, START, Workspace
+from stiction.solver.smooth.workspace import INSIDE, START, Workspace, X, Y
 
 Blocks = tuple[Matrix, Matrix, Matrix, Matrix]
 # coefficients of two equations (xx, xy, yx, yy) and their residuals
@@ -45,18 +45,18 @@ def put_diagonal(w: Workspace, i: int, j: int, d: Triple) -> None:
 def without_states(h: float, stages: Stages, slip: Blocks, w: Workspace) -> Blocks:
     """Return the blocks of slip x and y (xx, xy, yx, yy) after eliminating the states."""
     n, jacobian = w.size.shape[0], w.jacobian
-    put(w, 0, 0, slip[0])
-    put(w, 0, 1, slip[1])
-    put(w, 1, 0, slip[2])
-    put(w, 1, 1, slip[3])
+    put(w, X, X, slip[0])
+    put(w, X, Y, slip[1])
+    put(w, Y, X, slip[2])
+    put(w, Y, Y, slip[3])
     xx, xy, yy = stages.s_xx, stages.s_xy, stages.s_yy
     for k in range(2, n):
         x1, x2, x3 = jacobian[1, k, 0], jacobian[2, k, 0], jacobian[3, k, 0]
         y1, y2, y3 = jacobian[1, k, 1], jacobian[2, k, 1], jacobian[3, k, 1]
         by_x = x1 * xx[0] + y1 * xy[0], x2 * xx[1] + y2 * xy[1], x3 * xx[2] + y3 * xy[2]
         by_y = x1 * xy[0] + y1 * yy[0], x2 * xy[1] + y2 * yy[1], x3 * xy[2] + y3 * yy[2]
-        put_diagonal(w, k, 0, (-h * by_x[0], -h * by_x[1], -h * by_x[2]))
-        put_diagonal(w, k, 1, (-h * by_y[0], -h * by_y[1], -h * by_y[2]))
+        put_diagonal(w, k, X, (-h * by_x[0], -h * by_x[1], -h * by_x[2]))
+        put_diagonal(w, k, Y, (-h * by_y[0], -h * by_y[1], -h * by_y[2]))
         for a in range(n):
             sign = h if a < 2 else -h
             own = sign * jacobian[1, a, k], sign * jacobian[2, a, k], sign * jacobian[3, a, k]
@@ -71,7 +71,7 @@ def without_states(h: float, stages: Stages, slip: Blocks, w: Workspace) -> Bloc
             by_state = block(w, a, k)
             for b in range(k):
                 put(w, a, b, difference(block(w, a, b), product(by_state, block(w, k, b))))
-    return block(w, 0, 0), block(w, 0, 1), block(w, 1, 0), block(w, 1, 1)
+    return block(w, X, X), block(w, X, Y), block(w, Y, X), block(w, Y, Y)
 
 
 @inlined
@@ -104,8 +104,8 @@ def enter(w: Workspace, k: int, x: Triple) -> None:
 @piece
 def residuals_without(h: float, x: Triple, y: Triple, w: Workspace) -> tuple[Triple, Triple]:
     """Return the residuals of slip x and y after eliminating those of the states (M67)."""
-    enter(w, 0, x)
-    enter(w, 1, y)
+    enter(w, X, x)
+    enter(w, Y, y)
     for k in range(w.size.shape[0] - 1, 1, -1):
         v = w.values
         z = v[1, k] - v[START, k], v[2, k] - v[START, k], v[3, k] - v[START, k]
@@ -116,7 +116,7 @@ def residuals_without(h: float, x: Triple, y: Triple, w: Workspace) -> tuple[Tri
         enter(w, k, found)
         for a in range(k):
             enter(w, a, less(entry(w, a), times(block(w, a, k), found)))
-    return entry(w, 0), entry(w, 1)
+    return entry(w, X), entry(w, Y)
 
 
 @piece
@@ -125,8 +125,8 @@ def correct_states(x: Triple, y: Triple, w: Workspace) -> float:
 
     That is relative to the states' sizes.
     """
-    enter(w, 0, x)
-    enter(w, 1, y)
+    enter(w, X, x)
+    enter(w, Y, y)
     size = 0.0
     for k in range(2, w.size.shape[0]):
         found = entry(w, k)

@@ -19,7 +19,7 @@ from stiction.solver.smooth.coordinate import coordinate
 from stiction.solver.smooth.elimination import correct_states_inside, slip_without_states
 from stiction.solver.smooth.newton import corrected, larger
 from stiction.solver.smooth.right_hand_side import Outset, Point, evaluate, inertia_share, pull
-from stiction.solver.smooth.workspace import INSIDE, START, Workspace
+from stiction.solver.smooth.workspace import INSIDE, START, WANTED, Workspace
 from stiction.solver.state import Accuracy
 
 ITERATIONS = 20
@@ -108,7 +108,7 @@ def balance(
     damping_x, damping_y = g * system.c_x * system.per_mass, g * system.c_y * system.per_mass
     given_x, given_y = p.s_x - weight * p.d_x + g * a_x, p.s_y - weight * p.d_y + g * a_y
     x, y = 1.0 + damping_x, 1.0 + damping_y
-    at = evaluate(problem, eps, load, q_x, q_y, w, INSIDE, True)
+    at = evaluate(problem, eps, load, q_x, q_y, w, INSIDE, WANTED)
     for _ in range(ITERATIONS):
         r_x, r_y = x * at.s_x + g * at.f_x - given_x, y * at.s_y + g * at.f_y - given_y
         xx, xy = x * at.s_xx + g * at.f_xx, x * at.s_xy + g * at.f_xy
@@ -128,7 +128,7 @@ def balance(
             size = larger(correct_states_inside(d_x, d_y, w), size)
         if not size < 1e100:
             return False, at
-        at = evaluate(problem, eps, load, q_x, q_y, w, INSIDE, True)
+        at = evaluate(problem, eps, load, q_x, q_y, w, INSIDE, WANTED)
         if size < enough or size * size < enough:
             return True, at
     return False, at

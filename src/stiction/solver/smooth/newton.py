@@ -25,7 +25,7 @@ from stiction.solver.smooth.right_hand_side import (
     inertia_share,
     pull,
 )
-from stiction.solver.smooth.workspace import START, Workspace
+from stiction.solver.smooth.workspace import FIRST, LAST, SECOND, START, WANTED, Workspace
 from stiction.solver.state import Accuracy
 
 ITERATIONS = 14
@@ -79,9 +79,9 @@ def stages_at(
     wanted: bool,
 ) -> Stages:
     """Return what holds at the stages."""
-    a: Point = evaluate(problem, eps, pulls[0].load, q_x[0], q_y[0], w, 1, wanted)
-    b: Point = evaluate(problem, eps, pulls[1].load, q_x[1], q_y[1], w, 2, wanted)
-    c: Point = evaluate(problem, eps, pulls[2].load, q_x[2], q_y[2], w, 3, wanted)
+    a: Point = evaluate(problem, eps, pulls[0].load, q_x[0], q_y[0], w, FIRST, wanted)
+    b: Point = evaluate(problem, eps, pulls[1].load, q_x[1], q_y[1], w, SECOND, wanted)
+    c: Point = evaluate(problem, eps, pulls[2].load, q_x[2], q_y[2], w, LAST, wanted)
     return Stages(
         (a.s_x, b.s_x, c.s_x),
         (a.s_y, b.s_y, c.s_y),
@@ -213,7 +213,7 @@ def solve(
     y = linear(h, system.k_y * per, system.c_y * per, s_y, along_y)
     enough = max(min(accuracy.newton, 0.01 * accuracy.tolerance) * start.share, CLOSEST)
     last, fresh = 1.0, True
-    at = stages_at(problem, eps, pulls, q_x, q_y, w, True)
+    at = stages_at(problem, eps, pulls, q_x, q_y, w, WANTED)
     m = factors(h, x, y, at, w)
     share = shares(problem, h, q_x, q_y, at) if eps < inf else (1.0, 1.0, 1.0)
     for iteration in range(1, ITERATIONS + 1):

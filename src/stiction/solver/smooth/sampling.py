@@ -19,7 +19,7 @@ from stiction.solver.smooth.dispatch import flow
 from stiction.solver.smooth.error_estimate import balance, less_error, within
 from stiction.solver.smooth.newton import solve
 from stiction.solver.smooth.right_hand_side import Outset
-from stiction.solver.smooth.workspace import INSIDE, LAST, START, Workspace
+from stiction.solver.smooth.workspace import INSIDE, LAST, START, UNWANTED, Workspace
 from stiction.solver.state import Accuracy
 
 
@@ -46,7 +46,7 @@ def sample(
             u_x -= dt * dot(A[2], (v[1, 0], v[2, 0], v[3, 0]))
             u_y -= dt * dot(A[2], (v[1, 1], v[2, 1], v[3, 1]))
             slip, load = (v[LAST, 0], v[LAST, 1]), at(problem.load, start.t + dt)
-            f = flow(problem.law, slip, load, problem.system.per_mass, inner, LAST, False)
+            f = flow(problem.law, slip, load, problem.system.per_mass, inner, LAST, UNWANTED)
             write(problem, u_x, u_y, slip, (f[0], f[1]), samples, k)
             write_states(inner, LAST, samples, k)
         else:  # the weight grows from zero at the start: there the polynomial is right

@@ -7,15 +7,16 @@ states lies here; slip and friction of a step are numbers of their own.
 
 from __future__ import annotations
 
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 
-from stiction.solver.compilation.jit import allocating
+from stiction.solver.compilation.jit import allocating, number, switch
 
 ROWS = 6
-# stages: 1, 2, 3; numbers of numpy, or numba would compile for each of them anew
-START, LAST, INSIDE, TRIAL = (cast(int, np.int64(row)) for row in (0, 3, 4, 5))
+START, FIRST, SECOND, LAST, INSIDE, TRIAL = map(number, range(ROWS))  # rows
+X, Y = number(0), number(1)  # columns
+WANTED, UNWANTED = switch(True), switch(False)  # derivatives
 
 
 class Workspace(NamedTuple):
