@@ -26,15 +26,15 @@ class Test(NamedTuple):
 
 
 def watched(items: Sequence[pytest.Item], sources: Sequence[Path], longest: float) -> Answer:
-    """Run tests, each for so many CPU seconds at most; return those that pass, and the others."""
+    """Run tests; return those that pass in so many CPU seconds, and the others."""
     coverage = Coverage(data_file=None, include=[str(each) for each in sources])
     coverage.start()
     coverage.switch_context(items[0].nodeid)
     passing, others = {}, []
     names = [*(item.nodeid for item in items[1:]), ""]
-    for (item, passed, seconds), following in zip(run(items, longest), names, strict=True):
+    for (item, passed, seconds), following in zip(run(items), names, strict=True):
         coverage.switch_context(following)
-        if passed:
+        if passed and seconds <= longest:
             passing[item.nodeid] = seconds
         else:
             others.append(item.nodeid)

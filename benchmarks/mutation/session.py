@@ -86,33 +86,15 @@ def _child(task: Callable[[], Answer], seconds: float, sending: int) -> None:
         os._exit(0)
 
 
-class TooSlow(BaseException):
-    """A test has taken longer than it may."""
-
-
-def stop(*_: Any) -> None:
-    """End the test at hand."""
-    raise TooSlow
-
-
-def run(
-    items: Sequence[pytest.Item], longest: float = 0.0
-) -> Iterator[tuple[pytest.Item, bool, float]]:
+def run(items: Sequence[pytest.Item]) -> Iterator[tuple[pytest.Item, bool, float]]:
     """Run tests; yield each with whether it passed and how long it took (CPU s).
 
-    One that takes longer than `longest`, if that is given, has not passed.
+    None is cut short from inside: what it holds, such as a lock, would be held for good.
     """
-    signal.signal(signal.SIGVTALRM, stop)
     for item, following in zip(items, [*items[1:], None], strict=True):
         began = time.process_time()
-        try:
-            signal.setitimer(signal.ITIMER_VIRTUAL, longest)
-            reports = runtestprotocol(item, log=False, nextitem=following)
-            signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
-            passed = all(each.passed for each in reports)
-        except TooSlow:  # between its setup and its teardown
-            passed = False
-        yield item, passed, time.process_time() - began
+        reports = runtestprotocol(item, log=False, nextitem=following)
+        yield item, all(each.passed for each in reports), time.process_time() - began
 
 
 def first_failure(items: Sequence[pytest.Item]) -> str:
