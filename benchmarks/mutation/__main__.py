@@ -58,7 +58,9 @@ def main() -> int:
     parser.add_argument("--tests", nargs="+", default=TESTS, help="files, folders")
     parser.add_argument("--mutants", type=int, default=500, help="how many")
     parser.add_argument("--seed", type=int, default=1, help="of the sample")
-    parser.add_argument("--results", type=Path, default=Path("mutation"), help="folder to keep")
+    parser.add_argument(
+        "--results", type=Path, default=Path("mutation-results"), help="folder to keep"
+    )
     parser.add_argument(
         "--longest", type=float, default=2.0, help="CPU s that a test takes at most"
     )
