@@ -228,8 +228,53 @@ def write_gradient(
 
     They are the law's own, or forward differences.
     """
-    rows = np.array(gradient(law, slip, load, states_in(law, values, i)))
-    jacobian[i] = rows * np.where(np.arange(len(rows)) < 2, per_mass, 1.0)[:, None]
+    write = own_gradient if hasattr(law, "gradient") else differences
+    write(law, slip, load, per_mass, values, i, flow, jacobian, size)
+
+
+@register_jitable
+def own_gradient(
+    law: Any,
+    slip: Vector,
+    load: float,
+    per_mass: float,
+    values: np.ndarray,
+    i: int,
+    flow: np.ndarray,
+    jacobian: np.ndarray,
+    size: np.ndarray,
+) -> None:
+    """Do as `write_gradient` for a law that gives its derivatives."""
+    rows = gradient(law, slip, load, states_in(law, values, i))
+    for j in range(len(size)):
+        for k in range(len(size)):
+            jacobian[i, j, k] = rows[j][k] * per_mass if j < 2 else rows[j][k]
+
+
+@register_jitable
+def differences(
+    law: Any,
+    slip: Vector,
+    load: float,
+    per_mass: float,
+    values: np.ndarray,
+    i: int,
+    flow: np.ndarray,
+    jacobian: np.ndarray,
+    size: np.ndarray,
+) -> None:
+    """Do as `write_gradient` for any other."""
+    at = values[TRIAL]
+    at[:] = values[i]
+    at[0], at[1] = slip
+    for k in range(len(size)):
+        before = at[k]
+        at[k] = before + INCREMENT * (size[k] + abs(before))
+        per = 1.0 / (at[k] - before)
+        write_flow(law, (at[0], at[1]), load, per_mass, values, TRIAL, flow)
+        for j in range(len(size)):
+            jacobian[i, j, k] = (flow[TRIAL, j] - flow[i, j]) * per
+        at[k] = before
 
 
 def states_in(law: Any, values: np.ndarray, i: int) -> tuple[float, ...]:
@@ -291,45 +336,7 @@ def _write_gradient(
     jacobian: Any,
     size: Any,
 ) -> Callable[..., None]:
-    n = _count(law) + 2
-
-    def own(
-        law: Any,
-        slip: Any,
-        load: Any,
-        per_mass: Any,
-        values: Any,
-        i: Any,
-        flow: Any,
-        jacobian: Any,
-        size: Any,
-    ) -> None:
-        rows = gradient(law, slip, load, states_in(law, values, i))
-        for j in range(n):
-            for k in range(n):
-                jacobian[i, j, k] = rows[j][k] * per_mass if j < 2 else rows[j][k]
-
-    def differences(
-        law: Any,
-        slip: Any,
-        load: Any,
-        per_mass: Any,
-        values: Any,
-        i: Any,
-        flow: Any,
-        jacobian: Any,
-        size: Any,
-    ) -> None:
-        at = values[TRIAL]
-        at[:] = values[i]
-        at[0], at[1] = slip
-        for k in range(n):
-            before = at[k]
-            at[k] = before + INCREMENT * (size[k] + abs(before))
-            per = 1.0 / (at[k] - before)
-            write_flow(law, (at[0], at[1]), load, per_mass, values, TRIAL, flow)
-            for j in range(n):
-                jacobian[i, j, k] = (flow[TRIAL, j] - flow[i, j]) * per
-            at[k] = before
-
-    return own if hasattr(law.instance_class, "gradient") else differences
+    write: Any = own_gradient if hasattr(law.instance_class, "gradient") else differences
+    return lambda law, slip, load, per_mass, values, i, flow, jacobian, size: write(
+        law, slip, load, per_mass, values, i, flow, jacobian, size
+    )
