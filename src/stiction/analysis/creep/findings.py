@@ -24,6 +24,7 @@ T = TypeVar("T")
 KNOWN = 0.25  # largest useful standard error, of the exponent, or of the angle relative to it
 SURE = 2.0  # standard errors
 MISSED = 0.1  # of the creep: Eq. (7) does not describe curves with a larger misfit
+SCATTER = 2.0  # standard errors, root mean square: nor those that deviate by more
 RESTS = 1e-6  # of the drive velocity: slower motion, most of the time, counts as rest
 BACKWARD, SOME = 0.02, 0.25  # of the drive velocity; of the bins: limits of backward creep
 
@@ -144,10 +145,13 @@ def _misalignment(mean: xr.Dataset, V: float, stiffness: float) -> Misalignment:
     if np.nanmedian(np.abs(mean["velocity"].values)) < RESTS * V:
         raise ResultError("not determined: the mass rests, where Eq. (7) has it creep")
     found = fit_misalignment(mean, V, stiffness)
-    if found.misfit > MISSED:
+    if found.misfit > MISSED or found.scatter > SCATTER:
+        by = (
+            f"{100.0 * found.misfit:.2g}%" if found.misfit > MISSED else "more than its uncertainty"
+        )
         raise ResultError(
             "not determined: Eq. (7), which supposes slow loading and a spring that is far "
-            f"stiffer across, misses this creep by {100.0 * found.misfit:.2g}%"
+            f"stiffer across, misses this creep by {by}"
         )
     if not found.phi_error < KNOWN * abs(found.phi):
         most = degrees(abs(found.phi) + SURE * found.phi_error)

@@ -115,8 +115,8 @@ def test_the_misalignment_that_a_run_implies(slider, degrees):
     run = st.simulate(slider.replace(phi=f"{degrees} deg"), 5.0, sample_rate=10e3)
     mean = st.mean_creep(st.creep_curves(run, st.find_cycles(st.record_of(run))))
     found = st.fit_misalignment(mean, V, K)
-    assert abs(found.phi - radians(degrees)) < 2 * found.phi_error < 0.01 * radians(degrees)
-    assert pytest.approx(F_0, rel=0.005) == found.F_0
+    assert abs(found.phi - radians(degrees)) < 2 * found.phi_error < 0.015 * radians(degrees)
+    assert abs(found.F_0 - F_0) < 2 * found.F_0_error < 0.02 * F_0
 
 
 def test_the_misalignment_of_the_closed_form_is_exact():
@@ -251,3 +251,23 @@ def test_what_rests_before_slip_implies_no_angle():
         "not determined: the mass rests, where Eq. (7) has it creep"
     )
     assert "before slip it rests" in str(found)
+
+
+@pytest.mark.parametrize("degrees", [2, 5, 8, 12, 16, 20, 25])
+def test_the_implied_angle_holds_where_creep_weakens_friction(slider, degrees):
+    """With friction taken as constant the angle was 1 to 2 % low above 5 deg, 2 to 5 errors."""
+    turned = slider.replace(phi=f"{degrees} deg")
+    run = st.simulate(turned, 3.0 * turned.F_0 / turned.k_x / V, sample_rate=700.0)
+    found = st.analyse(run).misalignment
+    low, high = found.interval
+    assert low < turned.phi < high
+    assert found.phi_error < 0.04 * turned.phi
+    kept = turned.law.coefficient(V) / turned.law.coefficient(0.0)
+    assert found.weakening == pytest.approx(1.0 / kept - 1.0, abs=0.03)
+
+
+def test_an_angle_is_not_implied_where_the_mass_lags(slider):
+    """Loading within few periods of the soft spring: angles were off by a quarter, "+- 2 %"."""
+    fast = slider.replace(phi="16 deg", drive=st.ConstantVelocity("40 mm/s"))
+    run = st.simulate(fast, 0.15, sample_rate=30e3)
+    assert st.analyse(run).misalignment is None
