@@ -240,3 +240,33 @@ def test_states_have_names_and_units():
     assert [(s.name, s.unit) for s in states(LUGRE)] == [("z_x", "m"), ("z_y", "m")]
     assert [s.name for s in states(st.RateStateSlip(**RATE))] == ["log_theta"]
     assert states(st.Coulomb(0.2)) == ()
+
+
+STATE_LAWS = [
+    (st.RateStateAgeing(**RATE), (1.3,)),
+    (st.RateStateSlip(**RATE), (1.3,)),
+    (st.RateStateAgeing2(0.01, 0.012, 1e-5, 0.005, 1e-4, 0.6, 1e-6), (1.3, -0.4)),
+    (st.RateStateSlip2(0.01, 0.012, 1e-5, 0.005, 1e-4, 0.6, 1e-6), (1.3, -0.4)),
+    (LUGRE, (1e-6, 2e-6)),
+]
+
+
+@pytest.mark.parametrize(("law", "state"), STATE_LAWS)
+@pytest.mark.parametrize("slip", [(3e-3, -4e-3), (-3e-38, 4e-38)])
+def test_the_gradient_of_a_law_with_state(law, state, slip):
+    """By differences of force and change in slip x, y and each state; also far below eps."""
+    unit = hypot(*slip)
+    steps = [1e-6 * unit] * 2 + [1e-6 * max(abs(z) for z in state)] * len(state)
+
+    def at(x):
+        return np.array(
+            [*law.force((x[0], x[1]), 10.0, x[2:]), *law.change((x[0], x[1]), 10.0, x[2:])]
+        )
+
+    x, columns = np.array([*slip, *state]), []
+    for i, h in enumerate(steps):
+        off = h * np.eye(len(x))[i]
+        columns.append((at(tuple(x + off)) - at(tuple(x - off))) / (2 * h))
+    found, wanted = np.array(law.gradient(slip, 10.0, state)), np.transpose(columns)
+    scale = np.abs(at(tuple(x)))[:, None] / np.array(steps) * 1e-9  # rounding
+    assert (np.abs(found - wanted) < 1e-7 * np.abs(wanted) + scale + 1e-300).all()

@@ -7,6 +7,7 @@ import pytest
 from tests.unit.solver.systems import ELLIPSE, PROGRAM, STEADY
 
 import stiction as st
+from stiction.drive import jump
 from stiction.solver.integrate import accuracy, slip_jump, steepest_weakening, tolerance
 from stiction.solver.segments import stretches
 
@@ -111,4 +112,8 @@ def test_a_driven_plate_takes_the_slip_along_in_a_jump():
     c, sine = s.direction
     assert slip_jump(s, 0.3) == pytest.approx((4e-3 * c, 4e-3 * sine))
     assert slip_jump(s, 0.2) == (0.0, 0.0)
+    sideways = st.DriveProgram(velocity="2 mm/s", across=st.Modulation("3 mm/s", 40.0, "90 deg"))
+    begun = slip_jump(STEADY.replace(drive=sideways), 0.0)
+    X, Y = jump(STEADY.replace(drive=sideways).motion, 0.0)
+    assert begun == pytest.approx((X * c - Y * sine, X * sine + Y * c))
     assert slip_jump(s.replace(driven="spring"), 0.3) == (0.0, 0.0)

@@ -289,6 +289,9 @@ def test_second_derivatives_of_uneven_samples():
     time = np.array([0.0, 0.1, 0.3, 0.4, 0.8])
     values = 3.0 * time**2 - time
     assert peak_refinement._bend(time, values, np.array([1, 2, 3])) == pytest.approx([6.0] * 3)
+    cubic = time**3  # its second divided difference is twice the sum of the three times
+    wanted = 2.0 * (time[:-2] + time[1:-1] + time[2:])
+    assert peak_refinement._bend(time, cubic, np.array([1, 2, 3])) == pytest.approx(wanted)
 
 
 @pytest.mark.parametrize("degree", [0, 1, 2])

@@ -11,7 +11,7 @@ from tests.unit.solver.systems import SLIDERS, Printed, motion_of, problem_of
 
 import stiction as st
 from stiction.solver import stick as sticking
-from stiction.solver.exact import loop
+from stiction.solver.exact import loop, pursuit, slip_frame
 from stiction.solver.state import (
     COMPLETED,
     NON_FINITE,
@@ -179,3 +179,32 @@ def test_the_loop_ends_where_it_is_to_and_goes_on(name):
     never = held_to(1e-4)._replace(newton=0.0)
     sliding = state._replace(motion=state.motion._replace(r=1e-2))
     assert advanced(name, sliding, 0.45, accuracy=never)[0] == STEP_UNDERFLOW
+
+
+def test_a_landing_in_closed_form_and_its_samples():
+    """(M49): the state at zero slip, and what is left of the slip at each time before."""
+    problem = problem_of("steady")
+    frame = plain(slip_frame.frame_of)(problem, motion_of(5e-4, 1e-5, 9e-7, 4e-7))
+    start = plain(slip_frame.outset)(problem, frame)
+    closed = plain(pursuit.pursuit)(problem, frame, start, held_to(1.0)._replace(speed=1.0))
+    T, t = closed[0], frame.t
+    times, samples = t + T * np.array([-1.0, 0.4, 0.6, 2.0]), np.zeros((4, 7))
+    state = at_rest_at((0.0, 0.0))
+    found, k = plain(pursuit.land)(problem, frame, start, state, closed, times, samples, 1)
+    assert k == 3
+    u = plain(slip_frame.elongation)(problem, frame, *closed)
+    assert found.motion == pytest.approx((t + T, *u, 0.0, frame.e_x, frame.e_y))
+    assert found.memory == MEMORY._replace(h=1e-5, place=0, warm=False)
+    assert not samples[[0, 3]].any()
+    for time, row in zip(times[1:3], samples[1:3], strict=True):
+        before = plain(pursuit.slip_before_landing)
+        speed, n_1, n_2 = before(frame.r, start.a_1, start.a_2, start.f, t + T - time)
+        e = np.array([frame.e_x, frame.e_y]), np.array([-frame.e_y, frame.e_x])
+        assert row[2:4] == pytest.approx(speed * (n_1 * e[0] + n_2 * e[1]), rel=1e-9)
+        assert np.hypot(*row[4:6]) == pytest.approx(start.f * problem.system.mass)
+        assert row[:2] == pytest.approx([frame.u_x, frame.u_y], rel=1e-2)
+    # what is slipped between two samples is the integral of the slip, about linear in time
+    driven = np.array([problem.system.cos_phi, problem.system.sin_phi]) * 2e-3
+    gone = driven * np.diff(times[1:3]) - np.diff(samples[1:3, :2], axis=0)[0]
+    wanted = 0.5 * (samples[1, 2:4] + samples[2, 2:4]) * np.diff(times[1:3])
+    assert gone == pytest.approx(wanted, rel=1e-2)
