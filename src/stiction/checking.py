@@ -54,13 +54,13 @@ class Check(NamedTuple):
 
     def tables(self) -> list[Section]:
         """Return the damaged parts and the remedy, as sentences."""
-        lines = [f"damaged: {name}" for name in self.damaged] or ["All is as it was written."]
+        lines = [f"damaged: {name}" for name in self.damaged] or ["Nothing is damaged."]
         if self.repaired:
             lines.append("It was computed again.")
         elif self.damaged:
             lines.append(f"Compute it again with: stiction check {self.path} --repair")
         if self.pending:
-            lines.append(f"{self.pending} blocks of runs are not done yet.")
+            lines.append(f"{self.pending} blocks of runs are still to be done.")
         return [Section(str(self.path), lines)]
 
 

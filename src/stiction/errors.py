@@ -75,7 +75,7 @@ class Status(Enum):
 
     COMPLETED = "the run reached its duration"
     STEP_UNDERFLOW = (
-        "no step, however short, met the tolerance: the friction law has a jump or is not a "
+        "even the shortest step missed the tolerance: the friction law has a jump or is not a "
         "number here, or the parameters cannot belong together; check them, or loosen rtol"
     )
     NON_FINITE = (

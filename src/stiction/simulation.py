@@ -188,17 +188,17 @@ def solve(
     """
     _, initial, settings = description
     if max_steps < 1:
-        raise DescriptionError([Fault("max_steps", f"must be 1 at least, is {max_steps}")])
+        raise DescriptionError([Fault("max_steps", f"must be at least 1, is {max_steps}")])
     if settings.regularisation is not None and has_state(description.slider.law):
         message = "the law is smooth at zero slip by itself; leave regularisation out"
         raise DescriptionError([Fault("run.regularisation", message)])
     initial.internal(description.slider)  # or say what is wrong with it
     clashing = [state.name for state in states(description.slider.law) if state.name in VARIABLES]
     if clashing:
-        message = f"has internal states {', '.join(clashing)}, which results name otherwise; rename"
+        message = f"has internal states {', '.join(clashing)}, which are taken in results; rename"
         raise DescriptionError([Fault("friction.law", message)])
     if initial.time + settings.duration == initial.time:
-        message = f"is too short to be seen from t = {initial.time:g} s; start earlier"
+        message = f"is below the resolution of time at t = {initial.time:g} s; start earlier"
         raise DescriptionError([Fault("run.duration", message)])
     try:
         return integrate(description, times, max_steps, progress)

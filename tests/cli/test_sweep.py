@@ -102,7 +102,7 @@ def test_a_bad_study_leaves_nothing_behind(config, tmp_path, capsys, change, say
 
 def test_engines_exclude_each_other(config, tmp_path, capsys):
     assert inside("sweep", config, "-o", tmp_path / "a.zarr", "--threads", 0) == 2
-    assert "must be 1 at least" in capsys.readouterr().err
+    assert "must be at least 1" in capsys.readouterr().err
     assert inside("sweep", config, "-o", tmp_path / "a.zarr", "--threads", 1, "--workers", 1) == 2
     assert "exclude each other" in capsys.readouterr().err
 

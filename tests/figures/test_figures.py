@@ -318,7 +318,7 @@ def test_save_writes_both_formats_small_and_whole(paper_run: st.Trajectory, tmp_
 
 
 def test_saving_in_vain_says_why(tmp_path: Path) -> None:
-    with pytest.raises(st.ResultError, match="no folder"):
+    with pytest.raises(st.ResultError, match="does not exist"):
         write(Figure(), tmp_path / "missing" / "a.png")
     with pytest.raises(st.ResultError, match=r"unknown format '\.bmp'"):
         write(Figure(), tmp_path / "a.bmp")

@@ -70,7 +70,7 @@ def test_a_port_that_another_scheduler_has_is_not_asked_for():
 def test_the_dashboard_is_shown_where_it_is_asked_for():
     assert engine(None, 2, None) == Processes(2, dashboard=False)
     assert engine(None, 2, None, True) == Processes(2, dashboard=True)
-    with pytest.raises(StictionError, match="--dashboard is of --workers"):
+    with pytest.raises(StictionError, match="--dashboard needs --workers"):
         engine(2, None, None, True)
 
 
@@ -141,7 +141,7 @@ def test_a_store_leads_nowhere_else(store, tmp_path, name):
     there.symlink_to(away)
     before = sorted(tmp_path.rglob("*"))
     for act in (lambda: st.sweep(study, path), lambda: st.open_study(path), lambda: st.map(path)):
-        with pytest.raises(st.ResultError, match=f"has a link in it, {name}"):
+        with pytest.raises(st.ResultError, match=f"contains a link, {name}"):
             act()
     assert sorted(tmp_path.rglob("*")) == before
 

@@ -173,7 +173,7 @@ def test_one_panel_figures_draw_on_given_axes(run):
 
 @pytest.mark.parametrize("verb", [st.run, st.audit, st.stability, st.Study.from_toml])
 def test_what_is_no_description_is_refused(verb):
-    with pytest.raises(st.DescriptionError, match="int is no description; give its file"):
+    with pytest.raises(st.DescriptionError, match="int is not a description; give its file"):
         verb(3)
 
 
@@ -245,10 +245,10 @@ def test_set_reaches_every_command_that_reads_a_description(config, tmp_path, ca
     ("text", "words"),
     [
         ("ph=3deg", "ph: unknown parameter 'ph'; did you mean 'phi'?"),
-        ("drive.program.7.to=3", "'7' is no element of a list of 1; they count from 1"),
+        ("drive.program.7.to=3", "'7' is not an element of a list of 1; elements count from 1"),
         ("phi.to=3", "phi.to: has no part 'to': it is '1 deg'"),
-        ("phi", "--set 'phi' is no NAME=VALUE"),
-        ("=3", "--set '=3' is no NAME=VALUE"),
+        ("phi", "--set 'phi' is not NAME=VALUE"),
+        ("=3", "--set '=3' is not NAME=VALUE"),
     ],
 )
 def test_a_path_that_leads_nowhere_says_where_it_ends(text, words):

@@ -182,14 +182,14 @@ def test_what_cannot_be_computed_again_is_said_to_be_lost(store, tmp_path, damag
     (path / "zarr.json").write_bytes(content)
     for door in (st.open_study, st.map, st.check, lambda path: st.sweep(STUDY, path)):
         with pytest.raises(
-            st.ResultError, match=r"zarr\.json.*do the study anew, in another store"
+            st.ResultError, match=r"zarr\.json.*run the study anew in another store"
         ):
             door(path)
     for more in ([], ["--repair"]):
         with pytest.raises(SystemExit) as end:
             cli.main(["check", str(path), *more])
         assert end.value.code == 2
-        assert "do the study anew" in " ".join(capsys.readouterr().err.split())
+        assert "run the study anew" in " ".join(capsys.readouterr().err.split())
     assert (path / "zarr.json").read_bytes() == content
 
 
@@ -222,11 +222,11 @@ def test_the_command_says_what_is_damaged(result, store, tmp_path, capsys):
         assert left.value.code == code
         return capsys.readouterr().out
 
-    assert "All is as it was written" in said(0, result)
-    assert "All is as it was written" in said(0, store)
+    assert "Nothing is damaged" in said(0, result)
+    assert "Nothing is damaged" in said(0, store)
     assert f"stiction check {path} --repair" in said(1, path)
     assert "computed again" in said(0, path, "--repair")
-    assert "All is as it was written" in said(0, path)
+    assert "Nothing is damaged" in said(0, path)
     said(2, tmp_path / "nothing")
 
 

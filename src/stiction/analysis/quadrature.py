@@ -164,5 +164,5 @@ def states_at(run: Trajectory, times: Floats) -> Floats:
     budget = AGAIN * (max(took.steps, 0) + max(took.mapped, 0) + 1000)
     rows = integrate(Description(slider, initial, until), times, budget, None).samples
     if len(rows) < len(times):
-        raise ResultError(f"the run, made once more, ends before {times[-1]:g} s; make it anew")
+        raise ResultError(f"the repeated run ends before {times[-1]:g} s; simulate it again")
     return rows

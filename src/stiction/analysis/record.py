@@ -34,7 +34,7 @@ def _samples(values: Any) -> Floats:
     except (TypeError, ValueError, OverflowError):
         raise ValueError("must be numbers, one a sample, in SI") from None
     if samples.ndim != 1:
-        raise ValueError(f"must have one dimension, has {samples.ndim}; give one number a sample")
+        raise ValueError(f"must have one dimension, has {samples.ndim}; give one number per sample")
     lost = np.flatnonzero(~np.isfinite(samples))
     if len(lost):
         raise ValueError(
@@ -230,7 +230,7 @@ def record_of(run: Trajectory) -> Record:
     columns = np.stack([data[name].values for name in ("time", "spring_x", "X", "slip_speed")])
     time, force, X, slip_speed = columns[:, np.isfinite(columns).all(axis=0)]
     if not len(time):
-        raise ResultError("no sample of the run is a number; make it anew")
+        raise ResultError("no sample of the run is a number; simulate it again")
     return Record(
         time=time,
         force=way * force,

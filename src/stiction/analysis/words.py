@@ -113,7 +113,7 @@ def plainly(found: Analysis) -> str:
         STUCK: "The mass sticks for the whole record: the force only rises.",
         IRREGULAR: "The mass vibrates irregularly.",
     }
-    return plain.get(kind, "What the mass does cannot be told from this record.")
+    return plain.get(kind, "This record does not show what the mass does.")
 
 
 def _stuck(found: Analysis) -> str:
@@ -159,7 +159,7 @@ def friction(found: Analysis) -> Section:
     if not rows:
         return Section("Friction", lines)
     if not isinstance(found.source, Trajectory) and found.record.zero is None:
-        lines.append("The zero of the force is taken on trust: no reading without load is given.")
+        lines.append("The zero of the force is assumed: no reading without load is given.")
     return Section("Friction", lines, Table(("friction", "µ", "force", "spread"), rows))
 
 
@@ -196,7 +196,7 @@ def _hesitations(table: xr.Dataset) -> list[str]:
     return [
         f"In {cycles} the force hesitates: before or within its fall "
         f"it turns back by up to {most:.2g}% of that fall. What turns back by less than "
-        f"{in_words(least, 'N')} does not stand apart from noise and ripple, and is not counted."
+        f"{in_words(least, 'N')} cannot be distinguished from noise and ripple, and is not counted."
     ]
 
 
@@ -261,9 +261,7 @@ def oscillation(found: Analysis) -> Section:
     pitch = f"between {low} and {high}" if low != high else f"at {low}"
     lines = [f"Seen in {share:.3g}% of the time, {pitch}."]
     if of_mains(float(np.median(seen))):
-        lines[0] += (
-            " That is the frequency of the mains, or twice it: it is hum, in all likelihood."
-        )
+        lines[0] += " That is the frequency of the mains, or twice it: it is probably hum."
     if found.phases is None:
         return Section("Oscillation", lines)
     natural = found.oscillation.attrs["natural_frequency"]

@@ -79,8 +79,8 @@ def motions(found: Audit) -> list[str]:
     name = SEEN.get(rest.motion, rest.motion)
     if found.bistable:
         return [
-            f"Two motions are possible (it is bistable): from rest it comes to {name}; once it "
-            "slides steadily, it goes on sliding steadily.",
+            f"Two motions are possible (it is bistable): from rest it reaches {name}; once it "
+            "slides steadily, it continues to slide steadily.",
             f"From rest, springs unloaded: {described(rest)}. From steady sliding, disturbed by "
             f"1 % of the drive's speed: {sliding.motion}.",
         ]
@@ -191,8 +191,8 @@ def supposed(found: Audit) -> list[str]:
     if not unmet:
         return []
     return [
-        f"Eqs. (7) and (10) suppose that {'; that '.join(unmet)}. So what follows from them, "
-        "marked ~, is an orientation."
+        f"Eqs. (7) and (10) suppose that {'; that '.join(unmet)}. Values that follow from them, "
+        "marked ~, are only a guide."
     ]
 
 
@@ -277,10 +277,10 @@ def stick(found: Audit) -> list[str]:
         lines.append("The mass vibrates about steady sliding; there is no stick in it.")
     elif state and seen.shares.creep > 0.0:
         lines.append(
-            "Friction with internal state creeps by itself. What the misalignment adds to it, an "
-            "audit of the same apparatus with phi = 0 shows."
+            "Friction with internal state creeps by itself. An audit of the same apparatus with "
+            "phi = 0 shows how much the misalignment adds."
             if s.phi
-            else "What creeps, creeps by the law of friction."
+            else "The creep is due to the law of friction."
         )
     elif s.phi and seen.shares.creep > seen.shares.rest:
         distance = seen.mean("creep_distance")
@@ -290,16 +290,16 @@ def stick(found: Audit) -> list[str]:
             else f"{in_words(found.prediction.creep_distance, 'm')}, by Eq. (7), before it slides"
         )
         lines.append(
-            f"What looks like stick is mostly creep under a friction force that turns: an artefact "
+            f"The apparent stick is mostly creep under a turning friction force: an artefact "
             f"of the misalignment. The mass covers {far}. The largest force says how friction "
             f"turned, not that the interface has static friction."
         )
     elif seen.shares.rest > HARDLY:
-        lines.append("What looks like stick is mostly true rest.")
+        lines.append("The apparent stick is mostly true rest.")
     if seen.motion == STICK_SLIP:
         lines.append(
-            "The kinetic coefficient is the mean of peak and trough; the trough is where the mass "
-            "swings to, and no property of the interface either."
+            "The kinetic coefficient is the mean of peak and trough; the mass swings to the "
+            "trough, which is not a property of the interface either."
         )
     return lines
 
@@ -330,7 +330,7 @@ def transverse(found: Audit) -> list[str]:
     ]
     if seen.coarse:
         rate = in_words(seen.record.sample_rate, "Hz")
-        lines.append(f"So long a test was simulated with {rate}, which does not show it.")
+        lines.append(f"Such a long test was simulated with {rate}, which does not show it.")
     return lines
 
 
@@ -346,7 +346,7 @@ def changes(found: Audit) -> tuple[list[str], Table | None]:
         if each.works
     ]
     what = f"To {goal}: {', or '.join(remedies)}" if remedies else f"None of these makes it {goal}"
-    lines = [f"{what}. Each was simulated from rest, and the last column says what comes of it."]
+    lines = [f"{what}. Each was simulated from rest; the last column shows the result."]
     cut = [NAMES[each.path] for each in found.advices if each.cut]
     if cut:
         lines.append(

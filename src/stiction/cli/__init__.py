@@ -21,12 +21,13 @@ app = cyclopts.App(
     name="stiction",
     version=stiction.__version__,
     help=(
-        "Simulate sliding in which the friction vector rotates (Nakano & Popov, 2020).\n\n"
-        "Start with `stiction paper`, which reproduces the paper, or describe an apparatus of "
-        "your own: `stiction init my.toml`, edit it, `stiction audit my.toml` to know what it will "
-        "show, `stiction run my.toml --output my.nc` to simulate it, `stiction plot my.nc --output "
-        "my.png` to look, `stiction analyse my.nc` to understand.\n\n"
-        "Wherever a description is read, `--set phi=3deg --set V=2mm/s` gives other values. "
+        "Simulate sliding systems in which the friction vector rotates (Nakano & Popov, 2020).\n\n"
+        "Start with `stiction paper`, which reproduces the paper, or describe your own apparatus: "
+        "write a template with `stiction init my.toml` and edit it, predict its behaviour with "
+        "`stiction audit my.toml`, simulate it with `stiction run my.toml --output my.nc`, draw "
+        "the result with `stiction plot my.nc --output my.png`, and analyse it with `stiction "
+        "analyse my.nc`.\n\n"
+        "Commands that read a description take other values: `--set phi=3deg --set V=2mm/s`. "
         "`stiction --install-completion` lets the shell complete commands and options. Each "
         "command is a function of that name in Python: `import stiction as st; st.run(...)`."
     ),
@@ -68,7 +69,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except StictionError as error:
         refuse(errors, type(error).__name__.removesuffix("Error").lower(), str(error))
     except KeyboardInterrupt:
-        errors.print("interrupted; what is written is whole, the rest was not begun")
+        errors.print("interrupted; files already written are complete")
         sys.exit(130)
     except BrokenPipeError:  # the reader has closed the pipe; rich ends tables so, too
         give_up(sys.stdout)

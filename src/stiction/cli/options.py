@@ -17,8 +17,8 @@ Trust = Annotated[
     Parameter(
         negative=(),
         help=(
-            "Run a friction law of one's own that nothing vouches for: the text that a result or a "
-            "store holds, or a file outside the folder of CONFIG."
+            "Trust and run a user's friction law: the text in a result or a store, or a file "
+            "outside the folder of CONFIG."
         ),
     ),
 ]
@@ -28,7 +28,7 @@ Changes = Annotated[
         name="--set",
         negative=(),
         help=(
-            "Another value of a parameter than CONFIG has, NAME=VALUE: --set phi=3deg "
+            "Change a parameter of CONFIG, NAME=VALUE: --set phi=3deg "
             '--set "V = 2 mm/s" --set friction.mu_0=0.3 --set duration=10s; repeat it for more.'
         ),
     ),
@@ -39,7 +39,7 @@ def named(text: str, option: str) -> tuple[str, str]:
     """Return name and value of an option's ``NAME=VALUE``."""
     name, equals, value = text.partition("=")
     if not equals or not name.strip():
-        raise StictionError(f"{option} {text!r} is no NAME=VALUE; write for example 'phi = 1 deg'")
+        raise StictionError(f"{option} {text!r} is not NAME=VALUE; write for example 'phi = 1 deg'")
     return name.strip(), value.strip()
 
 

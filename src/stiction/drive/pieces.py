@@ -19,7 +19,7 @@ from stiction.text.validation import validated
 
 def _level(value: Any) -> Any:
     if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise ValueError(f"{value!r} is not a number or a string with its unit")
+        raise ValueError(f"{value!r} is not a number or a string with a unit")
     return value
 
 

@@ -137,7 +137,7 @@ def must_end(program: Sequence[Any], repeat: int) -> None:
     if repeat > 1 and program and program[-1].duration is None:
         name = type(program[-1]).__name__.lower()
         raise ValueError(
-            f"the last piece, {name}, goes on for ever and is never repeated; "
+            f"the last piece, {name}, has no end and cannot be repeated; "
             "give it a duration, or leave repeat out"
         )
 

@@ -33,7 +33,7 @@ def as_pieces(reading: Reading) -> BeforeValidator:
             try:
                 piece = _in_si(_piece(each, reading.known), reading.kind)
                 if piece.duration is None and i < len(value) - 1:
-                    message = "missing; only the last piece may go on for ever"
+                    message = "missing; only the last piece may have no end"
                     raise DescriptionError([Fault("piece.duration", message)])
                 made.append(piece)
             except DescriptionError as error:

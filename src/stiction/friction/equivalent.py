@@ -57,7 +57,7 @@ def traits(law: Law, drive: float, fastest: float) -> Traits:
     static = float(mu[0]) if has_state(law) else static_coefficient(law)
     if not np.isfinite([*mu, static]).all():
         rule = f"its coefficient is not finite between {slowest:.3g} and {fastest:.3g} m/s"
-        raise DescriptionError([Fault("law", f"{rule}; mend {type(law).__name__}")])
+        raise DescriptionError([Fault("law", f"{rule}; correct {type(law).__name__}")])
     kinetic = float(mu[np.abs(mu - static).argmax()])
     if abs(kinetic - static) <= 1e-9 * static:
         return Traits(static, static, drive or fastest)

@@ -61,11 +61,11 @@ def intact_description(path: str | Path) -> str:
         If the description is damaged too, or has no checksum.
     """
     h5py: Any = import_module("h5py")  # slow to import
-    with opening(path, "not a result that can be mended"), h5py.File(path) as file:
+    with opening(path, "not a result that can be repaired"), h5py.File(path) as file:
         known, text = str(file.attrs[SEAL]), str(file.attrs[DESCRIPTION])
         whole = DESCRIPTION not in broken(known, {DESCRIPTION: text.encode()})
     if not whole:
-        raise ResultError(f"{path}: is damaged, and so is its description; run that again")
+        raise ResultError(f"{path}: is damaged, and so is its description; run it again")
     return text
 
 

@@ -53,7 +53,7 @@ def read_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
         _refuse_what_is_no_netcdf(path)
         whole = as_written(path)
     if whole is False:
-        raise _damage(path, ["its bytes are not those that were written"])
+        raise _damage(path, ["its bytes have changed"])
     if whole is None:  # HDF5 may crash on it
         apart(read_through, path)
     with opening(path, UNREADABLE):
@@ -70,7 +70,7 @@ def read_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
         what = f"it lacks {', '.join(lacking)}"
         raise ResultError(f"{path}: not a result of 'stiction run'; {what}{age(data)}")
     wrong = [*_wrong(data, "time", ["time", *VARIABLES]), *_wrong(sticks, "stick", STICKS)]
-    wrong += [f"{name} is no text" for name in TEXTS if not isinstance(data.attrs.get(name), str)]
+    wrong += [f"{name} is not text" for name in TEXTS if not isinstance(data.attrs.get(name), str)]
     if wrong:
         raise ResultError(f"{path}: not a result of 'stiction run'; {'; '.join(wrong)}{age(data)}")
     return data, sticks
@@ -133,4 +133,4 @@ def _wrong(table: xr.Dataset, dim: str, names: Iterable[str]) -> Iterator[str]:
             if not np.isfinite(values).all() or (np.diff(values) < least).any():
                 yield f"{name} must be finite and ascend"
             elif name == "time" and not len(values):
-                yield "there are no samples in it"
+                yield "it has no samples"

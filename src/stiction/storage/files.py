@@ -38,9 +38,9 @@ def placeable(path: str | Path) -> Path:
     """
     target = Path(path)
     if not target.parent.is_dir():
-        raise ResultError(f"{target}: no folder {target.parent}; make it first")
+        raise ResultError(f"{target}: folder {target.parent} does not exist; make it first")
     if target.exists() and not target.is_file():
-        raise ResultError(f"{target}: is there, and is not a file; choose another name")
+        raise ResultError(f"{target}: exists and is not a file; choose another name")
     return target
 
 
@@ -53,9 +53,9 @@ def usable_folder(folder: Path) -> None:
         If something else is there, or its parent folder does not exist.
     """
     if folder.exists() and not folder.is_dir():
-        raise ResultError(f"{folder}: is there, and is not a folder; choose another name")
+        raise ResultError(f"{folder}: exists and is not a folder; choose another name")
     if not folder.exists() and not folder.parent.is_dir():
-        raise ResultError(f"{folder}: no folder {folder.parent}; make it first")
+        raise ResultError(f"{folder}: folder {folder.parent} does not exist; make it first")
 
 
 def make_folder(folder: Path) -> Path:

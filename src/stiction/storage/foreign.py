@@ -42,7 +42,7 @@ def refuse_links(folder: str | Path) -> None:
     """
     for link in _links(folder):
         raise ResultError(
-            f"{folder}: has a link in it, {os.path.relpath(link, folder)}, which leads elsewhere; "
+            f"{folder}: contains a link, {os.path.relpath(link, folder)}, which leads elsewhere; "
             "put the file itself in its place"
         )
 
@@ -82,7 +82,7 @@ def refuse_other_files(path: str | Path) -> None:
 
         found = file.visititems_links(look)
     if found is not None:
-        raise ResultError(f"{path}: {found}, which no result has; it is not read")
+        raise ResultError(f"{path}: {found}, which a result never contains; it was not read")
     refuse_size(path, sum(sizes))
 
 
@@ -117,4 +117,4 @@ def refuse_size(path: str | Path, size: float) -> None:
         If they exceed what this machine lends.
     """
     if short := shortage(size):
-        raise ResultError(f"{path}: to read it {short}; read a part of it, with xarray")
+        raise ResultError(f"{path}: reading it {short}; read a part of it with xarray")

@@ -87,4 +87,4 @@ def _name(code: int) -> str:
 
 
 def _broken(path: str | Path, how: str) -> ResultError:
-    return ResultError(f"{path}: is damaged: {how}; do that run again")
+    return ResultError(f"{path}: is damaged: {how}; run it again")

@@ -68,7 +68,7 @@ class Initial(Described):
                 if name not in names
             ]
             found += [
-                Fault(f"initial.states.{name}", "missing; give every internal state, or none")
+                Fault(f"initial.states.{name}", "missing; give all internal states, or none")
                 for name in names
                 if name not in given
             ]

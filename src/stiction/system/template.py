@@ -31,9 +31,9 @@ def init(path: str | Path = "slider.toml", *, force: bool = False) -> Path:
     if target.is_dir():
         raise StictionError(f"{target} is a folder; name a file in it")
     if not target.parent.is_dir():
-        raise StictionError(f"{target}: no folder {target.parent}; make it first")
+        raise StictionError(f"{target}: folder {target.parent} does not exist; make it first")
     if target.exists() and not force:
-        raise StictionError(f"{target} is there already; choose another name, or force it")
+        raise StictionError(f"{target} exists already; choose another name, or force it")
     text = files("stiction").joinpath("template.toml").read_text(encoding="utf-8")
     text = text.replace("# {laws}\n", "".join(map(_law_lines, LAWS)))
     with whole(target) as part:

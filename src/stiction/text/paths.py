@@ -115,5 +115,7 @@ def member(owner: Any, key: str) -> Any:
 def place(owner: list[Any], key: str) -> int:
     """Return the index of an element that is counted from 1."""
     if not key.isdigit() or not 1 <= int(key) <= len(owner):
-        raise IndexError(f"{key!r} is no element of a list of {len(owner)}; they count from 1")
+        raise IndexError(
+            f"{key!r} is not an element of a list of {len(owner)}; elements count from 1"
+        )
     return int(key) - 1

@@ -17,7 +17,7 @@ from stiction.text.validation import unknown
 Reader = Callable[[dict[str, Any]], Any]
 LARGEST = 2**24  # bytes of a description: a table of a million values
 DEEPEST = 16  # tables and lists inside one another; descriptions have five
-TOO_DEEP = f"is nested more deeply than {DEEPEST} levels; no description is"
+TOO_DEEP = f"is nested more deeply than {DEEPEST} levels; descriptions are not"
 BITS = 64  # of an integer, as TOML has it
 
 
@@ -37,7 +37,7 @@ def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dic
         If the file cannot be read, a parameter does not exist, or `path` is not a path.
     """
     if not isinstance(path, str | PathLike):
-        message = f"{type(path).__name__} is no description; give its file, or its text in TOML"
+        message = f"{type(path).__name__} is not a description; give its file, or its text in TOML"
         raise DescriptionError([Fault("path", message)])
     written = isinstance(path, str) and "\n" in path
     where = "the text" if written else str(path)
@@ -94,7 +94,7 @@ def tame(raw: dict[str, Any], where: str) -> dict[str, Any]:
                 parts = value.items() if isinstance(value, dict) else enumerate(value, 1)
                 inside += [(f"{path}.{key}", each) for key, each in parts]
             elif isinstance(value, int) and value.bit_length() > BITS:
-                found.append(Fault(path, f"an integer has {BITS} bits at most; write it as 1e30"))
+                found.append(Fault(path, f"an integer has at most {BITS} bits; write it as 1e30"))
         level = inside
     if level:
         found.append(Fault(where, TOO_DEEP))

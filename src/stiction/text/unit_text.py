@@ -59,7 +59,7 @@ def factor(text: str, wanted: str) -> float | None:
     except Exception as error:  # whatever the registry raises: logarithmic units, "nan"
         if isinstance(error, UnitError):
             raise
-        raise UnitError(f"{text!r} is no unit that can be converted") from error
+        raise UnitError(f"{text!r} is not a unit that can be converted") from error
     return float(one.magnitude / other.magnitude) if one.units == other.units else None
 
 
@@ -76,7 +76,7 @@ def plain(text: str) -> str:
     powers = _product(tokens, text, closing="")
     for name in powers:
         if name not in registry():
-            raise UnitError(f"{name!r} is no unit that is known (capitals matter)")
+            raise UnitError(f"{name!r} is not a known unit (capitals matter)")
     return " * ".join(f"{name}**{power}" for name, power in powers.items())
 
 
@@ -85,7 +85,7 @@ def _tokens(text: str) -> Iterator[re.Match[str]]:
     while at < len(text):
         token = TOKEN.match(text, at)
         if token is None:
-            raise UnitError(f"{text[at:].strip()[:20]!r} is no unit")
+            raise UnitError(f"{text[at:].strip()[:20]!r} is not a unit")
         at = token.end()
         yield token
 
@@ -100,17 +100,17 @@ def _product(tokens: Iterator[re.Match[str]], text: str, closing: str) -> Counte
             return powers
         if token["sign"] and token["sign"] != "(":
             if token["sign"] == ")" or wanted or (not powers and token["sign"] != "/"):
-                raise UnitError(f"{token['sign']!r} stands where a unit is wanted")
+                raise UnitError(f"{token['sign']!r} is in the place of a unit")
             sign, wanted = token["sign"], True
             continue
         if divided and sign not in ("/", "*"):
-            raise UnitError("what follows '/' can be read in two ways; put it in brackets")
+            raise UnitError("the denominator after '/' is ambiguous; put it in brackets")
         inner = _product(tokens, text, ")") if token["sign"] else _factor(token)
         for name, power in inner.items():
             powers[name] += -power if sign == "/" else power
         divided, sign, wanted = divided or sign == "/", "", False
     if closing or wanted:
-        raise UnitError("it breaks off")
+        raise UnitError("it is incomplete")
     return Counter({name: power for name, power in powers.items() if power})
 
 

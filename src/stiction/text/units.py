@@ -92,7 +92,7 @@ def _bare(value: object) -> object:
 
 def _parse(text: str, kind: Kind) -> float:
     if len(text) > LONGEST:
-        raise fault(f"has {len(text)} characters, no quantity has more than {LONGEST}")
+        raise fault(f"has {len(text)} characters; a quantity has at most {LONGEST}")
     found = QUANTITY.fullmatch(text)
     if not found:
         comma = " (the decimal sign is a point)" if "," in text else ""

@@ -18,7 +18,7 @@ def test_arrays_belong_together_and_time_increases():
         Record(time=[0.0, 1.0], force=[1.0, 2.0, 3.0])
     with pytest.raises(st.DescriptionError, match="sample 3, at 1 s, follows one at 1 s"):
         Record(time=[0.0, 1.0, 1.0], force=[1.0, 2.0, 3.0])
-    with pytest.raises(st.DescriptionError, match="has 2; give one number a sample"):
+    with pytest.raises(st.DescriptionError, match="has 2; give one number per sample"):
         Record(time=[[0.0], [1.0]], force=[1.0, 2.0])
 
 

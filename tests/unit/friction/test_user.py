@@ -322,7 +322,7 @@ def test_another_process_runs_nothing(config, tmp_path):
     # the same text beside the result, and in the working folder: the sender may have put it there
     (elsewhere / "mylaw.py").write_text(LAW)
     said = python(REFUSED.format(path=path), elsewhere)
-    assert "friction.law: 'mylaw.py:Mine' is a law of one's own" in said
+    assert "friction.law: 'mylaw.py:Mine' is a user's law" in said
     assert "trust=True" in said
     assert not (elsewhere / "ran").exists()  # nothing was run
     # a module that was imported from the same text is the user's own choice
@@ -349,7 +349,7 @@ def test_a_result_without_the_text_runs_no_file(config, tmp_path):
     run.data.attrs["description"] = json.dumps(table)
     run.save(tmp_path / "a.nc")
     for trust in (False, True):
-        with pytest.raises(st.ResultError, match="was not kept"):
+        with pytest.raises(st.ResultError, match="was not stored"):
             st.load(tmp_path / "a.nc", trust=trust)
     assert not [name for name in sys.modules if name.startswith("stiction_law_other")]
 
@@ -401,7 +401,7 @@ def test_a_law_in_a_script_is_kept_without_its_runs(tmp_path):
     (tmp_path / "script.py").write_text(SCRIPT)
     assert "Mine(mu=0.2)" in python("script.py", tmp_path)
     refused, trusted = python(READ, tmp_path).splitlines()
-    assert "'script.py:Mine' is a law of one's own" in refused
+    assert "'script.py:Mine' is a user's law" in refused
     assert trusted == "Mine(mu=0.2)"
     assert (tmp_path / "ran").read_text() == "x"  # the script ran once
     text = json.loads((tmp_path / "script.json").read_text())["friction"]["source"]
@@ -432,7 +432,7 @@ def test_a_file_edited_after_its_import_is_not_taken_for_what_ran(tmp_path, monk
 
 def test_a_law_in_a_prompt_has_no_text(tmp_path):
     python(SCRIPT.replace("print(st.Description", "#"), tmp_path)
-    with pytest.raises(st.DescriptionError, match="'__main__:Mine' was not kept"):
+    with pytest.raises(st.DescriptionError, match="'__main__:Mine' was not stored"):
         st.Description.from_json((tmp_path / "script.json").read_text(), trust=True)
 
 

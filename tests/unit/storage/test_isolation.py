@@ -94,7 +94,7 @@ def test_a_file_with_a_byte_changed_is_not_shown_to_hdf5(result, monkeypatch):
     result.write_bytes(content)
     assert as_written(result) is False
     monkeypatch.delattr("h5py.File")
-    with pytest.raises(st.ResultError, match="its bytes are not those that were written"):
+    with pytest.raises(st.ResultError, match="its bytes have changed"):
         st.load(result)
 
 

@@ -159,7 +159,7 @@ def test_a_full_disk_is_told_and_mended(nursery, undisturbed, tmp_path):
     said = nursery.end()
     assert said.startswith("told")
     assert "cannot be written" in said
-    assert "same command again" in said
+    assert "repeat the command" in said
     nursery.begin(tmp_path / "a.zarr")
     assert nursery.end() == "done 0\n"
     xr.testing.assert_identical(xr.open_zarr(tmp_path / "a.zarr").load(), undisturbed)

@@ -140,7 +140,7 @@ def test_every_fault_of_a_study_is_told_at_once():
 @pytest.mark.parametrize(
     ("axes", "says"),
     [
-        ({}, "one axis at least"),
+        ({}, "at least one axis"),
         ({"phi": st.Grid("1 deg", "95 deg", 3)}, "must lie between -90 deg and 90 deg, is 95 deg"),
         ({"phi": {"from": "1 deg", "count": 3}}, "axes.phi.to: missing"),
         ({"phi": {"from": "1 deg", "to": "2 deg", "count": 0}}, "axes.phi.count: must not be"),

@@ -58,19 +58,19 @@ def test_what_is_written_in_decimals_becomes_the_nearest_float():
 @pytest.mark.parametrize(
     ("text", "kind", "words"),
     [
-        ("40 N/m s", DAMPING, "two ways; put it in brackets"),
+        ("40 N/m s", DAMPING, "is ambiguous; put it in brackets"),
         ("1 rad/s", FREQUENCY, "not a unit of a frequency"),  # off by 2 pi
         ("60 rpm", FREQUENCY, "not a unit of a frequency"),
         ("1 m", FORCE, "is in m, not a unit of a force"),
         ("1 m/m", LENGTH, "no unit, not a unit of a length"),
         ("1 n", FORCE, "capitals matter"),
-        ("1 dBm m", LENGTH, "'dBm m' is no unit that can be converted"),
-        ("1 nan", LENGTH, "'nan' is no unit that can be converted"),
+        ("1 dBm m", LENGTH, "'dBm m' is not a unit that can be converted"),
+        ("1 nan", LENGTH, "'nan' is not a unit that can be converted"),
         ("1 N**9999999", FORCE, "not one number and its unit"),
         ("1 N^" + "9" * 40, FORCE, "not one number and its unit"),
         ("1 " + "m*" * LONGEST + "m", LENGTH, "longer than"),
         ("1 (" * 20, LENGTH, "not one number and its unit"),
-        ("1 m/", LENGTH, "breaks off"),
+        ("1 m/", LENGTH, "incomplete"),
         ("1 m)", LENGTH, "')'"),
         ("2 * 3 m", LENGTH, "not one number and its unit"),
         ("1 __class__", LENGTH, "not one number and its unit"),

@@ -153,7 +153,7 @@ def _position(record: Record) -> Floats:
         return np.asarray(record.position)
     if record.stiffness is None or record.drive_velocity is None:
         raise ResultError(
-            "creep is a motion, and the record does not say where the mass is; give "
+            "creep needs the position of the mass, which the record lacks; give "
             "Record(...) its stiffness and drive_velocity, or its position"
         )
     return np.asarray(record.drive_velocity * record.time - record.force / record.stiffness)

@@ -118,7 +118,7 @@ def calibrated(record: Record, cycles: xr.Dataset, found: Misalignment | None = 
 def _mean(curves: xr.Dataset, record: Record) -> xr.Dataset:
     """Return the mean creep curve, if it does not go backwards."""
     if not np.isfinite(curves["velocity"].values).any():
-        raise ResultError("there is no stick phase with samples enough to see it in")
+        raise ResultError("no stick phase has enough samples")
     mean = mean_creep(curves)
     velocity, error = (mean[name].values for name in ("velocity", "velocity_error"))
     least = BACKWARD * (record.drive_velocity or 0.0)
@@ -126,7 +126,7 @@ def _mean(curves: xr.Dataset, record: Record) -> xr.Dataset:
     if backward > SOME and record.position is None:
         raise ResultError(
             "not determined: the mass would creep against the drive; stiffness and drive velocity "
-            "do not belong to this force"
+            "contradict this force"
         )
     return mean
 
@@ -136,14 +136,14 @@ def _divergence(mean: xr.Dataset, loading: float) -> Divergence:
     found = fit_divergence(mean, loading)
     n, error = found.exponent, found.exponent_error
     if not error < KNOWN or not found.amplitude > SURE * found.amplitude_error or n <= 0.0:
-        raise ResultError("not determined: no divergence stands out of its uncertainty")
+        raise ResultError("not determined: no divergence exceeds its uncertainty")
     return found
 
 
 def _misalignment(mean: xr.Dataset, V: float, stiffness: float) -> Misalignment:
     """Return the implied misalignment, if it exceeds its uncertainty."""
     if np.nanmedian(np.abs(mean["velocity"].values)) < RESTS * V:
-        raise ResultError("not determined: the mass rests, where Eq. (7) has it creep")
+        raise ResultError("not determined: the mass rests where Eq. (7) predicts creep")
     found = fit_misalignment(mean, V, stiffness)
     if found.misfit > MISSED or found.scatter > SCATTER:
         by = (

@@ -84,7 +84,7 @@ def misalignment_from_force(record: Record, cycles: xr.Dataset | None = None) ->
     """
     table = find_cycles(record) if cycles is None else cycles
     if not table.sizes["cycle"]:
-        raise ResultError("there is no stick-slip cycle, in which friction could be seen to turn")
+        raise ResultError("there is no stick-slip cycle in which friction could turn")
     curve = loading_curve(record, table)
     best, covariance, gain, misfit, apart = _fitted(curve)
     phi, excess, off = float(best[0]), exp(best[1]), float(best[2])

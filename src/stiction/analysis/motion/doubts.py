@@ -52,11 +52,11 @@ def taken_off(lines: tuple[Line, ...]) -> tuple[str, ...]:
     """Return a sentence for each line that was subtracted from the force."""
     found = []
     for line in lines:
-        hum = ", the mains' hum in all likelihood," if of_mains(line.frequency) else ""
+        hum = ", probably mains hum," if of_mains(line.frequency) else ""
         found.append(
             f"A line at {in_words(line.frequency, 'Hz')} with an amplitude of "
-            f"{in_words(0.5 * line.height, 'N')}{hum} was taken off the force before its cycles "
-            "were sought."
+            f"{in_words(0.5 * line.height, 'N')}{hum} was subtracted from the force before the "
+            "search for cycles."
         )
     return tuple(found)
 
@@ -122,7 +122,7 @@ def _friction_too_large(record: Record, friction: Friction) -> Iterator[str]:
         thousandfold = mu * 1e-3 > LEAST_MU
         milli = "is the force in millinewtons? Give force_unit='mN'; or " if thousandfold else ""
         yield (
-            f"A friction coefficient of {mu:.3g} is beyond belief: {milli}check the normal load, "
+            f"A friction coefficient of {mu:.3g} is implausible: {milli}check the normal load, "
             f"{load}."
         )
 

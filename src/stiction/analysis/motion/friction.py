@@ -118,7 +118,7 @@ def find_friction(record: Record, kind: str, cycles: xr.Dataset) -> Friction:
     elif kind in (STEADY, SETTLING, UNDETERMINED) and (at is not None or kind != UNDETERMINED):
         kinetic = _sliding(record, times, at, kind, load)
     else:
-        missing["kinetic"] = "the mass is not seen to slide"
+        missing["kinetic"] = "the mass does not slide"
     return Friction(break_away, static, kinetic, missing)
 
 

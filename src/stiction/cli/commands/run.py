@@ -74,7 +74,7 @@ def said(result: Trajectory, output: Path) -> list[str]:
     if statistics.steps == 0 or (result.status.ok and rested(result)):
         still = not result.data["drive_X"].any() and not result.data["drive_Y"].any()
         remedy = "the drive is at rest; give it a velocity" if still else longer(result)
-        lines.append(f"it never slipped: friction could hold all the time; {remedy}")
+        lines.append(f"it never slipped: friction held all the time; {remedy}")
     return lines
 
 

@@ -105,7 +105,7 @@ def sweep(
                 along, to = named(refine, "--refine")
                 found = halve(study, output, along, to, apart=apart, engine=means, progress=report)
     except KeyboardInterrupt:
-        say(f"{output}: stopped; the same command goes on where it was", error=True)
+        say(f"{output}: stopped; the same command continues", error=True)
         return 130
     conclude(output, result)
     if found is not None and not (quiet or json_lines):
@@ -124,7 +124,7 @@ def described(
 
     if (config is None) == (preset is None):
         known = ", ".join(presets.PRESETS)
-        raise StictionError(f"give a study's file or --preset NAME, one of both; known: {known}")
+        raise StictionError(f"give either a study's file or --preset NAME; known: {known}")
     if config is not None:
         return Study.from_toml(config, given, trust=trust)
     study = presets.preset(str(preset))
@@ -142,9 +142,9 @@ def engine(
         raise StictionError("--threads, --workers and --scheduler exclude each other; give one")
     for name, count in (("threads", threads), ("workers", workers)):
         if count is not None and count < 1:
-            raise StictionError(f"--{name} must be 1 at least, is {count}")
+            raise StictionError(f"--{name} must be at least 1, is {count}")
     if dashboard and workers is None:
-        raise StictionError("--dashboard is of --workers; give both")
+        raise StictionError("--dashboard needs --workers; give both")
     if workers is None and scheduler is None:
         return Threads() if threads is None else Threads(threads)
     from stiction.study.execution.cluster import Processes, Scheduler

@@ -124,7 +124,7 @@ def faults(a: float, b: float, mu_star: float) -> Iterator[tuple[str, str]]:
     if a < least:
         yield (
             "a",
-            f"must be {least:.3g} at least with this mu_star and b, is {a:g}: below, friction at "
+            f"must be at least {least:.3g} with this mu_star and b, is {a:g}: below, friction at "
             "rest is as good as set-valued; use Coulomb or ExponentialWeakening",
         )
 

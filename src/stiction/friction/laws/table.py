@@ -102,7 +102,7 @@ def _point_faults(law: Table) -> Iterator[tuple[str, str]]:
     if len(law.v) != len(law.mu):
         yield "mu", f"must have a value for each v: {len(law.mu)} and {len(law.v)}"
     if len(law.v) < 2:
-        yield "v", f"must be two points at least, is {len(law.v)}; for a constant use 'coulomb'"
+        yield "v", f"must be at least two points, is {len(law.v)}; for a constant use 'coulomb'"
     for before, after in zip(law.v, law.v[1:], strict=False):
         if after <= before:
             yield "v", f"must ascend, but {after:g} m/s follows {before:g} m/s; sort the points"

@@ -49,7 +49,7 @@ def held(trust: bool = False) -> Find:
         file, kind = split(name)
         if text is None:
             raise fault(
-                f"the text of {name!r} was not kept: it stood in a prompt, or its file was edited "
+                f"the text of {name!r} was not stored: it came from a prompt, or its file changed "
                 "after it was imported; write the law in a file, and describe or import it anew; "
                 "the arrays can be read with xarray.open_dataset"
             )
@@ -58,9 +58,9 @@ def held(trust: bool = False) -> Find:
         if trust:
             return law_in(run(Text(_relative(file), text), f"<{file}>"), kind, name)
         raise fault(
-            f"{name!r} is a law of one's own, and nothing that came with it is run unasked: "
-            "import its module first; or, if you trust where this comes from, run the text kept "
-            "in it: trust=True, on the command line --trust; the arrays can be read without it: "
+            f"{name!r} is a user's law, and the code stored with it is not run without permission: "
+            "import its module first; or, if you trust the source, run the stored text: "
+            "trust=True, on the command line --trust; the arrays can be read without it: "
             "xarray.open_dataset"
         )
 
@@ -145,7 +145,7 @@ def told(what: str) -> Iterator[None]:
 def _read(path: Path) -> str:
     try:
         if path.stat().st_size > LARGEST:
-            raise fault(f"{path} is no friction law: it has more than {LARGEST} bytes")
+            raise fault(f"{path} is not a friction law: it has more than {LARGEST} bytes")
         return read(path)
     except (OSError, SyntaxError, UnicodeDecodeError) as error:
         raise fault(f"{path} cannot be read: {error}") from None

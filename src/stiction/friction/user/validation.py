@@ -38,7 +38,7 @@ def law_in(module: ModuleType, kind: str, name: str) -> type[Any]:
         raise fault(f"{name!r}: {unknown('class', kind, classes or ['none'])}")
     law = is_law(found, name)
     for field in sorted(RESERVED.intersection(law._fields)):
-        raise fault(f"{name!r} has a parameter {field!r}, a key of its own here; rename it")
+        raise fault(f"{name!r} has a parameter {field!r}, which is a reserved key; rename it")
     return law
 
 

@@ -16,7 +16,7 @@ from stiction.study.execution.engines import Work
 from stiction.study.plan.layout import AHEAD
 
 T = TypeVar("T")
-AGAIN = "what is written is whole, and the same command goes on"
+AGAIN = "the finished runs are kept, and the same command continues"
 # an interrupt in a terminal reaches all its processes; only the client should act on it
 UNINTERRUPTED = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 LOOPBACK = "127.0.0.1"

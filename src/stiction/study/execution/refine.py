@@ -112,7 +112,7 @@ def _asked(study: Study, along: str, to: float | str) -> float:
     if along not in study.coordinates or along not in study.layout.dims:
         found.append(Fault("along", unknown("dimension", along, study.layout.dims)))
     if REGIME not in study.measures:
-        found.append(Fault("study.measures", f"lacks {REGIME!r}, by which changes are seen"))
+        found.append(Fault("study.measures", f"lacks {REGIME!r}, which shows the changes"))
     if found:
         raise DescriptionError(found)
     try:

@@ -94,7 +94,7 @@ def _restore_head(study: Study, path: Path, names: Sequence[str]) -> None:
         files = {name for name in (*names, seal.ROOT) if (fresh / name).is_file()}
         place({fresh / name: path / name for name in sorted(files)})
     if left := seal.broken(path):
-        raise ResultError(f"{path}: {', '.join(left)} cannot be made again; do the study anew")
+        raise ResultError(f"{path}: {', '.join(left)} cannot be repaired; run the study anew")
 
 
 def _restore_blocks(study: Study, store: Store, tasks: Sequence[int]) -> None:

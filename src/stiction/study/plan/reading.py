@@ -28,7 +28,7 @@ def is_description(value: Any) -> Any:
 def axes_of(value: Any) -> dict[str, Axis]:
     """Return axes by their paths; report all of their faults at once."""
     if not isinstance(value, Mapping) or not value:
-        raise ValueError("give one axis at least: the path of a parameter, and its values")
+        raise ValueError("give at least one axis: the path of a parameter, and its values")
     axes, found = {}, []
     for path, each in value.items():
         try:

@@ -185,7 +185,9 @@ class Study(Described):
         if not isinstance(own, Mapping):
             found.append(Fault("study", f"must be a table [study], is {own!r}"))
         elif strange := sorted({"base", "axes"} & own.keys()):
-            found += [Fault(f"study.{key}", "is no key here; leave it out") for key in strange]
+            found += [
+                Fault(f"study.{key}", "is not a key of this table; leave it out") for key in strange
+            ]
         elif axes is None:
             found.append(Fault("axes", "missing; write for example a table [axes.phi]"))
         else:

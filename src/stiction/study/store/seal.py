@@ -16,8 +16,7 @@ from stiction.storage import checksums
 
 ROOT, SEAL, DESCRIPTION = "zarr.json", "checksums", "description"
 ANEW = (
-    "its description is damaged, too, so nothing can be computed again: do the study anew, in "
-    "another store"
+    "its description is damaged too, so it cannot be repaired: run the study anew in another store"
 )
 
 

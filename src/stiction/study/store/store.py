@@ -196,8 +196,8 @@ def told(path: Path) -> Iterator[None]:
         yield
     except OSError as error:
         raise ResultError(
-            f"{path}: cannot be written: {error.strerror or error}; what is in it is whole: "
-            "make room, then give the same command again"
+            f"{path}: cannot be written: {error.strerror or error}; its content is intact: "
+            "make room, then repeat the command"
         ) from None
 
 
@@ -214,13 +214,13 @@ def opened(study: Study, path: str | Path) -> Store:
     held = attributes.get("description")
     if held != study.to_json():
         raise ResultError(
-            f"{path}: holds another study, or one that was described differently; nothing is "
-            "written over it: choose another name, or take it away"
+            f"{path}: holds another study, or one with a different description; it was not "
+            "overwritten: choose another name, or remove it"
         )
     if attributes.get("stiction_version") != version():
         raise ResultError(
             f"{path}: was begun by stiction {attributes.get('stiction_version')}, this is "
-            f"{version()}; go on with that one, or choose another name"
+            f"{version()}; continue with that version, or choose another name"
         )
     return store
 
@@ -245,7 +245,9 @@ def store_at(path: str | Path, mode: Literal["r", "r+"]) -> Store:
     if lost:
         raise seal.damage(path, lost)
     if layout.tasks > MOST_TASKS:
-        raise ResultError(f"{path}: is damaged: no study has {layout.tasks:,} blocks of runs")
+        raise ResultError(
+            f"{path}: is damaged: a study cannot have {layout.tasks:,} blocks of runs"
+        )
     return Store(Path(path), group, layout, {name: each.chunks for name, each in arrays.items()})
 
 
@@ -260,7 +262,7 @@ def group_at(path: str | Path, mode: Literal["r", "r+"]) -> zarr.Group:
     import zarr
 
     if not os.path.isdir(path):
-        raise ResultError(f"{path}: no such store; write one with 'stiction sweep'")
+        raise ResultError(f"{path}: no such store; make one with 'stiction sweep'")
     refuse_links(path)
     was = (Path(path) / STATUS / seal.ROOT).is_file()
     what = f"is damaged: {seal.ROOT}; {seal.ANEW}" if was else "is not the store of a study"

@@ -99,7 +99,7 @@ def fitting(path: str | Path, data: xr.Dataset, study: Study) -> None:
         if name not in data or data[name].sizes != sizes or data[name].dtype.kind not in "fiu"
     ]
     if wrong:
-        raise ResultError(f"{path}: is damaged: {', '.join(wrong)} not as the study has them")
+        raise ResultError(f"{path}: is damaged: {', '.join(wrong)} do not match the study")
 
 
 def refined(path: str | Path) -> list[xr.Dataset]:
@@ -134,7 +134,9 @@ def chosen(view: View, measures: Sequence[str]) -> list[str]:
     if strange:
         raise DescriptionError([Fault(name, unknown("measure", name, kept)) for name in strange])
     if not kept:
-        raise DescriptionError([Fault("measures", "the study kept none; there is nothing to draw")])
+        raise DescriptionError(
+            [Fault("measures", "the study kept no measures; there is nothing to draw")]
+        )
     if measures:
         return list(measures)
     numbers = [name for name in view.study.measures if name != REGIME]

@@ -193,7 +193,7 @@ def test_a_drive_the_other_way_creeps_alike(slider, curves):
 
 def test_what_cannot_be_known_is_refused(curves):
     record = st.Record(time=np.arange(10.0), force=np.arange(10.0), stiffness=1.0)
-    with pytest.raises(st.ResultError, match="does not say where the mass is; give"):
+    with pytest.raises(st.ResultError, match="position of the mass, which the record lacks; give"):
         st.creep_curves(record, one_phase(0.0, 9.0))
     with pytest.raises(st.ResultError, match=r"width must be above 0 s, is -1\.0; leave it out"):
         st.creep_curves(record, one_phase(0.0, 9.0), -1.0)
@@ -248,7 +248,7 @@ def test_what_rests_before_slip_implies_no_angle():
     slider = st.Slider(**rig, friction=law, drive=st.ConstantVelocity("5 mm/s"))
     found = st.analyse(st.simulate(slider, 0.9, sample_rate=5e3))
     assert found.missing["misalignment"] == (
-        "not determined: the mass rests, where Eq. (7) has it creep"
+        "not determined: the mass rests where Eq. (7) predicts creep"
     )
     assert "before slip it rests" in str(found)
 

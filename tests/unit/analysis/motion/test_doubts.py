@@ -34,7 +34,7 @@ def test_what_belongs_together_is_not_doubted(force) -> None:
     [
         (1e3, 1.0, {}, "is the time in milliseconds? Give time_unit='ms'"),
         (1.0, 1e3, {}, "is the force in millinewtons? Give force_unit='mN'"),
-        (1e3, 1e3, {}, "A friction coefficient of 199 is beyond belief"),
+        (1e3, 1e3, {}, "A friction coefficient of 199 is implausible"),
         (1e3, 1e3, {}, "stiffness over mass is 7.3e-07 times"),
         (1.0, 1.0, {"stiffness": "1 MN/m"}, "stated 1000 times too large"),
         (1.0, 1.0, {"drive_velocity": "1 um/s"}, "stated 1000 times too small"),
@@ -168,7 +168,7 @@ def test_a_record_too_slow_for_a_fast_line_is_told_the_rate() -> None:
 def test_a_coefficient_of_five_is_doubted_but_is_no_factor_of_a_thousand() -> None:
     time = np.arange(0.0, 20.0, 0.01)
     found = st.analyse(st.Record(time=time, force=5.0 + time % 1.0, normal_load="1 N"))
-    assert "beyond belief: check the normal load, 1 N." in " ".join(found.warnings)
+    assert "implausible: check the normal load, 1 N." in " ".join(found.warnings)
 
 
 @pytest.mark.parametrize(("frequency", "doubted"), [(50.0, True), (59.9, True), (55.0, False)])
