@@ -50,8 +50,10 @@ if TYPE_CHECKING:
         Reversal,
         Step,
     )
+    from stiction.drive import protocols as protocols
     from stiction.errors import DescriptionError, ResultError, Status, StictionError
     from stiction.friction import Anisotropic
+    from stiction.friction import laws as laws
     from stiction.friction.laws import (
         Coulomb,
         ExponentialWeakening,
@@ -168,7 +170,14 @@ _HOME = {
 }
 # old public names, which work for one more version
 _RENAMED = {"hear_song": "transverse_oscillation", "song_by_phase": "oscillation_by_phase"}
-_ROOMS = ("linear_stability", "plotting", "presets", "theory")
+_ROOMS = {
+    "laws": "friction.laws",
+    "linear_stability": "linear_stability",
+    "plotting": "plotting",
+    "presets": "presets",
+    "protocols": "drive.protocols",
+    "theory": "theory",
+}
 
 __all__ = [
     "Analysis",
@@ -232,6 +241,7 @@ __all__ = [
     "fit_misalignment",
     "follow_ridge",
     "init",
+    "laws",
     "linear_stability",
     "load",
     "map",
@@ -243,6 +253,7 @@ __all__ = [
     "plot",
     "plotting",
     "presets",
+    "protocols",
     "record_of",
     "refine",
     "run",
@@ -260,7 +271,7 @@ __all__ = [
 
 def _find(name: str) -> Any:
     if name in _ROOMS:
-        return import_module(f"stiction.{name}")
+        return import_module(f"stiction.{_ROOMS[name]}")
     if name in _HOME:
         return getattr(import_module(f"stiction.{_HOME[name]}"), name)
     raise AttributeError(f"module 'stiction' has no attribute {name!r}")

@@ -1,0 +1,39 @@
+"""Programs of the drive and of the normal load, and the pieces that they are composed of.
+
+>>> import stiction as st
+>>> st.protocols.Ramp("5 mm/s", "1 s")
+Ramp(to='5 mm/s', duration='1 s')
+"""
+
+from __future__ import annotations
+
+from stiction.drive.pieces import (
+    Constant,
+    Free,
+    Harmonic,
+    Hold,
+    Modulation,
+    Ramp,
+    Reversal,
+    Step,
+)
+from stiction.drive.program import DriveProgram, LoadProgram
+from stiction.drive.steady import ConstantVelocity
+
+__all__ = [
+    "Constant",
+    "ConstantVelocity",
+    "DriveProgram",
+    "Free",
+    "Harmonic",
+    "Hold",
+    "LoadProgram",
+    "Modulation",
+    "Ramp",
+    "Reversal",
+    "Step",
+]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
