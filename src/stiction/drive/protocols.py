@@ -1,8 +1,8 @@
 """Programs of the drive and of the normal load, and the pieces that they are composed of.
 
 >>> import stiction as st
->>> st.protocols.Ramp("5 mm/s", "1 s")
-Ramp(to='5 mm/s', duration='1 s')
+>>> st.protocols.Hold("3 s")
+Hold(duration=3.0)
 """
 
 from __future__ import annotations
