@@ -153,7 +153,7 @@ def test_a_store_of_endless_blocks_is_none(store):
     text = json.loads(about.read_text()) | {"shape": [10**12]}
     about.write_text(json.dumps(text))
     seal(path)  # as who makes it on purpose would
-    with pytest.raises(st.ResultError, match="no study has 1,000,000,000,000 blocks of runs"):
+    with pytest.raises(st.ResultError, match="cannot have 1,000,000,000,000 blocks of runs"):
         st.open_study(path)
 
 

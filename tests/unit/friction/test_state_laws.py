@@ -280,7 +280,7 @@ def test_what_a_law_says_of_itself(kind):
 
 def test_a_direct_effect_too_small_for_floats_is_refused():
     """At the smallest one allowed, slip lands through three hundred decades."""
-    with pytest.raises(st.DescriptionError, match=r"RateStateAgeing.a: must be .* at least"):
+    with pytest.raises(st.DescriptionError, match=r"RateStateAgeing.a: must be at least"):
         st.RateStateAgeing(a=5e-4, b=1e-3, D_c=1e-5, mu_star=0.6, V_star=1e-6)
     law = st.RateStateAgeing(a=1e-3, b=2e-3, D_c=1e-5, mu_star=0.6, V_star=1e-6)
     assert st.simulate(PAPER.replace(friction=law), 5.0).status.ok
