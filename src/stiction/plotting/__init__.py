@@ -11,7 +11,10 @@ Nothing is shown or saved here. A figure of several panels takes and returns sev
 
 from __future__ import annotations
 
+import ast
+from functools import cache
 from importlib import import_module
+from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -21,15 +24,23 @@ if TYPE_CHECKING:
 ABOVE = {"plot_map": "stiction.study.view.mapping"}  # draws what lies above the figures
 
 
+@cache
+def _homes() -> dict[str, str]:
+    """Return the module of each figure, from the lines of ``figures.py``.
+
+    They are read and not run: to import every figure takes half as long again as to import one.
+    """
+    lines = ast.parse(files("stiction.plotting").joinpath("figures.py").read_text("utf-8")).body
+    named = [line for line in lines if isinstance(line, ast.ImportFrom) and line.level == 0]
+    homes = {each.name: str(line.module) for line in named for each in line.names}
+    return {name: home for name, home in homes.items() if name.startswith("plot_")} | ABOVE
+
+
 def __getattr__(name: str) -> Any:
-    if name.startswith("plot_"):  # imported when first used, as matplotlib is heavy
-        module = import_module(ABOVE.get(name, "stiction.plotting.figures"))
-        if hasattr(module, name):
-            return getattr(module, name)
+    if name.startswith("plot_") and name in _homes():
+        return getattr(import_module(_homes()[name]), name)
     raise AttributeError(f"module 'stiction.plotting' has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    figures = vars(import_module("stiction.plotting.figures"))
-    own = (name for name in globals() if name.startswith("__"))
-    return sorted([*(name for name in figures if name.startswith("plot_")), *ABOVE, *own])
+    return sorted([*_homes(), *(name for name in globals() if name.startswith("__"))])

@@ -95,13 +95,7 @@ def fit_misalignment(
     largest = float(force.max())
 
     def creep(force: Floats, phi: float, excess: float, weakening: float) -> Floats:
-        share = force / (largest + excess)
-        theta = np.arccos(np.clip(share, -1.0, 1.0))
-        for _ in range(TURNS):
-            slip = np.sin(abs(phi)) / np.maximum(np.sin(theta), 1e-3)
-            theta = np.arccos(np.clip(share * (1.0 + weakening * slip), -1.0, 1.0))
-        sine = np.maximum(np.sin(theta), 1e-6)
-        return np.asarray(drive_velocity * np.sin(phi) * np.cos(theta - phi) / sine)
+        return drive_velocity * creep_velocity(force / (largest + excess), phi, weakening)
 
     start = (START, max(1.02 * peak - largest, 1e-3 * peak), START)
     bounds = ((-1.5, 1e-6 * peak, WEAKENINGS[0]), (1.5, 10.0 * peak, WEAKENINGS[1]))
@@ -127,3 +121,17 @@ def fit_misalignment(
         scatter=float(np.sqrt(np.mean((off / error) ** 2))),
         weakening=weakening,
     )
+
+
+def creep_velocity(share: Floats, phi: float, weakening: float) -> Floats:
+    """Return the velocity of Eq. (7) over that of the drive, at shares F/F_0 of the force.
+
+    Friction is F_0/(1 + weakening |s|/V) with |s| = V sin(phi)/sin(theta), as in `crept`; near
+    theta = 0, which only a trial of the fit reaches, sines are kept from zero.
+    """
+    theta = np.arccos(np.clip(share, -1.0, 1.0))
+    for _ in range(TURNS):
+        slip = np.sin(abs(phi)) / np.maximum(np.sin(theta), 1e-3)
+        theta = np.arccos(np.clip(share * (1.0 + weakening * slip), -1.0, 1.0))
+    sine = np.maximum(np.sin(theta), 1e-6)
+    return np.asarray(np.sin(phi) * np.cos(theta - phi) / sine)

@@ -20,7 +20,7 @@ from stiction.friction.laws.rate_and_state import (
     slipping_gradient,
     steady,
 )
-from stiction.friction.registry import registered
+from stiction.friction.registry import called_by_laws, registered
 from stiction.text.units import Coefficient, PositiveLength, PositiveNumber, PositiveSpeed
 from stiction.text.validation import validated
 
@@ -113,16 +113,9 @@ class RateStateAgeing2(TwoStates):
         law, slip: Vector, load: float, state: tuple[float, ...]
     ) -> tuple[tuple[float, ...], ...]:
         """Return the derivatives of force and change by slip x, y and the states."""
-        psi = law.mu_star + law.b_1 * state[0] + law.b_2 * state[1]
-        xx, xy, yy, x, y = friction_gradient(law.a, law.V_star, psi, slip, load)
-        one_x, one_y, one = ageing_gradient(state[0], slip, law.V_star, law.D_1)
-        two_x, two_y, two = ageing_gradient(state[1], slip, law.V_star, law.D_2)
-        return (
-            (xx, xy, law.b_1 * x, law.b_2 * x),
-            (xy, yy, law.b_1 * y, law.b_2 * y),
-            (one_x, one_y, one, 0.0),
-            (two_x, two_y, 0.0, two),
-        )
+        one = ageing_gradient(state[0], slip, law.V_star, law.D_1)
+        two = ageing_gradient(state[1], slip, law.V_star, law.D_2)
+        return gradient_of(law, slip, load, state, one, two)
 
 
 @registered("rate-and-state-slip-2")
@@ -163,13 +156,26 @@ class RateStateSlip2(TwoStates):
         law, slip: Vector, load: float, state: tuple[float, ...]
     ) -> tuple[tuple[float, ...], ...]:
         """Return the derivatives of force and change by slip x, y and the states."""
-        psi = law.mu_star + law.b_1 * state[0] + law.b_2 * state[1]
-        xx, xy, yy, x, y = friction_gradient(law.a, law.V_star, psi, slip, load)
-        one_x, one_y, one = slipping_gradient(state[0], slip, law.V_star, law.D_1)
-        two_x, two_y, two = slipping_gradient(state[1], slip, law.V_star, law.D_2)
-        return (
-            (xx, xy, law.b_1 * x, law.b_2 * x),
-            (xy, yy, law.b_1 * y, law.b_2 * y),
-            (one_x, one_y, one, 0.0),
-            (two_x, two_y, 0.0, two),
-        )
+        one = slipping_gradient(state[0], slip, law.V_star, law.D_1)
+        two = slipping_gradient(state[1], slip, law.V_star, law.D_2)
+        return gradient_of(law, slip, load, state, one, two)
+
+
+@called_by_laws
+def gradient_of(
+    law: TwoStates,
+    slip: Vector,
+    load: float,
+    state: tuple[float, ...],
+    one: tuple[float, float, float],
+    two: tuple[float, float, float],
+) -> tuple[tuple[float, ...], ...]:
+    """Return a law's `gradient` from those of its states, each by slip x, y and itself."""
+    psi = law.mu_star + law.b_1 * state[0] + law.b_2 * state[1]
+    xx, xy, yy, x, y = friction_gradient(law.a, law.V_star, psi, slip, load)
+    return (
+        (xx, xy, law.b_1 * x, law.b_2 * x),
+        (xy, yy, law.b_1 * y, law.b_2 * y),
+        (one[0], one[1], one[2], 0.0),
+        (two[0], two[1], 0.0, two[2]),
+    )
