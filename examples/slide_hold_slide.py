@@ -5,9 +5,13 @@ With constant friction the spring creeps on during the hold, and nothing peaks a
 
 import stiction as st
 
-test = st.DriveProgram(
+test = st.protocols.DriveProgram(
     velocity="1 mm/s",
-    program=[st.Constant(duration="4 s"), st.Hold("3 s"), st.Constant(duration="3 s")],
+    program=[
+        st.protocols.Constant(duration="4 s"),
+        st.protocols.Hold("3 s"),
+        st.protocols.Constant(duration="3 s"),
+    ],
 )
 for law in (st.Coulomb(mu_0=0.2), st.Coulomb(mu_0=0.15, mu_static=0.2)):
     slider = st.presets.nakano_popov_2020().replace(friction=law, drive=test)

@@ -50,22 +50,26 @@ def law(random: np.random.Generator, kind: str, V: float, load: float) -> Any:
         return st.ExponentialWeakening(high, low, v)
     if kind == "stribeck":
         c = 0.1 * low / v if random.random() < 0.3 else 0.0
-        return st.Stribeck(high, low, v, d=random.uniform(1.0, 3.0), c=c)
+        return st.laws.Stribeck(high, low, v, d=random.uniform(1.0, 3.0), c=c)
     if kind == "hyperbolic":
-        return st.HyperbolicWeakening(high, v)
+        return st.laws.HyperbolicWeakening(high, v)
     if kind == "anisotropic":
         inner = st.ExponentialWeakening(high, low, v)
-        return st.Anisotropic(inner, random.uniform(0.6, 1.6), f"{random.uniform(-80, 80)} deg")
+        return st.laws.Anisotropic(
+            inner, random.uniform(0.6, 1.6), f"{random.uniform(-80, 80)} deg"
+        )
     if kind == "lugre":
         stiff = load * between(random, 1e2, 1e5)
         # damping of the bristles in proportion to the root of their stiffness
-        return st.LuGre(low, high, v, stiff, load * between(random, 0.1, 100.0), 0.1 * low * load)
+        return st.laws.LuGre(
+            low, high, v, stiff, load * between(random, 0.1, 100.0), 0.1 * low * load
+        )
     a = random.uniform(0.004, 0.02)
     D, V_star = between(random, 1e-6, 1e-4), V * between(random, 0.01, 100.0)
     mu_star = random.uniform(0.3, 0.8)
-    kinds = {"ageing": st.RateStateAgeing, "slip": st.RateStateSlip}
+    kinds = {"ageing": st.laws.RateStateAgeing, "slip": st.laws.RateStateSlip}
     if kind in kinds:
         return kinds[kind](a, a * random.uniform(0.3, 2.0), D, mu_star, V_star)
-    two = {"ageing-2": st.RateStateAgeing2, "slip-2": st.RateStateSlip2}[kind]
+    two = {"ageing-2": st.laws.RateStateAgeing2, "slip-2": st.laws.RateStateSlip2}[kind]
     b = a * random.uniform(0.3, 2.0)
     return two(a, 0.6 * b, D, 0.4 * b, 10.0 * D, mu_star, V_star)

@@ -55,10 +55,10 @@ def model(found: st.Slider, V: Any, W: Any, slip: list[Any]) -> tuple[list[Any],
     law: Any = found.law
     p = (
         {name: mp.mpf(value) for name, value in law._asdict().items() if not callable(value)}
-        if not isinstance(law, st.Anisotropic)
+        if not isinstance(law, st.laws.Anisotropic)
         else {}
     )
-    if isinstance(law, st.LuGre):
+    if isinstance(law, st.laws.LuGre):
 
         def g(v: Any) -> Any:
             return W * (p["mu_c"] + (p["mu_s"] - p["mu_c"]) * mp.exp(-((v / p["v_s"]) ** 2)))
@@ -74,11 +74,15 @@ def model(found: st.Slider, V: Any, W: Any, slip: list[Any]) -> tuple[list[Any],
 
         return [g(V) / p["sigma_0"] * each / V for each in slip], bristles
     if isinstance(
-        law, st.RateStateAgeing | st.RateStateSlip | st.RateStateAgeing2 | st.RateStateSlip2
+        law,
+        st.laws.RateStateAgeing
+        | st.laws.RateStateSlip
+        | st.laws.RateStateAgeing2
+        | st.laws.RateStateSlip2,
     ):
         two = "D_1" in p
         b, D = ([p["b_1"], p["b_2"]], [p["D_1"], p["D_2"]]) if two else ([p["b"]], [p["D_c"]])
-        ages = isinstance(law, st.RateStateAgeing | st.RateStateAgeing2)
+        ages = isinstance(law, st.laws.RateStateAgeing | st.laws.RateStateAgeing2)
 
         def contacts(at: list[Any]) -> list[Any]:
             s, z = at[:2], at[2:]
@@ -94,7 +98,7 @@ def model(found: st.Slider, V: Any, W: Any, slip: list[Any]) -> tuple[list[Any],
             return [mu * W * s[0] / v, mu * W * s[1] / v, *change]
 
         return [mp.log(p["V_star"] / V)] * len(b), contacts
-    inner = law.law if isinstance(law, st.Anisotropic) else law
+    inner = law.law if isinstance(law, st.laws.Anisotropic) else law
     q = {name: mp.mpf(value) for name, value in inner._asdict().items()}
 
     def coefficient(v: Any) -> Any:
@@ -102,14 +106,14 @@ def model(found: st.Slider, V: Any, W: Any, slip: list[Any]) -> tuple[list[Any],
             return q["mu_0"]
         if isinstance(inner, st.ExponentialWeakening):
             return q["mu_inf"] + (q["mu_0"] - q["mu_inf"]) * mp.exp(-v / q["v_f"])
-        if isinstance(inner, st.HyperbolicWeakening):
+        if isinstance(inner, st.laws.HyperbolicWeakening):
             return q["mu_0"] / (1 + v / q["v_h"])
         fallen = mp.exp(-((v / q["v_s"]) ** q["d"]))
         return q["mu_c"] + (q["mu_s"] - q["mu_c"]) * fallen + q["c"] * v
 
     def friction(s: list[Any]) -> list[Any]:
         mu = coefficient(mp.hypot(*s)) * W
-        if not isinstance(law, st.Anisotropic):
+        if not isinstance(law, st.laws.Anisotropic):
             return [mu * each / mp.hypot(*s) for each in s]
         turned, ratio = mp.mpf(found.phi) + mp.mpf(law.angle), mp.mpf(law.ratio)
         c, o = mp.cos(turned), mp.sin(turned)

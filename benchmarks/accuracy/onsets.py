@@ -42,7 +42,7 @@ def soft(random: np.random.Generator) -> tuple[Onset, float] | None:
 def hard(random: np.random.Generator) -> tuple[Onset, float]:
     """Find the onset over damping where F''' < 0: beyond x^2 = 3/2 of the Stribeck speed."""
     v_s = between(random, 5e-3, 5e-2)
-    law = st.Stribeck(random.uniform(0.25, 0.5), random.uniform(0.1, 0.2), v_s)
+    law = st.laws.Stribeck(random.uniform(0.25, 0.5), random.uniform(0.1, 0.2), v_s)
     speed, load = v_s * random.uniform(1.4, 2.0), between(random, 3, 30)
     k_x = between(random, 300, 3e3)
     slider = st.Slider(

@@ -53,7 +53,7 @@ def by_scipy() -> tuple[float, float, float, float]:
 
 def belt(rtol: float) -> list[Number]:
     """k = m = F_s = 1, d = 3, belt speed 0.2: digits as published, and SciPy's."""
-    law = st.HyperbolicWeakening(mu_0=1.0, v_h=1 / D)
+    law = st.laws.HyperbolicWeakening(mu_0=1.0, v_h=1 / D)
     slider = block(friction=law, drive=st.ConstantVelocity(SPEED))
     run = st.simulate(slider, 60.0, sample_rate=1e3, rtol=rtol)
     starts, ends = run.stick_intervals[1:-1].T  # whole ones, after a first cycle

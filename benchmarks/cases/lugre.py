@@ -16,7 +16,7 @@ def pulled(rtol: float) -> list[Number]:
     slider = block(
         k_x=2.0,
         k_y=2.0,
-        friction=st.LuGre(1.0, 1.5, 1e-3, 1e5, 1e5**0.5, 0.4),
+        friction=st.laws.LuGre(1.0, 1.5, 1e-3, 1e5, 1e5**0.5, 0.4),
         drive=st.ConstantVelocity(V),
         driven="spring",
     )

@@ -22,7 +22,9 @@ def den_hartog(r: float, S: float, wanted: float, rtol: float) -> list[Number]:
     P_0 cos(omega t), P_0 = (k - m omega^2) times its amplitude.
     """
     amplitude = 1 / (1 - r * r)
-    swinging = st.DriveProgram(along=st.Modulation(-amplitude * r, r / (2 * pi)))
+    swinging = st.protocols.DriveProgram(
+        along=st.protocols.Modulation(-amplitude * r, r / (2 * pi))
+    )
     slider = block(friction=st.Coulomb(mu_0=S), drive=swinging)
     period = 2 * pi / r
     settled = st.simulate(slider, 100 * period, sample_rate=0, rtol=rtol)

@@ -47,6 +47,6 @@ def critical(kind: type, rtol: float) -> list[Number]:
 
 
 CASES = (
-    Case("critical stiffness, ageing law", partial(critical, st.RateStateAgeing), 1e-12),
-    Case("critical stiffness, slip law", partial(critical, st.RateStateSlip), 1e-12),
+    Case("critical stiffness, ageing law", partial(critical, st.laws.RateStateAgeing), 1e-12),
+    Case("critical stiffness, slip law", partial(critical, st.laws.RateStateSlip), 1e-12),
 )

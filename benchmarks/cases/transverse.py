@@ -27,7 +27,7 @@ def shaken(r: float, wanted: float, rtol: float) -> list[Number]:
         c_x=2 * sqrt(k),
         c_y=2 * sqrt(k),
         friction=st.Coulomb(MU),
-        drive=st.DriveProgram(velocity=1.0, across=st.Modulation(r, 1.0)),
+        drive=st.protocols.DriveProgram(velocity=1.0, across=st.protocols.Modulation(r, 1.0)),
     )
     run = st.simulate(slider, 3.0, sample_rate=2000.0, rtol=rtol)
     last = run.data.isel(time=slice(-2000, None))  # a whole period: the damper's part is nought

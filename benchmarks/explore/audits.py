@@ -82,15 +82,15 @@ def law(draw: Draw, mu: float, V: float, load: float) -> Any:
     if name == "table":
         simple = st.ExponentialWeakening(mu, kinetic, speed, mu_static=peak)
         v = [0.0, *(speed * 10.0 ** (at / 4.0) for at in range(-8, 9))]
-        return st.Table(v=v, mu=[simple.coefficient(each) for each in v])
+        return st.laws.Table(v=v, mu=[simple.coefficient(each) for each in v])
     if name == "lugre":
         sigma_0 = mu * load / draw.decades(1e-7, 1e-4)
-        return st.LuGre(kinetic, mu, speed, sigma_0, draw.decades(0.01, 1.0) * sqrt(sigma_0))
+        return st.laws.LuGre(kinetic, mu, speed, sigma_0, draw.decades(0.01, 1.0) * sqrt(sigma_0))
     a, D = draw.decades(2e-3, 2e-2), draw.decades(1e-6, 1e-4)
     b = a * draw.between(0.3, 2.0)
     if name == "two states":
-        return st.RateStateAgeing2(a, 0.5 * b, D, 0.5 * b, 10.0 * D, mu, V)
-    kind = st.RateStateAgeing if name == "ageing" else st.RateStateSlip
+        return st.laws.RateStateAgeing2(a, 0.5 * b, D, 0.5 * b, 10.0 * D, mu, V)
+    kind = st.laws.RateStateAgeing if name == "ageing" else st.laws.RateStateSlip
     return kind(a, b, D, mu, V)
 
 

@@ -93,7 +93,7 @@ def units(of: System, draw: Draw) -> float:
 
 def energy(of: System) -> float:
     """Return the residual of the energy budget over its bound."""
-    budget = st.energy_budget(st.simulate(of.slider, of.duration, rtol=of.rtol))
+    budget = st.analysis.energy_budget(st.simulate(of.slider, of.duration, rtol=of.rtol))
     return float((np.abs(budget["residual"]) / budget["bound"]).max())
 
 
@@ -101,7 +101,7 @@ def vibration(slider: st.Slider, draw: Draw) -> float:
     """Return the error of a ring-down over 1e-3 of its amplitude; 0 where sliding is unstable."""
     (c, s), V = slider.direction, slider.motion.rate(0.0)[0]
     law: Any = slider.law
-    if isinstance(law, st.Anisotropic):
+    if isinstance(law, st.laws.Anisotropic):
         return 0.0
     K, W = np.diag([slider.k_x, slider.k_y]), slider.F_0 / law.coefficient(0.0)
     F, slope = W * law.coefficient(V), W * law.slope(V)

@@ -1,10 +1,10 @@
 """``python -m benchmarks.explore.cycles``: the cycles of random rigs that stick and slip.
 
-They are held against a plain count of the falls of half the swing, by `st.find_cycles`, by what a
-study sees and by the test of an audit. Rigs are of three classes: regular, whose falls are of one
-size; irregular, whose falls differ, but whose count is the same, to one that an end cuts, at 40, 50
-and 60 % of the swing; and those whose count depends on that share, which are chaotic: no count is
-the right one there, and it is only asked whether all three come to the same.
+They are held against a plain count of the falls of half the swing, by `st.analysis.find_cycles`, by
+what a study sees and by the test of an audit. Rigs are of three classes: regular, whose falls are
+of one size; irregular, whose falls differ, but whose count is the same, to one that an end cuts, at
+40, 50 and 60 % of the swing; and those whose count depends on that share, which are chaotic: no
+count is the right one there, and it is only asked whether all three come to the same.
 Deterministic in its seed.
 """
 
@@ -126,9 +126,9 @@ def rigs(count: int, seed: int) -> Iterator[Counted]:
         if sqrt(slider.k_y / slider.mass) * duration > 1.5e7:
             continue
         rate = min(400 * sqrt(slider.k_x / slider.mass) / (2 * pi), 1e6 / duration)
-        record = st.record_of(st.simulate(slider, duration, sample_rate=rate))
-        found = st.find_cycles(record)
-        if st.classify(record).kind != STICK_SLIP:
+        record = st.analysis.record_of(st.simulate(slider, duration, sample_rate=rate))
+        found = st.analysis.find_cycles(record)
+        if st.analysis.classify(record).kind != STICK_SLIP:
             continue
         done += 1
         swing = float(np.ptp(record.force[-len(record) // 3 :]))

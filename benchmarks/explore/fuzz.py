@@ -133,18 +133,24 @@ def torn(draw: Draw, content: bytes) -> bytes:
 # --- what is valid to begin with ------------------------------------------------------------------
 
 PAPERS = st.presets.nakano_popov_2020()
-PROGRAM = st.DriveProgram(
+PROGRAM = st.protocols.DriveProgram(
     velocity="1 mm/s",
-    program=[st.Ramp("2 mm/s", "1 s"), st.Hold("1 s"), st.Harmonic("1 mm/s", "5 Hz", "10 deg")],
-    across=st.Modulation("0.1 mm/s", "50 Hz"),
+    program=[
+        st.protocols.Ramp("2 mm/s", "1 s"),
+        st.protocols.Hold("1 s"),
+        st.protocols.Harmonic("1 mm/s", "5 Hz", "10 deg"),
+    ],
+    across=st.protocols.Modulation("0.1 mm/s", "50 Hz"),
 )
-LOAD = st.LoadProgram(program=[st.Step("1 N", "1 s"), st.Constant()], repeat=1)
+LOAD = st.protocols.LoadProgram(
+    program=[st.protocols.Step("1 N", "1 s"), st.protocols.Constant()], repeat=1
+)
 LAWS = (
     PAPERS.friction,
     st.Coulomb(mu_0=0.2, mu_static=0.3),
-    st.Table(v=[0.0, "1 mm/s", "1 m/s"], mu=[0.3, 0.2, 0.1]),
-    st.LuGre(0.15, 0.2, 1e-2, 1e5, 300.0, 0.4),
-    st.Anisotropic(st.Coulomb(mu_0=0.2), ratio=1.5, angle="10 deg"),
+    st.laws.Table(v=[0.0, "1 mm/s", "1 m/s"], mu=[0.3, 0.2, 0.1]),
+    st.laws.LuGre(0.15, 0.2, 1e-2, 1e5, 300.0, 0.4),
+    st.laws.Anisotropic(st.Coulomb(mu_0=0.2), ratio=1.5, angle="10 deg"),
 )
 SETTINGS = st.Settings(duration="50 ms", sample_rate="1 kHz")
 DESCRIPTIONS = [

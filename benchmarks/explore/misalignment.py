@@ -64,8 +64,8 @@ def look(rng: Generator, noise: float, off: float) -> Seen | None:
     if duration * sqrt(slider.k_y / slider.mass) / (2.0 * pi) > LONGEST:
         return None
     run = st.simulate(slider, duration, sample_rate=rate)
-    cycles = st.find_cycles(run)
-    if cycles.sizes["cycle"] < 3 or st.classify(run).kind not in STICKING:
+    cycles = st.analysis.find_cycles(run)
+    if cycles.sizes["cycle"] < 3 or st.analysis.classify(run).kind not in STICKING:
         return None
     force = run.data["spring_x"].values
     hiss = rng.uniform(0.0, noise) * float(cycles["drop"].median())
@@ -76,7 +76,7 @@ def look(rng: Generator, noise: float, off: float) -> Seen | None:
         drive_velocity=V * cos(slider.phi),
     )
     try:
-        found = st.misalignment_from_force(record)
+        found = st.analysis.misalignment_from_force(record)
     except st.ResultError as error:
         return Seen(slider.phi, np.nan, np.nan, str(error))
     return Seen(slider.phi, found.phi, found.phi_error, "")
@@ -94,7 +94,7 @@ def look_at_creep(rng: Generator) -> Seen | None:
     law = (
         st.ExponentialWeakening(mu, mu * rng.uniform(0.5, 1.1), V * power(0, 1.5)),
         st.Coulomb(mu),
-        st.Stribeck(mu, mu * rng.uniform(0.6, 0.95), V * power(0, 1.5)),
+        st.laws.Stribeck(mu, mu * rng.uniform(0.6, 0.95), V * power(0, 1.5)),
     )[rng.integers(3)]
     slider = st.Slider(
         mass=mass,

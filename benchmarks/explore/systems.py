@@ -81,10 +81,10 @@ def named_law(draw: Draw, name: str, mu: float, kinetic: float, speed: float, pe
     if name == "coulomb":
         return st.Coulomb(mu, peak)
     if name == "stribeck":
-        return st.Stribeck(mu, kinetic, speed, d=draw.between(1.0, 3.0), mu_static=peak)
+        return st.laws.Stribeck(mu, kinetic, speed, d=draw.between(1.0, 3.0), mu_static=peak)
     if name == "hyperbolic":
-        return st.HyperbolicWeakening(mu, speed, mu_static=peak)
+        return st.laws.HyperbolicWeakening(mu, speed, mu_static=peak)
     simple = st.ExponentialWeakening(mu, kinetic, speed, mu_static=peak)
     if name == "exponential":
         return simple
-    return st.Anisotropic(simple, draw.decades(0.5, 2.0), f"{draw.between(-90.0, 90.0)!r} deg")
+    return st.laws.Anisotropic(simple, draw.decades(0.5, 2.0), f"{draw.between(-90.0, 90.0)!r} deg")

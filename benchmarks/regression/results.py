@@ -20,8 +20,12 @@ from benchmarks.explore.systems import system
 SEED = 5
 MOST = 50_000  # steps of a run
 STATES = (
-    st.LuGre, st.RateStateAgeing, st.RateStateSlip, st.RateStateAgeing2, st.RateStateSlip2,
-)  # fmt: skip
+    st.laws.LuGre,
+    st.laws.RateStateAgeing,
+    st.laws.RateStateSlip,
+    st.laws.RateStateAgeing2,
+    st.laws.RateStateSlip2,
+)
 
 
 def runs() -> Iterator[tuple[str, dict[str, object]]]:
@@ -53,15 +57,21 @@ def driven(draw: Draw, slider: st.Slider) -> st.Slider:
     which, hertz = draw.between(0.0, 3.0), f"{draw.between(10.0, 80.0)!r} Hz"
     changes: dict[str, object] = {}
     if which < 2.0:
-        pieces = [st.Constant(duration="50 ms"), st.Hold("20 ms"), st.Reversal("50 ms")]
-        across = st.Modulation(f"{draw.between(0.01, 0.2)!r} mm/s", hertz)
-        changes["drive"] = st.DriveProgram(
+        pieces = [
+            st.protocols.Constant(duration="50 ms"),
+            st.protocols.Hold("20 ms"),
+            st.protocols.Reversal("50 ms"),
+        ]
+        across = st.protocols.Modulation(f"{draw.between(0.01, 0.2)!r} mm/s", hertz)
+        changes["drive"] = st.protocols.DriveProgram(
             velocity="1 mm/s", program=pieces, repeat=5, across=across
         )
         changes["driven"] = "plate" if draw.chance(0.5) else "spring"
     if which > 1.0:
         amplitude = f"{draw.between(0.1, 2.0)!r} N"
-        changes["load"] = st.LoadProgram(modulation=st.Modulation(amplitude, hertz))
+        changes["load"] = st.protocols.LoadProgram(
+            modulation=st.protocols.Modulation(amplitude, hertz)
+        )
     return slider.replace(**changes)
 
 

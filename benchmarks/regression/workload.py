@@ -29,16 +29,19 @@ def sampled() -> Callable[[], object]:
 
 def law_with_state() -> Callable[[], object]:
     """Rate and state friction on the same apparatus."""
-    law = st.RateStateAgeing(a=0.01, b=0.015, D_c=1e-5, mu_star=0.2, V_star=1e-3)
+    law = st.laws.RateStateAgeing(a=0.01, b=0.015, D_c=1e-5, mu_star=0.2, V_star=1e-3)
     slider = st.presets.nakano_popov_2020().replace(friction=law)
     return lambda: st.simulate(slider, 5.0, sample_rate=0.2)
 
 
 def program() -> Callable[[], object]:
     """A drive in pieces, shaken across: stretches, and what is not constant in time."""
-    pieces = [st.Constant(duration="0.2 s"), st.Reversal("0.2 s")]
-    drive = st.DriveProgram(
-        velocity="1 mm/s", program=pieces, repeat=5, across=st.Modulation("0.1 mm/s", "50 Hz")
+    pieces = [st.protocols.Constant(duration="0.2 s"), st.protocols.Reversal("0.2 s")]
+    drive = st.protocols.DriveProgram(
+        velocity="1 mm/s",
+        program=pieces,
+        repeat=5,
+        across=st.protocols.Modulation("0.1 mm/s", "50 Hz"),
     )
     slider = st.presets.nakano_popov_2020().replace(drive=drive)
     return lambda: st.simulate(slider, 2.0, sample_rate=0.5)

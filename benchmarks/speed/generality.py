@@ -37,17 +37,19 @@ def sliders() -> dict[str, st.Slider]:
     alike = (0.20, 0.15, 0.01)
     laws = {
         "Coulomb, static coefficient": st.Coulomb.like(*alike),
-        "Stribeck": st.Stribeck.like(*alike),
-        "hyperbolic weakening": st.HyperbolicWeakening.like(*alike),
-        "table of 31 points": st.Table(v=SPEEDS, mu=[plain.coefficient(v) for v in SPEEDS]),
-        "elliptic surface": st.Anisotropic(plain, 1.5, "30 deg"),
-        "LuGre": st.LuGre.like(*alike),
-        "rate and state, ageing": st.RateStateAgeing.like(*alike),
+        "Stribeck": st.laws.Stribeck.like(*alike),
+        "hyperbolic weakening": st.laws.HyperbolicWeakening.like(*alike),
+        "table of 31 points": st.laws.Table(v=SPEEDS, mu=[plain.coefficient(v) for v in SPEEDS]),
+        "elliptic surface": st.laws.Anisotropic(plain, 1.5, "30 deg"),
+        "LuGre": st.laws.LuGre.like(*alike),
+        "rate and state, ageing": st.laws.RateStateAgeing.like(*alike),
     }
     drives = {
-        "program of one piece": st.DriveProgram(velocity="1 mm/s", program=[st.Constant()]),
-        "modulated, 1 um/s at 50 Hz": st.DriveProgram(
-            velocity="1 mm/s", along=st.Modulation("1 um/s", "50 Hz")
+        "program of one piece": st.protocols.DriveProgram(
+            velocity="1 mm/s", program=[st.protocols.Constant()]
+        ),
+        "modulated, 1 um/s at 50 Hz": st.protocols.DriveProgram(
+            velocity="1 mm/s", along=st.protocols.Modulation("1 um/s", "50 Hz")
         ),
     }
     return {

@@ -57,14 +57,20 @@ def old_names(
 
     def find(name: str) -> Any:
         if name in renamed:
-            home, _, new = renamed[name].rpartition(".")
-            warn_renamed(f"{module}.{name}", f"{home or module}.{new}")
-            return getattr(import_module(home or module), new)
+            new = renamed[name] if "." in renamed[name] else f"{module}.{renamed[name]}"
+            warn_renamed(f"{module}.{name}", new)
+            return _found(new)
         if otherwise is not None:
             return otherwise(name)
         raise AttributeError(f"module {module!r} has no attribute {name!r}")
 
     return find
+
+
+def _found(path: str) -> Any:
+    from pkgutil import resolve_name  # here, so that `import stiction` is fast
+
+    return resolve_name(path)
 
 
 class _Moved:
@@ -75,8 +81,7 @@ class _Moved:
 
     def _found(self) -> Any:
         warn_renamed(self._old, self._new, stacklevel=4)
-        home, _, name = self._new.rpartition(".")
-        return getattr(import_module(home), name)
+        return _found(self._new)
 
     def __call__(self, *args: Any, **values: Any) -> Any:
         return self._found()(*args, **values)

@@ -59,10 +59,10 @@ def test_modes_have_the_critical_value_marked():
 
 
 def test_the_onset_shows_both_sweeps_and_the_hysteresis():
-    law = st.Stribeck(mu_s=0.3, mu_c=0.15, v_s="20 mm/s")
+    law = st.laws.Stribeck(mu_s=0.3, mu_c=0.15, v_s="20 mm/s")
     slider = PAPER.replace(phi="0 deg", k_y=2e3, friction=law, drive=st.ConstantVelocity("36 mm/s"))
     c = -law.slope(0.036) * slider.normal_load
-    found = st.find_onset(slider, "c_x", [0.8 * c, 1.2 * c, 2.2 * c])
+    found = st.analysis.find_onset(slider, "c_x", [0.8 * c, 1.2 * c, 2.2 * c])
     assert found.kind == "hard"
     fig = drawn(figure_of(plot_onset, found, critical=c))
     (ax,) = fig.axes
@@ -81,16 +81,16 @@ def test_parameters_have_symbols_and_units():
 VELOCITY = {"x": "drive.velocity", "x_between": ("0.01 mm/s", "1 m/s")}
 STIFFNESS = {"x": "k_y", "x_between": (1e3, 1e8)}
 MIRRORED = {"y": "phi", "y_between": ("-89 deg", "89 deg")}
-AGEING = st.RateStateAgeing(0.01, 0.015, 1e-5, 0.6, 1e-6)
+AGEING = st.laws.RateStateAgeing(0.01, 0.015, 1e-5, 0.6, 1e-6)
 TILTED = PAPER.replace(phi="5 deg")
 PLANES = {  # slider, plane, connected curves
     "anisotropic": (
-        TILTED.replace(friction=st.Anisotropic(PAPER.law, 1.3, "20 deg")),
+        TILTED.replace(friction=st.laws.Anisotropic(PAPER.law, 1.3, "20 deg")),
         VELOCITY | {"y": "k_y", "y_between": (1e3, 1e8)},
         2,
     ),
     "Stribeck": (
-        TILTED.replace(friction=st.Stribeck(0.3, 0.15, "10 mm/s")),
+        TILTED.replace(friction=st.laws.Stribeck(0.3, 0.15, "10 mm/s")),
         STIFFNESS | MIRRORED,
         2,
     ),

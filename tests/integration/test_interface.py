@@ -11,10 +11,26 @@ import stiction as st
 from stiction.friction import LAWS
 from stiction.text.validation import Described
 
-PIECES = (st.Constant, st.Step, st.Ramp, st.Hold, st.Reversal, st.Harmonic, st.Modulation, st.Free)
-TUPLES = (*LAWS.values(), st.Anisotropic, st.ConstantVelocity, *PIECES)
-DESCRIBED = (st.Slider, st.Settings, st.Initial, st.DriveProgram, st.LoadProgram, st.Record)
-EVERYTHING = {name: getattr(st, name) for name in st.__all__}
+PIECES = (
+    st.protocols.Constant,
+    st.protocols.Step,
+    st.protocols.Ramp,
+    st.protocols.Hold,
+    st.protocols.Reversal,
+    st.protocols.Harmonic,
+    st.protocols.Modulation,
+    st.protocols.Free,
+)
+TUPLES = (*LAWS.values(), st.laws.Anisotropic, st.ConstantVelocity, *PIECES)
+DESCRIBED = (
+    st.Slider,
+    st.Settings,
+    st.Initial,
+    st.protocols.DriveProgram,
+    st.protocols.LoadProgram,
+    st.Record,
+)
+SESSION = {"st": st}
 
 
 def pieces(random, change):
@@ -22,12 +38,12 @@ def pieces(random, change):
     to, by, swing = change * random.uniform(0.5, 1.0, 3)
     phase = f"{random.uniform(-180, 180)!r} deg"
     choices = [
-        st.Ramp(to, random.uniform(0.1, 2.0)),
-        st.Step(by, duration="1 s"),
-        st.Hold(random.uniform(1e-4, 1.0)),
-        st.Harmonic(swing, random.uniform(1.0, 1e4), phase, duration="0.3 s"),
-        st.Constant(to, duration=1),
-        st.Constant(duration=1),
+        st.protocols.Ramp(to, random.uniform(0.1, 2.0)),
+        st.protocols.Step(by, duration="1 s"),
+        st.protocols.Hold(random.uniform(1e-4, 1.0)),
+        st.protocols.Harmonic(swing, random.uniform(1.0, 1e4), phase, duration="0.3 s"),
+        st.protocols.Constant(to, duration=1),
+        st.protocols.Constant(duration=1),
     ]
     return [choices[i] for i in random.permutation(len(choices))[:3]]
 
@@ -38,12 +54,14 @@ def system(random):
     static, speed = random.uniform(0.4, 0.9), 10 ** random.uniform(-6, -1)
     law = kind.like(static, static - random.uniform(0.05, 0.3), speed)
     if not hasattr(law, "states") and random.random() < 0.3:
-        law = st.Anisotropic(law, random.uniform(0.5, 2.0), f"{random.uniform(-90, 90)!r} deg")
+        law = st.laws.Anisotropic(law, random.uniform(0.5, 2.0), f"{random.uniform(-90, 90)!r} deg")
     V = 10 ** random.uniform(-6, 0)
-    wave = st.Modulation(0.1 * V, 10 ** random.uniform(0, 4), "0.3 rad")
-    program = st.DriveProgram(velocity=V, program=pieces(random, V), repeat=2, along=wave)
-    drives = [st.ConstantVelocity(V), program, st.DriveProgram(velocity=-V, across=wave)]
-    load = st.LoadProgram(program=pieces(random, 10.0), modulation=st.Modulation(0.1, 3.0))
+    wave = st.protocols.Modulation(0.1 * V, 10 ** random.uniform(0, 4), "0.3 rad")
+    program = st.protocols.DriveProgram(velocity=V, program=pieces(random, V), repeat=2, along=wave)
+    drives = [st.ConstantVelocity(V), program, st.protocols.DriveProgram(velocity=-V, across=wave)]
+    load = st.protocols.LoadProgram(
+        program=pieces(random, 10.0), modulation=st.protocols.Modulation(0.1, 3.0)
+    )
     return st.Slider(
         mass=10 ** random.uniform(-12, 3),
         k_x=10 ** random.uniform(-1, 9),
@@ -65,13 +83,13 @@ def test_any_slider_is_written_and_read_again_exactly():
     for _ in range(200):
         slider = system(random)
         assert st.Slider.from_toml(slider.to_toml()) == slider
-        assert eval(repr(slider), dict(EVERYTHING)) == slider
+        assert eval(repr(slider), dict(SESSION)) == slider
         assert str(slider) == repr(slider)
         start = st.Initial(u_x=random.uniform(-1, 1), v_x="1 mm/s", v_y=0, time=0.25)
         settings = st.Settings(duration=random.uniform(0, 1e3), sample_rate="20 kHz", rtol=1e-8)
         whole = st.Description(slider, start, settings)
         assert st.Description.from_toml(whole.to_toml()) == whole
-        assert eval(repr(whole), dict(EVERYTHING)) == whole
+        assert eval(repr(whole), dict(SESSION)) == whole
 
 
 def test_a_description_in_toml_is_one_that_people_write(slider, tmp_path):
@@ -96,7 +114,7 @@ def test_signatures_show_parameters_units_and_defaults(kind):
 
 
 def test_units_stand_in_signatures():
-    assert str(inspect.signature(st.Step)) == (
+    assert str(inspect.signature(st.protocols.Step)) == (
         "(by: float (m/s or N) | str, duration: float (s) | str | None = None)"
     )
     assert "v_f: float (m/s) | str" in str(inspect.signature(st.ExponentialWeakening))
@@ -159,7 +177,9 @@ def test_what_one_looks_at_has_a_short_text_and_a_table_for_notebooks(slider):
     study = st.Study(base=base, axes={"phi": st.Grid("1 deg", "3 deg", 3), "mass": st.Values([1])})
     assert repr(study) == "<Study of 3 runs: phi (3) x mass (1)>"
     record = st.Record(time=np.arange(3000.0), force=np.ones(3000), normal_load="1 N")
-    assert repr(record).startswith("Record(time=<3000 values>, force=<3000 values>, normal_load=")
+    assert repr(record).startswith(
+        "st.Record(time=<3000 values>, force=<3000 values>, normal_load="
+    )
     shown = (slider, run, st.analyse(run), study)
     for each in shown:
         assert len(repr(each)) < 250

@@ -28,7 +28,7 @@ def test_a_sample_inside_a_step_is_the_end_of_a_run_to_there(slider, rtol):
 
 
 def test_samples_of_a_smooth_law_are_as_exact(slider):
-    bristles = slider.replace(friction=st.LuGre(0.15, 0.2, 1e-2, 1e5, 30.0))
+    bristles = slider.replace(friction=st.laws.LuGre(0.15, 0.2, 1e-2, 1e5, 30.0))
     run = st.simulate(bristles, 0.05, sample_rate=300.0, rtol=1e-9)
     for k in (4, 9, 14):
         end = st.simulate(bristles, float(run.data["time"][k]), rtol=1e-9).final

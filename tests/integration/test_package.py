@@ -2,9 +2,11 @@
 
 import ast
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
+from pkgutil import resolve_name
 
 import pytest
 from tests.waiting import PATIENCE
@@ -130,8 +132,11 @@ def test_old_names_go_on_working_with_a_warning():
     from stiction.deprecation import old_names
 
     for old, new in _RENAMED.items():
-        with pytest.warns(DeprecationWarning, match=f"stiction.{old} is now called stiction.{new}"):
-            assert getattr(st, old) is not None
+        with pytest.warns(
+            DeprecationWarning, match=re.escape(f"stiction.{old} is now called {new};")
+        ):
+            found = getattr(st, old)
+        assert found is resolve_name(new)
         assert old not in dir(st)
     find = old_names("stiction", {"old_load": "load", "older": "stiction.errors.Status"})
     with pytest.warns(DeprecationWarning, match=r"stiction.old_load is now called stiction.load"):

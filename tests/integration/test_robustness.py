@@ -129,7 +129,7 @@ import itertools, os, signal, threading, time
 import stiction as st
 
 slider, simulate = st.presets.nakano_popov_2020(), st.simulate  # what is imported late is there
-bristles = slider.replace(friction=st.LuGre(0.15, 0.2, 1e-2, 1e5, 300.0, 0.4))
+bristles = slider.replace(friction=st.laws.LuGre(0.15, 0.2, 1e-2, 1e5, 300.0, 0.4))
 runs = [(slider, {}), (slider, {"multiscale": True}), (bristles, {})]
 wanted, sent = threading.Semaphore(0), []
 

@@ -57,7 +57,9 @@ def test_a_run_from_its_file_is_that_of_its_description(config):
 def test_what_is_unambiguous_is_taken_and_else_the_remedy_is_named(tmp_path):
     description = st.Description(PAPER, st.Initial(), st.Settings(duration="20 ms"))
     assert st.stability(description, "phi").stable == st.stability(PAPER, "phi").stable
-    shaken = PAPER.replace(drive=st.DriveProgram(velocity=1e-3, along=st.Modulation(1e-3, 5.0)))
+    shaken = PAPER.replace(
+        drive=st.protocols.DriveProgram(velocity=1e-3, along=st.protocols.Modulation(1e-3, 5.0))
+    )
     with pytest.raises(st.DescriptionError, match="drive"):  # it is read, and then refused
         st.audit(description._replace(slider=shaken))
     for verb in (st.run, lambda slider: st.compare(slider, ["coulomb"])):
@@ -167,7 +169,7 @@ def test_one_panel_figures_draw_on_given_axes(run):
     ):
         ax = Figure().subplots()
         assert draw(ax) is ax
-    whole = st.plot(st.record_of(run), Figure().subplots())
+    whole = st.plot(st.analysis.record_of(run), Figure().subplots())
     assert all(isinstance(each, Axes) for each in whole)
 
 

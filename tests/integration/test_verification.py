@@ -29,7 +29,7 @@ def test_rtol_controls_a_drop_that_does_not_begin_at_rest(d):
         phi="0 deg",
         c_x=2.0,
         drive=st.ConstantVelocity(5e-3),
-        friction=st.Stribeck(mu_s=0.2, mu_c=0.15, v_s=1e-6, d=d),
+        friction=st.laws.Stribeck(mu_s=0.2, mu_c=0.15, v_s=1e-6, d=d),
     )
     exact = st.simulate(slider, 1.0, rtol=1e-12).final["u_x"].item()
     for rtol in (1e-6, 1e-8):

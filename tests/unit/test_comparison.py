@@ -167,7 +167,7 @@ def test_a_law_by_name_is_in_proportion_to_the_apparatus(described: st.Descripti
     small = read_laws(described._replace(slider=tip), names)
     assert small[0].sigma_0 == 50.0
     assert small[1].D_c == pytest.approx(20e-9 * 0.2 / 0.5 / 200.0)
-    aged = st.RateStateAgeing(0.008, 0.014, 3e-6, 0.6, 1e-6)
+    aged = st.laws.RateStateAgeing(0.008, 0.014, 3e-6, 0.6, 1e-6)
     rock = described._replace(slider=described.slider.replace(friction=aged))
     assert read_laws(rock, ["rate-and-state-slip"])[0].D_c == 3e-6  # as the described law has it
 

@@ -218,8 +218,8 @@ def test_automatic_samples_are_limited(slider, changes, duration, samples):
 
 
 def test_automatic_samples_show_what_is_shaken_and_not_the_multiscale_mode(slider):
-    modulation = st.Modulation("0.1 mm/s", "50 kHz")
-    shaken = slider.replace(drive=st.DriveProgram(velocity="1 mm/s", along=modulation))
+    modulation = st.protocols.Modulation("0.1 mm/s", "50 kHz")
+    shaken = slider.replace(drive=st.protocols.DriveProgram(velocity="1 mm/s", along=modulation))
     settings = st.Settings(duration=0.01)
     assert len(automatic_times(st.Description(shaken, st.Initial(), settings))) == 10_001
     assert st.simulate(slider, 0.2, multiscale=True).data.sizes["time"] == 2

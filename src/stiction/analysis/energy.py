@@ -84,7 +84,7 @@ def energy_budget(run: Trajectory, edges: ArrayLike | None = None) -> xr.Dataset
     --------
     >>> import stiction as st
     >>> run = st.simulate(st.presets.nakano_popov_2020(), duration=0.1)
-    >>> budget = st.energy_budget(run)
+    >>> budget = st.analysis.energy_budget(run)
     >>> bool((abs(budget["residual"]) < budget["bound"]).all())
     True
     """

@@ -39,13 +39,13 @@ def strongest_line(
         Width of the windows, s; by default a hundred periods of `low`, but at most a tenth of
         the record.
     cycles : Dataset, optional
-        From `stiction.find_cycles`: their harmonics do not count as lines, see below.
+        From `stiction.analysis.find_cycles`: their harmonics do not count as lines, see below.
 
     Returns
     -------
     Dataset
-        As from `stiction.follow_ridge`, with amplitudes in N. The frequency is NaN where no line
-        stands out of the noise, perhaps everywhere. A sawtooth of drop D has the amplitude
+        As from `stiction.analysis.follow_ridge`, with amplitudes in N. The frequency is NaN where
+        no line stands out of the noise, perhaps everywhere. A sawtooth of drop D has the amplitude
         D/(pi n) at n times its frequency: a line there that is hardly larger belongs to the shape
         of `cycles`.
 

@@ -18,12 +18,12 @@ from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.doubts import taken_off, warnings
 from stiction.analysis.motion.friction import Friction, find_friction
 from stiction.analysis.motion.regime import STICK_SLIP, TRANSITIONAL, Regime, regime_of
-from stiction.analysis.record import Record, recorded
-from stiction.analysis.transverse_oscillation import (
+from stiction.analysis.oscillation import (
     apart,
     oscillation_by_phase,
     transverse_oscillation,
 )
+from stiction.analysis.record import Record, recorded
 from stiction.analysis.words import sections
 from stiction.deprecation import warn_renamed
 from stiction.errors import ResultError
@@ -50,20 +50,21 @@ class Analysis(NamedTuple):
     regime : Regime
         The kind of motion, its confidence and evidence.
     cycles, summary : Dataset
-        A row for each cycle (`stiction.find_cycles`); mean and spread of each quantity.
+        A row for each cycle (`stiction.analysis.find_cycles`); mean and spread of each quantity.
     curves, creep : Dataset or None
-        The creep of each stick phase, and the mean of all (`stiction.mean_creep`).
+        The creep of each stick phase, and the mean of all (`stiction.analysis.mean_creep`).
     divergence : Divergence or None
         The divergence of creep towards slip.
     misalignment : Misalignment or None
         The misalignment implied by the creep.
     oscillation : Dataset or None
-        The transverse oscillation over time (`stiction.transverse_oscillation`); for a record,
-        its strongest fast line (`stiction.strongest_line`).
+        The transverse oscillation over time (`stiction.analysis.transverse_oscillation`); for a
+        record, its strongest fast line (`stiction.analysis.strongest_line`).
     phases : Dataset or None
-        Rest and ring-down in each stick phase (`stiction.oscillation_by_phase`); for runs only.
+        Rest and ring-down in each stick phase (`stiction.analysis.oscillation_by_phase`); for
+        runs only.
     energy : Dataset or None
-        The energy budget of each cycle (`stiction.energy_budget`); for runs only.
+        The energy budget of each cycle (`stiction.analysis.energy_budget`); for runs only.
     missing : dict
         The reason for each part that is None, and for each missing column.
     friction : Friction

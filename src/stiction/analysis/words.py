@@ -19,9 +19,9 @@ from stiction.analysis.motion.regime import (
     STUCK,
     TRANSITIONAL,
 )
+from stiction.analysis.oscillation import hides
 from stiction.analysis.signals.hum import of_mains
 from stiction.analysis.slip import stuck_until
-from stiction.analysis.transverse_oscillation import hides
 from stiction.text.columns import Quantity, grid
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words

@@ -5,8 +5,8 @@ floats, tuples, `math` and the law's own fields. Their first argument is the law
 named ``law``; a user's function that they call must be compiled (`numba.njit`).
 
 They must end for every argument, NaN included. Not even Ctrl-C ends a loop in compiled code: bound
-each, as in ``for _ in range(50)``. Reading a law, and `stiction.check_law`, find endless loops only
-at the few speeds that they probe.
+each, as in ``for _ in range(50)``. Reading a law, and `stiction.testing.check_law`, find endless
+loops only at the few speeds that they probe.
 """
 
 from __future__ import annotations

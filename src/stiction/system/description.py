@@ -19,7 +19,7 @@ from stiction.system.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider
 from stiction.system.writing import described, slider_tables
 from stiction.text.toml import Reader, folder_of, gather, read_json, read_toml, toml_text
 from stiction.text.units import Duration, Number, SampleRate, Velocity
-from stiction.text.validation import Described, faulty
+from stiction.text.validation import Described, faulty, written
 
 SAMPLE = 300.0  # bytes of memory per sample, for all columns and intermediate arrays
 Smoothing = Annotated[Velocity, Field(ge=1e-11)]  # below, steps resolve a thin layer
@@ -68,6 +68,10 @@ class Description(NamedTuple):
     slider: Slider
     initial: Initial
     run: Settings
+
+    def __repr__(self) -> str:
+        """Return the call that makes an equal description."""
+        return written(self)
 
     @classmethod
     def from_toml(

@@ -61,7 +61,7 @@ def _is_load(value: Any) -> Any:
     if value is not None and not isinstance(value, LoadProgram):
         raise ValueError(
             f"{value!r} is not a program of the load; write for example "
-            "st.LoadProgram(program=[st.Ramp('20 N', '1 s')])"
+            "st.protocols.LoadProgram(program=[st.protocols.Ramp('20 N', '1 s')])"
         )
     return value
 

@@ -96,3 +96,7 @@ def _test(name: str, check: Check) -> Callable[[LawContract], None]:
 
 
 __all__ = ["SPEEDS", "LawContract", "check_law", "checks_of"]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

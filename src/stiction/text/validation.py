@@ -14,6 +14,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from stiction.errors import DescriptionError, Fault
+from stiction.names import spelled
 from stiction.text.quantity_text import angle_text
 from stiction.text.units import as_float, kind_of, unit_of
 
@@ -94,7 +95,7 @@ def _call(value: Any, hints: Mapping[str, Any], defaults: Mapping[str, Any]) -> 
         same = type(its) is type(default) and its == default  # a default is never an array
         if name not in defaults or not same:
             written.append(f"{name}={quoted(its, hint)}")
-    return f"{type(value).__name__}({', '.join(written)})"
+    return f"{spelled(type(value))}({', '.join(written)})"
 
 
 def quoted(value: Any, hint: Any) -> str:
@@ -272,7 +273,7 @@ def validated(kind: type[T]) -> type[T]:
     new.__doc__ = plain.__doc__
     setattr(new, READS, True)
     setattr(new, "__signature__", _signature(plain, kind))  # noqa: B010
-    setattr(kind, "__repr__", _written)  # noqa: B010
+    setattr(kind, "__repr__", written)  # noqa: B010
     kind.__new__ = staticmethod(new)  # type: ignore[method-assign,assignment]
     setattr(kind, "__reduce__", _reduced)  # noqa: B010
     return kind
@@ -289,7 +290,7 @@ def _signature(constructor: Any, kind: Any) -> Signature:
     )
 
 
-def _written(value: Any) -> str:
+def written(value: Any) -> str:
     """Return the call that makes an equal NamedTuple."""
     hints = get_type_hints(type(value), include_extras=True)
     return _call(value, {name: hints.get(name) for name in value._fields}, value._field_defaults)

@@ -13,11 +13,16 @@ from stiction.plotting.analysis.energy import PARTS, plot_energy
 from stiction.plotting.page.canvas import figure_of
 from stiction.solver.integrate import tolerance
 
-PROGRAM = st.DriveProgram(
+PROGRAM = st.protocols.DriveProgram(
     velocity=1e-3,
-    program=[st.Constant(duration=0.1), st.Ramp(3e-3, 0.1), st.Step(-1e-3, 0.1), st.Step(2e-3)],
-    along=st.Modulation(2e-4, 30.0),
-    across=st.Modulation(1e-4, 70.0),
+    program=[
+        st.protocols.Constant(duration=0.1),
+        st.protocols.Ramp(3e-3, 0.1),
+        st.protocols.Step(-1e-3, 0.1),
+        st.protocols.Step(2e-3),
+    ],
+    along=st.protocols.Modulation(2e-4, 30.0),
+    across=st.protocols.Modulation(1e-4, 70.0),
 )
 
 
@@ -38,7 +43,9 @@ def test_the_quadrature_is_of_the_order_that_its_authors_say():
 
 
 def test_panels_break_where_sticks_and_programs_do(slider):
-    program = st.DriveProgram(program=[st.Step(1e-3, 0.031), st.Step(2e-3)])
+    program = st.protocols.DriveProgram(
+        program=[st.protocols.Step(1e-3, 0.031), st.protocols.Step(2e-3)]
+    )
     run = st.simulate(slider.replace(drive=program), 0.05)
     starts, lengths = panels(run, np.array([0.0, 0.02, 0.05]))
     assert starts[1:] == pytest.approx((starts + lengths)[:-1], abs=1e-16)
@@ -66,7 +73,7 @@ def test_the_budget_closes_to_the_tolerance(slider, driven, changes):
     off = []
     for rtol in (1e-4, 1e-8):
         run = st.simulate(slider.replace(driven=driven, **changes), 0.4, rtol=rtol)
-        budget = st.energy_budget(run)
+        budget = st.analysis.energy_budget(run)
         residual, quadrature = closure(budget)
         assert (np.abs(budget["residual"]) <= budget["bound"]).all()
         assert float(budget["bound"].sum()) < 3 * tolerance(rtol) * float(budget["work"].sum())
@@ -75,7 +82,7 @@ def test_the_budget_closes_to_the_tolerance(slider, driven, changes):
     assert off[1] < 0.1 * off[0]
 
 
-@pytest.mark.parametrize("shaken", [None, st.Modulation(1e-10, 1.0)])
+@pytest.mark.parametrize("shaken", [None, st.protocols.Modulation(1e-10, 1.0)])
 def test_friction_that_turns_over_between_two_points_in_time_is_not_missed(shaken):
     """Slip all but vanishes and comes back within a thousandth of a panel, beside its end."""
     slider = st.Slider(
@@ -85,43 +92,51 @@ def test_friction_that_turns_over_between_two_points_in_time_is_not_missed(shake
         phi="0.0685 deg",
         normal_load=10.0,
         friction=st.Coulomb(0.2),
-        drive=st.DriveProgram(velocity=0.1, along=shaken),
+        drive=st.protocols.DriveProgram(velocity=0.1, along=shaken),
     )
     start = st.Initial(u_x=0.0023521650501143734, v_x=0.0, v_y=0.0)
-    budget = st.energy_budget(st.simulate(slider, 0.4954862093524758, initial=start, rtol=1e-7))
+    budget = st.analysis.energy_budget(
+        st.simulate(slider, 0.4954862093524758, initial=start, rtol=1e-7)
+    )
     assert abs(float(budget["residual"][0])) < float(budget["bound"][0])
 
 
 def test_a_plate_that_jumps_and_is_shaken_works_on_each_interval(slider):
     """Jumps lie on edges of intervals, between them, and at the end of the last."""
-    program = [st.Step(3e-3, 0.02), st.Step(-1e-3, 0.03), st.Ramp(2e-3, 0.05), st.Step(1e-3)]
-    drive = st.DriveProgram(program=program, along=st.Modulation(5e-4, 40.0))
+    program = [
+        st.protocols.Step(3e-3, 0.02),
+        st.protocols.Step(-1e-3, 0.03),
+        st.protocols.Ramp(2e-3, 0.05),
+        st.protocols.Step(1e-3),
+    ]
+    drive = st.protocols.DriveProgram(program=program, along=st.protocols.Modulation(5e-4, 40.0))
     run = st.simulate(slider.replace(drive=drive, c_x=1.0), 0.12)
     for edges in ([0.0, 0.02, 0.04, 0.1], [0.01, 0.05, 0.07, 0.1, 0.12]):
-        budget = st.energy_budget(run, edges)
+        budget = st.analysis.energy_budget(run, edges)
         assert (np.abs(budget["residual"]) <= budget["bound"]).all()
         assert (budget["bound"] < 1e-3 * np.abs(budget["work"])).all()
 
 
 def test_a_changing_load_does_no_work(slider):
-    load = st.LoadProgram(modulation=st.Modulation(1.0, 7.0))
+    load = st.protocols.LoadProgram(modulation=st.protocols.Modulation(1.0, 7.0))
     run = st.simulate(slider.replace(load=load), 0.4)
-    assert closure(st.energy_budget(run))[0] < 1e-6
+    assert closure(st.analysis.energy_budget(run))[0] < 1e-6
 
 
 @pytest.mark.parametrize("driven", ["plate", "spring"])
 def test_bristles_close_as_well(slider, driven):
-    system = slider.replace(driven=driven, friction=st.LuGre(0.15, 0.2, 1e-2, 1e5, 30.0))
+    system = slider.replace(driven=driven, friction=st.laws.LuGre(0.15, 0.2, 1e-2, 1e5, 30.0))
     off = [
-        closure(st.energy_budget(st.simulate(system, 0.4, rtol=rtol)))[0] for rtol in (1e-4, 1e-8)
+        closure(st.analysis.energy_budget(st.simulate(system, 0.4, rtol=rtol)))[0]
+        for rtol in (1e-4, 1e-8)
     ]
     assert off[1] < tolerance(1e-8)
     assert off[1] < 0.1 * off[0]
 
 
 def test_intervals_add_up_to_the_whole(paper_run):
-    whole = st.energy_budget(paper_run).sum("interval")
-    parts = st.energy_budget(paper_run, [0.0, 0.7, 1.9, 3.2, 5.0]).sum("interval")
+    whole = st.analysis.energy_budget(paper_run).sum("interval")
+    parts = st.analysis.energy_budget(paper_run, [0.0, 0.7, 1.9, 3.2, 5.0]).sum("interval")
     for name in ("work", "friction_x", "friction_y", "spring_x", "spring_y"):
         assert float(parts[name]) == pytest.approx(float(whole[name]), abs=1e-6 * 6.83e-3)
 
@@ -129,7 +144,7 @@ def test_intervals_add_up_to_the_whole(paper_run):
 def test_it_agrees_with_the_balance_of_the_benchmarks(slider):
     """That one has another quadrature, and the spring driven."""
     system = slider.replace(c_x=1.0, c_y=20.0, driven="spring")
-    found = st.energy_budget(st.simulate(system, 0.1, rtol=1e-9)).sum("interval")
+    found = st.analysis.energy_budget(st.simulate(system, 0.1, rtol=1e-9)).sum("interval")
     known = balance(system, 0.1, 1e-9)
     work = known.work[-1]
     assert float(found["work"]) == pytest.approx(work, rel=1e-8)
@@ -140,7 +155,7 @@ def test_it_agrees_with_the_balance_of_the_benchmarks(slider):
 
 def test_a_first_stick_stores_all_work_in_the_springs(slider):
     """K u = K v_d t: energy |k v^2| t^2/2 in each spring, and nothing anywhere else."""
-    budget = st.energy_budget(st.simulate(slider.replace(driven="spring"), 0.011)).sum()
+    budget = st.analysis.energy_budget(st.simulate(slider.replace(driven="spring"), 0.011)).sum()
     V, (c, s) = 1e-3, slider.direction
     stored = [0.5 * k * (V * n * 0.011) ** 2 for k, n in ((slider.k_x, c), (slider.k_y, s))]
     # it starts with a slip of 1e-9 m/s that lasts 1e-10 s
@@ -156,7 +171,7 @@ def test_free_oscillation_loses_what_its_swings_lose():
         mass=1.0, k_x=1.0, k_y=1.0, phi="0 deg", normal_load=1.0, friction=st.Coulomb(1.0)
     )
     start = st.Initial(u_x=-12.0, v_x=-6.0, v_y=0.0)
-    budget = st.energy_budget(st.simulate(slider, 30.0, initial=start, rtol=1e-10)).sum()
+    budget = st.analysis.energy_budget(st.simulate(slider, 30.0, initial=start, rtol=1e-10)).sum()
     swings = [13.317821 - 2.0 * n for n in range(8)]  # the last ends before the middle
     slid = (swings[0] - 12.0) + sum(a + b for a, b in pairwise(swings))
     assert float(budget["friction_x"]) == pytest.approx(slid, abs=1e-5)  # digits of 13.317821
@@ -166,21 +181,21 @@ def test_free_oscillation_loses_what_its_swings_lose():
 def test_a_run_that_broke_off_and_one_read_back_have_a_budget(slider, tmp_path):
     run = st.simulate(slider, 5.0, max_steps=3000)
     assert not run.status.ok
-    assert closure(st.energy_budget(run))[0] < 1e-6
-    again = st.energy_budget(st.load(run.save(tmp_path / "run.nc")))
-    np.testing.assert_array_equal(again["work"], st.energy_budget(run)["work"])
+    assert closure(st.analysis.energy_budget(run))[0] < 1e-6
+    again = st.analysis.energy_budget(st.load(run.save(tmp_path / "run.nc")))
+    np.testing.assert_array_equal(again["work"], st.analysis.energy_budget(run)["work"])
 
 
 def test_edges_outside_the_run_or_out_of_order_are_refused(slider):
     run = st.simulate(slider, 0.01)
     with pytest.raises(st.ResultError, match=r"the run goes from 0 s to 0\.01 s, the edges from"):
-        st.energy_budget(run, [0.0, 0.02])
+        st.analysis.energy_budget(run, [0.0, 0.02])
     with pytest.raises(st.ResultError, match="two times or more that ascend"):
-        st.energy_budget(run, [0.01, 0.0])
+        st.analysis.energy_budget(run, [0.01, 0.0])
 
 
 def test_the_figure_says_what_is_drawn(slider):
-    budget = st.energy_budget(st.simulate(slider.replace(c_x=1.0), 0.1), [0.0, 0.05, 0.1])
+    budget = st.analysis.energy_budget(st.simulate(slider.replace(c_x=1.0), 0.1), [0.0, 0.05, 0.1])
     upper, lower = figure_of(plot_energy, budget).axes
     assert upper.get_ylabel() == "energy (µJ)"
     assert lower.get_xlabel() == "interval of the run"

@@ -10,7 +10,7 @@ from stiction.analysis.onset import find_onset
 from stiction.linear_stability import critical
 
 PAPER = st.presets.nakano_popov_2020()
-LAW = st.Stribeck(mu_s=0.3, mu_c=0.15, v_s="20 mm/s")
+LAW = st.laws.Stribeck(mu_s=0.3, mu_c=0.15, v_s="20 mm/s")
 W, V_S = 10.0, 0.02
 
 

@@ -63,10 +63,12 @@ def test_what_is_no_number_is_not_taken_for_one(force: object, said: str) -> Non
 
 
 def test_a_run_is_read_like_its_record(paper_run: st.Trajectory) -> None:
-    assert st.classify(paper_run) == st.classify(st.record_of(paper_run))
-    assert st.find_cycles(paper_run).identical(st.find_cycles(st.record_of(paper_run)))
+    assert st.analysis.classify(paper_run) == st.analysis.classify(st.analysis.record_of(paper_run))
+    assert st.analysis.find_cycles(paper_run).identical(
+        st.analysis.find_cycles(st.analysis.record_of(paper_run))
+    )
     with pytest.raises(st.ResultError, match="a str is neither a run nor a record"):
-        st.classify("run.nc")
+        st.analysis.classify("run.nc")
 
 
 def test_units_of_arrays_are_honoured() -> None:

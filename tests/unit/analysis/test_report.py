@@ -142,9 +142,9 @@ def test_an_aligned_run_implies_no_misalignment(slider: st.Slider) -> None:
 
 def test_old_names_go_on_working_with_a_warning(run, found) -> None:
     with pytest.warns(DeprecationWarning, match="transverse_oscillation"):
-        assert st.hear_song is st.transverse_oscillation
+        assert st.hear_song is st.analysis.transverse_oscillation
     with pytest.warns(DeprecationWarning, match="oscillation_by_phase"):
-        assert st.song_by_phase is st.oscillation_by_phase
+        assert st.song_by_phase is st.analysis.oscillation_by_phase
     with pytest.warns(DeprecationWarning, match="oscillation"):
         assert found.song is found.oscillation
 
@@ -170,8 +170,10 @@ def test_a_vibration_that_sticks_is_not_said_not_to() -> None:
 
 
 def test_a_confidence_of_one_leaves_no_other_kind() -> None:
-    assert "else" not in str(st.Regime("stick-slip", 0.996, {}, "harmonic vibration"))
-    assert "(confidence 0.99; else" in str(st.Regime("stick-slip", 0.99, {}, "harmonic vibration"))
+    assert "else" not in str(st.analysis.Regime("stick-slip", 0.996, {}, "harmonic vibration"))
+    assert "(confidence 0.99; else" in str(
+        st.analysis.Regime("stick-slip", 0.99, {}, "harmonic vibration")
+    )
 
 
 def test_a_mass_that_never_slips_does_not_creep_before_slip() -> None:

@@ -247,7 +247,7 @@ def rows_of(slider: st.Slider) -> str:
 
 
 def test_friction_with_state_is_no_artefact_of_the_misalignment():
-    law = st.RateStateAgeing(a=0.008, b=0.012, D_c="10 um", mu_star=0.6, V_star="1 um/s")
+    law = st.laws.RateStateAgeing(a=0.008, b=0.012, D_c="10 um", mu_star=0.6, V_star="1 um/s")
     rig = {"mass": "100 kg", "k_x": "1 MN/m", "k_y": "1 GN/m", "normal_load": "50 kN"}
     drive = st.ConstantVelocity("10 um/s")
     block = st.Slider(**rig, phi="0.3 deg", friction=law, drive=drive)
@@ -259,7 +259,7 @@ def test_friction_with_state_is_no_artefact_of_the_misalignment():
 
 
 def test_a_transverse_spring_that_is_not_stiff_is_said_to_be_none():
-    law = st.Stribeck(mu_s=0.6, mu_c=0.45, v_s="5 mm/s", d=1)
+    law = st.laws.Stribeck(mu_s=0.6, mu_c=0.45, v_s="5 mm/s", d=1)
     rig = {"mass": "200 g", "k_x": "5 kN/m", "k_y": "1 MN/m", "normal_load": "20 N"}
     pin = st.Slider(**rig, phi="0.5 deg", friction=law, drive=st.ConstantVelocity("0.5 mm/s"))
     text = said(pin)

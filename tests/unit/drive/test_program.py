@@ -17,13 +17,13 @@ from stiction.solver.integrate import tolerance
 
 RTOL = 1e-10
 EVERY_PIECE = [
-    st.Constant(duration=0.5),
-    st.Hold(0.2),
-    st.Ramp(2e-3, 0.3),
-    st.Reversal(0.5),
-    st.Step(1e-3, 0.1),
-    st.Harmonic(1e-3, 20.0, "90 deg", 0.5),
-    st.Free(),
+    st.protocols.Constant(duration=0.5),
+    st.protocols.Hold(0.2),
+    st.protocols.Ramp(2e-3, 0.3),
+    st.protocols.Reversal(0.5),
+    st.protocols.Step(1e-3, 0.1),
+    st.protocols.Harmonic(1e-3, 20.0, "90 deg", 0.5),
+    st.protocols.Free(),
 ]
 
 
@@ -47,7 +47,7 @@ def first_release(slider, end, **initial):
 @pytest.mark.parametrize(("driven", "inertia"), [("plate", 1.0), ("spring", 0.0)])
 def test_an_accelerated_drive_uses_friction_up_by_its_inertia(driven, inertia):
     a, c = 0.3, 0.5
-    ramp = st.DriveProgram(program=[st.Ramp(10 * a, 10.0)])
+    ramp = st.protocols.DriveProgram(program=[st.protocols.Ramp(10 * a, 10.0)])
     # k a t^2/2 + c a t + m a = mu W
     wanted = -c + sqrt(c * c + 2 * (1.0 / a - inertia))
     found = first_release(block(drive=ramp, c_x=c, driven=driven), 9.0)
@@ -55,7 +55,7 @@ def test_an_accelerated_drive_uses_friction_up_by_its_inertia(driven, inertia):
 
 
 def test_a_drive_that_accelerates_more_than_friction_holds_slips_at_once():
-    ramp = st.DriveProgram(program=[st.Ramp(20.0, 10.0)])  # m a = 2 mu W
+    ramp = st.protocols.DriveProgram(program=[st.protocols.Ramp(20.0, 10.0)])  # m a = 2 mu W
     run = st.simulate(block(drive=ramp), 0.1, initial=st.Initial(v_x=0.0, v_y=0.0))
     assert len(run.stick_intervals) == 0
 
@@ -63,7 +63,7 @@ def test_a_drive_that_accelerates_more_than_friction_holds_slips_at_once():
 def test_a_rising_load_prolongs_a_stick_and_a_falling_one_ends_it():
     V, W = 0.5, 0.2
     for rate in (W, -W):
-        load = st.LoadProgram(program=[st.Ramp(1.0 + 4 * rate, 4.0)])
+        load = st.protocols.LoadProgram(program=[st.protocols.Ramp(1.0 + 4 * rate, 4.0)])
         slider = block(drive=st.ConstantVelocity(V), load=load)
         assert first_release(slider, 5.0) == pytest.approx(1.0 / (V - rate), rel=1e-13)
 
@@ -71,8 +71,10 @@ def test_a_rising_load_prolongs_a_stick_and_a_falling_one_ends_it():
 @pytest.mark.parametrize("driven", ["plate", "spring"])
 def test_a_harmonic_drive_releases_at_the_root(driven):
     A, omega, c = 0.2, 3.0, 0.1
-    drive = st.DriveProgram(
-        velocity=0.4, along=st.Modulation(A, omega / (2 * pi)), program=[st.Constant()]
+    drive = st.protocols.DriveProgram(
+        velocity=0.4,
+        along=st.protocols.Modulation(A, omega / (2 * pi)),
+        program=[st.protocols.Constant()],
     )
     inertia = 1.0 if driven == "plate" else 0.0
 
@@ -91,7 +93,7 @@ def test_a_harmonic_drive_releases_at_the_root(driven):
 @pytest.mark.parametrize("excess", [-1e-9, 1e-9])
 def test_a_load_that_all_but_releases_a_stick(excess):
     """The limit touches the force that is held for an instant: nothing is stepped over."""
-    load = st.LoadProgram(modulation=st.Modulation(0.25, 7.0))
+    load = st.protocols.LoadProgram(modulation=st.protocols.Modulation(0.25, 7.0))
     slider = block(load=load, driven="spring")
     held = 0.75 + excess  # the smallest limit is 0.75
     run = st.simulate(slider, 1.0, initial=st.Initial(u_x=held, v_x=0.0, v_y=0.0), rtol=RTOL)
@@ -105,7 +107,7 @@ def test_a_load_that_all_but_releases_a_stick(excess):
 
 def test_a_long_hold_under_vibration_is_one_stick():
     """Far more looks at the margin than the solver takes at once."""
-    drive = st.DriveProgram(across=st.Modulation(0.5, 100.0))
+    drive = st.protocols.DriveProgram(across=st.protocols.Modulation(0.5, 100.0))
     slider = block(drive=drive, driven="spring", k_y=500.0)  # 0.8 of what friction holds
     run = st.simulate(slider, 100.0, initial=st.Initial(v_x=0.0, v_y=0.0))
     assert run.stick_intervals.tolist() == [[0.0, 100.0]]
@@ -140,19 +142,19 @@ def test_a_slip_that_just_reaches_zero_sticks():
         c_y=5.0,
         driven="spring",
         friction=st.Coulomb(0.39522531523021254, 0.4149865809917232),
-        drive=st.DriveProgram(
+        drive=st.protocols.DriveProgram(
             velocity=0.0063489482656108555,
             program=[
-                st.Ramp(-0.0022111294105426373, 1.4723077426369873),
-                st.Step(0.0063489482656108555, 0.9804034052159277),
+                st.protocols.Ramp(-0.0022111294105426373, 1.4723077426369873),
+                st.protocols.Step(0.0063489482656108555, 0.9804034052159277),
             ],
         ),
-        load=st.LoadProgram(
+        load=st.protocols.LoadProgram(
             program=[
-                st.Ramp(23.19395605788644, 2.179074711819254),
-                st.Step(-0.09835262495723726, 0.3215822848899921),
+                st.protocols.Ramp(23.19395605788644, 2.179074711819254),
+                st.protocols.Step(-0.09835262495723726, 0.3215822848899921),
             ],
-            modulation=st.Modulation(1.4278724090988686, 0.868316320619524),
+            modulation=st.protocols.Modulation(1.4278724090988686, 0.868316320619524),
         ),
     )
     exact = st.simulate(slider, 5.0, rtol=1e-10)
@@ -172,7 +174,9 @@ def test_what_jumps_with_a_drive(driven):
     slider = block(
         friction=st.Coulomb(0.1),
         driven=driven,
-        drive=st.DriveProgram(velocity=0.5, program=[st.Constant(duration=1.0), st.Step(0.25)]),
+        drive=st.protocols.DriveProgram(
+            velocity=0.5, program=[st.protocols.Constant(duration=1.0), st.protocols.Step(0.25)]
+        ),
     )
     sliding = st.Initial(u_x=0.1, v_x=0.1, v_y=0.0)
     before = st.simulate(slider, 1.0, initial=sliding, rtol=RTOL)
@@ -191,8 +195,13 @@ def test_a_program_is_its_pieces_one_after_the_other(slider):
     And the sticks that go on over a break are one.
     """
     V = 1e-3
-    hold = st.DriveProgram(
-        velocity=V, program=[st.Constant(duration=0.03), st.Hold(0.02), st.Constant()]
+    hold = st.protocols.DriveProgram(
+        velocity=V,
+        program=[
+            st.protocols.Constant(duration=0.03),
+            st.protocols.Hold(0.02),
+            st.protocols.Constant(),
+        ],
     )
     whole = st.simulate(slider.replace(drive=hold, driven="spring"), 0.08, rtol=1e-9)
     state, sticks, last = st.Initial(), [], None
@@ -218,7 +227,9 @@ def test_a_program_is_its_pieces_one_after_the_other(slider):
 
 def test_free_springs_relax_to_rest(slider):
     """Drive stopped: the spring keeps what friction can hold, and nothing moves any more."""
-    drive = st.DriveProgram(velocity=1e-3, program=[st.Constant(duration=1.0), st.Free()])
+    drive = st.protocols.DriveProgram(
+        velocity=1e-3, program=[st.protocols.Constant(duration=1.0), st.protocols.Free()]
+    )
     run = st.simulate(slider.replace(drive=drive), 1.5, sample_rate=1e3)
     assert run.stick_intervals[-1, 1] == 1.5
     after = run.data.sel(time=slice(run.stick_intervals[-1, 0] + 1e-3, None))
@@ -231,7 +242,7 @@ def test_free_springs_relax_to_rest(slider):
 
 
 def test_a_run_ends_where_the_contact_is_lost(slider):
-    load = st.LoadProgram(program=[st.Hold(0.1), st.Ramp(-10.0, 0.4)])
+    load = st.protocols.LoadProgram(program=[st.protocols.Hold(0.1), st.protocols.Ramp(-10.0, 0.4)])
     run = st.simulate(slider.replace(load=load), 1.0, sample_rate=1e3)
     assert run.status is st.Status.CONTACT_LOST
     assert "load" in run.status.value
@@ -239,14 +250,16 @@ def test_a_run_ends_where_the_contact_is_lost(slider):
     assert np.all(np.diff(run.data["time"].values) > 0)
     assert np.isfinite(run.data["u_x"].values).all()
     # a load that only touches zero does not lose contact before it does
-    swing = st.LoadProgram(modulation=st.Modulation(9.999999, 10.0))
+    swing = st.protocols.LoadProgram(modulation=st.protocols.Modulation(9.999999, 10.0))
     assert st.simulate(slider.replace(load=swing), 0.2).status.ok
-    swing = st.LoadProgram(modulation=st.Modulation(10.000001, 10.0))
+    swing = st.protocols.LoadProgram(modulation=st.protocols.Modulation(10.000001, 10.0))
     assert st.simulate(slider.replace(load=swing), 0.2).status is st.Status.CONTACT_LOST
 
 
 def test_a_load_that_is_gone_at_once(slider):
-    load = st.LoadProgram(program=[st.Constant(duration=0.1), st.Step(-20.0)])
+    load = st.protocols.LoadProgram(
+        program=[st.protocols.Constant(duration=0.1), st.protocols.Step(-20.0)]
+    )
     run = st.simulate(slider.replace(load=load), 1.0, sample_rate=1e3)
     assert run.status is st.Status.CONTACT_LOST
     assert float(run.data["time"][-1]) == pytest.approx(0.1, rel=1e-12)
@@ -265,12 +278,18 @@ def test_every_piece_against_the_smoothed_law(slider, driven):
         c_y=5.0,
         driven=driven,
         friction=st.Coulomb(0.2),
-        drive=st.DriveProgram(
-            velocity="1 mm/s", program=EVERY_PIECE, across=st.Modulation("0.5 mm/s", "35 Hz")
+        drive=st.protocols.DriveProgram(
+            velocity="1 mm/s",
+            program=EVERY_PIECE,
+            across=st.protocols.Modulation("0.5 mm/s", "35 Hz"),
         ),
-        load=st.LoadProgram(
-            program=[st.Ramp("5 N", "0.7 s"), st.Step("6 N", "0.5 s"), st.Hold("0.1 s")],
-            modulation=st.Modulation("1 N", "50 Hz"),
+        load=st.protocols.LoadProgram(
+            program=[
+                st.protocols.Ramp("5 N", "0.7 s"),
+                st.protocols.Step("6 N", "0.5 s"),
+                st.protocols.Hold("0.1 s"),
+            ],
+            modulation=st.protocols.Modulation("1 N", "50 Hz"),
         ),
     )
     exact = st.simulate(every, 2.5, sample_rate=1e3, rtol=1e-9)
@@ -307,8 +326,8 @@ def test_a_signal_its_integral_derivative_and_bounds(value, slope, a, omega, pha
 
 
 def test_a_drive_s_travel_is_the_integral_of_its_rate():
-    drive = st.DriveProgram(
-        velocity=1e-3, program=EVERY_PIECE, repeat=1, across=st.Modulation(5e-4, 35.0)
+    drive = st.protocols.DriveProgram(
+        velocity=1e-3, program=EVERY_PIECE, repeat=1, across=st.protocols.Modulation(5e-4, 35.0)
     )
     for i in (0, 1):
         total, _ = quad(lambda t, i=i: drive.rate(t)[i], 0.0, 2.3, limit=2000, points=[0.5, 0.7])
@@ -321,8 +340,10 @@ def test_a_drive_s_travel_is_the_integral_of_its_rate():
 
 def test_ten_thousand_pieces_cost_no_more_each():
     """Travel and rate at any time, without a walk through all that went before."""
-    drive = st.DriveProgram(
-        velocity=1e-3, program=[st.Constant(duration=1e-3), st.Reversal(1e-3)], repeat=10_000
+    drive = st.protocols.DriveProgram(
+        velocity=1e-3,
+        program=[st.protocols.Constant(duration=1e-3), st.protocols.Reversal(1e-3)],
+        repeat=10_000,
     )
     times = np.linspace(0.0, 20.0, 200_001)
     travelled, _ = drive.travel(0.0, times)
@@ -331,25 +352,27 @@ def test_ten_thousand_pieces_cost_no_more_each():
     assert travelled == pytest.approx(wave, abs=2e4 * 2.2e-16 * 20.0 * 1e-3)
     assert float(drive.rate(19.9995)[0]) == -1e-3
     with pytest.raises(st.DescriptionError, match="has no end"):
-        st.DriveProgram(velocity=1.0, program=[st.Hold()], repeat=2)
+        st.protocols.DriveProgram(velocity=1.0, program=[st.protocols.Hold()], repeat=2)
 
 
 def test_pieces_follow_on_from_each_other():
     base = 2.0
-    drive = st.DriveProgram(
+    drive = st.protocols.DriveProgram(
         velocity=base,
         program=[
-            st.Ramp(5.0, 1.0),
-            st.Reversal(1.0),
-            st.Step(1.0, 1.0),
-            st.Hold(1.0),
-            st.Constant(duration=1.0),
+            st.protocols.Ramp(5.0, 1.0),
+            st.protocols.Reversal(1.0),
+            st.protocols.Step(1.0, 1.0),
+            st.protocols.Hold(1.0),
+            st.protocols.Constant(duration=1.0),
         ],
         repeat=2,
     )
     middle = [float(drive.rate(n + 0.5)[0]) for n in range(11)]
     assert middle == [3.5, -5.0, -4.0, 0.0, 2.0] * 2 + [2.0]
-    load = st.LoadProgram(program=[st.Ramp(20.0, 1.0), st.Hold(1.0), st.Step(-5.0)])
+    load = st.protocols.LoadProgram(
+        program=[st.protocols.Ramp(20.0, 1.0), st.protocols.Hold(1.0), st.protocols.Step(-5.0)]
+    )
     ends, signals = zip(*load.stretches(10.0), strict=True)
     assert ends == (1.0, 2.0, inf)
     assert [signal.at(end) for end, signal in zip((1.0, 2.0, 3.0), signals, strict=True)] == [
@@ -406,19 +429,20 @@ def test_programs_in_toml_and_in_python_are_the_same(tmp_path):
         phi="1 deg",
         normal_load=10.0,
         driven="spring",
-        friction=st.Anisotropic(st.Coulomb(0.2, 0.25), 1.5, "30 deg"),
-        drive=st.DriveProgram(
+        friction=st.laws.Anisotropic(st.Coulomb(0.2, 0.25), 1.5, "30 deg"),
+        drive=st.protocols.DriveProgram(
             velocity="1 mm/s",
             repeat=2,
             program=[
-                st.Constant(duration="2 s"),
-                st.Hold("10 s"),
-                st.Harmonic("1 mm/s", "5 Hz", "90 deg", 1.0),
+                st.protocols.Constant(duration="2 s"),
+                st.protocols.Hold("10 s"),
+                st.protocols.Harmonic("1 mm/s", "5 Hz", "90 deg", 1.0),
             ],
-            across=st.Modulation("2 mm/s", "1 kHz"),
+            across=st.protocols.Modulation("2 mm/s", "1 kHz"),
         ),
-        load=st.LoadProgram(
-            modulation=st.Modulation("1 N", "50 Hz"), program=[st.Ramp("20 N", "1 s")]
+        load=st.protocols.LoadProgram(
+            modulation=st.protocols.Modulation("1 N", "50 Hz"),
+            program=[st.protocols.Ramp("20 N", "1 s")],
         ),
     )
     assert st.Description.from_json(read.to_json()) == read

@@ -33,7 +33,7 @@ def tensor(slider):
 
 def test_a_circle_is_isotropic_friction(slider):
     plain = soft(slider, friction=WEAKENING)
-    circle = soft(slider, friction=st.Anisotropic(WEAKENING, 1.0, "20 deg"))
+    circle = soft(slider, friction=st.laws.Anisotropic(WEAKENING, 1.0, "20 deg"))
     one, other = (st.simulate(s, 0.3, sample_rate=1e3, rtol=1e-9) for s in (plain, circle))
     assert len(one.stick_intervals) == len(other.stick_intervals) > 3
     assert other.stick_intervals == pytest.approx(one.stick_intervals, rel=1e-6)
@@ -45,8 +45,8 @@ def test_a_circle_is_isotropic_friction(slider):
 
 def test_an_ellipse_has_two_names(slider):
     """Half axes mu and ratio mu, the first at an angle: or the other way round."""
-    one = soft(slider, friction=st.Anisotropic(st.Coulomb(0.2), 1.5, "30 deg"))
-    other = soft(slider, friction=st.Anisotropic(st.Coulomb(0.3), 1 / 1.5, "120 deg"))
+    one = soft(slider, friction=st.laws.Anisotropic(st.Coulomb(0.2), 1.5, "30 deg"))
+    other = soft(slider, friction=st.laws.Anisotropic(st.Coulomb(0.3), 1 / 1.5, "120 deg"))
     runs = [st.simulate(s, 0.3, sample_rate=1e3, rtol=1e-9).data for s in (one, other)]
     for name in ("u_x", "u_y", "friction"):
         assert runs[1][name].values == pytest.approx(runs[0][name].values, rel=1e-6, abs=1e-12)
@@ -55,7 +55,9 @@ def test_an_ellipse_has_two_names(slider):
 @pytest.mark.parametrize(("ratio", "angle"), [(1.5, "30 deg"), (0.4, "-70 deg")])
 def test_a_stick_ends_on_the_ellipse(slider, ratio, angle):
     """K v_d t lies on it: (K v_d t).N^-1 (K v_d t) = (mu W)^2; slip leaves along the normal."""
-    s = soft(slider, c_x=0.0, c_y=0.0, friction=st.Anisotropic(st.Coulomb(0.2, 0.25), ratio, angle))
+    s = soft(
+        slider, c_x=0.0, c_y=0.0, friction=st.laws.Anisotropic(st.Coulomb(0.2, 0.25), ratio, angle)
+    )
     V = 1e-2 * np.array(s.direction)
     run = st.simulate(s, 0.05, initial=st.Initial(v_x=V[0], v_y=V[1]), rtol=1e-10)
     pull = np.array([s.k_x, s.k_y]) * V
@@ -64,7 +66,7 @@ def test_a_stick_ends_on_the_ellipse(slider, ratio, angle):
 
 
 def test_force_and_slip_obey_the_flow_rule(slider):
-    s = soft(slider, friction=st.Anisotropic(WEAKENING, 1.7, "40 deg"))
+    s = soft(slider, friction=st.laws.Anisotropic(WEAKENING, 1.7, "40 deg"))
     d = st.simulate(s, 0.5, sample_rate=1e3).data
     N = tensor(s)
     theta = np.radians(d["theta"].values)
@@ -90,7 +92,7 @@ def test_force_and_slip_obey_the_flow_rule(slider):
 )
 def test_the_smoothed_ellipse_tends_to_it(slider, law, ratio, angle):
     """SciPy on F = mu W N s/sqrt(s.N s + delta^2); the error falls with about delta^(4/5)."""
-    s = soft(slider, friction=st.Anisotropic(law, ratio, angle))
+    s = soft(slider, friction=st.laws.Anisotropic(law, ratio, angle))
     exact = st.simulate(s, 0.4, sample_rate=1e3, rtol=1e-10).data
     N, V = tensor(s), 1e-2 * np.array(s.direction)
     k, c = np.array([s.k_x, s.k_y]), np.array([s.c_x, s.c_y])
@@ -163,7 +165,7 @@ def test_flow_and_its_derivatives(ratio, angle, w):
 
 
 def test_our_own_smoothed_ellipse_tends_to_it(slider):
-    s = soft(slider, friction=st.Anisotropic(WEAKENING, 1.5, "30 deg"))
+    s = soft(slider, friction=st.laws.Anisotropic(WEAKENING, 1.5, "30 deg"))
     exact = st.simulate(s, 0.4, sample_rate=1e3, rtol=1e-9).data["spring_y"].values
     errors = []
     for delta in (1e-8, 1e-9, 1e-10):

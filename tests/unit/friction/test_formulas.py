@@ -15,61 +15,63 @@ from stiction.friction.laws.lugre import bending
 
 SPEEDS = [0.0, 1e-4, 3e-3, 0.02, 0.5]
 RATE = {"a": 0.01, "b": 0.015, "D_c": 1e-5, "mu_star": 0.6, "V_star": 1e-6}
-LUGRE = st.LuGre(mu_c=0.15, mu_s=0.2, v_s=0.01, sigma_0=1e5, sigma_1=300.0, sigma_2=2.0)
+LUGRE = st.laws.LuGre(mu_c=0.15, mu_s=0.2, v_s=0.01, sigma_0=1e5, sigma_1=300.0, sigma_2=2.0)
 
 
 @pytest.mark.parametrize("v", SPEEDS)
 def test_set_valued_laws(v):
     exponential = st.ExponentialWeakening(0.2, 0.15, 0.01).coefficient(v)
     assert exponential == pytest.approx(0.15 + 0.05 * exp(-v / 0.01))
-    assert st.HyperbolicWeakening(0.2, 0.01).coefficient(v) == pytest.approx(0.2 / (1 + v / 0.01))
-    stribeck = st.Stribeck(0.2, 0.15, 0.01, 1.7, 0.3)
+    assert st.laws.HyperbolicWeakening(0.2, 0.01).coefficient(v) == pytest.approx(
+        0.2 / (1 + v / 0.01)
+    )
+    stribeck = st.laws.Stribeck(0.2, 0.15, 0.01, 1.7, 0.3)
     fallen = exp(-((v / 0.01) ** 1.7))
     assert stribeck.coefficient(v) == pytest.approx(0.15 + 0.05 * fallen + 0.3 * v)
     fall = -0.05 * 1.7 / 0.01 * (v / 0.01) ** 0.7 * fallen
     assert stribeck.slope(v) == pytest.approx(fall + 0.3)
     assert st.Coulomb(0.2).coefficient(v) == 0.2
     assert st.Coulomb(0.2).slope(v) == 0.0
-    assert st.Stribeck(0.2, 0.15, 1e-9, 9.0).coefficient(1e300) == 0.15  # no overflow
-    assert st.Stribeck(0.2, 0.15, 1e-9, 9.0).slope(1e300) == 0.0
+    assert st.laws.Stribeck(0.2, 0.15, 1e-9, 9.0).coefficient(1e300) == 0.15  # no overflow
+    assert st.laws.Stribeck(0.2, 0.15, 1e-9, 9.0).slope(1e300) == 0.0
 
 
 def test_the_static_coefficient_is_the_larger_one():
     assert static_coefficient(st.Coulomb(0.2)) == 0.2
     assert static_coefficient(st.Coulomb(0.2, mu_static=0.3)) == 0.3
-    assert static_coefficient(st.Anisotropic(st.Coulomb(0.2, mu_static=0.3), 1.5)) == 0.3
-    assert static_coefficient(st.Table(v=[0.001, 0.01], mu=[0.2, 0.1])) == 0.2
+    assert static_coefficient(st.laws.Anisotropic(st.Coulomb(0.2, mu_static=0.3), 1.5)) == 0.3
+    assert static_coefficient(st.laws.Table(v=[0.001, 0.01], mu=[0.2, 0.1])) == 0.2
 
 
 def test_the_defaults_have_no_static_coefficient_and_no_viscous_friction():
     for law in (
         st.Coulomb(0.2),
         st.ExponentialWeakening(0.2, 0.1, 0.01),
-        st.HyperbolicWeakening(0.2, 0.01),
-        st.Stribeck(0.2, 0.1, 0.01),
-        st.Table(v=[0.0, 1.0], mu=[0.2, 0.1]),
+        st.laws.HyperbolicWeakening(0.2, 0.01),
+        st.laws.Stribeck(0.2, 0.1, 0.01),
+        st.laws.Table(v=[0.0, 1.0], mu=[0.2, 0.1]),
     ):
         assert law.mu_static == 0.0
-    assert (st.Stribeck(0.2, 0.1, 0.01).d, st.Stribeck(0.2, 0.1, 0.01).c) == (2.0, 0.0)
-    assert LUGRE._replace(sigma_2=0.0) == st.LuGre(*LUGRE[:5])
-    assert st.Anisotropic(st.Coulomb(0.2), 1.5).angle == 0.0
+    assert (st.laws.Stribeck(0.2, 0.1, 0.01).d, st.laws.Stribeck(0.2, 0.1, 0.01).c) == (2.0, 0.0)
+    assert LUGRE._replace(sigma_2=0.0) == st.laws.LuGre(*LUGRE[:5])
+    assert st.laws.Anisotropic(st.Coulomb(0.2), 1.5).angle == 0.0
 
 
 def test_the_curve_of_a_table_is_smooth():
     """A slope by differences, of cubics that meet with it, and run into a constant."""
-    law = st.Table(v=[0.001, 0.004, 0.01], mu=[0.2, 0.12, 0.1])
+    law = st.laws.Table(v=[0.001, 0.004, 0.01], mu=[0.2, 0.12, 0.1])
     step = 1e-8
     for v in (0.0005, 0.001, 0.0013, 0.003, 0.004, 0.007, 0.01, 0.02, 0.5):
         change = law.coefficient(v + step) - law.coefficient(max(v - step, 0.0))
         assert law.slope(v) == pytest.approx(change / (2 * step), abs=2e-3)
     assert [law.coefficient(v) for v in law.v] == pytest.approx(law.mu)
-    at_zero = st.Table(v=[0.0, 0.01], mu=[0.2, 0.1])
+    at_zero = st.laws.Table(v=[0.0, 0.01], mu=[0.2, 0.1])
     assert at_zero.coefficient(0.0) == 0.2
     assert at_zero.slope(0.002) < 0.0
 
 
 @pytest.mark.parametrize("V", [1e-30, 1e-9, 1e-6, 1.0])
-@pytest.mark.parametrize("kind", [st.RateStateAgeing, st.RateStateSlip])
+@pytest.mark.parametrize("kind", [st.laws.RateStateAgeing, st.laws.RateStateSlip])
 def test_rate_and_state(kind, V):
     """mu = a asinh[(V/2V*) exp(psi/a)]; theta' = 1 - x or -x ln x with x = V theta/D_c."""
     law, zeta, load = kind(**RATE), 1.3, 10.0
@@ -82,15 +84,15 @@ def test_rate_and_state(kind, V):
     assert law.grain((zeta,)) == pytest.approx(2e-6 * exp(-psi / 0.01))
     theta = 1e-5 / 1e-6 * exp(zeta)
     x = V * theta / 1e-5
-    rate = (1 - x if kind is st.RateStateAgeing else -x * log(x)) / theta
+    rate = (1 - x if kind is st.laws.RateStateAgeing else -x * log(x)) / theta
     assert law.change((0.0, V), load, (zeta,)) == pytest.approx((rate,), rel=1e-12)
     assert law.change((0.0, 0.0), load, (zeta,)) == (
-        pytest.approx((1 / theta,)) if kind is st.RateStateAgeing else (0.0,)
+        pytest.approx((1 / theta,)) if kind is st.laws.RateStateAgeing else (0.0,)
     )
     assert law.force((0.0, 0.0), load, (zeta,)) == (0.0, 0.0)
 
 
-@pytest.mark.parametrize("kind", [st.RateStateAgeing2, st.RateStateSlip2])
+@pytest.mark.parametrize("kind", [st.laws.RateStateAgeing2, st.laws.RateStateSlip2])
 def test_two_states_are_two_times_one(kind):
     """psi is their sum; each evolves over its own distance as if it were alone."""
     law, zeta, slip = kind(0.01, 0.012, 1e-5, 0.005, 1e-4, 0.6, 1e-6), (1.3, -0.4), (3e-6, 4e-6)
@@ -98,7 +100,7 @@ def test_two_states_are_two_times_one(kind):
     mu = 0.01 * asinh(5e-6 / 2e-6 * exp(psi / 0.01))
     assert law.force(slip, 10.0, zeta) == pytest.approx((6.0 * mu, 8.0 * mu))
     assert law.grain(zeta) == pytest.approx(2e-6 * exp(-psi / 0.01))
-    one = st.RateStateAgeing if kind is st.RateStateAgeing2 else st.RateStateSlip
+    one = st.laws.RateStateAgeing if kind is st.laws.RateStateAgeing2 else st.laws.RateStateSlip
     rates = [
         one(**RATE | {"D_c": D}).change(slip, 10.0, (z,))[0]
         for D, z in zip((1e-5, 1e-4), zeta, strict=True)
@@ -109,7 +111,7 @@ def test_two_states_are_two_times_one(kind):
     assert law.coefficient(3e-6) == pytest.approx(steady)
 
 
-@pytest.mark.parametrize("kind", [st.RateStateAgeing, st.RateStateSlip])
+@pytest.mark.parametrize("kind", [st.laws.RateStateAgeing, st.laws.RateStateSlip])
 def test_steady_sliding_changes_no_state(kind):
     """V theta = D_c; at rest, sliding at 1e-12 m/s stands for it, and the state is that at V*."""
     law = kind(**RATE)
@@ -133,13 +135,13 @@ def test_the_hyperbolic_sine_of_large_arguments():
 def test_a_direct_effect_of_floats():
     """2 V* exp(-psi/a) must be one, for contacts of a hundred days: psi to mu* + 30 b."""
     least = (0.6 + 30 * 0.015) / 680
-    assert st.RateStateAgeing(**RATE | {"a": 1.001 * least})
+    assert st.laws.RateStateAgeing(**RATE | {"a": 1.001 * least})
     with pytest.raises(DescriptionError, match="at least"):
-        st.RateStateAgeing(**RATE | {"a": 0.999 * least})
+        st.laws.RateStateAgeing(**RATE | {"a": 0.999 * least})
     both = {"b_1": 0.01, "D_1": 1e-5, "b_2": 0.005, "D_2": 1e-4, "mu_star": 0.6, "V_star": 1e-6}
-    assert st.RateStateSlip2(1.001 * least, **both)
+    assert st.laws.RateStateSlip2(1.001 * least, **both)
     with pytest.raises(DescriptionError, match="at least"):
-        st.RateStateSlip2(0.999 * least, **both)
+        st.laws.RateStateSlip2(0.999 * least, **both)
 
 
 def test_bristles():
@@ -161,32 +163,32 @@ def test_bristles():
 def test_laws_of_given_traits():
     """They have the coefficients, and 1 - 1/e of the change at the speed."""
     shared = Traits(0.3, 0.2, 0.02)
-    for kind in (st.ExponentialWeakening, st.Stribeck, st.Table, st.LuGre):
+    for kind in (st.ExponentialWeakening, st.laws.Stribeck, st.laws.Table, st.laws.LuGre):
         law = like(kind, shared)
         assert law.coefficient(0.0) == pytest.approx(0.3)
         assert law.coefficient(10.0) == pytest.approx(0.2)
         assert law.coefficient(0.02) == pytest.approx(0.3 - 0.1 * CHANGED, rel=1e-3)
-    dense = [like(st.Table, shared).coefficient(v) for v in np.linspace(0.0, 0.2, 50)]
+    dense = [like(st.laws.Table, shared).coefficient(v) for v in np.linspace(0.0, 0.2, 50)]
     wanted = [0.2 + 0.1 * exp(-v / 0.02) for v in np.linspace(0.0, 0.2, 50)]
     assert dense == pytest.approx(wanted, abs=1e-3)
-    hyperbolic = like(st.HyperbolicWeakening, shared)
+    hyperbolic = like(st.laws.HyperbolicWeakening, shared)
     assert hyperbolic.slope(0.0) == pytest.approx(-0.1 / 0.02)
     assert hyperbolic.coefficient(0.0) == 0.3
     assert like(st.Coulomb, shared) == st.Coulomb(0.2, 0.3)
     assert like(st.Coulomb, Traits(0.2, 0.3, 0.02)) == st.Coulomb(0.2, 0.2)
-    bristles = like(st.LuGre, shared)
+    bristles = like(st.laws.LuGre, shared)
     assert (bristles.sigma_0, bristles.sigma_1) == pytest.approx((1e5, 1e5**0.5), rel=1e-3)
 
 
-@pytest.mark.parametrize("kind", [st.RateStateAgeing, st.RateStateSlip2])
+@pytest.mark.parametrize("kind", [st.laws.RateStateAgeing, st.laws.RateStateSlip2])
 def test_rate_and_state_laws_of_given_traits(kind):
     """`kinetic` at the speed, `static` at a ten-thousandth of it, b = 2 a."""
     law = like(kind, Traits(0.3, 0.2, 0.02))
     assert law.coefficient(0.02) == pytest.approx(0.2, rel=1e-3)
     assert law.coefficient(2e-6) == pytest.approx(0.3, rel=1e-3)
-    b = law.b if kind is st.RateStateAgeing else law.b_1 + law.b_2
+    b = law.b if kind is st.laws.RateStateAgeing else law.b_1 + law.b_2
     assert b == pytest.approx(2 * law.a)
-    if kind is st.RateStateSlip2:
+    if kind is st.laws.RateStateSlip2:
         assert law.b_1 == law.b_2
         assert pytest.approx((1e-5, 1e-4)) == (law.D_1, law.D_2)
     else:
@@ -205,14 +207,14 @@ def test_traits_of_a_law():
     near = traits(st.ExponentialWeakening(0.3, 0.2, 0.02), 1e-3, 0.02)
     assert near.kinetic == pytest.approx(0.3 - 0.1 * CHANGED)
     # a minimum counts, wherever it lies
-    dip = st.Stribeck(0.3, 0.1, 0.01, 2.0, 0.5)
+    dip = st.laws.Stribeck(0.3, 0.1, 0.01, 2.0, 0.5)
     assert traits(dip, 1e-3, 0.2).kinetic == pytest.approx(
         min(dip.coefficient(v) for v in np.geomspace(1e-3, 0.2, 4001)), rel=1e-4
     )
     assert traits(st.Coulomb(0.2), 1e-3, 1.0) == (0.2, 0.2, 1e-3)
     assert traits(st.Coulomb(0.2), 0.0, 1.0) == (0.2, 0.2, 1.0)
     assert traits(st.Coulomb(0.2, mu_static=0.3), 1e-3, 2.0) == pytest.approx((0.3, 0.2, 2e-3))
-    ageing = st.RateStateAgeing(**RATE)
+    ageing = st.laws.RateStateAgeing(**RATE)
     found = traits(ageing, 1e-3, 0.1)
     assert found.static == pytest.approx(ageing.coefficient(1e-6))
     assert found.kinetic == pytest.approx(ageing.coefficient(0.1))
@@ -238,15 +240,15 @@ def test_traits_of_what_is_not_finite():
 
 def test_states_have_names_and_units():
     assert [(s.name, s.unit) for s in states(LUGRE)] == [("z_x", "m"), ("z_y", "m")]
-    assert [s.name for s in states(st.RateStateSlip(**RATE))] == ["log_theta"]
+    assert [s.name for s in states(st.laws.RateStateSlip(**RATE))] == ["log_theta"]
     assert states(st.Coulomb(0.2)) == ()
 
 
 STATE_LAWS = [
-    (st.RateStateAgeing(**RATE), (1.3,)),
-    (st.RateStateSlip(**RATE), (1.3,)),
-    (st.RateStateAgeing2(0.01, 0.012, 1e-5, 0.005, 1e-4, 0.6, 1e-6), (1.3, -0.4)),
-    (st.RateStateSlip2(0.01, 0.012, 1e-5, 0.005, 1e-4, 0.6, 1e-6), (1.3, -0.4)),
+    (st.laws.RateStateAgeing(**RATE), (1.3,)),
+    (st.laws.RateStateSlip(**RATE), (1.3,)),
+    (st.laws.RateStateAgeing2(0.01, 0.012, 1e-5, 0.005, 1e-4, 0.6, 1e-6), (1.3, -0.4)),
+    (st.laws.RateStateSlip2(0.01, 0.012, 1e-5, 0.005, 1e-4, 0.6, 1e-6), (1.3, -0.4)),
     (LUGRE, (1e-6, 2e-6)),
 ]
 

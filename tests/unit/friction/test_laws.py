@@ -17,11 +17,11 @@ MEASURED = {"v": ["0 m/s", "5 mm/s", "20 mm/s", "0.1 m/s"], "mu": [0.2, 0.17, 0.
 LAWS_TO_CHECK = [
     *(kind.like(0.2, 0.15, 0.01) for kind in LAWS.values()),
     st.ExponentialWeakening(mu_0=0.15, mu_inf=0.2, v_f=1e-4, mu_static=0.3),
-    st.Stribeck(mu_s=0.2, mu_c=0.15, v_s=0.01, c=0.5),
-    st.Stribeck(mu_s=0.2, mu_c=0.15, v_s=1e-5, d=1.0),
-    st.Stribeck(mu_s=0.2, mu_c=0.15, v_s=0.01, d=1.5, mu_static=0.22),
-    st.Table(**MEASURED),
-    st.Table(v=[0.001, 0.01], mu=[0.2, 0.1], mu_static=0.3),
+    st.laws.Stribeck(mu_s=0.2, mu_c=0.15, v_s=0.01, c=0.5),
+    st.laws.Stribeck(mu_s=0.2, mu_c=0.15, v_s=1e-5, d=1.0),
+    st.laws.Stribeck(mu_s=0.2, mu_c=0.15, v_s=0.01, d=1.5, mu_static=0.22),
+    st.laws.Table(**MEASURED),
+    st.laws.Table(v=[0.001, 0.01], mu=[0.2, 0.1], mu_static=0.3),
 ]
 
 
@@ -44,21 +44,21 @@ def test_a_law_is_registered_by_the_line_that_imports_it():
 
 
 def test_a_table_goes_through_its_points_and_stays():
-    law = st.Table(**MEASURED)
+    law = st.laws.Table(**MEASURED)
     for v, mu in zip(law.v, law.mu, strict=True):
         assert law.coefficient(v) == pytest.approx(mu, rel=1e-15)
     assert law.coefficient(1e3) == law.coefficient(0.1) == 0.18
     assert law.slope(1e3) == law.slope(0.1) == 0.0
     between = [law.coefficient(0.005 + 0.00015 * i) for i in range(101)]
     assert between == sorted(between, reverse=True)  # monotone, no overshoot
-    late = st.Table(v=[0.001, 0.01], mu=[0.2, 0.1], mu_static=0.3)
+    late = st.laws.Table(v=[0.001, 0.01], mu=[0.2, 0.1], mu_static=0.3)
     assert late.coefficient(0.0) == late.coefficient(0.001) == 0.2
     assert late.slope(0.0005) == 0.0
 
 
 def test_stribeck_with_exponent_one_is_exponential_weakening(slider):
     exponential = st.ExponentialWeakening(mu_0=0.2, mu_inf=0.15, v_f=0.01)
-    stribeck = st.Stribeck(mu_s=0.2, mu_c=0.15, v_s=0.01, d=1)
+    stribeck = st.laws.Stribeck(mu_s=0.2, mu_c=0.15, v_s=0.01, d=1)
     one, other = (
         st.simulate(slider.replace(friction=law), 0.05) for law in (exponential, stribeck)
     )
@@ -70,7 +70,7 @@ def test_a_dense_table_of_a_law_is_that_law(slider):
     """PCHIP through points h apart is off by some h^2 of the curvature where it bends most."""
     exponential = st.ExponentialWeakening(mu_0=0.2, mu_inf=0.15, v_f=0.01)
     speeds = [i * 2e-5 for i in range(5001)]
-    table = st.Table(v=speeds, mu=[exponential.coefficient(v) for v in speeds])
+    table = st.laws.Table(v=speeds, mu=[exponential.coefficient(v) for v in speeds])
     one, other = (st.simulate(slider.replace(friction=law), 0.05) for law in (exponential, table))
     assert other.stick_intervals[0] == pytest.approx(one.stick_intervals[0], rel=1e-12)
     assert other.stick_intervals[:10] == pytest.approx(one.stick_intervals[:10], rel=1e-6)
@@ -106,7 +106,7 @@ def test_a_law_refuses_what_makes_no_sense(kind, parameters, path, words):
 
 def test_hyperbolic_weakening_cannot_be_like_what_strengthens():
     with pytest.raises(st.DescriptionError, match="compare it at a kinetic coefficient below"):
-        st.HyperbolicWeakening.like(0.15, 0.2, 0.01)
+        st.laws.HyperbolicWeakening.like(0.15, 0.2, 0.01)
 
 
 # --- the contract itself ------------------------------------------------------------------------
@@ -207,7 +207,7 @@ speeds = LawContract.speeds
 
 def test_every_fault_of_a_law_at_once():
     with pytest.raises(st.DescriptionError) as error:
-        st.check_law(Raising(0.2))
+        st.testing.check_law(Raising(0.2))
     assert {fault.path.split(".")[1] for fault in error.value.faults} >= {"finite", "simulated"}
 
 

@@ -16,8 +16,8 @@ from stiction.friction import LAWS, has_state, states
 
 PAPER = st.presets.nakano_popov_2020()
 KINDS = [kind for kind in LAWS.values() if states(kind)]
-AGEING = st.RateStateAgeing(a=0.01, b=0.015, D_c=1e-5, mu_star=0.6, V_star=1e-6)
-SLIP = st.RateStateSlip(*AGEING)
+AGEING = st.laws.RateStateAgeing(a=0.01, b=0.015, D_c=1e-5, mu_star=0.6, V_star=1e-6)
+SLIP = st.laws.RateStateSlip(*AGEING)
 
 
 def largest(values):
@@ -30,8 +30,13 @@ def columns(run, *names):
 
 # --- slide, hold, slide -------------------------------------------------------------------------
 
-HOLD = st.DriveProgram(
-    velocity=1e-4, program=[st.Constant(duration=0.5), st.Hold(duration=20.0), st.Constant()]
+HOLD = st.protocols.DriveProgram(
+    velocity=1e-4,
+    program=[
+        st.protocols.Constant(duration=0.5),
+        st.protocols.Hold(duration=20.0),
+        st.protocols.Constant(),
+    ],
 )
 TESTED = st.Slider(
     mass=1.0,
@@ -48,7 +53,7 @@ TESTED = st.Slider(
 def slide_hold_slide(law, times):
     """Friction coefficient at `times` by SciPy, in u, ln V and ln(V* theta/D_c)."""
     k, m, W = TESTED.k_x, TESTED.mass, TESTED.normal_load
-    ageing = isinstance(law, st.RateStateAgeing)
+    ageing = isinstance(law, st.laws.RateStateAgeing)
 
     def friction(w, z):  # asinh(x) for x far above one
         x = w - log(2 * law.V_star) + (law.mu_star + law.b * z) / law.a
@@ -108,7 +113,7 @@ def rate_and_state(law, s, load, z):
     r = hypot(*s)
     mu = law.a * asinh(r / (2 * law.V_star) * exp((law.mu_star + law.b * z[0]) / law.a))
     x = r / law.V_star * exp(z[0])  # V theta/D_c
-    dz = (1 - x) / x if isinstance(law, st.RateStateAgeing) else -log(x)
+    dz = (1 - x) / x if isinstance(law, st.laws.RateStateAgeing) else -log(x)
     return mu * load * s / r, np.array([r / law.D_c * dz])
 
 
@@ -130,9 +135,9 @@ def integrated(slider, law, times, equations, y0, rtol):
 
 
 CASES = {
-    "lugre": (st.LuGre(0.15, 0.2, 1e-2, 1e5, 300.0, 0.4), lugre),
-    "ageing": (st.RateStateAgeing(0.01, 0.012, 1e-5, 0.2, 1e-3), rate_and_state),
-    "slip": (st.RateStateSlip(0.01, 0.012, 1e-5, 0.2, 1e-3), rate_and_state),
+    "lugre": (st.laws.LuGre(0.15, 0.2, 1e-2, 1e5, 300.0, 0.4), lugre),
+    "ageing": (st.laws.RateStateAgeing(0.01, 0.012, 1e-5, 0.2, 1e-3), rate_and_state),
+    "slip": (st.laws.RateStateSlip(0.01, 0.012, 1e-5, 0.2, 1e-3), rate_and_state),
 }
 
 
@@ -203,7 +208,7 @@ def test_sampling_does_not_influence(kind):
     assert coarse.statistics == fine.statistics
 
 
-@pytest.mark.parametrize("kind", [st.LuGre, st.RateStateAgeing])
+@pytest.mark.parametrize("kind", [st.laws.LuGre, st.laws.RateStateAgeing])
 def test_a_restart_goes_on(kind, tmp_path):
     """From a saved and loaded sample: as exact as any run, within the tolerance."""
     slider = alike(kind)
@@ -246,7 +251,9 @@ def test_a_long_hold_creeps_down_to_nothing():
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_driven_plate_may_jump(kind):
     """The slip velocity jumps with the plate's; the states and the elongation do not."""
-    jumping = st.DriveProgram(velocity=5e-3, program=[st.Constant(duration=0.1), st.Step(2e-3)])
+    jumping = st.protocols.DriveProgram(
+        velocity=5e-3, program=[st.protocols.Constant(duration=0.1), st.protocols.Step(2e-3)]
+    )
     slider = alike(kind).replace(drive=jumping, phi="0 deg")
     run = st.simulate(slider, 0.2, sample_rate=1e6, rtol=1e-8)
     assert run.status.ok
@@ -269,7 +276,7 @@ def test_what_a_law_says_of_itself(kind):
     assert law.coefficient(1e-6) == pytest.approx(0.2, abs=1e-3)
     assert law.coefficient(1e-1) <= 0.15
     sliding = law.settled(1e-3)
-    if kind is not st.LuGre:  # its steady state depends on the load
+    if kind is not st.laws.LuGre:  # its steady state depends on the load
         assert law.change((1e-3, 0.0), 1.0, sliding) == pytest.approx(
             [0.0] * len(sliding), abs=1e-12
         )
@@ -281,16 +288,16 @@ def test_what_a_law_says_of_itself(kind):
 def test_a_direct_effect_too_small_for_floats_is_refused():
     """At the smallest one allowed, slip lands through three hundred decades."""
     with pytest.raises(st.DescriptionError, match=r"RateStateAgeing.a: must be at least"):
-        st.RateStateAgeing(a=5e-4, b=1e-3, D_c=1e-5, mu_star=0.6, V_star=1e-6)
-    law = st.RateStateAgeing(a=1e-3, b=2e-3, D_c=1e-5, mu_star=0.6, V_star=1e-6)
+        st.laws.RateStateAgeing(a=5e-4, b=1e-3, D_c=1e-5, mu_star=0.6, V_star=1e-6)
+    law = st.laws.RateStateAgeing(a=1e-3, b=2e-3, D_c=1e-5, mu_star=0.6, V_star=1e-6)
     assert st.simulate(PAPER.replace(friction=law), 5.0).status.ok
 
 
 def test_states_that_do_not_fit_are_refused():
-    slider = alike(st.RateStateAgeing)
+    slider = alike(st.laws.RateStateAgeing)
     with pytest.raises(st.DescriptionError, match=r"initial.states.theta: .*did you mean"):
         st.simulate(slider, 1.0, initial=st.Initial(states={"theta": 1.0}))
-    two = alike(st.RateStateAgeing2)
+    two = alike(st.laws.RateStateAgeing2)
     with pytest.raises(st.DescriptionError, match=r"initial.states.log_theta_2: missing"):
         st.simulate(two, 1.0, initial=st.Initial(states={"log_theta_1": 1.0}))
     with pytest.raises(st.DescriptionError, match="no internal state"):
@@ -306,7 +313,9 @@ def test_a_vibration_after_a_long_hold_is_not_stepped_over(rtol):
     The same vibration without the hold before it, whose steps start short, is the reference: what
     a hold of that length does to the state is given to it.
     """
-    drive = st.DriveProgram(program=[st.Hold(1e3), st.Harmonic(1.5e-2, 10.0, "90 deg", 10.0)])
+    drive = st.protocols.DriveProgram(
+        program=[st.protocols.Hold(1e3), st.protocols.Harmonic(1.5e-2, 10.0, "90 deg", 10.0)]
+    )
     slider = st.Slider(
         mass=1.0,
         k_x=1e4,
@@ -320,7 +329,9 @@ def test_a_vibration_after_a_long_hold_is_not_stepped_over(rtol):
     start = st.Initial(u_x=5.3e-4, v_x=0.0, v_y=0.0, states={"log_theta": 0.0})
     whole = st.simulate(slider, 1010.0, initial=start, rtol=rtol)
     held = st.simulate(slider, 1e3, initial=start, rtol=1e-10)
-    shaken = slider.replace(drive=st.DriveProgram(program=[st.Harmonic(1.5e-2, 10.0, "90 deg")]))
+    shaken = slider.replace(
+        drive=st.protocols.DriveProgram(program=[st.protocols.Harmonic(1.5e-2, 10.0, "90 deg")])
+    )
     kept = held.state(1e3).model_dump(exclude_unset=True)
     # over the spring's end nothing slips at once: the elongation rate jumps with the drive
     after = st.Initial(**(kept | {"time": 0.0, "v_x": 1.5e-2, "v_y": 0.0}))
@@ -332,10 +343,15 @@ def test_a_vibration_after_a_long_hold_is_not_stepped_over(rtol):
 
 def test_a_plate_starts_again_after_a_very_long_hold():
     """Steps in a landing may be far below what time resolves at 1e7 s."""
-    drive = st.DriveProgram(
-        velocity=1e-3, program=[st.Constant(duration=1.0), st.Hold(1e7), st.Constant()]
+    drive = st.protocols.DriveProgram(
+        velocity=1e-3,
+        program=[
+            st.protocols.Constant(duration=1.0),
+            st.protocols.Hold(1e7),
+            st.protocols.Constant(),
+        ],
     )
-    law = st.RateStateSlip.like(0.2, 0.15, 0.01)
+    law = st.laws.RateStateSlip.like(0.2, 0.15, 0.01)
     assert st.simulate(PAPER.replace(friction=law, drive=drive), 1e7 + 2).status.ok
 
 

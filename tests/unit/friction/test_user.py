@@ -101,7 +101,7 @@ def test_a_description_names_a_file_and_a_class(config):
     law = run.slider.law
     assert type(law).__name__ == "Mine"
     assert law == (0.2, 0.05)
-    builtin = run.slider.replace(friction=st.HyperbolicWeakening(mu_0=0.2, v_h=0.05))
+    builtin = run.slider.replace(friction=st.laws.HyperbolicWeakening(mu_0=0.2, v_h=0.05))
     same = st.simulate(builtin, 0.05, sample_rate=1e4)
     # the slope is rounded otherwise; a step is kept to 2e-5
     assert run.stick_intervals == pytest.approx(same.stick_intervals, rel=1e-9, abs=1e-9)
@@ -268,7 +268,7 @@ class Looping(NamedTuple):
 
 def test_check_law_tells_what_does_not_end():
     with pytest.raises(st.DescriptionError, match="Looping: change at 0 m/s ran 100,000 lines"):
-        st.check_law(Looping(0.2))
+        st.testing.check_law(Looping(0.2))
 
 
 def test_a_trial_of_a_law_leaves_no_trace(config):

@@ -15,9 +15,9 @@ from stiction.system.parameter import placed
 
 PAPER = st.presets.nakano_popov_2020()
 V, W = 1e-3, 10.0
-LUGRE = st.LuGre(mu_c=0.15, mu_s=0.2, v_s=2e-2, sigma_0=1e5, sigma_1=300.0, sigma_2=0.4)
-AGEING = st.RateStateAgeing(a=0.01, b=0.015, D_c=1e-5, mu_star=0.6, V_star=1e-6)
-GRAIN = st.Anisotropic(PAPER.law, 1.3, "20 deg")
+LUGRE = st.laws.LuGre(mu_c=0.15, mu_s=0.2, v_s=2e-2, sigma_0=1e5, sigma_1=300.0, sigma_2=0.4)
+AGEING = st.laws.RateStateAgeing(a=0.01, b=0.015, D_c=1e-5, mu_star=0.6, V_star=1e-6)
+GRAIN = st.laws.Anisotropic(PAPER.law, 1.3, "20 deg")
 # one apparatus in which every law rings or grows at some 10 Hz
 SOFT = PAPER.replace(k_y="20 kN/m", phi="10 deg", drive=st.ConstantVelocity("20 mm/s"))
 LAWS = {
@@ -25,8 +25,8 @@ LAWS = {
     "anisotropic": GRAIN,
     "LuGre": LUGRE,
     "ageing": AGEING,
-    "slip": st.RateStateSlip(*AGEING),
-    "two states": st.RateStateAgeing2(0.01, 0.01, 1e-5, 0.004, 1e-4, 0.6, 1e-6),
+    "slip": st.laws.RateStateSlip(*AGEING),
+    "two states": st.laws.RateStateAgeing2(0.01, 0.01, 1e-5, 0.004, 1e-4, 0.6, 1e-6),
 }
 PER_AREA = st.Slider(  # case 5 of Rice & Ruina: quantities per area
     mass=1e3,
@@ -88,7 +88,7 @@ def test_simulations_on_either_side(degrees, rests):
     assert (late < 1e-9 * V) if rests else (late > 0.5 * V)
 
 
-@pytest.mark.parametrize("kind", [st.RateStateAgeing, st.RateStateSlip])
+@pytest.mark.parametrize("kind", [st.laws.RateStateAgeing, st.laws.RateStateSlip])
 def test_critical_stiffness_of_rate_and_state(kind):
     slider = PER_AREA.replace(friction=kind(*AGEING))
     expected = theory.critical_stiffness(0.01, 0.015, 1e-5, 5e6, 1e-2, 1e3)
@@ -134,7 +134,7 @@ ROCK = st.Slider(
     k_y=2e7,
     phi="1 deg",
     normal_load=5e3,
-    friction=st.RateStateAgeing(a=0.008, b=0.014, D_c=1e-5, mu_star=0.6, V_star=1e-6),
+    friction=st.laws.RateStateAgeing(a=0.008, b=0.014, D_c=1e-5, mu_star=0.6, V_star=1e-6),
     drive=st.ConstantVelocity(1e-5),
 )
 
@@ -202,7 +202,7 @@ def test_derivatives_of_rate_and_state_are_those_on_paper():
     assert (np.abs(found.slopes - expected) <= found.error + 1e-13 * np.abs(expected)).all()
 
 
-@pytest.mark.parametrize("law", [PAPER.law, GRAIN, st.Table.like(0.2, 0.15, 1e-2)], ids=str)
+@pytest.mark.parametrize("law", [PAPER.law, GRAIN, st.laws.Table.like(0.2, 0.15, 1e-2)], ids=str)
 def test_derivatives_of_set_valued_laws(law):
     slider = PAPER.replace(friction=law, phi="20 deg")
     slip = drive_velocity(slider)
@@ -216,7 +216,7 @@ def test_derivatives_of_set_valued_laws(law):
 def test_the_ellipse_of_an_anisotropic_surface_turns_friction():
     """At the surface's own axis friction is that of the law, and across it `ratio` times."""
     for angle, ratio in (("0 deg", 1.0), ("90 deg", 1.3)):
-        slider = PAPER.replace(friction=st.Anisotropic(PAPER.law, 1.3, angle))
+        slider = PAPER.replace(friction=st.laws.Anisotropic(PAPER.law, 1.3, angle))
         response = set_valued(slider, drive_velocity(slider))
         assert math.hypot(*response.value) == pytest.approx(ratio * PAPER.law.coefficient(V) * W)
 
@@ -406,15 +406,15 @@ def test_where_nothing_changes_the_boundary_is_empty():
 
 
 def test_what_is_not_steady_is_refused_with_a_remedy():
-    ramp = st.DriveProgram(velocity=V, program=[st.Ramp("2 mm/s", "1 s")])
-    pressed = st.LoadProgram(program=[st.Ramp("20 N", "1 s")])
+    ramp = st.protocols.DriveProgram(velocity=V, program=[st.protocols.Ramp("2 mm/s", "1 s")])
+    pressed = st.protocols.LoadProgram(program=[st.protocols.Ramp("20 N", "1 s")])
     with pytest.raises(st.DescriptionError) as error:
         growth_rate(PAPER.replace(drive=ramp, load=pressed))
     assert "drive: is not steady" in str(error.value)
     assert "load: is not constant" in str(error.value)
     with pytest.raises(st.DescriptionError, match="nothing slides"):
         growth_rate(PAPER.replace(drive=st.ConstantVelocity(0.0)))
-    program = PAPER.replace(drive=st.DriveProgram(velocity=V))
+    program = PAPER.replace(drive=st.protocols.DriveProgram(velocity=V))
     assert growth_rate(program) == growth_rate(PAPER)
 
 
@@ -431,7 +431,7 @@ def test_a_range_that_is_none_is_refused():
 
 def test_states_of_rounding_have_derivatives():
     """At V = V* both states are ln 1, and what rounding leaves of it is no scale of theirs."""
-    law = st.RateStateAgeing2(0.008, 0.003, 1e-5, 0.003, 1e-4, 0.6, 1e-5)
+    law = st.laws.RateStateAgeing2(0.008, 0.003, 1e-5, 0.003, 1e-4, 0.6, 1e-5)
     rock = {"mass": 1, "k_x": 2e5, "k_y": 2e7, "phi": "1 deg", "normal_load": 5e3}
     block = st.Slider(**rock, friction=law, drive=st.ConstantVelocity(1e-5))
     assert critical(block, "phi").stable == (True,)  # it strengthens: b_1 + b_2 < a

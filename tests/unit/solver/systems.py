@@ -22,16 +22,16 @@ STEADY = st.Slider(
     drive=st.ConstantVelocity("2 mm/s"),
 )
 ELLIPSE = STEADY.replace(
-    friction=st.Anisotropic(st.ExponentialWeakening(0.2, 0.1, "0.1 m/s"), 1.4, "30 deg")
+    friction=st.laws.Anisotropic(st.ExponentialWeakening(0.2, 0.1, "0.1 m/s"), 1.4, "30 deg")
 )
 PROGRAM = STEADY.replace(
-    drive=st.DriveProgram(
+    drive=st.protocols.DriveProgram(
         velocity="2 mm/s",
-        along=st.Modulation("3 mm/s", 40.0, "20 deg"),
-        across=st.Modulation("1 mm/s", 70.0, "50 deg"),
-        program=[st.Ramp("4 mm/s", 1.0)],
+        along=st.protocols.Modulation("3 mm/s", 40.0, "20 deg"),
+        across=st.protocols.Modulation("1 mm/s", 70.0, "50 deg"),
+        program=[st.protocols.Ramp("4 mm/s", 1.0)],
     ),
-    load=st.LoadProgram(modulation=st.Modulation("0.5 N", 30.0, "80 deg")),
+    load=st.protocols.LoadProgram(modulation=st.protocols.Modulation("0.5 N", 30.0, "80 deg")),
 )
 SPRING = PROGRAM.replace(driven="spring", friction=ELLIPSE.friction)
 SLIDERS = {"steady": STEADY, "ellipse": ELLIPSE, "program": PROGRAM, "spring": SPRING}

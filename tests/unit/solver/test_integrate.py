@@ -91,7 +91,7 @@ class Late(st.Coulomb):
 
 def test_the_steepest_weakening():
     """Up to ten times the speed, to a thousandth; none of a law that strengthens."""
-    law = st.Stribeck(0.2, 0.1, 0.01, 2.0)
+    law = st.laws.Stribeck(0.2, 0.1, 0.01, 2.0)
     speeds = np.geomspace(1e-6, 1.0, 20_001)
     wanted = max(-law.slope(v) for v in speeds)
     assert steepest_weakening(law, 1.0) == pytest.approx(wanted, rel=2e-3)
@@ -105,14 +105,17 @@ def test_the_steepest_weakening():
 
 
 def test_a_driven_plate_takes_the_slip_along_in_a_jump():
-    drive = st.DriveProgram(
-        velocity="2 mm/s", program=[st.Constant("1 mm/s", 0.3), st.Constant("5 mm/s")]
+    drive = st.protocols.DriveProgram(
+        velocity="2 mm/s",
+        program=[st.protocols.Constant("1 mm/s", 0.3), st.protocols.Constant("5 mm/s")],
     )
     s = STEADY.replace(drive=drive)
     c, sine = s.direction
     assert slip_jump(s, 0.3) == pytest.approx((4e-3 * c, 4e-3 * sine))
     assert slip_jump(s, 0.2) == (0.0, 0.0)
-    sideways = st.DriveProgram(velocity="2 mm/s", across=st.Modulation("3 mm/s", 40.0, "90 deg"))
+    sideways = st.protocols.DriveProgram(
+        velocity="2 mm/s", across=st.protocols.Modulation("3 mm/s", 40.0, "90 deg")
+    )
     begun = slip_jump(STEADY.replace(drive=sideways), 0.0)
     X, Y = jump(STEADY.replace(drive=sideways).motion, 0.0)
     assert begun == pytest.approx((X * c - Y * sine, X * sine + Y * c))

@@ -245,7 +245,7 @@ DAMPED = PAPER.replace(
 STRONGLY_DAMPED = DAMPED.replace(c_x=20.0, c_y=500.0)
 STATIC = DAMPED.replace(friction=st.Coulomb(mu_0=0.2, mu_static=0.25))
 ELLIPSE = DAMPED.replace(
-    friction=st.Anisotropic(st.ExponentialWeakening(0.2, 0.1, "10 mm/s"), 1.4, "30 deg")
+    friction=st.laws.Anisotropic(st.ExponentialWeakening(0.2, 0.1, "10 mm/s"), 1.4, "30 deg")
 )
 # the errors of these are held against the motion about steady sliding, and against the soft
 # spring's rate while the other slips fast
@@ -541,10 +541,12 @@ def test_a_slip_ends_along_the_force(name):
 @pytest.mark.parametrize("driven", ["plate", "spring"])
 def test_the_end_of_a_stick_under_any_drive(driven):
     """(M6) to (M9): the first zero of the margin, whose curvature keeps its bound."""
-    drive = st.DriveProgram(
-        velocity="2 mm/s", along=st.Modulation("3 mm/s", 40.0), program=[st.Ramp("4 mm/s", 1.0)]
+    drive = st.protocols.DriveProgram(
+        velocity="2 mm/s",
+        along=st.protocols.Modulation("3 mm/s", 40.0),
+        program=[st.protocols.Ramp("4 mm/s", 1.0)],
     )
-    load = st.LoadProgram(modulation=st.Modulation("0.5 N", 70.0))
+    load = st.protocols.LoadProgram(modulation=st.protocols.Modulation("0.5 N", 70.0))
     s = DAMPED.replace(friction=st.Coulomb(0.2), drive=drive, load=load, driven=driven)
     bound, v_d = next(stretches(s, 0.0, 1.0)).problem.bend, np.array(s.direction)
     K, damping = np.array([s.k_x, s.k_y]), np.array([s.c_x, s.c_y])
@@ -677,7 +679,7 @@ def test_the_edge_of_the_return_map_has_the_exponent_one_half():
 
 # --- section 16 ---------------------------------------------------------------------------------
 
-AGEING = st.RateStateAgeing(a=0.01, b=0.015, D_c="10 um", mu_star=0.6, V_star="1 um/s")
+AGEING = st.laws.RateStateAgeing(a=0.01, b=0.015, D_c="10 um", mu_star=0.6, V_star="1 um/s")
 
 
 @pytest.mark.parametrize("speed", [1e-30, 1e-9, 1.0])
@@ -713,14 +715,14 @@ def test_a_damped_update(share):
     assert left == pytest.approx(rise, rel=1e-2)
 
 
-@pytest.mark.parametrize("law", [st.RateStateAgeing, st.RateStateSlip])
+@pytest.mark.parametrize("law", [st.laws.RateStateAgeing, st.laws.RateStateSlip])
 def test_the_logarithmic_state(law):
     """(M62) is the law for theta."""
     law = law(*AGEING)
     slip, zeta = 3e-6, 1.3
     theta = law.D_c / law.V_star * exp(zeta)
     x = slip * theta / law.D_c
-    wanted = (1 - x if isinstance(law, st.RateStateAgeing) else -x * log(x)) / theta
+    wanted = (1 - x if isinstance(law, st.laws.RateStateAgeing) else -x * log(x)) / theta
     assert law.change((slip, 0.0), 1.0, (zeta,)) == pytest.approx((wanted,), rel=1e-13)
 
 

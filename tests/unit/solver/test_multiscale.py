@@ -92,10 +92,14 @@ def test_a_run_goes_on_from_inside_a_cycle(slider):
 
 def test_nothing_changes_where_there_is_nothing_to_gain(slider):
     wavy = slider.replace(
-        drive=st.DriveProgram(velocity="1 mm/s", along=st.Modulation("0.1 mm/s", "5 Hz"))
+        drive=st.protocols.DriveProgram(
+            velocity="1 mm/s", along=st.protocols.Modulation("0.1 mm/s", "5 Hz")
+        )
     )
-    loaded = slider.replace(load=st.LoadProgram(modulation=st.Modulation("1 N", "5 Hz")))
-    bristles = slider.replace(friction=st.LuGre(0.15, 0.2, 1e-2, 1e5, 300.0, 0.4))
+    loaded = slider.replace(
+        load=st.protocols.LoadProgram(modulation=st.protocols.Modulation("1 N", "5 Hz"))
+    )
+    bristles = slider.replace(friction=st.laws.LuGre(0.15, 0.2, 1e-2, 1e5, 300.0, 0.4))
     for system, smooth in (
         (wavy, None),
         (loaded, None),
@@ -112,8 +116,12 @@ def test_nothing_changes_where_there_is_nothing_to_gain(slider):
 
 
 def test_a_program_is_mapped_where_it_is_steady(slider):
-    program = [st.Constant("1 mm/s", "1 s"), st.Ramp("2 mm/s", "0.1 s"), st.Constant("2 mm/s")]
-    stepped = slider.replace(drive=st.DriveProgram(velocity="1 mm/s", program=program))
+    program = [
+        st.protocols.Constant("1 mm/s", "1 s"),
+        st.protocols.Ramp("2 mm/s", "0.1 s"),
+        st.protocols.Constant("2 mm/s"),
+    ]
+    stepped = slider.replace(drive=st.protocols.DriveProgram(velocity="1 mm/s", program=program))
     one, other = (
         st.simulate(stepped, 1.4, sample_rate=1e3, rtol=1e-7, multiscale=multiscale)
         for multiscale in (False, True)
@@ -131,7 +139,7 @@ def test_a_limit_cycle_of_long_sticks():
         k_y=1.0,
         phi="0 deg",
         normal_load=1.0,
-        friction=st.HyperbolicWeakening(mu_0=1.0, v_h=1 / 3),
+        friction=st.laws.HyperbolicWeakening(mu_0=1.0, v_h=1 / 3),
         drive=st.ConstantVelocity(0.2),
     )
     one, other = (
@@ -174,7 +182,7 @@ def test_it_is_yes_or_no(slider):
 @pytest.mark.parametrize("theta", [-3.0, -1.0, 0.0, 0.3, 1.5, 3.1])
 @pytest.mark.parametrize("driven", ["plate", "spring"])
 def test_sticks_end_on_a_closed_curve(slider, theta, driven):
-    law = st.Anisotropic(st.Coulomb(0.2, 0.25), 0.4, "30 deg")
+    law = st.laws.Anisotropic(st.Coulomb(0.2, 0.25), 0.4, "30 deg")
     system = slider.replace(friction=law, c_x=2.0, c_y=30.0, driven=driven)
     problem: Problem = next(stretches(system, 0.0, 1.0)).problem
     u_x, u_y = elongation_held(problem, theta)

@@ -133,7 +133,12 @@ def test_the_twin_starts_and_ends_where_it_is_told():
 
 def test_the_twin_refuses_a_drive_that_is_not_steady():
     with pytest.raises(ValueError, match="steady drive"):
-        twin(PAPER.replace(drive=st.DriveProgram(along=st.Modulation(1e-3, 1.0))), 1.0)
+        twin(
+            PAPER.replace(
+                drive=st.protocols.DriveProgram(along=st.protocols.Modulation(1e-3, 1.0))
+            ),
+            1.0,
+        )
 
 
 # --- the regularised law ------------------------------------------------------------------------

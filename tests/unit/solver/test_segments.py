@@ -24,10 +24,17 @@ def test_a_steady_slider_is_one_segment():
 
 
 def test_segments_end_where_drive_or_load_bend():
-    drive = st.DriveProgram(
-        velocity="2 mm/s", program=[st.Constant("1 mm/s", 0.3), st.Ramp(0.0, 0.5)]
+    drive = st.protocols.DriveProgram(
+        velocity="2 mm/s",
+        program=[st.protocols.Constant("1 mm/s", 0.3), st.protocols.Ramp(0.0, 0.5)],
     )
-    load = st.LoadProgram(program=[st.Constant(10.0, 0.4), st.Ramp(5.0, 0.1), st.Ramp(-5.0, 0.2)])
+    load = st.protocols.LoadProgram(
+        program=[
+            st.protocols.Constant(10.0, 0.4),
+            st.protocols.Ramp(5.0, 0.1),
+            st.protocols.Ramp(-5.0, 0.2),
+        ]
+    )
     slider = STEADY.replace(drive=drive, load=load)
     found = list(segments.stretches(slider, 0.1, 2.0))
     assert [each.end for each in found] == pytest.approx([0.3, 0.4, 0.5, 0.6])
@@ -104,7 +111,7 @@ def test_bounds_hold(slider):
     ]
     F, F_2 = 0.2 / 0.25 * 10.5, 0.2 / 0.25 * 0.5 * omega**2
     assert problem.bend == pytest.approx(2 * (J[0] ** 2 + F * J[1] + F * F_2), rel=1e-9)
-    weak = slider.replace(friction=st.Anisotropic(st.Coulomb(0.2), 0.5, "0 deg"))
+    weak = slider.replace(friction=st.laws.Anisotropic(st.Coulomb(0.2), 0.5, "0 deg"))
     weaker = next(segments.stretches(weak, start, end)).problem.bend
     assert weaker == pytest.approx(2 * (4 * J[0] ** 2 + 2 * F * J[1] + F * F_2), rel=1e-9)
 

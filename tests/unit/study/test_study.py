@@ -65,7 +65,9 @@ def test_the_store_explains_itself(finished, study):
 
 def test_a_run_that_fails_is_data(tmp_path):
     """Contact is lost where the load's modulation exceeds it; mu_static below mu_0 is refused."""
-    shaken = PAPER.replace(load=st.LoadProgram(modulation=st.Modulation("1 N", "50 Hz")))
+    shaken = PAPER.replace(
+        load=st.protocols.LoadProgram(modulation=st.protocols.Modulation("1 N", "50 Hz"))
+    )
     axes = {
         "load.modulation.amplitude": st.Values([1.0, 11.0]),
         "friction.mu_static": st.Values([0.22, 0.18]),
@@ -201,13 +203,13 @@ def test_samples_depend_on_the_seed_and_their_place_alone(kind):
 
 def test_any_parameter_can_vary():
     grain = PAPER.replace(
-        friction=st.Anisotropic(PAPER.law, 1.2, "30 deg"),
-        drive=st.DriveProgram(
+        friction=st.laws.Anisotropic(PAPER.law, 1.2, "30 deg"),
+        drive=st.protocols.DriveProgram(
             velocity="1 mm/s",
-            program=[st.Constant(duration=1.0), st.Ramp("2 mm/s", "1 s")],
-            across=st.Modulation("0.1 mm/s", "50 Hz", "90 deg"),
+            program=[st.protocols.Constant(duration=1.0), st.protocols.Ramp("2 mm/s", "1 s")],
+            across=st.protocols.Modulation("0.1 mm/s", "50 Hz", "90 deg"),
         ),
-        load=st.LoadProgram(program=[st.Ramp("20 N", "1 s")]),
+        load=st.protocols.LoadProgram(program=[st.protocols.Ramp("20 N", "1 s")]),
     )
     base = st.Description(grain, st.Initial(u_x="1 um"), st.Settings(duration=1.0))
     for path, its, value, read in (

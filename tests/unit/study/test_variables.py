@@ -35,7 +35,7 @@ def test_the_paper_s_cycle(paper, paper_run):
     peak = float(data["spring_x"].max())
     assert value("peak_force", paper) == pytest.approx(peak, rel=1e-4)
     assert value("peak_velocity", paper) == pytest.approx(float(data["V_X"].max()), rel=5e-3)
-    cycles = st.find_cycles(st.record_of(paper_run))
+    cycles = st.analysis.find_cycles(st.analysis.record_of(paper_run))
     assert value("cycles", paper) == cycles.sizes["cycle"]
     period = float(cycles["period"].mean())
     assert value("period", paper) == pytest.approx(period, rel=1e-4)
@@ -109,7 +109,7 @@ def test_regimes_are_those_of_records(phi, V):
         drive_velocity=V * slider.direction[0],
         mass=slider.mass,
     )
-    found = st.classify(record)
+    found = st.analysis.classify(record)
     if run.regime != found.kind:  # then on the bound between two kinds of cycles
         beside = {shape(value("rise_share", run) + off) for off in (-0.01, 0.01)}
         assert {run.regime, found.kind} <= beside, f"{run.regime} against {found}"
@@ -197,7 +197,7 @@ def test_swings_that_grow_with_the_load_and_then_die_out_are_a_transient():
     """Steady sliding is stable: swings of a quick mode grow while it loads, and are gone then."""
     slider = PIN.replace(phi="20 deg", drive=st.ConstantVelocity("2 mm/s"))
     assert st.linear_stability.growth_rate(slider) < -5.0
-    assert st.classify(st.simulate(slider, "8 s", sample_rate="10 kHz")).kind == "settling"
+    assert st.analysis.classify(st.simulate(slider, "8 s", sample_rate="10 kHz")).kind == "settling"
     assert seen(slider, "8 s").regime == "settling"
 
 

@@ -112,7 +112,9 @@ def test_what_cannot_be_drawn(store, measures, cut, says):
 
 
 def test_failed_and_missing_runs_are_hatched(tmp_path):
-    shaken = PAPER.replace(load=st.LoadProgram(modulation=st.Modulation("1 N", "50 Hz")))
+    shaken = PAPER.replace(
+        load=st.protocols.LoadProgram(modulation=st.protocols.Modulation("1 N", "50 Hz"))
+    )
     axes = {
         "phi": st.Values(["2 deg", "20 deg"]),
         "load.modulation.amplitude": st.Values([1.0, 12.0]),

@@ -160,7 +160,7 @@ def test_a_slider_is_frozen(slider):
 
 
 @pytest.mark.parametrize(
-    "value", [st.Anisotropic(st.Coulomb(0.2), 2.0, "10 deg"), st.ConstantVelocity("1 mm/s")]
+    "value", [st.laws.Anisotropic(st.Coulomb(0.2), 2.0, "10 deg"), st.ConstantVelocity("1 mm/s")]
 )
 def test_what_was_read_with_units_is_copied_as_it_is(value):
     assert pickle.loads(pickle.dumps(value)) == copy.deepcopy(value) == value

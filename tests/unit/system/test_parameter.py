@@ -9,8 +9,10 @@ import stiction as st
 from stiction.system.parameter import changed, placed, read, unit, units
 
 PAPER = st.presets.nakano_popov_2020()
-GRAIN = PAPER.replace(friction=st.Anisotropic(PAPER.law, 1.2, "30 deg"))
-PROGRAM = PAPER.replace(drive=st.DriveProgram(velocity=2e-3, program=[st.Constant()]))
+GRAIN = PAPER.replace(friction=st.laws.Anisotropic(PAPER.law, 1.2, "30 deg"))
+PROGRAM = PAPER.replace(
+    drive=st.protocols.DriveProgram(velocity=2e-3, program=[st.protocols.Constant()])
+)
 
 
 @pytest.mark.parametrize("slider", [PAPER, GRAIN, PROGRAM], ids=["plain", "anisotropic", "program"])

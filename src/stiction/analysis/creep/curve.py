@@ -48,14 +48,14 @@ def creep_curves(
     the velocity is the difference between the trimmed means of both halves of a bin over half its
     width, which is robust against a few wild samples. An error of the stiffness or of the drive
     velocity shifts V t - F/k by the same share of V: creep that is negative long before slip
-    reveals it, and the ``stiffness`` of `stiction.find_cycles` shows how large it is.
+    reveals it, and the ``stiffness`` of `stiction.analysis.find_cycles` shows how large it is.
 
     Parameters
     ----------
     source : Trajectory or Record
         A run sampled several times each transverse period, or what was measured.
     cycles : Dataset
-        With ``start`` and ``peak_time`` (s) over ``cycle``, from `stiction.find_cycles`.
+        With ``start`` and ``peak_time`` (s) over ``cycle``, from `stiction.analysis.find_cycles`.
     width : float, optional
         Width of the narrowest bin, s. By default a hundredth of the median stick phase, and at
         least four samples of a run; in a noisy record wide enough to determine the mean of all

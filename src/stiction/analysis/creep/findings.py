@@ -32,7 +32,7 @@ BACKWARD, SOME = 0.02, 0.25  # of the drive velocity; of the bins: limits of bac
 class CreepFound(NamedTuple):
     """Creep curves, their mean, and fits to it; for each None, `missing` gives the reason.
 
-    The fields are those of `stiction.Analysis`.
+    The fields are those of `stiction.results.Analysis`.
     """
 
     curves: xr.Dataset | None

@@ -55,7 +55,7 @@ def misalignment_from_force(record: Record, cycles: xr.Dataset | None = None) ->
     record : Record
         A record of stick-slip, with stiffness and drive velocity.
     cycles : Dataset, optional
-        From `stiction.find_cycles`, which is called by default.
+        From `stiction.analysis.find_cycles`, which is called by default.
 
     Returns
     -------
@@ -78,7 +78,7 @@ def misalignment_from_force(record: Record, cycles: xr.Dataset | None = None) ->
     >>> run = st.simulate(slider, "5 s", sample_rate="2 kHz")
     >>> time, force = (run.data[name].values for name in ("time", "spring_x"))
     >>> record = st.Record(time=time, force=force, stiffness="1 kN/m", drive_velocity="1 mm/s")
-    >>> low, high = st.misalignment_from_force(record).interval
+    >>> low, high = st.analysis.misalignment_from_force(record).interval
     >>> low < slider.phi < high
     True
     """

@@ -18,7 +18,7 @@ def summary(cycles: xr.Dataset) -> xr.Dataset:
     Parameters
     ----------
     cycles : Dataset
-        From ``st.find_cycles``.
+        From ``st.analysis.find_cycles``.
 
     Returns
     -------
@@ -32,8 +32,8 @@ def summary(cycles: xr.Dataset) -> xr.Dataset:
     --------
     >>> import numpy as np, stiction as st
     >>> time = np.arange(0.0, 10.0, 1e-3)
-    >>> cycles = st.find_cycles(st.Record(time=time, force=0.1 * (time % 2.0)))
-    >>> float(st.summary(cycles)["mean"].sel(quantity="period").round(6))
+    >>> cycles = st.analysis.find_cycles(st.Record(time=time, force=0.1 * (time % 2.0)))
+    >>> float(st.analysis.summary(cycles)["mean"].sel(quantity="period").round(6))
     2.0
     """
     import xarray as xr

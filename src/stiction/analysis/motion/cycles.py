@@ -111,7 +111,7 @@ def find_cycles(source: Trajectory | Record) -> xr.Dataset:
     --------
     >>> import numpy as np, stiction as st
     >>> time = np.arange(0.0, 10.0, 1e-3)
-    >>> cycles = st.find_cycles(st.Record(time=time, force=0.1 * (time % 2.0)))
+    >>> cycles = st.analysis.find_cycles(st.Record(time=time, force=0.1 * (time % 2.0)))
     >>> cycles.sizes["cycle"], cycles["period"].values.round(3).tolist()
     (3, [2.0, 2.0, 2.0])
     """

@@ -208,7 +208,7 @@ def _drift(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:
         yield (
             f"The force drifts by {in_words(drift.rate, 'N/s')}, {in_words(drift.change, 'N')} in "
             "all, and friction coefficients with it. If it is the load cell, analyse "
-            "st.detrended(record)."
+            "st.analysis.detrended(record)."
         )
 
 

@@ -71,7 +71,7 @@ def detrended(record: Record) -> Record:
     >>> import numpy as np, stiction as st
     >>> time = np.arange(0.0, 20.0, 1e-3)
     >>> record = st.Record(time=time, force=1.0 + 0.1 * (time % 2.0) + 0.01 * time)
-    >>> cycles = st.find_cycles(st.detrended(record))
+    >>> cycles = st.analysis.find_cycles(st.analysis.detrended(record))
     >>> bool(np.ptp(cycles["peak"].values) < 0.001)
     True
     """

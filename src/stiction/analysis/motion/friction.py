@@ -90,9 +90,9 @@ def find_friction(record: Record, kind: str, cycles: xr.Dataset) -> Friction:
     record : Record
         The force.
     kind : str
-        The kind of motion, see `stiction.classify`.
+        The kind of motion, see `stiction.analysis.classify`.
     cycles : Dataset
-        From `stiction.find_cycles`.
+        From `stiction.analysis.find_cycles`.
     """
     missing: dict[str, str] = {}
     load = record.normal_load or np.nan

@@ -164,7 +164,7 @@ def stream_spectrogram(
     --------
     >>> import numpy as np, stiction as st
     >>> blocks = (np.sin(np.arange(i, i + 500) / 3.0) for i in range(0, 5000, 500))
-    >>> [piece.sizes["time"] for piece in st.stream_spectrogram(blocks, 1e3)][:3]
+    >>> [piece.sizes["time"] for piece in st.analysis.stream_spectrogram(blocks, 1e3)][:3]
     [41, 50, 50]
     """
     windows = windows_of(sample_rate, width, step)

@@ -90,7 +90,7 @@ def plot_creep(
     Parameters
     ----------
     curves, mean : Dataset
-        From `stiction.creep_curves` and `stiction.mean_creep`.
+        From `stiction.analysis.creep_curves` and `stiction.analysis.mean_creep`.
     V : float
         Drive velocity, m/s.
     lines : mapping of str to callable, optional

@@ -93,7 +93,7 @@ def plot_energy(budget: xr.Dataset, axes: Sequence[Axes] | None = None) -> NDArr
     Parameters
     ----------
     budget : Dataset
-        From `stiction.energy_budget`, with some intervals, e.g. cycles.
+        From `stiction.analysis.energy_budget`, with some intervals, e.g. cycles.
     axes : two Axes, optional
         Drawn on; a new figure as wide as a column when left out.
 

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from stiction.analysis.transverse_oscillation import oscillation_spectrogram
+from stiction.analysis.oscillation import oscillation_spectrogram
 from stiction.plotting.analysis.spectrogram import draw_spectrogram, frequency_unit
 from stiction.plotting.page.canvas import canvas, fixed, listed
 from stiction.plotting.page.style import (
@@ -83,7 +83,7 @@ def plot_oscillation(
     Parameters
     ----------
     run : Trajectory
-        As for `stiction.transverse_oscillation`.
+        As for `stiction.analysis.transverse_oscillation`.
     oscillation : Dataset
         What that returned.
     axes : three Axes, optional

@@ -24,7 +24,7 @@ def plot_spectrogram(
     Parameters
     ----------
     amplitude : DataArray
-        Over ``frequency`` (Hz) and ``time`` (s), from `stiction.spectrogram`.
+        Over ``frequency`` (Hz) and ``time`` (s), from `stiction.analysis.spectrogram`.
     highest : float, optional
         Upper end of the frequency axis, Hz; all when left out.
     ax : Axes, optional

@@ -28,7 +28,7 @@ def plot_onset(onset: Onset, critical: float | None = None, ax: Axes | None = No
     Parameters
     ----------
     onset : Onset
-        From `stiction.find_onset`.
+        From `stiction.analysis.find_onset`.
     critical : float, optional
         The onset by linear theory, SI, from `stiction.linear_stability.critical`.
     ax : Axes, optional

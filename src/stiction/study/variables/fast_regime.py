@@ -115,7 +115,7 @@ def kind_of(
 
 
 def cycles_among(found: Swings, end: float) -> Swings:
-    """Return the swings of a run that are cycles by the rules of `stiction.find_cycles`."""
+    """Return the swings that are cycles by the rules of `stiction.analysis.find_cycles`."""
     none = is_over(found, end) or die_out(found, end)
     return found.some(slice(0, 0) if none else built_up(found.drop))
 

@@ -56,7 +56,9 @@ def noisy_record(seed: int, spikes: float) -> tuple[st.Record, xr.Dataset]:
 
 @pytest.fixture(scope="module")
 def curves(paper_run):
-    return st.creep_curves(paper_run, st.find_cycles(st.record_of(paper_run)))
+    return st.analysis.creep_curves(
+        paper_run, st.analysis.find_cycles(st.analysis.record_of(paper_run))
+    )
 
 
 def test_every_stick_phase_of_a_run_has_its_curve(paper_run, curves):
@@ -76,7 +78,7 @@ def test_phases_of_the_settled_cycle_are_alike(curves):
 
 
 def test_the_mean_is_that_of_the_phases(curves):
-    mean = st.mean_creep(curves)
+    mean = st.analysis.mean_creep(curves)
     both = curves["velocity"].values[:, : mean.sizes["bin"]]
     full = np.isfinite(both).all(axis=0)
     assert mean["velocity"].values[full] == pytest.approx(both[:, full].mean(axis=0), rel=1e-12)
@@ -89,7 +91,7 @@ def test_the_exponent_of_the_closed_form_is_one_half_in_the_limit():
     edges = bin_edges(0.02, 1.9)
     off = []
     for phi in (1e-2, 1e-4, 1e-6):
-        found = st.fit_divergence(exact_curve(phi, edges), L_X / V)
+        found = st.analysis.fit_divergence(exact_curve(phi, edges), L_X / V)
         off.append(abs(found.exponent - 0.5))
         assert found.amplitude == pytest.approx(V * phi, rel=10 * phi + 1e-5)
     assert off[2] < 1e-5 < off[0]
@@ -97,7 +99,7 @@ def test_the_exponent_of_the_closed_form_is_one_half_in_the_limit():
 
 
 def test_a_known_lag_is_kept():
-    found = st.fit_divergence(exact_curve(1e-6, bin_edges(0.02, 1.9)), L_X / V, lag=0.0)
+    found = st.analysis.fit_divergence(exact_curve(1e-6, bin_edges(0.02, 1.9)), L_X / V, lag=0.0)
     assert (found.lag, found.lag_error) == (0.0, 0.0)
     assert found.exponent == pytest.approx(0.5, abs=1e-5)
     assert found.velocity(np.array([0.5, -1.0]))[0] == pytest.approx(
@@ -106,22 +108,26 @@ def test_a_known_lag_is_kept():
 
 
 def test_the_exponent_of_the_paper_s_run(curves):
-    found = st.fit_divergence(st.mean_creep(curves), L_X / V)
+    found = st.analysis.fit_divergence(st.analysis.mean_creep(curves), L_X / V)
     assert abs(found.exponent - 0.5) < 2 * found.exponent_error < 0.1
 
 
 @pytest.mark.parametrize("degrees", [1, 3])
 def test_the_misalignment_that_a_run_implies(slider, degrees):
     run = st.simulate(slider.replace(phi=f"{degrees} deg"), 5.0, sample_rate=10e3)
-    mean = st.mean_creep(st.creep_curves(run, st.find_cycles(st.record_of(run))))
-    found = st.fit_misalignment(mean, V, K)
+    mean = st.analysis.mean_creep(
+        st.analysis.creep_curves(run, st.analysis.find_cycles(st.analysis.record_of(run)))
+    )
+    found = st.analysis.fit_misalignment(mean, V, K)
     assert abs(found.phi - radians(degrees)) < 2 * found.phi_error < 0.015 * radians(degrees)
     assert abs(found.F_0 - F_0) < 2 * found.F_0_error < 0.02 * F_0
 
 
 def test_the_misalignment_of_the_closed_form_is_exact():
     for degrees in (0.1, 1.0, 10.0):
-        found = st.fit_misalignment(exact_curve(radians(degrees), bin_edges(0.005, 1.95)), V, K)
+        found = st.analysis.fit_misalignment(
+            exact_curve(radians(degrees), bin_edges(0.005, 1.95)), V, K
+        )
         # the mean force of a bin is that of its middle, to (1/8)^2/24 of what the velocity bends
         assert found.phi == pytest.approx(radians(degrees), rel=2e-3)
         assert pytest.approx(F_0, rel=1e-3) == found.F_0
@@ -129,10 +135,10 @@ def test_the_misalignment_of_the_closed_form_is_exact():
 
 def test_creep_that_is_not_that_of_eq_7_implies_no_misalignment():
     curve = exact_curve(radians(1.0), bin_edges(0.005, 1.95))
-    assert st.fit_misalignment(curve, V, K).misfit < 1e-3
+    assert st.analysis.fit_misalignment(curve, V, K).misfit < 1e-3
     early = curve["force"] < 0.8 * curve["force"].max()
     rests = curve.assign(velocity=curve["velocity"].where(~early, 1e-9 * V))  # a soft k_y loads
-    assert st.fit_misalignment(rests, V, K).misfit > MISSED
+    assert st.analysis.fit_misalignment(rests, V, K).misfit > MISSED
 
 
 @pytest.mark.parametrize("spikes", [0.0, 0.02])
@@ -140,7 +146,7 @@ def test_the_errors_of_a_noisy_record_are_what_they_say(spikes):
     off = []
     for seed in range(5):
         record, cycles = noisy_record(seed, spikes)
-        mean = st.mean_creep(st.creep_curves(record, cycles, 0.02))
+        mean = st.analysis.mean_creep(st.analysis.creep_curves(record, cycles, 0.02))
         t = 1.899 - np.stack([mean["begin"], mean["end"]])
         u = theory.creep_elongation(t, V, radians(5), L_X)
         expected = record.drive_velocity - np.diff(u, axis=0)[0] / np.diff(t, axis=0)[0]
@@ -153,7 +159,11 @@ def test_the_errors_of_a_noisy_record_are_what_they_say(spikes):
 
 def test_wild_samples_widen_no_error_much():
     errors = [
-        float(st.mean_creep(st.creep_curves(*noisy_record(2, share), 0.03))["velocity_error"][3])
+        float(
+            st.analysis.mean_creep(st.analysis.creep_curves(*noisy_record(2, share), 0.03))[
+                "velocity_error"
+            ][3]
+        )
         for share in (0.0, 0.02)
     ]
     assert errors[1] < 1.5 * errors[0]  # a mean of all samples would have 35 times the error
@@ -170,43 +180,45 @@ def test_a_trimmed_mean_and_its_error():
 def test_no_slip_still_creeps(slider):
     """At 10 degrees there is no cycle: the whole run is one stick phase."""
     run = st.simulate(slider.replace(phi="10 deg"), 1.0, sample_rate=10e3)
-    curves = st.creep_curves(run, st.find_cycles(st.record_of(run)))
+    curves = st.analysis.creep_curves(run, st.analysis.find_cycles(st.analysis.record_of(run)))
     assert curves.sizes["phase"] == 1
     assert np.isfinite(curves["velocity"]).any()
 
 
 def test_where_there_is_no_stick_phase_there_is_no_curve():
     record = st.Record(time=[], force=[], stiffness=K, drive_velocity=V)
-    curves = st.creep_curves(record, st.find_cycles(record))
-    mean = st.mean_creep(curves)
+    curves = st.analysis.creep_curves(record, st.analysis.find_cycles(record))
+    mean = st.analysis.mean_creep(curves)
     assert (curves.sizes["phase"], mean.sizes["bin"]) == (0, 0)
     with pytest.raises(st.ResultError, match="0 bins of the creep curve lie between"):
-        st.fit_misalignment(mean, V, K)
+        st.analysis.fit_misalignment(mean, V, K)
 
 
 def test_a_drive_the_other_way_creeps_alike(slider, curves):
     back = slider.replace(drive=st.ConstantVelocity(-V))
     run = st.simulate(back, 5.0, sample_rate=10e3)
-    mirrored = st.creep_curves(run, st.find_cycles(st.record_of(run)))
+    mirrored = st.analysis.creep_curves(run, st.analysis.find_cycles(st.analysis.record_of(run)))
     np.testing.assert_array_equal(mirrored["velocity"], curves["velocity"])
 
 
 def test_what_cannot_be_known_is_refused(curves):
     record = st.Record(time=np.arange(10.0), force=np.arange(10.0), stiffness=1.0)
     with pytest.raises(st.ResultError, match="position of the mass, which the record lacks; give"):
-        st.creep_curves(record, one_phase(0.0, 9.0))
+        st.analysis.creep_curves(record, one_phase(0.0, 9.0))
     with pytest.raises(st.ResultError, match=r"width must be above 0 s, is -1\.0; leave it out"):
-        st.creep_curves(record, one_phase(0.0, 9.0), -1.0)
+        st.analysis.creep_curves(record, one_phase(0.0, 9.0), -1.0)
     with pytest.raises(st.ResultError, match="0 bins of the creep curve lie between"):
-        st.fit_divergence(st.mean_creep(curves), L_X / V, (3.0, 4.0))
+        st.analysis.fit_divergence(st.analysis.mean_creep(curves), L_X / V, (3.0, 4.0))
 
 
 def test_a_measured_record_creeps_before_slip():
     record = measured("k168_v42")
-    cycles = st.find_cycles(record)
+    cycles = st.analysis.find_cycles(record)
     # as the early loading has it, with which the mass then rests on the average
     record = record.model_copy(update={"stiffness": float(cycles["stiffness"].median())})
-    mean = st.mean_creep(st.creep_curves(record, cycles, 0.04))  # two periods of the mains
+    mean = st.analysis.mean_creep(
+        st.analysis.creep_curves(record, cycles, 0.04)
+    )  # two periods of the mains
     share, error = (mean[name].values / 42e-6 for name in ("velocity", "velocity_error"))
     assert share[0] > 0.5
     assert share[0] - share[1] > 2 * np.hypot(error[0], error[1])
@@ -216,15 +228,15 @@ def test_a_measured_record_creeps_before_slip():
 
 
 def test_the_figure_says_what_is_drawn(curves):
-    mean = st.mean_creep(curves)
-    found = st.fit_divergence(mean, L_X / V)
+    mean = st.analysis.mean_creep(curves)
+    found = st.analysis.fit_divergence(mean, L_X / V)
     lines = creep_theory(V, radians(1), L_X, 2.0321) | {"fit": found.velocity}
     ax = figure_of(plot_creep, curves, mean, V, lines).axes[0]
     assert ax.get_xlabel() == "time to slip (s)"
     assert ax.get_yscale() == "log"
     _, labels = ax.get_legend_handles_labels()
     assert labels[-4:] == [*creep_theory(V, 0.1, L_X), "fit"]
-    noisy = st.mean_creep(st.creep_curves(*noisy_record(3, 0.0), 0.01))
+    noisy = st.analysis.mean_creep(st.analysis.creep_curves(*noisy_record(3, 0.0), 0.01))
     assert figure_of(plot_creep, curves, noisy, V).axes[0].get_yscale() == "linear"
 
 

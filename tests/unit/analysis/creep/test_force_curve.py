@@ -30,7 +30,7 @@ def measured(phi: float, noise: float = 0.0, stiffness: float = 1.0) -> st.Recor
     [(1.0, 0.0, 1.0), (1.0, 1e-4, 0.98), (2.0, 1e-3, 1.0), (2.0, 1e-3, 1.02), (4.0, 4e-3, 0.99)],
 )
 def test_a_force_alone_implies_the_misalignment(phi: float, noise: float, stiffness: float) -> None:
-    found = st.misalignment_from_force(measured(phi, noise, stiffness))
+    found = st.analysis.misalignment_from_force(measured(phi, noise, stiffness))
     low, high = found.interval
     assert low < radians(phi) < high
     assert found.phi_error < 0.3 * found.phi
@@ -39,21 +39,21 @@ def test_a_force_alone_implies_the_misalignment(phi: float, noise: float, stiffn
 
 def test_what_noise_hides_is_not_determined() -> None:
     with pytest.raises(st.ResultError, match="not determined: the bend of the rises"):
-        st.misalignment_from_force(measured(0.2, 0.03))
+        st.analysis.misalignment_from_force(measured(0.2, 0.03))
 
 
 def test_steps_of_an_eighth_of_the_drop_hide_it() -> None:
     record = measured(1.0)
     step = 0.1  # N, of a drop of 0.8 N
-    cycles = st.find_cycles(record)
+    cycles = st.analysis.find_cycles(record)
     coarse = record.model_copy(update={"force": step * np.round(record.force / step)})
     with pytest.raises(st.ResultError, match="not determined"):
-        st.misalignment_from_force(coarse, cycles)
+        st.analysis.misalignment_from_force(coarse, cycles)
 
 
 def test_a_stiffness_that_cannot_be_is_named() -> None:
     with pytest.raises(st.ResultError, match=r"0.9\d* times stiffness times drive velocity"):
-        st.misalignment_from_force(measured(1.0, 1e-4, 1.1))
+        st.analysis.misalignment_from_force(measured(1.0, 1e-4, 1.1))
 
 
 def test_an_analysis_takes_it_from_the_force() -> None:

@@ -28,12 +28,12 @@ Floats = NDArray[np.float64]
 @pytest.fixture(scope="module")
 def reference(slider: st.Slider) -> st.Record:
     """Fig. 3, sharper and ten times finer than what is compared with it."""
-    return st.record_of(st.simulate(slider, 5.0, sample_rate=100e3, rtol=1e-10))
+    return st.analysis.record_of(st.simulate(slider, 5.0, sample_rate=100e3, rtol=1e-10))
 
 
 @pytest.fixture(scope="module")
 def paper(paper_run: st.Trajectory) -> st.Record:
-    return st.record_of(paper_run)
+    return st.analysis.record_of(paper_run)
 
 
 def saw(time: Floats, period: float = 2.0) -> Floats:
@@ -90,7 +90,7 @@ def test_noise_makes_no_cycles(kind: str) -> None:
 
 
 def test_cycles_of_the_paper(reference: st.Record, paper: st.Record) -> None:
-    cycles, sharp = st.find_cycles(paper), st.find_cycles(reference)
+    cycles, sharp = st.analysis.find_cycles(paper), st.analysis.find_cycles(reference)
     assert cycles.sizes["cycle"] == 3
     after = reference.time > 2.5
     peak = reference.force[after].max()  # at 100 kHz nothing has to be interpolated
@@ -105,10 +105,12 @@ def test_cycles_of_the_paper(reference: st.Record, paper: st.Record) -> None:
 
 
 def test_what_the_mass_does_agrees_with_the_run(paper: st.Record, paper_run: st.Trajectory) -> None:
-    cycles = st.find_cycles(paper)
+    cycles = st.analysis.find_cycles(paper)
     highest = float(paper_run.data["slip_speed"].max())
     assert cycles["peak_slip_speed"].values == pytest.approx(np.full(3, highest), rel=1e-5)
-    forced = st.find_cycles(paper.model_copy(update={"position": None, "slip_speed": None}))
+    forced = st.analysis.find_cycles(
+        paper.model_copy(update={"position": None, "slip_speed": None})
+    )
     # from the force along x alone: without the transverse motion, of order phi^2 of the distance
     assert forced["slip_distance"].values == pytest.approx(cycles["slip_distance"], rel=1e-3)
     assert forced["creep_distance"].values == pytest.approx(cycles["creep_distance"], rel=2e-2)
@@ -121,18 +123,20 @@ def test_what_the_mass_does_agrees_with_the_run(paper: st.Record, paper_run: st.
 def test_sample_rate_matters_only_as_far_as_it_must(
     slider: st.Slider, reference: st.Record, rate: float, error: float
 ) -> None:
-    cycles = st.find_cycles(st.record_of(st.simulate(slider, 5.0, sample_rate=rate)))
-    sharp = st.find_cycles(reference)
+    cycles = st.analysis.find_cycles(
+        st.analysis.record_of(st.simulate(slider, 5.0, sample_rate=rate))
+    )
+    sharp = st.analysis.find_cycles(reference)
     assert cycles["period"].values == pytest.approx(sharp["period"].values, rel=error)
     assert cycles["peak"].values == pytest.approx(sharp["peak"].values, rel=error)
 
 
 def test_noise_moves_cycles_no_farther_than_it_reaches(paper: st.Record) -> None:
-    clean = st.find_cycles(paper)
+    clean = st.analysis.find_cycles(paper)
     sigma = 0.05 * float(clean["drop"].mean())
     for seed in range(5):
         noise = sigma * np.random.default_rng(seed).normal(size=len(paper))
-        cycles = st.find_cycles(st.Record(time=paper.time, force=paper.force + noise))
+        cycles = st.analysis.find_cycles(st.Record(time=paper.time, force=paper.force + noise))
         assert cycles.sizes["cycle"] == 3
         for time, true in zip(cycles["peak_time"].values, clean["peak_time"].values, strict=True):
             there = np.interp(time, paper.time, paper.force)
@@ -144,8 +148,10 @@ def test_noise_moves_cycles_no_farther_than_it_reaches(paper: st.Record) -> None
 @pytest.mark.parametrize("rate", [1.0, -0.5])
 def test_a_ramp_below_does_not_matter(paper: st.Record, rate: float) -> None:
     """A baseline that moves by several force drops shifts turns by its own slope, no more."""
-    cycles = st.find_cycles(st.Record(time=paper.time, force=paper.force + rate * paper.time))
-    clean = st.find_cycles(paper)
+    cycles = st.analysis.find_cycles(
+        st.Record(time=paper.time, force=paper.force + rate * paper.time)
+    )
+    clean = st.analysis.find_cycles(paper)
     assert cycles["period"].values == pytest.approx(clean["period"].values, rel=1e-4)
     ramp = rate * (cycles["peak_time"] - cycles["trough_time"])
     assert (cycles["drop"] - ramp).values == pytest.approx(clean["drop"].values, rel=2e-2)
@@ -154,7 +160,7 @@ def test_a_ramp_below_does_not_matter(paper: st.Record, rate: float) -> None:
 def test_no_cycles_with_constant_friction(slider: st.Slider) -> None:
     law = st.ExponentialWeakening(mu_0=0.2, mu_inf=0.2, v_f="10 mm/s")
     run = st.simulate(slider.replace(friction=law), 10.0, sample_rate=10e3)
-    assert st.find_cycles(st.record_of(run)).sizes["cycle"] == 0
+    assert st.analysis.find_cycles(st.analysis.record_of(run)).sizes["cycle"] == 0
 
 
 # --- hesitations ---
@@ -172,14 +178,14 @@ def test_a_dip_before_a_slip_is_a_hesitation_and_no_cycle(phi: str) -> None:
         drive=st.ConstantVelocity("0.5 mm/s"),
     )  # fmt: skip
     run = st.simulate(rig, 10.0, sample_rate=20e3)
-    cycles = st.find_cycles(run)
+    cycles = st.analysis.find_cycles(run)
     force = run.data["spring_x"].values
     late = run.data["time"].values > 2.0
     falls = walked(np.rint(1e6 * force).astype(np.int64), int(0.5e6 * np.ptp(force[late])))
     assert abs(cycles.sizes["cycle"] - (len(falls) - 1) // 2) <= 1
     share = cycles["period"] / cycles["period"].median()
     assert ((share > 0.6) & (share < 1.5)).all()  # neither a dip nor two cycles in one
-    assert st.classify(run).kind == "stick-slip"
+    assert st.analysis.classify(run).kind == "stick-slip"
     seen = observe(st.Description(rig, st.Initial(), st.Settings(duration="10 s")), None)
     assert len(seen.swings.period) == cycles.sizes["cycle"]
     assert seen.swings.period.mean() == pytest.approx(float(cycles["period"].mean()), rel=1e-3)
@@ -197,7 +203,7 @@ def test_hesitations_are_counted_and_measured() -> None:
     noise = 0.003 * np.random.default_rng(1).normal(size=len(samples))
     for disturbed in (0.0, noise):  # which reaches to 0.012 each way
         measured = np.interp(samples, time, force) + disturbed
-        cycles = st.find_cycles(st.Record(time=samples, force=measured))
+        cycles = st.analysis.find_cycles(st.Record(time=samples, force=measured))
         assert cycles["hesitations"].values.tolist() == [0.0, 1.0] * 5
         assert cycles["hesitation_depth"].values[1::2] == pytest.approx(0.1, abs=0.024)
         assert cycles["period"].values == pytest.approx(1.0, abs=5e-3)
@@ -272,7 +278,7 @@ def test_mains_hum_makes_no_cycles_and_hides_none(
     noise = 0.01 * random.normal(size=len(time))
     force = np.interp(time, *corners) + 0.5 * height * hum + noise
     record = st.Record(time=time, force=2.0 + force)
-    cycles, regime = st.find_cycles(record), st.classify(record)
+    cycles, regime = st.analysis.find_cycles(record), st.analysis.classify(record)
     assert abs(cycles.sizes["cycle"] - 17) <= 1  # from the second trough to the last but one
     assert float(cycles["period"].mean()) == pytest.approx(period, rel=0.03)
     assert float(cycles["drop"].mean()) == pytest.approx(1.0, abs=0.15)
@@ -310,8 +316,8 @@ def test_a_vibration_is_not_taken_for_hum() -> None:
     time = np.arange(20_000) * 1e-3
     wave = np.sin(2 * pi * 50.0 * time) + 0.02 * np.random.default_rng(1).normal(size=20_000)
     record = st.Record(time=time, force=wave + 0.3 * time)
-    assert st.classify(record).kind == "harmonic vibration"
-    assert abs(st.find_cycles(record).sizes["cycle"] - 999) <= 1
+    assert st.analysis.classify(record).kind == "harmonic vibration"
+    assert abs(st.analysis.find_cycles(record).sizes["cycle"] - 999) <= 1
 
 
 @pytest.mark.parametrize("samples", [4.0, 4.4, 5.0, 6.3, 7.0])
@@ -320,10 +326,10 @@ def test_few_samples_a_cycle_are_enough(samples: float) -> None:
     phase = (time / (1e-2 * samples) + 0.37) % 1.0
     force = np.where(phase < 0.92, phase / 0.92, (1.0 - phase) / 0.08)
     record = st.Record(time=time, force=1.0 + force)
-    cycles = st.find_cycles(record)
+    cycles = st.analysis.find_cycles(record)
     assert abs(cycles.sizes["cycle"] - 60) <= 1
     assert float(cycles["period"].mean()) == pytest.approx(1e-2 * samples, rel=0.01)
-    regime = st.classify(record)
+    regime = st.analysis.classify(record)
     if samples % 1.0:
         assert regime.kind == "stick-slip"
     else:  # each cycle is sampled at the same phases: a fall of two samples can be a quick one
@@ -335,7 +341,7 @@ def test_few_samples_a_cycle_are_enough(samples: float) -> None:
 def test_fewer_samples_a_cycle_determine_nothing(samples: float) -> None:
     time = np.arange(int(61.5 * samples)) * 1e-2
     force = (time / (1e-2 * samples) + 0.37) % 1.0
-    regime = st.classify(st.Record(time=time, force=force))
+    regime = st.analysis.classify(st.Record(time=time, force=force))
     assert (regime.kind, regime.confidence) == ("undetermined", 0.0)
     assert "too few to show it; sample at" in str(regime)
 
@@ -350,11 +356,11 @@ def test_wild_samples_make_no_cycles(seed: int) -> None:
     wild[at[::3] + 1] = wild[at[::3]]  # a third of them in pairs
     noise = 0.01 * random.normal(size=20_000)
     slides = st.Record(time=time, force=1.0 + noise + wild)
-    assert st.find_cycles(slides).sizes["cycle"] == 0
-    assert st.classify(slides).kind == "steady sliding"
+    assert st.analysis.find_cycles(slides).sizes["cycle"] == 0
+    assert st.analysis.classify(slides).kind == "steady sliding"
     slips = st.Record(time=time, force=saw(time) + noise + wild)
-    assert st.find_cycles(slips).sizes["cycle"] == 8
-    assert st.classify(slips).kind == "stick-slip"
+    assert st.analysis.find_cycles(slips).sizes["cycle"] == 8
+    assert st.analysis.classify(slips).kind == "stick-slip"
     assert np.array_equal(without_outliers(saw(time)), saw(time))
 
 
@@ -377,7 +383,7 @@ def test_groups_of_wild_samples_are_taken_off_and_nothing_else(group: tuple[floa
     found = without_outliers(force)
     assert np.array_equal(found[~wild], right[~wild])
     assert np.abs(found - right)[wild].max() < 0.05  # five standard deviations of the noise
-    assert st.find_cycles(st.Record(time=time, force=force)).sizes["cycle"] == 8
+    assert st.analysis.find_cycles(st.Record(time=time, force=force)).sizes["cycle"] == 8
 
 
 def test_irregular_vibration_beside_slow_motion_is_no_steady_sliding() -> None:
@@ -390,8 +396,8 @@ def test_irregular_vibration_beside_slow_motion_is_no_steady_sliding() -> None:
     slow = 5.0 * np.sin(2 * pi * time / ends[-1])
     noise = random.normal(size=len(time)) / 65.0
     record = st.Record(time=time, force=20.0 + height * np.sin(2 * pi * phase) + slow + noise)
-    regime = st.classify(record)
-    sliding = find_friction(record, regime.kind, st.find_cycles(record)).kinetic
+    regime = st.analysis.classify(record)
+    sliding = find_friction(record, regime.kind, st.analysis.find_cycles(record)).kinetic
     assert sliding is not None
     assert sliding.force == pytest.approx(20.0, abs=0.5)  # about which it vibrates
     assert regime.kind == "irregular vibration"
@@ -406,20 +412,20 @@ NOISY = 0.09
 
 def test_measured_stick_slip_has_the_same_cycles_in_pieces_and_in_any_unit() -> None:
     record = bare(measured("k168_v42"))
-    whole = st.find_cycles(record)
+    whole = st.analysis.find_cycles(record)
     assert whole.sizes["cycle"] == 71
     assert (whole["drop"] > 0.002).all()  # seven steps of the converter: as an eye counts them
     for pieces in (2, 5, 12):
         for time, force in zip(
             np.array_split(record.time, pieces), np.array_split(record.force, pieces), strict=True
         ):
-            part = st.find_cycles(st.Record(time=time, force=force))
+            part = st.analysis.find_cycles(st.Record(time=time, force=force))
             # the last turn needs to come back above the noise to be seen: 0.1 s of loading
             inside = (whole["start"] > time[0] + 0.05) & (whole["trough_time"] < time[-1] - 0.1)
             expected = whole["peak_time"].values[inside.values]
             assert all(np.abs(part["peak_time"].values - t).min() < NOISY for t in expected)
             assert part.sizes["cycle"] <= len(expected) + 2
-    scaled = st.find_cycles(st.Record(time=1e-3 * record.time, force=1e3 * record.force))
+    scaled = st.analysis.find_cycles(st.Record(time=1e-3 * record.time, force=1e3 * record.force))
     assert scaled["period"].values == pytest.approx(1e-3 * whole["period"].values, rel=1e-9)
     assert scaled["drop"].values == pytest.approx(1e3 * whole["drop"].values, rel=1e-9)
     assert scaled["stick_slope"].values == pytest.approx(1e6 * whole["stick_slope"], rel=1e-9)
@@ -428,7 +434,7 @@ def test_measured_stick_slip_has_the_same_cycles_in_pieces_and_in_any_unit() -> 
 @pytest.mark.parametrize("slope", [2.0, -2.0])
 def test_measured_cycles_withstand_noise_drift_and_thinning(slope: float) -> None:
     record = measured("k168_v42")
-    whole = st.find_cycles(record)
+    whole = st.analysis.find_cycles(record)
     noise = 0.03 * float(whole["drop"].median()) * np.random.default_rng(2).normal(size=len(record))
     drift = slope * np.ptp(record.force) * (record.time - record.time[0]) / record.duration
     for changed in (
@@ -436,13 +442,13 @@ def test_measured_cycles_withstand_noise_drift_and_thinning(slope: float) -> Non
         st.Record(time=record.time, force=record.force + drift),
         st.Record(time=record.time[::10], force=record.force[::10]),
     ):
-        cycles = st.find_cycles(changed)
+        cycles = st.analysis.find_cycles(changed)
         assert cycles.sizes == whole.sizes
         assert np.abs(cycles["peak_time"].values - whole["peak_time"].values).max() < NOISY
 
 
 def test_no_false_cycles_where_it_slides_under_strong_noise() -> None:
-    assert st.find_cycles(measured("k2254_v42")).sizes["cycle"] == 0
+    assert st.analysis.find_cycles(measured("k2254_v42")).sizes["cycle"] == 0
 
 
 # --- edges ---
@@ -451,10 +457,10 @@ def test_no_false_cycles_where_it_slides_under_strong_noise() -> None:
 @pytest.mark.parametrize("size", [0, 1, 2, 3, 5, 17])
 def test_a_short_record_has_an_empty_table(size: int) -> None:
     time = np.arange(size) * 1e-3
-    cycles = st.find_cycles(st.Record(time=time, force=np.sin(time)))
+    cycles = st.analysis.find_cycles(st.Record(time=time, force=np.sin(time)))
     assert cycles.sizes["cycle"] == 0
     assert cycles["drop"].attrs["units"] == "N"
-    assert np.isnan(st.summary(cycles)["mean"]).all()
+    assert np.isnan(st.analysis.summary(cycles)["mean"]).all()
 
 
 @pytest.mark.parametrize("width", [1, 2, 4])
@@ -462,15 +468,15 @@ def test_a_spike_is_no_cycle(width: int) -> None:
     time = np.arange(5000) * 1e-3
     force = 1.0 + 0.01 * np.random.default_rng(3).normal(size=5000)
     force[700 : 700 + width] += 4.0
-    assert st.find_cycles(st.Record(time=time, force=force)).sizes["cycle"] == 0
-    assert st.find_cycles(st.Record(time=time, force=time)).sizes["cycle"] == 0
+    assert st.analysis.find_cycles(st.Record(time=time, force=force)).sizes["cycle"] == 0
+    assert st.analysis.find_cycles(st.Record(time=time, force=time)).sizes["cycle"] == 0
 
 
 @pytest.mark.parametrize(("step", "count"), [(1, 2), (200, 9)])
 def test_a_sawtooth_as_it_was_made(step: int, count: int) -> None:
     """Complete cycles, the cut ones left out; a drop may happen between two samples."""
     time = np.arange(0, 2000 * count + 2500, step)
-    cycles = st.find_cycles(st.Record(time=1e-3 * time, force=1e-3 * saw(time, 2000)))
+    cycles = st.analysis.find_cycles(st.Record(time=1e-3 * time, force=1e-3 * saw(time, 2000)))
     assert cycles.sizes["cycle"] == count
     assert cycles["peak"].values == pytest.approx(np.full(count, 2.0 - 1e-3 * step))
     assert cycles["trough"].values == pytest.approx(np.zeros(count), abs=1e-12)
@@ -481,15 +487,17 @@ def test_a_sawtooth_as_it_was_made(step: int, count: int) -> None:
 
 def test_a_sine_turns_where_it_does() -> None:
     time = np.sort(np.random.default_rng(5).uniform(0.0, 10.0, 20_000))  # not equally spaced
-    cycles = st.find_cycles(st.Record(time=time, force=5.0 + np.cos(2 * pi * time), normal_load=10))
+    cycles = st.analysis.find_cycles(
+        st.Record(time=time, force=5.0 + np.cos(2 * pi * time), normal_load=10)
+    )
     assert cycles["peak_time"].values == pytest.approx(np.arange(1, 10) + 0.0, abs=1e-4)
     assert cycles["mu_static"].values == pytest.approx(np.full(9, 0.6), rel=1e-4)
     assert cycles["mu_kinetic"].values == pytest.approx(np.full(9, 0.5), rel=1e-4)
 
 
 def test_summary_is_mean_and_spread(paper: st.Record) -> None:
-    cycles = st.find_cycles(bare(paper))
-    table = st.summary(cycles)
+    cycles = st.analysis.find_cycles(bare(paper))
+    table = st.analysis.summary(cycles)
     drop = table.sel(quantity="drop")
     assert float(drop["mean"]) == pytest.approx(float(cycles["drop"].mean()))
     assert float(drop["standard_deviation"]) == pytest.approx(np.std(cycles["drop"], ddof=1))
@@ -511,14 +519,14 @@ def test_the_figure_marks_every_cycle_and_names_the_regime(paper: st.Record) -> 
         assert len(fig.axes) == panels
         marks = [len(np.asarray(line.get_xdata())) for line in fig.axes[0].lines[1:]]
         assert marks == ([count, count + 1] if count else [])
-        assert st.classify(record).kind in fig.axes[0].get_title(loc="left").lower()
+        assert st.analysis.classify(record).kind in fig.axes[0].get_title(loc="left").lower()
         assert "N)" in fig.axes[0].get_ylabel()
 
 
 def test_a_cycle_with_a_gap_is_none() -> None:
     time = np.arange(20_000) * 1e-3
     seen = (time < 7.0) | (time > 11.3)  # whole cycles from 2 s to 6 s and from 12 s to 18 s
-    cycles = st.find_cycles(st.Record(time=time[seen], force=0.1 * (time[seen] % 2.0)))
+    cycles = st.analysis.find_cycles(st.Record(time=time[seen], force=0.1 * (time[seen] % 2.0)))
     assert cycles["start"].values.round(2).tolist() == [2.0, 4.0, 12.0, 14.0, 16.0]
     assert cycles["period"].values == pytest.approx(2.0, abs=2e-3)
 
@@ -537,7 +545,9 @@ def test_slips_of_two_sizes_are_no_hum(rate: float) -> None:
         drive=st.ConstantVelocity(0.0292),
     )
     run = st.simulate(slider, 0.64, sample_rate=rate)
-    assert st.find_cycles(run).sizes["cycle"] == pytest.approx(27, abs=1)  # crests, counted by eye
+    assert st.analysis.find_cycles(run).sizes["cycle"] == pytest.approx(
+        27, abs=1
+    )  # crests, counted by eye
     assert not [each for each in st.analyse(run).warnings if "subtracted" in each]
 
 
@@ -552,7 +562,7 @@ def test_every_column_of_a_sawtooth() -> None:
     record = st.Record(
         time=time, force=force, normal_load=4.0, drive_velocity=1e-3, stiffness=500.0
     )
-    found = st.find_cycles(record)
+    found = st.analysis.find_cycles(record)
     number = np.arange(found.sizes["cycle"])
     assert found.sizes["cycle"] == 8  # the first and the last are cut
     first = float(found["start"][0])
@@ -582,12 +592,12 @@ def test_every_column_of_a_sawtooth() -> None:
     for name in small:  # a cubic through a corner overshoots by a twentieth
         assert found[name].values == pytest.approx(wanted[name] + 0.0 * number, rel=6e-2), name
     assert np.isnan(found["hesitation_depth"]).all()
-    bare_found = st.find_cycles(st.Record(time=time, force=force))
+    bare_found = st.analysis.find_cycles(st.Record(time=time, force=force))
     for name in ("mu_static", "mu_kinetic", "stiffness", *small):
         assert np.isnan(bare_found[name]).all()
     # what is measured comes before what would follow from the spring
     moved = st.Record(time=time, force=force, position=3e-3 * time, slip_speed=np.cos(time) ** 2)
-    found = st.find_cycles(moved)
+    found = st.analysis.find_cycles(moved)
     assert found["creep_distance"].values == pytest.approx(4.8e-3 + 0.0 * number, rel=3e-3)
     assert found["slip_distance"].values == pytest.approx(1.2e-3 + 0.0 * number, rel=2e-2)
     for row in number:

@@ -53,7 +53,7 @@ def test_drift_is_seen_and_taken_off(force) -> None:
     found = st.analyse(record)
     assert "The force drifts by 50" in found.warnings[0]
     assert as_text(found.tables()).startswith("Warnings")
-    mended = st.analyse(st.detrended(record))
+    mended = st.analyse(st.analysis.detrended(record))
     assert mended.warnings == ()
     assert mended.friction.static.coefficient == pytest.approx(0.1993, rel=2e-3)
 
@@ -108,7 +108,7 @@ def test_one_sample_of_sliding_has_a_mean_and_no_error() -> None:
     time = np.append(np.arange(0.0, 4.0, 0.1), 100.0)
     force = np.append(np.minimum(time[:-1], 6.9 - time[:-1]), 2.0)
     record = st.Record(time=time, force=force)
-    kinetic = find_friction(record, "steady sliding", st.find_cycles(record)).kinetic
+    kinetic = find_friction(record, "steady sliding", st.analysis.find_cycles(record)).kinetic
     assert kinetic.force == 2.0
     assert np.isnan([kinetic.error, kinetic.spread]).all()
 

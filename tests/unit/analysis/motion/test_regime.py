@@ -31,15 +31,18 @@ TRANSITIONAL = "transitional oscillation"
 def test_measured_records_are_told_apart(name: str, kind: str, least: float) -> None:
     record = measured(name)
     for known in (record, bare(record)):
-        regime = st.classify(known)
+        regime = st.analysis.classify(known)
         assert regime.kind == kind
         assert regime.confidence > least
     for part in np.array_split(np.arange(len(record)), 6):
-        assert st.classify(st.Record(time=record.time[part], force=record.force[part])).kind == kind
+        assert (
+            st.analysis.classify(st.Record(time=record.time[part], force=record.force[part])).kind
+            == kind
+        )
 
 
 def test_between_says_what_else_it_could_be() -> None:
-    regime = st.classify(measured("k168_v1100"))
+    regime = st.analysis.classify(measured("k168_v1100"))
     assert regime.runner_up == "stick-slip"
     assert regime.confidence < 0.7
     assert "the force rises for 7" in str(regime)
@@ -59,30 +62,30 @@ def test_the_critical_misalignment_parts_stick_slip_from_damped(
     slider: st.Slider, phi: str, kind: str
 ) -> None:
     run = st.simulate(slider.replace(phi=phi), 10.0, sample_rate=10e3)
-    record = st.record_of(run)
-    assert st.classify(record).kind == kind
-    assert st.classify(bare(record)).kind == kind
-    assert (st.find_cycles(record).sizes["cycle"] > 0) == (kind == "stick-slip")
+    record = st.analysis.record_of(run)
+    assert st.analysis.classify(record).kind == kind
+    assert st.analysis.classify(bare(record)).kind == kind
+    assert (st.analysis.find_cycles(record).sizes["cycle"] > 0) == (kind == "stick-slip")
 
 
 def test_constant_friction_is_a_transient(slider: st.Slider) -> None:
     law = st.ExponentialWeakening(mu_0=0.2, mu_inf=0.2, v_f="10 mm/s")
     run = st.simulate(slider.replace(friction=law), 10.0, sample_rate=10e3)
-    regime = st.classify(st.record_of(run))
+    regime = st.analysis.classify(st.analysis.record_of(run))
     assert regime.kind == "settling"
     assert "each smaller than the last" in str(regime)
 
 
 def test_a_run_before_its_first_slip_is_stuck(paper_run: st.Trajectory) -> None:
-    record = st.record_of(paper_run)
+    record = st.analysis.record_of(paper_run)
     early = record.time < 1.5
     part = st.Record(time=record.time[early], force=record.force[early])
-    assert st.classify(part).kind == "stuck"
+    assert st.analysis.classify(part).kind == "stuck"
     known = part.model_copy(update={"stiffness": 1e3, "drive_velocity": 1e-3})
-    assert st.classify(known).kind == "stuck"
+    assert st.analysis.classify(known).kind == "stuck"
     # the same slow rise on a spring that would load a hundred times faster: it slides
     stiff = part.model_copy(update={"stiffness": 1e5, "drive_velocity": 1e-3})
-    assert st.classify(stiff).kind == "steady sliding"
+    assert st.analysis.classify(stiff).kind == "steady sliding"
 
 
 @pytest.mark.parametrize(
@@ -92,7 +95,7 @@ def test_a_run_before_its_first_slip_is_stuck(paper_run: st.Trajectory) -> None:
 def test_a_vibration_is_no_stick_slip(noise: float, per_cycle: int) -> None:
     time = np.arange(20 * per_cycle) / (3.0 * per_cycle)
     wave = np.sin(2 * pi * 3.0 * time) + noise * np.random.default_rng(1).normal(size=len(time))
-    regime = st.classify(st.Record(time=time, force=wave))
+    regime = st.analysis.classify(st.Record(time=time, force=wave))
     assert regime.kind == "harmonic vibration"
     assert regime.evidence["period_spread"] < 0.25
 
@@ -112,7 +115,7 @@ def test_noise_through_a_narrow_filter_is_an_irregular_vibration(
     force = 20.0 + rung[size:] / rung.std() + 4.0 * np.sin(0.5 * time) + noise
     record = st.Record(time=time, force=force, mass=1.0, stiffness=(2.0 * pi * 48.0) ** 2)
     for known in (record, bare(record)):
-        assert st.classify(known).kind == "irregular vibration"
+        assert st.analysis.classify(known).kind == "irregular vibration"
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -147,9 +150,10 @@ def test_vibration_on_a_force_that_rises_is_no_stick() -> None:
     time = np.arange(len(vibration)) / 600.0
     noise = 0.1 * random.normal(size=len(time))
     rising = st.Record(time=time, force=20.0 * time / time[-1] + vibration + noise)
-    assert st.classify(rising).kind == "irregular vibration"
+    assert st.analysis.classify(rising).kind == "irregular vibration"
     assert (
-        st.classify(rising.model_copy(update={"force": rising.force - vibration})).kind == "stuck"
+        st.analysis.classify(rising.model_copy(update={"force": rising.force - vibration})).kind
+        == "stuck"
     )
 
 
@@ -167,7 +171,9 @@ def test_vibrations_of_few_periods_are_told_with_the_confidence_that_they_deserv
 def test_a_vibration_whose_size_changes_once_is_harmonic() -> None:
     time = np.arange(8000) * 1e-3
     for size in (1.0 + 2.0 * time / 8.0, 1.0 + 1.5 * np.exp(-3.0 * time)):
-        regime = st.classify(st.Record(time=time, force=size * np.sin(2 * pi * 12.0 * time)))
+        regime = st.analysis.classify(
+            st.Record(time=time, force=size * np.sin(2 * pi * 12.0 * time))
+        )
         assert regime.kind == "harmonic vibration"
         assert regime.confidence > 0.9
 
@@ -178,7 +184,7 @@ def test_records_of_no_motion_in_particular() -> None:
     white = random.normal(size=4000)
     spike = np.where(time == time[777], 5.0, 1.0)
     kinds = {
-        kind: [st.classify(st.Record(time=time, force=force)).kind for force in forces]
+        kind: [st.analysis.classify(st.Record(time=time, force=force)).kind for force in forces]
         for kind, forces in {
             "steady sliding": [
                 np.ones(4000),
@@ -197,15 +203,15 @@ def test_records_of_no_motion_in_particular() -> None:
 
 @pytest.mark.parametrize("size", [0, 1, 3, 20])
 def test_too_few_samples_determine_nothing(size: int) -> None:
-    regime = st.classify(st.Record(time=np.arange(size), force=np.ones(size)))
+    regime = st.analysis.classify(st.Record(time=np.arange(size), force=np.ones(size)))
     assert (regime.kind, regime.confidence) == ("undetermined", 0.0)
     assert f"there are {size} samples, too few" in str(regime)
 
 
 def test_one_cut_slip_determines_nothing(paper_run: st.Trajectory) -> None:
-    record = st.record_of(paper_run)
+    record = st.analysis.record_of(paper_run)
     early = record.time < 2.9
-    regime = st.classify(st.Record(time=record.time[early], force=record.force[early]))
+    regime = st.analysis.classify(st.Record(time=record.time[early], force=record.force[early]))
     assert regime.kind == "undetermined"
     assert "make no complete cycle" in str(regime)
 
@@ -213,9 +219,11 @@ def test_one_cut_slip_determines_nothing(paper_run: st.Trajectory) -> None:
 def test_cycles_that_are_alike_are_sure_however_few() -> None:
     time = np.arange(40_000) * 1e-3
     for samples in (6500, 12_500, 40_000):
-        regime = st.classify(st.Record(time=time[:samples], force=time[:samples] % 2.0))
+        regime = st.analysis.classify(st.Record(time=time[:samples], force=time[:samples] % 2.0))
         assert regime.confidence > 0.98
-    assert st.classify(st.Record(time=time[:4500], force=time[:4500] % 2.0)).confidence == 0.5
+    assert (
+        st.analysis.classify(st.Record(time=time[:4500], force=time[:4500] % 2.0)).confidence == 0.5
+    )
 
 
 def test_few_cycles_that_differ_say_less_than_many() -> None:
@@ -225,7 +233,7 @@ def test_few_cycles_that_differ_say_less_than_many() -> None:
         corners = np.stack([start, start + rises], axis=1).ravel()
         time = np.arange(0.05, count + 1.95, 1e-3)
         force = np.interp(time, corners, np.resize([0.0, 1.0], len(corners)))
-        return st.classify(st.Record(time=time, force=force)).confidence
+        return st.analysis.classify(st.Record(time=time, force=force)).confidence
 
     assert 0.5 < confidence(2) < confidence(4) < confidence(16) < 0.98
 
@@ -247,18 +255,18 @@ def test_the_shape_of_a_cycle_says_how_long_it_rests(velocity: str, slider: st.S
     aligned = slider.replace(phi="0 deg", friction=law, drive=drive)
     period = 2.0 * 3.0 / (1e3 * drive.velocity) + 0.1  # s, at least: it loads from trough to peak
     run = st.simulate(aligned, 12.0 * period, sample_rate=4000.0 / period)
-    cycles = st.find_cycles(run)
+    cycles = st.analysis.find_cycles(run)
     begin, end = float(cycles["start"][1]), float(cycles["trough_time"][-1])
     rests = np.diff(np.clip(run.stick_intervals, begin, end), axis=1).sum() / (end - begin)
     # a peak is placed to a fraction of a sample, of which a period has a hundred or more; the
     # share of rest changes six times as much as that of the rise at most, where that is > 0.52
     assert rests == pytest.approx(float(rest_share(cycles["rise_share"].median())), abs=0.02)
-    assert st.classify(run).evidence["rest_share"] == pytest.approx(rests, abs=0.02)
+    assert st.analysis.classify(run).evidence["rest_share"] == pytest.approx(rests, abs=0.02)
 
 
 def test_a_force_with_the_wrong_sign_is_asked_about() -> None:
     time = np.arange(20_000) * 1e-3
-    regime = st.classify(st.Record(time=time, force=1.0 - time % 2.0))
+    regime = st.analysis.classify(st.Record(time=time, force=1.0 - time % 2.0))
     assert regime.kind == "undetermined"
     assert "is its sign right?" in str(regime)
 
@@ -266,6 +274,6 @@ def test_a_force_with_the_wrong_sign_is_asked_about() -> None:
 def test_words_have_units_and_no_powers_of_ten() -> None:
     time = np.arange(20_000) * 1e-3
     rig = {"stiffness": 1e6, "mass": 1e-3}
-    text = str(st.classify(st.Record(time=time, force=1e-9 * (time % 2.0), **rig)))
+    text = str(st.analysis.classify(st.Record(time=time, force=1e-9 * (time % 2.0), **rig)))
     assert "a period is 10100 times the mass's own" in text  # 2 s sqrt(k/m)/(2 pi)
-    assert "spans 310 pN" in str(st.classify(st.Record(time=time, force=1.6e-11 * time)))
+    assert "spans 310 pN" in str(st.analysis.classify(st.Record(time=time, force=1.6e-11 * time)))

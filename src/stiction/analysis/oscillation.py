@@ -47,11 +47,11 @@ def transverse_oscillation(run: Trajectory) -> xr.Dataset:
     Dataset
         Over ``time`` (s), the middle of windows of 50 transverse periods, which overlap:
         ``frequency`` (Hz; NaN where no line stands out, or its velocity is below a thousandth of
-        the bound), ``prominence`` as in `stiction.follow_ridge`, ``expected`` (Hz); ``velocity``
-        (m/s), half the range of v_y, and ``amplitude`` (m), velocity over angular frequency;
-        ``velocity_bound`` V sin(phi) and
-        ``amplitude_bound`` V sin(phi)/omega_y; ``share_stuck``, of time, and
-        ``sticks_per_second`` (1/s): both are zero where the oscillation rings down freely.
+        the bound), ``prominence`` as in `stiction.analysis.follow_ridge`, ``expected`` (Hz);
+        ``velocity`` (m/s), half the range of v_y, and ``amplitude`` (m), velocity over angular
+        frequency; ``velocity_bound`` V sin(phi) and ``amplitude_bound`` V sin(phi)/omega_y;
+        ``share_stuck``, of time, and ``sticks_per_second`` (1/s): both are zero where the
+        oscillation rings down freely.
 
     Raises
     ------

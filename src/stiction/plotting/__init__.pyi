@@ -1,7 +1,3 @@
-"""Every public figure, a line each."""
-
-from __future__ import annotations
-
 from stiction.plotting.analysis.creep_curve import plot_creep as plot_creep
 from stiction.plotting.analysis.cycles import plot_cycles as plot_cycles
 from stiction.plotting.analysis.energy import plot_energy as plot_energy
@@ -18,3 +14,4 @@ from stiction.plotting.stability.damping import plot_damping as plot_damping
 from stiction.plotting.stability.examination import plot_stability as plot_stability
 from stiction.plotting.stability.modes import plot_modes as plot_modes
 from stiction.plotting.stability.onset import plot_onset as plot_onset
+from stiction.study.view.mapping import plot_map as plot_map

@@ -11,8 +11,8 @@ from scipy.signal.windows import hamming
 from tests.measured import measured
 
 import stiction as st
+from stiction.analysis.oscillation import apart
 from stiction.analysis.signals.ridge import best_path
-from stiction.analysis.transverse_oscillation import apart
 from stiction.plotting.analysis.oscillation import plot_oscillation
 from stiction.plotting.page.canvas import figure_of
 
@@ -22,7 +22,7 @@ NOISE = np.random.default_rng(5).normal(size=40_000)
 
 @pytest.fixture(scope="module")
 def oscillation(paper_run):
-    return st.transverse_oscillation(paper_run)
+    return st.analysis.transverse_oscillation(paper_run)
 
 
 def oscillates(oscillation, least: float):
@@ -32,7 +32,7 @@ def oscillates(oscillation, least: float):
 
 
 def phases(run: st.Trajectory) -> np.ndarray:
-    cycles = st.find_cycles(st.record_of(run))
+    cycles = st.analysis.find_cycles(st.analysis.record_of(run))
     return np.column_stack([cycles["start"].values, cycles["peak_time"].values])
 
 
@@ -53,12 +53,12 @@ def test_the_oscillation_falls_as_the_sine_of_the_force_angle(oscillation):
         {"phi": "3 deg"},
         {"c_y": 20.0},
         {"driven": "spring"},
-        {"load": st.LoadProgram(modulation=st.Modulation(1.0, 0.7))},
+        {"load": st.protocols.LoadProgram(modulation=st.protocols.Modulation(1.0, 0.7))},
     ],
 )
 def test_so_does_that_of_other_systems(slider, changes):
     run = st.simulate(slider.replace(**changes), 1.5, sample_rate=10e3)
-    oscillation = st.transverse_oscillation(run)
+    oscillation = st.analysis.transverse_oscillation(run)
     ratio = (oscillation["frequency"] / oscillation["expected"]).values[
         oscillates(oscillation, 0.03).values
     ]
@@ -70,7 +70,7 @@ def test_so_does_that_of_other_systems(slider, changes):
 def test_what_has_died_away_is_not_heard(slider):
     """With constant friction there is one stick, then steady sliding with the solver's noise."""
     run = st.simulate(slider.replace(friction=st.Coulomb(0.2)), 3.0, sample_rate=10e3)
-    oscillation = st.transverse_oscillation(run)
+    oscillation = st.analysis.transverse_oscillation(run)
     assert oscillation["frequency"].sel(time=slice(0.1, 1.0)).notnull().all()
     assert not oscillation["frequency"].sel(time=slice(2.2, None)).notnull().any()
 
@@ -89,7 +89,7 @@ def test_it_swings_up_to_its_bound_and_sticks_once_a_period(oscillation):
 
 
 def test_ring_down_and_micro_stick_slip_share_each_phase(paper_run, oscillation):
-    table = st.oscillation_by_phase(oscillation, paper_run, phases(paper_run))
+    table = st.analysis.oscillation_by_phase(oscillation, paper_run, phases(paper_run))
     begin, end = paper_run.stick_intervals.T
     for phase in range(3):
         row = table.isel(phase=phase)
@@ -107,15 +107,15 @@ def test_ring_down_and_micro_stick_slip_share_each_phase(paper_run, oscillation)
 def test_sampled_too_coarsely_it_is_not_heard(slider):
     run = st.simulate(slider, 0.1, sample_rate=2e3)
     with pytest.raises(st.ResultError, match=r"1007 Hz: sample the run at 5033 Hz or more"):
-        st.transverse_oscillation(run)
+        st.analysis.transverse_oscillation(run)
 
 
 def test_a_ridge_is_finer_than_its_lines_and_keeps_to_its_own():
     time = np.arange(40_000) / RATE
     rising = np.sin(2 * pi * (200.0 * time + 2.5 * time**2))  # 200 to 300 Hz in 20 s
     burst = np.where(abs(time - 7.0) < 0.2, 3.0 * np.sin(2 * pi * 600.0 * time), 0.0)
-    lines = st.spectrogram(rising + burst + 0.5 * NOISE, RATE, width=0.25, step=0.05)
-    found = st.follow_ridge(lines, 50.0, 900.0)
+    lines = st.analysis.spectrogram(rising + burst + 0.5 * NOISE, RATE, width=0.25, step=0.05)
+    found = st.analysis.follow_ridge(lines, 50.0, 900.0)
     off = found["frequency"].values - (200.0 + 5.0 * found["time"].values)
     assert np.abs(off).max() < 2.0  # lines are 4 Hz apart
     assert off.std() < 0.3
@@ -137,10 +137,10 @@ def test_the_best_path_is_the_best_of_all():
 
 def test_noise_has_no_line():
     record = st.Record(time=np.arange(len(NOISE)) / RATE, force=NOISE)
-    found = st.strongest_line(record, 50.0)
+    found = st.analysis.strongest_line(record, 50.0)
     assert not np.isfinite(found["frequency"]).any()
     hum = NOISE + 0.5 * np.sin(2 * pi * 312.34 * record.time)
-    found = st.strongest_line(st.Record(time=record.time, force=hum), 50.0)
+    found = st.analysis.strongest_line(st.Record(time=record.time, force=hum), 50.0)
     assert found["frequency"].values == pytest.approx(312.34, abs=0.1)  # lines are 0.5 Hz apart
     assert found["frequency"].attrs["units"] == "Hz"
 
@@ -148,10 +148,10 @@ def test_noise_has_no_line():
 def test_what_has_no_spectrum_is_refused():
     uneven = np.cumsum(np.where(np.arange(100) % 7, 1.0, 3.0))
     with pytest.raises(st.ResultError, match="equally spaced; interpolate"):
-        st.strongest_line(st.Record(time=uneven, force=NOISE[:100]), 0.1)
+        st.analysis.strongest_line(st.Record(time=uneven, force=NOISE[:100]), 0.1)
     record = st.Record(time=np.arange(100.0), force=NOISE[:100])
     with pytest.raises(st.ResultError, match="seen at 6 samples a second or more, of which there"):
-        st.strongest_line(record, 3.0)
+        st.analysis.strongest_line(record, 3.0)
 
 
 @pytest.mark.parametrize(
@@ -159,7 +159,7 @@ def test_what_has_no_spectrum_is_refused():
     [("k168_v42", 40.0, 50.0), ("k2254_v42", 40.0, 50.0), ("k1002_v4300", 100.0, None)],
 )  # the last one oscillates at 29 Hz itself
 def test_a_measured_record_has_the_hum_of_the_mains_or_nothing(name, low, hum):
-    heard = st.strongest_line(measured(name), low)["frequency"].values
+    heard = st.analysis.strongest_line(measured(name), low)["frequency"].values
     if hum is None:
         assert not np.isfinite(heard).any()
     else:
@@ -173,7 +173,7 @@ def test_the_spectrogram_is_scipy_s():
     first, last = transform.lower_border_end[1], transform.upper_border_begin(5000)[1]
     lines = 2.0 * np.abs(transform.stft_detrend(NOISE[:5000], "linear", p0=first, p1=last))
     lines[0] /= 2.0
-    found = st.spectrogram(NOISE[:5000], RATE)
+    found = st.analysis.spectrogram(NOISE[:5000], RATE)
     assert found["frequency"].values == pytest.approx(transform.f, rel=1e-14)
     times = transform.t(5000, first, last)
     assert found["time"].values[: len(times)] == pytest.approx(times, rel=1e-14)
@@ -183,9 +183,9 @@ def test_the_spectrogram_is_scipy_s():
 @pytest.mark.parametrize("length", [1, 150, 200, 999, 40_000])
 def test_pieces_are_the_whole(length):
     signal = NOISE[: 2000 if length == 1 else None]
-    whole = st.spectrogram(signal, RATE, step=0.013, start=3.0)
+    whole = st.analysis.spectrogram(signal, RATE, step=0.013, start=3.0)
     blocks = (signal[i : i + length] for i in range(0, len(signal), length))
-    pieces = list(st.stream_spectrogram(blocks, RATE, step=0.013, start=3.0))
+    pieces = list(st.analysis.stream_spectrogram(blocks, RATE, step=0.013, start=3.0))
     assert np.concatenate([piece["time"] for piece in pieces]) == pytest.approx(
         whole["time"].values, rel=1e-15
     )
@@ -203,7 +203,7 @@ def test_a_record_larger_than_memory_is_streamed(tmp_path):
         made.flush()
         tracemalloc.start()
         mean, count = 0.0, 0
-        for piece in st.stream_spectrogram(
+        for piece in st.analysis.stream_spectrogram(
             np.memmap(path, np.float64, "r"), RATE, width=0.5, step=0.25
         ):
             mean, count = mean + piece.values.sum(axis=1), count + piece.sizes["time"]
@@ -216,7 +216,7 @@ def test_a_record_larger_than_memory_is_streamed(tmp_path):
 
 def test_too_short_a_stream_is_refused():
     with pytest.raises(ValueError, match="holds 200 samples at 2000 Hz; there are 30 and"):
-        list(st.stream_spectrogram([NOISE[:10], NOISE[:20]], RATE))
+        list(st.analysis.stream_spectrogram([NOISE[:10], NOISE[:20]], RATE))
 
 
 def test_harmonics_of_cycles_that_follow_closely_are_no_oscillation(oscillation):

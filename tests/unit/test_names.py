@@ -1,0 +1,70 @@
+"""Rooms list their names once: what is listed is there, and what is there is listed."""
+
+import inspect
+from pathlib import Path
+from pkgutil import iter_modules
+
+import pytest
+
+import stiction as st
+from stiction.names import listed, spelled
+
+ROOMS = ["stiction", "stiction.analysis", "stiction.plotting", "stiction.results"]
+SESSION = {
+    *("Slider", "Description", "Settings", "Initial", "ConstantVelocity", "Coulomb"),
+    *("ExponentialWeakening", "Trajectory", "Record", "Study", "Grid", "Random", "Sobol"),
+    *("Values", "Status", "StictionError", "DescriptionError", "ResultError"),
+    *("simulate", "run", "load", "export", "init", "analyse", "analyze", "audit", "stability"),
+    *("compare", "check", "sweep", "refine", "open_study", "map", "plot", "paper"),
+    *("analysis", "laws", "linear_stability", "plotting", "presets", "protocols", "results"),
+    *("testing", "theory"),
+}
+
+
+def room_of(name):
+    return st if name == "stiction" else getattr(st, name.partition(".")[2])
+
+
+@pytest.mark.parametrize("name", ROOMS)
+def test_what_a_room_lists_is_there(name):
+    room = room_of(name)
+    assert room.__all__ == sorted(listed(name))
+    for each in listed(name):
+        assert getattr(room, each).__name__.rpartition(".")[2] in (each, "analyse")
+        assert each in dir(room)
+    with pytest.raises(AttributeError, match=f"module '{name}' has no attribute 'nonsense'"):
+        room.nonsense  # noqa: B018
+
+
+@pytest.mark.parametrize("name", ROOMS)
+def test_no_submodule_hides_a_function_of_its_name(name):
+    room = room_of(name)
+    below = {each.name for each in iter_modules(getattr(room, "__path__", []))}
+    hidden = {each for each in below & {*listed(name)} if not inspect.ismodule(getattr(room, each))}
+    assert not hidden
+
+
+@pytest.mark.parametrize("name", ROOMS)
+def test_a_stub_is_one_line_a_name(name):
+    """Public for type checkers: imported from where it stands under its own name."""
+    lines = Path(f"{room_of(name).__file__}i").read_text("utf-8").splitlines()
+    named = [line.split() for line in lines if line.startswith("from")]
+    assert [words[3] for words in named] == [words[5] for words in named]
+    assert [words[3] for words in named] == [*listed(name)]
+
+
+def test_a_session_sees_what_it_uses():
+    assert {name for name in dir(st) if not name.startswith("__")} == SESSION
+
+
+def test_a_class_is_spelled_as_a_session_writes_it():
+    assert spelled(st.Slider) == "st.Slider"
+    assert spelled(st.Coulomb) == "st.Coulomb"
+    assert spelled(st.protocols.Hold) == "st.protocols.Hold"
+
+    class Coulomb(st.Coulomb):
+        """A law of a user with the name of ours."""
+
+    assert spelled(Coulomb) == "Coulomb"
+    Coulomb.__module__ = "stiction.text.validation"
+    assert spelled(Coulomb) == "Coulomb"
