@@ -2,7 +2,7 @@
 
 >>> import stiction as st
 >>> st.protocols.Hold("3 s")
-Hold(duration=3.0)
+st.protocols.Hold(duration=3.0)
 """
 
 from __future__ import annotations

@@ -98,7 +98,7 @@ def test_a_dense_table_of_a_law_is_that_law(slider):
 )
 def test_a_law_refuses_what_makes_no_sense(kind, parameters, path, words):
     with pytest.raises(st.DescriptionError) as error:
-        getattr(st, kind)(**parameters)
+        getattr(st.laws, kind)(**parameters)
     (fault,) = error.value.faults
     assert fault.path == f"{kind}.{path}"
     assert words in fault.message
