@@ -24,8 +24,10 @@ from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.regime import (
     HARMONIC,
     IRREGULAR,
+    SETTLING,
     STEADY,
     STICK_SLIP,
+    STUCK,
     UNDETERMINED,
     regime_of,
 )
@@ -33,6 +35,7 @@ from stiction.analysis.motion.regime import (
 Floats = NDArray[np.float64]
 Labelled = tuple[st.Record, int | None, tuple[str, ...]]  # with its count, if known, and its kinds
 BINS = (0.0, 0.5, 0.7, 0.9, 0.97, 1.01)  # of confidence
+CHANGES = 0.6  # of a filter's width times the number of periods: heights change in the record
 
 
 def sawtooth(random: np.random.Generator, count: int, period: float) -> tuple[Floats, Floats]:
@@ -126,8 +129,12 @@ def harmonic(random: np.random.Generator) -> Labelled:
 
 
 def filtered(random: np.random.Generator, periods: float, samples: float) -> Floats:
-    """Return noise through a filter of 2 to 20 % of its frequency, of standard deviation 1."""
-    width, size = 10 ** random.uniform(-1.7, -0.7), int(periods * samples)
+    """Return noise through a filter of 2 to 20 % of its frequency, of standard deviation 1.
+
+    The filter is wide enough for the height to change in the record: it is else one of a size.
+    """
+    width = 10 ** random.uniform(max(-1.7, np.log10(CHANGES / periods)), -0.7)
+    size = int(periods * samples)
     lead = int(2.0 * samples / width)  # until the filter has forgotten how it began
     pole = np.exp((2j - width) * pi / samples)
     rung = lfilter([1.0], [1.0, -2.0 * pole.real, abs(pole) ** 2], random.normal(size=size + lead))
@@ -177,9 +184,62 @@ def sliding(random: np.random.Generator) -> Labelled:
     return st.Record(time=1e-3 * np.arange(size), force=force), 0, (STEADY,)
 
 
+def brief_vibration(random: np.random.Generator) -> Labelled:
+    """Return ten to thirty periods of irregular vibration."""
+    return narrow(random, random.uniform(10.0, 30.0))
+
+
+def brief_harmonic(random: np.random.Generator) -> Labelled:
+    """Return four to thirty periods of a harmonic vibration, growing or not, that drifts or not."""
+    turns, rate = random.uniform(4, 30), 10 ** random.uniform(1.1, 2.5)
+    phase = np.arange(int(turns * rate)) / rate
+    force = np.sin(2 * pi * phase + random.uniform(0, 6))
+    force *= 1 + random.uniform(0, 0.5) * phase / turns
+    force += random.uniform(0, 0.1) * random.normal(size=len(phase)) + random.choice(
+        [0.0, random.uniform(-1, 1)]
+    ) * (phase / turns)
+    return st.Record(time=phase / 10 ** random.uniform(0, 2), force=3.0 + force), None, (HARMONIC,)
+
+
+def brief_slips(random: np.random.Generator) -> Labelled:
+    """Return three to thirty cycles of stick-slip under noise."""
+    rate = 10 ** random.uniform(1.7, 3)
+    time, force, count = between(sawtooth(random, int(random.integers(6, 33)), 1.0), rate)
+    noise = 10 ** random.uniform(-3, -1.3) * random.normal(size=len(time))
+    return st.Record(time=time, force=2.0 + force + noise), count, (STICK_SLIP,)
+
+
+def settling(random: np.random.Generator) -> Labelled:
+    """Return a vibration that decays to less than a tenth, in thirty periods or fewer."""
+    turns, rate = random.uniform(5, 30), 10 ** random.uniform(1.1, 2.5)
+    phase = np.arange(int(turns * rate)) / rate
+    decay = random.uniform(2.5, 6.0) / turns
+    force = np.exp(-decay * phase) * np.sin(2 * pi * phase + random.uniform(0, 6))
+    force += 10 ** random.uniform(-3, -1.3) * random.normal(size=len(phase))
+    return st.Record(time=phase / 10 ** random.uniform(0, 2), force=3.0 + force), 0, (SETTLING,)
+
+
+def loading(random: np.random.Generator) -> Labelled:
+    """Return a spring that is loaded, without a slip."""
+    time = np.linspace(0.0, 1.0, int(10 ** random.uniform(1.8, 4)))
+    force = 2.0 * time - random.uniform(0, 0.3) * time**2
+    force += 10 ** random.uniform(-3, -1.7) * random.normal(size=len(time))
+    return st.Record(time=time, force=force), 0, (STUCK,)
+
+
+def brief_sliding(random: np.random.Generator) -> Labelled:
+    """Return 64 to 500 samples of steady sliding under white or filtered noise."""
+    size = int(10 ** random.uniform(1.8, 2.7))
+    noise = random.normal(size=2 * size)
+    for _ in range(int(random.integers(0, 2))):
+        noise = lfilter([1.0], [1.0, -np.exp(-(10 ** random.uniform(-1, 0)))], noise)
+    force = 2.0 + 0.1 * noise[size:] / noise.std()
+    return st.Record(time=1e-3 * np.arange(size), force=force), 0, (STEADY,)
+
+
 LABELLED: tuple[Callable[[np.random.Generator], Labelled], ...] = (
     hum, few_samples, wild_slips, wild_sliding, irregular, harmonic, short, long, wandering,
-    sliding,
+    sliding, brief_vibration, brief_harmonic, brief_slips, settling, loading, brief_sliding,
 )  # fmt: skip
 
 

@@ -16,6 +16,10 @@ ORDERED = -0.9  # rank correlation of size and number: each smaller than the las
 MANY, LEFT = 8, 1 / 3
 FEW, LEFT_BEFORE_QUIET = 3, 1 / 2  # counted from the largest, if it is quiet for long after
 QUIET = 3.0
+# Fewer swings, of any number from three, die out if each is smaller than the last by about the same
+# factor: the largest and the smallest factor differ by less. Of irregular vibrations 3 in 100 have
+# three such swings, 7 in 1000 four, 2 in 1000 five.
+STEADILY = 0.3
 # Swings that build up: less than half the median, so many in succession (by chance once in a
 # thousand records where a quarter of all are so small)
 BELOW, BUILDING = 0.5, 5
@@ -41,7 +45,17 @@ def dies_out(drop: ArrayLike, period: ArrayLike, rest: float) -> bool:
     if quiet and rest > float(np.sum(period)):
         size = size[int(np.argmax(size)) :]
     enough, left = (FEW, LEFT_BEFORE_QUIET) if quiet else (MANY, LEFT)
-    return len(size) >= enough and order(size) <= ORDERED and bool(size[-1] < left * size[0])
+    if len(size) < enough:
+        return _decays_steadily(size)
+    return order(size) <= ORDERED and bool(size[-1] < left * size[0])
+
+
+def _decays_steadily(size: Floats) -> bool:
+    """Return whether a few swings decay by about the same factor each."""
+    if len(size) < FEW or not size[-1] < LEFT * size[0]:
+        return False
+    factor = size[1:] / size[:-1]
+    return bool(factor.max() < 1.0 and np.ptp(factor) < STEADILY)
 
 
 def built_up(drop: ArrayLike) -> slice:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.motion.band import highest_hump
+from stiction.analysis.motion.band import EIGHTHS, SUSPECTED, highest_hump, remaining
 from stiction.analysis.motion.course import MANY, ORDERED, PARTS, course, order
 from stiction.analysis.motion.cycles import Swings, swings
 from stiction.analysis.motion.rest import STICKING, rest_share, rise_share
@@ -112,6 +112,12 @@ WORDS = {
     ),
     "hump": ("it vibrates at about {}, in swings of every size", _frequency),
     "hump_height": ("in the spectrum they stand {} times above the threshold", _rounded),
+    "fading": ("it vibrates at about {}, less and less", _frequency),
+    "fades_to": ("at the end {} or less of that is left", _percent),
+    "few_periods": (
+        "it may vibrate at about {}, or scatter: for so slow a vibration the record is too short",
+        _frequency,
+    ),
     "samples_per_cycle": ("a cycle has {} samples, too few to show it", _rounded),
     "rate_needed": ("sample at {} or more", _frequency),
     "samples": ("there are {} samples, too few", _whole),
@@ -338,13 +344,23 @@ def _by_course(record: Record, found: Swings) -> Regime:
     hump = highest_hump(record.time[begin:], record.force[begin:])
     vibrates = hump.likelihood if hump.rms > RIPPLE * way.span else 0.0
     if vibrates > 0.5:
+        left = remaining(record.time, record.force, hump.frequency)
+        if left < 1.0:
+            sure = (EIGHTHS + 1) / (EIGHTHS + 3)
+            return Regime(SETTLING, sure, evidence | {"fading": hump.frequency, "fades_to": left})
         evidence |= {"hump": hump.frequency, "hump_height": hump.height}
         return Regime(IRREGULAR, vibrates, evidence, STEADY)
     if late <= SETTLED:
         sure = (1.0 - late / (2.0 * SETTLED)) * (1.0 - vibrates)
         return Regime(SETTLING, sure, evidence | {"late_share": late})
-    if slides:  # the nearer to cycles it came, the less sure it is that there are none
-        return Regime(STEADY, (1.0 - 0.5 * found.clearness / CLEAR) * (1.0 - vibrates), evidence)
+    if slides:
+        # the nearer to cycles it came, the less sure it is that there are none
+        sure = (1.0 - 0.5 * found.clearness / CLEAR) * (1.0 - vibrates)
+        few = highest_hump(record.time, record.force, SUSPECTED)
+        vibrates = few.likelihood if few.rms > RIPPLE * way.span else 0.0
+        if vibrates > 0.5:
+            return Regime(UNDETERMINED, 0.0, evidence | {"few_periods": few.frequency})
+        return Regime(STEADY, sure * (1.0 - vibrates), evidence)
     kept = way.late_rate / way.early_rate
     evidence |= {"one_way": way.one_way, "rate_kept": kept}
     loading = way.late_rate / drive if drive else kept

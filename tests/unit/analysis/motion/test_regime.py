@@ -7,7 +7,16 @@ from math import pi
 
 import numpy as np
 import pytest
-from benchmarks.explore.records import Labelled, filtered, judged, long, short, wandering
+from benchmarks.explore.records import (
+    Labelled,
+    brief_vibration,
+    filtered,
+    judged,
+    long,
+    settling,
+    short,
+    wandering,
+)
 from scipy.signal import lfilter
 from tests.measured import bare, measured
 
@@ -168,6 +177,26 @@ def test_vibrations_of_few_periods_are_told_with_the_confidence_that_they_deserv
     assert len(sure) >= 30
 
 
+@pytest.mark.parametrize("number", [2, 29, 54, 66, 101, 116])
+def test_a_vibration_that_decays_settles_however_few_its_swings(number: int) -> None:
+    found = judged(settling, 1, number)
+    assert found.right, found
+
+
+def test_a_vibration_that_decays_into_noise_is_said_to_fade() -> None:
+    regime = st.analysis.classify(settling(np.random.default_rng([1, 2]))[0])
+    assert "it vibrates at about 15.3" in str(regime)
+    assert "less and less; at the end" in str(regime)
+
+
+@pytest.mark.parametrize("number", [90, 97])
+def test_too_few_periods_for_a_vibration_are_no_steady_sliding(number: int) -> None:
+    record, _, _ = brief_vibration(np.random.default_rng([2, number]))
+    regime = st.analysis.classify(record)
+    assert regime.kind == "undetermined"
+    assert "too short" in str(regime)
+
+
 def test_a_vibration_whose_size_changes_once_is_harmonic() -> None:
     time = np.arange(8000) * 1e-3
     for size in (1.0 + 2.0 * time / 8.0, 1.0 + 1.5 * np.exp(-3.0 * time)):
@@ -241,7 +270,8 @@ def test_few_cycles_that_differ_say_less_than_many() -> None:
 def test_what_dies_out() -> None:
     decay = 0.7 ** np.arange(10)
     assert dies_out(decay, np.ones(10), 0.5)
-    assert not dies_out(decay[:5], np.ones(5), 0.5)  # it may go on
+    assert dies_out(decay[:5], np.ones(5), 0.5)  # by the same factor each time
+    assert not dies_out(np.array([1.0, 0.9, 0.4, 0.35, 0.2]), np.ones(5), 0.5)  # it may go on
     assert dies_out(decay[:5], np.ones(5), 4.0)  # but it did not
     assert not dies_out(decay[::-1], np.ones(10), 0.5)
     assert not dies_out([], [], 0.0)
