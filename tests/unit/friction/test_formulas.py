@@ -145,7 +145,7 @@ def test_a_direct_effect_of_floats():
 
 
 def test_bristles():
-    """F = sigma_0 z + sigma_1 dz/dt + sigma_2 s, dz/dt = s - sigma_0 |s| z/(W g(|s|))."""
+    """F = sigma_0 z + sigma_1 dz/dt + sigma_2 s, dz/dt = s - sigma_0 |s| z/(W g(|s|)) (M63)."""
     (s, z), load = np.array([[3e-3, -4e-3], [1e-6, 2e-6]]), 10.0
     g = 0.15 + 0.05 * exp(-((5e-3 / 0.01) ** 2))
     rate = s - 1e5 * 5e-3 / (load * g) * z

@@ -1,7 +1,7 @@
-"""The method as ``docs/method.md`` prints it, against the compiled solver.
+"""The equations of ``docs/method.md``, one by one, against the compiled solver.
 
-The equations are written down once more in NumPy, under the numbers that they have there. Steps
-are the solver's own: one turn of its loop at a time, whose stages it remembers.
+Those of a step of slip are written down once more in `tests.rebuilt`. Steps are the solver's own:
+one turn of its loop at a time, whose stages it remembers.
 """
 
 import importlib
@@ -15,14 +15,17 @@ import numba
 import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
-from scipy.optimize import brentq, minimize_scalar, root
-from tests.entry import entry
+from scipy.optimize import brentq, root
+from tests.entry import entry, plain
+from tests.rebuilt.run import Solver
+from tests.rebuilt.step import PI, A, C, D, Step, gamma
 
 import stiction as st
 import stiction.solver
 from stiction.solver.block_algebra import solved
 from stiction.solver.compilation.jit import called
 from stiction.solver.exact.loop import steps
+from stiction.solver.exact.pursuit import slip_before_landing
 from stiction.solver.integrate import accuracy, tolerance
 from stiction.solver.law import pointed
 from stiction.solver.problem import Elliptic, Isotropic, kinds_of
@@ -49,191 +52,6 @@ stick_duration, takeoff, to_spare = map(entry, (stick_duration, takeoff, to_spar
 SMOOTHED = numba.njit(lambda law, slip, load: friction_and_gradient(law, slip, load))
 
 NEWTON = 1e-11  # what corrections are iterated to here, so that residuals vanish
-C = np.array([(4 - sqrt(6)) / 10, (4 + sqrt(6)) / 10, 1.0])
-LAGRANGE = [Polynomial.fromroots(np.delete(C, j)) for j in range(3)]
-LAGRANGE = [basis / basis(C[j]) for j, basis in enumerate(LAGRANGE)]
-A = np.array([[basis.integ()(c) for basis in LAGRANGE] for c in C])  # (M24)
-D = np.linalg.inv(A)
-PI = Polynomial.fromroots(C)  # (M35)
-
-
-def weight(c):
-    """(M36)."""
-    return abs(PI.integ()(C[0]) / PI(c))
-
-
-# --- the printed equations ----------------------------------------------------------------------
-
-
-class Printed:
-    """Equations (M11) to (M42) of one step of slip, for a steady drive and load."""
-
-    def __init__(self, problem, motion):
-        s, (_, u_x, u_y, self.r, e_x, e_y) = problem.system, motion
-        self.m, self.law = s.mass, problem.law
-        self.K, self.C = np.diag([s.k_x, s.k_y]), np.diag([s.c_x, s.c_y])
-        self.v = problem.drive.velocity * np.array([s.cos_phi, s.sin_phi])
-        self.W, self.u = problem.load.force, np.array([u_x, u_y])
-        n = problem.surface
-        self.e, self.n = np.array([e_x, e_y]), np.array([-e_y, e_x])
-        self.axes = np.array([self.e, self.n])
-        self.k = self.axes @ self.K @ self.axes.T / self.m
-        self.c = self.axes @ self.C @ self.axes.T / self.m
-        self.N = self.axes @ np.array([[n.xx, n.xy], [n.xy, n.yy]]) @ self.axes.T
-
-    def b(self, t):
-        """(M17)."""
-        return self.axes @ (self.K @ (self.u + self.v * t) + self.C @ self.v) / self.m
-
-    def friction(self, p, w):
-        """Return f, n_1, tau and tau' (M12), (M16)."""
-        (xx, xy), (_, yy) = self.N
-        g = sqrt(xx + 2 * xy * w + yy * w * w)
-        n_1, n_2 = (xx + xy * w) / g, (xy + yy * w) / g
-        dn_1, dn_2 = (xy - n_1 * n_2) / g, (yy - n_2 * n_2) / g
-        f = self.law.coefficient(p * sqrt(1 + w * w)) * self.W / self.m
-        return f, n_1, n_2 - w * n_1, dn_2 - n_1 - w * dn_1
-
-    def outset(self):
-        """Return a_1, a_2 and dp/dt, and what accelerates across, at the start."""
-        a = self.b(0.0) - self.c @ [self.r, 0.0]
-        f, n_1, tau, _ = self.friction(self.r, 0.0)
-        return (*a, a[0] - f * n_1, a[1] - f * tau)
-
-    def oscillation(self, h):
-        """Return p, dp/dt and the distance as functions of time (M21) to (M23), or None."""
-        k, r = self.k[0, 0], self.r
-        slope = self.law.slope(r) * self.W / self.m * self.friction(r, 0.0)[1]
-        beta = (self.c[0, 0] + slope) / 2
-        if not (1e-3 < k * h * h < 6.25 and abs(beta) < 0.2 * sqrt(k)):
-            return None
-        P = (self.k @ self.axes @ self.v)[0] / k
-        x_0, v_0, omega = r - P, self.outset()[2], sqrt(k - beta**2)
-
-        def at(t):
-            U, S = exp(-beta * t) * np.array([cos(omega * t), sin(omega * t) / omega])
-            x, v = x_0 * U + (v_0 + beta * x_0) * S, v_0 * U - (beta * v_0 + k * x_0) * S
-            return P + x, v, P * t + (v_0 - v + 2 * beta * (x_0 - x)) / k
-
-        return at
-
-    def residuals(self, h, p, w):
-        """(M25) to (M29)."""
-        p, w, R, Z = np.array(p), np.array(w), np.zeros(3), np.zeros(3)
-        laid = self.oscillation(h)
-        if laid:
-            below, change, slid = np.array([laid(c * h) for c in C]).T
-            R, Z = h * change - D @ (below - self.r), slid / h - A @ below
-        q = p * w
-        z = h * np.array([A @ p + Z, A @ q])
-        a = np.array([self.b(c * h) for c in C]).T - self.k @ z - self.c @ [p, q]
-        f, n_1, tau, _ = np.array([self.friction(*each) for each in zip(p, w, strict=True)]).T
-        along = D @ (p - self.r) + R - h * (a[0] - f * n_1)
-        across = p * (D @ w) - h * (a[1] - w * a[0] - f * tau)
-        return np.concatenate([along, across]), h * np.abs(a).max(), z[:, 2]
-
-    def jacobian(self, h, p, w):
-        """(M31)."""
-        p, w, k, c = np.array(p), np.array(w), self.k, self.c
-        laid = self.oscillation(h)
-        Z = [
-            laid(each * h)[2] / h - row @ [laid(x * h)[0] for x in C]
-            for row, each in zip(A, C, strict=True)
-        ]
-        z_1, z_2 = h * (A @ p + Z), h * (A @ (p * w))
-        rows = np.zeros((6, 6))
-        for i in range(3):
-            f, n_1, tau, dtau = self.friction(p[i], w[i])
-            dn_1 = (
-                (self.N[0, 1] - n_1 * (tau + w[i] * n_1))
-                * n_1
-                / (self.N[0, 0] + self.N[0, 1] * w[i])
-            )
-            chi_p = sqrt(1 + w[i] ** 2)
-            chi_w = p[i] * w[i] / chi_p
-            slope = self.law.slope(p[i] * chi_p) * self.W / self.m
-            a_1 = (self.b(C[i] * h) - k @ [z_1[i], z_2[i]] - c @ [p[i], p[i] * w[i]])[0]
-            kappa_1, kappa_2 = k[0, 1] - w[i] * k[0, 0], k[1, 1] - w[i] * k[0, 1]
-            rows[i, :3] = D[i] + h * h * A[i] * (k[0, 0] + k[0, 1] * w)
-            rows[i, 3:] = h * h * A[i] * k[0, 1] * p
-            rows[3 + i, :3] = h * h * A[i] * (kappa_1 + kappa_2 * w)
-            rows[3 + i, 3:] = p[i] * D[i] + h * h * A[i] * kappa_2 * p
-            rows[i, i] += h * (slope * chi_p * n_1 + c[0, 0] + c[0, 1] * w[i])
-            rows[i, 3 + i] += h * (slope * chi_w * n_1 + f * dn_1 + c[0, 1] * p[i])
-            damping = c[0, 1] + c[1, 1] * w[i] - w[i] * (c[0, 0] + c[0, 1] * w[i])
-            rows[3 + i, i] += D[i] @ w + h * (damping + slope * chi_p * tau)
-            damping = (c[1, 1] - w[i] * c[0, 1]) * p[i]
-            rows[3 + i, 3 + i] += h * (a_1 + damping + slope * chi_w * tau + f * dtau)
-        return rows
-
-    def by_step_size(self, h, p, w):
-        """(M44) to (M46)."""
-        p, w, k = np.array(p), np.array(w), self.k
-        laid, change = self.oscillation(h), k @ self.axes @ self.v
-        below, rate, slid = np.array([laid(c * h) for c in C]).T
-        P = change[0] / k[0, 0]
-        slope = self.law.slope(self.r) * self.W / self.m * self.friction(self.r, 0.0)[1]
-        curve = -(self.c[0, 0] + slope) * rate - k[0, 0] * (below - P)
-        R = rate + h * C * curve - D @ (C * rate)
-        hZ = C * below - A @ (below + h * C * rate)
-        z = np.array([h * (A @ p) + slid - h * (A @ below), h * (A @ (p * w))])
-        by_h = np.array([A @ p + hZ, A @ (p * w)])
-        da_1, da_2 = np.outer(change, C) - k @ by_h
-        a_1, a_2 = np.array([self.b(c * h) for c in C]).T - k @ z - self.c @ [p, p * w]
-        f, n_1, tau, _ = np.array([self.friction(*each) for each in zip(p, w, strict=True)]).T
-        along = f * n_1 - a_1 - h * da_1 + R
-        return np.concatenate([along, w * a_1 - a_2 + f * tau - h * (da_2 - w * da_1)])
-
-    def after(self, h, p, w):
-        """Return u, r and e at the end of the step (M30)."""
-        z, stretch = self.residuals(h, p, w)[2], sqrt(1 + w[2] ** 2)
-        u = self.u + self.v * h - z @ self.axes
-        return *u, p[2] * stretch, *((self.e + w[2] * self.n) / stretch)
-
-    def motion(self, held):
-        """(M42)."""
-        _, _, along, across = self.outset()
-        change, curve = self.v - self.r * self.e, -np.array([along, across]) @ self.axes
-        square = change @ change + curve @ (self.m * np.linalg.solve(self.K, curve))
-        return max(sqrt(square), held.least)
-
-    def error(self, h, p, w, held):
-        """(M38), at the one point or at both."""
-        points = (0.4, 0.85) if self.k[0, 0] * h * h > 6.25 else (0.4,)
-        return max(self.error_at(c, h, p, w, held) for c in points)
-
-    def error_at(self, c, h, p, w, held):
-        """(M37) and (M41)."""
-        nodes, gamma, laid = np.array([0.0, *C]), weight(c), self.oscillation(h)
-        below = [laid(x * h) if laid else (0.0, 0.0, 0.0) for x in (*nodes, c)]
-        under, change, slid = np.array(below).T
-        if not laid:
-            under[:4] = 0.0
-        rest = np.polynomial.Polynomial.fit(nodes, [self.r, *p] - under[:4], 3, domain=[0, 1])
-        turn = np.polynomial.Polynomial.fit(nodes, [0.0, *w], 3, domain=[0, 1])
-        integrals = np.array([basis.integ()(c) for basis in LAGRANGE])
-        z_1 = h * (integrals @ (np.array(p) - under[1:4])) + slid[4]
-        z_2 = h * (integrals @ (np.array(p) * w))
-        p_in, p_c = rest(c) + under[4], rest.deriv()(c) + h * change[4]
-        w_in, w_c = turn(c), turn.deriv()(c)
-        a_1, a_2 = self.b(c * h) - self.k @ [z_1, z_2] - self.c @ [p_in, p_in * w_in]
-        f, n_1, tau, dtau = self.friction(p_in, w_in)
-        off_p = p_c - h * (a_1 - f * n_1)
-        off_w = p_in * w_c - h * (a_2 - w_in * a_1 - f * tau)
-        off_w /= p_in + gamma * h * abs(a_1 + f * dtau)
-        off_x, off_y = np.array([off_p, w_in * off_p + p_in * off_w]) @ self.axes
-        rate_x, rate_y = np.abs(self.v - p_in * np.array([1.0, w_in]) @ self.axes)
-        sigma, size, most = held.speed, p_in * sqrt(1 + w_in**2), self.motion(held)
-        H = min(size, held.drive)
-        S = min(sigma + H, most)
-        S_x = min(sigma + min(H, rate_x + held.free_x), most)
-        S_y = min(sigma + min(H, rate_y + held.free_y), most)
-        return gamma * max(
-            abs(off_p) / S,
-            abs(off_w) * (sigma + size) / S,
-            abs(off_x) / S_x,
-            abs(off_y) / S_y,
-        )
 
 
 # --- steps that the solver takes ----------------------------------------------------------------
@@ -296,32 +114,19 @@ def turn(problem, held, state, times=()):
     return named(after), samples
 
 
-def end_of_stick(problem, motion):
+def rebuilt(slider, motion):
+    """Return the rebuilt solver in a state of motion."""
+    run = Solver(slider, 1e-6)
+    run.t, run.u, run.r = motion.t, np.array([motion.u_x, motion.u_y]), motion.r
+    run.e = np.array([motion.e_x, motion.e_y])
+    return run
+
+
+def end_of_stick(slider, motion):
     """Return the motion at the end of a stick, by (M5) to (M7) and (M18)."""
-    s, v = problem.system, Printed(problem, motion).v
-    n = problem.surface
-    N, k, c = np.array([[n.xx, n.xy], [n.xy, n.yy]]), [s.k_x, s.k_y], [s.c_x, s.c_y]
-    per_weight, u = problem.load.force / s.mass, np.array([motion.u_x, motion.u_y])
-    f = problem.law.coefficient(0.0) * per_weight
-    f_s = max(getattr(problem.law, "mu_static", 0.0) * per_weight, f)
-    a, j = (k * u + c * v) / s.mass, k * v / s.mass
-    M, half, q = (x @ np.linalg.solve(N, y) for x, y in ((a, a), (a, j), (j, j)))
-    M -= f_s**2
-    tau = (sqrt(half**2 - q * M) - half) / q if M < 0.0 else 0.0
-    u, a = u + v * tau, a + j * tau
-    # the point of the ellipse nearest to a, by its angle
-    L = f * np.linalg.cholesky(N)
-    if problem.surface.isotropic():
-        y = a
-    else:
-        first = atan2(*np.linalg.solve(L, a)[::-1])
-
-        def distance(angle):
-            return np.sum((a - L @ [cos(angle), sin(angle)]) ** 2)
-
-        best = minimize_scalar(distance, (first - 0.1, first + 0.1), tol=1e-14).x
-        y = np.linalg.solve(N, L @ [cos(best), sin(best)])
-    return Motion(motion.t + tau, *u, 0.0, *(y / np.linalg.norm(y)))
+    run = rebuilt(slider, motion)
+    run.stick(inf)
+    return Motion(run.t, *run.u, 0.0, *run.e)
 
 
 @cache
@@ -332,7 +137,7 @@ def walk(name):
     for _ in range(50):
         before = state.motion
         if before.r == 0.0:
-            before = end_of_stick(problem, before)
+            before = end_of_stick(SLIDERS[name], before)
         after, _ = turn(problem, held, state)
         m = after.memory
         if after.counts.steps > state.counts.steps:
@@ -343,18 +148,18 @@ def walk(name):
     return problem, held, found
 
 
+def printed(name, step):
+    """Return the equations of a step that the solver has taken."""
+    return Step(rebuilt(SLIDERS[name], step.before))
+
+
 def test_the_steps_looked_at_are_of_all_kinds():
     """Take-offs, landings, laid over the oscillation or not, longer than it."""
     seen = set()
     for name in SLIDERS:
-        problem, _, taken = walk(name)
-        for step in taken:
-            printed = Printed(problem, step.before)
-            seen.add("take-off" if step.before.r == 0.0 else "")
-            seen.add("landing" if step.p[2] == 0.0 else "")
-            seen.add("long" if printed.k[0, 0] * step.h**2 > 6.25 else "")
-            seen.add("plain" if printed.oscillation(step.h) is None else "laid over")
-    assert seen == {"", "take-off", "landing", "long", "plain", "laid over"}
+        for step in walk(name)[2]:
+            seen |= printed(name, step).kinds(step.h) | ({"landing"} if step.p[2] == 0.0 else set())
+    assert seen == {"take-off", "slip", "landing", "long", "plain", "laid over"}
 
 
 # --- sections 4 to 7 ----------------------------------------------------------------------------
@@ -363,9 +168,10 @@ def test_the_steps_looked_at_are_of_all_kinds():
 @pytest.mark.parametrize("name", SLIDERS)
 def test_the_printed_residuals_vanish(name):
     """Newton's error is 1e-11 of p and of w, and D is 8 at most."""
-    problem, _, taken = walk(name)
-    for step in taken:
-        found, forces, _ = Printed(problem, step.before).residuals(step.h, step.p, step.w)
+    for step in walk(name)[2]:
+        each = printed(name, step)
+        found, _ = each.equations(step.h, step.p, step.w)
+        forces = step.h * np.abs(each.accelerations(step.h, step.p, step.w)).max()
         terms = forces + np.abs(D).max() * max(step.before.r, step.p.max())
         assert np.abs(found).max() < 10 * NEWTON * terms
 
@@ -373,47 +179,89 @@ def test_the_printed_residuals_vanish(name):
 @pytest.mark.parametrize("name", ["damped", "ellipse"])
 def test_the_printed_jacobian_is_the_derivative_of_the_residuals(name):
     """(M31) and (M44) to (M46); of differences about a step that is laid over the oscillation."""
-    problem, _, taken = walk(name)
-    for step in taken[4:8]:
-        printed, h = Printed(problem, step.before), step.h
+    for step in walk(name)[2][4:8]:
+        equations, h = printed(name, step).equations, step.h
         x = np.concatenate([step.p + 1e-3 * step.p.max(), step.w])
         scale = np.repeat([step.p.max(), 1e-2], 3)
-        found = printed.jacobian(h, *x.reshape(2, 3)) * scale
-        columns = []
-        for each in 1e-5 * np.diag(scale):
-            more, less = (printed.residuals(h, *y.reshape(2, 3))[0] for y in (x + each, x - each))
-            columns.append((more - less) / 2e-5)
+
+        def residuals(x, h=h, equations=equations):
+            return equations(h, *x.reshape(2, 3))[0]
+
+        found = equations(h, *x.reshape(2, 3))[1] * scale
+        columns = [(residuals(x + d) - residuals(x - d)) / 2e-5 for d in 1e-5 * np.diag(scale)]
         assert found == pytest.approx(np.transpose(columns), abs=1e-7 * np.abs(found).max())
-        more, less = (printed.residuals(h * y, *x.reshape(2, 3))[0] for y in (1 + 1e-5, 1 - 1e-5))
-        found = h * printed.by_step_size(h, *x.reshape(2, 3))
+        more, less = residuals(x, h * (1 + 1e-5)), residuals(x, h * (1 - 1e-5))
+        found = h * equations(h, *x.reshape(2, 3), landing=True)[1][:, 2]
         assert found == pytest.approx((more - less) / 2e-5, abs=1e-7 * np.abs(found).max())
 
 
 @pytest.mark.parametrize("name", SLIDERS)
 def test_the_printed_end_of_a_step_is_the_solver_s(name):
-    problem, _, taken = walk(name)
-    for step in taken:
-        u_x, u_y, r, e_x, e_y = Printed(problem, step.before).after(step.h, step.p, step.w)
+    for step in walk(name)[2]:
+        u, r, e = printed(name, step).end(step.h, step.p, step.w)
         after = step.after
         assert after.t == pytest.approx(step.before.t + step.h, rel=1e-14)
-        assert (after.u_x, after.u_y) == pytest.approx((u_x, u_y), rel=1e-11)
+        assert (after.u_x, after.u_y) == pytest.approx(u, rel=1e-11)
         assert after.r == pytest.approx(r, rel=1e-12)
-        assert (after.e_x, after.e_y) == pytest.approx((e_x, e_y), abs=1e-12)
+        assert (after.e_x, after.e_y) == pytest.approx(e, abs=1e-12)
 
 
 @pytest.mark.parametrize("w", [-0.7, 0.0, 0.3])
 def test_the_friction_along_and_across_is_that_of_the_ellipse(w):
     """(M12) is N s/|M s| in the step's axes, (M16) its derivative."""
-    problem, _ = problem_of(ELLIPSE)
-    printed = Printed(problem, Motion(0.0, 0.0, 0.0, 1.0, 0.6, 0.8))
-    n = problem.surface
-    N, s = np.array([[n.xx, n.xy], [n.xy, n.yy]]), printed.e + w * printed.n
+    n = problem_of(ELLIPSE)[0].surface
+    each = Step(rebuilt(ELLIPSE, Motion(0.0, 0.0, 0.0, 1.0, 0.6, 0.8)))
+    N, s = np.array([[n.xx, n.xy], [n.xy, n.yy]]), each.e + w * each.n
     force = N @ s / sqrt(s @ N @ s)
-    _, n_1, tau, dtau = printed.friction(1.0, w)
-    assert (n_1, tau + w * n_1) == pytest.approx((force @ printed.e, force @ printed.n), rel=1e-13)
+    _, _, *found = each.friction(1.0, w)
+    (n_1, _), (tau, _) = found
+    assert (n_1, tau + w * n_1) == pytest.approx((force @ each.e, force @ each.n), rel=1e-13)
     step = 1e-5  # differences: 1e-10, and rounding of 1e-11
-    change = printed.friction(1.0, w + step)[2] - printed.friction(1.0, w - step)[2]
-    assert dtau == pytest.approx(change / (2 * step), rel=1e-8)
+    sides = zip(
+        found, each.friction(1.0, w + step)[2:], each.friction(1.0, w - step)[2:], strict=True
+    )
+    for (_, change), (more, _), (less, _) in sides:
+        assert change == pytest.approx((more - less) / (2 * step), rel=1e-8, abs=1e-10)
+
+
+@pytest.mark.parametrize("slider", [DAMPED, ELLIPSE], ids=["isotropic", "ellipse"])
+def test_the_equations_of_motion(slider):
+    """(M1) to (M4), of a run's own samples; accelerations by differences, between sticks."""
+    run = st.simulate(slider, 0.05, sample_rate=1e6, rtol=1e-9)
+    data, solver = {name: each.to_numpy() for name, each in run.data.items()}, Solver(slider, 1e-9)
+    s = np.array([data["slip_x"], data["slip_y"]])
+    rate = np.array([data["v_x"], data["v_y"]])
+    assert s + rate == pytest.approx(np.outer(solver.v_d, np.ones(s.shape[1])), abs=1e-12)
+    sliding = np.flatnonzero((data["slip_speed"] > 1e-4) & (data["sticking"] == 0))
+    assert len(sliding) > 1000
+    inside = sliding[np.isin(sliding - 1, sliding) & np.isin(sliding + 1, sliding)]
+    flow = solver.N @ s
+    mu = np.array([solver.law.coefficient(v) for v in data["slip_speed"]])
+    with np.errstate(invalid="ignore"):
+        phi = mu * solver.per_mass * flow / np.sqrt(np.sum(s * flow, axis=0))
+    u = np.array([data["u_x"], data["u_y"]])
+    a = solver.K[:, None] * u + solver.C[:, None] * rate
+    change = (s[:, inside + 1] - s[:, inside - 1]) / 2e-6
+    terms = np.abs(a[:, inside]).max()
+    assert change == pytest.approx((a - phi)[:, inside], abs=1e-3 * terms)
+    size = np.hypot(*phi[:, inside]) * solver.mass
+    assert data["friction"][inside] == pytest.approx(size, rel=1e-9)
+    held = np.flatnonzero(data["sticking"] == 1)
+    squares = [a[:, k] @ np.linalg.solve(solver.N, a[:, k]) for k in held]
+    assert max(squares) <= solver.f_s**2 * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("slider", [DAMPED, ELLIPSE], ids=["isotropic", "ellipse"])
+def test_the_p_w_form_is_newton_s_law(slider):
+    """(M11), (M13) and (M14) give the vector equation (M2)."""
+    each = Step(rebuilt(slider, Motion(0.0, 1e-3, 2e-6, 1e-3, 0.6, 0.8)))
+    for p, w in ((1e-3, 0.0), (2e-3, 0.4), (3e-4, -1.3)):
+        a = each.b - each.c @ [p, p * w]
+        f, _, (n_1, _), (tau, _) = each.friction(p, w)
+        dp, p_dw = a[0] - f * n_1, a[1] - w * a[0] - f * tau
+        s, N = np.array([p, p * w]), each.N
+        wanted = a - f * N @ s / sqrt(s @ N @ s)
+        assert [dp, w * dp + p_dw] == pytest.approx(wanted, rel=1e-12, abs=1e-12)
 
 
 # --- section 5 ----------------------------------------------------------------------------------
@@ -424,13 +272,10 @@ def test_the_branch_of_a_take_off(name):
     """(M19) is what a step comes to as its size goes to zero; its error is of the next order."""
     problem, held, taken = walk(name)
     first = next(step for step in taken if step.before.r == 0.0)
-    printed = Printed(problem, first.before)
-    a_1, a_2, excess, _ = printed.outset()
+    each = printed(name, first)
+    (a_1, a_2), (da_1, da_2), (c_11, c_12), slope = each.a, each.db, each.c[0], each.df
     assert a_2 == pytest.approx(0.0, abs=1e-9 * a_1)
-    excess = excess if name == "static coefficient" else 0.0  # or else rounding
-    da_1, da_2 = printed.k @ printed.axes @ printed.v
-    c_11, c_12 = printed.c[0]
-    slope = problem.law.slope(0.0) * printed.W / printed.m
+    excess = each.dp if name == "static coefficient" else 0.0  # or else rounding
     off = []
     for h in (1e-7, 1e-8):
         memory = first.state.memory._replace(plan=(h, *first.state.memory.plan[1:]))
@@ -442,6 +287,31 @@ def test_the_branch_of_a_take_off(name):
         off.append([p / along - 1, w / across - 1])
     assert np.abs(off[0]).max() < 0.1
     assert (np.abs(off[1]) < 0.15 * np.abs(off[0]) + 1e-6).all()
+
+
+def test_the_turn_follows_from_its_balance_of_forces_at_zero_slip():
+    """(M15): there the derivative of (M14) by w is a_1 + f tau'."""
+    each = Step(rebuilt(ELLIPSE, Motion(0.0, 1e-3, 2e-6, 0.0, 0.6, 0.8)))
+    h, p, w = 1e-7, np.array([1e-9, 1e-9, 0.0]), np.array([0.0, 0.1, 0.2])
+    f, _, _, (_, dtau) = each.friction(p, w)
+    wanted = h * (each.accelerations(h, p, w)[0] + f * dtau)[2]
+    assert each.equations(h, p, w)[1][5, 5] == pytest.approx(wanted, rel=1e-12)
+    assert wanted != 0.0
+
+
+@pytest.mark.parametrize("excess", [0.0, 0.5])
+def test_all_but_one_solution_leaves_a_take_off(excess):
+    """(M20) solves p w' = -a_1 w to leading order, and has no bound as t goes to zero."""
+    a_1, rate = 8.0, 300.0
+
+    def w(t):
+        return t ** (-a_1 / excess) if excess else exp(2 * a_1 / (rate * t))
+
+    for t in (1e-2, 2e-2, 4e-2):
+        p = excess * t if excess else rate * t * t / 2
+        change = (w(t * (1 + 1e-5)) - w(t * (1 - 1e-5))) / (2e-5 * t)
+        assert p * change == pytest.approx(-a_1 * w(t), rel=1e-6)
+    assert w(1e-3) > 1e20 * w(1e-1)
 
 
 def test_where_slip_starts_on_an_ellipse():
@@ -464,7 +334,7 @@ def test_the_weights_of_the_defect():
     inside = np.abs(PI.integ()(np.linspace(0.0, 1.0, 10_001)))
     assert inside.max() == pytest.approx(abs(PI.integ()(C[0])), rel=1e-6)
     assert PI.integ()(1.0) == pytest.approx(0.0, abs=1e-15)
-    assert (f"{weight(0.4):.5f}", f"{weight(0.85):.5f}") == ("0.18830", "0.31714")
+    assert (f"{gamma(0.4):.5f}", f"{gamma(0.85):.5f}") == ("0.18830", "0.31714")
 
 
 @pytest.mark.parametrize("name", SLIDERS)
@@ -474,11 +344,11 @@ def test_the_printed_error_estimate_is_the_solver_s(name):
     A defect is a difference of terms that are rounded; about steady sliding it is held against
     a motion of rounding over the tolerance.
     """
-    problem, held, taken = walk(name)
+    _, held, taken = walk(name)
     seen = [step for step in taken if step.error > 0.0]
     assert len(seen) > 5
     for step in seen:
-        error = Printed(problem, step.before).error(step.h, step.p, step.w, held)
+        error = printed(name, step).error(step.h, step.p, step.w)
         assert error / held.tolerance == pytest.approx(step.error, rel=1e-6)
 
 
@@ -528,14 +398,38 @@ def test_the_next_step_size():
 @pytest.mark.parametrize("name", SLIDERS)
 def test_a_slip_ends_along_the_force(name):
     """(M29) at the last stage of a landing: a_2 - w a_1 - f tau = 0 there."""
-    problem, _, taken = walk(name)
-    for step in taken:
+    for step in walk(name)[2]:
         if step.p[2] == 0.0:
-            printed = Printed(problem, step.before)
-            _, _, z = printed.residuals(step.h, step.p, step.w)
-            a_1, a_2 = printed.b(step.h) - printed.k @ z
-            f, _, tau, _ = printed.friction(0.0, step.w[2])
+            each = printed(name, step)
+            a_1, a_2 = each.accelerations(step.h, step.p, step.w)[:, 2]
+            f, _, _, (tau, _) = each.friction(0.0, step.w[2])
             assert a_2 - step.w[2] * a_1 - f * tau == pytest.approx(0.0, abs=1e-9 * abs(a_1))
+
+
+@pytest.mark.parametrize("s", [(2.0, 0.0), (1.0, -3.0), (-0.5, 0.2)])
+def test_the_integrals_of_the_pursuit_curve(s):
+    """(M48), by the chain rule, with s' = a - f s/|s|."""
+    a, f, s = np.array([3.0, 1.0]), 8.0, np.array(s)
+    r, Q, across = hypot(*s), a @ s, np.array([-a[1], a[0]]) / hypot(*a)
+    b, change = s @ across, a - f * s / r
+    dr, dQ, db, square = s @ change / r, a @ change, change @ across, a @ a
+    assert f * dr + dQ == pytest.approx(square - f * f)
+    wanted = (square - 2 * f * f) * Q + f * square * r
+    assert f * (dr * Q + r * dQ) + Q * dQ == pytest.approx(wanted)
+    assert 2 * r * dr == pytest.approx(2 * Q - 2 * f * r)
+    wanted = (square - 4 * f * f) * b
+    assert (2 * f * dr + dQ) * b + (2 * f * r + Q) * db == pytest.approx(wanted)
+
+
+@pytest.mark.parametrize("a", [(2.0, 1.0), (6.0, 3.0)])
+def test_how_a_slip_turns_at_its_end(a):
+    """(M51): angles to the force go as (T - t)^kappa."""
+    f, left = 8.0, np.geomspace(1e-6, 1e-5, 4)
+    kappa = hypot(*a) / (f - hypot(*a))
+    slips = [plain(slip_before_landing)(1e-3, *a, f, each)[1:] for each in left]
+    angles = [atan2(a[1], a[0]) - atan2(across, along) for along, across in slips]
+    exponent, _ = np.polyfit(np.log(left), np.log(angles), 1)
+    assert exponent == pytest.approx(kappa, rel=1e-2)
 
 
 @pytest.mark.parametrize("driven", ["plate", "spring"])
@@ -580,10 +474,9 @@ def test_what_friction_has_to_spare_in_a_stick():
     problem, _ = problem_of(DAMPED)
     u = (0.999 * DAMPED.F_0 / DAMPED.k_x, 0.0)
     tau, _ = stick_duration(problem, 0.0, *u, inf)
-    k, v = np.array([DAMPED.k_x, DAMPED.k_y]), Printed(problem, Motion(0, 0, 0, 0, 1, 0)).v
-    times = np.linspace(0.0, tau, 1001)
-    held = [np.hypot(*(k * (u + v * t) + [DAMPED.c_x, DAMPED.c_y] * v)) for t in times]
-    wanted = np.trapezoid(DAMPED.F_0 - np.array(held), times) / DAMPED.mass
+    run, times = Solver(DAMPED, 1e-6), np.linspace(0.0, tau, 1001)
+    held = [np.hypot(*run.holding(u + run.v_d * t)) for t in times]
+    wanted = np.trapezoid(run.f_s - np.array(held), times)
     assert to_spare(problem, 0.0, *u, tau) == pytest.approx(wanted, rel=1e-2)
 
 
@@ -594,8 +487,8 @@ def test_what_friction_has_to_spare_in_a_stick():
 def test_a_sample_is_the_end_of_a_shorter_step(name):
     """Found here by SciPy, from the printed equations."""
     problem, held, taken = walk(name)
-    step = max(taken[:10], key=lambda each: each.error if each.p[2] > 0.0 else 0.0)
-    nodes, printed = np.array([0.0, *C]), Printed(problem, step.before)
+    step = max(taken[:10], key=lambda it: it.error if it.p[2] > 0.0 else 0.0)
+    nodes, each = np.array([0.0, *C]), printed(name, step)
     along = Polynomial.fit(nodes, [step.before.r, *step.p], 3, domain=[0, 1])
     turned = Polynomial.fit(nodes, [0.0, *step.w], 3, domain=[0, 1])
     scale = np.repeat([step.p.max(), np.abs(step.w).max()], 3)
@@ -603,17 +496,17 @@ def test_a_sample_is_the_end_of_a_shorter_step(name):
         dt = part * step.h
         guess = np.concatenate([along(C * part), turned(C * part)])
         solved = root(
-            lambda x, dt=dt: printed.residuals(dt, *(x * scale).reshape(2, 3))[0] / scale,
+            lambda x, dt=dt: each.equations(dt, *(x * scale).reshape(2, 3))[0] / scale,
             guess / scale,
             tol=1e-14,
         )
         p, w = (solved.x * scale).reshape(2, 3)
-        u_x, u_y, r, e_x, e_y = printed.after(dt, p, w)
+        u, r, e = each.end(dt, p, w)
         _, samples = turn(problem, held, step.state, [step.before.t + dt])
         # the time of the sample is rounded
-        rounding = 1e-9 * r + 4e-16 * step.before.t * abs(printed.outset()[0])
-        assert samples[0, :2] == pytest.approx([u_x, u_y], rel=1e-11)
-        assert samples[0, 2:4] == pytest.approx([r * e_x, r * e_y], abs=rounding)
+        rounding = 1e-9 * r + 4e-16 * step.before.t * abs(each.a[0])
+        assert samples[0, :2] == pytest.approx(u, rel=1e-11)
+        assert samples[0, 2:4] == pytest.approx(r * e, abs=rounding)
 
 
 # --- section 15 ---------------------------------------------------------------------------------
@@ -850,6 +743,30 @@ def test_equations_are_numbered_in_order_and_citations_exist():
     for path in (ROOT / "src/stiction").rglob("*.py"):
         cited = re.findall(r"\(M(\d+)\)", path.read_text(encoding="utf-8"))
         assert {int(number) for number in cited} <= set(range(1, len(tags) + 1)), path
+
+
+def test_every_equation_is_held_by_a_test():
+    """One that names its number."""
+    cited = set()
+    for path in (ROOT / "tests").rglob("*.py"):
+        text = path.read_text(encoding="utf-8")
+        for first, last in re.findall(r"\(M(\d+)\)(?: to \(M(\d+)\))?", text):
+            cited |= set(range(int(first), int(last or first) + 1))
+    numbers = {int(tag) for tag in re.findall(r"\\tag\{M(\d+)\}", TEXT)}
+    assert numbers - cited == set()
+
+
+def test_the_files_named_beside_the_text_exist():
+    """Section 19; a name after one in a folder is in that folder too."""
+    table = TEXT.partition("## 19.")[2].partition("`reference.py`")[0]
+    lines = re.findall(r"^\| \d+ \| (.*) \|$", table, re.MULTILINE)
+    assert len(lines) == 15
+    for line in lines:
+        folder = SOLVER
+        for name in re.findall(r"[\w./]+(?:\.py|/)(?=[ ,;|]|$)", line):
+            path = SOLVER / name if (SOLVER / name).exists() else folder / name
+            assert path.exists(), name
+            folder = path.parent
 
 
 def printed_constants():
