@@ -14,7 +14,7 @@ DAMPED = PAPER.replace(
     phi="5 deg", k_y="1 MN/m", c_x=3.0, c_y=20.0, drive=st.ConstantVelocity("2 mm/s")
 )
 SOFT = PAPER.replace(phi="10 deg", k_y="10 kN/m", drive=st.ConstantVelocity("20 mm/s"))
-ELLIPSE = st.Anisotropic(st.ExponentialWeakening(0.2, 0.1, "10 mm/s"), 1.4, "30 deg")
+ELLIPSE = st.laws.Anisotropic(st.ExponentialWeakening(0.2, 0.1, "10 mm/s"), 1.4, "30 deg")
 CASES = {
     "Fig. 3": (PAPER, 0.05),
     "damped": (DAMPED, 0.3),

@@ -18,7 +18,7 @@ class Solver:
     def __init__(self, slider, rtol, u=(0.0, 0.0), slip=None, finer=1.0):
         s, law = slider, slider.friction
         angle, ratio = s.phi, 1.0
-        if isinstance(law, st.Anisotropic):
+        if isinstance(law, st.laws.Anisotropic):
             angle, ratio, law = s.phi + law.angle, law.ratio, law.law
         R = np.array([[cos(angle), -sin(angle)], [sin(angle), cos(angle)]])
         self.N, self.isotropic = R @ np.diag([1.0, ratio**2]) @ R.T, ratio == 1.0
