@@ -6,6 +6,7 @@ Plain Python takes some 200 times as long; it serves debuggers and `benchmarks.m
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, TypeVar, cast
 
 import numba
@@ -13,7 +14,7 @@ import numpy as np
 
 from stiction.solver.compilation.interrupt import uninterrupted
 from stiction.solver.compilation.machine_code import Shelf
-from stiction.solver.compilation.part import PartCompiler
+from stiction.solver.compilation.part import PartCompiler, compile_part
 
 njit: Any = numba.njit
 config: Any = numba.config
@@ -81,6 +82,7 @@ def _part(function: F, **options: Any) -> F:
 
     # numba would call missing code, and crash Python
     made._insert, made._compile_for_args = _nowhere, refuse
+    made.compile = partial(compile_part, made)
     return cast(F, made)
 
 

@@ -1,0 +1,75 @@
+"""Parts: compiled as numba compiles any function, in less time."""
+
+import operator
+
+import numba
+import numpy as np
+import pytest
+from tests.entry import entry
+
+from stiction.solver.compilation import jit
+from stiction.solver.compilation.part import Remembering
+
+OPERATIONS = {
+    "sum": lambda a, b: a + b,
+    "ratio": lambda a, b: a / b,
+    "floor": lambda a, b: a // b,
+    "remainder": lambda a, b: a % b,
+    "power": lambda a, b: a**b,
+    "less": lambda a, b: a < b,
+    "equal": lambda a, b: a == b,
+}
+NUMBERS = [True, 2, 3.5, np.int64(-7), np.float64(0.3)]
+
+
+def branches(a, b):
+    """Return a value over branches, a loop, a tuple and a literal index."""
+    pair = (a, b)
+    total = 0.0
+    for k in range(4):
+        if k % 2:
+            total += pair[0] * k
+        elif k > 2:
+            total -= pair[1]
+        else:
+            total = max(total, pair[1] ** 2)
+    while total > 10.0:
+        total *= 0.5
+    return total, k
+
+
+@pytest.mark.skipif(jit.INTERPRETED, reason="nothing is compiled")
+@pytest.mark.parametrize("name", OPERATIONS)
+def test_operators_keep_the_types_that_numba_gives_them(name):
+    part = entry(jit.inlined(OPERATIONS[name]))
+    own = numba.njit(error_model="numpy")(OPERATIONS[name])
+    for a in NUMBERS:
+        for b in NUMBERS:
+            found, expected = part(a, b), own(a, b)
+            assert type(found) is type(expected)
+            np.testing.assert_equal(found, expected)  # NaN is NaN
+
+
+@pytest.mark.parametrize(("a", "b"), [(1.5, 2.0), (-3.0, 0.1), (20.0, 1.0)])
+def test_branches_loops_and_tuples(a, b):
+    assert entry(jit.piece(branches))(a, b) == branches(a, b)
+
+
+def test_an_operator_is_typed_once():
+    asked = []
+
+    class Context:
+        def resolve_function_type(self, function, args, kws):
+            asked.append(args)
+            return numba.core.typing.signature(args[0], *args)
+
+    context = Remembering(Context(), {})
+    add = numba.types.Function(
+        type("Sum", (numba.core.typing.templates.AbstractTemplate,), {"key": operator.add})
+    )
+    number, array = numba.types.float64, numba.types.float64[:]
+    for _ in range(3):
+        context.resolve_function_type(add, (number, number), {})
+        context.resolve_function_type(add, (array, number), {})
+    assert asked.count((number, number)) == 1
+    assert asked.count((array, number)) == 3
