@@ -19,9 +19,10 @@ BLOCK = re.compile(
     r"```python\n(?P<text>.*?)```",
     re.DOTALL,
 )
-USES = """
+USES = r"""
 import sys
 import stiction as st
+from stiction.analysis.export import numbers
 from stiction.friction import LAWS
 from stiction.testing import check_law
 
@@ -31,6 +32,9 @@ st.init("my.toml")
 assert '# law = "viscous"' in open("my.toml").read()
 run = st.simulate(paper, 0.02, sample_rate="10 kHz")
 assert len(st.plotting.plot_phase_plane(run).lines) == 1
+found = st.analyse(run)
+assert "Fall\n  The force falls by up to " in str(found)
+assert numbers(found)["fall"] == {"rate": found.parts["fall"], "unit": "N/s"}
 base = st.Description(paper, st.Initial(), st.Settings(duration=1.5))
 study = st.Study(base=base, axes={"V": st.Values(["5 mm/s"])}, measures=["largest_drop"])
 st.sweep(study, "my.zarr")
@@ -63,7 +67,7 @@ def lay_out(package: Path) -> int:
 def package(tmp_path_factory):
     copy = tmp_path_factory.mktemp("source") / "stiction"
     shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
-    assert lay_out(copy) == 7
+    assert lay_out(copy) == 9
     return copy
 
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
-from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from stiction.analysis.parts import functions
 from stiction.storage.files import placeable, whole
 from stiction.storage.table_files import with_units, write_tables
 
@@ -15,45 +15,17 @@ if TYPE_CHECKING:
 
     from stiction.analysis.report import Analysis
 
-FRICTIONS = ("break_away", "static", "kinetic")
-# of each of them, with its unit
-FRICTION = {
-    "force": "N",
-    "error": "N",
-    "spread": "N",
-    "coefficient": "1",
-    "coefficient_error": "1",
-    "coefficient_spread": "1",
-}
-
 
 def tables(found: Analysis) -> dict[str, xr.Dataset]:
     """Return all tables by name."""
-    named = {
-        "friction": friction_table(found),
-        "cycles": found.cycles,
-        "summary": found.summary,
-        "creep": found.creep,
-        "creep-phases": found.curves,
-        "oscillation": found.oscillation,
-        "oscillation-phases": found.phases,
-        "energy": found.energy,
-    }
+    named = {name: each for _, of in functions("tables") for name, each in of(found).items()}
     return {name: table for name, table in named.items() if table is not None}
 
 
-def friction_table(found: Analysis) -> xr.Dataset | None:
-    """Return the known kinds of friction, a row each; None if there is none."""
-    import xarray as xr
-
-    known = {name: each for name in FRICTIONS if (each := getattr(found.friction, name))}
-    if not known:
-        return None
-    columns = {
-        key: ("friction", [getattr(each, key) for each in known.values()], {"units": unit})
-        for key, unit in FRICTION.items()
-    }
-    return xr.Dataset(columns, {"friction": ("friction", list(known))})
+def numbers(found: Analysis) -> dict[str, Any]:
+    """Return the numbers of an analysis, in SI and rad, for JSON; null for unknown ones."""
+    known = {name: each for _, of in functions("numbers") for name, each in of(found).items()}
+    return known | {"warnings": list(found.warnings), "missing": found.missing}
 
 
 def write(found: Analysis, folder: Path) -> list[Path]:
@@ -88,50 +60,3 @@ def export(found: Analysis, path: str | Path) -> list[Path]:
     """
     named = {"cycles": found.cycles, **tables(found)}
     return write_tables(named, path, {"kind_of_motion": found.regime.kind})
-
-
-def numbers(found: Analysis) -> dict[str, Any]:
-    """Return the numbers of an analysis, in SI and rad, for JSON; null for unknown ones."""
-    mean = {
-        str(row): {
-            "mean": _number(found.summary["mean"].sel(quantity=row)),
-            "standard_deviation": _number(found.summary["standard_deviation"].sel(quantity=row)),
-            "number": int(found.summary["number"].sel(quantity=row)),
-            "unit": str(found.summary["unit"].sel(quantity=row).values),
-        }
-        for row in found.summary["quantity"].values
-    }
-    fits = {"divergence": found.divergence, "misalignment": found.misalignment}
-    return {
-        "regime": {
-            "kind": found.regime.kind,
-            "confidence": _number(found.regime.confidence),
-            "runner_up": found.regime.runner_up or None,
-            "evidence": {name: _number(value) for name, value in found.regime.evidence.items()},
-        },
-        "cycles": mean,
-        **{
-            name: None if fit is None else {key: _number(v) for key, v in fit._asdict().items()}
-            for name, fit in fits.items()
-        },
-        "friction": _friction(found),
-        "warnings": list(found.warnings),
-        "missing": found.missing,
-    }
-
-
-def _friction(found: Analysis) -> dict[str, Any]:
-    """Return each friction as a table: force, coefficient, error and spread, or the reason."""
-    shown: dict[str, Any] = {}
-    for name in FRICTIONS:
-        each = getattr(found.friction, name)
-        if each is None:
-            shown[name] = None
-            continue
-        values = {key: getattr(each, key) for key in FRICTION}
-        shown[name] = {key: _number(value) for key, value in values.items()}
-    return shown | {"missing": found.friction.missing}
-
-
-def _number(value: Any) -> float | None:
-    return float(value) if isfinite(float(value)) else None

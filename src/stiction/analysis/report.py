@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -10,7 +11,6 @@ import numpy as np
 from stiction.analysis.creep.divergence import Divergence
 from stiction.analysis.creep.findings import find_creep, tried
 from stiction.analysis.creep.misalignment import Misalignment
-from stiction.analysis.energy import energy_budget
 from stiction.analysis.export import export
 from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.motion.cycle_summary import summary
@@ -23,10 +23,9 @@ from stiction.analysis.oscillation import (
     oscillation_by_phase,
     transverse_oscillation,
 )
+from stiction.analysis.parts import functions
 from stiction.analysis.record import Record, recorded
-from stiction.analysis.words import sections
 from stiction.deprecation import warn_renamed
-from stiction.errors import ResultError
 from stiction.text.sections import Section, as_html, as_text
 from stiction.trajectory import Trajectory, load
 
@@ -63,14 +62,14 @@ class Analysis(NamedTuple):
     phases : Dataset or None
         Rest and ring-down in each stick phase (`stiction.analysis.oscillation_by_phase`); for
         runs only.
-    energy : Dataset or None
-        The energy budget of each cycle (`stiction.analysis.energy_budget`); for runs only.
     missing : dict
         The reason for each part that is None, and for each missing column.
     friction : Friction
         Friction at the break-away, static and kinetic.
     warnings : tuple of str
         To be read first: drift, impossible numbers, hum that was subtracted.
+    parts : dict
+        The findings of all other parts, by name; see `stiction.analysis.parts`.
     """
 
     source: Trajectory | Record
@@ -84,10 +83,16 @@ class Analysis(NamedTuple):
     misalignment: Misalignment | None
     oscillation: xr.Dataset | None
     phases: xr.Dataset | None
-    energy: xr.Dataset | None
     missing: dict[str, str]
     friction: Friction
     warnings: tuple[str, ...]
+    parts: dict[str, Any]
+
+    @property
+    def energy(self) -> xr.Dataset | None:
+        """The energy budget of each cycle (`stiction.analysis.energy_budget`); for runs only."""
+        found: xr.Dataset | None = self.parts["energy"]
+        return found
 
     @property
     def song(self) -> xr.Dataset | None:
@@ -110,7 +115,8 @@ class Analysis(NamedTuple):
 
     def tables(self) -> list[Section]:
         """Return the report as sections of sentences and tables."""
-        return sections(self)
+        doubts = [Section("Warnings", list(self.warnings))] if self.warnings else []
+        return doubts + [section(self) for _, section in functions("section")]
 
     def export(self, path: str | Path) -> list[Path]:
         """Write its tables for another program, see `stiction.analysis.export.export`."""
@@ -155,7 +161,6 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
         oscillation = tried(
             missing, "oscillation", lambda: apart(transverse_oscillation(run), cycles)
         )
-        energy = tried(missing, "energy", lambda: energy_budget(run, edges(run, cycles)))
         width = None
     else:
         oscillation = tried(
@@ -163,7 +168,6 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
             "oscillation",
             lambda: strongest_line(record, _above(record, cycles), cycles=cycles),
         )
-        energy, missing["energy"] = None, "of a measured record only the force is known"
         width = _free_of_hum(oscillation, sticking)
     friction = find_friction(record, regime.kind, cycles)
     doubts = warnings(record, regime.kind, cycles, friction) if run is None else ()
@@ -174,7 +178,7 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     phases = None
     if run is not None and oscillation is not None and creep.curves is not None:
         phases = oscillation_by_phase(oscillation, run, _phases(run, creep.curves, sticking))
-    return Analysis(
+    analysis = Analysis(
         source,
         record,
         regime,
@@ -186,11 +190,14 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
         creep.misalignment,
         oscillation,
         phases,
-        energy,
         missing,
         friction,
         doubts,
+        {},
     )
+    for name, find in functions("find"):
+        analysis.parts[name] = tried(missing, name, partial(find, analysis))
+    return analysis
 
 
 analyze = analyse
@@ -210,15 +217,6 @@ def _meant(cycles: xr.Dataset, kind: str, missing: dict[str, str]) -> xr.Dataset
     why = f"they are of stick-slip, and this is {kind}"
     missing |= dict.fromkeys(OF_STICKING, why)
     return cycles.assign({name: cycles[name].where(False) for name in OF_STICKING})
-
-
-def edges(run: Trajectory, cycles: xr.Dataset) -> np.ndarray:
-    """Return the times (s) that bound the run and each of its cycles, ascending."""
-    first, last = (float(run.data["time"][i]) for i in (0, -1))
-    if first == last:
-        raise ResultError("the run has a single sample; run it longer than 1/sample_rate")
-    inner = np.concatenate([cycles["start"].values, cycles["trough_time"].values[-1:]])
-    return np.unique(np.concatenate([[first], inner, [last]]))
 
 
 def _free_of_hum(oscillation: xr.Dataset | None, cycles: xr.Dataset) -> float | None:

@@ -8,7 +8,6 @@ import pytest
 import stiction as st
 from stiction.analysis.creep.findings import calibrated
 from stiction.analysis.export import write
-from stiction.analysis.words import sections
 from stiction.cli import main
 from stiction.plotting.analysis.overview import figures
 
@@ -40,7 +39,7 @@ def test_bare_arrays_say_what_they_can(run):
     assert found.cycles.sizes["cycle"] == 3
     assert "stiffness and drive_velocity" in found.missing["creep"]
     assert found.energy is None
-    assert all(part.sentences for part in sections(found))
+    assert all(part.sentences for part in found.tables())
 
 
 def test_creep_of_a_measured_record_is_counted_from_its_own_loading(run):
@@ -66,7 +65,7 @@ def test_short_and_constant_records_are_no_error(count):
     record = st.Record(time=np.arange(count) * 1e-3, force=np.ones(count))
     found = st.analyse(record)
     assert found.cycles.sizes["cycle"] == 0
-    assert [part.title for part in sections(found)] == [
+    assert [part.title for part in found.tables()] == [
         "Motion", "Friction", "Cycles", "Creep", "Oscillation", "Energy",
     ]  # fmt: skip
 
@@ -77,7 +76,7 @@ def test_a_run_without_samples_or_misalignment_is_no_error():
         st.simulate(PAPER.replace(phi="0 deg"), duration=0.5, sample_rate=1e3),
         st.simulate(PAPER.replace(drive=st.ConstantVelocity(0.0)), duration=0.1, sample_rate=1e3),
     ):
-        assert all(part.sentences for part in sections(st.analyse(run)))
+        assert all(part.sentences for part in st.analyse(run).tables())
 
 
 def test_tables_and_numbers_as_files(found, tmp_path):

@@ -29,8 +29,8 @@ def analyse(result: Path, /, *, output: MaybeOutput = None, trust: Trust = False
         The folder to write to, by default RESULT-analysis; made if it does not exist.
     """
     from stiction.analysis.export import write as write_tables
+    from stiction.analysis.parts.cycles import each_cycle
     from stiction.analysis.report import analyse as understand
-    from stiction.analysis.words import each_cycle, sections
     from stiction.cli.progress import progress
     from stiction.cli.tables import printed
     from stiction.plotting.analysis.overview import figures
@@ -44,7 +44,7 @@ def analyse(result: Path, /, *, output: MaybeOutput = None, trust: Trust = False
     usable_folder(folder)
     with progress("analysing"):
         found = understand(run)
-        parts = sections(found)
+        parts = found.tables()
         make_folder(folder)
         paths = write_tables(found, folder)
         for name, figure in figures(found).items():

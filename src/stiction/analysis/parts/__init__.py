@@ -1,0 +1,31 @@
+"""The parts of an analysis, in the order of its report: each has one file, and one line here.
+
+A part has some of four functions, which take the `Analysis`: ``find`` returns what the part adds
+to it (or raises the reason why not), ``section`` tells it, ``tables`` and ``numbers`` store it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from stiction.analysis.report import Analysis
+
+PARTS = (
+    "motion",
+    "friction",
+    "cycles",
+    "creep",
+    "oscillation",
+    "energy",
+)
+
+
+def functions(name: str) -> Iterator[tuple[str, Callable[[Analysis], Any]]]:
+    """Return each part that has a function of this name, and the function."""
+    for part in PARTS:
+        function = getattr(import_module(f"{__name__}.{part}"), name, None)
+        if function is not None:
+            yield part, function

@@ -1,0 +1,104 @@
+"""Creep before slip, its divergence and the misalignment that it implies."""
+
+from __future__ import annotations
+
+from math import degrees
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stiction.analysis.creep.findings import RESTS, drive_speed
+from stiction.analysis.motion.regime import STUCK
+from stiction.analysis.parts.wording import number
+from stiction.text.sections import Section
+from stiction.text.units import in_words
+from stiction.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from stiction.analysis.report import Analysis
+
+
+SLIGHT = 1e-3  # of a velocity: an error that is less is not worth a word
+RESTING = "it rests"
+SURE = 2.0  # standard errors that a fit must be away from nothing
+
+
+def section(found: Analysis) -> Section:
+    """Return the section on creep before slip."""
+    if found.creep is None:
+        return Section("Creep", [f"Not seen: {found.missing['creep']}."])
+    far, near = (found.creep.isel(bin=at) for at in (-1, 0))
+    long, short = (in_words(float(row["begin"]), "s") for row in (far, near))
+    phases = int(found.creep["phases"].max())
+    V = drive_speed(found.source, found.record) or 0.0
+    first, last = _creeping(far, V), _creeping(near, V)
+    several = f"{phases} stick phase{'s' * (phases != 1)}"
+    lines = [f"At {long} before {_end(found)} {first}, in the last {short} {last}; {several}."]
+    if first == last == RESTING and found.regime.kind == STUCK:
+        return Section("Creep", ["None: it rests from beginning to end."])
+    d, phi = found.divergence, found.misalignment
+    if found.record.position is None and phi is None:
+        lines.append("Counted from the even loading in the first half of each rise.")
+    if isinstance(found.source, Trajectory) and found.source.slider.phi == 0.0:
+        lines.append("There is no misalignment, so friction does not turn.")
+    if d is not None:
+        lines.append(
+            f"It diverges towards slip with the exponent {d.exponent:.3f} ± {d.exponent_error:.3f} "
+            "(1/2 by Eq. (8), corrected)."
+        )
+    if phi is not None:
+        angle, error = degrees(phi.phi), degrees(phi.phi_error)
+        lines.append(
+            f"By Eq. (7) it implies a misalignment of {angle:.3g} ± {error:.1g} deg{_true(found)}, "
+            f"and F_0 = {in_words(phi.F_0, 'N')}."
+        )
+    fits = {"divergence": "Exponent of its divergence", "misalignment": "Implied misalignment"}
+    lines += [
+        f"{what}: {found.missing[fit]}." for fit, what in fits.items() if fit in found.missing
+    ]
+    return Section("Creep", lines)
+
+
+def _true(found: Analysis) -> str:
+    """Return the true misalignment of a run, for comparison, in words."""
+    if not isinstance(found.source, Trajectory):
+        return ""
+    return f" (the run has {degrees(abs(found.source.slider.phi)):.3g} deg)"
+
+
+def _end(found: Analysis) -> str:
+    """Return the event that ends the stick phases, in words."""
+    last = np.inf if found.curves is None else float(found.curves["slip_time"][-1])
+    if found.curves is not None and last >= found.record.time[-1]:
+        return "the end"
+    if not found.cycles.sizes["cycle"] and found.friction.break_away is None:
+        return "the spring is loaded"  # it comes to slide without a slip
+    return "slip"
+
+
+def _creeping(row: xr.Dataset, V: float) -> str:
+    """Return the creep velocity in a bin in words, with its error if not negligible."""
+    value, error = float(row["velocity"]), float(row["velocity_error"])
+    if abs(value) + SURE * np.nan_to_num(error) < RESTS * V:
+        return RESTING
+    if value <= SURE * error:
+        most = max(value, 0.0) + SURE * error
+        return f"it creeps no faster than {in_words(most, 'm/s')} (two standard errors)"
+    spread = f" ± {in_words(error, 'm/s')}" if error > SLIGHT * abs(value) else ""
+    return f"it creeps at {in_words(value, 'm/s')}{spread}"
+
+
+def tables(found: Analysis) -> dict[str, xr.Dataset | None]:
+    """Return the mean creep, and that of each stick phase."""
+    return {"creep": found.creep, "creep-phases": found.curves}
+
+
+def numbers(found: Analysis) -> dict[str, Any]:
+    """Return the fits to the creep."""
+    fits = {"divergence": found.divergence, "misalignment": found.misalignment}
+    return {
+        name: fit and {key: number(value) for key, value in fit._asdict().items()}
+        for name, fit in fits.items()
+    }

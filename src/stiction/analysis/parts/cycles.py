@@ -1,0 +1,102 @@
+"""The cycles of a motion: their mean and spread, and each of them."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stiction.analysis.parts.wording import SHOWN, number, with_spread
+from stiction.text.columns import Quantity, grid
+from stiction.text.sections import Section, Table
+from stiction.text.units import in_words
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from stiction.analysis.report import Analysis
+
+
+COLUMNS = {
+    "start": "start",
+    "period": "period",
+    "peak": "peak",
+    "trough": "trough",
+    "drop": "drop",
+    "mu_static": "µ static",
+    "mu_kinetic": "µ kinetic",
+    "creep_distance": "creep",
+    "slip_distance": "slip",
+}
+UNLESS_NONE = ("hesitations",)
+
+
+def section(found: Analysis) -> Section:
+    """Return mean and spread over cycles."""
+    count = found.cycles.sizes["cycle"]
+    if not count:
+        return Section("Cycles", ["None."])
+    rows = []
+    for quantity in found.summary["quantity"].values:
+        row = found.summary.sel(quantity=quantity)
+        mean, spread = float(row["mean"]), float(row["standard_deviation"])
+        unit = str(row["unit"].values)
+        if isfinite(mean) and (quantity not in UNLESS_NONE or mean):
+            several = with_spread(spread, mean, unit)
+            rows.append((str(row["meaning"].values), in_words(mean, unit), several))
+    table = Table(("quantity", "mean", "standard deviation"), rows)
+    lines = [*_hesitations(found.cycles), f"{count}, from trough to trough. Means over them:"]
+    left_out = [name for name in COLUMNS if name in found.missing]
+    if left_out:
+        columns = ", ".join(COLUMNS[name] for name in left_out)
+        lines.append(f"Not given: {columns}; {found.missing[left_out[0]]}.")
+    return Section("Cycles", lines, table)
+
+
+def _hesitations(table: xr.Dataset) -> list[str]:
+    """Return the frequency and size of hesitations, and their detection limit, in words."""
+    some = int((table["hesitations"] > 0).sum())
+    if not some:
+        return []
+    depth = table["hesitation_depth"]
+    most, least = 100.0 * float((depth / table["drop"]).max()), float(depth.attrs["least"])
+    cycles = f"{some} of {table.sizes['cycle']} cycles"
+    return [
+        f"In {cycles} the force hesitates: before or within its fall "
+        f"it turns back by up to {most:.2g}% of that fall. What turns back by less than "
+        f"{in_words(least, 'N')} cannot be distinguished from noise and ripple, and is not counted."
+    ]
+
+
+def each_cycle(table: xr.Dataset) -> Table:
+    """Return the first cycles, a row each."""
+    known = [name for name in COLUMNS if np.isfinite(table[name].values).any()]
+    columns = {
+        COLUMNS[name]: Quantity(table[name].values, table[name].attrs["units"]) for name in known
+    }
+    numbers = grid(columns, SHOWN)
+    cycle = [str(number) for number in table["cycle"].values]
+    rows = [(number, *row) for number, row in zip(cycle, numbers.rows, strict=False)]
+    return Table(("cycle", *numbers.headings), rows)
+
+
+def tables(found: Analysis) -> dict[str, xr.Dataset | None]:
+    """Return a row for each cycle, and mean and spread over all."""
+    return {"cycles": found.cycles, "summary": found.summary}
+
+
+def numbers(found: Analysis) -> dict[str, Any]:
+    """Return mean and spread of each quantity."""
+    rows = (found.summary.sel(quantity=row) for row in found.summary["quantity"].values)
+    return {
+        "cycles": {
+            str(row["quantity"].values): {
+                "mean": number(row["mean"]),
+                "standard_deviation": number(row["standard_deviation"]),
+                "number": int(row["number"]),
+                "unit": str(row["unit"].values),
+            }
+            for row in rows
+        }
+    }

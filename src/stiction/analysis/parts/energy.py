@@ -1,0 +1,69 @@
+"""Where the work of the drive goes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from stiction.analysis.energy import energy_budget
+from stiction.analysis.parts.wording import SHOWN
+from stiction.errors import ResultError
+from stiction.text.columns import Quantity, grid
+from stiction.text.sections import Section
+from stiction.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from stiction.analysis.report import Analysis
+
+
+ENERGIES = {
+    "work": "work",
+    "friction_x": "friction x",
+    "friction_y": "friction y",
+    "damper_x": "damper x",
+    "damper_y": "damper y",
+    "spring_x": "spring x",
+    "spring_y": "spring y",
+    "kinetic": "kinetic",
+}
+NOTHING = 1e-3  # of the work: what is less stands in the files, not in the terminal
+
+
+def find(found: Analysis) -> xr.Dataset:
+    """Return the energy budget of each cycle of a run."""
+    if not isinstance(found.source, Trajectory):
+        raise ResultError("of a measured record only the force is known")
+    return energy_budget(found.source, edges(found.source, found.cycles))
+
+
+def edges(run: Trajectory, cycles: xr.Dataset) -> np.ndarray:
+    """Return the times (s) that bound the run and each of its cycles, ascending."""
+    first, last = (float(run.data["time"][i]) for i in (0, -1))
+    if first == last:
+        raise ResultError("the run has a single sample; run it longer than 1/sample_rate")
+    inner = np.concatenate([cycles["start"].values, cycles["trough_time"].values[-1:]])
+    return np.unique(np.concatenate([[first], inner, [last]]))
+
+
+def section(found: Analysis) -> Section:
+    """Return the section on energy."""
+    if found.energy is None:
+        return Section("Energy", [f"Not known: {found.missing['energy']}."])
+    budget = found.energy
+    work, left = (float(np.abs(budget[name]).sum()) for name in ("work", "residual"))
+    names = [name for name in ENERGIES if np.abs(budget[name]).max() > NOTHING * work]
+    columns = {"from": Quantity(budget["start"].values, "s")}
+    columns |= {ENERGIES[name]: Quantity(budget[name].values, "J") for name in names}
+    closes = f"It closes to {left / work:.1g} of the work." if work > 0.0 else "No work is done."
+    small = [ENERGIES[name] for name in ENERGIES if name not in names]
+    less = f" Less than {100 * NOTHING:g}% of it: {', '.join(small)}." if small and work else ""
+    sentence = f"Where the work of the drive goes, from each time to the next. {closes}{less}"
+    return Section("Energy", [sentence], grid(columns, SHOWN, alike="J"))
+
+
+def tables(found: Analysis) -> dict[str, xr.Dataset | None]:
+    """Return the budget."""
+    return {"energy": found.energy}

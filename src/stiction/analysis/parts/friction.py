@@ -1,0 +1,80 @@
+"""Friction at the break-away, at rest and while the mass slides."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+from stiction.analysis.motion.friction import Measured
+from stiction.analysis.parts.wording import ALIKE, number, with_error, with_spread
+from stiction.text.sections import Section, Table
+from stiction.text.units import in_words
+from stiction.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from stiction.analysis.report import Analysis
+
+
+FRICTIONS = {
+    "break_away": "first break-away",
+    "static": "static, mean of the peaks",
+    "kinetic": "kinetic, mean while it slides",
+}
+# of each of them, with its unit
+FRICTION = {
+    "force": "N",
+    "error": "N",
+    "spread": "N",
+    "coefficient": "1",
+    "coefficient_error": "1",
+    "coefficient_spread": "1",
+}
+SLIGHT = 1e-3  # of a velocity: an error that is less is not worth a word
+
+
+def section(found: Analysis) -> Section:
+    """Return the friction at the break-away, at rest and while it slides."""
+    rows, lines = [], []
+    for name, title in FRICTIONS.items():
+        each: Measured | None = getattr(found.friction, name)
+        if each is None:
+            lines.append(
+                f"{title[0].upper()}{title[1:]}: not known; {found.friction.missing[name]}."
+            )
+            continue
+        error = each.error if each.error > ALIKE * abs(each.force) else 0.0
+        force = with_error(in_words(each.force, "N"), error, "N")
+        spread = with_spread(each.spread, each.force, "N")
+        mu = f"{each.coefficient:.4g}" if isfinite(each.coefficient) else ""
+        if mu and each.coefficient_error > SLIGHT * abs(each.coefficient):
+            mu += f" ± {each.coefficient_error:.1g}"
+        rows.append((title, mu, force, spread))
+    if not rows:
+        return Section("Friction", lines)
+    if not isinstance(found.source, Trajectory) and found.record.zero is None:
+        lines.append("The zero of the force is assumed: no reading without load is given.")
+    return Section("Friction", lines, Table(("friction", "µ", "force", "spread"), rows))
+
+
+def tables(found: Analysis) -> dict[str, xr.Dataset | None]:
+    """Return the known kinds of friction, a row each."""
+    import xarray as xr
+
+    known = {name: each for name in FRICTIONS if (each := getattr(found.friction, name))}
+    columns = {
+        key: ("friction", [getattr(each, key) for each in known.values()], {"units": unit})
+        for key, unit in FRICTION.items()
+    }
+    rows = {"friction": ("friction", list(known))}
+    return {"friction": xr.Dataset(columns, rows) if known else None}
+
+
+def numbers(found: Analysis) -> dict[str, Any]:
+    """Return each friction as a table: force, coefficient, error and spread, or the reason."""
+    shown: dict[str, Any] = {"missing": found.friction.missing}
+    for name in FRICTIONS:
+        each = getattr(found.friction, name)
+        shown[name] = each and {key: number(getattr(each, key)) for key in FRICTION}
+    return {"friction": shown}

@@ -1,0 +1,101 @@
+"""What the mass does, in a sentence that needs no theory."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stiction.analysis.motion.regime import (
+    COUPLED,
+    HARMONIC,
+    IRREGULAR,
+    SETTLING,
+    STEADY,
+    STICK_SLIP,
+    STUCK,
+    TRANSITIONAL,
+)
+from stiction.analysis.parts.wording import number
+from stiction.analysis.slip import stuck_until
+from stiction.text.sections import Section
+from stiction.text.units import in_words
+from stiction.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from stiction.analysis.report import Analysis
+
+
+def section(found: Analysis) -> Section:
+    """Return the motion in a plain sentence, then the kind of motion."""
+    kind = str(found.regime)
+    return Section("Motion", [plainly(found), f"{kind[0].upper()}{kind[1:]}."])
+
+
+def numbers(found: Analysis) -> dict[str, Any]:
+    """Return the kind of motion and its evidence."""
+    its = found.regime
+    return {
+        "regime": {
+            "kind": its.kind,
+            "confidence": number(its.confidence),
+            "runner_up": its.runner_up or None,
+            "evidence": {name: number(value) for name, value in its.evidence.items()},
+        }
+    }
+
+
+def plainly(found: Analysis) -> str:
+    """Describe the motion in a sentence that needs no theory."""
+    count, kind = found.cycles.sizes["cycle"], found.regime.kind
+    if count:
+        drop, period = (float(found.cycles[name].mean()) for name in ("drop", "period"))
+        times = "once" if count == 1 else f"{count} times"
+        every = f", every {in_words(period, 's')}" if count > 1 else ""
+        size = f"the force drops by {in_words(drop, 'N')}"
+        plain = {
+            STICK_SLIP: f"The mass sticks and slips {times}{every}; {size}",
+            TRANSITIONAL: f"The mass slips {times}{every}, between stick-slip and plain "
+            f"vibration; {size}",
+            HARMONIC: f"The mass swings {times}{every}{_stuck(found)}; {size}",
+        }
+        if kind in plain:
+            each = " each time" if count > 1 else ""
+            return f"{plain[kind]}{each}.{_quick(found, period)}"
+    if found.regime.evidence.get("backward", 0.0) > 0.5:
+        return (
+            "The force falls slowly and rises fast: it is recorded with the other sign, in all "
+            "likelihood. Analyse it with force=-force."
+        )
+    slides = found.friction.kinetic
+    at = f", at a force of {in_words(slides.force, 'N')}" if slides is not None else ""
+    plain = {
+        STEADY: f"The mass slides steadily{at}.",
+        SETTLING: f"The motion dies down, and the mass comes to slide steadily{at}.",
+        STUCK: "The mass sticks for the whole record: the force only rises.",
+        IRREGULAR: "The mass vibrates irregularly.",
+    }
+    return plain.get(kind, "This record does not show what the mass does.")
+
+
+def _stuck(found: Analysis) -> str:
+    """Return how long a run sticks in its cycles, in words; '' for a record."""
+    run, ends = found.source, found.cycles
+    if not isinstance(run, Trajectory):
+        return ""
+    time = np.array([ends["start"].values[0], ends["trough_time"].values[-1]])
+    share = float(np.diff(stuck_until(time, run.stick_intervals))[0] / np.diff(time)[0])
+    return f", and sticks for {100.0 * share:.2g}% of that time" if share else ", without sticking"
+
+
+def _quick(found: Analysis, period: float) -> str:
+    """Note that the cycles of a run are too fast for the softer spring alone."""
+    if not isinstance(found.source, Trajectory) or found.regime.kind == STICK_SLIP:
+        return ""
+    own = 1.0 / found.source.slider.natural_frequencies[0]
+    if period >= COUPLED * own:
+        return ""
+    return (
+        f" That is quicker than the {in_words(own, 's')} in which it swings on the softer spring "
+        "alone: the stiffer one swings as well (a study calls this transverse oscillation)."
+    )

@@ -1,0 +1,75 @@
+"""The fast oscillation."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from stiction.analysis.oscillation import hides
+from stiction.analysis.parts.wording import SHOWN
+from stiction.analysis.signals.hum import of_mains
+from stiction.text.columns import Quantity, grid
+from stiction.text.sections import Section
+from stiction.text.units import in_words
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from stiction.analysis.report import Analysis
+
+
+SELDOM = 0.05  # of the time: a line that is seen no longer may be chance
+
+
+def section(found: Analysis) -> Section:
+    """Return the section on the fast oscillation."""
+    if found.oscillation is None:
+        return Section("Oscillation", [f"Not seen: {found.missing['oscillation']}."])
+    seen = found.oscillation["frequency"].values
+    seen = seen[np.isfinite(seen)]
+    if len(seen) < SELDOM * found.oscillation.sizes["time"] or not len(seen):
+        return Section("Oscillation", [f"No line stands out of the noise.{_hidden(found)}"])
+    low, high = (in_words(float(each), "Hz") for each in (seen.min(), seen.max()))
+    share = 100.0 * len(seen) / found.oscillation.sizes["time"]
+    pitch = f"between {low} and {high}" if low != high else f"at {low}"
+    lines = [f"Seen in {share:.3g}% of the time, {pitch}."]
+    if of_mains(float(np.median(seen))):
+        lines[0] += " That is the frequency of the mains, or twice it: it is probably hum."
+    if found.phases is None:
+        return Section("Oscillation", lines)
+    natural = found.oscillation.attrs["natural_frequency"]
+    lines[0] += f" The transverse natural frequency is {in_words(natural, 'Hz')}."
+    phases = found.phases
+    columns = {
+        "stick phase from": Quantity(phases["start"].values, "s"),
+        "at rest": Quantity(100.0 * phases["share_stuck"].values, "%"),
+        "sticks": Quantity(phases["sticks_per_second"].values, "1/s"),
+        "free swing at the end": Quantity(100.0 * phases["ring_down"].values, "%"),
+        "oscillation from": Quantity(phases["first_frequency"].values, "Hz"),
+        "to": Quantity(phases["last_frequency"].values, "Hz"),
+    }
+    known = {
+        name: each
+        for name, each in columns.items()
+        if np.isfinite(np.asarray(each.values, dtype=np.float64)[:SHOWN]).any()
+    }
+    lines[0] += _hidden(found)
+    return Section("Oscillation", lines, grid(known, SHOWN))
+
+
+def _hidden(found: Analysis) -> str:
+    """Note that cycles follow too closely to be distinguished from an oscillation."""
+    oscillation = found.oscillation
+    if found.phases is None or oscillation is None or not hides(oscillation, found.cycles):
+        return ""
+    width = in_words(oscillation.attrs["width"], "s")
+    return (
+        f" It is sought in windows of 50 of its periods, {width}; the cycles follow too closely "
+        "for that, so it is sought before the first only."
+    )
+
+
+def tables(found: Analysis) -> dict[str, xr.Dataset | None]:
+    """Return the oscillation over time, and a row for each stick phase."""
+    return {"oscillation": found.oscillation, "oscillation-phases": found.phases}

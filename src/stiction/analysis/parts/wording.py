@@ -1,0 +1,30 @@
+"""Numbers of an analysis as text, and for JSON."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Any
+
+from stiction.text.units import in_words
+
+SHOWN = 8  # cycles in the terminal; files hold all
+ALIKE = 1e-5  # of a value: a spread that is less is the solver's, not the motion's
+
+
+def with_error(value: str, error: float, unit: str) -> str:
+    """Return a value in words with its standard error, if that is known."""
+    return f"{value} ± {in_words(float(f'{error:.1g}'), unit)}" if error > 0.0 else value
+
+
+def with_spread(spread: float, mean: float, unit: str) -> str:
+    """Return a spread in words, or an upper limit if it is below the accuracy of a run."""
+    if not isfinite(spread):
+        return ""
+    if spread <= ALIKE * abs(mean):
+        return f"< {100.0 * ALIKE:g}%"
+    return in_words(spread, unit)
+
+
+def number(value: Any) -> float | None:
+    """Return a number for JSON, None for NaN and infinity."""
+    return float(value) if isfinite(float(value)) else None
