@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from importlib.resources import files
 from pathlib import Path
 from typing import get_type_hints
@@ -9,10 +10,14 @@ from typing import get_type_hints
 from stiction.errors import StictionError
 from stiction.friction.registry import LAWS
 from stiction.storage.files import whole
+from stiction.system.schema import schema as description_schema
 from stiction.text.units import unit_of
 
+SCHEMA = "stiction.schema.json"
+BY_SCHEMA = f"#:schema {SCHEMA}\n"  # as editors of TOML understand it
 
-def init(path: str | Path = "slider.toml", *, force: bool = False) -> Path:
+
+def init(path: str | Path = "slider.toml", *, force: bool = False, schema: bool = False) -> Path:
     """Write a commented description of the paper's apparatus to adapt; return its path.
 
     Parameters
@@ -21,6 +26,9 @@ def init(path: str | Path = "slider.toml", *, force: bool = False) -> Path:
         The file to write.
     force : bool, optional
         Whether to overwrite an existing file.
+    schema : bool, optional
+        Whether to write ``stiction.schema.json`` beside it, by which an editor completes and
+        checks what you write; an existing description stays as it is.
 
     Raises
     ------
@@ -32,12 +40,17 @@ def init(path: str | Path = "slider.toml", *, force: bool = False) -> Path:
         raise StictionError(f"{target} is a folder; name a file in it")
     if not target.parent.is_dir():
         raise StictionError(f"{target}: folder {target.parent} does not exist; make it first")
+    if schema:
+        with whole(target.with_name(SCHEMA)) as part:
+            part.write_text(json.dumps(description_schema(), indent=1) + "\n", encoding="utf-8")
+        if target.exists() and not force:
+            return target
     if target.exists() and not force:
         raise StictionError(f"{target} exists already; choose another name, or force it")
     text = files("stiction").joinpath("template.toml").read_text(encoding="utf-8")
     text = text.replace("# {laws}\n", "".join(map(_law_lines, LAWS)))
     with whole(target) as part:
-        part.write_text(text, encoding="utf-8")
+        part.write_text(BY_SCHEMA * schema + text, encoding="utf-8")
     return target
 
 

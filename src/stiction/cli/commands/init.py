@@ -7,12 +7,14 @@ from pathlib import Path
 from stiction.cli.terminal import say
 
 
-def init(path: Path = Path("slider.toml"), /, *, force: bool = False) -> None:
+def init(path: Path = Path("slider.toml"), /, *, force: bool = False, schema: bool = False) -> None:
     """Write a commented description of the paper's apparatus to adapt.
 
     For example:
 
         stiction init my.toml
+
+        stiction init my.toml --schema
 
     Parameters
     ----------
@@ -20,8 +22,18 @@ def init(path: Path = Path("slider.toml"), /, *, force: bool = False) -> None:
         The file to write.
     force
         Overwrite an existing file.
+    schema
+        Write stiction.schema.json beside it, by which an editor completes and checks a description
+        as you type; an existing description is left as it is.
     """
+    from stiction.system.template import BY_SCHEMA, SCHEMA
     from stiction.system.template import init as write
 
-    write(path, force=force)
+    there = path.exists() and not force
+    write(path, force=force, schema=schema)
+    if schema:
+        say(f"wrote {path.with_name(SCHEMA)}")
+    if schema and there:
+        say(f"{path} is as it was; its editor needs the first line: {BY_SCHEMA.strip()}")
+        return
     say(f"wrote {path}; edit it, then: stiction run {path} --output {path.with_suffix('.nc')}")

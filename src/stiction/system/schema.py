@@ -1,0 +1,149 @@
+"""The JSON schema of a description, by which an editor completes and checks it as it is written.
+
+It is derived from what reads descriptions: the fields of each table, the registry of laws, the
+pieces of programs. Types, bounds and keys are in it; units, and rules between values, are not.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from inspect import cleandoc
+from typing import Any, cast
+
+from pydantic.json_schema import GenerateJsonSchema
+from pydantic_core.core_schema import BeforeValidatorFunctionSchema
+
+from stiction.drive import DriveProgram, LoadProgram
+from stiction.drive.pieces import DRIVE_PIECES, LEVELS, LOAD_PIECES, Modulation
+from stiction.friction import LAWS, Anisotropic
+from stiction.system.description import Settings
+from stiction.system.initial import Initial
+from stiction.system.slider import Apparatus, Slider
+from stiction.text.units import FORCE, VELOCITY, Kind
+from stiction.text.validation import Described, fields
+
+NUMBER = r"^\s*[+−-]?(\d+\.?\d*|\.\d+)([eE][+−-]?\d+)?"
+WITH_UNIT = NUMBER + r"(?![\d.,eE])\s*[^\s.,]"
+# a parameter of a docstring, or several, and what it says of them
+MEANING = re.compile(r"^(\w+(?:, \w+)*) : .*\n((?: {4}.*\n?)+)", re.MULTILINE)
+# constraints that the library puts beside a choice, where they are none of JSON schema
+BOUNDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
+Schema = dict[str, Any]
+
+
+def schema() -> Schema:
+    """Return the JSON schema (draft 7) of a description.
+
+    >>> sorted(schema()["properties"])
+    ['drive', 'friction', 'initial', 'load', 'run', 'slider']
+    """
+    tables = {
+        "slider": table(Apparatus, Slider),
+        "friction": friction(),
+        "drive": program(DriveProgram, DRIVE_PIECES, VELOCITY, ("along", "across")),
+        "load": program(LoadProgram, LOAD_PIECES, FORCE, ("modulation",)),
+        "initial": table(Initial),
+        "run": table(Settings),
+    }
+    return {
+        "$schema": "http://json-schema.org/draft-07/schema#",
+        "title": "A description of stiction",
+        "type": "object",
+        "properties": tables,
+        "required": ["slider", "friction", "drive", "run"],
+        "additionalProperties": False,
+    }
+
+
+class Generator(GenerateJsonSchema):
+    """Writes quantities as numbers or as texts with a unit."""
+
+    def function_before_schema(self, schema: BeforeValidatorFunctionSchema) -> Schema:
+        """Return the schema of a field that is read by a function of ours."""
+        number = super().function_before_schema(schema)
+        kind = getattr(schema["function"]["function"], "keywords", {}).get("kind")
+        return number if kind is None else quantity(number, kind)
+
+
+def quantity(number: Schema, kind: Kind) -> Schema:
+    """Return the schema of a quantity: a number in SI, except for angles, or a text."""
+    text = {"type": "string", "pattern": WITH_UNIT if kind.unit else rf"{NUMBER}\s*$"}
+    return text if kind.unit == "rad" else {"anyOf": [number, text]}
+
+
+def table(model: type[Described], told: Any = None, without: Iterable[str] = ()) -> Schema:
+    """Return the schema of a table; what its docstring says of each key is shown by editors."""
+    found = bounded(model.model_json_schema(schema_generator=Generator))
+    meanings = {
+        name: " ".join(text.split())
+        for names, text in MEANING.findall(cleandoc(str((told or model).__doc__)) + "\n")
+        for name in names.split(", ")
+    }
+    keys: dict[str, Schema] = {
+        name: {**key, "description": meanings.get(name, key.get("title", name))}
+        for name, key in found["properties"].items()
+        if name not in without
+    }
+    required = [name for name in found.get("required", ()) if name not in without]
+    return {
+        "type": "object",
+        "properties": keys,
+        "required": required,
+        "additionalProperties": False,
+    }
+
+
+def bounded(part: Any, bounds: Mapping[str, float] | None = None) -> Any:
+    """Return a part of a schema, the bounds of choices put where their numbers are."""
+    if isinstance(part, list):
+        return [bounded(each, bounds) for each in part]
+    if not isinstance(part, dict):
+        return part
+    inner = dict(bounds or {}) | {BOUNDS[key]: part[key] for key in BOUNDS if key in part}
+    found = {key: bounded(each, inner) for key, each in part.items() if key not in BOUNDS}
+    return found | inner if part.get("type") == "number" else found
+
+
+def chosen(key: str, kinds: Mapping[str, Schema], other: Schema | None = None) -> Schema:
+    """Return the schema of a table whose other keys depend on the value of one."""
+    for name, each in kinds.items():
+        each["properties"][key] = {"const": name}
+    names: list[Schema] = [{"enum": [*kinds]}, *([other] if other else [])]
+    return {
+        "type": "object",
+        "properties": {key: {"anyOf": names}},
+        "required": [key],
+        "allOf": [
+            {"if": {"properties": {key: {"const": name}}, "required": [key]}, "then": each}
+            for name, each in kinds.items()
+        ],
+    }
+
+
+def friction() -> Schema:
+    """Return the schema of the table [friction]; of a user's law, any parameters."""
+    laws = {name: table(fields(cast(Any, kind)), kind) for name, kind in LAWS.items()}
+    for each in laws.values():
+        each["properties"]["anisotropy"] = table(fields(Anisotropic), Anisotropic, ["law"])
+    return chosen("law", laws, {"type": "string", "pattern": ":"})
+
+
+def program(
+    model: type[Described], pieces: Mapping[str, Any], kind: Kind, waves: Iterable[str]
+) -> Schema:
+    """Return the schema of a program of drive or load."""
+    found = table(model)
+    of = {name: levelled(table(fields(piece), piece), kind) for name, piece in pieces.items()}
+    found["properties"]["program"]["items"] = chosen("piece", of)
+    for wave in waves:
+        found["properties"][wave] = levelled(table(fields(Modulation), Modulation), kind)
+    return found
+
+
+def levelled(piece: Schema, kind: Kind) -> Schema:
+    """Return the schema of a piece whose levels are of a quantity."""
+    for name in LEVELS:
+        if name in piece["properties"]:
+            piece["properties"][name] |= quantity({"type": "number"}, kind)
+    return piece
