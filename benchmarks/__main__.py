@@ -15,13 +15,14 @@ from benchmarks.report import save, show
 # each module has run(progress, quick) -> Section
 PARTS = {
     "precision": "precision.diagram",
-    "multiscale": "multiscale",
+    "multiscale": "speed.multiscale",
     "ensembles": "ensembles.comparison",
-    "verification": "verification",
-    "conservation": "conservation",
-    "scaling": "scaling",
-    "startup": "startup",
-    "studies": "studies",
+    "verification": "accuracy.verification",
+    "calibration": "accuracy.calibration",
+    "conservation": "accuracy.conservation",
+    "scaling": "speed.scaling",
+    "startup": "speed.startup",
+    "studies": "speed.studies",
 }
 
 

@@ -9,7 +9,7 @@ from multiprocessing import get_context
 
 from rich.progress import Progress
 
-from benchmarks import convergence
+from benchmarks.accuracy import convergence
 from benchmarks.cases import GROUPS, Case
 from benchmarks.cases.closed_forms import closed_forms
 from benchmarks.section import Cell, Section, Table

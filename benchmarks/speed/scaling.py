@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 from rich.progress import Progress
 
 import stiction as st
-from benchmarks import generality, memory
 from benchmarks.section import Section, Table
+from benchmarks.speed import generality, memory
 from stiction import theory
 from stiction.plotting.page.style import BLUE, GREEN, PAGE, new_figure, panel_letter, style
 

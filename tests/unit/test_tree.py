@@ -5,6 +5,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from benchmarks.__main__ import PARTS
 
 ROOT = Path(__file__).parents[2]
 DOZEN = 12
@@ -24,4 +25,13 @@ def test_what_a_benchmark_imports_of_ours_is_there(path):
     froms = [node for node in tree if isinstance(node, ast.ImportFrom) and node.module]
     ours = [each for each in froms if each.module.split(".")[0] in ("stiction", "benchmarks")]
     missing = [each.module for each in ours if find_spec(each.module) is None]
+    for each in ours:
+        room = ROOT / each.module.replace(".", "/")
+        if room.is_dir() and not (room / "__init__.py").read_text().count("import"):
+            files = {path.stem for path in room.iterdir()}
+            missing += [name.name for name in each.names if name.name not in files]
     assert missing == []
+
+
+def test_each_part_of_the_benchmark_is_there():
+    assert [part for part in PARTS.values() if find_spec(f"benchmarks.{part}") is None] == []

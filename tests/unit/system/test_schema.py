@@ -93,16 +93,16 @@ def changed(tables):
 
 @pytest.mark.parametrize("path", RIGS, ids=lambda path: path.stem)
 def test_every_rig_is_valid(path):
-    VALIDATOR.validate(tomllib.loads(path.read_text("utf-8")))
+    assert not [*VALIDATOR.iter_errors(tomllib.loads(path.read_text("utf-8")))]
 
 
 def test_so_are_the_template_the_examples_and_every_law(tmp_path):
     paths = [st.init(tmp_path / "my.toml"), ROOT / "examples" / "own_law.toml"]
     for path in paths:
-        VALIDATOR.validate(tomllib.loads(path.read_text("utf-8")))
+        assert not [*VALIDATOR.iter_errors(tomllib.loads(path.read_text("utf-8")))]
     for tables in CASES.values():
         assert is_read(tables)
-        VALIDATOR.validate(tables)
+        assert not [*VALIDATOR.iter_errors(tables)]
 
 
 @pytest.mark.parametrize("name", CASES)
