@@ -39,10 +39,10 @@ TESTS = (  # of pieces, in plain Python; whole runs take long there
     *(f"tests/unit/solver/test_{each}.py" for each in ("segments", "state", "stick", "surface")),
     "tests/unit/friction/test_formulas.py",
     "tests/unit/friction/test_laws.py",
+    "tests/unit/analysis/motion/test_cycles.py",
     "tests/unit/analysis/motion/test_hesitations.py",
     "tests/unit/analysis/signals",
 )
-WHOLE = 4 * 3600.0  # s, for all tests together
 ROOM, TIMES = 5.0, 4.0  # s, and multiples of what the tests take: then it is endless
 ALLOWED = 0.05  # of the mutants
 KILLED, SURVIVED, TIMEOUT, UNREACHED = "killed", "survived", "timeout", "unreached"
@@ -99,16 +99,15 @@ def reached(
     items: Sequence[pytest.Item], sources: Sequence[Path], options: argparse.Namespace
 ) -> list[Test]:
     """Return the tests with the lines that they run, from the folder or by running them."""
-    path = options.results / "tests.json"
+    texts = [path.read_text(encoding="utf-8") for path in (*sources, *files([Path("tests")]))]
+    names = sorted(item.nodeid for item in items)
+    path = options.results / f"tests-{digest(json.dumps([options.longest, names, texts]))}.json"
     if not path.exists():
-        found = apart(lambda: watched(items, sources, options.longest), WHOLE).answer or {}
-        if "tests" not in found:
-            raise SystemExit(f"the tests have not come to an end: {found.get('died', '')}")
+        found = watched(items, sources, options.longest)
         path.write_text(json.dumps(found))
         for name in found["left_out"]:
             print(f"left out, as it takes long or is of compiled code: {name}")
-    names = {item.nodeid for item in items}
-    known = [Test(*row) for row in json.loads(path.read_text())["tests"] if row[0] in names]
+    known = [Test(*row) for row in json.loads(path.read_text())["tests"]]
     print(f"{len(known)} tests, {sum(each.seconds for each in known):.0f} s", flush=True)
     return known
 
@@ -126,16 +125,20 @@ def outcome(
     if digest(text) != mutant.made_from:
         raise SystemExit(f"{path} was changed meanwhile: begin again")
     changed = mutated(text, mutant.operator, mutant.occurrence)
+    chosen_items, limit = [items[name] for name in chosen], ROOM + TIMES * seconds
 
     def task() -> Answer:
         try:
             change(path, changed)
         except Exception as error:
             return {"failed": f"as it is imported: {error!r}"}
-        return {"failed": first_failure([items[name] for name in chosen])}
+        return {"failed": first_failure(chosen_items)}
 
-    answer, stopped = apart(task, ROOM + TIMES * seconds)
+    answer, stopped = apart(task, limit)
     if stopped:
+        unchanged = apart(lambda: {"failed": first_failure(chosen_items)}, limit)
+        if unchanged.stopped:
+            raise SystemExit(f"the tests of {path} take longer than {limit:.0f} s without a change")
         return row | {"outcome": TIMEOUT}
     failed = (answer or {"failed": "the process died"}).get("failed", "something raised")
     return row | {"outcome": KILLED if failed else SURVIVED, "by": failed}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
 from pathlib import Path
@@ -14,8 +14,6 @@ from cosmic_ray.ast import ast_nodes, get_ast
 from cosmic_ray.mutating import mutate_code
 from cosmic_ray.operators.operator import Operator
 from cosmic_ray.plugins import get_operator
-
-from ..explore.draw import Draw
 
 ARITHMETIC = ("Add", "Sub", "Mul", "Div")
 COMPARISONS = ("Eq", "NotEq", "Lt", "LtE", "Gt", "GtE")
@@ -112,8 +110,8 @@ def mutant(path: str, text: str, operator: str, occurrence: int) -> Mutant:
     return Mutant(path, first + 1, operator, occurrence, before, after, digest(text))
 
 
-def places(text: str) -> list[list[tuple[str, int]]]:
-    """Return for each place of a source what can be done there: operator and occurrence."""
+def places(text: str) -> list[tuple[tuple[int, int], list[tuple[str, int]]]]:
+    """Return each place of a source, and its possible changes: operator and occurrence."""
     found: dict[Any, list[tuple[str, int]]] = defaultdict(list)
     seen: dict[str, int] = defaultdict(int)
     for node in ast_nodes(get_ast(text)):
@@ -121,7 +119,16 @@ def places(text: str) -> list[list[tuple[str, int]]]:
             for place in operator.mutation_positions(node):
                 found[place].append((name, seen[name]))
                 seen[name] += 1
-    return [found[place] for place in sorted(found)]
+    return [(place[0], found[place]) for place in sorted(found)]
+
+
+def named_places(path: Path, text: str) -> Iterator[tuple[str, Path, list[tuple[str, int]]]]:
+    """Yield each place of a source under a name that edits of other lines do not change."""
+    lines, seen = text.splitlines(), Counter[str]()
+    for (line, _), ways in places(text):
+        stripped = lines[line - 1].strip()
+        yield f"{path.as_posix()} {stripped} {seen[stripped]}", path, ways
+        seen[stripped] += 1
 
 
 def files(paths: Iterable[Path]) -> list[Path]:
@@ -133,19 +140,18 @@ def files(paths: Iterable[Path]) -> list[Path]:
 def drawn(sources: Sequence[Path], count: int, seed: int, folder: Path) -> list[Mutant]:
     """Return `count` changes at places drawn evenly, none of them twice.
 
-    The sample is kept in a folder, as the sources have it: drawing takes a while.
+    A place is drawn by a digest of its name, so that an edit changes no other part of the sample.
+    The sample is stored in a folder for these sources: drawing takes a while.
     """
     texts = {path: path.read_text(encoding="utf-8") for path in sources}
     origin = digest(json.dumps([seed, count, *((str(path), texts[path]) for path in sources)]))
     kept = folder / f"sample-{origin}.json"
     if kept.exists():
         return [Mutant(*row) for row in json.loads(kept.read_text())]
-    every = [(path, ways) for path, text in texts.items() for ways in places(text)]
-    draw, left = Draw(seed, 0), list(range(len(every)))
+    every = [place for path, text in texts.items() for place in named_places(path, text)]
     chosen = []
-    while left and len(chosen) < count:
-        path, ways = every[left.pop(int(draw.random() * len(left)))]
-        operator, occurrence = draw.among(ways)
+    for name, path, ways in sorted(every, key=lambda place: digest(f"{seed} {place[0]}"))[:count]:
+        operator, occurrence = ways[int(digest(f"way {seed} {name}"), 16) % len(ways)]
         chosen.append(mutant(path.as_posix(), texts[path], operator, occurrence))
     kept.write_text(json.dumps(chosen))
     return chosen
