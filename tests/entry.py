@@ -5,6 +5,9 @@ from functools import cache
 from types import FunctionType
 
 import numba
+from numba.extending import _Intrinsic
+
+from stiction.solver.compilation import pointer
 
 
 def entry(part):
@@ -16,8 +19,11 @@ def entry(part):
 def plain(part):
     """Return `part` as the Python that it is written in, with all parts that it calls.
 
-    That costs no compiling. That compiled code does the same is held by whole runs.
+    That costs no compiling. That compiled code does the same is held by whole runs. A pointer to a
+    law is the law itself, and the address of a function is the plain function.
     """
+    if isinstance(part, _Intrinsic):
+        return itself if part is pointer.pointee else call
     function = getattr(part, "py_func", None)
     if function is None:  # nothing is compiled
         return part
@@ -28,5 +34,13 @@ def plain(part):
 
 
 def is_compiled(value):
-    """Return whether a value is a compiled function."""
-    return hasattr(value, "py_func")
+    """Return whether a value is a compiled function, or works on pointers in compiled code."""
+    return hasattr(value, "py_func") or isinstance(value, _Intrinsic)
+
+
+def itself(law):
+    return law
+
+
+def call(function, law, arguments):
+    return function(law, *arguments)

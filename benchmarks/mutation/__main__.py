@@ -62,7 +62,7 @@ def main() -> int:
         "--results", type=Path, default=Path("mutation-results"), help="folder to keep"
     )
     parser.add_argument(
-        "--longest", type=float, default=2.0, help="CPU s that a test takes at most"
+        "--longest", type=float, default=1.0, help="CPU s that a test takes at most"
     )
     parser.add_argument("--most", type=float, default=30.0, help="CPU s of tests for one mutant")
     parser.add_argument("--again", action="store_true", help="try those that survived again")

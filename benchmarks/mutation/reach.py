@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pytest
 from coverage import Coverage
 
 from .session import Answer, apart, run
+
+TOGETHER = 10.0  # times what one test takes at most: the tests of a file
 
 
 class Test(NamedTuple):
@@ -28,28 +30,52 @@ class Test(NamedTuple):
 def watched(items: Sequence[pytest.Item], sources: Sequence[Path], longest: float) -> Answer:
     """Return the tests that pass in so many CPU seconds, and the others.
 
-    Each runs in a process of its own, and pays for its fixtures, as it may have to for a mutant.
+    The tests of a file run in one process; where they take too long together, each in its own, in
+    which it pays for its fixtures, as it may have to for a mutant.
     """
-    passing, others = [], []
+    groups: dict[str, list[pytest.Item]] = {}
     for item in items:
-        answer = apart(lambda item=item: lines_run(item, sources), longest).answer or {}
-        if answer.get("passed") and answer["seconds"] <= longest:
-            passing.append(Test(item.nodeid, answer["seconds"], answer["lines"]))
-        else:
-            others.append(item.nodeid)
-    return {"tests": passing, "left_out": others}
+        groups.setdefault(item.nodeid.partition("::")[0], []).append(item)
+    tests: list[Test] = []
+    others: list[str] = []
+    for group in groups.values():
+        found = watched_together(group, sources, TOGETHER * longest)
+        if found is None:
+            each = [watched_together([item], sources, longest) for item in group]
+            found = [row for rows in each for row in rows or ()]
+        short = [Test(*row[:3]) for row in found if row[3] and row[1] <= longest]
+        tests += short
+        others += sorted({item.nodeid for item in group} - {test.name for test in short})
+    return {"tests": tests, "left_out": others}
 
 
-def lines_run(item: pytest.Item, sources: Sequence[Path]) -> Answer:
-    """Run a test; return whether it passed, its CPU time, and the lines that it ran."""
+def watched_together(
+    items: Sequence[pytest.Item], sources: Sequence[Path], most: float
+) -> list[list[Any]] | None:
+    """Return a row for each test, of a `Test` and whether it passed; None if they take too long."""
+    answer = apart(lambda: {"rows": rows_of(items, sources)}, most).answer
+    return (answer or {}).get("rows")
+
+
+def rows_of(items: Sequence[pytest.Item], sources: Sequence[Path]) -> list[Any]:
+    """Run tests; return their names, CPU times, lines by file, and whether they passed."""
     coverage = Coverage(data_file=None, include=[str(each) for each in sources])
     coverage.start()
-    ((_, passed, seconds),) = run([item])
+    coverage.switch_context(items[0].nodeid)
+    rows = []
+    names = [*(item.nodeid for item in items[1:]), ""]
+    for (item, passed, seconds), following in zip(run(items), names, strict=True):
+        coverage.switch_context(following)
+        rows.append((item.nodeid, seconds, {}, passed))
     coverage.stop()
-    data, lines = coverage.get_data(), {}
+    data, lines = coverage.get_data(), {row[0]: row[2] for row in rows}
     for path in data.measured_files():
-        lines[Path(path).relative_to(Path.cwd()).as_posix()] = data.lines(path)
-    return {"passed": passed, "seconds": seconds, "lines": lines}
+        relative = Path(path).relative_to(Path.cwd()).as_posix()
+        for line, contexts in data.contexts_by_lineno(path).items():
+            for name in contexts:
+                if name in lines:
+                    lines[name].setdefault(relative, []).append(line)
+    return rows
 
 
 def fitting(tests: Sequence[Test], path: str, line: int, most: float) -> tuple[list[str], float]:

@@ -1,19 +1,29 @@
 """The equations of one axis, corrections of the slip coordinate, and first guesses."""
 
-from math import asinh, hypot, inf
+from math import hypot, inf
 
 import numpy as np
 import pytest
-from numpy.polynomial import Polynomial
 from tests.drawn import inside
 from tests.entry import plain
+from tests.unit.solver.smooth.systems import (
+    EXACT,
+    LAWS,
+    MOTION,
+    Equations,
+    at_stages,
+    begun,
+    derivative,
+)
 from tests.unit.solver.systems import problem_of
 
+from stiction.solver.block_algebra import solved
 from stiction.solver.radau import A, C, D
-from stiction.solver.smooth import error_estimate, newton, right_hand_side, step
-from stiction.solver.smooth.coordinate import risen
+from stiction.solver.smooth import elimination, newton, right_hand_side
+from stiction.solver.smooth.coordinate import coordinate, risen, slip_at
+from stiction.solver.smooth.newton import ITERATIONS
 from stiction.solver.smooth.right_hand_side import Outset
-from stiction.solver.smooth.workspace import START, workspace
+from stiction.solver.smooth.workspace import START
 
 A, C, D = np.array(A), np.array(C), np.array(D)
 NODES = np.array([0.0, *C])
@@ -87,54 +97,118 @@ def test_the_share_of_inertia(q):
     assert share(problem, h, a, (0.0, 0.0), *triples) == 1.0
 
 
-@pytest.mark.parametrize("warm", [True, False])
-def test_a_first_guess_is_the_last_step_continued(warm):
-    """Cubics exactly; at rest where the slip would turn back; else what held at the start."""
-    w, x = plain(workspace)(1), 0.6
-    along, state = Polynomial([1.0, 0.4, -0.2, 0.1]), Polynomial([3.0, -1.0, 0.5, 0.2])
-    w.past[:] = np.transpose([along(NODES), -0.5 * along(NODES), state(NODES)])
-    w.values[START] = 0.7, -0.35, 9.0
-    q_x, q_y = plain(step.predict)(w, 0.7, -0.35, x, warm)
-    if warm:
-        there = 1.0 + x * C
-        assert q_x == pytest.approx(along(there))
-        assert q_y == pytest.approx(-0.5 * along(there))
-        assert w.values[1:4, 2] == pytest.approx(state(there))
-        back = plain(step.predict)(w, -0.7, 0.35, x, True)
-        assert back == ((0.0,) * 3, (-0.0,) * 3)
-    else:
-        assert (q_x, q_y) == ((0.7,) * 3, (-0.35,) * 3)
-        assert w.values[1:4, 2].tolist() == [9.0] * 3
+GUESSES = [1.0, 0.9]  # of the slip velocity at the start
 
 
-def test_the_last_step_is_remembered_in_the_slip_coordinate():
-    w, eps = plain(workspace)(1), 1e-9
-    past = np.array([[3e-6, 4e-6, 1.0], [0.0, 0.0, 2.0], [1e-3, 0.0, 3.0], [0.0, -1e-3, 4.0]])
-    plain(step.remember)(w, past, eps)
-    assert w.past[:, 2].tolist() == [1.0, 2.0, 3.0, 4.0]
-    assert w.past[0, :2] == pytest.approx([0.6 * asinh(5e-6 / eps), 0.8 * asinh(5e-6 / eps)])
-    assert w.past[1, :2].tolist() == [0.0, 0.0]
-    assert w.past[2:, :2] == pytest.approx(asinh(1e-3 / eps) * np.array([[1, 0], [0, -1]]))
+def stages_of(name, h, drive="program"):
+    """Return a step's start, and values near its start in the rows of the stages."""
+    problem, start, w, q = begun(name, drive)
+    n = len(w.size)
+    for i, part in enumerate((1.01, 0.98, 0.95)):
+        w.values[i + 1, 2:n] = part * w.values[START, 2:n]
+    q_x, q_y = (tuple(part * each for part in (0.99, 0.97, 1.02)) for each in q)
+    pulls = tuple(plain(right_hand_side.pull)(problem, start, c * h) for c in C)
+    return problem, start, w, pulls, q_x, q_y
 
 
-@pytest.mark.parametrize("c", [0.2, 0.4, 1.0])
-def test_the_polynomials_inside_a_step_and_their_error(c):
-    """Value, derivative and integral; the error goes as Pi(c)/|Pi(c_1)|, but for the distance."""
-    w = plain(workspace)(1)
-    x, y, z = (Polynomial(row[4 * i : 4 * i + 4]) for i, row in enumerate([ROWS[0]] * 3))
-    w.values[:4] = np.transpose([each(NODES) for each in (x, y, z)])
-    found = plain(error_estimate.within)(w, c)
-    quadratics = [Polynomial.fit(C, each(C), 2, domain=[-1, 1]).convert() for each in (x, y)]
-    slid = [each.integ()(c) for each in quadratics]
-    wanted = x(c), y(c), x.deriv()(c), y.deriv()(c), *slid
-    assert found == pytest.approx(wanted, abs=1e-12)
-    assert w.cubic[:, 2] == pytest.approx([z(c), z.deriv()(c)], abs=1e-12)
-    w.error[:] = 0.3, -0.2, 0.7
-    pi = Polynomial.fromroots(C).integ()
-    shape = pi / abs(pi(C[0]))
-    less = plain(error_estimate.less_error)(w, found, c)
-    off = *(w.error[:2] * shape(c)), *(w.error[:2] * shape.deriv()(c)), 0.0, 0.0
-    assert less == pytest.approx(np.array(wanted) - off, abs=1e-12)
-    assert w.cubic[:, 2] == pytest.approx(
-        [z(c) - 0.7 * shape(c), z.deriv()(c) - 0.7 * shape.deriv()(c)], abs=1e-12
+@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("h", [1e-5, 3e-3])
+def test_a_correction_is_that_of_the_whole_of_the_equations(name, h):
+    """(M66) to (M68): the Jacobian as differences of the printed residuals, by q and z."""
+    problem, start, w, pulls, q_x, q_y = stages_of(name, h)
+    printed, system, n = Equations(name), problem.system, len(w.size) - 2
+    per, s = system.per_mass, w.values[START, :2].copy()
+    x, y = (
+        plain(newton.linear)(h, k * per, c * per, at, tuple(pull[i] for pull in pulls))
+        for i, (k, c, at) in enumerate(
+            [(system.k_x, system.c_x, s[0]), (system.k_y, system.c_y, s[1])]
+        )
     )
+    at = plain(newton.stages_at)(problem, start.eps, pulls, q_x, q_y, w, True)
+    m = plain(newton.factors)(h, x, y, at, w)
+    r_x = plain(newton.residual)(x, h, at.s_x, s[0], at.f_x)
+    r_y = plain(newton.residual)(y, h, at.s_y, s[1], at.f_y)
+    if n:
+        r_x, r_y = plain(elimination.residuals_without)(h, r_x, r_y, w)
+    d_x, d_y = plain(solved)(m, r_x, r_y)
+    before = w.values[1:4, 2:].copy()
+    if n:
+        plain(elimination.correct_states)(d_x, d_y, w)
+    d_z = before - w.values[1:4, 2:]
+
+    def residuals(unknowns):
+        rows = unknowns.reshape(3, 2 + n)
+        slips = np.array([plain(slip_at)(start.eps, *row[:2]) for row in rows])
+        motion, states = printed.residuals(h, slips, rows[:, 2:])
+        return np.hstack([motion, states]).ravel()
+
+    unknowns = np.column_stack([q_x, q_y, before]).ravel()
+    sizes = 1e-5 * np.tile([*np.abs(unknowns[:2]), *(w.size[2:])], 3)
+    jacobian = derivative(residuals, unknowns, sizes)
+    wanted = np.linalg.solve(jacobian, residuals(unknowns)).reshape(3, 2 + n)
+    found = np.column_stack([d_x, d_y, d_z])
+    scale = np.abs(wanted).max(axis=0)
+    assert found / scale == pytest.approx(wanted / scale, abs=2e-5)
+
+
+@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("drive", ["steady", "program", "spring"])
+@pytest.mark.parametrize("h", [3e-5, 1e-3])
+@pytest.mark.parametrize("part", GUESSES)
+def test_stages_solve_the_equations(name, drive, h, part):
+    """(M66) and (M67), from guesses of the slip velocity, in a few iterations."""
+    problem, start, w, (q_x, q_y) = begun(name, drive)
+    w.values[1:4] = w.values[START]
+    guess = (part * q_x,) * 3, (part * q_y,) * 3
+    found, iterations = plain(newton.solve)(problem, start, h, *guess, w, EXACT)
+    assert found
+    assert iterations <= 9
+    motion, states = Equations(name, drive).residuals(h, *at_stages(w))
+    assert np.abs(motion).max() < 1e-9 * hypot(*MOTION[2:])
+    assert (np.abs(states) < 1e-9 * w.size[2:]).all()
+
+
+@pytest.mark.parametrize("name", ["smoothed", "lugre", "ageing"])
+def test_it_ends_when_corrections_are_negligible(name):
+    """By no more than the tolerance asks for; from the solution itself at once."""
+    h, counts = 1e-3, []
+    for newton_size in (1e-3, 1e-6, 1e-12):
+        accuracy = EXACT._replace(newton=newton_size, tolerance=1e300)
+        problem, start, w, (q_x, q_y) = begun(name, accuracy=accuracy)
+        w.values[1:4] = w.values[START]
+        guess = (q_x,) * 3, (q_y,) * 3
+        found, iterations = plain(newton.solve)(problem, start, h, *guess, w, accuracy)
+        assert found
+        counts.append(iterations)
+        s, _ = at_stages(w)
+        motion, _ = Equations(name).residuals(h, *at_stages(w))
+        assert np.abs(motion).max() < 10 * newton_size * (EXACT.speed + np.abs(s).max())
+        # again, from there
+        q = np.array([plain(coordinate)(start.eps, *row) for row in s]).T
+        again = plain(newton.solve)(problem, start, h, tuple(q[0]), tuple(q[1]), w, accuracy)
+        assert again == (True, 1)
+    assert counts == sorted(counts)
+    assert counts[0] < counts[-1]
+    # the tolerance asks for a hundredth of itself
+    accuracy = EXACT._replace(newton=1.0, tolerance=1e-4)
+    problem, start, w, (q_x, q_y) = begun(name, accuracy=accuracy)
+    w.values[1:4] = w.values[START]
+    _, iterations = plain(newton.solve)(problem, start, h, (q_x,) * 3, (q_y,) * 3, w, accuracy)
+    assert counts[0] <= iterations <= counts[1]
+
+
+def test_no_numbers_and_no_convergence_are_no_step():
+    for name in ("smoothed", "lugre", "ageing"):
+        problem, start, w, (q_x, q_y) = begun(name)
+        w.values[1:4] = w.values[START]
+        nan = (np.nan,) * 3
+        assert plain(newton.solve)(problem, start, 1e-3, nan, nan, w, EXACT) == (False, 1)
+        never = EXACT._replace(newton=-1.0)
+        guess = (q_x,) * 3, (q_y,) * 3
+        before = w.values[1:4, :2].copy()
+        w.values[1:4, 2:] = w.values[START, 2:]
+        # CLOSEST ends it where a correction is rounding
+        found, iterations = plain(newton.solve)(problem, start, 1e-3, *guess, w, never)
+        assert found
+        assert iterations < ITERATIONS
+        assert not np.array_equal(before, w.values[1:4, :2])

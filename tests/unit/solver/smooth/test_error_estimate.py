@@ -1,0 +1,141 @@
+"""Inside a step: the polynomials, the balance of the equations there, and the error of the step."""
+
+from math import hypot, inf
+
+import numpy as np
+import pytest
+from numpy.polynomial import Polynomial
+from tests.drawn import inside
+from tests.entry import plain
+from tests.unit.solver.smooth.systems import (
+    EXACT,
+    LAWS,
+    MOTION,
+    A,
+    C,
+    Equations,
+    at_stages,
+    begun,
+)
+
+from stiction.solver.radau import DEFECT_WEIGHT, INTERIOR
+from stiction.solver.smooth import error_estimate, newton
+from stiction.solver.smooth.workspace import INSIDE, START, workspace
+
+NODES = np.array([0.0, *C])
+ROW = np.array(inside(3, *[(-1.0, 1.0)] * 12)[0])
+PI = Polynomial.fromroots(C)
+
+
+@pytest.mark.parametrize("c", [0.2, 0.4, 1.0])
+def test_the_polynomials_inside_a_step_and_their_error(c):
+    """Value, derivative and integral; the error goes as Pi(c)/|Pi(c_1)|, but for the distance."""
+    w = plain(workspace)(1)
+    x, y, z = (Polynomial(ROW[4 * i : 4 * i + 4]) for i in range(3))
+    w.values[:4] = np.transpose([each(NODES) for each in (x, y, z)])
+    found = plain(error_estimate.within)(w, c)
+    quadratics = [Polynomial.fit(C, each(C), 2, domain=[-1, 1]).convert() for each in (x, y)]
+    slid = [each.integ()(c) for each in quadratics]
+    wanted = x(c), y(c), x.deriv()(c), y.deriv()(c), *slid
+    assert found == pytest.approx(wanted, abs=1e-12)
+    assert w.cubic[:, 2] == pytest.approx([z(c), z.deriv()(c)], abs=1e-12)
+    w.error[:] = 0.3, -0.2, 0.7
+    shape = PI.integ() / abs(PI.integ()(C[0]))
+    less = plain(error_estimate.less_error)(w, found, c)
+    off = *(w.error[:2] * shape(c)), *(w.error[:2] * shape.deriv()(c)), 0.0, 0.0
+    assert less == pytest.approx(np.array(wanted) - off, abs=1e-12)
+    assert w.cubic[:, 2] == pytest.approx(
+        [z(c) - 0.7 * shape(c), z.deriv()(c) - 0.7 * shape.deriv()(c)], abs=1e-12
+    )
+
+
+def solved_step(name, h, drive="program"):
+    """Return a problem, and a step of it with its stages."""
+    problem, start, w, (q_x, q_y) = begun(name, drive)
+    w.values[1:4] = w.values[START]
+    found, _ = plain(newton.solve)(problem, start, h, (q_x,) * 3, (q_y,) * 3, w, EXACT)
+    assert found
+    return problem, start, w
+
+
+def fit(x, y):
+    return Polynomial.fit(x, y, len(x) - 1, domain=[-1, 1]).convert()
+
+
+def polynomials(w, c):
+    """Return the cubic of slip and states at c, its derivative, and the distance slid over h."""
+    cubic = [
+        Polynomial.fit(NODES, column, 3, domain=[-1, 1]).convert() for column in w.values[:4].T
+    ]
+    slid = [Polynomial.fit(C, w.values[1:4, i], 2, domain=[-1, 1]).convert() for i in (0, 1)]
+    return (
+        np.array([each(c) for each in cubic]),
+        np.array([each.deriv()(c) for each in cubic]),
+        np.array([each.integ()(c) for each in slid]),
+    )
+
+
+@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("drive", ["steady", "spring"])
+@pytest.mark.parametrize(("c", "weight"), [(INTERIOR, DEFECT_WEIGHT), (0.8, 0.8)])
+@pytest.mark.parametrize("h", [1e-4, 3e-3])
+def test_a_balance_inside_a_step(name, drive, c, weight, h):
+    """(M70): y - P + weight (P_c - h f(y)) = 0."""
+    problem, start, w = solved_step(name, h, drive)
+    p = plain(error_estimate.within)(w, c)
+    found, at = plain(error_estimate.balance)(problem, start, h, c, weight, p, w, 1e-20)
+    assert found
+    value, by_c, slid = polynomials(w, c)
+    s, z = np.array(at[:2]), w.values[INSIDE, 2:]
+    a, dz = Equations(name, drive).rates(c * h, h * slid, s, z)
+    off = np.array([*s, *z]) - value + weight * (by_c - h * np.array([*a, *dz]))
+    scale = [hypot(*MOTION[2:])] * 2 + list(w.size[2:])
+    assert np.abs(off / scale).max() < 1e-10
+    assert np.abs(value - [*s, *z]).max() > 0.0  # it is not the polynomial itself
+
+
+@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("h", [1e-4, 3e-3])
+def test_the_error_of_a_step(name, h):
+    """P - y at c = 0.4 over what it is held against; the largest counts, as does slow motion."""
+    problem, start, w = solved_step(name, h)
+    start = start._replace(share=0.25)
+    error = plain(error_estimate.local_error)(problem, start, h, w, EXACT)
+    value, _, _ = polynomials(w, INTERIOR)
+    p = plain(error_estimate.within)(w, INTERIOR)
+    _, at = plain(error_estimate.balance)(problem, start, h, INTERIOR, DEFECT_WEIGHT, p, w, 1e-20)
+    s, z = np.array(at[:2]), w.values[INSIDE, 2:]
+    off = value - [*s, *z]
+    parts = [hypot(*off[:2]) / (EXACT.speed + hypot(*s)), *np.abs(off[2:] / w.size[2:])]
+    # one iteration with a fresh Jacobian, or two: its error is quadratic in the correction
+    assert error == pytest.approx(max(parts) / 0.25, rel=1e-2)
+    assert w.error == pytest.approx(off, rel=5e-2, abs=1e-2 * max(parts) * w.size.min())
+
+
+def test_the_error_falls_with_the_fourth_power_of_the_step():
+    """The cubic is wrong by pi(c) h^4 times a derivative, (M36)."""
+    for name in ("smoothed", "lugre"):
+        errors = []
+        for h in (4e-5, 2e-5):
+            problem, start, w = solved_step(name, h, "steady")
+            errors.append(plain(error_estimate.local_error)(problem, start, h, w, EXACT))
+        assert errors[0] / errors[1] == pytest.approx(16.0, rel=0.3)
+
+
+@pytest.mark.parametrize("name", ["smoothed", "lugre", "ageing"])
+def test_without_a_balance_the_error_is_infinite(name):
+    problem, start, w = solved_step(name, 1e-3)
+    w.values[2, 0] = np.nan
+    assert plain(error_estimate.local_error)(problem, start, 1e-3, w, EXACT) == inf
+    problem, start, w = solved_step(name, 1e-3)
+    p = plain(error_estimate.within)(w, 0.5)
+    found, _ = plain(error_estimate.balance)(problem, start, 1e-3, 0.5, 0.5, p, w, 0.0)
+    assert not found  # nothing is exact enough
+
+
+def test_the_distance_slid_is_that_of_the_stages():
+    """At the end of a step it is the last row of A."""
+    _, _, w = solved_step("lugre", 1e-3)
+    s, _ = at_stages(w)
+    p = plain(error_estimate.within)(w, 1.0)
+    assert (p.slid_x, p.slid_y) == pytest.approx(A[2] @ s)

@@ -1,0 +1,82 @@
+"""What stands between a run and the smooth solver: its state, its jumps, what it is held to."""
+
+from math import inf
+
+import numpy as np
+import pytest
+from tests.unit.solver.smooth.systems import EXACT
+from tests.unit.solver.systems import ELLIPSE, STEADY, problem_of
+
+import stiction as st
+from stiction.solver.exact.sampling import COLUMNS
+from stiction.solver.smooth.dispatch import Smoothed
+from stiction.solver.smooth.method import FINER, Smooth
+from stiction.solver.state import NOTHING
+from stiction.system.description import Description
+
+AGEING = STEADY.replace(friction=st.RateStateAgeing(0.01, 0.015, "10 um", 0.2, "1 mm/s"))
+START = st.Initial(u_x=1e-3, u_y=2e-6, v_x=1e-3, v_y=-5e-4, time=0.3)
+
+
+def begun(slider, delta=None):
+    """Return the solver of a slider, and the state from which a run starts."""
+    method = Smooth(slider, delta)
+    return method, method.begin(Description(slider, START, None))
+
+
+def test_the_state_from_which_a_run_starts():
+    method, state = begun(AGEING)
+    assert method.columns == COLUMNS + 1
+    assert state.motion == (0.3, 1e-3, 2e-6, *START.slip(AGEING))
+    assert state.internal.tolist() == list(START.internal(AGEING))
+    assert state.memory[:3] == (method.first_step, method.first_step, False)
+    assert state.memory.past.tolist() == np.zeros((4, 3)).tolist()
+    assert state.counts == NOTHING
+    assert method.first_step == pytest.approx(0.05 * np.sqrt(0.25 / 4e4))
+
+
+def test_a_law_is_made_smooth_where_a_width_is_given():
+    method, state = begun(ELLIPSE, 1e-3)
+    assert isinstance(method.law, Smoothed)
+    assert (method.states, method.columns, method.law.delta) == (0, COLUMNS, 1e-3)
+    assert method.law.law == ELLIPSE.friction.law
+    assert method.law.surface == problem_of("ellipse").surface
+    assert state.internal.shape == (0,)
+
+
+def test_a_jump_of_the_drive():
+    """The slip velocity jumps, and steps begin anew, no longer than the first."""
+    method, state = begun(AGEING)
+    warm = state._replace(memory=state.memory._replace(warm=True, h=7.0))
+    entered = method.entered(warm, 3e-3, -4e-3)
+    s_x, s_y = state.motion[3:]
+    assert entered.motion == (*state.motion[:3], s_x + 3e-3, s_y - 4e-3)
+    assert (entered.memory.h, entered.memory.warm) == (method.first_step, False)
+    short = warm._replace(memory=warm.memory._replace(h=0.1 * method.first_step))
+    assert method.entered(short, 0.0, 0.0).memory.h == 0.1 * method.first_step
+    assert entered.internal is state.internal
+
+
+@pytest.mark.parametrize("delta", [None, 1e-3])
+def test_the_sample_of_a_state(delta):
+    """Friction there is the law's, of the normal load then, and the internal states follow."""
+    slider = AGEING if delta is None else ELLIPSE
+    method, state = begun(slider, delta)
+    z = tuple(state.internal)
+    row = method.last_row(problem_of("program"), state)
+    load = problem_of("program").load.at(0.3)
+    slip = START.slip(slider)
+    force = method.law.force(slip, load, z)
+    assert row == pytest.approx([1e-3, 2e-6, *slip, *force, 0.0, *z])
+
+
+def test_what_each_step_is_held_to():
+    """States remember slower slip; so does what vibrates."""
+    held = EXACT._replace(speed=1e-4, free_x=3.0, free_y=2.0)
+    assert begun(ELLIPSE, 1e-3)[0].resolved(held) == held
+    finer = begun(AGEING)[0]
+    assert finer.resolved(held) == held._replace(speed=FINER * 1e-4)
+    shaken = held._replace(longest=1e-2)
+    assert finer.resolved(shaken) == shaken._replace(speed=2e-6)
+    assert finer.resolved(shaken._replace(speed=1e-9)).speed == FINER * 1e-9
+    assert held.longest == inf

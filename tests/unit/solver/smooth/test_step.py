@@ -1,0 +1,145 @@
+"""One step: the first guess from the last one, and the size that the error allows."""
+
+from math import asinh, inf
+
+import numpy as np
+import pytest
+from numpy.polynomial import Polynomial
+from tests.drawn import inside
+from tests.entry import plain
+from tests.unit.solver.smooth.systems import EXACT, LAWS, C, Equations, at_stages, begun
+
+from stiction.solver.exact.step import ATTEMPTS, RESOLUTION
+from stiction.solver.radau import step_factor
+from stiction.solver.smooth import error_estimate, newton, step
+from stiction.solver.smooth.workspace import START, workspace
+
+NODES = np.array([0.0, *C])
+ROWS = [np.array(each) for each in inside(3, *[(-1.0, 1.0)] * 12)]
+
+
+@pytest.mark.parametrize("warm", [True, False])
+def test_a_first_guess_is_the_last_step_continued(warm):
+    """Cubics exactly; at rest where the slip would turn back; else what held at the start."""
+    w, x = plain(workspace)(1), 0.6
+    along, state = Polynomial([1.0, 0.4, -0.2, 0.1]), Polynomial([3.0, -1.0, 0.5, 0.2])
+    w.past[:] = np.transpose([along(NODES), -0.5 * along(NODES), state(NODES)])
+    w.values[START] = 0.7, -0.35, 9.0
+    q_x, q_y = plain(step.predict)(w, 0.7, -0.35, x, warm)
+    if warm:
+        there = 1.0 + x * C
+        assert q_x == pytest.approx(along(there))
+        assert q_y == pytest.approx(-0.5 * along(there))
+        assert w.values[1:4, 2] == pytest.approx(state(there))
+        back = plain(step.predict)(w, -0.7, 0.35, x, True)
+        assert back == ((0.0,) * 3, (-0.0,) * 3)
+    else:
+        assert (q_x, q_y) == ((0.7,) * 3, (-0.35,) * 3)
+        assert w.values[1:4, 2].tolist() == [9.0] * 3
+
+
+def test_the_last_step_is_remembered_in_the_slip_coordinate():
+    w, eps = plain(workspace)(1), 1e-9
+    past = np.array([[3e-6, 4e-6, 1.0], [0.0, 0.0, 2.0], [1e-3, 0.0, 3.0], [0.0, -1e-3, 4.0]])
+    plain(step.remember)(w, past, eps)
+    assert w.past[:, 2].tolist() == [1.0, 2.0, 3.0, 4.0]
+    assert w.past[0, :2] == pytest.approx([0.6 * asinh(5e-6 / eps), 0.8 * asinh(5e-6 / eps)])
+    assert w.past[1, :2].tolist() == [0.0, 0.0]
+    assert w.past[2:, :2] == pytest.approx(asinh(1e-3 / eps) * np.array([[1, 0], [0, -1]]))
+
+
+def accuracy(tolerance):
+    return EXACT._replace(tolerance=tolerance, newton=1e-3 * tolerance)
+
+
+def taken(name, h, tolerance, t_stop=inf, drive="program"):
+    """Take a step from the start, without a step before it."""
+    problem, start, w, q = begun(name, drive, accuracy(tolerance))
+    found = plain(step.step)(problem, start, *q, t_stop, h, 1.0, False, w, accuracy(tolerance))
+    return problem, start, w, found
+
+
+@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-6])
+@pytest.mark.parametrize("h", [1e-6, 1e-2])
+def test_an_accepted_step_keeps_its_tolerance(name, tolerance, h):
+    """Its stages solve the equations, and its error is the estimate's, over the tolerance."""
+    problem, start, w, (done, size, error, rejected, iterations) = taken(name, h, tolerance)
+    assert done
+    assert 0.0 <= error <= 1.0
+    assert iterations > rejected
+    motion, states = Equations(name).residuals(size, *at_stages(w))
+    speed = EXACT.speed + np.abs(w.values[:4, :2]).max()
+    assert np.abs(motion).max() < 0.1 * tolerance * speed * max(1.0, size / 1e-3)
+    assert np.abs(states / w.size[2:]).max(initial=0.0) < tolerance
+    held = accuracy(tolerance)
+    again = plain(error_estimate.local_error)(problem, start, size, w, held) / tolerance
+    assert error == pytest.approx(again)
+    if h == 1e-6:
+        assert (size, rejected) == (h, 0)
+    else:
+        assert rejected > 0
+        assert size < h
+        # this size itself is accepted at once
+        *_, (done, same, error, none, _) = taken(name, size, tolerance)
+        assert (done, same, none) == (True, size, 0)
+        assert error <= 1.0
+
+
+def test_a_refused_step_is_tried_again_as_its_error_says():
+    """By (M43), never longer."""
+    tolerance, name = 1e-6, "smoothed"
+    *_, (done, h, _, rejected, _) = taken(name, 4e-4, tolerance)
+    assert done
+    assert rejected >= 1
+    problem, start, w, q = begun(name)
+    for i in range(1, 4):
+        w.values[i] = w.values[START]
+    at = tuple((each,) * 3 for each in q)
+    assert plain(newton.solve)(problem, start, 4e-4, *at, w, accuracy(tolerance))[0]
+    held = accuracy(tolerance)
+    error = plain(error_estimate.local_error)(problem, start, 4e-4, w, held) / tolerance
+    factor = plain(step_factor)(error, 1.0)
+    *_, (_, first, _, more, _) = taken(name, 4e-4 * factor, tolerance)
+    assert more == rejected - 1
+    assert first == pytest.approx(h, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["smoothed", "ageing"])
+def test_a_step_ends_at_the_end_of_the_stretch_at_most(name):
+    _, start, _, _ = taken(name, 1e-6, 1e-3)
+    for part, wanted in ((0.4, 0.4e-6), (1.0, 1e-6), (1.6, 1e-6)):
+        *_, (done, h, _, _, _) = taken(name, 1e-6, 1e-3, start.t + part * 1e-6)
+        assert done
+        assert h == pytest.approx(wanted, rel=1e-9)
+
+
+def test_no_step_is_found_where_none_converges():
+    """Each try is 0.3 times as long, until that is no time at all."""
+    problem, start, w, q = begun("smoothed")
+    never = EXACT._replace(tolerance=-1.0, newton=-1.0)
+    assert 0.3**ATTEMPTS < RESOLUTION
+    w.values[START, 0] = np.nan
+    done, h, error, rejected, iterations = plain(step.step)(
+        problem, start, *q, inf, 1e-3, 1.0, False, w, never
+    )
+    assert (done, error) == (False, 0.0)
+    assert 1e-3 * 0.3**rejected == pytest.approx(h)
+    assert h <= RESOLUTION * start.t < h / 0.3
+    assert iterations == rejected  # each fails at once
+
+
+def test_a_step_goes_on_from_the_last_one():
+    """A guess from the last step takes fewer iterations than none."""
+    h, counts = 1e-4, []
+    for warm in (False, True):
+        problem, start, w, q = begun("smoothed", "steady", accuracy(1e-6))
+        stopped = plain(step.step)(problem, start, *q, inf, h, h, False, w, accuracy(1e-6))
+        assert stopped[1] == h
+        past = w.values[:4].copy()
+        motion = *Equations("smoothed").u, *past[3, :2]
+        problem, start, w, q = begun("smoothed", "steady", accuracy(1e-6), motion)
+        plain(step.remember)(w, past, start.eps)
+        *_, iterations = plain(step.step)(problem, start, *q, inf, h, h, warm, w, accuracy(1e-6))
+        counts.append(iterations)
+    assert counts[1] < counts[0]
