@@ -45,6 +45,10 @@ def watched(items: Sequence[pytest.Item], sources: Sequence[Path], longest: floa
             found = [row for rows in each for row in rows or ()]
         short = [Test(*row[:3]) for row in found if row[3] and row[1] <= longest]
         tests += short
+        print(
+            f"{len(short)} of {len(group)} tests of {group[0].nodeid.partition('::')[0]}",
+            flush=True,
+        )
         others += sorted({item.nodeid for item in group} - {test.name for test in short})
     return {"tests": tests, "left_out": others}
 

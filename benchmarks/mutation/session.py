@@ -20,6 +20,7 @@ from .python import forgiving
 MEMORY = 6 << 30  # bytes: a change may ask for any amount
 PATIENCE = 20  # times the CPU time, by the clock: a test may wait for what never comes
 ARGUMENTS = ("-q", "-p", "no:cacheprovider", "-o", "addopts=--import-mode=importlib")
+RUNS = {"slider", "paper_run", "sharp_run"}  # fixtures for whole simulations: minutes here
 
 Answer = dict[str, Any]
 
@@ -39,8 +40,8 @@ class Session:
         self.task = task
 
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
-        """Do the task, once all tests are read."""
-        self.task(session.items)
+        """Do the task, once all tests are read, with those that run no whole simulation."""
+        self.task([item for item in session.items if not RUNS & set(item.fixturenames)])
         return True
 
 
