@@ -3,8 +3,12 @@
 import numpy as np
 import pytest
 from tests.entry import plain
+from tests.unit.solver.exact.test_step import held_to
+from tests.unit.solver.multiscale.test_construction import problem_of as soft
+from tests.unit.solver.multiscale.test_construction import taking_off
 from tests.unit.solver.systems import problem_of
 
+from stiction.solver.exact import loop as exact_loop
 from stiction.solver.multiscale import construction, loop, replay
 from stiction.solver.multiscale.return_map import (
     CLOSING,
@@ -16,7 +20,16 @@ from stiction.solver.multiscale.return_map import (
     unknown,
 )
 from stiction.solver.multiscale.section import elongation_held
-from stiction.solver.state import Accuracy, Counts, Memory, Motion, State
+from stiction.solver.state import (
+    COMPLETED,
+    RUNNING,
+    Accuracy,
+    Counts,
+    Memory,
+    Motion,
+    State,
+    named,
+)
 
 CYCLE, HOLD = Cycle(0.01, 1.0, 0.4), Hold(0.5, 1.0, 0.3)
 
@@ -118,3 +131,70 @@ def test_from_a_landing_to_the_angle_of_its_stick_and_back(name):
     hold = plain(replay.hold_of)(standing, landing)
     assert np.isnan(hold.theta)
     assert hold.end == np.inf
+
+
+@pytest.mark.parametrize("name", ["soft", "damped"])
+@pytest.mark.parametrize("until", [0.9, 0.4])
+def test_strides_lead_to_the_same_sticks_as_steps(name, until):
+    """With samples along the way, at a fraction of the steps."""
+    problem, begun = soft(name), taking_off(soft(name), 1.0)
+    times, known = np.array([0.05, 0.25, 0.251, 0.255, 0.262, 0.37]), unknown(1e-6)
+    (code, state, k, _), sticks, samples = run(loop.stride, problem, begun, until, times, known)
+    (_, wanted, _, _), exact, rows = run(exact_loop.advance, problem, begun, until, times)
+    counts = Counts(*state[2])
+    assert (code, k) == (COMPLETED, 6)
+    assert counts.sticks == wanted[2][3] > 10
+    assert known.sizes[0] >= 1
+    assert counts.mapped > 0.3 * counts.sticks
+    n = counts.sticks
+    assert sticks[:n] == pytest.approx(exact[:n], abs=1e-6)
+    assert counts.stuck == pytest.approx(np.diff(sticks[:n]).sum(), rel=1e-9)
+    assert state[0][0] == until
+    assert state[0][1:3] == pytest.approx(wanted[0][1:3], rel=1e-5)
+    assert samples[:, :2] == pytest.approx(rows[:, :2], rel=1e-5, abs=1e-9)
+    assert samples[:, 2:6] == pytest.approx(rows[:, 2:6], rel=2e-3, abs=2e-5)
+    assert samples[:, 6].tolist() == rows[:, 6].tolist()
+    assert known.sizes[4] == counts.sticks - counts.mapped
+
+
+def run(function, problem, state, until, times, *more):
+    """Advance; return the outcome, the stick intervals and the samples."""
+    sticks, samples = np.zeros((200, 2)), np.full((len(times), 7), np.nan)
+    held = held_to(1e-8)._replace(touch=0.0)
+    arguments = problem, state, until, held, 10**6, times, samples, 0, sticks, *more
+    return plain(function)(*arguments), sticks, samples
+
+
+def test_a_stride_stops_with_its_budget_or_room_and_goes_on():
+    problem, state, known = soft("soft"), taking_off(soft("soft"), 1.0), unknown(1e-6)
+    (code, whole, _, steps), table, _ = run(loop.stride, problem, state, 0.5, np.empty(0), known)
+    assert code == COMPLETED
+    held, never = held_to(1e-8)._replace(touch=0.0), (np.empty(0), np.empty((0, 7)), 0)
+    sticks, known, paused, used = np.zeros((200, 2)), unknown(1e-6), state, 0
+    for _ in range(1000):
+        code, plainly, _, turns = plain(loop.stride)(
+            problem, paused, 0.5, held, 60, *never, sticks, known
+        )
+        paused, used = named(plainly), used + turns
+        if code != RUNNING:
+            break
+    assert (code, plainly, used) == (COMPLETED, whole, steps)
+    assert sticks.tolist() == table.tolist()
+    room = np.zeros((5, 2))
+    code, plainly, _, _ = plain(loop.stride)(
+        problem, state, 0.5, held, 10**6, *never, room, unknown(1e-6)
+    )
+    assert (code, plainly[2][3]) == (RUNNING, 5)
+    assert room.tolist() == table[:5].tolist()
+
+
+def test_a_cycle_is_known_from_a_patch_or_from_the_past():
+    known, cycle = unknown(1e-6), Cycle(0.01, 2.0, 0.5)
+    found, _ = plain(loop.known_cycle)(known, 0.3, cycle)
+    assert not found
+    known.coefficients[0] = 0.0
+    known.coefficients[0, 0] = cycle.turn, cycle.time, cycle.held**2
+    known.patches[0] = 0.2, 2.0 / 0.4, 1
+    known.sizes[0] = 1
+    assert plain(loop.known_cycle)(known, 0.3, cycle) == (True, cycle)
+    assert not plain(loop.known_cycle)(known, 0.7, cycle)[0]

@@ -1,0 +1,146 @@
+"""Cycles solved in full, and patches of the return map made of them."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from tests.entry import plain
+from tests.unit.solver.exact.test_predictor import COLD
+from tests.unit.solver.exact.test_step import held_to
+
+import stiction as st
+from stiction.solver.exact import loop
+from stiction.solver.multiscale import construction, interpolant, section
+from stiction.solver.multiscale.return_map import WIDEST, unknown
+from stiction.solver.segments import stretches
+from stiction.solver.state import NOTHING, Counts, Motion, State
+
+# the paper's, but hardly stiff across: some ten steps a cycle, a hundred cycles a second
+SOFT = st.presets.nakano_popov_2020().replace(k_y=1e5)
+MEMORY = COLD._replace(h=1e-5, plan=(1e-5, *[0.0] * 7))
+EXACT = held_to(1e-9)
+THETAS = [0.5, 1.0, 1.3]
+
+
+@cache
+def problem_of(name):
+    """Return what the solver works on."""
+    damped = SOFT.replace(c_x=2.0, c_y=3.0)
+    return next(stretches({"soft": SOFT, "damped": damped}[name], 0.0, 10.0)).problem
+
+
+def taking_off(problem, theta, t=0.0):
+    """Return the state at the end of a stick."""
+    u = plain(section.elongation_held)(problem, theta)
+    return State(Motion(t, *u, 0.0, 1.0, 0.0), MEMORY, NOTHING)
+
+
+def stepped(problem, theta, count):
+    """Return the stick intervals after a take-off, by steps, and the angles at their ends."""
+    sticks, state = np.zeros((count, 2)), taking_off(problem, theta)
+    advance, never = plain(loop.advance), (np.empty(0), np.empty((0, 7)))
+    advance(problem, state, 9.0, EXACT._replace(touch=0.0), 10**6, *never, 0, sticks)
+    return sticks
+
+
+@pytest.mark.parametrize("name", ["soft", "damped"])
+@pytest.mark.parametrize("theta", THETAS)
+def test_a_cycle_from_an_angle(name, theta):
+    """From one stick's end to the next one's, as steps find it; and nothing else is left behind."""
+    problem, known = problem_of(name), unknown(1e-6)
+    found, cycle, swing, end = plain(construction.solved)(problem, EXACT, MEMORY, known, theta, 1.0)
+    assert found
+    ((start, until),) = stepped(problem, theta, 1)
+    assert cycle.held == pytest.approx(until - start, rel=1e-6)
+    assert cycle.time == pytest.approx(until, rel=1e-6)
+    v = problem.drive.velocity * np.array([problem.system.cos_phi, problem.system.sin_phi])
+    u = np.array(end.motion[1:3]) + cycle.held * v
+    assert section_angle(problem, u) == pytest.approx(theta + cycle.turn, abs=1e-9)
+    assert u == pytest.approx(plain(section.elongation_held)(problem, theta + cycle.turn))
+    landed = section_angle(problem, end.motion[1:3])
+    assert swing == pytest.approx(section_angle(problem, u) - landed)
+    assert end.counts.sticks == 1
+    # one that takes longer than it may, or does not stick, is none
+    assert not plain(construction.solved)(
+        problem, EXACT, MEMORY, known, theta, 0.5 * (cycle.time - cycle.held)
+    )[0]
+    assert plain(construction.solved)(
+        problem, EXACT, MEMORY, known, theta, 1.01 * (cycle.time - cycle.held)
+    )[0]
+
+
+def section_angle(problem, u):
+    return plain(section.angle)(problem, *u)
+
+
+@pytest.mark.parametrize("reach", [-0.1, 0.1])
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6])
+def test_a_patch_stands_for_the_cycles_over_it(reach, rtol):
+    """(M58): anywhere in it, its cycle is the one solved there, to some times the closing error."""
+    problem, known, theta = problem_of("soft"), unknown(rtol), 1.2
+    begun = State(taking_off(problem, theta).motion, MEMORY, Counts(7, 1, 20, 3, 0.5, 2))
+    held = held_to(1e-3 * rtol)
+    state = plain(construction.chart)(problem, held, begun, known, theta, reach, 1.0)
+    assert known.sizes.tolist() == [1, 0, 0, 0, 0]
+    start, per, n = known.patches[0]
+    assert (start, per) == (theta, 2.0 / reach)
+    assert 4 <= n <= 16
+    assert known.width[0] == WIDEST
+    assert not known.coefficients[0, int(n) :].any()
+    assert state.motion == begun.motion
+    assert state.counts[3:] == (3, 0.5, 2)
+    assert state.counts.steps > 7 + 4 * n
+    assert not state.memory.warm
+    assert state.memory.plan != MEMORY.plan  # the last node's steps teach the next
+    for part in (0.13, 0.5, 0.87):
+        there = theta + part * reach
+        row, x = plain(interpolant.place)(known, there)
+        assert (row, x) == (0, pytest.approx(2 * part - 1.0))
+        cycle = plain(interpolant.cycle_from)(known, row, x)
+        found, wanted, swing, _ = plain(construction.solved)(
+            problem, held, MEMORY, known, there, 1.0
+        )
+        assert found
+        size = max(abs(wanted.turn), abs(swing))
+        assert cycle.turn == pytest.approx(wanted.turn, abs=5 * known.closing * size)
+        assert cycle.time == pytest.approx(wanted.time, rel=5 * known.closing)
+        assert cycle.held == pytest.approx(wanted.held, rel=100 * known.closing)
+
+
+def test_where_a_cycle_does_not_return_there_is_an_edge():
+    """Its nodes were in vain, but the first is kept for the next attempt from the same angle."""
+    problem, known = problem_of("soft"), unknown(1e-4)
+    begun = taking_off(problem, 1.3)
+    _, last, _, _ = plain(construction.solved)(problem, EXACT, MEMORY, known, 0.9, 1.0)
+    _, first, _, _ = plain(construction.solved)(problem, EXACT, MEMORY, known, 1.3, 1.0)
+    longest = 0.5 * (last.time - last.held + first.time - first.held)
+    held = held_to(1e-7)
+    chart = plain(construction.chart)
+    chart(problem, held, begun, known, 1.3, -0.4, longest)
+    assert known.sizes.tolist() == [0, 1, 0, 2, 0]
+    assert known.edges[0] == pytest.approx(0.9)
+    assert known.patches[0, 0] == 1.3
+    assert known.width[0] == WIDEST
+    before = known.coefficients[0, 0].copy()
+    chart(problem, held, begun, known, 1.3, -0.1, longest)  # one node less
+    n = int(known.patches[0, 2])
+    assert known.sizes.tolist() == [1, 1, 0, 1, 0]
+    assert known.coefficients[0, 0].tolist() == before.tolist()
+    assert n > 3
+    # where the first node does not return, nothing is kept
+    nothing = unknown(1e-4)
+    chart(problem, held, begun, nothing, 0.9, 0.4, longest)
+    assert nothing.sizes.tolist() == [0, 1, 0, 1, 0]
+    assert nothing.edges[0] == 0.9
+    assert np.isnan(nothing.patches[0, 0])
+
+
+def test_where_the_map_is_not_smooth_the_next_patch_is_half_as_wide():
+    """Too noisy steps never close it: it is given up, at half of the nodes or all."""
+    problem, known = problem_of("soft"), unknown(1e-13)
+    begun, rough = taking_off(problem, 1.2), held_to(1e-2)
+    plain(construction.chart)(problem, rough, begun, known, 1.2, -0.1, 1.0)
+    assert known.width[0] == 0.5 * WIDEST
+    assert known.sizes[:3].tolist() == [0, 0, 0]
+    assert 12 < known.sizes[3] <= 24
+    assert known.patches[0, 0] == 1.2

@@ -1,0 +1,66 @@
+"""Samples of cycles that the return map has found."""
+
+import numpy as np
+import pytest
+from tests.entry import plain
+from tests.unit.solver.multiscale.test_construction import (
+    EXACT,
+    MEMORY,
+    problem_of,
+    taking_off,
+)
+
+from stiction.solver.exact import loop
+from stiction.solver.multiscale import construction, replay
+from stiction.solver.multiscale.return_map import Hold, unknown
+from stiction.solver.state import COMPLETED, Counts, State
+
+COUNTS = Counts(7, 1, 20, 3, 0.5, 2)
+T, THETA = 4.0, 1.1
+
+
+@pytest.mark.parametrize("name", ["soft", "damped"])
+def test_samples_of_a_cycle(name):
+    """They are those of steps from the same take-off; the state itself stays as it was."""
+    problem, known = problem_of(name), unknown(1e-6)
+    _, cycle, _, _ = plain(construction.solved)(problem, EXACT, MEMORY, known, THETA, 1.0)
+    hold = Hold(T - 2e-3, T, THETA)
+    landing = T + cycle.time - cycle.held
+    parts = np.array([-1e-3, 0.0, *np.linspace(0.1, 0.97, 5) * (landing - T)])
+    times = np.array([T - 3e-3, *(T + parts), landing + 1e-4])
+    samples, state = np.full((len(times), 7), np.nan), taking_off(problem, 0.3, 1.0)
+    state = State(state.motion, state.memory, COUNTS)
+    code, found, k = plain(replay.sample_cycle)(
+        problem, state, hold, landing, EXACT, times, samples, 1, known.stick
+    )
+    assert (code <= COMPLETED, k) == (True, len(times) - 1)
+    assert found.motion == state.motion
+    assert found.memory == state.memory
+    assert found.counts[3:] == COUNTS[3:]
+    assert found.counts.steps > COUNTS.steps + 3
+    assert np.isnan(samples[[0, -1]]).all()
+    wanted = np.full((7, 7), np.nan)
+    plain(loop.advance)(
+        problem, taking_off(problem, THETA, T), landing, EXACT, 10**6,
+        times[2:-1], wanted, 0, np.zeros((2, 2)),
+    )  # fmt: skip
+    assert samples[3:-1, :6] == pytest.approx(wanted[1:6, :6], rel=1e-6, abs=1e-9)
+    assert samples[1:-1, 6].tolist() == [1.0, 1.0, *[0.0] * 5]
+    v = problem.drive.velocity * np.array([problem.system.cos_phi, problem.system.sin_phi])
+    u = np.array(taking_off(problem, THETA).motion[1:3])
+    assert samples[1, :4] == pytest.approx([*(u - 1e-3 * v), 0.0, 0.0])
+    assert samples[2, :4] == pytest.approx([*u, 0.0, 0.0])
+
+
+@pytest.mark.parametrize("after", [None, 1e-4])
+def test_without_samples_of_the_slip_no_steps_are_taken(after):
+    problem, known = problem_of("soft"), unknown(1e-6)
+    hold, landing = Hold(T - 2e-3, T, THETA), T + 0.01
+    times = np.array([T - 1e-3] if after is None else [T - 1e-3, landing + after])
+    samples, state = np.full((2, 7), np.nan), State(taking_off(problem, 0.3).motion, MEMORY, COUNTS)
+    code, found, k = plain(replay.sample_cycle)(
+        problem, state, hold, landing, EXACT, times, samples, 0, known.stick
+    )
+    assert (code, found, k) == (COMPLETED, state, 1)
+    assert samples[0, 6] == 1.0
+    assert np.isnan(samples[1]).all()
