@@ -38,16 +38,16 @@ class Fed(NamedTuple):
         return (slip[0] - 2.0 * slip[1] * slip[1] - 30.0 * state[0],)
 
 
-WEAKENING = st.ExponentialWeakening(0.2, 0.1, "40 mm/s")
+WEAKENING = st.laws.ExponentialWeakening(0.2, 0.1, "40 mm/s")
 TENSOR = Elliptic(1.7, 0.3, 0.8)
 # the law, and internal states that slip at some mm/s has
 LAWS = {
     "smoothed": (Smoothed(WEAKENING, Isotropic(), 2e-3), ()),
     "ellipse": (Smoothed(WEAKENING, TENSOR, 2e-3), ()),
     "fed": (Fed(20.0), (2e-5,)),
-    "lugre": (st.LuGre(0.15, 0.2, "10 mm/s", 1e5, 300.0, 2.0), (9e-6, -8e-6)),
-    "ageing": (st.RateStateAgeing(0.01, 0.015, "10 um", 0.2, "1 mm/s"), (-1.2,)),
-    "slip": (st.RateStateSlip(0.012, 0.015, "10 um", 0.2, "1 mm/s"), (-1.2,)),
+    "lugre": (st.laws.LuGre(0.15, 0.2, "10 mm/s", 1e5, 300.0, 2.0), (9e-6, -8e-6)),
+    "ageing": (st.laws.RateStateAgeing(0.01, 0.015, "10 um", 0.2, "1 mm/s"), (-1.2,)),
+    "slip": (st.laws.RateStateSlip(0.012, 0.015, "10 um", 0.2, "1 mm/s"), (-1.2,)),
 }
 STATELESS = [name for name, (_, z) in LAWS.items() if not z]
 STATEFUL = [name for name, (_, z) in LAWS.items() if z]

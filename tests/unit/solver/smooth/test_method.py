@@ -14,7 +14,7 @@ from stiction.solver.smooth.method import FINER, Smooth
 from stiction.solver.state import NOTHING
 from stiction.system.description import Description
 
-AGEING = STEADY.replace(friction=st.RateStateAgeing(0.01, 0.015, "10 um", 0.2, "1 mm/s"))
+AGEING = STEADY.replace(friction=st.laws.RateStateAgeing(0.01, 0.015, "10 um", 0.2, "1 mm/s"))
 START = st.Initial(u_x=1e-3, u_y=2e-6, v_x=1e-3, v_y=-5e-4, time=0.3)
 
 
