@@ -42,7 +42,6 @@ TESTS = (  # of pieces, in plain Python; whole runs take long there
     "tests/unit/friction/test_formulas.py",
     "tests/unit/friction/test_laws.py",
     "tests/unit/friction/test_user.py",
-    "tests/unit/analysis/motion/test_cycles.py",
     "tests/unit/analysis/motion/test_hesitations.py",
     "tests/unit/analysis/signals",
 )
@@ -102,15 +101,9 @@ def reached(
     items: Sequence[pytest.Item], sources: Sequence[Path], options: argparse.Namespace
 ) -> list[Test]:
     """Return the tests with the lines that they run, from the folder or by running them."""
-    texts = [path.read_text(encoding="utf-8") for path in (*sources, *files([Path("tests")]))]
-    names = sorted(item.nodeid for item in items)
-    path = options.results / f"tests-{digest(json.dumps([options.longest, names, texts]))}.json"
-    if not path.exists():
-        found = watched(items, sources, options.longest)
-        path.write_text(json.dumps(found))
-        for name in found["left_out"]:
-            print(f"left out, as it takes long or is of compiled code: {name}")
-    known = [Test(*row) for row in json.loads(path.read_text())["tests"]]
+    known, left_out = watched(items, sources, options.longest, options.results)
+    for name in left_out:
+        print(f"left out, as it takes long or is of compiled code: {name}")
     print(f"{len(known)} tests, {sum(each.seconds for each in known):.0f} s", flush=True)
     return known
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -9,7 +10,8 @@ from typing import Any, NamedTuple
 import pytest
 from coverage import Coverage
 
-from .session import Answer, apart, run
+from .mutants import digest
+from .session import apart, run
 
 TOGETHER = 10.0  # times what one test takes at most: the tests of a file
 
@@ -27,30 +29,43 @@ class Test(NamedTuple):
         return self.name.partition("::")[0]
 
 
-def watched(items: Sequence[pytest.Item], sources: Sequence[Path], longest: float) -> Answer:
-    """Return the tests that pass in so many CPU seconds, and the others.
+def watched(
+    items: Sequence[pytest.Item], sources: Sequence[Path], longest: float, place: Path
+) -> tuple[list[Test], list[str]]:
+    """Return the tests that pass in so many CPU seconds, and the names of the others.
 
     The tests of a file run in one process; where they take too long together, each in its own, in
-    which it pays for its fixtures, as it may have to for a mutant.
+    which it pays for its fixtures, as it may have to for a mutant. The lines of a file's tests are
+    stored in a folder, for as long as neither that file nor the sources change.
     """
     groups: dict[str, list[pytest.Item]] = {}
     for item in items:
         groups.setdefault(item.nodeid.partition("::")[0], []).append(item)
+    texts = [path.read_text(encoding="utf-8") for path in sources]
     tests: list[Test] = []
     others: list[str] = []
-    for group in groups.values():
-        found = watched_together(group, sources, TOGETHER * longest)
-        if found is None:
-            each = [watched_together([item], sources, longest) for item in group]
-            found = [row for rows in each for row in rows or ()]
-        short = [Test(*row[:3]) for row in found if row[3] and row[1] <= longest]
+    for name, group in groups.items():
+        names = [item.nodeid for item in group]
+        origin = digest(json.dumps([longest, names, Path(name).read_text("utf-8"), *texts]))
+        stored = place / f"tests-{origin}.json"
+        if not stored.exists():
+            stored.write_text(json.dumps(watched_file(group, sources, longest)))
+        short = [Test(*row) for row in json.loads(stored.read_text())]
+        print(f"{len(short)} of {len(group)} tests of {name}", flush=True)
         tests += short
-        print(
-            f"{len(short)} of {len(group)} tests of {group[0].nodeid.partition('::')[0]}",
-            flush=True,
-        )
-        others += sorted({item.nodeid for item in group} - {test.name for test in short})
-    return {"tests": tests, "left_out": others}
+        others += sorted(set(names) - {test.name for test in short})
+    return tests, others
+
+
+def watched_file(
+    group: Sequence[pytest.Item], sources: Sequence[Path], longest: float
+) -> list[Test]:
+    """Return those tests of a file that pass in so many CPU seconds."""
+    found = watched_together(group, sources, TOGETHER * longest)
+    if found is None:
+        each = [watched_together([item], sources, longest) for item in group]
+        found = [row for rows in each for row in rows or ()]
+    return [Test(*row[:3]) for row in found if row[3] and row[1] <= longest]
 
 
 def watched_together(
