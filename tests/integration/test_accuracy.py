@@ -1,6 +1,6 @@
 """What `rtol` promises, on systems that ``python -m benchmarks.explore`` draws, the worst included.
 
-Both bounds hold on 10 000 of them; these are of the two laws that other tests compile as well.
+Both bounds hold on 30 000 of them; these are of the two laws that other tests compile as well.
 """
 
 import pytest
@@ -25,6 +25,7 @@ WORST = (
     452,
     7340,
     8466,
+    26943,  # steps longer than the oscillation across the slip: off by 31 once
 )
 WORST_MAPPED = (5661, 1492, 8596, 168, 8106, 1491, 2413, 1060)
 

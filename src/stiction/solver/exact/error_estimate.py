@@ -52,6 +52,7 @@ def moving(problem: Problem, frame: Frame, start: Outset, accuracy: Accuracy) ->
 def local_error(
     problem: Problem,
     frame: Frame,
+    o: Oscillator,
     s: Swing,
     h: float,
     p: Triple,
@@ -62,16 +63,26 @@ def local_error(
     """Return the largest relative error of the collocation cubic inside the step.
 
     It follows from the defect at an interior point, times the step size: (M35) to (M38). In a step
-    longer than an oscillation, which the cubic cannot follow, the defect may vanish by chance:
-    there two points are used.
+    longer than an oscillation, along the slip or across it, which the cubic cannot follow, the
+    defect may vanish by chance: there two points are used.
     """
     over = s.p_in, s.rest_in, s.slid_in
     error = error_at(problem, frame, over, h, p, w, accuracy, motion, INTERIOR, DEFECT_WEIGHT)
-    if frame.k_11 * h * h > MOST:
-        over = 0.0, 0.0, 0.0
+    if max(frame.k_11, frame.k_22) * h * h > MOST:
+        over = superposed(o, s, h)
         later = error_at(problem, frame, over, h, p, w, accuracy, motion, LATER, LATER_WEIGHT)
         error = max(error, later)
     return error
+
+
+@inlined
+def superposed(o: Oscillator, s: Swing, h: float) -> Triple:
+    """Return the contribution of the oscillation at the later point, zero if there is none."""
+    if not swings(o, h):
+        return 0.0, 0.0, 0.0
+    (p, v, z), along = after(o, LATER * h), (o.level + o.x, s.p[0], s.p[1], s.p[2])
+    rest = h * v - cubic_slope(along, LATER)
+    return p - cubic(along, LATER), rest, z / h - integral(s.p, LATER)
 
 
 @inlined

@@ -86,7 +86,7 @@ def step(
             continue
         factor = 0.3
         if converged and min(p) >= 0.0:
-            relative = local_error(problem, frame, s, h, p, w, accuracy, motion)
+            relative = local_error(problem, frame, o, s, h, p, w, accuracy, motion)
             error = relative / accuracy.tolerance
             # a slip as small as its error may have been zero
             least = 0.0 if landing else relative * min(accuracy.speed + frame.r, motion)

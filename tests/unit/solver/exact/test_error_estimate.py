@@ -44,7 +44,7 @@ def test_the_motion_about_steady_sliding(name, drawn):
 @pytest.mark.parametrize("motion", [1e-3, inf])
 @pytest.mark.parametrize("accuracy", [ACCURACY, ACCURACY._replace(drive=inf, free_x=1.0)])
 def test_the_error_of_a_step(name, drawn, size, motion, accuracy):
-    """(M37), (M38) and (M41), at one point, or at two in a step longer than an oscillation."""
+    """(M37), (M38) and (M41), at one point, or at two in a step longer than either oscillation."""
     problem, frame, o, printed, h = begun(name, drawn, "not")
     h *= size / 0.02
     laid = plain(oscillation.swings)(o, h)
@@ -52,7 +52,9 @@ def test_the_error_of_a_step(name, drawn, size, motion, accuracy):
     swing = plain(oscillation.swing)(o, h, False)
     p, w = frame.r * np.array([1.05, 0.9, 0.95]), np.array([0.02, -0.1, 0.15])
     after, found = plain(oscillation.after), []
-    for c in (0.4, 0.85) if size > 2.5 else (0.4,):
+    stiffest = max(frame.k_11, frame.k_22)
+    assert size < 2.5 or stiffest * h * h > 6.25
+    for c in (0.4, 0.85) if stiffest * h * h > 6.25 else (0.4,):
         gamma = abs(PI.integ()(C[0]) / PI(c))
         below = np.array([after(o, x * h) if laid else (0.0,) * 3 for x in (*NODES, c)]).T
         rest = Polynomial.fit(NODES, [frame.r, *p] - below[0, :4], 3, domain=[0, 1])
@@ -79,7 +81,7 @@ def test_the_error_of_a_step(name, drawn, size, motion, accuracy):
         turned = abs(off_w) * (sigma + np.hypot(*s)) / S
         found.append(gamma * max(abs(off_p) / S, turned, *np.abs(off / axes)))
     error = plain(error_estimate.local_error)
-    got = error(problem, frame, swing, h, tuple(p), tuple(w), accuracy, motion)
+    got = error(problem, frame, o, swing, h, tuple(p), tuple(w), accuracy, motion)
     assert got == pytest.approx(max(found), rel=1e-6)
 
 
@@ -88,7 +90,7 @@ def test_a_slip_below_zero_is_infinitely_wrong():
     swing = plain(oscillation.swing)(o, h, False)
     stages = (-frame.r,) * 3, (0.0,) * 3
     error = plain(error_estimate.local_error)
-    assert error(problem, frame, swing, h, *stages, ACCURACY, inf) == inf
+    assert error(problem, frame, o, swing, h, *stages, ACCURACY, inf) == inf
 
 
 def test_the_integral_of_the_unknown_products():

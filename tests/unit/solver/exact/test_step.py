@@ -42,7 +42,7 @@ def test_an_accepted_step_keeps_its_tolerance(name, drawn, tolerance):
     assert (done, landing) == (True, False)
     assert iterations > rejected
     motion = plain(error_estimate.moving)(problem, frame, start, accuracy)
-    wanted = plain(error_estimate.local_error)(problem, frame, s, h, p, w, accuracy, motion)
+    wanted = plain(error_estimate.local_error)(problem, frame, o, s, h, p, w, accuracy, motion)
     assert error == pytest.approx(wanted / tolerance)
     assert 0.0 < error <= 1.0
     assert s == plain(oscillation.swing)(o, h, False)
