@@ -23,7 +23,7 @@ record = st.Record(
 )
 for doubt in st.analyse(record).warnings:
     print(doubt)  # it drifts
-found = st.analyse(st.analysis.detrended(record))
+found = st.analyse(st.analysis.detrend(record))
 print(found.regime)
 print(f"static friction coefficient {found.friction.static.coefficient:.4f}")
 print(found.cycles[["peak_time", "period", "drop", "mu_static", "mu_kinetic"]].to_dataframe())

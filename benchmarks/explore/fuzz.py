@@ -30,7 +30,7 @@ from stiction.cli import main as main_line
 from stiction.cli.options import value as option
 from stiction.comparison import read_laws
 from stiction.result import checksums
-from stiction.result.file import opened
+from stiction.result.file import open_tables
 from stiction.study.store.seal import seal
 from stiction.text.toml import toml_text
 
@@ -304,8 +304,8 @@ def result(draw: Draw, folder: Path) -> None:
 def reseal(path: Path) -> None:
     """Have a result's checksums fit what is in it, as who changes it on purpose would."""
     with suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
-        data, sticks = opened(path)
-        seal = checksums.sealed({"samples": data, "sticks": sticks})
+        data, sticks = open_tables(path)
+        seal = checksums.seal_tables({"samples": data, "sticks": sticks})
         with h5py.File(path, "r+") as file:
             file.attrs[checksums.SEAL] = seal
     checksums.sign(path)

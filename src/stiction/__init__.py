@@ -13,7 +13,7 @@ from stiction.names import public
 __version__ = "0.5.0"
 
 _MOVED = {  # to which room; the old places of these names work for one more version
-    "analysis": "Regime classify creep_curves detrended energy_budget find_cycles find_onset"
+    "analysis": "Regime classify creep_curves energy_budget find_cycles find_onset"
     " fit_divergence fit_misalignment follow_ridge mean_creep misalignment_from_force"
     " oscillation_by_phase record_of spectrogram stream_spectrogram strongest_line summary"
     " transverse_oscillation",
@@ -27,6 +27,7 @@ _MOVED = {  # to which room; the old places of these names work for one more ver
 _RENAMED = {
     name: f"stiction.{room}.{name}" for room, names in _MOVED.items() for name in names.split()
 } | {
+    "detrended": "stiction.analysis.detrend",
     "hear_song": "stiction.analysis.transverse_oscillation",
     "song_by_phase": "stiction.analysis.oscillation_by_phase",
 }

@@ -16,14 +16,14 @@ from stiction.errors import DescriptionError, Fault
 from stiction.friction import LAWS, Law, has_state, name_of, parameters, read_law
 from stiction.friction.equivalent import Traits, like, traits
 from stiction.friction.law import static_coefficient
-from stiction.friction.user.loading import named
+from stiction.friction.user.loading import finder_for_descriptions
 from stiction.machine import shortage
 from stiction.simulation import automatic_times, run
 from stiction.system.description import SAMPLE, Description, description_of
 from stiction.system.initial import Initial
 from stiction.text.sections import Section, Table, as_html, as_text
 from stiction.text.toml import read_toml
-from stiction.text.validation import unknown
+from stiction.text.validation import unknown_name
 from stiction.trajectory import Trajectory
 
 HEADINGS = (
@@ -84,7 +84,7 @@ def row(label: str, run: Trajectory) -> tuple[str, ...]:
     return label, *stuck, f"{o.peak:.4f}", *speeds
 
 
-def sampled(description: Description) -> Description:
+def add_sample_rate(description: Description) -> Description:
     """Return the description with a sample rate for figures over time.
 
     If it has none, all laws use the rate that `simulate` chooses for the description's own law.
@@ -131,7 +131,7 @@ def compare(
     DescriptionError
         With every law that cannot be read.
     """
-    description = sampled(description_of(description))
+    description = add_sample_rate(description_of(description))
     own = description.slider.law
     others = read_laws(description, [laws] if isinstance(laws, str | Path) else laws)
     all_laws = [own, *(law for law in others if law is not own)]
@@ -143,7 +143,7 @@ def compare(
     runs: dict[str, Trajectory] = {}
     for name, law in zip(labels(all_laws), all_laws, strict=True):
         part = None if progress is None else share(progress, len(runs), len(all_laws))
-        runs[name] = run(exchanged(description, law), max_steps=max_steps, progress=part)
+        runs[name] = run(exchange_law(description, law), max_steps=max_steps, progress=part)
     return Comparison(runs)
 
 
@@ -172,7 +172,7 @@ def labels(laws: Sequence[Law]) -> list[str]:
     return full
 
 
-def exchanged(description: Description, law: Law) -> Description:
+def exchange_law(description: Description, law: Law) -> Description:
     """Return the same description with another friction law.
 
     Initial internal states are kept only for a law of the same type.
@@ -190,7 +190,7 @@ def read_laws(description: Description, laws: Sequence[Any]) -> list[Law]:
     found: list[Fault] = []
     for count, value in enumerate(laws, 1):
         try:
-            made.append(exchanged(description, read(description, value)).slider.law)
+            made.append(exchange_law(description, read(description, value)).slider.law)
         except DescriptionError as error:
             where = f"law {value}" if value and isinstance(value, str | Path) else f"law {count}"
             found += [Fault(where, ": ".join(within(fault, str(value)))) for fault in error.faults]
@@ -218,13 +218,13 @@ def read(description: Description, value: Any) -> Law:
     if text.startswith("{"):
         return read_law(inline(text))
     if text.endswith(".toml"):
-        return read_law(friction_table(text), named(Path(text).parent))
+        return read_law(friction_table(text), finder_for_descriptions(Path(text).parent))
     if ":" in text:  # named by the user, not by a file
-        return read_law({"law": text}, named(Path(), trust=True))
+        return read_law({"law": text}, finder_for_descriptions(Path(), trust=True))
     if text in LAWS:
         return comparable(LAWS[text], description)
     other = f"(or a table {EXAMPLE}, a .toml file, file.py:Class)"
-    raise DescriptionError([Fault("law", f"{unknown('law', text, LAWS)} {other}")])
+    raise DescriptionError([Fault("law", f"{unknown_name('law', text, LAWS)} {other}")])
 
 
 def comparable(kind: Any, description: Description) -> Law:

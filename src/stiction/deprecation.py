@@ -59,7 +59,7 @@ def old_names(
         if name in renamed:
             new = renamed[name] if "." in renamed[name] else f"{module}.{renamed[name]}"
             warn_renamed(f"{module}.{name}", new)
-            return _found(new)
+            return _resolve(new)
         if otherwise is not None:
             return otherwise(name)
         raise AttributeError(f"module {module!r} has no attribute {name!r}")
@@ -67,7 +67,7 @@ def old_names(
     return find
 
 
-def _found(path: str) -> Any:
+def _resolve(path: str) -> Any:
     from pkgutil import resolve_name  # here, so that `import stiction` is fast
 
     return resolve_name(path)
@@ -79,23 +79,23 @@ class _Moved:
     def __init__(self, old: str, new: str) -> None:
         self._old, self._new = old, new
 
-    def _found(self) -> Any:
+    def _resolve(self) -> Any:
         warn_renamed(self._old, self._new, stacklevel=4)
-        return _found(self._new)
+        return _resolve(self._new)
 
     def __call__(self, *args: Any, **values: Any) -> Any:
-        return self._found()(*args, **values)
+        return self._resolve()(*args, **values)
 
     def __instancecheck__(self, value: Any) -> bool:
-        return isinstance(value, self._found())
+        return isinstance(value, self._resolve())
 
     def __subclasscheck__(self, kind: type) -> bool:
-        return issubclass(kind, self._found())
+        return issubclass(kind, self._resolve())
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):  # pytest, doctest and others look these up on functions
             raise AttributeError(name)
-        return getattr(self._found(), name)
+        return getattr(self._resolve(), name)
 
 
 def old_attributes(function: Callable[..., Any], renamed: Mapping[str, str]) -> None:

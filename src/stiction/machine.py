@@ -25,16 +25,17 @@ LIMITS = (  # files with the limit of a container or batch system
 
 
 @cache
-def lent() -> float:
+def largest_object() -> float:
     """Return how many bytes one object may occupy."""
     return SHARE * min(_physical(), *map(_limit, LIMITS), _of_process())
 
 
 def shortage(size: float) -> str:
     """Return why `size` bytes are too many, as part of a sentence; '' if they fit."""
-    if size <= lent():
+    if size <= largest_object():
         return ""
-    return f"takes {size / 1e9:.3g} GB of memory, and this machine lends {lent() / 1e9:.3g} GB"
+    lends = f"this machine lends {largest_object() / 1e9:.3g} GB"
+    return f"takes {size / 1e9:.3g} GB of memory, and {lends}"
 
 
 def _physical() -> float:

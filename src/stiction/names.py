@@ -16,7 +16,7 @@ from stiction.deprecation import old_names
 
 
 @cache
-def listed(room: str) -> dict[str, str]:
+def public_names(room: str) -> dict[str, str]:
     """Return the module of each public name of a room, from the lines of its stub.
 
     They are read and not run: to import everything takes much longer than to import one name.
@@ -43,32 +43,32 @@ def public(
 
     def find(name: str) -> Any:
         if name == "__all__":
-            return sorted(listed(room))
-        if name.startswith("__") or name not in listed(room):
+            return sorted(public_names(room))
+        if name.startswith("__") or name not in public_names(room):
             raise AttributeError(f"module {room!r} has no attribute {name!r}")
-        home = listed(room)[name]
+        home = public_names(room)[name]
         found = None if home == room else getattr(import_module(home), name, None)
         return import_module(f"{home}.{name}") if found is None else found  # a room
 
     def names() -> list[str]:
         own = (name for name in vars(sys.modules[room]) if name.startswith("__"))
-        return sorted([*listed(room), *own])
+        return sorted([*public_names(room), *own])
 
     return old_names(room, formerly or {}, find), names
 
 
-def spelled(kind: type) -> str:
+def session_name(kind: type) -> str:
     """Return a class as one writes it in a session: ``st.laws.LuGre``; others by their name.
 
     >>> from stiction.friction.laws import LuGre
-    >>> spelled(LuGre)
+    >>> session_name(LuGre)
     'st.laws.LuGre'
     """
     name, home = kind.__name__, kind.__module__
     if home.startswith("stiction."):
         import stiction
 
-        if home.startswith(listed("stiction").get(name, "none")):
+        if home.startswith(public_names("stiction").get(name, "none")):
             return f"st.{name}"
         for room in ("laws", "protocols"):
             if getattr(getattr(stiction, room), name, None) is kind:

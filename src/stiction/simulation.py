@@ -154,11 +154,11 @@ def run(
         times = sample_times(initial.time, settings.duration, rate)
     solution = solve(description, times, max_steps=max_steps, progress=progress)
     status, statistics = STATUSES[solution.code], Statistics(*solution.counts)
-    arrays = partial(labelled, description, solution, status, statistics)
+    arrays = partial(label, description, solution, status, statistics)
     return Trajectory(description, arrays, solution.sticks, status, statistics)
 
 
-def labelled(
+def label(
     description: Description, solution: Solution, status: Status, statistics: Statistics
 ) -> xr.Dataset:
     """Return what a run found as labelled arrays, and how it was found."""
@@ -239,7 +239,7 @@ def automatic_times(description: Description) -> np.ndarray:
     """Return output times that show the motion of a system, from start to end; see `simulate`."""
     slider, duration = description.slider, description.run.duration
     slow, fast = slider.natural_frequencies
-    fine = PER_FAST_PERIOD * duration * max((fast, *slider.shaken))
+    fine = PER_FAST_PERIOD * duration * max((fast, *slider.modulation_frequencies))
     wanted = max(min(fine, MANY), PER_SLOW_PERIOD * duration * slow, FEWEST)
     start = description.initial.time
     times: np.ndarray = np.linspace(start, start + duration, ceil(min(wanted, MOST)) + 1)

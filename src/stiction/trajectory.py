@@ -12,7 +12,7 @@ import numpy as np
 
 from stiction.errors import DescriptionError, ResultError, Status
 from stiction.friction import states
-from stiction.result.dataset import VARIABLES, apparent_friction, described, stick_table
+from stiction.result.dataset import VARIABLES, apparent_friction, cf_attributes, stick_table
 from stiction.result.file import ENDS, age, read_tables, write_result
 from stiction.storage.files import placeable, whole
 from stiction.storage.table_files import exportable, write_tables
@@ -260,4 +260,4 @@ def _with_mu(data: xr.Dataset, slider: Slider) -> xr.Dataset:
     if "mu" in data:
         return data
     mu = apparent_friction(slider, data)
-    return data.assign(mu=mu.assign_attrs(described(*VARIABLES["mu"])))
+    return data.assign(mu=mu.assign_attrs(cf_attributes(*VARIABLES["mu"])))

@@ -36,7 +36,7 @@ from stiction.reproduction.figure4 import figure4
 from stiction.reproduction.figure5 import HALF, clear_of, figure5
 from stiction.reproduction.schematic import schematic
 from stiction.reproduction.zero_slip import zero_slip
-from stiction.text.quantity_text import prefixed
+from stiction.text.quantity_text import metric_prefix
 
 
 def drawn(fig: Figure) -> Figure:
@@ -298,8 +298,8 @@ def test_time_stuck_counts_parts_of_intervals() -> None:
 
 
 def test_units_suit_the_size() -> None:
-    assert prefixed([2e-3, -4e-3]) == (1e3, "m")
-    assert prefixed([np.nan, 0.0]) == (1.0, "")
+    assert metric_prefix([2e-3, -4e-3]) == (1e3, "m")
+    assert metric_prefix([np.nan, 0.0]) == (1.0, "")
 
 
 def test_drawing_leaves_no_trace(slider: st.Slider) -> None:
@@ -419,7 +419,7 @@ def test_a_mass_that_rests_has_no_axis_of_rounding(slider: st.Slider) -> None:
 
 
 def test_units_reach_down_to_a_microscope_s_energies() -> None:
-    assert prefixed([1.4e-17]) == (pytest.approx(1e18), "a")
+    assert metric_prefix([1.4e-17]) == (pytest.approx(1e18), "a")
 
 
 def test_large_numbers_have_a_power_of_ten() -> None:

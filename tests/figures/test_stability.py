@@ -75,7 +75,7 @@ def test_parameters_have_symbols_and_units():
     assert parameter_symbol("k_x, k_y") == "$k_{x}$ = $k_{y}$"
     assert scale_of("k_x", "N/m", (1e3, 5e3)).label == "$k_{x}$ (kN/m)"
     assert scale_of("drive.velocity", "m/s", (1e-6, 1.0), logarithmic=True).unit == "mm/s"
-    assert scale_of("phi", "rad", (0.0, 1.0)).named(np.radians(8.0)) == r"$\varphi$ = 8°"
+    assert scale_of("phi", "rad", (0.0, 1.0)).quantity(np.radians(8.0)) == r"$\varphi$ = 8°"
 
 
 VELOCITY = {"x": "drive.velocity", "x_between": ("0.01 mm/s", "1 m/s")}

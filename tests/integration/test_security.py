@@ -19,7 +19,7 @@ from tests.waiting import PATIENCE
 import stiction as st
 from stiction.cli import main
 from stiction.cli.commands.sweep import engine
-from stiction.cli.tables import printed
+from stiction.cli.tables import print_sections
 from stiction.errors import StictionError
 from stiction.study.execution.cluster import Processes
 from stiction.study.store.creation import create
@@ -183,7 +183,7 @@ def test_a_file_says_nothing_to_the_terminal(tmp_path, capsys):
 
 def test_tables_say_nothing_to_the_terminal(capsys):
     rows = Table((ESCAPE, "b"), [(ESCAPE, "1")])
-    printed(ESCAPE, [Section(ESCAPE, [ESCAPE], rows)])
+    print_sections(ESCAPE, [Section(ESCAPE, [ESCAPE], rows)])
     said = capsys.readouterr().out
     assert said.count("\\x1b]0;owned") == 5
     assert all(letter.isprintable() for letter in said.replace("\n", ""))

@@ -11,7 +11,7 @@ import stiction as st
 from stiction import plotting
 from stiction.cli import COMMANDS, main
 from stiction.cli.options import changes
-from stiction.plotting.page.canvas import figure_of, listed
+from stiction.plotting.page.canvas import as_list, figure_of
 from stiction.text.paths import with_changes
 
 mpl.use("Agg")
@@ -154,7 +154,7 @@ def test_a_figure_of_its_own_is_known_to_pyplot_only_at_the_public_door(run):
     assert pyplot.get_fignums() == before
     axes = run.plot()
     assert len(pyplot.get_fignums()) == len(before) + 1
-    pyplot.close(listed(axes)[0].figure.figure)
+    pyplot.close(as_list(axes)[0].figure.figure)
     assert pyplot.get_fignums() == before
 
 
@@ -302,13 +302,13 @@ def test_the_output_option_has_one_name_and_help_an_example(name, capsys):
 
 
 def test_a_table_breaks_between_words_on_a_narrow_terminal(capsys, monkeypatch):
-    from stiction.cli.tables import printed
+    from stiction.cli.tables import print_sections
     from stiction.text.sections import Section, Table
 
     headings = ("law", "sticks", "slowest in load-up (m/s)", "median in load-up (m/s)")
     row = ("coulomb, mu_static = 0.2", "39", "3.58e-05", "1.25e-05")
     monkeypatch.setenv("COLUMNS", "40")
-    printed("a title", [Section("a part", [], Table(headings, [row]))])
+    print_sections("a title", [Section("a part", [], Table(headings, [row]))])
     text = capsys.readouterr().out
     assert {*row[1:], "coulomb,", "load-up"} <= set(text.split())
     assert max(map(len, text.splitlines())) <= 40

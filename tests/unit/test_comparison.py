@@ -16,10 +16,10 @@ import stiction as st
 from stiction import comparison
 from stiction.analysis.slip import averaged_slip, outcome
 from stiction.cli import main
-from stiction.comparison import exchanged, read_laws, shared_traits
+from stiction.comparison import exchange_law, read_laws, shared_traits
 from stiction.friction.equivalent import like, traits
 from stiction.plotting.page.canvas import figure_of
-from stiction.plotting.page.words import wrapped
+from stiction.plotting.page.words import wrap_words
 from stiction.plotting.run.comparison import legend_text, plot_comparison
 from stiction.plotting.run.curves import curves_of
 from stiction.simulation import automatic_times
@@ -122,7 +122,7 @@ def test_traits_of_a_law_with_state_are_those_of_its_steady_sliding() -> None:
 
 @pytest.mark.parametrize("law", [WEAKENING, st.Coulomb(0.15), st.Coulomb(0.15, 0.2)])
 def test_a_law_is_like_itself(described: st.Description, law: st.Coulomb) -> None:
-    made = like(type(law), shared_traits(exchanged(described, law)))
+    made = like(type(law), shared_traits(exchange_law(described, law)))
     assert [made.coefficient(v) for v in (0.0, 0.01, 0.1)] == pytest.approx(
         [law.coefficient(v) for v in (0.0, 0.01, 0.1)], rel=1e-4
     )
@@ -342,7 +342,7 @@ def test_few_samples_and_no_drive_are_drawn(described: st.Description, rate: str
 
 def test_legends_are_broken_between_parameters() -> None:
     words = [rf"$\mu_{k}$ = 0.123{k}" for k in range(9)]
-    lines = wrapped(words, 30)
+    lines = wrap_words(words, 30)
     assert len(lines) > 1
     assert " ".join(lines) == ", ".join(words)
     assert all(line.endswith(",") for line in lines[:-1])

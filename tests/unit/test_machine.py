@@ -13,7 +13,7 @@ BASE = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(
 @pytest.fixture(autouse=True)
 def small(monkeypatch):
     """Any machine is one that lends 1 GB."""
-    monkeypatch.setattr(machine, "lent", lambda: 1e9)
+    monkeypatch.setattr(machine, "largest_object", lambda: 1e9)
 
 
 def told(make) -> str:
@@ -68,7 +68,7 @@ def test_sticks_are_refused_before_there_is_room_for_them():
 
 
 def test_a_multiscale_run_ends_before_it_fills_the_memory(monkeypatch):
-    monkeypatch.setattr(machine, "lent", lambda: 1e6)  # room for some thousand sticks
+    monkeypatch.setattr(machine, "largest_object", lambda: 1e6)  # room for some thousand sticks
     said = told(lambda: st.simulate(BASE.slider, 1e9, multiscale=True))
     assert said.startswith("run.duration: more than 8192 sticks")
 
@@ -103,4 +103,4 @@ def test_what_the_machine_lends_is_half_of_the_least_it_says(monkeypatch, tmp_pa
     monkeypatch.setattr(machine, "_of_process", lambda: float("inf"))
     for file, lent in (("max", 1.5e9), ("none", 1.5e9), ("some", 1e9)):
         monkeypatch.setattr(machine, "LIMITS", (tmp_path / file,))
-        assert machine.lent.__wrapped__() == lent
+        assert machine.largest_object.__wrapped__() == lent

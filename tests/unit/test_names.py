@@ -7,7 +7,7 @@ from pkgutil import iter_modules
 import pytest
 
 import stiction as st
-from stiction.names import listed, spelled
+from stiction.names import public_names, session_name
 
 ROOMS = ["stiction", "stiction.analysis", "stiction.plotting", "stiction.results"]
 SESSION = {
@@ -28,8 +28,8 @@ def room_of(name):
 @pytest.mark.parametrize("name", ROOMS)
 def test_what_a_room_lists_is_there(name):
     room = room_of(name)
-    assert room.__all__ == sorted(listed(name))
-    for each in listed(name):
+    assert room.__all__ == sorted(public_names(name))
+    for each in public_names(name):
         assert getattr(room, each).__name__.rpartition(".")[2] in (each, "analyse")
         assert each in dir(room)
     with pytest.raises(AttributeError, match=f"module '{name}' has no attribute 'nonsense'"):
@@ -40,7 +40,9 @@ def test_what_a_room_lists_is_there(name):
 def test_no_submodule_hides_a_function_of_its_name(name):
     room = room_of(name)
     below = {each.name for each in iter_modules(getattr(room, "__path__", []))}
-    hidden = {each for each in below & {*listed(name)} if not inspect.ismodule(getattr(room, each))}
+    hidden = {
+        each for each in below & {*public_names(name)} if not inspect.ismodule(getattr(room, each))
+    }
     assert not hidden
 
 
@@ -50,7 +52,7 @@ def test_a_stub_is_one_line_a_name(name):
     lines = Path(f"{room_of(name).__file__}i").read_text("utf-8").splitlines()
     named = [line.split() for line in lines if line.startswith("from")]
     assert [words[3] for words in named] == [words[5] for words in named]
-    assert [words[3] for words in named] == [*listed(name)]
+    assert [words[3] for words in named] == [*public_names(name)]
 
 
 def test_a_session_sees_what_it_uses():
@@ -58,13 +60,13 @@ def test_a_session_sees_what_it_uses():
 
 
 def test_a_class_is_spelled_as_a_session_writes_it():
-    assert spelled(st.Slider) == "st.Slider"
-    assert spelled(st.Coulomb) == "st.Coulomb"
-    assert spelled(st.protocols.Hold) == "st.protocols.Hold"
+    assert session_name(st.Slider) == "st.Slider"
+    assert session_name(st.Coulomb) == "st.Coulomb"
+    assert session_name(st.protocols.Hold) == "st.protocols.Hold"
 
     class Coulomb(st.Coulomb):
         """A law of a user with the name of ours."""
 
-    assert spelled(Coulomb) == "Coulomb"
+    assert session_name(Coulomb) == "Coulomb"
     Coulomb.__module__ = "stiction.text.validation"
-    assert spelled(Coulomb) == "Coulomb"
+    assert session_name(Coulomb) == "Coulomb"

@@ -14,4 +14,4 @@ from __future__ import annotations
 
 from stiction.names import public
 
-__getattr__, __dir__ = public(__name__)
+__getattr__, __dir__ = public(__name__, {"detrended": "stiction.analysis.detrend"})

@@ -7,7 +7,7 @@ from stiction.analysis.energy import energy_budget as energy_budget
 from stiction.analysis.measured_line import strongest_line as strongest_line
 from stiction.analysis.motion.cycle_summary import summary as summary
 from stiction.analysis.motion.cycles import find_cycles as find_cycles
-from stiction.analysis.motion.drift import detrended as detrended
+from stiction.analysis.motion.drift import detrend as detrend
 from stiction.analysis.motion.regime import Regime as Regime
 from stiction.analysis.motion.regime import classify as classify
 from stiction.analysis.onset import find_onset as find_onset

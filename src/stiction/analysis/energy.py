@@ -94,9 +94,9 @@ def energy_budget(run: Trajectory, edges: ArrayLike | None = None) -> xr.Dataset
     rtol = run.description.run.rtol
     powers, off, sizes = integrals(run, borders, lambda t, rows: _powers(run, t, rows), rtol)
     rows = states_at(run, borders)
-    stored = np.diff(_stored(run, borders, rows), axis=1)
+    stored = np.diff(_stored_energies(run, borders, rows), axis=1)
     if run.slider.driven == "plate":
-        powers[0] += _carried(run, borders)
+        powers[0] += _momentum_gain(run, borders)
     spent = np.concatenate([powers[1:], stored])
     residual = powers[0] - spent.sum(axis=0)
     quadrature, exchanged = off.sum(axis=0), sizes.sum(axis=0) + np.abs(stored).sum(axis=0)
@@ -146,7 +146,7 @@ def _powers(run: Trajectory, t: Floats, rows: Floats) -> Floats:
     return np.stack([work, f_x * s_x, f_y * s_y, s.c_x * v_x**2, s.c_y * v_y**2])
 
 
-def _carried(run: Trajectory, borders: Floats) -> Floats:
+def _momentum_gain(run: Trajectory, borders: Floats) -> Floats:
     """Return m u'.v_d over the smooth stretches of a plate's drive, end less start, J.
 
     Added to the work of spring and dampers on the plate, minus the integral of m u'.a_d, it yields
@@ -172,7 +172,7 @@ def _on_axes(slider: Slider, vector: tuple[Any, ...]) -> tuple[Any, Any]:
     return X * c - Y * n, X * n + Y * c
 
 
-def _stored(run: Trajectory, t: Floats, rows: Floats) -> Floats:
+def _stored_energies(run: Trajectory, t: Floats, rows: Floats) -> Floats:
     """Return the energies (J) of the springs along x and y, and of the moving mass."""
     s = run.slider
     u_x, u_y, v_x, v_y = rows[:, :4].T

@@ -33,7 +33,7 @@ class Found(NamedTuple):
     state: Initial
 
 
-def settled(slider: Slider, start: Initial, most_blocks: int, rtol: float) -> Found:
+def settle(slider: Slider, start: Initial, most_blocks: int, rtol: float) -> Found:
     """Run a slider in blocks of time until it rests, or oscillates evenly."""
     period, block, small = scales(slider)
     growth = steady_sliding(slider).growth_rate

@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.limit_cycle import KICK, OSCILLATING, REST, UNDECIDED, Found, settled
+from stiction.analysis.limit_cycle import KICK, OSCILLATING, REST, UNDECIDED, Found, settle
 from stiction.errors import DescriptionError, Fault
 from stiction.linear_stability import steady_sliding
-from stiction.system.parameter import changed, placed, read, unit
+from stiction.system.parameter import change_parameter, change_unchecked, read, unit
 from stiction.system.slider import Slider
 
 if TYPE_CHECKING:
@@ -143,43 +143,45 @@ def find_onset(
     time, in which a small disturbance would have changed by three times as much. Otherwise it is
     undecided, as happens close to the boundary, where changes are slow.
     """
-    sliders = [changed(slider, path, value) for value in values]
+    sliders = [change_parameter(slider, path, value) for value in values]
     numbers = np.array([read(each, path) for each in sliders])
     if len(numbers) < 3 or not (np.diff(numbers) > 0).all():
         message = f"{len(numbers)} values to sweep through; give three or more that ascend"
         raise DescriptionError([Fault(path, message)])
-    up = swept(sliders, most_blocks, rtol)
-    down = swept(sliders[::-1], most_blocks, rtol)[::-1]
+    up = sweep_sliders(sliders, most_blocks, rtol)
+    down = sweep_sliders(sliders[::-1], most_blocks, rtol)[::-1]
     trials = [Trial(*each) for each in zip(map(float, numbers), up, down, strict=True)]
     fine = SHARP * float(np.diff(numbers).min())
     for _ in range(MOST_ADDED):
         value = next_value(trials, fine)
         if value is None:
             break
-        at = placed(slider, path, value)
-        trials.append(tried(at, value, trials, most_blocks, rtol))
+        at = change_unchecked(slider, path, value)
+        trials.append(try_value(at, value, trials, most_blocks, rtol))
         trials.sort(key=lambda each: each.value)
-    growth = [steady_sliding(placed(slider, path, each.value)).growth_rate for each in trials]
-    return judged(trials, table(path, unit(slider, path), trials, np.array(growth)))
+    growth = [
+        steady_sliding(change_unchecked(slider, path, each.value)).growth_rate for each in trials
+    ]
+    return judge_trials(trials, table(path, unit(slider, path), trials, np.array(growth)))
 
 
-def swept(sliders: Sequence[Slider], most_blocks: int, rtol: float) -> list[Found]:
+def sweep_sliders(sliders: Sequence[Slider], most_blocks: int, rtol: float) -> list[Found]:
     """Return the result of each slider, each run starting where the last one ended."""
     found: list[Found] = []
     for slider in sliders:
         moving = found and found[-1].outcome != REST
-        start = found[-1].state if moving else steady_sliding(slider).disturbed(KICK)
-        found.append(settled(slider, start, most_blocks, rtol))
+        start = found[-1].state if moving else steady_sliding(slider).disturbed_start(KICK)
+        found.append(settle(slider, start, most_blocks, rtol))
     return found
 
 
-def tried(
+def try_value(
     slider: Slider, value: float, trials: Sequence[Trial], most_blocks: int, rtol: float
 ) -> Trial:
     """Return the results from rest, and from the oscillation at the nearest value."""
     moving = min((each for each in trials if each.moves), key=lambda each: abs(each.value - value))
-    rest = steady_sliding(slider).disturbed(KICK)
-    found = [settled(slider, start, most_blocks, rtol) for start in (rest, moving.up.state)]
+    rest = steady_sliding(slider).disturbed_start(KICK)
+    found = [settle(slider, start, most_blocks, rtol) for start in (rest, moving.up.state)]
     upward = moving.value < value  # an upward sweep comes from lower values
     return Trial(value, *(found[::-1] if upward else found))
 
@@ -206,7 +208,7 @@ def next_value(trials: Sequence[Trial], fine: float) -> float | None:
     if found is None or any(each.differs for each in trials):
         return None
     rest, moving = found
-    first, estimate = moving[0].value, extrapolated(rest, moving)
+    first, estimate = moving[0].value, extrapolate_onset(rest, moving)
     low, high = sorted((rest.value, first))
     unsure = [each.value for each in trials if low < each.value < high]
     limit = min(unsure, key=lambda value: abs(value - first)) if unsure else rest.value
@@ -239,7 +241,7 @@ def size(trial: Trial) -> float:
     return 0.5 * (trial.up.amplitude + trial.down.amplitude)
 
 
-def extrapolated(rest: Trial, moving: Sequence[Trial]) -> Estimate:
+def extrapolate_onset(rest: Trial, moving: Sequence[Trial]) -> Estimate:
     """Extrapolate the squared amplitude to zero by a parabola through three values.
 
     Its uncertainty is the difference from a straight line through two of them, plus the effect of
@@ -275,7 +277,7 @@ def extrapolated(rest: Trial, moving: Sequence[Trial]) -> Estimate:
     return Estimate(float(first + curved), uncertainty, soft=True)
 
 
-def judged(trials: Sequence[Trial], data: xr.Dataset) -> Onset:
+def judge_trials(trials: Sequence[Trial], data: xr.Dataset) -> Onset:
     """Return the onset seen in the trials."""
     both = [each.value for each in trials if each.differs]
     if both:
@@ -284,7 +286,7 @@ def judged(trials: Sequence[Trial], data: xr.Dataset) -> Onset:
     if found is None:
         alike = all(each.rests for each in trials) or all(each.moves for each in trials)
         return Onset("none" if alike else "not determined", nan, (nan, nan), data)
-    estimate = extrapolated(*found)
+    estimate = extrapolate_onset(*found)
     kind: Kind = "soft" if estimate.soft else "not determined"
     return Onset(kind, estimate.threshold, (nan, nan), data, estimate.uncertainty)
 

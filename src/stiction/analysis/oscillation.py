@@ -82,7 +82,7 @@ def transverse_oscillation(run: Trajectory) -> xr.Dataset:
     }
     return (
         found.drop_vars("amplitude")
-        .assign(_labelled("time", rows))
+        .assign(_label("time", rows))
         .assign_attrs(natural_frequency=natural, width=width)
     )
 
@@ -146,7 +146,7 @@ def oscillation_by_phase(oscillation: xr.Dataset, run: Trajectory, phases: Float
     }
     seconds = {"units": "s"}
     return xr.Dataset(
-        _labelled("phase", rows),
+        _label("phase", rows),
         {
             "start": ("phase", phases[:, 0], seconds),
             "end": ("phase", phases[:, 1], seconds),
@@ -173,7 +173,7 @@ def apart(oscillation: xr.Dataset, cycles: xr.Dataset) -> xr.Dataset:
     return oscillation.assign(cleared)
 
 
-def _labelled(dimension: str, rows: Rows) -> dict[str, tuple[str, Any, dict[str, str]]]:
+def _label(dimension: str, rows: Rows) -> dict[str, tuple[str, Any, dict[str, str]]]:
     """Return variables over a dimension from values, unit and long name of each."""
     return {
         name: (dimension, values, {"units": unit, "long_name": meaning})

@@ -200,7 +200,7 @@ class Record(Described):
         return plot_cycles(self, axes)
 
 
-def recorded(source: Trajectory | Record) -> Record:
+def as_record(source: Trajectory | Record) -> Record:
     """Return the record of a run, or a record as it is.
 
     Raises

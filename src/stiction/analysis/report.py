@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from stiction.analysis.creep.divergence import Divergence
-from stiction.analysis.creep.findings import find_creep, tried
+from stiction.analysis.creep.findings import attempt, find_creep
 from stiction.analysis.creep.misalignment import Misalignment
 from stiction.analysis.export import export
 from stiction.analysis.measured_line import strongest_line
@@ -24,7 +24,7 @@ from stiction.analysis.oscillation import (
     transverse_oscillation,
 )
 from stiction.analysis.parts import functions
-from stiction.analysis.record import Record, recorded
+from stiction.analysis.record import Record, as_record
 from stiction.deprecation import warn_renamed
 from stiction.text.sections import Section, as_html, as_text
 from stiction.trajectory import Trajectory, load
@@ -153,17 +153,17 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     if isinstance(source, str | Path):
         source = load(source, trust=trust)
     run = source if isinstance(source, Trajectory) else None
-    record = recorded(source)
+    record = as_record(source)
     found = swings(record)
     cycles, regime = found.cycles, regime_of(record, found)
     sticking = cycles if regime.kind in (STICK_SLIP, TRANSITIONAL) else cycles.isel(cycle=slice(0))
     if run is not None:
-        oscillation = tried(
+        oscillation = attempt(
             missing, "oscillation", lambda: apart(transverse_oscillation(run), cycles)
         )
         width = None
     else:
-        oscillation = tried(
+        oscillation = attempt(
             missing,
             "oscillation",
             lambda: strongest_line(record, _above(record, cycles), cycles=cycles),
@@ -172,7 +172,7 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     friction = find_friction(record, regime.kind, cycles)
     doubts = warnings(record, regime.kind, cycles, friction) if run is None else ()
     doubts += taken_off(found.lines)
-    cycles = _meant(cycles, regime.kind, missing)
+    cycles = _blank_meaningless(cycles, regime.kind, missing)
     creep = find_creep(source, record, sticking, width)
     missing |= creep.missing
     phases = None
@@ -196,14 +196,14 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
         {},
     )
     for name, find in functions("find"):
-        analysis.parts[name] = tried(missing, name, partial(find, analysis))
+        analysis.parts[name] = attempt(missing, name, partial(find, analysis))
     return analysis
 
 
 analyze = analyse
 
 
-def _meant(cycles: xr.Dataset, kind: str, missing: dict[str, str]) -> xr.Dataset:
+def _blank_meaningless(cycles: xr.Dataset, kind: str, missing: dict[str, str]) -> xr.Dataset:
     """Blank the columns of a table that are meaningless for a kind of motion."""
     if not cycles.sizes["cycle"]:
         return cycles

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from stiction.auditing.observation import SLIDES, Observation, Progress, coarse_rate, observe
 from stiction.auditing.prediction import predict
 from stiction.linear_stability import Critical, critical, growth_rate
-from stiction.system.parameter import changed, read, unit
+from stiction.system.parameter import change_parameter, read, unit
 from stiction.system.slider import Slider
 
 # Steps beyond a critical value, relative to it: larger ones for an oscillation that persists
@@ -114,7 +114,9 @@ def advise_one(
         left = work - advice.work
         if left < LEAST_WORK:
             return advice._replace(cut=True)
-        seen = tried(changed(slider, path, written(slider, path, then)), left, report)
+        seen = try_change(
+            change_parameter(slider, path, with_unit(slider, path, then)), left, report
+        )
         spent = advice.work + (seen["tried"].work if seen["tried"] else 0)
         advice = advice._replace(critical=edge, then=then, work=spent, **seen)
         if advice.tried is None or advice.works:
@@ -136,7 +138,7 @@ def further(slider: Slider, path: str) -> Iterator[float]:
             yield now * more
 
 
-def tried(slider: Slider, most_steps: int, progress: Progress) -> dict[str, Any]:
+def try_change(slider: Slider, most_steps: int, progress: Progress) -> dict[str, Any]:
     """Return growth rate and simulation of a changed slider."""
     growth, prediction = growth_rate(slider), predict(slider)
     rate = coarse_rate(prediction)
@@ -155,7 +157,7 @@ def limits(slider: Slider, path: str) -> tuple[float | str, float | str] | None:
     return None
 
 
-def written(slider: Slider, path: str, value: float) -> float | str:
+def with_unit(slider: Slider, path: str, value: float) -> float | str:
     """Return a value that a slider reads: an angle with its unit."""
     return f"{value!r} rad" if unit(slider, path) == "rad" else value
 

@@ -156,7 +156,7 @@ def from_sliding(
         prediction,
         linear.growth_rate,
         sample_rate=coarse_rate(prediction),
-        start=linear.disturbed(KICK),
+        start=linear.disturbed_start(KICK),
         progress=progress,
     )
 

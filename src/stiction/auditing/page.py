@@ -83,7 +83,7 @@ def page(found: Audit, name: str) -> str:
         version=stiction.__version__,
         parts=sections(found),
         figures={title: illustrations(found, drawn) for title, drawn in DRAWN.items()},
-        description=described(found),
+        description=describe_apparatus(found),
     )
 
 
@@ -99,7 +99,7 @@ def illustrations(
     ]
 
 
-def described(found: Audit) -> str:
+def describe_apparatus(found: Audit) -> str:
     """Return the description of the apparatus, in SI."""
     tables = found.observation.run.description.to_dict()
     return "\n".join(

@@ -126,7 +126,7 @@ def predict(slider: Slider) -> Prediction:
         load_up,
         float(creep[0]),
         float(creep[1]),
-        crept(V, phi, l_x, load_up),
+        creep_distance(V, phi, l_x, load_up),
         peak / s.normal_load,
         mean / s.normal_load,
         drop,
@@ -186,7 +186,7 @@ def critical_misalignment(slider: Slider, V: float) -> float:
     return float(theory.critical_misalignment(V, *friction, c_x=c_x, W=W))
 
 
-def crept(V: float, phi: float, l_x: float, t: float) -> float:
+def creep_distance(V: float, phi: float, l_x: float, t: float) -> float:
     """Return the distance (m) that the mass has moved along X by Eq. (7) at time `t`.
 
     X = V t - u_x cos(phi) - u_y sin(phi), Eq. (6), with u_y constant from the first stick on.

@@ -58,7 +58,7 @@ def sections(found: Audit) -> list[Section]:
     """Return the sections of the report."""
     return [
         Section("Verdict", verdict(found)),
-        Section("Predicted and simulated", supposed(found), numbers(found)),
+        Section("Predicted and simulated", violated_assumptions(found), numbers(found)),
         Section("Is it stick?", stick(found)),
         Section("Transverse oscillation", transverse(found)),
         Section("What to change", *changes(found)),
@@ -81,8 +81,8 @@ def motions(found: Audit) -> list[str]:
         return [
             f"Two motions are possible (it is bistable): from rest it reaches {name}; once it "
             "slides steadily, it continues to slide steadily.",
-            f"From rest, springs unloaded: {described(rest)}. From steady sliding, disturbed by "
-            f"1 % of the drive's speed: {sliding.motion}.",
+            f"From rest, springs unloaded: {describe_motion(rest)}. From steady sliding, "
+            f"disturbed by 1 % of the drive's speed: {sliding.motion}.",
         ]
     if rest.comes_to == SLIDES and sliding.comes_to == SLIDES:
         what = (
@@ -94,7 +94,7 @@ def motions(found: Audit) -> list[str]:
                 "In the time of the test it slides steadily, but that does not last: small "
                 "disturbances grow, more slowly than the test shows."
             )
-        return [what, f"From rest the load cell sees: {described(rest)}."]
+        return [what, f"From rest the load cell sees: {describe_motion(rest)}."]
     if rest.comes_to == OSCILLATES and sliding.comes_to == OSCILLATES:
         lines = [
             "It does not slide steadily: from rest, and when it is started sliding, it comes to "
@@ -108,14 +108,14 @@ def motions(found: Audit) -> list[str]:
             ]
     else:
         lines = [
-            f"From rest it comes to {ended(rest)}; started from steady sliding, disturbed by 1 % "
-            f"of the drive's speed, to {ended(sliding)}"
+            f"From rest it comes to {final_motion(rest)}; started from steady sliding, disturbed "
+            f"by 1 % of the drive's speed, to {final_motion(sliding)}"
             f"{' in the time of the test' if sliding.comes_to == SLIDES else ''}."
         ]
-    return [*lines, f"From rest the load cell sees: {described(rest)}."]
+    return [*lines, f"From rest the load cell sees: {describe_motion(rest)}."]
 
 
-def ended(seen: Observation) -> str:
+def final_motion(seen: Observation) -> str:
     """Return the final motion of a test, in words."""
     if seen.comes_to == SLIDES:
         return "steady sliding"
@@ -127,7 +127,7 @@ def ended(seen: Observation) -> str:
     )
 
 
-def described(seen: Observation) -> str:
+def describe_motion(seen: Observation) -> str:
     """Return a kind of motion with its cycles, in one line."""
     count = seen.cycles.sizes["cycle"]
     sure = f"{seen.motion} (confidence {seen.regime.confidence:.2f})"
@@ -185,7 +185,7 @@ def margin(found: Audit) -> str:
     )
 
 
-def supposed(found: Audit) -> list[str]:
+def violated_assumptions(found: Audit) -> list[str]:
     """Return the assumptions of the theory that this apparatus violates."""
     unmet = suppositions(found.slider, found.prediction)
     if not unmet:
@@ -216,7 +216,7 @@ def numbers(found: Audit) -> Table:
         ("time until the first slip", p.load_up if p.slips else nan, slip, "s", True),
         ("creep velocity at first, V sin² φ", p.creep_at_start, None, "m/s", True),
         ("creep velocity when it slips, Eq. (7)", creep_at_slip, None, "m/s", True),
-        ("creep before the first slip", creep_distance, crept(found, slip), "m", True),
+        ("creep before the first slip", creep_distance, creep_before_slip(found, slip), "m", True),
         ("apparent static friction", p.mu_static, peak(found), "", True),
         ("apparent kinetic friction", p.mu_kinetic, kinetic(seen), "", True),
         ("force drop", p.drop, seen.mean("drop"), "N", True),
@@ -235,7 +235,7 @@ def numbers(found: Audit) -> Table:
     return Table(("quantity", "theory", "simulated"), lines)
 
 
-def crept(found: Audit, slip: float) -> float:
+def creep_before_slip(found: Audit, slip: float) -> float:
     """Return the distance moved until the first slip, m; NaN if there is none."""
     data = found.observation.run.data
     along = abs(data["X"].values - float(data["X"][0]))
@@ -376,13 +376,13 @@ def _change(found: Audit, advice: Advice) -> tuple[str, ...]:
         f"{side} {in_words(advice.critical, advice.unit)}" if isfinite(advice.critical) else "now"
     )
     if advice.works:
-        return name, now, edge, then, ended(seen)
+        return name, now, edge, then, final_motion(seen)
     if not seen.run.status.ok:
         until = in_words(float(seen.record.time[-1]), "s")
         return name, now, edge, then, f"not known: the simulation was cut at {until}"
-    what, drop = f"no remedy: {ended(seen)}", seen.mean("drop")
+    what, drop = f"no remedy: {final_motion(seen)}", seen.mean("drop")
     if seen.comes_to == OSCILLATES and isfinite(drop):
         if drop < ALMOST * found.observation.mean("drop"):
-            what = f"almost: {ended(seen)}"
+            what = f"almost: {final_motion(seen)}"
         what += f", force drop {in_words(drop, 'N')}"
     return name, now, edge, then, what

@@ -65,7 +65,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         if sys.stdout is not None:
             sys.stdout.flush()
     except cyclopts.CycloptsError as error:
-        refuse(errors, "command line", f"{error}\nsee {called(error)} --help")
+        refuse(errors, "command line", f"{error}\nsee {command_of(error)} --help")
     except StictionError as error:
         refuse(errors, type(error).__name__.removesuffix("Error").lower(), str(error))
     except KeyboardInterrupt:
@@ -111,6 +111,6 @@ def in_a_law(error: BaseException) -> str | None:
     return f"{frames[-1].filename}, line {frames[-1].lineno}" if frames else None
 
 
-def called(error: cyclopts.CycloptsError) -> str:
+def command_of(error: cyclopts.CycloptsError) -> str:
     """Return the command that was called."""
     return " ".join(["stiction", *(error.command_chain or ())])

@@ -35,7 +35,7 @@ Changes = Annotated[
 ]
 
 
-def named(text: str, option: str) -> tuple[str, str]:
+def parse_assignment(text: str, option: str) -> tuple[str, str]:
     """Return name and value of an option's ``NAME=VALUE``."""
     name, equals, value = text.partition("=")
     if not equals or not name.strip():
@@ -45,7 +45,7 @@ def named(text: str, option: str) -> tuple[str, str]:
 
 def changes(given: list[str] | None) -> dict[str, Any]:
     """Return the values of ``--set``: numbers, truth values and lists as in TOML."""
-    pairs = (named(text, "--set") for text in given or ())
+    pairs = (parse_assignment(text, "--set") for text in given or ())
     return {name: value(text) for name, text in pairs}
 
 

@@ -16,7 +16,7 @@ from stiction.text.sections import Section, Table
 LONGEST = 24  # letters of the longest unbroken word
 
 
-def printed(title: str, parts: Iterable[Section]) -> None:
+def print_sections(title: str, parts: Iterable[Section]) -> None:
     """Print sections below a title."""
     console = Console(highlight=False)
     console.print(plain(title, style="bold"))

@@ -25,7 +25,7 @@ EVERY = 1.0  # s between lines of JSON
 
 
 @contextmanager
-def shown(quiet: bool, json_lines: bool) -> Iterator[tuple[Report | None, Conclude]]:
+def show_tally(quiet: bool, json_lines: bool) -> Iterator[tuple[Report | None, Conclude]]:
     """Yield two functions: one takes a study's tally while it runs, one its final summary."""
     if json_lines:
         yield _each(EVERY, _print_tally), _print_summary

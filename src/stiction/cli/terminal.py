@@ -25,13 +25,13 @@ def say(text: str, *, error: bool = False) -> None:
 
 def spell_out() -> None:
     """Replace letters that the terminal's encoding lacks."""
-    codecs.register_error("spelled", _spelled)
+    codecs.register_error("spelled", _spell)
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="spelled")
 
 
-def _spelled(error: UnicodeError) -> tuple[str, int]:
+def _spell(error: UnicodeError) -> tuple[str, int]:
     assert isinstance(error, UnicodeEncodeError)
     letters = error.object[error.start : error.end]
     return "".join(PLAIN.get(x, ascii(x)[1:-1]) for x in letters), error.end

@@ -14,7 +14,7 @@ from typing import Annotated, Any, NamedTuple
 from pydantic import AfterValidator
 
 from stiction.text.units import Duration, Rate, reader
-from stiction.text.validation import validated
+from stiction.text.validation import validate
 
 
 def _level(value: Any) -> Any:
@@ -38,7 +38,7 @@ class Shape(NamedTuple):
     phase: float = 0.0
 
 
-@validated
+@validate
 class Constant(NamedTuple):
     """A constant value, reached by a jump.
 
@@ -58,7 +58,7 @@ class Constant(NamedTuple):
         return Shape(base if piece.value is None else piece.value)
 
 
-@validated
+@validate
 class Step(NamedTuple):
     """A jump of the present value, then constant.
 
@@ -78,7 +78,7 @@ class Step(NamedTuple):
         return Shape(present + piece.by)
 
 
-@validated
+@validate
 class Ramp(NamedTuple):
     """A straight line in time from the present value to another.
 
@@ -98,7 +98,7 @@ class Ramp(NamedTuple):
         return Shape(present, (piece.to - present) / piece.duration)
 
 
-@validated
+@validate
 class Hold(NamedTuple):
     """The drive stops at once (slide-hold-slide); a load stays as it is.
 
@@ -115,7 +115,7 @@ class Hold(NamedTuple):
         return Shape(still)
 
 
-@validated
+@validate
 class Free(NamedTuple):
     """The drive stops for good: the springs relax until the end of the run."""
 
@@ -126,7 +126,7 @@ class Free(NamedTuple):
         return Shape(0.0)
 
 
-@validated
+@validate
 class Reversal(NamedTuple):
     """An instantaneous reversal of the present velocity.
 
@@ -143,7 +143,7 @@ class Reversal(NamedTuple):
         return Shape(-present)
 
 
-@validated
+@validate
 class Harmonic(NamedTuple):
     """A harmonic about the present value: amplitude sin(2 pi frequency t + phase).
 
@@ -169,7 +169,7 @@ class Harmonic(NamedTuple):
         return Shape(present, 0.0, piece.amplitude, 2 * pi * piece.frequency, piece.phase)
 
 
-@validated
+@validate
 class Modulation(NamedTuple):
     """A harmonic on top of a whole program: amplitude sin(2 pi frequency t + phase).
 

@@ -55,9 +55,9 @@ class DriveProgram(Described):
     @cached_property
     def stretches(self) -> tuple[tuple[float, Any], ...]:
         """The smooth stretches: the end of each (s), and its velocity."""
-        sideways = waved(Signal(0.0, 0.0), self.across)
+        sideways = modulate(Signal(0.0, 0.0), self.across)
         return tuple(
-            (end, _course(waved(signal, self.along), sideways))
+            (end, _course(modulate(signal, self.along), sideways))
             for end, signal in signals(self.program, self.repeat, self.velocity, still=0.0)
         )
 
@@ -123,7 +123,7 @@ class LoadProgram(Described):
     def stretches(self, base: float) -> tuple[tuple[float, Any], ...]:
         """Return the smooth stretches for a base load (N): the end of each (s), and its load."""
         return tuple(
-            (end, _loading(waved(signal, self.modulation)))
+            (end, _loading(modulate(signal, self.modulation)))
             for end, signal in signals(self.program, self.repeat, base, still=None)
         )
 
@@ -163,7 +163,7 @@ def signals(
     yield inf, Signal(start, present)
 
 
-def waved(signal: Signal, modulation: Any) -> Signal:
+def modulate(signal: Signal, modulation: Any) -> Signal:
     """Return a signal with a modulation on top."""
     if modulation is None:
         return signal
@@ -199,7 +199,7 @@ def pick(stretches: Sequence[tuple[float, Any]], t: Times, value: Any) -> tuple[
     which = np.searchsorted(ends, times.ravel(), side="left")
     order = np.argsort(which, kind="stable")
     columns: list[Any] = []
-    for i, inside in zip(*_grouped(which[order], order), strict=True):
+    for i, inside in zip(*_group(which[order], order), strict=True):
         start = ends[i - 1] if i > 0 else 0.0
         for n, column in enumerate(value(stretches[i][1], times.ravel()[inside], start)):
             if n == len(columns):
@@ -208,7 +208,7 @@ def pick(stretches: Sequence[tuple[float, Any]], t: Times, value: Any) -> tuple[
     return tuple(column.reshape(times.shape)[()] for column in columns)
 
 
-def _grouped(which: Any, order: Any) -> tuple[Any, list[Any]]:
+def _group(which: Any, order: Any) -> tuple[Any, list[Any]]:
     """Return the distinct values of a sorted array, and the part of `order` for each."""
     kinds, first = np.unique(which, return_index=True)
     return kinds, np.split(order, first[1:])
@@ -221,15 +221,15 @@ def table_of(program: Described, known: Mapping[str, type[Any]]) -> dict[str, An
     for name in program.model_fields_set:
         value = getattr(program, name)
         if name == "program":
-            value = [{"piece": names[type(piece)], **written(piece)} for piece in value]
+            value = [{"piece": names[type(piece)], **describe_piece(piece)} for piece in value]
         elif hasattr(value, "_asdict"):
-            value = written(value)
+            value = describe_piece(value)
         if value is not None:
             table[name] = value
     return table
 
 
-def written(piece: Any) -> dict[str, Any]:
+def describe_piece(piece: Any) -> dict[str, Any]:
     """Return a piece's parameters, ready to be read: angles with a unit, None left out."""
     values = {name: value for name, value in piece._asdict().items() if value is not None}
     if "phase" in values:

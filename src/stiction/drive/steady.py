@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from stiction.text.units import Force, Velocity
-from stiction.text.validation import validated
+from stiction.text.validation import validate
 
 
-@validated
+@validate
 class ConstantVelocity(NamedTuple):
     """A drive along X with a constant velocity, from t = 0 on.
 
@@ -41,7 +41,7 @@ class ConstantVelocity(NamedTuple):
         return True
 
 
-@validated
+@validate
 class ConstantLoad(NamedTuple):
     """A constant normal load.
 

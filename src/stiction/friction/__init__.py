@@ -22,7 +22,13 @@ from stiction.friction.law import (
 from stiction.friction.laws import Anisotropic
 from stiction.friction.laws.anisotropic import anisotropy_table, read_anisotropy
 from stiction.friction.registry import FUNCTIONS, LAWS
-from stiction.friction.user.loading import Find, is_own, named, own_table, read_own
+from stiction.friction.user.loading import (
+    Find,
+    finder_for_descriptions,
+    is_own,
+    own_table,
+    read_own,
+)
 from stiction.text.toml import choose
 
 
@@ -32,7 +38,11 @@ def read_law(table: dict[str, Any], find: Find | None = None) -> Law:
     `find` locates a user's law.
     """
     surface, own = table.pop("anisotropy", None), is_own(table)
-    law: Law = read_own(table, find or named(Path())) if own else choose(table, "law", LAWS)
+    law: Law = (
+        read_own(table, find or finder_for_descriptions(Path()))
+        if own
+        else choose(table, "law", LAWS)
+    )
     return law if surface is None else read_anisotropy(law, surface)
 
 

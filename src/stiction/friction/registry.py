@@ -12,7 +12,7 @@ LAWS: dict[str, type[Any]] = {}  # by name
 FUNCTIONS: list[Any] = []  # plain functions that laws call
 
 
-def registered(name: str) -> Callable[[Kind], Kind]:
+def register(name: str) -> Callable[[Kind], Kind]:
     """Class decorator: descriptions know the law by this name."""
 
     def register(kind: Kind) -> Kind:

@@ -7,7 +7,7 @@ from math import exp, inf, log
 from typing import NamedTuple
 
 from stiction.errors import DescriptionError, Fault
-from stiction.system.parameter import changed, placed, read, unit
+from stiction.system.parameter import change_parameter, change_unchecked, read, unit
 from stiction.system.slider import Slider
 from stiction.text.paths import canonical_path
 
@@ -45,7 +45,7 @@ class Axis(NamedTuple):
 
     def on(self, slider: Slider, fraction: float) -> Slider:
         """Return the slider with the parameter at a fraction of the range."""
-        return placed(slider, self.path, self.value(fraction))
+        return change_unchecked(slider, self.path, self.value(fraction))
 
 
 def axis(slider: Slider, path: str, between: Sequence[float | str] | None = None) -> Axis:
@@ -71,7 +71,7 @@ def axis(slider: Slider, path: str, between: Sequence[float | str] | None = None
     if isinstance(ends, str) or len(ends) != 2:
         raise DescriptionError([Fault(path, f"{ends!r} is not a range; give its two ends")])
     try:
-        low, high = (read(changed(slider, path, end), path) for end in ends)
+        low, high = (read(change_parameter(slider, path, end), path) for end in ends)
     except DescriptionError as error:
         if between is not None:
             raise

@@ -11,7 +11,7 @@ import numpy as np
 from stiction.errors import DescriptionError, Fault
 from stiction.linear_stability.axis import Axis, axis
 from stiction.linear_stability.derivatives import Floats
-from stiction.linear_stability.following import Growth, Point, both_ways, directed, near
+from stiction.linear_stability.following import Growth, Point, both_ways, near, orient
 from stiction.linear_stability.linear import growth_rate, steady_sliding
 from stiction.linear_stability.roots import sign_changes, signed_growth
 from stiction.system.parameter import read
@@ -85,7 +85,7 @@ def boundary(
     for seed in seeds(lambda point: signed_growth(at(point)), *places):
         if not any(near(seed, branch) for branch in branches):
             curve = both_ways(growth, seed)
-            branches += [directed(growth, curve)] if len(curve) > 1 else []
+            branches += [orient(growth, curve)] if len(curve) > 1 else []
     return table(slider, across, up, branches, at)
 
 

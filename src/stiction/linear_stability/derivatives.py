@@ -110,7 +110,10 @@ def derivative(
     """
     unit = np.eye(len(at))[i]
     steps = widest * RATIO ** -np.arange(np.ceil(log(widest / narrowest, RATIO)) + 1.0)
-    values = [(tried(function, at + h * unit), tried(function, at - h * unit)) for h in steps]
+    values = [
+        (value_or_nan(function, at + h * unit), value_or_nan(function, at - h * unit))
+        for h in steps
+    ]
     ahead, behind = np.array(values).transpose(1, 0, 2)
     h = 0.5 * ((at[i] + steps) - (at[i] - steps))[:, None]  # as rounded
     table = (ahead - behind) / (2.0 * h)
@@ -140,7 +143,7 @@ def noise(function: Callable[[float], Any], at: float, scale: float) -> Any:
     return np.abs(np.diff(values, 2, axis=0)).max(axis=0)
 
 
-def tried(function: Callable[[Floats], Floats], at: Floats) -> Floats:
+def value_or_nan(function: Callable[[Floats], Floats], at: Floats) -> Floats:
     """Return the value of a function; NaN where a user's law raises an error."""
     try:
         return function(at)

@@ -44,10 +44,10 @@ def both_ways(growth: Growth, seed: Point) -> Floats:
     ]
     if not ways:
         return np.array([seed])
-    there = list(followed(growth, seed, ways[0]))
+    there = list(follow(growth, seed, ways[0]))
     if (len(there) > 2 and there[-1] == seed) or len(ways) == 1:
         return np.array([seed, *there])
-    back = list(followed(growth, seed, farthest(ways)))
+    back = list(follow(growth, seed, farthest(ways)))
     return np.array([*reversed(back), seed, *there])
 
 
@@ -56,7 +56,7 @@ def farthest(ways: Sequence[float]) -> float:
     return max(ways[1:], key=lambda way: abs(turn(ways[0], way)))
 
 
-def followed(growth: Growth, seed: Point, way: float) -> Iterator[Point]:
+def follow(growth: Growth, seed: Point, way: float) -> Iterator[Point]:
     """Yield the points of a curve from `seed` to the edge of the plane, or back to `seed`."""
     here, step, gone, start = seed, LONGEST, 0.0, way
     for _ in range(MOST):
@@ -112,7 +112,7 @@ def turn(before: float, after: float) -> float:
     return (after - before + pi) % (2.0 * pi) - pi
 
 
-def directed(growth: Growth, curve: Floats) -> Floats:
+def orient(growth: Growth, curve: Floats) -> Floats:
     """Orient a curve so that the growth rate is positive on its left."""
     middle = len(curve) // 2
     (x, y), (dx, dy) = curve[middle], curve[middle] - curve[middle - 1]

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from stiction.deprecation import warn_renamed
 from stiction.errors import StictionError
 from stiction.friction import states
 from stiction.linear_stability.derivatives import Floats, Response
@@ -118,7 +119,7 @@ class Linearisation:
             return BOUNDARY
         return STABLE if self.growth_rate < 0.0 else UNSTABLE
 
-    def disturbed(self, size: float = 1e-3, mode: int = 0) -> Initial:
+    def disturbed_start(self, size: float = 1e-3, mode: int = 0) -> Initial:
         """Return steady sliding with a small disturbance, as the start of a run.
 
         Parameters
@@ -136,6 +137,11 @@ class Linearisation:
         values: dict[str, Any] = dict(zip(self.names, map(float, at), strict=True))
         internal = {each.name: values.pop(each.name) for each in states(self.slider.law)}
         return Initial(**values, states=internal) if internal else Initial(**values)
+
+    def disturbed(self, size: float = 1e-3, mode: int = 0) -> Initial:
+        """Deprecated: `disturbed_start`."""
+        warn_renamed("disturbed", "disturbed_start")
+        return self.disturbed_start(size, mode)
 
 
 def steady_sliding(slider: Slider) -> Linearisation:

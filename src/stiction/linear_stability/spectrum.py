@@ -45,7 +45,7 @@ def modes_over(
     rows: list[Complex] = []
     for fraction in fractions:
         now = steady_sliding(along.on(slider, float(fraction))).eigenvalues
-        rows.append(matched(rows, now))
+        rows.append(match_eigenvalues(rows, now))
     values = np.array([along.value(float(fraction)) for fraction in fractions])
     eigenvalues = np.array(rows)
     dims = ("value", "mode")
@@ -63,7 +63,7 @@ def modes_over(
     )
 
 
-def matched(before: Sequence[Complex], now: Complex) -> Complex:
+def match_eigenvalues(before: Sequence[Complex], now: Complex) -> Complex:
     """Order eigenvalues like the linear extrapolation of those before."""
     from scipy.optimize import linear_sum_assignment  # type: ignore[attr-defined]
 

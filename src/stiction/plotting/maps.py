@@ -83,7 +83,7 @@ def draw_regimes(ax: Axes, x: Side, y: Side, kinds: NDArray[np.object_]) -> list
         x.edges, y.edges, np.ma.masked_invalid(codes.T), cmap=shades,
         norm=Normalize(-0.5, len(names) - 0.5), rasterized=True,
     )  # fmt: skip
-    _framed(ax, x, y)
+    _frame(ax, x, y)
     present = [name for code, name in enumerate(names) if (codes == code).any()]
     patches = [
         Patch(facecolor=COLORS[name], edgecolor=BLACK, linewidth=0.4, label=name)
@@ -114,7 +114,7 @@ def draw_measure(
         norm=LogNorm(max(found.min(), found.max() / DEEPEST), found.max()) if log else None,
         rasterized=True,
     )  # fmt: skip
-    _framed(ax, x, y)
+    _frame(ax, x, y)
     bar = ax.figure.colorbar(mesh, ax=ax, label=label, pad=0.02)
     if log and found.max() < PLAINLY * found.min():
         for formatted in (bar.ax.yaxis.set_major_formatter, bar.ax.yaxis.set_minor_formatter):
@@ -159,7 +159,7 @@ def draw_slice(ax: Axes, x: Side, values: Floats, label: str) -> None:
     """Draw a measure over one parameter, a point for each run."""
     ax.plot(x.values, values, "-", color=BLUE, linewidth=0.8)
     ax.plot(x.values, values, "o", color=BLUE, markersize=2.5)
-    _named(ax, x, "x")
+    _label_axis(ax, x, "x")
     ax.set_ylabel(label)
 
 
@@ -183,7 +183,7 @@ def draw_kinds(ax: Axes, x: Side, kinds: Sequence[str]) -> None:
             x.values[here], np.full(here.sum(), row), "o", markersize=5.0, markeredgewidth=0.4,
             markeredgecolor=BLACK, color=COLORS.get(name, "white"),
         )  # fmt: skip
-    _named(ax, x, "x")
+    _label_axis(ax, x, "x")
     ax.set(yticks=range(len(rows)), yticklabels=rows, ylim=(len(rows) - 0.5, -0.5))
     ax.tick_params(axis="y", which="both", length=0.0)
 
@@ -200,14 +200,14 @@ def draw_points(ax: Axes, x: Floats, y: Floats, kinds: Sequence[str]) -> list[Li
     return made
 
 
-def _framed(ax: Axes, x: Side, y: Side) -> None:
+def _frame(ax: Axes, x: Side, y: Side) -> None:
     for side, way in ((x, "x"), (y, "y")):
-        _named(ax, side, way)
+        _label_axis(ax, side, way)
         ax.set(**{f"{way}lim": (side.edges.min(), side.edges.max())})
     ax.tick_params(which="both", direction="out", top=False, right=False)
 
 
-def _named(ax: Axes, side: Side, way: str) -> None:
+def _label_axis(ax: Axes, side: Side, way: str) -> None:
     ax.set(**{f"{way}scale": "log" if side.log else "linear", f"{way}label": side.scale.label})
     if side.log and side.values.max() < PLAINLY * side.values.min():
         getattr(ax, f"{way}axis").set_major_formatter(PLAIN)

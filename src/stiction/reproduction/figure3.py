@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from stiction.analysis.creep.first_slip import first_slip_time
 from stiction.plotting.page.style import BLUE, COLUMN, new_figure, panel_letter, style
 from stiction.plotting.run import time_series
-from stiction.text.quantity_text import prefixed
+from stiction.text.quantity_text import metric_prefix
 from stiction.trajectory import Trajectory
 
 
@@ -50,7 +50,7 @@ def _magnify_creep(ax: Axes, run: Trajectory) -> Axes:
     start, end = float(run.data["time"][0]), first_slip_time(run)
     stick = run.data.sel(time=slice(start, start + 0.98 * (end - start)))
     inset = ax.inset_axes((0.16, 0.48, 0.36, 0.44))
-    factor, prefix = prefixed(stick["X"].values)
+    factor, prefix = metric_prefix(stick["X"].values)
     time_series.draw_line(inset, stick["time"].values, stick["X"].values * factor, BLUE)
     inset.set_ylabel(f"$X$ ({prefix}m)", fontsize=7, labelpad=1)
     inset.set_xlabel("$t$ (s)", fontsize=7, labelpad=1)

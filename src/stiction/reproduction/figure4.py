@@ -13,7 +13,7 @@ from stiction.analysis.signals.spectrum import rate_spectrogram
 from stiction.plotting.analysis.spectrogram import draw_spectrogram, mark_frequency
 from stiction.plotting.page.style import COLUMN, RED, new_figure, panel_letter, style
 from stiction.plotting.run.time_series import draw_line, draw_rate
-from stiction.text.quantity_text import prefixed
+from stiction.text.quantity_text import metric_prefix
 from stiction.trajectory import Trajectory
 
 
@@ -62,7 +62,7 @@ def _magnify_stick(ax: Axes, run: Trajectory) -> Axes:
     """Draw, in an inset, v_x before the first slip, where its oscillation is small."""
     start, end = float(run.data["time"][0]), first_slip_time(run)
     stick = run.data["v_x"].sel(time=slice(start, start + 0.98 * (end - start)))
-    factor, prefix = prefixed(stick.values)
+    factor, prefix = metric_prefix(stick.values)
     inset = ax.inset_axes((0.14, 0.2, 0.25, 0.52))
     draw_line(inset, stick["time"].values, stick.values * factor, RED)
     inset.set_ylabel(f"{prefix}m/s", fontsize=7, labelpad=1)

@@ -142,7 +142,7 @@ def from_simulation(run: Trajectory) -> list[Number]:
             "Results",
             "time at full stop until first slip ('never')",
             0,
-            100 * float(_stopped(run, run.stick_intervals[0, 1], slip)),
+            100 * float(_stick_share(run, run.stick_intervals[0, 1], slip)),
             0,
             "%",
             finding=True,
@@ -159,7 +159,7 @@ def from_simulation(run: Trajectory) -> list[Number]:
     ]
 
 
-def _stopped(run: Trajectory, start: float, end: float) -> float:
+def _stick_share(run: Trajectory, start: float, end: float) -> float:
     """Return the fraction of the time between two times (s) at zero slip."""
     within = np.clip(run.stick_intervals, start, end)
     return float(np.diff(within, axis=1).sum() / (end - start))

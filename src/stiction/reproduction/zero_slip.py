@@ -17,7 +17,7 @@ from stiction.plotting.page.style import (
     new_figure,
     style,
 )
-from stiction.text.quantity_text import prefixed
+from stiction.text.quantity_text import metric_prefix
 from stiction.trajectory import Trajectory
 
 
@@ -48,7 +48,7 @@ def zero_slip(run: Trajectory, window: tuple[float, float]) -> Figure:
             [["speed", "circle", "arc"], ["force", "circle", "arc"]], width_ratios=[1.25, 1, 1]
         )
         speed, force, circle, arc = (panels[name] for name in ("speed", "force", "circle", "arc"))
-        factor, prefix = prefixed(part["slip_speed"].values)
+        factor, prefix = metric_prefix(part["slip_speed"].values)
         speed.plot(time, part["slip_speed"].values * factor, color=GREEN)
         speed.set_ylabel(rf"$v_\mathrm{{slip}}$ ({prefix}m/s)")
         force.plot(time, part["friction"].values, color=PURPLE)

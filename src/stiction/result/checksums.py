@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stiction.errors import ResultError
-from stiction.storage.checksums import LENGTH, broken, bytes_of, crc_of_file, seal
+from stiction.storage.checksums import LENGTH, broken_parts, bytes_of, crc_of_file, seal
 from stiction.storage.foreign import opening
 
 if TYPE_CHECKING:
@@ -30,12 +30,12 @@ CHUNK = 2**16  # samples per checksum
 MARK = b"stiction crc-32c"  # precedes the checksum of a whole file
 
 
-def sealed(tables: Mapping[str, xr.Dataset]) -> str:
+def seal_tables(tables: Mapping[str, xr.Dataset]) -> str:
     """Return the checksums of tables as the text of an attribute."""
     return seal(_parts(tables))
 
 
-def checked(table: xr.Dataset) -> dict[Any, dict[str, Any]]:
+def checksum_encoding(table: xr.Dataset) -> dict[Any, dict[str, Any]]:
     """Return the encoding of a table's arrays, with HDF5's checksums."""
     return {
         name: {"fletcher32": True, "chunksizes": (min(each.size, CHUNK),)}
@@ -44,12 +44,12 @@ def checked(table: xr.Dataset) -> dict[Any, dict[str, Any]]:
     }
 
 
-def damaged(known: str | None, tables: Mapping[str, xr.Dataset]) -> list[str]:
+def damaged_parts(known: str | None, tables: Mapping[str, xr.Dataset]) -> list[str]:
     """Return the names of damaged parts; none for files of versions without checksums."""
     if known is None:
         arrays = [each for table in tables.values() for each in table.variables.values()]
         return [SEAL] if any(each.encoding.get("fletcher32") for each in arrays) else []
-    return broken(known, _parts(tables))
+    return broken_parts(known, _parts(tables))
 
 
 def intact_description(path: str | Path) -> str:
@@ -63,7 +63,7 @@ def intact_description(path: str | Path) -> str:
     h5py: Any = import_module("h5py")  # slow to import
     with opening(path, "not a result that can be repaired"), h5py.File(path) as file:
         known, text = str(file.attrs[SEAL]), str(file.attrs[DESCRIPTION])
-        whole = DESCRIPTION not in broken(known, {DESCRIPTION: text.encode()})
+        whole = DESCRIPTION not in broken_parts(known, {DESCRIPTION: text.encode()})
     if not whole:
         raise ResultError(f"{path}: is damaged, and so is its description; run it again")
     return text

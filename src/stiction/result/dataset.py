@@ -98,10 +98,12 @@ def dataset(
         "sticking": sticking.astype(np.int8),
     }
     values["mu"] = apparent_friction(slider, values)
-    variables = {name: ("time", values[name], described(*VARIABLES[name])) for name in VARIABLES}
+    variables = {
+        name: ("time", values[name], cf_attributes(*VARIABLES[name])) for name in VARIABLES
+    }
     for state, value in zip(states(slider.law), columns[7:], strict=True):
-        variables[state.name] = ("time", value, described(state.unit, state.meaning))
-    time = ("time", times, described("s", "time"))
+        variables[state.name] = ("time", value, cf_attributes(state.unit, state.meaning))
+    time = ("time", times, cf_attributes("s", "time"))
     attributes = {"description": description.to_json(), **attributes}
     return xr.Dataset(variables, {"time": time}, attributes)
 
@@ -122,9 +124,11 @@ def stick_table(intervals: np.ndarray) -> xr.Dataset:
 
     start, end = intervals.T
     columns = dict(zip(STICKS, (start.copy(), end.copy(), end - start), strict=True))
-    return xr.Dataset({name: ("stick", columns[name], described(*STICKS[name])) for name in STICKS})
+    return xr.Dataset(
+        {name: ("stick", columns[name], cf_attributes(*STICKS[name])) for name in STICKS}
+    )
 
 
-def described(unit: str, meaning: str) -> dict[str, str]:
+def cf_attributes(unit: str, meaning: str) -> dict[str, str]:
     """Return the CF attributes of a variable."""
     return {"units": unit, "long_name": meaning}

@@ -11,7 +11,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stiction.errors import ResultError
-from stiction.result.checksums import SEAL, as_written, checked, damaged, sealed, sign
+from stiction.result.checksums import (
+    SEAL,
+    as_written,
+    checksum_encoding,
+    damaged_parts,
+    seal_tables,
+    sign,
+)
 from stiction.result.dataset import STICKS, VARIABLES
 from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files
 from stiction.storage.isolation import apart
@@ -30,9 +37,11 @@ LATER = {"mu", "stick_duration"}  # columns that older versions did not write
 def write_result(data: xr.Dataset, sticks: xr.Dataset, path: Path) -> None:
     """Write samples and sticks with checksums."""
     tables = {"samples": data, "sticks": sticks}
-    whole = data.assign_attrs({SEAL: sealed(tables)})
-    whole.to_netcdf(path, engine="h5netcdf", encoding=checked(data))
-    sticks.to_netcdf(path, mode="a", group=STICK_GROUP, engine="h5netcdf", encoding=checked(sticks))
+    whole = data.assign_attrs({SEAL: seal_tables(tables)})
+    whole.to_netcdf(path, engine="h5netcdf", encoding=checksum_encoding(data))
+    sticks.to_netcdf(
+        path, mode="a", group=STICK_GROUP, engine="h5netcdf", encoding=checksum_encoding(sticks)
+    )
     sign(path)
 
 
@@ -58,8 +67,8 @@ def read_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
         apart(read_through, path)
     with opening(path, UNREADABLE):
         refuse_other_files(path)
-        data, sticks = opened(path)
-        lost = damaged(data.attrs.get(SEAL), {"samples": data, "sticks": sticks})
+        data, sticks = open_tables(path)
+        lost = damaged_parts(data.attrs.get(SEAL), {"samples": data, "sticks": sticks})
     if lost:
         raise _damage(path, lost)
     data, sticks = data.drop_encoding(), sticks.drop_encoding()
@@ -99,7 +108,7 @@ def age(data: xr.Dataset) -> str:
     return f"; stiction {wrote!s:.20} wrote it, this is {this}"
 
 
-def opened(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
+def open_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
     """Return the two tables of a file; up to version 0.4 both are in the root group."""
     import xarray as xr
 

@@ -45,7 +45,7 @@ def seal(parts: Mapping[str, Any]) -> str:
     return json.dumps({name: f"{crc(content):08x}" for name, content in parts.items()})
 
 
-def broken(sealed: str, parts: Mapping[str, Any]) -> list[str]:
+def broken_parts(sealed: str, parts: Mapping[str, Any]) -> list[str]:
     """Return the parts that have changed since they were sealed, or are missing."""
     try:
         known = dict(json.loads(sealed))

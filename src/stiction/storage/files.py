@@ -147,12 +147,12 @@ def workshop(folder: Path) -> Iterator[Path]:
     Workshops of killed processes are removed first.
     """
     for left in folder.glob(f"{WORKSHOP}*"):
-        with held(left, alone=True) as mine:
+        with folder_lock(left, alone=True) as mine:
             if mine:
                 shutil.rmtree(left, ignore_errors=True)
     while True:
         room = Path(tempfile.mkdtemp(dir=folder, prefix=WORKSHOP))
-        with held(room):
+        with folder_lock(room):
             if not room.exists():  # another process took it for an abandoned one
                 continue
             try:
@@ -163,7 +163,7 @@ def workshop(folder: Path) -> Iterator[Path]:
 
 
 @contextmanager
-def held(folder: Path, *, alone: bool = False) -> Iterator[bool]:
+def folder_lock(folder: Path, *, alone: bool = False) -> Iterator[bool]:
     """Lock a folder, shared or `alone`; yield whether this succeeded.
 
     It does not wait for others. The system releases the lock when the process ends, however it

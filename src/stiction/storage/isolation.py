@@ -52,11 +52,11 @@ def apart(work: Callable[[str], T], path: str | Path) -> T:
             check=False,
         )
     except subprocess.TimeoutExpired:
-        raise _broken(path, ENDLESS) from None
+        raise _damage_error(path, ENDLESS) from None
     if resource is not None and done.returncode == -SIGXCPU:
-        raise _broken(path, ENDLESS)
+        raise _damage_error(path, ENDLESS)
     if done.returncode:
-        raise _broken(path, f"reading it ends in {_name(done.returncode)}")
+        raise _damage_error(path, f"reading it ends in {_name(done.returncode)}")
     refused, answered = json.loads(done.stdout)
     if refused:
         raise ResultError(answered)
@@ -86,5 +86,5 @@ def _name(code: int) -> str:
     return Signals(-code).name if code < 0 else f"exit status {code}"
 
 
-def _broken(path: str | Path, how: str) -> ResultError:
+def _damage_error(path: str | Path, how: str) -> ResultError:
     return ResultError(f"{path}: is damaged: {how}; run it again")

@@ -18,7 +18,7 @@ from stiction.study.plan.study import Study
 from stiction.system.description import Description, Settings
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
-from stiction.text.validation import unknown
+from stiction.text.validation import unknown_name
 from stiction.theory import natural_frequency
 
 MEASURES = ("regime", "peak_force", "amplitude", "period", "creep_distance", "time_stuck")
@@ -90,7 +90,7 @@ def preset(name: str) -> Study:
         If there is no study of this name.
     """
     if name not in PRESETS:
-        raise DescriptionError([Fault("preset", unknown("preset", name, PRESETS))])
+        raise DescriptionError([Fault("preset", unknown_name("preset", name, PRESETS))])
     return PRESETS[name]()
 
 

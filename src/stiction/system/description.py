@@ -12,14 +12,14 @@ from pydantic import Field, StrictBool, model_validator
 
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import law_table, read_law
-from stiction.friction.user.loading import Find, held, is_own, named
+from stiction.friction.user.loading import Find, finder_for_descriptions, finder_for_results, is_own
 from stiction.machine import shortage
 from stiction.system.initial import Initial
 from stiction.system.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider
-from stiction.system.writing import described, slider_tables
+from stiction.system.writing import describe, slider_tables
 from stiction.text.toml import Reader, folder_of, gather, read_json, read_toml, toml_text
 from stiction.text.units import Duration, Number, SampleRate, Velocity
-from stiction.text.validation import Described, faulty, written
+from stiction.text.validation import Described, faulty, write_call
 
 SAMPLE = 300.0  # bytes of memory per sample, for all columns and intermediate arrays
 Smoothing = Annotated[Velocity, Field(ge=1e-11)]  # below, steps resolve a thin layer
@@ -71,7 +71,7 @@ class Description(NamedTuple):
 
     def __repr__(self) -> str:
         """Return the call that makes an equal description."""
-        return written(self)
+        return write_call(self)
 
     @classmethod
     def from_toml(
@@ -101,7 +101,9 @@ class Description(NamedTuple):
         DescriptionError
             With every fault and its path, or the reason why the file cannot be read.
         """
-        return cls.from_dict(read_toml(path, changes), find=named(folder_of(path), trust))
+        return cls.from_dict(
+            read_toml(path, changes), find=finder_for_descriptions(folder_of(path), trust)
+        )
 
     @classmethod
     def from_dict(
@@ -126,14 +128,14 @@ class Description(NamedTuple):
         A user's law must have been loaded by this process from the same text; otherwise `trust`
         permits running the text in the JSON.
         """
-        return cls.from_dict(read_json(text), find=held(trust))
+        return cls.from_dict(read_json(text), find=finder_for_results(trust))
 
     def to_toml(self) -> str:
         """Return the description as TOML with units, which `from_toml` reads back."""
         tables = {
             **slider_tables(self.slider),
-            "initial": described(self.initial, type(self.initial).model_fields),
-            "run": described(self.run, type(self.run).model_fields),
+            "initial": describe(self.initial, type(self.initial).model_fields),
+            "run": describe(self.run, type(self.run).model_fields),
         }
         return toml_text({name: table for name, table in tables.items() if table})
 

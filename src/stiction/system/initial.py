@@ -11,7 +11,7 @@ from stiction.errors import DescriptionError, Fault
 from stiction.friction import has_state, states
 from stiction.system.slider import Slider
 from stiction.text.units import Length, Number, Time, Velocity
-from stiction.text.validation import Described, unknown
+from stiction.text.validation import Described, unknown_name
 
 
 class Initial(Described):
@@ -61,7 +61,7 @@ class Initial(Described):
         given = self.states
         if given is not None:
             found = [
-                Fault(f"initial.states.{name}", unknown("internal state", name, names))
+                Fault(f"initial.states.{name}", unknown_name("internal state", name, names))
                 if names
                 else Fault(f"initial.states.{name}", "the friction law has no internal state")
                 for name in given

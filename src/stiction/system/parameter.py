@@ -20,7 +20,7 @@ from stiction.system.description import Description
 from stiction.system.slider import Slider
 from stiction.text.paths import canonical
 from stiction.text.units import unit_of
-from stiction.text.validation import made, unknown
+from stiction.text.validation import make, unknown_name
 
 Owner = TypeVar("Owner", Slider, Description)
 LEVEL_UNITS = {"drive": "m/s", "load": "N"}  # of pieces, whose quantity depends on their program
@@ -79,7 +79,7 @@ def read(owner: Slider | Description, path: str) -> float:
     return next(iter(values.values()))
 
 
-def changed(owner: Owner, path: str, value: float | str) -> Owner:
+def change_parameter(owner: Owner, path: str, value: float | str) -> Owner:
     """Return a slider or description with another value of a parameter.
 
     Parameters
@@ -103,10 +103,10 @@ def changed(owner: Owner, path: str, value: float | str) -> Owner:
     0.002
     """
     unit(owner, path)
-    return varied(owner, {path: value})
+    return change_parameters(owner, {path: value})
 
 
-def varied(owner: Owner, changes: Mapping[str, float | str]) -> Owner:
+def change_parameters(owner: Owner, changes: Mapping[str, float | str]) -> Owner:
     """Return a slider or description with several parameters changed, validated together.
 
     Raises
@@ -123,18 +123,18 @@ def varied(owner: Owner, changes: Mapping[str, float | str]) -> Owner:
                 branch = branch.setdefault(room, {})
             branch[field] = value
     if isinstance(owner, Description):
-        parts = {room: _remade(getattr(owner, room), tree[room]) for room in tree}
+        parts = {room: _remake(getattr(owner, room), tree[room]) for room in tree}
         return owner._replace(**parts)
-    return cast(Owner, _remade(owner, tree))
+    return cast(Owner, _remake(owner, tree))
 
 
-def placed(slider: Slider, path: str, value: float) -> Slider:
-    """Return the slider with a parameter at `value` (SI), unchecked: `changed` for inner loops.
+def change_unchecked(slider: Slider, path: str, value: float) -> Slider:
+    """Return the slider with a parameter at `value` (SI), without a check, for inner loops.
 
-    The path must exist, and the value lie between two that `changed` accepts.
+    The path must exist, and the value lie between two that `change_parameter` accepts.
     """
     for name in names(path):
-        slider = _placed(slider, name.split("."), value)
+        slider = _place(slider, name.split("."), value)
     return slider
 
 
@@ -171,7 +171,7 @@ def _unit_of(part: Any, rooms: list[str], field: str) -> str:
 def _member(owner: Slider | Description, part: Any, key: str, name: str) -> Any:
     """Return a member of a part by its key; a list's elements count from 1."""
     if key not in _fields(part):
-        raise DescriptionError([Fault(name, unknown("parameter", name, units(owner)))])
+        raise DescriptionError([Fault(name, unknown_name("parameter", name, units(owner)))])
     return _part(part, key)
 
 
@@ -227,15 +227,15 @@ def _holder(part: Any, key: str) -> Any:
     return part.law if isinstance(part, Anisotropic) and key not in part._fields else part
 
 
-def _remade(part: Any, changes: Mapping[str, Any]) -> Any:
+def _remake(part: Any, changes: Mapping[str, Any]) -> Any:
     """Return a part of a description with some fields changed, and validated."""
     if isinstance(part, Anisotropic):
         inner = {key: value for key, value in changes.items() if key not in part._fields}
         own = {key: value for key, value in changes.items() if key in part._fields}
-        law = _remade(part.law, inner) if inner else part.law
-        return Anisotropic(**{**_given(part), **own, "law": law})
+        law = _remake(part.law, inner) if inner else part.law
+        return Anisotropic(**{**_field_values(part), **own, "law": law})
     new = {
-        key: _remade(_part(part, key), value) if isinstance(value, Mapping) else value
+        key: _remake(_part(part, key), value) if isinstance(value, Mapping) else value
         for key, value in changes.items()
     }
     if hasattr(part, "replace"):
@@ -243,22 +243,22 @@ def _remade(part: Any, changes: Mapping[str, Any]) -> Any:
     if isinstance(part, tuple) and not hasattr(part, "_fields"):
         return [new.get(str(count), each) for count, each in enumerate(part, 1)]
     if isinstance(part, tuple):
-        return made(type(part), {**_given(part), **new})
-    return type(part)(**{**_given(part), **new})
+        return make(type(part), {**_field_values(part), **new})
+    return type(part)(**{**_field_values(part), **new})
 
 
-def _placed(part: Any, keys: list[str], value: float) -> Any:
+def _place(part: Any, keys: list[str], value: float) -> Any:
     key, *rest = keys
     if _holder(part, key) is not part:
-        return part._replace(law=_placed(part.law, keys, value))
-    new: Any = _placed(_part(part, key), rest, value) if rest else value
+        return part._replace(law=_place(part.law, keys, value))
+    new: Any = _place(_part(part, key), rest, value) if rest else value
     if key.isdigit():
         return tuple(new if str(count) == key else each for count, each in enumerate(part, 1))
     replace = getattr(part, "_replace", None)
     return part.model_copy(update={key: new}) if replace is None else replace(**{key: new})
 
 
-def _given(part: Any) -> dict[str, Any]:
+def _field_values(part: Any) -> dict[str, Any]:
     """Return the fields of a part, ready to be read: angles with their unit."""
     hints = _hints(part)
     given = getattr(part, "_fields", None) or part.model_fields_set

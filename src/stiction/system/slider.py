@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator
 
+from stiction.deprecation import warn_renamed
 from stiction.drive import (
     ConstantVelocity,
     Drive,
@@ -21,7 +22,7 @@ from stiction.drive import (
 )
 from stiction.errors import DescriptionError
 from stiction.friction import Law, has_state, read_law
-from stiction.friction.user.loading import is_own, named
+from stiction.friction.user.loading import finder_for_descriptions, is_own
 from stiction.friction.user.validation import is_law
 from stiction.system.writing import parameter_table, slider_tables
 from stiction.text.sections import Section, as_html
@@ -191,13 +192,19 @@ class Slider(Apparatus):
         return sqrt(low / self.mass) / (2 * pi), sqrt(high / self.mass) / (2 * pi)
 
     @property
-    def shaken(self) -> tuple[float, ...]:
+    def modulation_frequencies(self) -> tuple[float, ...]:
         """Frequencies of the harmonics in the programs of drive and load, in Hz."""
         drive, load = self.drive, self.load
         parts = [*getattr(drive, "program", ()), *getattr(load, "program", ())]
         parts += [getattr(drive, name, None) for name in ("along", "across")]
         parts.append(getattr(load, "modulation", None))
         return tuple(part.frequency for part in parts if hasattr(part, "frequency"))
+
+    @property
+    def shaken(self) -> tuple[float, ...]:
+        """Deprecated: `modulation_frequencies`."""
+        warn_renamed("Slider.shaken", "Slider.modulation_frequencies")
+        return self.modulation_frequencies
 
     def weight(self, t: Any) -> Any:
         """Return the normal load at time `t` (float or array, s), in N."""
@@ -228,7 +235,7 @@ class Slider(Apparatus):
         trust : bool, optional
             Whether the file of a friction law may lie outside the description's folder.
         """
-        raw, find = read_toml(path, changes), named(folder_of(path), trust)
+        raw, find = read_toml(path, changes), finder_for_descriptions(folder_of(path), trust)
         return cls.from_parts(
             gather(
                 {name: raw[name] for name in raw if name in SLIDER_TABLES},

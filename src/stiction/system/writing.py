@@ -23,7 +23,7 @@ def slider_tables(slider: Slider) -> dict[str, Table]:
     parts = {"friction", "drive", "load"}
     mechanical = [name for name in type(slider).model_fields if name not in parts]
     return {
-        "slider": described(slider, mechanical),
+        "slider": describe(slider, mechanical),
         "friction": _law(slider.law),
         "drive": _drive(slider.motion),
         **({} if slider.load is None else {"load": _program(slider.load, LOAD_PIECES, FORCE)}),
@@ -40,17 +40,17 @@ def parameter_table(tables: Mapping[str, Table]) -> Rows:
     return Rows(("parameter", "value"), rows)
 
 
-def described(value: Any, names: Iterable[str]) -> Table:
+def describe(value: Any, names: Iterable[str]) -> Table:
     """Return the fields of a description that differ from their defaults, with units."""
     fields, hints = type(value).model_fields, get_type_hints(type(value), include_extras=True)
     return {
-        name: _written(getattr(value, name), kind_of(hints[name]))
+        name: _write(getattr(value, name), kind_of(hints[name]))
         for name in names
         if fields[name].is_required() or getattr(value, name) != fields[name].default
     }
 
 
-def _written(value: Any, kind: Kind | None) -> Any:
+def _write(value: Any, kind: Kind | None) -> Any:
     """Return a value with its unit, if it has one."""
     value = value.tolist() if hasattr(value, "tolist") else value  # a number of NumPy
     if kind is not None and kind.unit and isinstance(value, float):
@@ -58,11 +58,11 @@ def _written(value: Any, kind: Kind | None) -> Any:
     return value
 
 
-def _named(value: Any) -> Table:
+def _describe_tuple(value: Any) -> Table:
     """Return the fields of a NamedTuple that differ from their defaults, with units."""
     hints, defaults = get_type_hints(type(value), include_extras=True), value._field_defaults
     return {
-        name: _written(its, kind_of(hints.get(name)))
+        name: _write(its, kind_of(hints.get(name)))
         for name, its in value._asdict().items()
         if name not in defaults or its != defaults[name]
     }
@@ -70,20 +70,20 @@ def _named(value: Any) -> Table:
 
 def _law(law: Any) -> Table:
     if isinstance(law, Anisotropic):
-        surface = {name: each for name, each in _named(law).items() if name != "law"}
+        surface = {name: each for name, each in _describe_tuple(law).items() if name != "law"}
         return {**_law(law.law), "anisotropy": surface}
-    return {"law": law_table(law)["law"], **_named(law)}
+    return {"law": law_table(law)["law"], **_describe_tuple(law)}
 
 
 def _drive(drive: Any) -> Table:
     if isinstance(drive, ConstantVelocity):
-        return _named(drive)
+        return _describe_tuple(drive)
     return _program(drive, DRIVE_PIECES, VELOCITY)
 
 
 def _program(program: Any, known: Mapping[str, type[Any]], kind: Kind) -> Table:
     names = {each: name for name, each in known.items()}
-    table = described(program, type(program).model_fields)
+    table = describe(program, type(program).model_fields)
     for name, value in table.items():
         if name == "program":
             table[name] = [{"piece": names[type(each)], **_piece(each, kind)} for each in value]
@@ -95,6 +95,6 @@ def _program(program: Any, known: Mapping[str, type[Any]], kind: Kind) -> Table:
 def _piece(piece: Any, kind: Kind) -> Table:
     """Return the parameters of a piece, whose levels have the unit of `kind`."""
     return {
-        name: _written(value, kind) if name in LEVELS else value
-        for name, value in _named(piece).items()
+        name: _write(value, kind) if name in LEVELS else value
+        for name, value in _describe_tuple(piece).items()
     }

@@ -30,23 +30,23 @@ def attempt(function: Callable[..., Any], *arguments: Any) -> tuple[float, str]:
     try:
         return float(function(*arguments)), ""
     except Exception as error:  # whatever a user's law raises
-        return nan, f"raises {said(error)}; it must return a number here"
+        return nan, f"raises {error_line(error)}; it must return a number here"
 
 
-def unfit(value: float, fault: str) -> str:
+def fault_of(value: float, fault: str) -> str:
     """Return the fault of a value: its error, or that it is not finite."""
     if fault or isfinite(value):
         return fault
     return f"is {value}; it must be finite: look for a division by zero or an overflow"
 
 
-def said(error: Exception) -> str:
+def error_line(error: Exception) -> str:
     """Return an error in one line."""
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
     return f"{type(error).__name__}: {lines[0]}" if lines else type(error).__name__
 
 
-def kept(law: Any, speeds: Sequence[float]) -> Iterator[str]:
+def check_storage(law: Any, speeds: Sequence[float]) -> Iterator[str]:
     """Check that a law pickles, copies, compares and hashes."""
     ways: dict[str, Callable[[], Any]] = {
         "pickling it": lambda: pickle.loads(pickle.dumps(law)),
@@ -59,31 +59,31 @@ def kept(law: Any, speeds: Sequence[float]) -> Iterator[str]:
                 yield f"{way} gives another law; let it be a NamedTuple of numbers"
         except Exception as error:
             yield (
-                f"{way} fails, {said(error)}; let it be a NamedTuple of numbers, defined at the "
-                "top level of a file"
+                f"{way} fails, {error_line(error)}; let it be a NamedTuple of numbers, defined at "
+                "the top level of a file"
             )
 
 
-def described(law: Any, speeds: Sequence[float]) -> Iterator[str]:
+def check_description(law: Any, speeds: Sequence[float]) -> Iterator[str]:
     """Check that a law survives a description in JSON."""
     try:
         before = Description(_preset(law), Initial(), Settings(duration=1.0))
         after = Description.from_json(before.to_json())
     except (StictionError, TypeError, ValueError) as error:
-        yield f"cannot be written to JSON and read back, {said(error)}"
+        yield f"cannot be written to JSON and read back, {error_line(error)}"
         return
     if after != before or type(after.slider.law) is not type(law):
         yield f"read back from JSON it is {after.slider.law!r}, not {law!r}; use floats only"
 
 
-def simulated(law: Any, speeds: Sequence[float]) -> Iterator[str]:
+def check_simulation(law: Any, speeds: Sequence[float]) -> Iterator[str]:
     """Check that the paper's system runs for 20 ms: first stick, release, stick-slip."""
     from stiction.simulation import simulate
 
     try:
         run = simulate(_preset(law), duration=0.02, sample_rate=0)
     except Exception as error:
-        yield f"the paper's system cannot be simulated with it, {said(error)}"
+        yield f"the paper's system cannot be simulated with it, {error_line(error)}"
         return
     if not run.status.ok:
         yield f"the paper's system ended early at {float(run.final.time):g} s: {run.status.value}"
@@ -93,4 +93,4 @@ def _preset(law: Any) -> Slider:
     return presets.nakano_popov_2020().replace(friction=law)
 
 
-COMMON = {"kept": kept, "described": described, "simulated": simulated}
+COMMON = {"kept": check_storage, "described": check_description, "simulated": check_simulation}

@@ -9,7 +9,7 @@ from typing import Any
 from warnings import catch_warnings, simplefilter
 
 from stiction.friction.law import static_coefficient
-from stiction.testing.common import ROUNDING, attempt, first, unfit
+from stiction.testing.common import ROUNDING, attempt, fault_of, first
 
 EPS = 2.2e-16
 REACHES = tuple(10.0 ** (-i / 2) for i in range(1, 13))  # of a difference, relative
@@ -18,7 +18,7 @@ REACHES = tuple(10.0 ** (-i / 2) for i in range(1, 13))  # of a difference, rela
 def finite(law: Any, speeds: Sequence[float]) -> Iterator[str]:
     """Check that coefficient and slope are finite."""
     for name in ("coefficient", "slope"):
-        values = ((v, unfit(*attempt(getattr(law, name), v))) for v in speeds)
+        values = ((v, fault_of(*attempt(getattr(law, name), v))) for v in speeds)
         yield from first(f"{name}({v:g}) {fault}" for v, fault in values if fault)
 
 
@@ -87,7 +87,7 @@ def _difference(function: Callable[[float], float], v: float, h: float) -> float
     return (function(v + h) - function(v - h)) / ((v + h) - (v - h))
 
 
-def compiled(law: Any, speeds: Sequence[float]) -> Iterator[str]:
+def check_compiled(law: Any, speeds: Sequence[float]) -> Iterator[str]:
     """Check that compiled results equal Python's."""
     import numba
 
@@ -131,6 +131,6 @@ SET_VALUED = {
     "dissipative": dissipative,
     "slope": slope,
     "continuous": continuous,
-    "compiled": compiled,
+    "compiled": check_compiled,
     "comparable": comparable,
 }

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from stiction.friction import states
 from stiction.friction.law import Vector
-from stiction.testing.common import ROUNDING, attempt, first, said, unfit
+from stiction.testing.common import ROUNDING, attempt, error_line, fault_of, first
 
 LOADS = (1.0, 100.0)  # N
 DIRECTIONS = (0.0, 2.5)  # rad
@@ -43,7 +43,7 @@ def points(speeds: Sequence[float]) -> Iterator[Point]:
 def finite(law: Any, speeds: Sequence[float]) -> Iterator[str]:
     """Check that force, change and coefficient are finite and have the right length."""
     n = len(states(law))
-    values = ((v, unfit(*attempt(law.coefficient, v))) for v in speeds if v > 0.0)
+    values = ((v, fault_of(*attempt(law.coefficient, v))) for v in speeds if v > 0.0)
     yield from first(f"coefficient({v:g}) {fault}" for v, fault in values if fault)
     yield from first(_settled_faults(law, speeds))
     for name, length in (("force", 2), ("change", n)):
@@ -61,7 +61,7 @@ def _settled_faults(law: Any, speeds: Sequence[float]) -> Iterator[str]:
         try:
             state = tuple(map(float, law.settled(v)))
         except Exception as error:
-            yield f"settled({v:g}) raises {said(error)}; it must be a state to start from"
+            yield f"settled({v:g}) raises {error_line(error)}; it must be a state to start from"
             continue
         if len(state) != n or not all(map(isfinite, state)):
             yield f"settled({v:g}) is {state}; it must be {n} finite numbers, as states() names"
@@ -69,15 +69,15 @@ def _settled_faults(law: Any, speeds: Sequence[float]) -> Iterator[str]:
 
 def _vector_fault(law: Any, function: Callable[..., Any], point: Point, length: int) -> str:
     try:
-        value = tuple(map(float, function(*point, _settled(law, point))))
+        value = tuple(map(float, function(*point, _steady_state(law, point))))
     except Exception as error:
-        return f"raises {said(error)}"
+        return f"raises {error_line(error)}"
     if len(value) != length:
         return f"has {len(value)} components, must have {length}"
     return "" if all(map(isfinite, value)) else f"is {value}; it must be finite"
 
 
-def _settled(law: Any, point: Point) -> tuple[float, ...]:
+def _steady_state(law: Any, point: Point) -> tuple[float, ...]:
     state: tuple[float, ...] = law.settled(max(hypot(*point.slip), SLOWEST))
     return state
 
@@ -90,7 +90,7 @@ def dissipative(law: Any, speeds: Sequence[float]) -> Iterator[str]:
         try:
             f = law.force(*point, steady_state(law, point))
         except Exception as error:
-            found.append(f"{point} it comes to no steady sliding, {said(error)}")
+            found.append(f"{point} it comes to no steady sliding, {error_line(error)}")
             continue
         along = (f[0] * point.slip[0] + f[1] * point.slip[1]) / (v * point.load)
         wanted = attempt(law.coefficient, v)[0]
@@ -129,7 +129,7 @@ def derivatives(law: Any, speeds: Sequence[float]) -> Iterator[str]:
             state = tuple(OFF * each for each in steady_state(law, point))
             rows = law.gradient(*point, state)
         except Exception as error:
-            found.append(f"gradient {point} raises {said(error)}")
+            found.append(f"gradient {point} raises {error_line(error)}")
             continue
         wanted = _differences(law, point, state)
         if [len(row) for row in rows] != [len(row) for row in wanted]:
@@ -163,7 +163,7 @@ def _differences(law: Any, point: Point, state: tuple[float, ...]) -> list[list[
     return [list(row) for row in zip(*columns, strict=True)]
 
 
-def compiled(law: Any, speeds: Sequence[float]) -> Iterator[str]:
+def check_compiled(law: Any, speeds: Sequence[float]) -> Iterator[str]:
     """Check that compiled results equal Python's."""
     import numba
 
@@ -177,7 +177,7 @@ def compiled(law: Any, speeds: Sequence[float]) -> Iterator[str]:
         found = []
         for point in points(speeds):
             # apart from steady sliding, where a change of zero would be all rounding
-            state = tuple(OFF * each for each in _settled(law, point))
+            state = tuple(OFF * each for each in _steady_state(law, point))
             one = getattr(law, name)(*point, state)
             try:
                 other = fast(prepared, *point, state)
@@ -198,5 +198,5 @@ WITH_STATE = {
     "finite": finite,
     "dissipative": dissipative,
     "derivatives": derivatives,
-    "compiled": compiled,
+    "compiled": check_compiled,
 }

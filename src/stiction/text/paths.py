@@ -12,7 +12,7 @@ from copy import deepcopy
 from typing import Any
 
 from stiction.errors import DescriptionError, Fault
-from stiction.text.validation import unknown
+from stiction.text.validation import unknown_name
 
 ALIASES = {
     "V": "drive.velocity",
@@ -71,10 +71,10 @@ def keys_of(tables: Mapping[str, Any], name: str) -> list[str]:
     law = tables.get("friction")
     if isinstance(law, Mapping) and keys[0] in law:
         return ["friction", *keys]
-    raise KeyError(unknown("parameter", name, known(tables)))
+    raise KeyError(unknown_name("parameter", name, parameter_names(tables)))
 
 
-def known(tables: Mapping[str, Any]) -> Iterator[str]:
+def parameter_names(tables: Mapping[str, Any]) -> Iterator[str]:
     """Yield the names of all parameters of a description."""
     yield from (*ALIASES, *MECHANICAL, *SETTINGS)
     for title, table in tables.items():

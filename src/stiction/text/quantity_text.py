@@ -91,7 +91,7 @@ def _number(text: str) -> float:
     return float(text.split()[0])
 
 
-def prefixed(values: ArrayLike) -> tuple[float, str]:
+def metric_prefix(values: ArrayLike) -> tuple[float, str]:
     """Return factor and prefix (n, µ, m, none, k) that bring values to 0.2 to 200."""
     largest = np.fmax.reduce(np.abs(np.asarray(values, dtype=np.float64)), initial=0.0)
     if not 0 < largest < np.inf:

@@ -12,7 +12,7 @@ from typing import Any
 
 from stiction.errors import DescriptionError, Fault
 from stiction.text.paths import with_changes
-from stiction.text.validation import unknown
+from stiction.text.validation import unknown_name
 
 Reader = Callable[[dict[str, Any]], Any]
 LARGEST = 2**24  # bytes of a description: a table of a million values
@@ -163,7 +163,7 @@ def gather(
     """
     found = [*known]
     strange = [name for name in raw if name not in readers]
-    found += [Fault(name or '""', unknown("table", name, readers)) for name in strange]
+    found += [Fault(name or '""', unknown_name("table", name, readers)) for name in strange]
     parts: dict[str, Any] = {}
     for name, read in sorted(readers.items(), key=lambda item: item[0] in last):
         if (name in absent and name not in raw) or (name in last and found):
@@ -193,6 +193,6 @@ def choose(
     name = table.pop(key, default)
     if not isinstance(name, str) or name not in known:
         listed = f"missing; known: {', '.join(known)}"
-        message = listed if name is None else unknown(key, str(name), known)
+        message = listed if name is None else unknown_name(key, str(name), known)
         raise DescriptionError([Fault(f"table.{key}", message)])
     return known[name](**table)

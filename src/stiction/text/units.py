@@ -167,7 +167,7 @@ def reader(name: str, unit: str, example: str) -> BeforeValidator:
     return BeforeValidator(partial(to_si, kind=Kind(name, unit, example)))
 
 
-def _listed(value: object) -> object:
+def _as_list(value: object) -> object:
     """Return an array as a list; refuse a single value."""
     value = value.tolist() if hasattr(value, "tolist") else value
     if not isinstance(value, list | tuple):
@@ -199,8 +199,8 @@ Velocity = Annotated[float, reader("a velocity", "m/s", "1 mm/s")]
 Speed = Annotated[float, reader("a velocity", "m/s", "1 mm/s"), Field(ge=0)]
 PositiveSpeed = Annotated[float, reader("a velocity", "m/s", "10 mm/s"), Field(gt=0)]
 PerSpeed = Annotated[float, reader("friction per slip speed", "s/m", "0.5 s/m"), Field(ge=0)]
-Speeds = Annotated[tuple[Speed, ...], BeforeValidator(_listed), "sequence of float (m/s) | str"]
-Coefficients = Annotated[tuple[Coefficient, ...], BeforeValidator(_listed), "sequence of float"]
+Speeds = Annotated[tuple[Speed, ...], BeforeValidator(_as_list), "sequence of float (m/s) | str"]
+Coefficients = Annotated[tuple[Coefficient, ...], BeforeValidator(_as_list), "sequence of float"]
 Time = Annotated[float, reader("a time", "s", "5 s")]
 Duration = Annotated[float, reader("a time", "s", "5 s"), Field(gt=0)]
 Rate = Annotated[float, reader("a frequency", "Hz", "10 kHz"), Field(gt=0)]

@@ -14,7 +14,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from stiction.errors import DescriptionError, Fault
-from stiction.names import spelled
+from stiction.names import session_name
 from stiction.text.quantity_text import angle_text
 from stiction.text.units import as_float, kind_of, unit_of
 
@@ -24,7 +24,7 @@ else:
     ModelMetaclass = type(BaseModel)
 
 T = TypeVar("T")
-READS = "reads_parameters"  # marks constructors made by `validated`
+READS = "reads_parameters"  # marks constructors made by `validate`
 
 
 class _Presented(ModelMetaclass):
@@ -48,7 +48,7 @@ class Described(BaseModel, metaclass=_Presented):
                 name,
                 Parameter.KEYWORD_ONLY,
                 default=Parameter.empty if field.is_required() else field.default,
-                annotation=_shown(hints.get(name), plain.get(name)),
+                annotation=_show_annotation(hints.get(name), plain.get(name)),
             )
             for name, field in cls.model_fields.items()
         ]
@@ -94,11 +94,11 @@ def _call(value: Any, hints: Mapping[str, Any], defaults: Mapping[str, Any]) -> 
         default = defaults.get(name)
         same = type(its) is type(default) and its == default  # a default is never an array
         if name not in defaults or not same:
-            written.append(f"{name}={quoted(its, hint)}")
-    return f"{spelled(type(value))}({', '.join(written)})"
+            written.append(f"{name}={quote(its, hint)}")
+    return f"{session_name(type(value))}({', '.join(written)})"
 
 
-def quoted(value: Any, hint: Any) -> str:
+def quote(value: Any, hint: Any) -> str:
     """Return a field's value as Python code; angles have units, arrays show their size."""
     if isinstance(value, float) and unit_of(hint) == "rad":
         return repr(angle_text(value))
@@ -116,7 +116,7 @@ class _Annotation(str):
         return str(self)
 
 
-def _shown(hint: Any, plain: Any) -> Any:
+def _show_annotation(hint: Any, plain: Any) -> Any:
     """Return the annotation of a parameter that a reader sees: accepted types and unit.
 
     `plain` is the type without its validator; a text in the annotation takes precedence.
@@ -171,9 +171,9 @@ def _message(detail: ErrorDetails, known: tuple[str, ...]) -> str:
         case "missing":
             return "missing; it has no default"
         case "extra_forbidden":
-            return unknown("key", str(detail["loc"][-1]), known)
+            return unknown_name("key", str(detail["loc"][-1]), known)
         case "unexpected_keyword_argument":
-            return unknown("parameter", str(detail["loc"][-1]), known)
+            return unknown_name("parameter", str(detail["loc"][-1]), known)
         case "greater_than":
             return f"must be greater than {limit['gt']:g}, is {value!r}"
         case "greater_than_equal":
@@ -188,7 +188,7 @@ def _message(detail: ErrorDetails, known: tuple[str, ...]) -> str:
             return f"{detail['msg']}, is {value!r}"
 
 
-def unknown(what: str, name: str, known: Iterable[str]) -> str:
+def unknown_name(what: str, name: str, known: Iterable[str]) -> str:
     """Return the message for a name that is not `known`, with the nearest known one."""
     known = sorted(known)
     near = get_close_matches(name, known, 1)
@@ -216,19 +216,19 @@ def fields(kind: Any) -> type[Described]:
     return model
 
 
-def made(kind: type[T], values: Mapping[str, Any]) -> T:
+def make(kind: type[T], values: Mapping[str, Any]) -> T:
     """Make a NamedTuple from a table of parameters, and check it.
 
     A plain float field takes a number in SI; one with a type of `stiction.text.units` reads
-    units. The tuple need not be `validated`.
+    units. The tuple need not be `validate`.
     """
     if hasattr(kind.__new__, READS):
         return kind(**values)
     model = fields(cast(Any, kind))(**values)
-    return _checked(kind(**{name: getattr(model, name) for name in type(model).model_fields}))
+    return _check(kind(**{name: getattr(model, name) for name in type(model).model_fields}))
 
 
-def _checked(value: T) -> T:
+def _check(value: T) -> T:
     check: Callable[[T], Iterable[tuple[str, str]]] = getattr(type(value), "faults", _no_faults)
     name = type(value).__name__
     found = [Fault(f"{name}.{field}", message) for field, message in check(value)]
@@ -252,7 +252,7 @@ def _number(value: object) -> object:
 Plain = Annotated[float, BeforeValidator(_number)]
 
 
-def validated(kind: type[T]) -> type[T]:
+def validate(kind: type[T]) -> type[T]:
     """Decorate a NamedTuple so that its constructor reads parameters with units.
 
     The compiled solver takes the tuple as it is: floats in SI. The tuple's annotated fields
@@ -268,14 +268,14 @@ def validated(kind: type[T]) -> type[T]:
             raise TypeError(f"{cls.__name__} takes {', '.join(names)}")
         model = fields(cast(Any, cls))(**given)
         value: T = plain(cls, **{name: getattr(model, name) for name in names})
-        return _checked(value)
+        return _check(value)
 
     new.__doc__ = plain.__doc__
     setattr(new, READS, True)
     setattr(new, "__signature__", _signature(plain, kind))  # noqa: B010
-    setattr(kind, "__repr__", written)  # noqa: B010
+    setattr(kind, "__repr__", write_call)  # noqa: B010
     kind.__new__ = staticmethod(new)  # type: ignore[method-assign,assignment]
-    setattr(kind, "__reduce__", _reduced)  # noqa: B010
+    setattr(kind, "__reduce__", _reduce)  # noqa: B010
     return kind
 
 
@@ -284,18 +284,20 @@ def _signature(constructor: Any, kind: Any) -> Signature:
     hints, plain = get_type_hints(kind, include_extras=True), get_type_hints(kind)
     return Signature(
         [
-            each.replace(annotation=_shown(hints[name], plain[name])) if name in hints else each
+            each.replace(annotation=_show_annotation(hints[name], plain[name]))
+            if name in hints
+            else each
             for name, each in signature(constructor).parameters.items()
         ]
     )
 
 
-def written(value: Any) -> str:
+def write_call(value: Any) -> str:
     """Return the call that makes an equal NamedTuple."""
     hints = get_type_hints(type(value), include_extras=True)
     return _call(value, {name: hints.get(name) for name in value._fields}, value._field_defaults)
 
 
-def _reduced(value: Any) -> tuple[Any, ...]:
+def _reduce(value: Any) -> tuple[Any, ...]:
     """Unpickle or copy values as they are, without reading them again."""
     return type(value)._make, (tuple(value),)

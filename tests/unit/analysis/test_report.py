@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.analysis.creep.findings import calibrated
+from stiction.analysis.creep.findings import calibrate
 from stiction.analysis.export import write
 from stiction.cli import main
 from stiction.plotting.analysis.overview import figures
@@ -46,7 +46,7 @@ def test_creep_of_a_measured_record_is_counted_from_its_own_loading(run):
     data = {"time": run.data["time"].values, "force": run.data["spring_x"].values}
     stated = st.Record(**data, stiffness=900.0, drive_velocity=1e-3)
     found = st.analyse(stated)
-    shown = calibrated(stated, found.cycles).stiffness
+    shown = calibrate(stated, found.cycles).stiffness
     assert shown == pytest.approx(982.0, abs=1.0)  # k_x less what creeps already
     late = found.creep.isel(bin=slice(1, 10))
     true = st.analyse(run).creep

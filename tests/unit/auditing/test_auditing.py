@@ -163,7 +163,9 @@ def test_no_value_is_tried_twice(monkeypatch):
     rig = {"mass": 0.2, "k_x": 150, "k_y": 6e4, "phi": "0.5 deg", "normal_load": 2}
     soft = st.Slider(**rig, friction=law, drive=st.ConstantVelocity("2 mm/s"))
     tried = []
-    monkeypatch.setattr(advice, "tried", lambda slider, *_: tried.append(slider) or {"tried": None})
+    monkeypatch.setattr(
+        advice, "try_change", lambda slider, *_: tried.append(slider) or {"tried": None}
+    )
     monkeypatch.setattr(advice, "LEVERS", ("phi",))
     monkeypatch.setattr(advice.Advice, "works", False)
     (found,) = [each._replace() for each in advise(soft, False, 10**6)]

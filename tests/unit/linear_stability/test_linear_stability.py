@@ -11,7 +11,7 @@ from stiction import theory
 from stiction.linear_stability import boundary, critical, growth_rate, modes_over, steady_sliding
 from stiction.linear_stability.derivatives import derivative, set_valued, with_state
 from stiction.linear_stability.steady import drive_velocity
-from stiction.system.parameter import placed
+from stiction.system.parameter import change_unchecked
 
 PAPER = st.presets.nakano_popov_2020()
 V, W = 1e-3, 10.0
@@ -82,7 +82,7 @@ def test_the_closed_form_is_the_limit_of_a_stiff_spring_with_damping():
 @pytest.mark.parametrize(("degrees", "rests"), [(8.8, True), (8.0, False)])
 def test_simulations_on_either_side(degrees, rests):
     slider = PAPER.replace(phi=f"{degrees} deg")
-    start = steady_sliding(slider).disturbed(1e-2)
+    start = steady_sliding(slider).disturbed_start(1e-2)
     run = st.simulate(slider, 20.0, sample_rate=200.0, initial=start)
     late = np.abs(run.data["v_x"].values[-40:]).max()
     assert (late < 1e-9 * V) if rests else (late > 0.5 * V)
@@ -229,7 +229,7 @@ def rings(slider):
     linear = steady_sliding(slider)
     assert linear.eigenvalues[0].imag > 0
     rate, duration = 32 * linear.frequencies[0], 2 / linear.frequencies[0]
-    start = linear.disturbed(1e-4 * min(1.0, math.exp(-linear.growth_rate * duration)))
+    start = linear.disturbed_start(1e-4 * min(1.0, math.exp(-linear.growth_rate * duration)))
     run = st.simulate(slider, duration, sample_rate=rate, initial=start, rtol=1e-12)
     v = run.data["v_x"].values
     (a, b), *_ = np.linalg.lstsq(np.column_stack([v[1:-1], v[:-2]]), v[2:], rcond=None)
@@ -270,7 +270,7 @@ def test_modes_are_followed_through_a_parameter():
     found = modes_over(slider, "drive.velocity", ("0.1 mm/s", "10 mm/s"), points=301)
     growth, values = found["growth_rate"].values, found["value"].values
     assert found.attrs["scale"] == "log"
-    middle = steady_sliding(placed(slider, "drive.velocity", values[150]))
+    middle = steady_sliding(change_unchecked(slider, "drive.velocity", values[150]))
     assert np.sort(growth[150]) == pytest.approx(np.sort(middle.growth_rates))
     # none jumps to another: a hundredth of a decade changes no rate as much as they differ
     assert np.abs(np.diff(growth, axis=0)).max() < 0.15 * np.ptp(growth, axis=1).max()
@@ -296,7 +296,7 @@ def test_a_mirror_changes_nothing(phi, name):
 def test_mass_springs_and_load_together_change_nothing(phi, scale):
     slider = PAPER.replace(phi=f"{phi} deg")
     for path in ("mass", "k_x", "k_y", "normal_load"):
-        slider = placed(slider, path, getattr(slider, path) * scale)
+        slider = change_unchecked(slider, path, getattr(slider, path) * scale)
     one, other = steady_sliding(PAPER.replace(phi=f"{phi} deg")), steady_sliding(slider)
     assert one.growth_rate == pytest.approx(other.growth_rate, abs=100 * other.uncertainty[0])
 
@@ -332,7 +332,7 @@ def test_every_point_of_the_boundary_is_critical():
     for point in range(0, found.sizes["point"], 20):
         phi, speed = (float(found[name][point]) for name in ("phi", "drive.velocity"))
         near = (f"{phi - 1e-3} rad", f"{phi + 1e-3} rad")
-        again = critical(placed(PAPER, "drive.velocity", speed), "phi", near, points=5)
+        again = critical(change_unchecked(PAPER, "drive.velocity", speed), "phi", near, points=5)
         assert again.values == pytest.approx([phi], abs=1e-9)
         assert again.frequencies[0] == pytest.approx(float(found["frequency"][point]), rel=1e-6)
 
@@ -345,8 +345,8 @@ def test_it_is_unstable_on_the_left_of_the_boundary():
         side = 0.01 * np.array([-forward[1], forward[0]]) / np.hypot(*forward)
         values = [
             growth_rate(
-                placed(
-                    placed(PAPER, "phi", phi[i] + way * side[0] * np.radians(30)),
+                change_unchecked(
+                    change_unchecked(PAPER, "phi", phi[i] + way * side[0] * np.radians(30)),
                     "drive.velocity",
                     math.exp(speed[i] + way * side[1] * 6.9),
                 )

@@ -10,7 +10,7 @@ import xarray as xr
 from tests.power import Disk, State, put
 
 import stiction as st
-from stiction.storage.files import held
+from stiction.storage.files import folder_lock
 from stiction.study.execution.engines import Threads
 from stiction.study.store.creation import create
 
@@ -127,7 +127,7 @@ def test_a_second_sweep_begins_at_the_other_end(tmp_path):
 
     store = create(STUDY, tmp_path / "a.zarr")
     first, *_, last = (store.layout.region(task) for task in range(store.layout.tasks))
-    with held(store.path, alone=True), pytest.raises(KeyboardInterrupt):
+    with folder_lock(store.path, alone=True), pytest.raises(KeyboardInterrupt):
         st.sweep(STUDY, store.path, engine=Threads(1), progress=stop)
     assert store.has(last)
     assert not store.has(first)

@@ -9,7 +9,7 @@ import xarray as xr
 import stiction as st
 from stiction.study.execution.cluster import Processes
 from stiction.study.execution.engines import Threads
-from stiction.study.plan.coordinates import unit, varied
+from stiction.study.plan.coordinates import unit, vary
 from stiction.study.plan.layout import Layout, laid_out, places
 from stiction.study.store.creation import create
 from stiction.study.store.seal import seal
@@ -226,10 +226,10 @@ def test_any_parameter_can_vary():
         ("run.regularisation", "m/s", 1e-9, lambda d: d.run.regularisation),
     ):
         assert unit(base, path) == its, path
-        new = varied(base, {path: (value, its)})
+        new = vary(base, {path: (value, its)})
         assert read(new) == pytest.approx(value, rel=1e-15), path
         if read(base) is not None:
-            assert varied(new, {path: (read(base), its)}).slider == base.slider, path
+            assert vary(new, {path: (read(base), its)}).slider == base.slider, path
 
 
 @pytest.mark.parametrize("shape", [(1,), (7,), (1000,), (100, 100), (3, 1000), (5, 7, 11), (10, 1)])

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from stiction.analysis.creep.binning import Bins, between_halves, between_rests, bin_edges
 from stiction.analysis.creep.first_slip import creep_end
-from stiction.analysis.record import Record, recorded
+from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.robust import trimmed_mean
 from stiction.errors import ResultError
 from stiction.trajectory import Trajectory
@@ -82,7 +82,7 @@ def creep_curves(
     if width is not None and not width > 0.0:
         raise ResultError(f"width must be above 0 s, is {width!r}; leave it out for one that suits")
 
-    record = recorded(source)
+    record = as_record(source)
     position = _position(record)
     phases = np.column_stack([cycles["start"].values, cycles["peak_time"].values])
     if isinstance(source, Trajectory):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.creep.least_squares import fitted, used_bins
+from stiction.analysis.creep.least_squares import fit_parameters, used_bins
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -106,9 +106,9 @@ def fit_divergence(
     start, low_n, high_n = (scale, 0.49), (-np.inf, -3.0), (np.inf, 5.0)
     if lag is None:
         bounds = ((*low_n, -0.9 * float(end.min())), (*high_n, loading_time))
-        found, errors = fitted(mean, begin, velocity, error, (*start, 0.0), bounds)
+        found, errors = fit_parameters(mean, begin, velocity, error, (*start, 0.0), bounds)
     else:
-        found, errors = fitted(
+        found, errors = fit_parameters(
             lambda at, a, n: mean(at, a, n, lag), begin, velocity, error, start, (low_n, high_n)
         )
         found, errors = [*found, lag], [*errors, 0.0]

@@ -42,7 +42,7 @@ class CreepFound(NamedTuple):
     missing: dict[str, str]
 
 
-def tried(missing: dict[str, str], name: str, find: Callable[[], T]) -> T | None:
+def attempt(missing: dict[str, str], name: str, find: Callable[[], T]) -> T | None:
     """Return a finding; or None, with the reason under its name in `missing`."""
     try:
         return find()
@@ -64,10 +64,10 @@ def find_creep(
     run = source if isinstance(source, Trajectory) else None
     by_force = None
     if record.position is None:
-        by_force = tried(missing, "misalignment", lambda: misalignment_from_force(record, cycles))
-    known = calibrated(record, cycles, by_force)
-    curves = tried(missing, "creep", lambda: creep_curves(run or known, cycles, width))
-    mean = tried(missing, "creep", lambda: _mean(curves, known)) if curves is not None else None
+        by_force = attempt(missing, "misalignment", lambda: misalignment_from_force(record, cycles))
+    known = calibrate(record, cycles, by_force)
+    curves = attempt(missing, "creep", lambda: creep_curves(run or known, cycles, width))
+    mean = attempt(missing, "creep", lambda: _mean(curves, known)) if curves is not None else None
     if run is not None and run.slider.phi == 0.0:
         return CreepFound(curves, mean, None, None, missing)
     V, stiffness = drive_speed(source, known), known.stiffness
@@ -79,11 +79,11 @@ def find_creep(
             missing["divergence"] = "not determined: without the misalignment, creep is not known"
         else:
             loading = by_force.F_0 / stiffness / V
-            divergence = tried(missing, "divergence", lambda: _divergence(mean, loading))
+            divergence = attempt(missing, "divergence", lambda: _divergence(mean, loading))
         return CreepFound(curves, mean, divergence, by_force, missing)
     loading = float(np.nanmax(mean["force"].values)) / stiffness / V
-    divergence = tried(missing, "divergence", lambda: _divergence(mean, loading))
-    by_creep = tried(missing, "misalignment", lambda: _misalignment(mean, V, stiffness))
+    divergence = attempt(missing, "divergence", lambda: _divergence(mean, loading))
+    by_creep = attempt(missing, "misalignment", lambda: _misalignment(mean, V, stiffness))
     return CreepFound(curves, mean, divergence, by_creep, missing)
 
 
@@ -97,7 +97,7 @@ def drive_speed(source: Trajectory | Record, record: Record) -> float | None:
     return record.drive_velocity
 
 
-def calibrated(record: Record, cycles: xr.Dataset, found: Misalignment | None = None) -> Record:
+def calibrate(record: Record, cycles: xr.Dataset, found: Misalignment | None = None) -> Record:
     """Return a record with the stiffness seen in its own loading, unless it has a position.
 
     It is the stiffness fitted with the misalignment, or that of the even loading in the first half

@@ -86,7 +86,7 @@ def misalignment_from_force(record: Record, cycles: xr.Dataset | None = None) ->
     if not table.sizes["cycle"]:
         raise ResultError("there is no stick-slip cycle in which friction could turn")
     curve = loading_curve(record, table)
-    best, covariance, gain, misfit, apart = _fitted(curve)
+    best, covariance, gain, misfit, apart = _fit(curve)
     phi, excess, off = float(best[0]), exp(best[1]), float(best[2])
     error = max(float(covariance[0, 0]) ** 0.5, apart, _over_cycles(curve, gain))
     error = float(np.hypot(error, THEORY * phi))
@@ -97,7 +97,7 @@ def misalignment_from_force(record: Record, cycles: xr.Dataset | None = None) ->
     return Misalignment(phi, error, F_0, F_0_error, stiffness)
 
 
-def crept(
+def creep_distance(
     force: Floats, phi: float, F_0: float, ratio: float = 0.0, weakening: float = 0.0
 ) -> Floats:
     """Return k_x times the distance crept (N) up to each force, up to a constant, by Eq. (7).
@@ -137,7 +137,7 @@ class _Fit(NamedTuple):
     apart: float
 
 
-def _fitted(curve: LoadingCurve) -> _Fit:
+def _fit(curve: LoadingCurve) -> _Fit:
     """Fit phi, ln(F_0/peak - 1), the stiffness' error, ln(k_x/k_y) and ln(weakening)."""
     from scipy.optimize import least_squares
 
@@ -145,25 +145,30 @@ def _fitted(curve: LoadingCurve) -> _Fit:
     error = np.hypot(curve.error, MODEL * curve.drop)
     middle, width = np.array(TAILS), np.array(WIDTHS)
 
-    def missed(p: Floats) -> Floats:
-        x = crept(curve.force, p[0], curve.peak * (1.0 + exp(p[1])), exp(p[3]), exp(p[4]))
+    def deviation(p: Floats) -> Floats:
+        x = creep_distance(curve.force, p[0], curve.peak * (1.0 + exp(p[1])), exp(p[3]), exp(p[4]))
         told = (x + curve.force) * (1.0 + p[2]) - curve.force  # by a stiffness off by so much
         return np.asarray(seen - (told - told.mean()))
 
-    def weighted(p: Floats) -> Floats:
+    def weighted_misfit(p: Floats) -> Floats:
         assumed = (p[2:] - middle) / width
-        return np.concatenate([missed(p) / error, assumed])
+        return np.concatenate([deviation(p) / error, assumed])
 
     minimised: Any = least_squares
 
     def best_from(start: Floats) -> Any:
         inside = np.clip(start, np.add(LOWEST, 1e-9), np.subtract(HIGHEST, 1e-9))
         return minimised(
-            weighted, inside, bounds=(LOWEST, HIGHEST), x_scale=SCALES, max_nfev=MOST, xtol=1e-6
+            weighted_misfit,
+            inside,
+            bounds=(LOWEST, HIGHEST),
+            x_scale=SCALES,
+            max_nfev=MOST,
+            xtol=1e-6,
         )
 
     best = min((best_from(np.array([*at, *TAILS])) for at in STARTS), key=lambda found: found.cost)
-    excess = float(np.mean(missed(best.x) ** 2) - np.mean(curve.error**2))
+    excess = float(np.mean(deviation(best.x) ** 2) - np.mean(curve.error**2))
     misfit = max(excess, 0.0) ** 0.5 / curve.drop
     error = np.hypot(curve.error, max(MODEL, MISSED * misfit) * curve.drop)
     best = best_from(best.x)

@@ -34,7 +34,7 @@ def used_bins(curve: xr.Dataset, low: float, high: float) -> list[Floats]:
     return list(columns[:, inside])
 
 
-def fitted(
+def fit_parameters(
     model: Callable[..., Floats],
     at: Floats,
     values: Floats,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.creep.least_squares import fitted, used_bins
+from stiction.analysis.creep.least_squares import fit_parameters, used_bins
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -99,7 +99,7 @@ def fit_misalignment(
 
     start = (START, max(1.02 * peak - largest, 1e-3 * peak), START)
     bounds = ((-1.5, 1e-6 * peak, WEAKENINGS[0]), (1.5, 10.0 * peak, WEAKENINGS[1]))
-    found, errors = fitted(
+    found, errors = fit_parameters(
         lambda at, *known: np.append(creep(at, *known), known[2]),
         force,
         np.append(velocity, 0.0),
@@ -126,8 +126,8 @@ def fit_misalignment(
 def creep_velocity(share: Floats, phi: float, weakening: float) -> Floats:
     """Return the velocity of Eq. (7) over that of the drive, at shares F/F_0 of the force.
 
-    Friction is F_0/(1 + weakening |s|/V) with |s| = V sin(phi)/sin(theta), as in `crept`; near
-    theta = 0, which only a trial of the fit reaches, sines are kept from zero.
+    Friction is F_0/(1 + weakening |s|/V) with |s| = V sin(phi)/sin(theta), as in `creep_distance`;
+    near theta = 0, which only a trial of the fit reaches, sines are kept from zero.
     """
     theta = np.arccos(np.clip(share, -1.0, 1.0))
     for _ in range(TURNS):

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from stiction.analysis.motion.course import built_up, dies_out
 from stiction.analysis.motion.hesitations import take_out
 from stiction.analysis.motion.rest import STICKING, rest_share
-from stiction.analysis.record import Record, recorded
+from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.hum import Line, narrow_lines
 from stiction.analysis.signals.outliers import without_outliers
 from stiction.analysis.signals.peak_refinement import Vertices, vertices
-from stiction.analysis.signals.piecewise_fit import fitted
+from stiction.analysis.signals.piecewise_fit import fit_pieces
 from stiction.analysis.signals.turning_points import TurningPoints, turning_points, without_spikes
 from stiction.trajectory import Trajectory
 
@@ -115,7 +115,7 @@ def find_cycles(source: Trajectory | Record) -> xr.Dataset:
     >>> cycles.sizes["cycle"], cycles["period"].values.round(3).tolist()
     (3, [2.0, 2.0, 2.0])
     """
-    return swings(recorded(source)).cycles
+    return swings(as_record(source)).cycles
 
 
 class Swings(NamedTuple):
@@ -177,13 +177,13 @@ def _without_line(record: Record, found: Swings) -> tuple[Record, Swings] | None
         if _beside(line, without):
             number = line.frequency * float(without.table["period"].median())
             count, left = (each.table.sizes["cycle"] for each in (found, without))
-            own = 0 < count <= left + 1 or _multiplied(line, without)
+            own = 0 < count <= left + 1 or _is_subharmonic(line, without)
             if number >= OWN or not own:
                 return rest, without._replace(lines=(*found.lines, line))
     return None
 
 
-def _multiplied(line: Line, without: Swings) -> bool:
+def _is_subharmonic(line: Line, without: Swings) -> bool:
     """Return whether swings are a subharmonic of the line.
 
     If every second slip is larger, the rest without the line has twice the line's period, or
@@ -214,8 +214,8 @@ def _swings(record: Record) -> Swings:
     corners, dips = _corners(record, points)
     if len(corners.time) >= 3:
         with np.errstate(divide="ignore", invalid="ignore"):  # of corners that fall together
-            columns = _measured(record, without_spikes(record.force), corners)
-        columns |= _hesitated(corners, dips)
+            columns = _measure_cycles(record, without_spikes(record.force), corners)
+        columns |= _count_hesitations(corners, dips)
         longest = _longest_step(record.time, corners)
         gap = longest > UNSEEN * columns["period"]
         seen = ~gap | (longest < JUMP * np.median(np.diff(record.time)))
@@ -251,7 +251,7 @@ def _corners(record: Record, points: TurningPoints) -> tuple[Vertices, Vertices]
     return corners, Vertices(found.time[dips.at - 1], dips.depth)
 
 
-def _hesitated(corners: Vertices, dips: Vertices) -> dict[str, Floats]:
+def _count_hesitations(corners: Vertices, dips: Vertices) -> dict[str, Floats]:
     """Return number and depth of the hesitations of each cycle."""
     start = corners.time[:-1:2]
     cycle = np.searchsorted(start, dips.time, side="right") - 1
@@ -262,7 +262,7 @@ def _hesitated(corners: Vertices, dips: Vertices) -> dict[str, Floats]:
     return {"hesitations": number, "hesitation_depth": np.where(number > 0, deepest, np.nan)}
 
 
-def _measured(record: Record, force: Floats, corners: Vertices) -> dict[str, Floats]:
+def _measure_cycles(record: Record, force: Floats, corners: Vertices) -> dict[str, Floats]:
     """Return each column, from alternating troughs and peaks, a trough first and last."""
     start, peak_time, trough_time = (corners.time[i:j:2] for i, j in _THREE)
     start_force, peak, trough = (corners.value[i:j:2] for i, j in _THREE)
@@ -283,8 +283,8 @@ def _measured(record: Record, force: Floats, corners: Vertices) -> dict[str, Flo
         "mu_kinetic": 0.5 * (peak + trough) / load if load else unknown,
         "stick_slope": slope,
         "stiffness": slope / velocity if velocity else unknown,
-        "creep_distance": _moved(record, start, peak_time, peak - start_force),
-        "slip_distance": _moved(record, peak_time, trough_time, trough - peak),
+        "creep_distance": _distance_moved(record, start, peak_time, peak - start_force),
+        "slip_distance": _distance_moved(record, peak_time, trough_time, trough - peak),
         "peak_slip_speed": _fastest(record, force, peak_time, trough_time),
     }
 
@@ -303,7 +303,7 @@ def _loading_rate(time: Floats, force: Floats, start: Floats, peak_time: Floats)
     rise = peak_time - start
     begin, end = (_from(time, start + part * rise) for part in LOADING)
     begin = np.minimum(begin, len(time) - 2)
-    fit = fitted(time, force, begin, np.maximum(end, begin + 1), 1)
+    fit = fit_pieces(time, force, begin, np.maximum(end, begin + 1), 1)
     slope: Floats = fit.coefficients[:, 1] / fit.half
     return slope
 
@@ -314,7 +314,7 @@ def _from(time: Floats, begin: Floats) -> Indices:
     return np.ceil(place - 1e-3).astype(np.intp)
 
 
-def _moved(record: Record, begin: Floats, end: Floats, gained: Floats) -> Floats:
+def _distance_moved(record: Record, begin: Floats, end: Floats, gained: Floats) -> Floats:
     """Return the distance that the mass moved from a time on, given the gain of force."""
     if record.position is not None:
         places = np.interp(np.stack([begin, end]), record.time, record.position)

@@ -36,8 +36,8 @@ def warnings(record: Record, kind: str, cycles: xr.Dataset, friction: Friction) 
     """Return warnings as sentences, the most important first."""
     found = [
         *_friction_too_large(record, friction),
-        *_clipped(record),
-        *_changed(cycles),
+        *_doubt_clipping(record),
+        *_doubt_mean_period(cycles),
         *_loading_too_fast(record, kind, cycles),
         *_mass(record, kind, cycles),
         *_mains(kind, cycles),
@@ -74,7 +74,7 @@ def _mains(kind: str, cycles: xr.Dataset) -> Iterator[str]:
         )
 
 
-def _clipped(record: Record) -> Iterator[str]:
+def _doubt_clipping(record: Record) -> Iterator[str]:
     """Doubt a force that stays at exactly its largest value for longer than at any other."""
     way = 1.0 if record.force.max(initial=0.0) >= -record.force.min(initial=0.0) else -1.0
     force = way * record.force
@@ -93,7 +93,7 @@ def _clipped(record: Record) -> Iterator[str]:
     )
 
 
-def _changed(cycles: xr.Dataset) -> Iterator[str]:
+def _doubt_mean_period(cycles: xr.Dataset) -> Iterator[str]:
     """Doubt one mean over cycles of which the later have another period than the earlier."""
     size = np.log(np.maximum(cycles["period"].values, 1e-300))
     places = np.arange(FEW_CYCLES, len(size) - FEW_CYCLES + 1)
@@ -208,7 +208,7 @@ def _drift(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:
         yield (
             f"The force drifts by {in_words(drift.rate, 'N/s')}, {in_words(drift.change, 'N')} in "
             "all, and friction coefficients with it. If it is the load cell, analyse "
-            "st.analysis.detrended(record)."
+            "st.analysis.detrend(record)."
         )
 
 

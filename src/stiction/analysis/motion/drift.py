@@ -55,7 +55,7 @@ def find_drift(record: Record, cycles: xr.Dataset) -> Drift:
     return Drift(rate, error, change, stands_out=bool(large and abs(rate) > SURE * error))
 
 
-def detrended(record: Record) -> Record:
+def detrend(record: Record) -> Record:
     """Return a record without the steady drift of its force.
 
     The line is zero at the first sample, which is taken as correct. Friction that changes steadily
@@ -71,7 +71,7 @@ def detrended(record: Record) -> Record:
     >>> import numpy as np, stiction as st
     >>> time = np.arange(0.0, 20.0, 1e-3)
     >>> record = st.Record(time=time, force=1.0 + 0.1 * (time % 2.0) + 0.01 * time)
-    >>> cycles = st.analysis.find_cycles(st.analysis.detrended(record))
+    >>> cycles = st.analysis.find_cycles(st.analysis.detrend(record))
     >>> bool(np.ptp(cycles["peak"].values) < 0.001)
     True
     """

@@ -157,11 +157,11 @@ def _break_away(record: Record, forces: Floats, at: int, noise: float) -> Measur
     wanted = (rough / max(SHARP * float(np.ptp(forces)), 1e-300)) ** 2
     width = int(min(max(wanted, 1.0), size))
     smooth = np.convolve(near, np.full(width, 1.0 / width), "valid")
-    error = float(np.hypot(rough / width**0.5, _missed(smooth, width)))
+    error = float(np.hypot(rough / width**0.5, _peak_excess(smooth, width)))
     return Measured(float(smooth.max()), error, np.nan, record.normal_load or np.nan)
 
 
-def _missed(values: Floats, step: int) -> float:
+def _peak_excess(values: Floats, step: int) -> float:
     """Return the largest excess of a peak over its largest value, from values a step apart.
 
     A rounded peak of uniform curvature lies below the intersection of the lines that continue its

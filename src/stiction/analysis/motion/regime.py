@@ -12,7 +12,7 @@ from stiction.analysis.motion.band import EIGHTHS, SUSPECTED, highest_hump, rema
 from stiction.analysis.motion.course import MANY, ORDERED, PARTS, course, order
 from stiction.analysis.motion.cycles import Swings, swings
 from stiction.analysis.motion.rest import STICKING, rest_share, rise_share
-from stiction.analysis.record import Record, recorded
+from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.hum import samples_per_period
 from stiction.analysis.signals.turning_points import CLEAR
 from stiction.text.units import in_words
@@ -71,7 +71,7 @@ def _percent(value: float) -> str:
     return f"{value:.0%}"
 
 
-def _rounded(value: float) -> str:
+def _three_digits(value: float) -> str:
     return f"{float(f'{value:.3g}'):g}"
 
 
@@ -94,31 +94,31 @@ WORDS = {
     "cycles_alike": ("{} of the cycles have this shape themselves", _percent),
     "period_spread": ("periods differ by {} of their mean", _percent),
     "drop_spread": ("four fifths of the force drops differ by up to {} of their median", _percent),
-    "natural_period": ("a period is {} times the mass's own on its spring", _rounded),
-    "drop_over_noise": ("force drops are {} times as high as noise reaches", _rounded),
+    "natural_period": ("a period is {} times the mass's own on its spring", _three_digits),
+    "drop_over_noise": ("force drops are {} times as high as noise reaches", _three_digits),
     "line_taken_off": ("a line at {} was subtracted from the force", _frequency),
     "swings": ("{} swings, each smaller than the last but for noise", _whole),
-    "last_over_first": ("the last force drop is {} times the first", _rounded),
+    "last_over_first": ("the last force drop is {} times the first", _three_digits),
     "turns": ("{} peaks and troughs make no complete cycle", _whole),
     "change": ("the force changes by {} from beginning to end", _force),
     "span": ("it spans {}, averaged over a 32nd of the time", _force),
     "scatter": ("it scatters by {} about that", _force),
     "late_share": ("in the last quarter of the time it spans {} of this", _percent),
     "one_way": ("{} of all its ups and downs is this change", _percent),
-    "rate_kept": ("at the end it changes at {} times the rate of the beginning", _rounded),
+    "rate_kept": ("at the end it changes at {} times the rate of the beginning", _three_digits),
     "rate_over_drive": (
         "at the end its rate is {} times stiffness times drive velocity",
-        _rounded,
+        _three_digits,
     ),
     "hump": ("it vibrates at about {}, in swings of every size", _frequency),
-    "hump_height": ("in the spectrum they stand {} times above the threshold", _rounded),
+    "hump_height": ("in the spectrum they stand {} times above the threshold", _three_digits),
     "fading": ("it vibrates at about {}, less and less", _frequency),
     "fades_to": ("at the end {} or less of that is left", _percent),
     "few_periods": (
         "it may vibrate at about {}, or scatter: for so slow a vibration the record is too short",
         _frequency,
     ),
-    "samples_per_cycle": ("a cycle has {} samples, too few to show it", _rounded),
+    "samples_per_cycle": ("a cycle has {} samples, too few to show it", _three_digits),
     "rate_needed": ("sample at {} or more", _frequency),
     "samples": ("there are {} samples, too few", _whole),
 }
@@ -171,7 +171,7 @@ def classify(source: Trajectory | Record) -> Regime:
         A run or a measurement. With stiffness, drive velocity and mass, the rate of loading and
         the natural period count too; otherwise only the shape.
     """
-    record = recorded(source)
+    record = as_record(source)
     return regime_of(record, swings(record))
 
 

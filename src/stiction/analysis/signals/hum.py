@@ -65,10 +65,10 @@ def narrow_lines(time: Floats, force: Floats) -> list[Line]:
         return []
     power, bin_width = spectrum(force)
     floor = beside(power)
-    return [_measured(force, step, power, floor, bin_width, at) for at in _alone(power, floor)]
+    return [_measure_line(force, step, power, floor, bin_width, at) for at in _alone(power, floor)]
 
 
-def _measured(
+def _measure_line(
     force: Floats, step: float, power: Floats, floor: Floats, width: float, at: int
 ) -> Line:
     """Return the line at a sample of the spectrum, with its harmonics."""

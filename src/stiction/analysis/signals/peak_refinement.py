@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.signals.piecewise_fit import fitted
+from stiction.analysis.signals.piecewise_fit import fit_pieces
 from stiction.analysis.signals.turning_points import TurningPoints
 
 Floats = NDArray[np.float64]
@@ -43,7 +43,7 @@ def vertices(time: Floats, points: TurningPoints) -> Vertices:
     time = time[: len(values) * points.width].reshape(len(values), -1).mean(axis=1)
     upward = np.where(points.trough, -1.0, 1.0)  # each point is a top of `upward * values`
     first, last = _within_noise(points, upward)
-    fit = fitted(time, values, first, last, 2)
+    fit = fit_pieces(time, values, first, last, 2)
     x = _top(upward * fit.coefficients[:, 1], upward * fit.coefficients[:, 2])
     found = Vertices(fit.middle + fit.half * x, fit.at(x))
     return _corners_as_sampled(time, values, upward, first, last, found)

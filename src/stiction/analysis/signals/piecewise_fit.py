@@ -33,7 +33,7 @@ class Fits(NamedTuple):
         return values
 
 
-def fitted(time: Floats, values: Floats, first: Indices, last: Indices, degree: int) -> Fits:
+def fit_pieces(time: Floats, values: Floats, first: Indices, last: Indices, degree: int) -> Fits:
     """Fit by least squares to the samples `first` to `last` (included) of each piece.
 
     Each piece has more samples than the degree; pieces may overlap.

@@ -48,7 +48,7 @@ class Windows(NamedTuple):
         found[0] /= 2.0  # the mean has no twin at a negative frequency
         return found
 
-    def labelled(self, amplitude: Floats, first: int, start: float) -> xr.DataArray:
+    def label(self, amplitude: Floats, first: int, start: float) -> xr.DataArray:
         """Return amplitudes with their frequencies and times; `first` is the first window's."""
         import xarray as xr
 
@@ -126,7 +126,7 @@ def spectrogram(
     windows = windows_of(sample_rate, width, step)
     if len(signal) < windows.length:
         raise ValueError(too_short(windows, len(signal)))
-    return windows.labelled(windows.amplitudes(signal), 0, start)
+    return windows.label(windows.amplitudes(signal), 0, start)
 
 
 def stream_spectrogram(
@@ -174,7 +174,7 @@ def stream_spectrogram(
         rest = np.concatenate([rest, block])
         count = max(0, (len(rest) - windows.length) // windows.hop + 1)
         if count:
-            yield windows.labelled(windows.amplitudes(rest), done, start)
+            yield windows.label(windows.amplitudes(rest), done, start)
             done += count
             rest = rest[count * windows.hop :].copy()
     if not done:

@@ -88,7 +88,7 @@ def turning_points(values: Floats) -> TurningPoints:
         (n,), finite, in any unit: a factor does not change the turning points.
     """
     counts = without_spikes(as_counts(values))
-    levels = list(averaged(counts))
+    levels = list(running_sums(counts))
     step = typical_step(counts)
     gaps = [
         widest_gap(
@@ -117,7 +117,7 @@ def turning_points(values: Floats) -> TurningPoints:
     reach = [noise_reach(levels[i], gap.middle * 2**i) / 2**i for i in range(level + 1)]
     quiet = next(i for i, noise in enumerate(reach) if noise < PLACING * leg or i == level)
     for finer in range(level - 1, quiet - 1, -1):
-        index = _placed(levels[finer], index, trough)
+        index = _locate(levels[finer], index, trough)
     unit = float(np.ptp(values)) / FINE
     means = values.min() + unit / 2**quiet * levels[quiet] if quiet else without_spikes(values)
     noise, least = unit * reach[quiet], unit * gap.middle
@@ -140,7 +140,7 @@ def coarse_points(counts: Counts) -> Indices:
     return found if alike else found[:0]
 
 
-def _placed(counts: Counts, index: Indices, trough: NDArray[np.bool_]) -> Indices:
+def _locate(counts: Counts, index: Indices, trough: NDArray[np.bool_]) -> Indices:
     """Return where the turning points of the sums of two are in `counts`, in the same order.
 
     Each is sought among six samples, those nearer to the next point left out.
@@ -171,7 +171,7 @@ def without_spikes(values: NDArray[Number]) -> NDArray[Number]:
     return limited
 
 
-def averaged(counts: Counts) -> Iterator[Counts]:
+def running_sums(counts: Counts) -> Iterator[Counts]:
     """Yield the signal, then its sums over 2, 4, 8 ... samples, single wild ones replaced."""
     from scipy.ndimage import median_filter  # type: ignore[attr-defined]
 

@@ -32,7 +32,7 @@ def analyse(result: Path, /, *, output: MaybeOutput = None, trust: Trust = False
     from stiction.analysis.parts.cycles import each_cycle
     from stiction.analysis.report import analyse as understand
     from stiction.cli.progress import progress
-    from stiction.cli.tables import printed
+    from stiction.cli.tables import print_sections
     from stiction.plotting.analysis.overview import figures
     from stiction.plotting.page.save import drawable, write
     from stiction.storage.files import make_folder, usable_folder
@@ -52,5 +52,5 @@ def analyse(result: Path, /, *, output: MaybeOutput = None, trust: Trust = False
     if found.cycles.sizes["cycle"]:
         at = [part.title for part in parts].index("Cycles") + 1
         parts.insert(at, Section("Cycle by cycle", [], each_cycle(found.cycles)))
-    printed(str(result), parts)
+    print_sections(str(result), parts)
     say(f"\nwrote {', '.join(path.name for path in paths)} to {folder}")

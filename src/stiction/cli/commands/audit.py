@@ -36,7 +36,7 @@ def audit(
     """
     from stiction.auditing.report import audit as examine
     from stiction.cli.progress import progress
-    from stiction.cli.tables import printed
+    from stiction.cli.tables import print_sections
     from stiction.system.slider import Slider
 
     slider = Slider.from_toml(config, changes(set), trust=trust)
@@ -46,7 +46,7 @@ def audit(
         writable(output)
     with progress("auditing") as report:
         found = examine(slider, report)
-    printed(str(config), found.tables())
+    print_sections(str(config), found.tables())
     if output is not None:
         say(f"wrote {found.write_html(output, str(config))}")
     return 0 if found.ok else 1

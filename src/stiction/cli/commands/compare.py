@@ -57,7 +57,7 @@ def compare(
     """
     from stiction import comparison
     from stiction.cli.progress import progress
-    from stiction.cli.tables import printed
+    from stiction.cli.tables import print_sections
     from stiction.plotting.page.canvas import figure_of
     from stiction.plotting.page.save import drawable, write
     from stiction.storage.files import usable_folder
@@ -71,7 +71,7 @@ def compare(
         found = comparison.compare(description, law, progress=report)
         figure = figure_of(found.plot)
     write(figure, output)
-    printed(str(config), found.tables())
+    print_sections(str(config), found.tables())
     for path in (output, *([] if data is None else save(found, data))):
         say(f"wrote {path}")
     return 0 if found.ok else 1

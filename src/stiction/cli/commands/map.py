@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from stiction.cli.options import MaybeOutput, Trust, named
+from stiction.cli.options import MaybeOutput, Trust, parse_assignment
 from stiction.cli.terminal import say
 
 
@@ -53,7 +53,7 @@ def map(
     from stiction.plotting.page.save import drawable, write
     from stiction.study.view.mapping import map as look
 
-    cut = dict(named(text, "--at") for text in at or ())
+    cut = dict(parse_assignment(text, "--at") for text in at or ())
     target = drawable(output or study.with_suffix(".png"))
     found = look(study, of or (), cut, trust=trust)
     say(f"wrote {write(figure_of(found.plot), target)}")

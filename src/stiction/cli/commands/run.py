@@ -44,12 +44,12 @@ def run(config: Path, /, *, output: Output, trust: Trust = False, set: Changes =
     with progress("simulating") as report:
         result = simulation.run(description, progress=report)
         result.save(output)
-    for line in said(result, output):
+    for line in report_lines(result, output):
         say(line)
     return 0 if result.status.ok else 1
 
 
-def said(result: Trajectory, output: Path) -> list[str]:
+def report_lines(result: Trajectory, output: Path) -> list[str]:
     """Return the lines of text about a written run."""
     from stiction.text.units import in_words
 
@@ -71,7 +71,7 @@ def said(result: Trajectory, output: Path) -> list[str]:
         f"next: stiction plot {output} --output {output.with_suffix('.png')}, "
         f"stiction analyse {output}",
     ]
-    if statistics.steps == 0 or (result.status.ok and rested(result)):
+    if statistics.steps == 0 or (result.status.ok and rests_throughout(result)):
         still = not result.data["drive_X"].any() and not result.data["drive_Y"].any()
         remedy = "the drive is at rest; give it a velocity" if still else longer(result)
         lines.append(f"it never slipped: friction held all the time; {remedy}")
@@ -87,7 +87,7 @@ def share(result: Trajectory) -> str:
     )
 
 
-def rested(result: Trajectory) -> bool:
+def rests_throughout(result: Trajectory) -> bool:
     """Return whether the mass did not move, although its law does not allow true rest."""
     V, slip = abs(result.slider.motion.velocity), result.data["slip_speed"].values
     return V > 0.0 and bool((slip[1:] < REST * V).all())

@@ -52,7 +52,7 @@ def stability(
         The figure to write (.png, .pdf or .svg): the modes over one parameter, or the boundary
         of stability in the plane of two.
     """
-    from stiction.cli.tables import printed
+    from stiction.cli.tables import print_sections
     from stiction.errors import StictionError
     from stiction.linear_stability.examination import OVER
     from stiction.linear_stability.examination import stability as examine
@@ -70,7 +70,7 @@ def stability(
     if output is not None:
         drawable(output)
     found = examine(slider, paths, ranges or None)
-    printed(str(config), found.tables())
+    print_sections(str(config), found.tables())
     if output is not None:
         say(f"wrote {write(figure_of(found.plot), output)}")
 

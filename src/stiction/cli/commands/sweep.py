@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from stiction.cli.options import Changes, Output, Trust, changes, named
+from stiction.cli.options import Changes, Output, Trust, changes, parse_assignment
 from stiction.cli.terminal import say
 
 if TYPE_CHECKING:
@@ -91,18 +91,18 @@ def sweep(
     json_lines
         Write progress and outcome to standard output as lines of JSON, at most one a second.
     """
-    from stiction.cli.tally import shown
+    from stiction.cli.tally import show_tally
     from stiction.study.execution.refine import refine as halve
     from stiction.study.execution.sweep import sweep as do
 
     found = None
-    study = described(config, preset, changes(set), trust)
+    study = read_study(config, preset, changes(set), trust)
     means = engine(threads, workers, scheduler, dashboard)
     try:
-        with shown(quiet, json_lines) as (report, conclude):
+        with show_tally(quiet, json_lines) as (report, conclude):
             result = do(study, output, engine=means, progress=report)
             if refine is not None:
-                along, to = named(refine, "--refine")
+                along, to = parse_assignment(refine, "--refine")
                 found = halve(study, output, along, to, apart=apart, engine=means, progress=report)
     except KeyboardInterrupt:
         say(f"{output}: stopped; the same command continues", error=True)
@@ -113,7 +113,7 @@ def sweep(
     return 1 if result.failed else 0
 
 
-def described(
+def read_study(
     config: Path | None, preset: str | None, given: Mapping[str, Any], trust: bool = False
 ) -> Study:
     """Return the requested study, with changed parameters."""

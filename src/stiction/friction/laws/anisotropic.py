@@ -9,7 +9,7 @@ from pydantic import AfterValidator, Field
 from stiction.errors import DescriptionError, Fault
 from stiction.friction.law import FrictionLaw, Law, has_state
 from stiction.text.units import Angle, reader
-from stiction.text.validation import validated
+from stiction.text.validation import validate
 
 
 def _is_set_valued(law: Any) -> Any:
@@ -21,7 +21,7 @@ def _is_set_valued(law: Any) -> Any:
 Ratio = Annotated[float, reader("a number", "", "1.5"), Field(gt=0)]
 
 
-@validated
+@validate
 class Anisotropic(NamedTuple):
     """A set-valued law on a surface whose friction limit is an ellipse in the plane.
 

@@ -6,13 +6,13 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from stiction.friction.law import static_fault
-from stiction.friction.registry import registered
+from stiction.friction.registry import register
 from stiction.text.units import Coefficient
-from stiction.text.validation import validated
+from stiction.text.validation import validate
 
 
-@registered("coulomb")
-@validated
+@register("coulomb")
+@validate
 class Coulomb(NamedTuple):
     """Constant friction coefficient: F = mu_0 W at any slip speed (Amontons, Coulomb).
 

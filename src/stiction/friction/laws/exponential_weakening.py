@@ -7,13 +7,13 @@ from math import exp
 from typing import NamedTuple
 
 from stiction.friction.law import static_fault
-from stiction.friction.registry import registered
+from stiction.friction.registry import register
 from stiction.text.units import Coefficient, PositiveSpeed
-from stiction.text.validation import validated
+from stiction.text.validation import validate
 
 
-@registered("exponential-weakening")
-@validated
+@register("exponential-weakening")
+@validate
 class ExponentialWeakening(NamedTuple):
     """F = [mu_inf + (mu_0 - mu_inf) exp(-v/v_f)] W (Nakano & Popov 2020, "Methods").
 

@@ -7,13 +7,13 @@ from typing import NamedTuple
 
 from stiction.errors import DescriptionError, Fault
 from stiction.friction.law import static_fault
-from stiction.friction.registry import registered
+from stiction.friction.registry import register
 from stiction.text.units import Coefficient, PositiveSpeed
-from stiction.text.validation import validated
+from stiction.text.validation import validate
 
 
-@registered("hyperbolic-weakening")
-@validated
+@register("hyperbolic-weakening")
+@validate
 class HyperbolicWeakening(NamedTuple):
     """F = mu_0/(1 + v/v_h) W.
 

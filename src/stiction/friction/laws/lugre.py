@@ -6,13 +6,13 @@ from math import exp, sqrt
 from typing import NamedTuple, Self
 
 from stiction.friction.law import Internal, Vector
-from stiction.friction.registry import called_by_laws, registered
+from stiction.friction.registry import called_by_laws, register
 from stiction.text.units import Damping, PositiveNumber, PositiveSpeed, Stiffness
-from stiction.text.validation import validated
+from stiction.text.validation import validate
 
 
-@registered("lugre")
-@validated
+@register("lugre")
+@validate
 class LuGre(NamedTuple):
     """The LuGre model (Canudas de Wit et al. 1995, doi:10.1109/9.376053), in two dimensions.
 

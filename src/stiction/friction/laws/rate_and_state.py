@@ -135,7 +135,7 @@ def steady(a: float, b: float, mu_star: float, V_star: float, v: float) -> float
     return a * asinh_of_exp(log(V / (2.0 * V_star)) + (mu_star + b * log(V_star / V)) / a)
 
 
-def settled(V_star: float, speed: float) -> float:
+def steady_log_theta(V_star: float, speed: float) -> float:
     """Return log_theta of steady sliding at `speed` (m/s); at V* if that is zero."""
     return log(V_star / speed) if speed > 0.0 else 0.0
 

@@ -15,17 +15,17 @@ from stiction.friction.laws.rate_and_state import (
     friction_force,
     friction_gradient,
     grain_of,
-    settled,
     slipping,
     slipping_gradient,
     steady,
+    steady_log_theta,
 )
-from stiction.friction.registry import registered
+from stiction.friction.registry import register
 from stiction.text.units import Coefficient, PositiveLength, PositiveNumber, PositiveSpeed
-from stiction.text.validation import validated
+from stiction.text.validation import validate
 
 
-@validated
+@validate
 class OneState(NamedTuple):
     """Base of both laws; see `stiction.friction.laws.rate_and_state` for the symbols."""
 
@@ -55,7 +55,7 @@ class OneState(NamedTuple):
 
     def settled(law, speed: float) -> tuple[float, ...]:
         """Return the state of steady sliding at `speed` (m/s), or at V_star if it is zero."""
-        return (settled(law.V_star, speed),)
+        return (steady_log_theta(law.V_star, speed),)
 
     def force(law, slip: Vector, load: float, state: tuple[float, ...]) -> Vector:
         """Return the friction force (N)."""
@@ -66,7 +66,7 @@ class OneState(NamedTuple):
         return grain_of(law.a, law.V_star, law.mu_star + law.b * state[0])
 
 
-@registered("rate-and-state-ageing")
+@register("rate-and-state-ageing")
 class RateStateAgeing(OneState):
     """Rate-and-state friction, ageing law (Dieterich 1979).
 
@@ -109,7 +109,7 @@ class RateStateAgeing(OneState):
         )
 
 
-@registered("rate-and-state-slip")
+@register("rate-and-state-slip")
 class RateStateSlip(OneState):
     """Rate-and-state friction, slip law (Ruina 1983).
 

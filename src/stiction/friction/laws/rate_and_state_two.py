@@ -15,17 +15,17 @@ from stiction.friction.laws.rate_and_state import (
     friction_force,
     friction_gradient,
     grain_of,
-    settled,
     slipping,
     slipping_gradient,
     steady,
+    steady_log_theta,
 )
-from stiction.friction.registry import called_by_laws, registered
+from stiction.friction.registry import called_by_laws, register
 from stiction.text.units import Coefficient, PositiveLength, PositiveNumber, PositiveSpeed
-from stiction.text.validation import validated
+from stiction.text.validation import validate
 
 
-@validated
+@validate
 class TwoStates(NamedTuple):
     """Base of both laws; see `stiction.friction.laws.rate_and_state` for the symbols."""
 
@@ -61,7 +61,7 @@ class TwoStates(NamedTuple):
 
     def settled(law, speed: float) -> tuple[float, ...]:
         """Return the states of steady sliding at `speed` (m/s), or at V_star if it is zero."""
-        both = settled(law.V_star, speed)
+        both = steady_log_theta(law.V_star, speed)
         return (both, both)
 
     def force(law, slip: Vector, load: float, state: tuple[float, ...]) -> Vector:
@@ -75,7 +75,7 @@ class TwoStates(NamedTuple):
         return grain_of(law.a, law.V_star, psi)
 
 
-@registered("rate-and-state-ageing-2")
+@register("rate-and-state-ageing-2")
 class RateStateAgeing2(TwoStates):
     """Rate-and-state friction with two states, ageing law (Dieterich 1979).
 
@@ -118,7 +118,7 @@ class RateStateAgeing2(TwoStates):
         return gradient_of(law, slip, load, state, one, two)
 
 
-@registered("rate-and-state-slip-2")
+@register("rate-and-state-slip-2")
 class RateStateSlip2(TwoStates):
     """Rate-and-state friction with two states, slip law (Ruina 1983).
 

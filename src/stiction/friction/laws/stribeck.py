@@ -7,15 +7,15 @@ from math import exp
 from typing import NamedTuple
 
 from stiction.friction.law import static_fault
-from stiction.friction.registry import registered
+from stiction.friction.registry import register
 from stiction.text.units import Coefficient, Exponent, PerSpeed, PositiveSpeed
-from stiction.text.validation import validated
+from stiction.text.validation import validate
 
 GONE = 750.0  # exp(-750) is zero in floating point
 
 
-@registered("stribeck")
-@validated
+@register("stribeck")
+@validate
 class Stribeck(NamedTuple):
     """F = [mu_c + (mu_s - mu_c) exp(-(v/v_s)^d) + c v] W.
 

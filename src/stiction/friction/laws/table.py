@@ -10,13 +10,13 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.friction.law import static_fault
-from stiction.friction.registry import registered
+from stiction.friction.registry import register
 from stiction.text.units import Coefficient, Coefficients, Speeds
-from stiction.text.validation import validated
+from stiction.text.validation import validate
 
 
-@registered("table")
-@validated
+@register("table")
+@validate
 class Table(NamedTuple):
     """F = mu(v) W through measured points, monotone between neighbours.
 

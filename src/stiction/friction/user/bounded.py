@@ -28,7 +28,7 @@ def endless(law: Any) -> str:
     for v in SPEEDS:
         for name, call in _calls(law, v).items():
             try:
-                with bounded(type(law)):
+                with limit_lines(type(law)):
                     call()
             except NoEnd:
                 return f"{name} at {v:g} m/s ran {LINES:,} lines and did not end"
@@ -51,7 +51,7 @@ def _calls(law: Any, v: float) -> dict[str, Callable[[], object]]:
 
 
 @contextmanager
-def bounded(kind: type) -> Iterator[None]:
+def limit_lines(kind: type) -> Iterator[None]:
     """Limit the lines that the methods of a class, and their callees, may run.
 
     Raises

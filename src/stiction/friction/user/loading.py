@@ -18,15 +18,15 @@ from typing import Any
 
 from stiction.errors import DescriptionError, one_line
 from stiction.friction.user.source import Text, member, module_name, module_of, read, text_of
-from stiction.friction.user.validation import fault, is_law, law_in, tried
-from stiction.text.validation import made
+from stiction.friction.user.validation import fault, is_law, law_in, try_law
+from stiction.text.validation import make
 
 # from a law's name, and its text if stored, to the class
 Find = Callable[[str, str | None], type[Any]]
 LARGEST = 2**20  # bytes of a law's file
 
 
-def named(folder: Path, trust: bool = False) -> Find:
+def finder_for_descriptions(folder: Path, trust: bool = False) -> Find:
     """Return a finder for laws of descriptions: it runs a file that lies in `folder`.
 
     With `trust` the file may lie anywhere.
@@ -34,7 +34,7 @@ def named(folder: Path, trust: bool = False) -> Find:
 
     def find(name: str, text: str | None) -> type[Any]:
         if text is not None:  # stored by a program, not written by hand
-            return held(trust)(name, text)
+            return finder_for_results(trust)(name, text)
         file, kind = split(name)
         path = _there(folder, file, trust)
         return law_in(run(Text(_relative(file), _read(path)), str(path)), kind, name)
@@ -42,7 +42,7 @@ def named(folder: Path, trust: bool = False) -> Find:
     return find
 
 
-def held(trust: bool = False) -> Find:
+def finder_for_results(trust: bool = False) -> Find:
     """Return a finder for laws of results: it runs nothing unless `trust` is given."""
 
     def find(name: str, text: str | None) -> type[Any]:
@@ -53,7 +53,7 @@ def held(trust: bool = False) -> Find:
                 "after it was imported; write the law in a file, and describe or import it anew; "
                 "the arrays can be read with xarray.open_dataset"
             )
-        for candidate in loaded(file, kind, text):
+        for candidate in loaded_classes(file, kind, text):
             return is_law(candidate, name)  # the file may name any module and class
         if trust:
             return law_in(run(Text(_relative(file), text), f"<{file}>"), kind, name)
@@ -73,8 +73,8 @@ def read_own(table: dict[str, Any], find: Find) -> Any:
     if not isinstance(text, str | None):
         raise fault(f"must be text, is {text!r}; leave it out", "source")
     kind = find(name, text)
-    with told(f"{name!r} cannot be made"):
-        return tried(made(kind, table), name)
+    with errors_as_faults(f"{name!r} cannot be made"):
+        return try_law(make(kind, table), name)
 
 
 def is_own(table: Any) -> bool:
@@ -113,7 +113,7 @@ def _there(folder: Path, file: str, trust: bool) -> Path:
     return Path(path)
 
 
-def loaded(file: str, kind: str, text: str) -> Iterator[type[Any]]:
+def loaded_classes(file: str, kind: str, text: str) -> Iterator[type[Any]]:
     """Yield the classes of that name that this process has loaded from the same text."""
     ours, base = module_name(Text(file, text)), Path(file).name
     for name, module in list(sys.modules.items()):
@@ -127,12 +127,12 @@ def loaded(file: str, kind: str, text: str) -> Iterator[type[Any]]:
 
 def run(text: Text, path: str) -> ModuleType:
     """Run a text; turn its errors into one line."""
-    with told(f"{path} cannot be run"):
+    with errors_as_faults(f"{path} cannot be run"):
         return module_of(text, path)
 
 
 @contextmanager
-def told(what: str) -> Iterator[None]:
+def errors_as_faults(what: str) -> Iterator[None]:
     """Turn errors of a user's text into faults; an interrupt passes through."""
     try:
         yield

@@ -51,7 +51,7 @@ def read(path: Path) -> str:
         If it cannot be read.
     """
     with tokenize.open(path) as file:
-        return _ended(file.read())
+        return _end_last_line(file.read())
 
 
 def module_name(text: Text) -> str:
@@ -85,17 +85,17 @@ def module_of(text: Text, path: str) -> ModuleType:
         raise
     for kind in vars(module).values():
         if inspect.isclass(kind) and kind.__module__ == name and issubclass(kind, tuple):
-            copyreg.pickle(kind, _reduced)  # another process does not have the module
+            copyreg.pickle(kind, _reduce)  # another process does not have the module
     return module
 
 
-def _reduced(law: Any) -> tuple[Any, ...]:
+def _reduce(law: Any) -> tuple[Any, ...]:
     kind = type(law)
     loader = vars(sys.modules[kind.__module__])["__loader__"]
-    return _remade, (loader.text, loader.path, kind.__qualname__, tuple(law))
+    return _remake, (loader.text, loader.path, kind.__qualname__, tuple(law))
 
 
-def _remade(text: Text, path: str, name: str, values: tuple[Any, ...]) -> Any:
+def _remake(text: Text, path: str, name: str, values: tuple[Any, ...]) -> Any:
     return member(module_of(text, path), name)._make(values)
 
 
@@ -122,7 +122,7 @@ def text_of(kind: type) -> Text | None:
         return _from_script(kind)
     try:
         file = inspect.getsourcefile(module) or ""
-        text = _ended(inspect.getsource(module))
+        text = _end_last_line(inspect.getsource(module))
         return Text(Path(file).name, text) if _defines(text, kind, file) else None
     except (OSError, TypeError, SyntaxError):
         return None
@@ -153,10 +153,10 @@ def _from_script(kind: type) -> Text | None:
         found = excerpt("".join(linecache.getlines(file)), kind.__qualname__.split(".")[0])
         if found:
             name = Path(file).name if Path(file).is_file() else "notebook.py"
-            return Text(name, _ended(found))
+            return Text(name, _end_last_line(found))
     return None
 
 
-def _ended(text: str) -> str:
+def _end_last_line(text: str) -> str:
     """Return a text with a final newline, as `inspect` does."""
     return text if text.endswith("\n") else f"{text}\n"

@@ -11,7 +11,7 @@ from stiction.errors import DescriptionError, Fault, one_line
 from stiction.friction.law import has_state
 from stiction.friction.user.bounded import endless
 from stiction.friction.user.source import member
-from stiction.text.validation import unknown
+from stiction.text.validation import unknown_name
 
 SET_VALUED = ("coefficient", "slope")
 WITH_STATE = ("states", "coefficient", "settled", "force", "change")
@@ -35,7 +35,7 @@ def law_in(module: ModuleType, kind: str, name: str) -> type[Any]:
     found = member(module, kind)
     if found is None:
         classes = [n for n, value in vars(module).items() if _is_its_own(value, module)]
-        raise fault(f"{name!r}: {unknown('class', kind, classes or ['none'])}")
+        raise fault(f"{name!r}: {unknown_name('class', kind, classes or ['none'])}")
     law = is_law(found, name)
     for field in sorted(RESERVED.intersection(law._fields)):
         raise fault(f"{name!r} has a parameter {field!r}, which is a reserved key; rename it")
@@ -55,7 +55,7 @@ def is_law(found: Any, name: str) -> type[Any]:
     return law
 
 
-def tried(law: Any, name: str) -> Any:
+def try_law(law: Any, name: str) -> Any:
     """Return the law, if its methods return numbers at a few speeds."""
     if said := endless(law):
         raise fault(f"{name!r}: {said}; {ENDING}")

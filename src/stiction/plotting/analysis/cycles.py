@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.regime import regime_of
-from stiction.analysis.record import Record, recorded
-from stiction.plotting.page.canvas import canvas, fixed, listed
+from stiction.analysis.record import Record, as_record
+from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
 from stiction.plotting.page.style import BLUE, GREY, PAGE, PALE, RED, style
 from stiction.plotting.run.time_series import draw_line, name_time
-from stiction.text.quantity_text import prefixed
+from stiction.text.quantity_text import metric_prefix
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -46,16 +46,16 @@ def plot_cycles(
     ndarray of Axes
         One, or two where there are many cycles.
     """
-    record = recorded(source)
+    record = as_record(source)
     found = swings(record)
     cycles, regime = found.cycles, regime_of(record, found)
     many = cycles.sizes["cycle"] > FEW
     with style():
         if axes is None:
             fig = canvas(PAGE, 4.4 if many else 2.6)
-            panels = fixed(list(fig.subplots(2 if many else 1, 1, squeeze=False)[:, 0]))
+            panels = fix_ticks(list(fig.subplots(2 if many else 1, 1, squeeze=False)[:, 0]))
         else:
-            panels = listed(axes)
+            panels = as_list(axes)
         draw_cycles(panels[0], record, cycles)
         panels[0].set_title(regime.kind.capitalize())
         if many and len(panels) > 1:
@@ -77,7 +77,7 @@ def draw_cycles(ax: Axes, record: Record, cycles: xr.Dataset) -> None:
     cycles : Dataset
         From `stiction.analysis.motion.cycles.find_cycles`.
     """
-    factor, prefix = prefixed(record.force)
+    factor, prefix = metric_prefix(record.force)
     draw_line(ax, record.time, factor * record.force, GREY, 0.5)
     size = float(np.clip(60.0 / max(cycles.sizes["cycle"], 1), 1.5, 4.0))  # pt: they must not touch
     low_time = np.append(cycles["start"].values[:1], cycles["trough_time"].values)

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator, NullFormatter
 from numpy.typing import NDArray
 
-from stiction.plotting.page.canvas import canvas, fixed, listed
+from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
 from stiction.plotting.page.style import (
     BLACK,
     BLUE,
@@ -24,7 +24,7 @@ from stiction.plotting.page.style import (
     panel_letter,
     style,
 )
-from stiction.text.quantity_text import prefixed
+from stiction.text.quantity_text import metric_prefix
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -48,7 +48,7 @@ def draw_budget(ax: Axes, budget: xr.Dataset) -> None:
     are left out.
     """
     named = {name: budget[name].values for name in PARTS}
-    factor, prefix = prefixed(np.concatenate([*named.values(), budget["work"].values]))
+    factor, prefix = metric_prefix(np.concatenate([*named.values(), budget["work"].values]))
     largest = max(float(np.abs(values).max()) for values in named.values())
     place = np.arange(1, budget.sizes["interval"] + 1)
     up, down = np.zeros(len(place)), np.zeros(len(place))
@@ -105,10 +105,10 @@ def plot_energy(budget: xr.Dataset, axes: Sequence[Axes] | None = None) -> NDArr
     with style():
         if axes is None:
             fig = canvas(COLUMN, 4.3)
-            panels = fixed(list(fig.subplots(2, 1, sharex=True, height_ratios=[1.8, 1.0])))
+            panels = fix_ticks(list(fig.subplots(2, 1, sharex=True, height_ratios=[1.8, 1.0])))
             fig.align_ylabels(panels)
         else:
-            panels = listed(axes)
+            panels = as_list(axes)
         draw_budget(panels[0], budget)
         draw_closure(panels[1], budget)
         for ax, letter in zip(panels, "ab", strict=True):

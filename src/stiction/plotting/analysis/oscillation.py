@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from stiction.analysis.oscillation import oscillation_spectrogram
 from stiction.plotting.analysis.spectrogram import draw_spectrogram, frequency_unit
-from stiction.plotting.page.canvas import canvas, fixed, listed
+from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
 from stiction.plotting.page.style import (
     BLACK,
     BLUE,
@@ -98,10 +98,10 @@ def plot_oscillation(
     with style():
         if axes is None:
             fig = canvas(COLUMN, 4.6)
-            panels = fixed(list(fig.subplots(3, 1, sharex=True, height_ratios=[2.0, 1.2, 1.0])))
+            panels = fix_ticks(list(fig.subplots(3, 1, sharex=True, height_ratios=[2.0, 1.2, 1.0])))
             fig.align_ylabels(panels)
         else:
-            panels = listed(axes)
+            panels = as_list(axes)
         amplitude = oscillation_spectrogram(run)
         top = max(40.0, 10.0 * np.ceil(2.0 * np.log10(float(amplitude.max()) / 1e-6)))
         mesh = draw_spectrogram(

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from stiction.analysis.record import Record
 from stiction.analysis.signals.reversals import standing_out
 from stiction.analysis.signals.turning_points import FINE, as_counts
-from stiction.plotting.page.canvas import canvas, fixed, listed
+from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
 from stiction.plotting.page.style import BLUE, GREY, PAGE, style
 from stiction.plotting.run.time_series import draw_line, name_time
-from stiction.text.quantity_text import prefixed
+from stiction.text.quantity_text import metric_prefix
 
 PANEL = 1.35  # height of a row, in
 ACROSS = 2
@@ -58,15 +58,15 @@ def plot_trials(
     """
     rows = -(-len(trials) // ACROSS)
     largest = [np.abs(each.force).max() for each in (before, *(trial.record for trial in trials))]
-    factor, prefix = prefixed(np.array(largest))
+    factor, prefix = metric_prefix(np.array(largest))
     with style():
         if axes is None:
             fig = canvas(PAGE, 0.5 + PANEL * rows)
-            panels = fixed(list(fig.subplots(rows, ACROSS, squeeze=False).ravel()))
+            panels = fix_ticks(list(fig.subplots(rows, ACROSS, squeeze=False).ravel()))
         else:
-            panels = listed(axes)
+            panels = as_list(axes)
         for ax, (title, record) in zip(panels, trials, strict=False):
-            start, end, count = shown(before, record)
+            start, end, count = time_range(before, record)
             for each, label, color, width in (
                 (before, "now", GREY, 0.7),
                 (record, "changed", BLUE, 1.0),
@@ -88,7 +88,7 @@ def plot_trials(
     return np.array(panels[: len(trials)], dtype=object)
 
 
-def shown(before: Record, record: Record) -> tuple[float, float, int]:
+def time_range(before: Record, record: Record) -> tuple[float, float, int]:
     """Return the time range of a panel (s), and the approximate number of swings.
 
     If both motions last into its later half, the range ends with the first of them.

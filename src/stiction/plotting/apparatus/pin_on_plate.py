@@ -37,16 +37,16 @@ def draw_apparatus(ax: Axes, slider: Slider) -> Axes:
         (np.array([(0, 0, 0), (2.7, 0, 0)]) @ turn, RED, "$x$"),
         (np.array([(0, -1.6, 0), (0, 3.9, 0)]) @ turn, RED, "$y$"),
     ):
-        tail, head = _seen(axis)
+        tail, head = _project(axis)
         way = (head - tail) / np.hypot(*(head - tail))
         shapes.line(ax, [tail, head], color, 0.8, "-.", zorder=2.5)
         shapes.arrow(ax, [head - 0.1 * way, head], color, 0.8)
         shapes.name(ax, head + 0.2 * way, text, color)
     if phi:
         arc = np.c_[shapes.arc_path((0, 0), 2.2, -phi, 0), np.zeros(60)]
-        shapes.line(ax, _seen(arc))
+        shapes.line(ax, _project(arc))
         middle = np.array([np.cos(phi / 2), -np.sin(phi / 2), 0])
-        shapes.name(ax, _seen(2.45 * middle), r"$\varphi$")
+        shapes.name(ax, _project(2.45 * middle), r"$\varphi$")
     note = misalignment_note(slider.phi)
     ax.text(0.98, 0.0, note, transform=ax.transAxes, ha="right", va="bottom", fontsize=7)
     ax.update_datalim([(0.0, -2.0)])
@@ -60,21 +60,21 @@ def draw_apparatus(ax: Axes, slider: Slider) -> Axes:
 def _draw_plate(ax: Axes) -> None:
     """Draw the plate and the velocity at which it moves towards the pin's holder."""
     left, right, front, back, bottom = -2.6, 3.2, -1.9, 1.7, -0.25
-    top = _seen([(left, front, 0), (right, front, 0), (right, back, 0), (left, back, 0)])
-    edge = _seen([(left, front, bottom), (right, front, bottom), (right, back, bottom)])
+    top = _project([(left, front, 0), (right, front, 0), (right, back, 0), (left, back, 0)])
+    edge = _project([(left, front, bottom), (right, front, bottom), (right, back, bottom)])
     shapes.polygon(ax, [top[0], top[1], edge[1], edge[0]], face="#C9C9C9", zorder=1.0)
     shapes.polygon(ax, [top[1], top[2], edge[2], edge[1]], face="#B5B5B5", zorder=1.0)
     shapes.polygon(ax, top, face=FLOOR, zorder=1.0)
-    shapes.name(ax, _seen((-1.6, -1.55, 0)), "plate", size=7)
-    shapes.arrow(ax, _seen([(-0.9, -0.65, 0), (-2.1, -0.65, 0)]), BLUE, 2.0)
-    shapes.name(ax, _seen((-1.4, -0.3, 0)), "$V$", BLUE)
+    shapes.name(ax, _project((-1.6, -1.55, 0)), "plate", size=7)
+    shapes.arrow(ax, _project([(-0.9, -0.65, 0), (-2.1, -0.65, 0)]), BLUE, 2.0)
+    shapes.name(ax, _project((-1.4, -0.3, 0)), "$V$", BLUE)
 
 
 def _draw_cantilever(ax: Axes, turn: Points) -> None:
     """Draw the pin, the leaf spring that holds it, and the clamp at the leaf's other end."""
 
     def put(points: ArrayLike) -> Points:
-        return _seen(np.asarray(points) @ turn)
+        return _project(np.asarray(points) @ turn)
 
     low, high, length = 0.75, 1.35, 2.6
     pin = [(-0.09, 0.0), (0.09, 0.0), (0.09, low), (-0.09, low)]
@@ -97,6 +97,6 @@ def _draw_cantilever(ax: Axes, turn: Points) -> None:
     shapes.name(ax, (-0.4 * leans, 0.3), "pin", size=7)
 
 
-def _seen(points: ArrayLike) -> Points:
+def _project(points: ArrayLike) -> Points:
     seen: Points = np.asarray(points, dtype=np.float64) @ VIEW
     return seen

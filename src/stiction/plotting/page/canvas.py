@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from stiction.errors import StictionError
 from stiction.plotting.page.style import SHEET, new_figure
-from stiction.text.validation import unknown
+from stiction.text.validation import unknown_name
 
 Drawing = TypeVar("Drawing", bound=Callable[..., Any])
 
@@ -33,17 +33,17 @@ def canvas(width: float, height: float) -> Figure:
 
 def panel(ax: Axes | None, width: float, height: float) -> Axes:
     """Return the given axes, or those of a new figure of a size (in)."""
-    return fixed([canvas(width, height).subplots()])[0] if ax is None else ax
+    return fix_ticks([canvas(width, height).subplots()])[0] if ax is None else ax
 
 
-def listed(axes: Any) -> list[Axes]:
+def as_list(axes: Any) -> list[Axes]:
     """Return a single axes, or an array or a mapping of axes, as a list."""
     if isinstance(axes, Axes):
         return [axes]
     return list(axes.values()) if isinstance(axes, Mapping) else list(np.ravel(axes))
 
 
-def fixed(axes: Sequence[Axes]) -> Sequence[Axes]:
+def fix_ticks(axes: Sequence[Axes]) -> Sequence[Axes]:
     """Fix the tick style of axes, which are drawn later without the style sheet."""
     for ax in axes:
         for way in "xy":
@@ -60,7 +60,7 @@ def fixed(axes: Sequence[Axes]) -> Sequence[Axes]:
     return axes
 
 
-def named(drawings: Mapping[str, Drawing], name: str) -> Drawing:
+def find_drawing(drawings: Mapping[str, Drawing], name: str) -> Drawing:
     """Return the function that draws a panel.
 
     Raises
@@ -69,7 +69,7 @@ def named(drawings: Mapping[str, Drawing], name: str) -> Drawing:
         If there is no such panel.
     """
     if name not in drawings:
-        raise StictionError(unknown("panel", name, drawings))
+        raise StictionError(unknown_name("panel", name, drawings))
     return drawings[name]
 
 
@@ -77,7 +77,7 @@ def figure_of(draw: Callable[..., Any], *arguments: Any, **values: Any) -> Figur
     """Return the figure of a function of `stiction.plotting`, unknown to pyplot."""
     token = _alone.set(True)
     try:
-        axes: Iterable[Axes] = listed(draw(*arguments, **values))
+        axes: Iterable[Axes] = as_list(draw(*arguments, **values))
     finally:
         _alone.reset(token)
     return whole_figure(next(iter(axes)))

@@ -10,7 +10,7 @@ from matplotlib.ticker import FuncFormatter
 from numpy.typing import ArrayLike, NDArray
 
 from stiction.plotting.page.words import symbol
-from stiction.text.quantity_text import prefixed
+from stiction.text.quantity_text import metric_prefix
 
 SYMBOLS = {"phi": r"$\varphi$", "drive.velocity": "$V$", "normal_load": "$W$", "mass": "$m$"}
 PLAIN = FuncFormatter(lambda value, _: f"{value:g}")  # 0.1, 1, 10: the units suit the values
@@ -31,7 +31,7 @@ def in_unit(values: ArrayLike, unit: str) -> tuple[float, str]:
         return degrees(1.0), "deg"
     if unit in ("kg", "1", ""):
         return 1.0, unit or "1"
-    factor, prefix = prefixed(values)
+    factor, prefix = metric_prefix(values)
     return factor, prefix + unit.replace("*", " ")
 
 
@@ -47,12 +47,12 @@ class Scale(NamedTuple):
         """Symbol and unit."""
         return f"{self.symbol} ({self.unit})"
 
-    def drawn(self, values: ArrayLike) -> NDArray[np.float64]:
+    def in_unit(self, values: ArrayLike) -> NDArray[np.float64]:
         """Return values (SI) in the unit of the drawing."""
         found: NDArray[np.float64] = np.asarray(values, dtype=np.float64) * self.factor
         return found
 
-    def named(self, value: float) -> str:
+    def quantity(self, value: float) -> str:
         """Return one value (SI) with symbol and unit."""
         unit = "°" if self.unit == "deg" else f" {self.unit}" if self.unit != "1" else ""
         return f"{self.symbol} = {value * self.factor:.4g}{unit}"

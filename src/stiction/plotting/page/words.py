@@ -81,7 +81,7 @@ def harmonic_in_words(harmonic: Modulation, unit: str) -> str:
 
 def law_in_words(slider: Slider) -> list[str]:
     """Return the friction law: its name, and its parameters in the lines that follow."""
-    return [f"{name_of(slider.law)}:", *wrapped(parameters_in_words(slider.law), WIDTH)]
+    return [f"{name_of(slider.law)}:", *wrap_words(parameters_in_words(slider.law), WIDTH)]
 
 
 def parameters_in_words(law: Any) -> list[str]:
@@ -101,12 +101,12 @@ def parameters_in_words(law: Any) -> list[str]:
     return words
 
 
-def wrapped(words: Sequence[str], width: int) -> list[str]:
+def wrap_words(words: Sequence[str], width: int) -> list[str]:
     """Return words, separated by commas, in lines of about `width` characters."""
     lines = [""]
     for word in words:
         longer = f"{lines[-1]}, {word}" if lines[-1] else word
-        if len(shown(longer)) > width and lines[-1]:
+        if len(printed_text(longer)) > width and lines[-1]:
             lines[-1] += ","
             lines.append(word)
         else:
@@ -114,7 +114,7 @@ def wrapped(words: Sequence[str], width: int) -> list[str]:
     return lines
 
 
-def shown(text: str) -> str:
+def printed_text(text: str) -> str:
     r"""Return the approximate printed characters of a text with symbols such as $\mu_0$."""
     text = re.sub(r"\\(infty|mu|sigma|omega|theta)", "o", text)
     return re.sub(r"\\mathrm|[${}_\\]", "", text)

@@ -9,9 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from stiction.friction import name_of
-from stiction.plotting.page.canvas import canvas, fixed, named
+from stiction.plotting.page.canvas import canvas, find_drawing, fix_ticks
 from stiction.plotting.page.style import GREY, PAGE, style
-from stiction.plotting.page.words import parameters_in_words, system_in_words, wrapped
+from stiction.plotting.page.words import parameters_in_words, system_in_words, wrap_words
 from stiction.plotting.run.curves import Curve, curves_of, draw_over_time
 from stiction.plotting.run.slip_speeds import (
     draw_held,
@@ -68,7 +68,7 @@ def plot_comparison(
             "words": lambda ax: write_legend(ax, curves, legend),
         }
         for name, ax in panels.items():
-            named(draw, name)(ax)
+            find_drawing(draw, name)(ax)
         for name in {"speed", "portrait"} & panels.keys():
             set_speed_limits(panels[name], curves)
         if axes is None:
@@ -85,7 +85,7 @@ def _panels(curves: list[Curve], legend: list[str]) -> dict[str, Axes]:
         width_ratios=[1.6, 1],
         height_ratios=[top / 2, top / 2, 2.2, strip],
     )
-    fixed([*panels.values()])
+    fix_ticks([*panels.values()])
     return panels
 
 
@@ -105,7 +105,7 @@ def legend_text(curve: Curve) -> str:
     name = name_of(law)
     bare = curve.label.startswith(f"{name}, ")  # parameters follow, which are written below
     heading = [name] if bare else wrap(curve.label, WIDTH)
-    lines = [*heading, *wrapped(parameters_in_words(law), WIDTH)]
+    lines = [*heading, *wrap_words(parameters_in_words(law), WIDTH)]
     if not curve.run.status.ok:
         end = float(curve.run.data["time"][-1])
         reason = curve.run.status.name.lower().replace("_", " ")

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 
 from stiction.analysis.slip import Slip
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY
-from stiction.plotting.run.time_series import averaged, envelope
-from stiction.text.quantity_text import prefixed
+from stiction.plotting.run.time_series import average_slip, envelope
+from stiction.text.quantity_text import metric_prefix
 from stiction.trajectory import Trajectory
 
 COLOURS = (BLACK, RED, BLUE, GREEN, ORANGE, SKY, PURPLE)
@@ -48,16 +48,16 @@ def curves_of(runs: Mapping[str, Trajectory]) -> list[Curve]:
                 "linewidth": 0.9 if at else 1.5,
                 "zorder": 2.0 + 0.01 * at,
             },
-            averaged(run),
+            average_slip(run),
         )
         for at, (label, run) in enumerate(runs.items())
     ]
 
 
 def common(values: Iterable[ArrayLike]) -> tuple[float, str]:
-    """Return factor and prefix of the unit that suits all values together; see `prefixed`."""
+    """Return factor and prefix of the unit that suits all values together; see `metric_prefix`."""
     largest = [np.fmax.reduce(np.abs(np.asarray(each)), initial=0.0) for each in values]
-    return prefixed([value for value in largest if np.isfinite(value)])
+    return metric_prefix([value for value in largest if np.isfinite(value)])
 
 
 def draw_over_time(ax: Axes, curves: Sequence[Curve], variable: str, symbol: str) -> None:

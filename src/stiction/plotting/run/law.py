@@ -11,7 +11,7 @@ from stiction.friction.law import static_coefficient
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.style import COLUMN, PURPLE, style
 from stiction.system.slider import Slider
-from stiction.text.quantity_text import prefixed
+from stiction.text.quantity_text import metric_prefix
 
 
 def plot_law(slider: Slider, fastest: float | None = None, ax: Axes | None = None) -> Axes:
@@ -52,7 +52,7 @@ def draw_law(ax: Axes, slider: Slider, fastest: float) -> Line2D:
     law, rests = slider.law, not has_state(slider.law)
     speeds = np.linspace(0.0, top, 201) if rests else np.geomspace(1e-6 * top, top, 201)
     mu = [law.coefficient(float(speed)) for speed in speeds]
-    factor, prefix = prefixed(speeds)
+    factor, prefix = metric_prefix(speeds)
     speeds *= factor
     if rests:
         largest = max(static_coefficient(law), mu[0])

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
 from stiction.plotting.apparatus.schematic import draw_schematic
-from stiction.plotting.page.canvas import canvas, fixed, named
+from stiction.plotting.page.canvas import canvas, find_drawing, fix_ticks
 from stiction.plotting.page.style import BLACK, BLUE, GREY, ORANGE, PAGE, RED, style
 from stiction.plotting.page.words import (
     base_velocity,
@@ -23,7 +23,7 @@ from stiction.plotting.page.words import (
 from stiction.plotting.run import time_series
 from stiction.plotting.run.law import draw_law
 from stiction.plotting.run.time_series import Floats
-from stiction.text.quantity_text import prefixed
+from stiction.text.quantity_text import metric_prefix
 from stiction.trajectory import Trajectory
 
 LINE, GAP = 10.5, 3.0  # of text, pt
@@ -62,9 +62,9 @@ def plot_run(run: Trajectory, axes: Mapping[str, Axes] | None = None) -> dict[st
     """
     with style():
         panels = dict(_panels(run) if axes is None else axes)
-        drawings = {"system": _system, "words": _written, "law": _law, **_series(run)}
+        drawings = {"system": _system, "words": _write_words, "law": _law, **_series(run)}
         for name, ax in panels.items():
-            named(drawings, name)(ax, run)
+            find_drawing(drawings, name)(ax, run)
         series = [ax for name, ax in panels.items() if name not in ("system", "words", "law")]
         if axes is None:
             for ax in series[:-1]:
@@ -82,10 +82,10 @@ def _panels(run: Trajectory) -> dict[str, Axes]:
     panels = left.subplot_mosaic(
         [["system"], ["words"], ["law"]], height_ratios=[DRAWING, written, LAW]
     )
-    imposed = [name for name, *_ in time_series.imposed(run)]
+    imposed = [name for name, *_ in time_series.imposed_quantities(run)]
     heights = [0.85] * len(imposed) + [1.4, 1, 1, 1, 1.2, 0.6]
     series = right.subplots(len(heights), 1, sharex=True, height_ratios=heights)
-    fixed([*panels.values(), *series])
+    fix_ticks([*panels.values(), *series])
     return {**panels, **dict(zip((*imposed, *SERIES), series, strict=True))}
 
 
@@ -111,8 +111,8 @@ def _words(run: Trajectory) -> list[tuple[str, list[str], str]]:
 def _series(run: Trajectory) -> dict[str, Callable[[Axes, Trajectory], Any]]:
     """Return the functions that draw each quantity over time, by name."""
 
-    def spaced(draw: Callable[[Axes, Trajectory], Any]) -> Callable[[Axes, Trajectory], Any]:
-        def drawn(ax: Axes, run: Trajectory) -> None:
+    def with_margins(draw: Callable[[Axes, Trajectory], Any]) -> Callable[[Axes, Trajectory], Any]:
+        def draw_series(ax: Axes, run: Trajectory) -> None:
             draw(ax, run)
             ax.set_xlabel("time $t$ (s)")
             times = run.data["time"].values
@@ -121,9 +121,9 @@ def _series(run: Trajectory) -> dict[str, Callable[[Axes, Trajectory], Any]]:
             if draw not in (time_series.draw_slip_speed, time_series.draw_time_stuck):
                 ax.margins(y=0.12)
 
-        return drawn
+        return draw_series
 
-    def imposed(values: Floats, symbol: str, unit: str) -> Callable[[Axes, Trajectory], Any]:
+    def draw_imposed(values: Floats, symbol: str, unit: str) -> Callable[[Axes, Trajectory], Any]:
         return lambda ax, run: time_series.draw_values(ax, run, values, symbol, unit)
 
     drawings = (
@@ -134,18 +134,18 @@ def _series(run: Trajectory) -> dict[str, Callable[[Axes, Trajectory], Any]]:
         time_series.draw_slip_speed,
         time_series.draw_time_stuck,
     )
-    found = {each[0]: imposed(*each[1:]) for each in time_series.imposed(run)}
+    found = {each[0]: draw_imposed(*each[1:]) for each in time_series.imposed_quantities(run)}
     named: dict[str, Callable[[Axes, Trajectory], Any]] = {
         **found,
         **dict(zip(SERIES, drawings, strict=True)),
     }
-    return {name: spaced(draw) for name, draw in named.items()}
+    return {name: with_margins(draw) for name, draw in named.items()}
 
 
 def _forces(ax: Axes, run: Trajectory) -> None:
     """Draw both spring forces."""
     forces = [run.data[f"spring_{axis}"].values for axis in "xy"]
-    factor, prefix = prefixed(np.concatenate(forces))
+    factor, prefix = metric_prefix(np.concatenate(forces))
     times = run.data["time"].values
     for axis, color, force in zip("xy", (RED, ORANGE), forces, strict=True):
         line = time_series.draw_line(ax, times, force * factor, color)
@@ -161,7 +161,7 @@ def _forces(ax: Axes, run: Trajectory) -> None:
     )
 
 
-def _written(ax: Axes, run: Trajectory) -> None:
+def _write_words(ax: Axes, run: Trajectory) -> None:
     _write(ax, _words(run))
 
 

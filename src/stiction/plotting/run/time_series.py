@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stiction.analysis.slip import Slip, averaged_slip, stuck_until
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED
-from stiction.text.quantity_text import prefixed
+from stiction.text.quantity_text import metric_prefix
 from stiction.trajectory import Trajectory
 
 Floats = NDArray[np.float64]
@@ -115,12 +115,12 @@ def draw_values(
 ) -> Line2D:
     """Draw values over the run's time, in a suitable multiple of their unit."""
     array = np.asarray(values, dtype=np.float64)
-    factor, prefix = prefixed(array)
+    factor, prefix = metric_prefix(array)
     ax.set_ylabel(f"{symbol} ({prefix}{unit})")
     return draw_line(ax, run.data["time"].values, array * factor, color)
 
 
-def imposed(run: Trajectory) -> list[tuple[str, Floats, str, str]]:
+def imposed_quantities(run: Trajectory) -> list[tuple[str, Floats, str, str]]:
     """Return the varying imposed quantities: name, values, symbol, unit.
 
     Drive velocity along X and across it, and normal load.
@@ -136,7 +136,7 @@ def imposed(run: Trajectory) -> list[tuple[str, Floats, str, str]]:
 
 def name_time(ax: Axes) -> None:
     """Label a time axis, whose values are in s, in a suitable unit: s, ms, ..."""
-    factor, prefix = prefixed(ax.get_xlim())
+    factor, prefix = metric_prefix(ax.get_xlim())
     factor, prefix = (factor, prefix) if factor > 1.0 else (1.0, "")
     ax.xaxis.set_major_formatter(FuncFormatter(lambda t, _: f"{factor * t:.10g}"))
     ax.set_xlabel(f"time $t$ ({prefix}s)")
@@ -236,13 +236,13 @@ def draw_slip_speed(ax: Axes, run: Trajectory) -> Line2D:
     if len(speed) <= FEW:
         shown = np.where(speed > 1e-7 * largest, speed, np.nan)
         return draw_line(ax, run.data["time"].values, shown, GREEN)
-    slip = averaged(run)
+    slip = average_slip(run)
     mean = np.where(slip.mean > 1e-7 * largest, slip.mean, np.nan)
     ax.fill_between(slip.time, mean, slip.high, color=GREEN, alpha=BAND, linewidth=0)
     return draw_line(ax, slip.time, mean, GREEN)
 
 
-def averaged(run: Trajectory) -> Slip:
+def average_slip(run: Trajectory) -> Slip:
     """Average slip over a 500th of the time, or less to resolve a rapid slip."""
     times, slider = run.data["time"].values, run.slider
     rapid = pi * sqrt(slider.mass / min(slider.k_x, slider.k_y))

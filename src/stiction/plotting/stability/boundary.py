@@ -41,11 +41,11 @@ def plot_boundary(
         x, y = draw_boundary(ax, curve)
         if closed_form is not None:
             ax.plot(
-                x.drawn(closed_form[0]), y.drawn(closed_form[1]), color=BLACK, linewidth=1.1,
+                x.in_unit(closed_form[0]), y.in_unit(closed_form[1]), color=BLACK, linewidth=1.1,
                 dashes=(1.2, 1.8), dash_capstyle="round", label="closed form", zorder=4,
             )  # fmt: skip
         ax.plot(
-            x.drawn(curve.attrs["x_own"]), y.drawn(curve.attrs["y_own"]), color=BLACK,
+            x.in_unit(curve.attrs["x_own"]), y.in_unit(curve.attrs["y_own"]), color=BLACK,
             marker="o", markersize=4.5, linestyle="none", label="this slider", zorder=5,
             clip_on=False,
         )  # fmt: skip
@@ -65,7 +65,7 @@ def draw_boundary(ax: Axes, curve: xr.Dataset) -> tuple[Scale, Scale]:
         scale = scale_of(path, curve[path].attrs["units"], ends, logarithmic=log)
         axis = ax.xaxis if way == "x" else ax.yaxis
         ax.set(**{f"{way}scale": curve.attrs[f"{way}_scale"], f"{way}label": scale.label})
-        ax.set(**{f"{way}lim": scale.drawn(ends)})
+        ax.set(**{f"{way}lim": scale.in_unit(ends)})
         if log:
             axis.set_major_formatter(PLAIN)
         scales.append(scale)
@@ -73,7 +73,7 @@ def draw_boundary(ax: Axes, curve: xr.Dataset) -> tuple[Scale, Scale]:
     for number in np.unique(curve["branch"].values):
         on = curve["branch"].values == number
         x, y = (
-            s.drawn(curve[curve.attrs[w]].values[on]) for s, w in zip(scales, "xy", strict=True)
+            s.in_unit(curve[curve.attrs[w]].values[on]) for s, w in zip(scales, "xy", strict=True)
         )
         label = "boundary" if number == 0 else None
         ax.plot(x, y, color=BLUE, linewidth=1.8, label=label, zorder=3, clip_on=False)

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from stiction.linear_stability import Critical
-from stiction.plotting.page.canvas import canvas, fixed, listed
+from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
 from stiction.plotting.page.parameter import PLAIN, Scale, scale_of
 from stiction.plotting.page.style import BLUE, COLUMN, GREY, ORANGE, UNSTABLE, style
 
@@ -43,18 +43,18 @@ def plot_modes(
     values, log = modes["value"], modes.attrs["scale"] == "log"
     ends = values.values[[0, -1]]
     scale = scale_of(values.attrs["long_name"], values.attrs["units"], ends, logarithmic=log)
-    marked = scale.drawn(() if critical is None else critical.values)
+    marked = scale.in_unit(() if critical is None else critical.values)
     with style():
         if axes is None:
             fig = canvas(COLUMN, 3.6)
-            above, below = fixed(list(fig.subplots(2, 1, sharex=True)))
+            above, below = fix_ticks(list(fig.subplots(2, 1, sharex=True)))
             fig.align_ylabels([above, below])
         else:
-            above, below = listed(axes)
+            above, below = as_list(axes)
         draw_growth_rates(above, modes, scale)
         draw_frequencies(below, modes, scale)
         for ax in (above, below):
-            ax.set(xscale=modes.attrs["scale"], xlim=scale.drawn(ends))
+            ax.set(xscale=modes.attrs["scale"], xlim=scale.in_unit(ends))
             for value in marked:
                 ax.axvline(value, color=GREY, linewidth=0.8, dashes=(4, 2), zorder=1)
         for value, side in zip(marked, sides(above, marked), strict=True):
@@ -101,7 +101,7 @@ def draw_growth_rates(ax: Axes, modes: xr.Dataset, scale: Scale) -> None:
     ax.set(ylim=(-2.5 * top, 1.25 * top), ylabel="growth rate (1/s)")
     ax.axhspan(0.0, 1.25 * top, color=UNSTABLE, linewidth=0, zorder=0, label="unstable")
     ax.axhline(0.0, color=GREY, linewidth=0.6)
-    at = scale.drawn(modes["value"].values)
+    at = scale.in_unit(modes["value"].values)
     for rates, rings in zip(growth.T, oscillates.T, strict=True):
         ax.plot(at, np.where(rings, rates, np.nan), color=BLUE, linewidth=1.2)
         ax.plot(at, np.where(rings, np.nan, rates), color=ORANGE, linewidth=1.2, dashes=(3, 1.5))
@@ -114,7 +114,7 @@ def draw_frequencies(ax: Axes, modes: xr.Dataset, scale: Scale) -> None:
 
     The axis is logarithmic where they span a decade or more.
     """
-    at, frequency = scale.drawn(modes["value"].values), modes["frequency"].values
+    at, frequency = scale.in_unit(modes["value"].values), modes["frequency"].values
     ax.set_ylabel("frequency (Hz)")
     ringing = frequency[frequency > 0.0]
     if not len(ringing):

@@ -13,7 +13,7 @@ from stiction.analysis.onset import Onset
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.parameter import PLAIN, scale_of
 from stiction.plotting.page.style import BLUE, COLUMN, GREY, PALE, RED, style
-from stiction.text.quantity_text import prefixed
+from stiction.text.quantity_text import metric_prefix
 
 LOOKS: dict[str, dict[str, Any]] = {
     "up": {"color": BLUE, "marker": "^", "markersize": 4.0},
@@ -50,7 +50,7 @@ def draw_onset(ax: Axes, onset: Onset, critical: float | None = None) -> None:
     values, amplitude, outcome = (data[name].values for name in ("value", "amplitude", "outcome"))
     scale = scale_of(data["value"].attrs["long_name"], data["value"].attrs["units"], values)
     factor, bottom = _set_amplitudes(ax, amplitude[outcome == OSCILLATING])
-    at = scale.drawn(values)
+    at = scale.in_unit(values)
     for sweep, (name, look) in enumerate(LOOKS.items()):
         size = np.fmax(amplitude[sweep] * factor, bottom)
         size[outcome[sweep] == REST] = bottom
@@ -62,9 +62,9 @@ def draw_onset(ax: Axes, onset: Onset, critical: float | None = None) -> None:
     if rests.any():
         _write(ax, float(np.median(at[rests])), bottom, "rest")
     if onset.kind == "hard" and np.isfinite(onset.hysteresis).all():
-        ax.axvspan(*scale.drawn(onset.hysteresis), color=PALE, zorder=0, label="hysteresis")
+        ax.axvspan(*scale.in_unit(onset.hysteresis), color=PALE, zorder=0, label="hysteresis")
     if critical is not None:
-        label = f"linear: {scale.named(critical)}"
+        label = f"linear: {scale.quantity(critical)}"
         ax.axvline(critical * scale.factor, color=GREY, dashes=(4, 2), label=label)
     ax.set_xlabel(scale.label)
     ax.margins(x=0.03)
@@ -74,7 +74,7 @@ def _set_amplitudes(ax: Axes, moving: NDArray[np.float64]) -> tuple[float, float
     """Fit the axis to amplitudes (m); return the factor to its unit, and its lower edge."""
     top, least = (each(moving, initial=start) for each, start in ((np.max, 0.0), (np.min, np.inf)))
     logarithmic = 0.0 < SPREAD * least < top
-    factor, prefix = prefixed(np.sqrt(top * least) if logarithmic else top)
+    factor, prefix = metric_prefix(np.sqrt(top * least) if logarithmic else top)
     ax.set_ylabel(f"amplitude along the drive ({prefix}m)")
     if not logarithmic:
         ax.set_ylim(0.0, 1.15 * top * factor or 1.0)

@@ -43,7 +43,7 @@ class Processes(NamedTuple):
 
     def results(self, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
         """Yield what comes of each task."""
-        dask = distributed()
+        dask = import_distributed()
         from dask import config
 
         settings: dict[str, Any] = {"distributed.scheduler.allowed-failures": DEATHS}
@@ -81,7 +81,7 @@ class Scheduler(NamedTuple):
 
     def results(self, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
         """Yield what comes of each task."""
-        dask = distributed()
+        dask = import_distributed()
         try:
             client = dask.Client(self.address)
         except (OSError, ValueError) as error:
@@ -96,7 +96,7 @@ class Scheduler(NamedTuple):
 def temporary_certificate() -> Any:
     """Return a certificate that only this process and its workers have."""
     try:
-        return distributed().Security.temporary()
+        return import_distributed().Security.temporary()
     except ImportError:
         raise StictionError(
             "processes need a certificate, and cryptography to make it, which is not installed; "
@@ -104,7 +104,7 @@ def temporary_certificate() -> Any:
         ) from None
 
 
-def distributed() -> ModuleType:
+def import_distributed() -> ModuleType:
     """Return the module of dask's scheduler, an optional dependency."""
     try:
         import distributed as dask

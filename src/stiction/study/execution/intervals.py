@@ -61,7 +61,7 @@ def half_way(low: Floats, high: Floats) -> Floats:
     return np.where(low == high, low, 0.5 * (low + high))
 
 
-def halved(
+def halve(
     found: Intervals, middle: Mapping[str, Floats], at: np.ndarray, apart: Sequence[str] | None
 ) -> Intervals:
     """Return the half of each interval that contains the change.

@@ -17,18 +17,18 @@ from stiction.deprecation import by_new_names
 from stiction.errors import DescriptionError, Fault
 from stiction.storage.files import place, workshop
 from stiction.study.execution.engines import Engine
-from stiction.study.execution.intervals import Intervals, changes, half_way, halved, widest
+from stiction.study.execution.intervals import Intervals, changes, half_way, halve, widest
 from stiction.study.execution.sweep import Tally, sweep
 from stiction.study.plan.axes import Floats, Values
 from stiction.study.plan.coordinates import number
 from stiction.study.plan.study import Study
-from stiction.study.store.kept import UNKNOWN, flagged
+from stiction.study.store.kept import UNKNOWN, flag_attributes
 from stiction.study.store.seal import seal
-from stiction.study.store.store import open_study, told
+from stiction.study.store.store import errors_as_message, open_study
 from stiction.study.variables.fast_regime import FORMERLY, KINDS
 from stiction.study.view.view import CHANGES, REFINED, REGIME, kinds
 from stiction.text.paths import canonical_path
-from stiction.text.validation import unknown
+from stiction.text.validation import unknown_name
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -78,7 +78,7 @@ def refine(
         If there is no such axis, or the study keeps no regime.
     """
     along = canonical_path(along)
-    width, apart = _asked(study, along, to), _kinds(apart)
+    width, apart = _requested_width(study, along, to), _kinds(apart)
     sweep(study, path, engine=engine, progress=progress)
     found, runs = changes(study, open_study(path).load(), along, apart), study.layout.runs
     folder = Path(path) / REFINED / along
@@ -90,7 +90,7 @@ def refine(
         part = samples(study, middle)
         sweep(part, folder / f"{level}.zarr", engine=engine, progress=progress)
         at_middle = kinds(open_study(folder / f"{level}.zarr").load())
-        found, runs = halved(found, middle, at_middle, apart), runs + part.layout.runs
+        found, runs = halve(found, middle, at_middle, apart), runs + part.layout.runs
     made = table(study, found, along, runs)
     _keep(made, folder / CHANGES)
     return made
@@ -98,7 +98,7 @@ def refine(
 
 def _keep(changes: xr.Dataset, target: Path) -> None:
     """Write the changes, sealed, in place of earlier ones."""
-    with told(target), workshop(target.parent) as room:
+    with errors_as_message(target), workshop(target.parent) as room:
         changes.to_zarr(room / CHANGES, zarr_format=3, consolidated=False)
         seal(room / CHANGES)
         if target.exists():
@@ -106,11 +106,11 @@ def _keep(changes: xr.Dataset, target: Path) -> None:
         place({room / CHANGES: target})
 
 
-def _asked(study: Study, along: str, to: float | str) -> float:
+def _requested_width(study: Study, along: str, to: float | str) -> float:
     """Return the desired width, if the arguments are valid."""
     found = []
     if along not in study.coordinates or along not in study.layout.dims:
-        found.append(Fault("along", unknown("dimension", along, study.layout.dims)))
+        found.append(Fault("along", unknown_name("dimension", along, study.layout.dims)))
     if REGIME not in study.measures:
         found.append(Fault("study.measures", f"lacks {REGIME!r}, which shows the changes"))
     if found:
@@ -131,7 +131,7 @@ def _kinds(apart: Sequence[str] | None) -> list[str] | None:
     now = by_new_names(apart, FORMERLY, "kind of motion")
     if strange := [name for name in now if name not in KINDS]:
         raise DescriptionError(
-            [Fault("apart", unknown("kind of motion", name, KINDS)) for name in strange]
+            [Fault("apart", unknown_name("kind of motion", name, KINDS)) for name in strange]
         )
     return now
 
@@ -164,6 +164,6 @@ def table(study: Study, found: Intervals, along: str, runs: int) -> xr.Dataset:
     data["half_width"] = ("point", half, names)
     for name in ("below", "above"):
         codes = np.array([KINDS.index(kind) for kind in getattr(found, name)], np.int8)
-        meaning = {"long_name": f"kind of motion {name}", **flagged(UNKNOWN, KINDS)}
+        meaning = {"long_name": f"kind of motion {name}", **flag_attributes(UNKNOWN, KINDS)}
         data[name] = ("point", codes, meaning)
     return xr.Dataset(data, attrs={"along": along, "runs": runs})

@@ -48,7 +48,7 @@ def damage_of(path: Path) -> Damage:
         If it is not a store, or damaged beyond repair.
     """
     group = group_at(path, "r")
-    head = seal.broken(path) if group.attrs["format"] == CHECKED else []
+    head = seal.broken_files(path) if group.attrs["format"] == CHECKED else []
     if {seal.ROOT, seal.DESCRIPTION} <= {*head}:
         raise seal.damage(path, head)
     if head:
@@ -56,7 +56,7 @@ def damage_of(path: Path) -> Damage:
     store = store_at(path, "r")
     regions = [store.layout.region(task) for task in range(store.layout.tasks)]
     found = {
-        task: [file.relative_to(path).as_posix() for file in store.damaged(region, read=True)]
+        task: [file.relative_to(path).as_posix() for file in store.damaged_files(region, read=True)]
         for task, region in enumerate(regions)
     }
     pending = sum(not store.mark(region).exists() for region in regions)
@@ -93,7 +93,7 @@ def _restore_head(study: Study, path: Path, names: Sequence[str]) -> None:
         fresh = lay_out(study, room / "store")
         files = {name for name in (*names, seal.ROOT) if (fresh / name).is_file()}
         place({fresh / name: path / name for name in sorted(files)})
-    if left := seal.broken(path):
+    if left := seal.broken_files(path):
         raise ResultError(f"{path}: {', '.join(left)} cannot be repaired; run the study anew")
 
 

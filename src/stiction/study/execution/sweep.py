@@ -8,13 +8,13 @@ from pathlib import Path
 from time import perf_counter
 from typing import NamedTuple
 
-from stiction.storage.files import held
+from stiction.storage.files import folder_lock
 from stiction.study.execution.engines import Engine, Threads
-from stiction.study.execution.task import done
+from stiction.study.execution.task import do_block
 from stiction.study.plan.layout import runs_of
 from stiction.study.plan.study import Study
 from stiction.study.store.creation import create
-from stiction.study.store.store import Store, opened
+from stiction.study.store.store import Store, open_store
 from stiction.study.view.summary import Summary, summary
 
 
@@ -89,10 +89,10 @@ def sweep(
     ResultError
         If something else is there, or the store cannot be written.
     """
-    store = opened(study, path) if Path(path).exists() else create(study, path)
+    store = open_store(study, path) if Path(path).exists() else create(study, path)
     layout = store.layout
     left = [task for task in range(layout.tasks) if not store.has(layout.region(task))]
-    with held(store.path, alone=True) as first:
+    with folder_lock(store.path, alone=True) as first:
         # a second process begins at the other end
         do(study, store, left if first else left[::-1], engine, progress)
     return summary(study, store)
@@ -109,7 +109,7 @@ def do(
     layout, begun = store.layout, perf_counter()
     left = sum(runs_of(layout.region(task)) for task in tasks)
     tally = Tally(layout.runs, layout.runs - left, 0, 0, 0.0)
-    for came in (engine or Threads()).results(partial(done, study, store), tasks):
+    for came in (engine or Threads()).results(partial(do_block, study, store), tasks):
         tally = tally._replace(
             now=tally.now + came.runs,
             failed=tally.failed + came.failed,

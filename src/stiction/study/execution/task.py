@@ -10,7 +10,7 @@ import numpy as np
 from stiction.errors import STATUSES, DescriptionError
 from stiction.study.plan.layout import Index, places, runs_of, size_of
 from stiction.study.plan.study import Study
-from stiction.study.store.kept import Kept, kept
+from stiction.study.store.kept import Kept, stored_variables
 from stiction.study.store.store import COMPLETED, ERROR, REFUSED, Block, Store
 from stiction.study.variables.observation import observe
 
@@ -34,7 +34,7 @@ class Outcome(NamedTuple):
     values: tuple[Any, ...]
 
 
-def done(study: Study, store: Store, task: int, unwanted: Callable[[], bool]) -> Came:
+def do_block(study: Study, store: Store, task: int, unwanted: Callable[[], bool]) -> Came:
     """Do the runs of a block and write it, unless it is no longer wanted.
 
     A worker that outlived its client may have written it meanwhile; then it stays as it is.
@@ -45,7 +45,7 @@ def done(study: Study, store: Store, task: int, unwanted: Callable[[], bool]) ->
         return Came(runs_of(region), 0)
     status = np.full(size, COMPLETED, np.int8)
     message = np.full(size, "", object)
-    wanted = kept(study)
+    wanted = stored_variables(study)
     arrays = [np.full((*size, *each.shape), each.unknown, each.dtype) for each in wanted]
     try:
         for place, index in zip(np.ndindex(size), places(region), strict=True):

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pydantic import AfterValidator, BeforeValidator, Field
 
 from stiction.errors import DescriptionError, Fault
-from stiction.text.validation import Described, unknown
+from stiction.text.validation import Described, unknown_name
 
 Floats = NDArray[np.float64]
 MOST = 1_000_000_000  # values of an axis
@@ -184,7 +184,7 @@ def read_axis(value: Any, name: str) -> Axis:
     table = {fields.get(str(key), str(key)): each for key, each in value.items()}
     sampling = table.pop("sampling", "grid")
     if not isinstance(sampling, str) or sampling not in SAMPLINGS:
-        message = unknown("sampling", str(sampling), SAMPLINGS)
+        message = unknown_name("sampling", str(sampling), SAMPLINGS)
         raise DescriptionError([Fault(f"{path}.sampling", message)])
     kind = Values if "values" in table else SAMPLINGS[sampling]
     try:

@@ -54,7 +54,7 @@ def number(value: Any, unit: str) -> float:
     return to_si(value, Kind("such a quantity", unit, f"1 {unit}".rstrip()))
 
 
-def varied(base: Description, changes: Mapping[str, tuple[float, str]]) -> Description:
+def vary(base: Description, changes: Mapping[str, tuple[float, str]]) -> Description:
     """Return a description with other values of some parameters, all of it validated.
 
     Parameters
@@ -73,7 +73,7 @@ def varied(base: Description, changes: Mapping[str, tuple[float, str]]) -> Descr
         path: f"{radians(value)!r} rad" if its == "deg" else value
         for path, (value, its) in changes.items()
     }
-    return parameter.varied(base, given)
+    return parameter.change_parameters(base, given)
 
 
 def coordinates(base: Description, axes: Mapping[str, Axis], seed: int) -> dict[str, Coordinate]:

@@ -12,7 +12,7 @@ from stiction.study.variables.measures import FORMERLY, MEASURES
 from stiction.study.variables.traces import TRACES
 from stiction.system.description import Description
 from stiction.text.paths import canonical_path
-from stiction.text.validation import faulty, unknown
+from stiction.text.validation import faulty, unknown_name
 
 
 def is_description(value: Any) -> Any:
@@ -47,7 +47,7 @@ def named_ones(value: Any, what: str, known: Collection[str]) -> tuple[str, ...]
     wanted = tuple(dict.fromkeys(str(each) for each in value))
     strange = [name for name in wanted if name not in known]
     if strange:
-        raise ValueError("; ".join(unknown(what, name, known) for name in strange))
+        raise ValueError("; ".join(unknown_name(what, name, known) for name in strange))
     return wanted
 
 

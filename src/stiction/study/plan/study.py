@@ -13,13 +13,13 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from stiction.deprecation import old_method
 from stiction.errors import DescriptionError, Fault
-from stiction.friction.user.loading import Find, held, named
+from stiction.friction.user.loading import Find, finder_for_descriptions, finder_for_results
 from stiction.study.plan.axes import axis_table
 from stiction.study.plan.coordinates import (
     Coordinate,
     coordinate_faults,
     coordinates,
-    varied,
+    vary,
     zip_faults,
 )
 from stiction.study.plan.layout import Index, Layout, laid_out
@@ -81,7 +81,7 @@ class Study(Described):
         found = [*coordinate_faults(self.base, self.axes, self.seed), *zip_faults(self.axes)]
         found = [Fault(f"axes.{fault.path}", fault.message) for fault in found]
         found += [] if found else self._too_large()
-        found += [] if found else self._refused()
+        found += [] if found else self._check_endpoints()
         if found:
             raise faulty(found)
         return self
@@ -91,7 +91,7 @@ class Study(Described):
         kept = (len(self.measures), len(self.traces), self.trace_samples)
         return [*axis_faults(self.axes), *run_faults(self.layout, *kept)]
 
-    def _refused(self) -> list[Fault]:
+    def _check_endpoints(self) -> list[Fault]:
         """Check the endpoints of each dimension.
 
         An endpoint is a fault if it is invalid at both ends of all other dimensions. Otherwise
@@ -138,7 +138,7 @@ class Study(Described):
             path: (float(values[at[dim]]), its)
             for path, (dim, values, its) in self.coordinates.items()
         }
-        return varied(self.base, changes)
+        return vary(self.base, changes)
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
@@ -175,7 +175,9 @@ class Study(Described):
         DescriptionError
             With every fault and its path, or the reason why the file cannot be read.
         """
-        return cls.from_dict(read_toml(path, changes), find=named(folder_of(path), trust))
+        return cls.from_dict(
+            read_toml(path, changes), find=finder_for_descriptions(folder_of(path), trust)
+        )
 
     @classmethod
     def from_dict(cls, raw: Mapping[str, Any], *, find: Find | None = None) -> Self:
@@ -194,19 +196,19 @@ class Study(Described):
             found += [each for each in cls._faults(own, axes, None) if each.path != "study.base"]
         rest = {key: value for key, value in raw.items() if key not in ("study", "axes")}
         base = Description.from_dict(rest, find=find, known=found)
-        return cls._made(own, axes, base)
+        return cls._make(own, axes, base)
 
     @classmethod
     def _faults(cls, own: Mapping[str, Any], axes: Any, base: Any) -> Sequence[Fault]:
         """Return the faults of a study's own tables, independent of its base."""
         try:
-            cls._made(own, axes, base)
+            cls._make(own, axes, base)
         except DescriptionError as error:
             return error.faults
         return ()
 
     @classmethod
-    def _made(cls, own: Mapping[str, Any], axes: Any, base: Any) -> Self:
+    def _make(cls, own: Mapping[str, Any], axes: Any, base: Any) -> Self:
         try:
             return cls(**{**own, "base": base, "axes": axes})
         except DescriptionError as error:
@@ -215,7 +217,7 @@ class Study(Described):
     @classmethod
     def from_json(cls, text: str, *, trust: bool = False) -> Self:
         """Read back what `to_json` wrote; `trust` is that of `Description.from_json`."""
-        return cls.from_dict(read_json(text), find=held(trust))
+        return cls.from_dict(read_json(text), find=finder_for_results(trust))
 
     def to_dict(self) -> dict[str, Any]:
         """Return nested tables, which `from_dict` reads."""

@@ -11,9 +11,17 @@ import numpy as np
 from stiction.errors import ResultError
 from stiction.storage.files import place, workshop
 from stiction.study.plan.study import Study
-from stiction.study.store.kept import TIME, flagged, kept, trace_times
+from stiction.study.store.kept import TIME, flag_attributes, stored_variables, trace_times
 from stiction.study.store.seal import seal
-from stiction.study.store.store import CHECKED, ENDS, PENDING, Store, opened, told, version
+from stiction.study.store.store import (
+    CHECKED,
+    ENDS,
+    PENDING,
+    Store,
+    errors_as_message,
+    open_store,
+    version,
+)
 
 if TYPE_CHECKING:
     import zarr
@@ -24,14 +32,14 @@ def create(study: Study, path: str | Path) -> Store:
     target = Path(path)
     if not target.parent.is_dir():
         raise ResultError(f"{target}: no folder {target.parent}; make it first")
-    with told(target), workshop(target.parent) as room:
+    with errors_as_message(target), workshop(target.parent) as room:
         part = lay_out(study, room / "store")
         try:
             place({part: target})
         except OSError:
             if not target.exists():  # otherwise another sweep was faster
                 raise
-    return opened(study, target)
+    return open_store(study, target)
 
 
 def lay_out(study: Study, folder: Path) -> Path:
@@ -60,13 +68,13 @@ def _make_arrays(study: Study, group: zarr.Group) -> None:
         description=study.to_json(),
         coordinates=" ".join([*study.coordinates, "message"]),  # as xarray reads it
     )
-    for each in kept(study):
+    for each in stored_variables(study):
         group.create_array(
             each.name, dtype=each.dtype, fill_value=each.unknown, attributes=each.labels,
             shape=(*layout.shape, *each.shape), chunks=(*layout.block, *each.shape),
             dimension_names=(*layout.dims, *[TIME for _ in each.shape]), compressors=codecs,
         )  # fmt: skip
-    flags: Any = {"long_name": "how the run ended", **flagged("pending", ENDS)}
+    flags: Any = {"long_name": "how the run ended", **flag_attributes("pending", ENDS)}
     group.create_array(
         "status", dtype=np.int8, fill_value=PENDING, attributes=flags, **dims, **grid
     )

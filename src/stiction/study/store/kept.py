@@ -45,7 +45,7 @@ class Kept(NamedTuple):
     labels: dict[str, Any]
 
 
-def kept(study: Study) -> list[Kept]:
+def stored_variables(study: Study) -> list[Kept]:
     """Return the variables that a study keeps of each run."""
     return [
         *(_measure(name) for name in study.measures),
@@ -65,7 +65,7 @@ def _trace_name(name: str) -> str:
 def _measure(name: str) -> Kept:
     known = MEASURES[name]
     if known.flags:
-        labels = {"long_name": known.long_name, **flagged(UNKNOWN, known.flags)}
+        labels = {"long_name": known.long_name, **flag_attributes(UNKNOWN, known.flags)}
         return Kept(name, known.of, (), np.int8, -1, labels)
     labels = {"units": known.unit, "long_name": known.long_name}
     return Kept(name, known.of, (), np.float64, nan, labels)
@@ -74,12 +74,12 @@ def _measure(name: str) -> Kept:
 def _trace(name: str, count: int) -> Kept:
     known = TRACES[name]
 
-    def decimated(run: Observed) -> Floats:
+    def decimate(run: Observed) -> Floats:
         at = np.linspace(run.start, run.end, count)
         return np.interp(at, run.time, known.of(run))
 
     labels = {"units": known.unit, "long_name": known.long_name}
-    return Kept(_trace_name(name), decimated, (count,), np.float64, nan, labels)
+    return Kept(_trace_name(name), decimate, (count,), np.float64, nan, labels)
 
 
 def trace_times(study: Study) -> tuple[Floats, dict[str, str]]:
@@ -94,7 +94,7 @@ def trace_times(study: Study) -> tuple[Floats, dict[str, str]]:
     return start + duration * share, {"units": "s", "long_name": "time"}
 
 
-def flagged(before: str, meanings: Sequence[str]) -> dict[str, Any]:
+def flag_attributes(before: str, meanings: Sequence[str]) -> dict[str, Any]:
     """Return the CF attributes of a variable whose values -1, 0, 1, ... have meanings."""
     words = [meaning.replace(" ", "_") for meaning in (before, *meanings)]
     return {"flag_values": [*range(-1, len(meanings))], "flag_meanings": " ".join(words)}

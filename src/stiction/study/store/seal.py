@@ -31,7 +31,7 @@ def seal(folder: Path) -> None:
     (folder / ROOT).write_text(json.dumps(root, indent=2), encoding="utf-8")
 
 
-def broken(folder: Path) -> list[str]:
+def broken_files(folder: Path) -> list[str]:
     """Return the sealed files of a store that have changed or are missing."""
     try:
         root = json.loads((folder / ROOT).read_bytes())
@@ -42,7 +42,7 @@ def broken(folder: Path) -> list[str]:
         return [ROOT, DESCRIPTION]
     files = {name: folder / name for name in names}
     parts = {name: each.read_bytes() for name, each in files.items() if each.is_file()}
-    return checksums.broken(sealed, parts | own)
+    return checksums.broken_parts(sealed, parts | own)
 
 
 def damage(path: str | Path, files: Sequence[object]) -> ResultError:

@@ -82,13 +82,13 @@ class Store(NamedTuple):
 
     def has(store, region: Region) -> bool:
         """Return whether a block is marked as done, with no file missing or truncated."""
-        return store.mark(region).is_file() and not store.damaged(region)
+        return store.mark(region).is_file() and not store.damaged_files(region)
 
     def mark(store, region: Region) -> Path:
         """Return the status file of a block, which marks it as done."""
         return store._file(STATUS, region)
 
-    def damaged(store, region: Region, *, read: bool = False) -> list[Path]:
+    def damaged_files(store, region: Region, *, read: bool = False) -> list[Path]:
         """Return the damaged files of a block that is marked as done.
 
         They are missing or have a wrong length, or, if `read`, a wrong checksum.
@@ -136,8 +136,8 @@ class Store(NamedTuple):
             for each, values in block.values
         }
         if block.message.any():
-            files[store._file(MESSAGE, region)] = encoded(store._whole(block.message, ""))
-        with told(store.path):
+            files[store._file(MESSAGE, region)] = encode_texts(store._whole(block.message, ""))
+        with errors_as_message(store.path):
             store._place(files)
             store._place({store.mark(region): store._whole(block.status, PENDING).tobytes()})
 
@@ -173,10 +173,10 @@ class Store(NamedTuple):
 
     def __reduce__(store) -> tuple[Any, ...]:
         """Pickle the path: another process opens the store itself."""
-        return _reopened, (str(store.path.absolute()),)
+        return _reopen, (str(store.path.absolute()),)
 
 
-def encoded(texts: np.ndarray) -> bytes:
+def encode_texts(texts: np.ndarray) -> bytes:
     """Encode texts like zarr's codec vlen-utf8: their number, then each length and content."""
     contents = [str(text).encode() for text in texts.ravel()]
     lengths = np.array([len(contents), *map(len, contents)], "<u4")
@@ -185,12 +185,12 @@ def encoded(texts: np.ndarray) -> bytes:
 
 
 @lru_cache(maxsize=4)
-def _reopened(path: str) -> Store:
+def _reopen(path: str) -> Store:
     return store_at(path, "r+")
 
 
 @contextmanager
-def told(path: Path) -> Iterator[None]:
+def errors_as_message(path: Path) -> Iterator[None]:
     """Turn errors of the file system into a message."""
     try:
         yield
@@ -201,7 +201,7 @@ def told(path: Path) -> Iterator[None]:
         ) from None
 
 
-def opened(study: Study, path: str | Path) -> Store:
+def open_store(study: Study, path: str | Path) -> Store:
     """Open the existing store of a study.
 
     Raises
@@ -234,7 +234,7 @@ def store_at(path: str | Path, mode: Literal["r", "r+"]) -> Store:
         If it is not a store, or its description or metadata are damaged.
     """
     group = group_at(path, mode)
-    lost = seal.broken(Path(path)) if group.attrs["format"] == CHECKED else []
+    lost = seal.broken_files(Path(path)) if group.attrs["format"] == CHECKED else []
     try:
         study = json.loads(str(group.attrs["description"]))["study"]
         status: Any = group[STATUS]
@@ -298,7 +298,9 @@ def open_study(path: str | Path) -> xr.Dataset:
     arrays: list[Any] = [each for each in found if hasattr(each, "nbytes")]
     refuse_size(path, sum(float(each.nbytes) for each in arrays if each.ndim == 1))
     layout = store.layout
-    lost = [file for task in range(layout.tasks) for file in store.damaged(layout.region(task))]
+    lost = [
+        file for task in range(layout.tasks) for file in store.damaged_files(layout.region(task))
+    ]
     if lost:
         raise seal.damage(path, [file.relative_to(path) for file in lost])
     files: Any = WholeChunks(LocalStore(path, read_only=True)) if store.checked else path

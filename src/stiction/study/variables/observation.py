@@ -69,13 +69,13 @@ class Observed:
     @cached_property
     def time(self) -> Floats:
         """(n,), s, evenly spaced."""
-        return self._even(self.solution.times)
+        return self._thin_out(self.solution.times)
 
     def column(self, i: int) -> Floats:
         """Return a column of the samples at `time`, as in `stiction.solver.exact.sampling`."""
-        return self._even(self.solution.samples[:, i])
+        return self._thin_out(self.solution.samples[:, i])
 
-    def _even(self, values: Floats) -> Floats:
+    def _thin_out(self, values: Floats) -> Floats:
         return np.concatenate([values[: self.fine], values[self.fine :: self.parts]])
 
     @cached_property

@@ -13,7 +13,7 @@ from stiction import theory as closed_forms
 from stiction.drive import ConstantVelocity
 from stiction.errors import StictionError
 from stiction.study.plan.axes import Floats
-from stiction.study.plan.coordinates import varied
+from stiction.study.plan.coordinates import vary
 from stiction.study.plan.study import Study
 from stiction.system.slider import Slider
 
@@ -63,7 +63,7 @@ def plane(study: Study, x: str, y: str, at: Mapping[str, int]) -> Plane:
                 for path, values in sides[dim].items()
             }
         try:
-            slider = varied(study.base, changes).slider
+            slider = vary(study.base, changes).slider
             fields[PHI_C][place] = stability.growth_rate(slider)
             fields[ZETA][place] = np.log(damping_ratio(slider))
         except StictionError:
@@ -78,10 +78,10 @@ def along(study: Study, dim: str) -> dict[str, Floats]:
     count = len(next(iter(axes.values())))
     parts = -(-FINE // max(count - 1, 1)) if count > 1 else 1
     places = np.linspace(0.0, count - 1, (count - 1) * parts + 1)
-    return {path: between(values, places) for path, values in axes.items()}
+    return {path: interpolate(values, places) for path, values in axes.items()}
 
 
-def between(values: Floats, places: Floats) -> Floats:
+def interpolate(values: Floats, places: Floats) -> Floats:
     """Interpolate values, logarithmically if all are positive."""
     known = np.arange(len(values))
     if (values > 0.0).all():

@@ -20,13 +20,13 @@ from stiction.plotting.maps import (
     draw_slice,
     draw_theory,
 )
-from stiction.plotting.page.canvas import canvas, fixed, listed, panel
+from stiction.plotting.page.canvas import as_list, canvas, fix_ticks, panel
 from stiction.plotting.page.parameter import Scale, in_unit, parameter_symbol
 from stiction.plotting.page.style import COLUMN, PAGE, style
 from stiction.plotting.stability.damping import draw_damping_map
 from stiction.study.plan.layout import Index
 from stiction.study.view.boundaries import Plane, damping_number, plane
-from stiction.study.view.view import REGIME, View, chosen, kinds, viewed
+from stiction.study.view.view import REGIME, View, choose_measures, kinds, view_study
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -101,8 +101,8 @@ def map(
     DescriptionError
         If there is no such measure or dimension, or more than two dimensions remain.
     """
-    view = viewed(store, at or {}, trust)
-    return Map(view, tuple(chosen(view, [of] if isinstance(of, str) else of)))
+    view = view_study(store, at or {}, trust)
+    return Map(view, tuple(choose_measures(view, [of] if isinstance(of, str) else of)))
 
 
 def plot_map(found: Map, axes: Any = None) -> NDArray[np.object_]:
@@ -134,13 +134,13 @@ def side(view: View, dim: str, values: np.ndarray | None = None) -> Side:
     known = view.study.coordinates
     path = dim if dim in known else next(p for p, each in known.items() if each.dim == dim)
     own, unit = known[path].values, known[path].unit
-    log = len(own) > 2 and bool((own > 0.0).all()) and even(np.log(own)) < even(own)
+    log = len(own) > 2 and bool((own > 0.0).all()) and unevenness(np.log(own)) < unevenness(own)
     factor, shown = (1.0, "deg") if unit == "deg" else in_unit(np.median(np.abs(own)), unit)
     scale = Scale(parameter_symbol(path), factor, shown)
-    return Side(scale, scale.drawn(own if values is None else values), log)
+    return Side(scale, scale.in_unit(own if values is None else values), log)
 
 
-def even(values: np.ndarray) -> float:
+def unevenness(values: np.ndarray) -> float:
     """Return the unevenness of values: 0 for equal distances."""
     steps = np.diff(values)
     return float(np.std(steps) / np.abs(np.mean(steps))) if np.mean(steps) else np.inf
@@ -153,9 +153,9 @@ def _maps(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
     rows = -(-len(measures) // columns)
     if axes is None:
         fig = canvas(COLUMN if columns == 1 else PAGE, 2.9 * rows + 0.4)
-        panels = fixed(list(fig.subplots(rows, columns, squeeze=False).ravel()))
+        panels = fix_ticks(list(fig.subplots(rows, columns, squeeze=False).ravel()))
     else:
-        panels = listed(axes)
+        panels = as_list(axes)
     handles: list[Any] = []
     for ax, name in zip(panels, measures, strict=False):
         handles += _map(ax, view, name, theory)
@@ -198,9 +198,9 @@ def _curves(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
     (dim,) = view.data["status"].dims
     if axes is None:
         fig = canvas(COLUMN, 0.6 + 1.7 * len(measures))
-        panels = fixed(list(fig.subplots(len(measures), 1, sharex=True, squeeze=False)[:, 0]))
+        panels = fix_ticks(list(fig.subplots(len(measures), 1, sharex=True, squeeze=False)[:, 0]))
     else:
-        panels = listed(axes)
+        panels = as_list(axes)
     for ax, name in zip(panels, measures, strict=True):
         if name == REGIME:
             draw_kinds(ax, side(view, str(dim)), list(kinds(view.data)))
@@ -221,7 +221,7 @@ def _points(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
     indices: list[Index] = [(i,) for i in range(view.data.sizes[dim])]
     A = np.array([damping_number(view.study.description(index).slider) for index in indices])
     phi = known["phi"].values
-    ax = panel(None if axes is None else listed(axes)[0], COLUMN, 3.4)
+    ax = panel(None if axes is None else as_list(axes)[0], COLUMN, 3.4)
     draw_damping_map(ax, (A.min() / 2, A.max() * 2), (phi.min() / 1.5, 90.0))
     handles = draw_points(ax, A, phi, list(kinds(view.data)))
     ax.set_ylabel(r"force angle $\theta$; points: $\varphi$ (deg)")

@@ -15,12 +15,12 @@ from stiction.storage.foreign import opening, refuse_size
 from stiction.study.plan.coordinates import number
 from stiction.study.plan.study import Study
 from stiction.study.store import seal
-from stiction.study.store.kept import kept
+from stiction.study.store.kept import stored_variables
 from stiction.study.store.store import CHECKED, group_at, open_study
 from stiction.study.variables.fast_regime import KINDS
 from stiction.study.variables.measures import FORMERLY
 from stiction.text.paths import canonical_path
-from stiction.text.validation import unknown
+from stiction.text.validation import unknown_name
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -51,7 +51,7 @@ class View(NamedTuple):
     changes: Sequence[xr.Dataset]
 
 
-def viewed(path: str | Path, cut: Mapping[str, str | float], trust: bool = False) -> View:
+def view_study(path: str | Path, cut: Mapping[str, str | float], trust: bool = False) -> View:
     """Return a study with some of its dimensions cut."""
     with opening(path, "is damaged"):
         data = open_study(path)
@@ -61,7 +61,7 @@ def viewed(path: str | Path, cut: Mapping[str, str | float], trust: bool = False
     for name, value in cut.items():
         dim = canonical_path(name)
         if dim not in study.coordinates or dim not in dims:
-            found.append(Fault(dim, unknown("dimension", dim, dims)))
+            found.append(Fault(dim, unknown_name("dimension", dim, dims)))
             continue
         known = study.coordinates[dim]
         try:
@@ -78,7 +78,7 @@ def viewed(path: str | Path, cut: Mapping[str, str | float], trust: bool = False
     part = data.isel(at)
     refuse_size(path, part.nbytes)
     with opening(path, "is damaged"):
-        return View(study, part.load(), at, refined(path))
+        return View(study, part.load(), at, refined_changes(path))
 
 
 def fitting(path: str | Path, data: xr.Dataset, study: Study) -> None:
@@ -91,7 +91,7 @@ def fitting(path: str | Path, data: xr.Dataset, study: Study) -> None:
     """
     runs = dict(zip(study.layout.dims, study.layout.shape, strict=True))
     along = {name: {each.dim: runs[each.dim]} for name, each in study.coordinates.items()}
-    numbers = [each.name for each in kept(study) if not each.shape]
+    numbers = [each.name for each in stored_variables(study) if not each.shape]
     wanted = {**along, **dict.fromkeys(("status", *numbers), runs)}
     wrong = [
         name
@@ -102,7 +102,7 @@ def fitting(path: str | Path, data: xr.Dataset, study: Study) -> None:
         raise ResultError(f"{path}: is damaged: {', '.join(wrong)} do not match the study")
 
 
-def refined(path: str | Path) -> list[xr.Dataset]:
+def refined_changes(path: str | Path) -> list[xr.Dataset]:
     """Return the refined changes of motion, one dataset for each axis."""
     import xarray as xr
 
@@ -118,10 +118,10 @@ def broken_changes(path: str | Path) -> list[str]:
     if group_at(path, "r").attrs["format"] != CHECKED:
         return []
     tables = sorted(Path(path).glob(f"{REFINED}/*/{CHANGES}"))
-    return [each.relative_to(path).as_posix() for each in tables if seal.broken(each)]
+    return [each.relative_to(path).as_posix() for each in tables if seal.broken_files(each)]
 
 
-def chosen(view: View, measures: Sequence[str]) -> list[str]:
+def choose_measures(view: View, measures: Sequence[str]) -> list[str]:
     """Return the measures to draw."""
     runs = view.data["status"].dims  # traces have time as well
     kept = [
@@ -132,7 +132,9 @@ def chosen(view: View, measures: Sequence[str]) -> list[str]:
     measures = by_new_names(measures, FORMERLY, "measure")
     strange = [name for name in measures if name not in kept]
     if strange:
-        raise DescriptionError([Fault(name, unknown("measure", name, kept)) for name in strange])
+        raise DescriptionError(
+            [Fault(name, unknown_name("measure", name, kept)) for name in strange]
+        )
     if not kept:
         raise DescriptionError(
             [Fault("measures", "the study kept no measures; there is nothing to draw")]

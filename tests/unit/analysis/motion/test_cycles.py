@@ -16,7 +16,7 @@ from stiction.analysis.motion.friction import find_friction
 from stiction.analysis.motion.hesitations import take_out
 from stiction.analysis.signals.outliers import without_outliers
 from stiction.analysis.signals.reversals import all_heights, standing_out, taken_out
-from stiction.analysis.signals.turning_points import _placed, turning_points
+from stiction.analysis.signals.turning_points import _locate, turning_points
 from stiction.plotting.analysis.cycles import plot_cycles
 from stiction.plotting.page.canvas import figure_of
 from stiction.study.variables.observation import observe
@@ -72,7 +72,7 @@ def walked(values: NDArray[np.int64], height: int) -> list[int]:
 
 def test_turning_points_keep_their_order_where_they_are_placed() -> None:
     counts = np.array([0, 0, 0, 0, 5, 6, 1, 8, 7, 9, 2, 3])  # sums of two: 0, 0, 11, 9, 16, 5
-    placed = _placed(counts, np.array([2, 3, 4, 5]), np.array([False, True, False, True]))
+    placed = _locate(counts, np.array([2, 3, 4, 5]), np.array([False, True, False, True]))
     assert placed.tolist() == [5, 6, 9, 10]
 
 

@@ -53,7 +53,7 @@ def test_drift_is_seen_and_taken_off(force) -> None:
     found = st.analyse(record)
     assert "The force drifts by 50" in found.warnings[0]
     assert as_text(found.tables()).startswith("Warnings")
-    mended = st.analyse(st.analysis.detrended(record))
+    mended = st.analyse(st.analysis.detrend(record))
     assert mended.warnings == ()
     assert mended.friction.static.coefficient == pytest.approx(0.1993, rel=2e-3)
 

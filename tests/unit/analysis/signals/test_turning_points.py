@@ -6,7 +6,7 @@ from scipy.stats import binom
 from tests.drawn import inside
 
 from stiction.analysis.signals import gap, peak_refinement, reversals, turning_points
-from stiction.analysis.signals.piecewise_fit import fitted
+from stiction.analysis.signals.piecewise_fit import fit_pieces
 
 WALKS = [np.rint(np.cumsum(each) * 40).astype(np.int64) for each in inside(4, *[(-1.0, 1.0)] * 60)]
 
@@ -172,14 +172,14 @@ def test_a_wild_sample_is_limited_to_where_its_neighbours_lead():
 
 def test_sums_of_two_four_eight_samples():
     counts = np.array([*np.arange(70), 1000, *np.arange(71, 129)])  # a wild one
-    levels = list(turning_points.averaged(counts))
+    levels = list(turning_points.running_sums(counts))
     assert [len(each) for each in levels] == [129, 64, 32, 16]
     assert levels[0] is counts
     pairs = [2 * i + 0.5 for i in range(64)]
     assert levels[1] / 2 == pytest.approx(pairs, abs=2.1)  # a median of three is a neighbour's
     assert np.abs(levels[1] / 2 - pairs).max() < 2.1
-    assert list(turning_points.averaged(np.arange(15))) == []
-    assert len(list(turning_points.averaged(np.arange(16)))) == 1
+    assert list(turning_points.running_sums(np.arange(15))) == []
+    assert len(list(turning_points.running_sums(np.arange(16)))) == 1
 
 
 def test_the_typical_step_and_the_reach_of_noise():
@@ -299,7 +299,7 @@ def test_fits_of_pieces(degree):
     """Least squares, piece by piece, as NumPy's."""
     time, values = np.linspace(2.0, 3.0, 40), np.array(inside(1, *[(-1.0, 1.0)] * 40)[0])
     first, last = np.array([0, 5, 20]), np.array([9, 12, 39])
-    fits = fitted(time, values, first, last, degree)
+    fits = fit_pieces(time, values, first, last, degree)
     for i, (a, b) in enumerate(zip(first, last, strict=True)):
         x = (time[a : b + 1] - 0.5 * (time[a] + time[b])) / (0.5 * (time[b] - time[a]))
         wanted = np.polynomial.polynomial.polyfit(x, values[a : b + 1], degree)
