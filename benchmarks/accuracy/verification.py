@@ -13,7 +13,7 @@ from benchmarks.accuracy import convergence
 from benchmarks.cases import GROUPS, Case
 from benchmarks.cases.closed_forms import closed_forms
 from benchmarks.section import Cell, Section, Table
-from stiction.reproduction.numbers import Number
+from stiction.presets import Number
 
 TOLERANCES = (1e-4, 1e-6, 1e-8)
 NOTES = (

@@ -6,13 +6,13 @@ asks that they agree to the digits given.
 
 from itertools import chain
 
-from benchmarks.cases import belt, lugre, oscillator, paper, rate_and_state, steady, transverse
+from benchmarks.cases import belt, oscillator, paper, published, rate_and_state, steady, transverse
 from benchmarks.cases.case import Case
 
 # each with what it shares with nobody before it: run side by side, hardly anything compiles twice
 GROUPS: tuple[tuple[Case, ...], ...] = (
     paper.CASES,
-    lugre.CASES,
+    published.CASES,
     rate_and_state.CASES,
     oscillator.CASES,
     belt.CASES,

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from functools import cache
 
-import numpy as np
 from scipy.integrate import solve_ivp
 
-import stiction as st
-from benchmarks.cases.case import Case, block, crest
-from stiction.reproduction.numbers import Number
+from benchmarks.cases.case import Case
+from benchmarks.cases.published import published
+from stiction.presets import Number, find
 
 SPEED, D = 0.2, 3.0  # of the belt; F = 1/(1 + d |slip|)
 
@@ -52,32 +51,17 @@ def by_scipy() -> tuple[float, float, float, float]:
 
 
 def belt(rtol: float) -> list[Number]:
-    """k = m = F_s = 1, d = 3, belt speed 0.2: digits as published, and SciPy's."""
-    law = st.laws.HyperbolicWeakening(mu_0=1.0, v_h=1 / D)
-    slider = block(friction=law, drive=st.ConstantVelocity(SPEED))
-    run = st.simulate(slider, 60.0, sample_rate=1e3, rtol=rtol)
-    starts, ends = run.stick_intervals[1:-1].T  # whole ones, after a first cycle
-    whole = slice(*np.searchsorted(run.data["time"].values, ends[[0, -1]]))
-    computed = (
-        float(np.mean(starts[1:] - ends[:-1])),
-        float(np.mean(ends - starts)),
-        crest(run.data["u_x"].values[whole]),
-        -crest(-run.data["v_x"].values[whole]),
-    )
+    """The preset `leine-belt`, beside SciPy."""
+    found = published(find("leine-belt"), rtol)
+    slip, stick, _, highest, lowest, _ = (number.computed for number in found)
     names = ("length of a slip", "length of a stick", "largest u", "smallest du/dt")
-    units = ("s", "s", "m", "m/s")
-    published = (4.296000, 7.705032, 1.133945, -0.839902)
-    rows = zip(names, published, by_scipy(), computed, units, strict=True)
-    numbers = []
-    for name, printed, sharp, value, unit in rows:
-        numbers.append(Number("Leine 1998", f"{name}, as printed", printed, value, 5.1e-7, unit))
-        numbers.append(Number("SciPy, DOP853", f"{name}", sharp, value, 1e-8, unit))
-    period = float(np.mean(np.diff(starts)))
+    values = zip(
+        names, by_scipy(), (slip, stick, highest, lowest), ("s", "s", "m", "m/s"), strict=True
+    )
     return [
-        *numbers,
-        Number("Leine 1998", "period, as printed", 12.001031, period, 5.1e-7, "s"),
-        Number("Leine 1998", "whole sticks after the first, in 60 s", 4, len(starts), 0),
+        Number("SciPy, DOP853", name, sharp, value, 1e-8, unit)
+        for name, sharp, value, unit in values
     ]
 
 
-CASES = (Case("block on a belt", belt),)
+CASES = (Case("block on a belt, beside SciPy", belt),)

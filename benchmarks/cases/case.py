@@ -9,8 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-import stiction as st
-from stiction.reproduction.numbers import Number
+from stiction.presets import Number
 
 Floats = NDArray[np.float64]
 
@@ -32,24 +31,6 @@ class Case(NamedTuple):
     name: str
     numbers: Callable[[float], list[Number]]
     rtol: float = 1e-10
-
-
-def block(**changes) -> st.Slider:
-    """Return a slider that moves along x only, m = k = W = 1, with some parameters changed."""
-    values = {"mass": 1.0, "k_x": 1.0, "k_y": 1.0, "phi": "0 deg", "normal_load": 1.0}
-    return st.Slider(**(values | changes))
-
-
-def crest(values: Floats) -> float:
-    """Return the largest of evenly spaced samples, by the parabola through it and its neighbours.
-
-    It is off by the fourth order of the spacing; the sample itself by the second.
-    """
-    i = int(np.argmax(values))
-    if not 0 < i < len(values) - 1:
-        return float(values[i])
-    before, top, after = values[i - 1 : i + 2]
-    return float(top + (after - before) ** 2 / (8.0 * (2.0 * top - before - after)))
 
 
 def growth(values: Floats, rate: float, order: int) -> float:

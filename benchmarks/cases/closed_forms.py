@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from stiction import theory
-from stiction.reproduction.numbers import Number
+from stiction.presets import Number
 
 F_0, V, PHI, MASS, K_X, K_Y = 2.0, 1e-3, radians(1.0), 0.25, 1e3, 1e7
 L_X = F_0 / K_X

@@ -6,9 +6,10 @@ from functools import cache
 from math import cos
 
 import stiction as st
-from benchmarks.cases.case import Case, crest
+from benchmarks.cases.case import Case
 from stiction import theory
-from stiction.reproduction.numbers import Number, reference
+from stiction.presets import Number, find
+from stiction.presets.samples import crest
 from stiction.solver.reference import twin
 
 SAMPLE_RATE = 100e3  # so that extremes and their times are those of the solution
@@ -23,7 +24,7 @@ def figure3(rtol: float) -> list[Number]:
     held = float(theory.first_stick_duration(s.F_0, V, s.phi, s.k_x, s.k_y))
     found = 1e3 * float(run.stick_intervals[0, 1])
     first = Number("closed form", "end of the first stick", 1e3 * held, found, 1e-9, "ms")
-    return [first, *reference(run)]
+    return [first, *find("nakano-popov-weakening").numbers(run)]
 
 
 def constant(rtol: float) -> list[Number]:

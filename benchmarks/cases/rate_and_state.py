@@ -8,8 +8,9 @@ from math import nan
 from scipy.optimize import brentq
 
 import stiction as st
-from benchmarks.cases.case import Case, block, growth
-from stiction.reproduction.numbers import Number
+from benchmarks.cases.case import Case, growth
+from stiction.presets import Number
+from stiction.presets.preset import on_a_line
 from stiction.solver.integrate import tolerance
 
 A, B, D_C, V, SIGMA, MASS = 0.01, 0.015, 1e-5, 1e-2, 5e6, 1e3  # all per unit area
@@ -22,10 +23,9 @@ def growth_at(k: float, kind: type, rtol: float) -> float:
     which is left out, is about as large beside it as the error of a step.
     """
     law = kind(a=A, b=B, D_c=D_C, mu_star=0.6, V_star=1e-6)
-    slider = block(
+    slider = on_a_line(
         mass=MASS,
         k_x=k,
-        k_y=k,
         normal_load=SIGMA,
         friction=law,
         drive=st.ConstantVelocity(V),

@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 import stiction as st
 from benchmarks.cases.case import Case, growth
-from stiction.reproduction.numbers import Number
+from stiction.presets import Number
 from stiction.solver.integrate import tolerance
 
 LOW, HIGH = 8.0, 9.3  # deg

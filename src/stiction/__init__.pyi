@@ -22,6 +22,7 @@ from stiction.friction.laws import Coulomb as Coulomb
 from stiction.friction.laws import ExponentialWeakening as ExponentialWeakening
 from stiction.linear_stability.examination import stability as stability
 from stiction.plotting.door import plot as plot
+from stiction.presets.report import init as init
 from stiction.reproduction.reproduce import paper as paper
 from stiction.simulation import run as run
 from stiction.simulation import simulate as simulate
@@ -38,7 +39,6 @@ from stiction.system.description import Description as Description
 from stiction.system.description import Settings as Settings
 from stiction.system.initial import Initial as Initial
 from stiction.system.slider import Slider as Slider
-from stiction.system.template import init as init
 from stiction.trajectory import Trajectory as Trajectory
 from stiction.trajectory import export as export
 from stiction.trajectory import load as load

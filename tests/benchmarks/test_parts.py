@@ -7,7 +7,7 @@ import pytest
 from benchmarks.accuracy.conservation import drift
 from benchmarks.accuracy.convergence import order
 from benchmarks.accuracy.energy import balance, quadrature
-from benchmarks.cases.case import crest, growth
+from benchmarks.cases.case import growth
 from benchmarks.regression.verdict import left_out, ratio, slower
 
 import stiction as st
@@ -30,12 +30,6 @@ def test_drift_is_a_slope_with_its_error():
     slope, error = drift(5.0 + 0.03 * n + wiggle)
     assert abs(slope - 0.03) < 3 * error
     assert error < 1e-3
-
-
-def test_the_crest_of_a_sampled_wave():
-    t = np.linspace(0.1, 6.0, 100)  # 0.06 apart: the sample is off by 1e-4, the parabola by 1e-7
-    assert crest(np.sin(t)) == pytest.approx(1.0, abs=1e-6)
-    assert crest(t) == t[-1]
 
 
 def test_growth_of_a_swelling_wave():

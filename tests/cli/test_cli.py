@@ -76,6 +76,27 @@ def test_every_command_explains_itself(name, capsys):
     assert len(text.splitlines()) > 8
 
 
+def test_a_preset_is_listed_explained_run_and_written(tmp_path, capsys):
+    assert inside("presets") == 0
+    assert "veraszto-stepan" in capsys.readouterr().out
+    assert inside("presets", "modelica-spring") == 0
+    assert "hard stops" in capsys.readouterr().out
+    assert inside("run", "--preset", "modelica-spring", "-o", tmp_path / "a.nc") == 0
+    text = capsys.readouterr().out
+    assert "3 of 3 agree" in text
+    changed = ("--set", "duration=1s", "-o", tmp_path / "b.nc")
+    assert inside("run", "--preset", "modelica-spring", *changed) == 0
+    assert "agree" not in capsys.readouterr().out
+    assert st.load(tmp_path / "b.nc").description.run.duration == 1.0
+    assert inside("init", tmp_path / "c.toml", "--preset", "modelica-spring") == 0
+    assert inside("run", tmp_path / "c.toml", "-o", tmp_path / "c.nc") == 0
+    assert st.load(tmp_path / "c.nc").data.equals(st.load(tmp_path / "a.nc").data)
+    capsys.readouterr()
+    assert inside("run", "-o", tmp_path / "d.nc") == 2
+    assert "either the file of a description or --preset NAME" in capsys.readouterr().err
+    assert inside("presets", "nonsense") == 2
+
+
 def test_init_writes_the_paper_s_system(tmp_path, slider):
     assert inside("init", tmp_path / "a.toml") == 0
     assert st.Slider.from_toml(tmp_path / "a.toml") == slider
@@ -190,8 +211,8 @@ def test_paper_one_figure(tmp_path):
 
 
 def test_a_wrong_number_is_an_exit_status(tmp_path, monkeypatch, capsys):
+    from stiction.presets import Number
     from stiction.reproduction import reproduce
-    from stiction.reproduction.numbers import Number
 
     wrong = [Number("here", "one", 1.0, 2.0, 0.5), Number("here", "nothing", 0.0, float("nan"), 1)]
     monkeypatch.setattr(reproduce, "numbers", lambda *_: wrong)

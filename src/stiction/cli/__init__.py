@@ -37,6 +37,7 @@ app = cyclopts.App(
 COMMANDS = (
     "paper",
     "init",
+    "presets",
     "audit",
     "run",
     "plot",

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
 from stiction.errors import StictionError
+
+if TYPE_CHECKING:
+    from stiction.presets import Preset
+    from stiction.system.description import Description
+    from stiction.system.slider import Slider
 
 Output = Annotated[Path, Parameter(name=("--output", "-o"))]
 MaybeOutput = Annotated[Path | None, Parameter(name=("--output", "-o"))]
@@ -33,6 +38,51 @@ Changes = Annotated[
         ),
     ),
 ]
+
+FromPreset = Annotated[
+    str | None,
+    Parameter(
+        name="--preset",
+        help="A published system in place of CONFIG; `stiction presets` lists them.",
+    ),
+]
+
+
+def description_from(
+    config: Path | None, preset: str | None, given: dict[str, Any], trust: bool
+) -> Description:
+    """Return the description in a file, or that of a preset, with changed parameters."""
+    from stiction.system.description import Description
+    from stiction.text.paths import with_changes
+
+    found = chosen(config, preset)
+    if found is None:
+        return Description.from_toml(Path(str(config)), given, trust=trust)
+    made = found.make()
+    return Description.from_dict(with_changes(made.to_dict(), given)) if given else made
+
+
+def slider_from(
+    config: Path | None, preset: str | None, given: dict[str, Any], trust: bool
+) -> Slider:
+    """Do as `description_from` for a slider alone: a file's [run] is not read."""
+    from stiction.system.slider import Slider
+
+    if chosen(config, preset) is None:
+        return Slider.from_toml(Path(str(config)), given, trust=trust)
+    return description_from(config, preset, given, trust).slider
+
+
+def chosen(config: Path | None, preset: str | None) -> Preset | None:
+    """Return the requested preset, None for a file; one of both must be given."""
+    from stiction.presets import find
+
+    if (config is None) == (preset is None):
+        raise StictionError(
+            "give either the file of a description or --preset NAME; "
+            "`stiction init my.toml` writes one, `stiction presets` lists the others"
+        )
+    return None if preset is None else find(preset)
 
 
 def parse_assignment(text: str, option: str) -> tuple[str, str]:

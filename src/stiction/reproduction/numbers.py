@@ -8,47 +8,15 @@ values for the set-valued solution (two independent methods), to the digits give
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import pi, radians, sin
 
 import numpy as np
 
 from stiction import theory
+from stiction.presets import Number as Number
+from stiction.presets import find
 from stiction.system.slider import Slider
 from stiction.trajectory import Trajectory
-
-
-@dataclass(frozen=True)
-class Number:
-    """One number: its place in the paper, its meaning, both values, and the tolerance.
-
-    A `finding` is wrong in the paper, as far as is known: it is shown, and must not agree.
-    """
-
-    where: str
-    what: str
-    stated: float
-    computed: float
-    tolerance: float
-    unit: str = "1"
-    finding: bool = False
-
-    @property
-    def deviation(self) -> float:
-        """Computed minus stated value, in `unit`."""
-        return self.computed - self.stated
-
-    @property
-    def agrees(self) -> bool:
-        """Whether the deviation is within the tolerance; NaN does not agree."""
-        return abs(self.deviation) <= self.tolerance * (1 + 1e-9)
-
-    @property
-    def verdict(self) -> str:
-        """``agrees``, ``finding`` or ``WRONG``."""
-        if self.finding:
-            return "finding" if abs(self.deviation) > self.tolerance else "WRONG"
-        return "agrees" if self.agrees else "WRONG"
 
 
 def numbers(run: Trajectory, constant: Trajectory) -> list[Number]:
@@ -65,8 +33,8 @@ def numbers(run: Trajectory, constant: Trajectory) -> list[Number]:
         *from_theory(run.slider),
         *from_simulation(run),
         *of_creep(run),
-        *reference(run),
-        *reference_constant(constant),
+        *find("nakano-popov-weakening").numbers(run),
+        *find("nakano-popov-constant").numbers(constant),
     ]
 
 
@@ -207,38 +175,4 @@ def of_creep(run: Trajectory) -> list[Number]:
             sin(s.phi),
             finding=True,
         ),
-    ]
-
-
-def reference(run: Trajectory) -> list[Number]:
-    """Return the set-valued solution's reference values."""
-    d = run.data
-    time, force = d["time"].values, d["spring_x"].values
-    peak = int(force[time < 2.5].argmax())
-    trough = peak + int(force[peak:][time[peak:] < time[peak] + 0.3].argmin())
-    next_peak = trough + int(force[trough:][time[trough:] < time[trough] + 1.2].argmax())
-    where, stick = "reference", float(run.stick_intervals[0, 1])
-    return [
-        Number(where, "end of the first stick", 11.4595, 1e3 * stick, 5e-5, "ms"),
-        Number(where, "first peak of k_x u_x", 1.9926, float(force[peak]), 5e-5, "N"),
-        Number(where, "  at", 2.0321, float(time[peak]), 1e-4, "s"),
-        Number(where, "first trough of k_x u_x", 1.1686, float(force[trough]), 5e-5, "N"),
-        Number(where, "  at", 2.0905, float(time[trough]), 1e-4, "s"),
-        Number(where, "period", 0.9151, float(time[next_peak] - time[peak]), 2e-4, "s"),
-        Number(where, "largest X'", 26.284, 1e3 * float(d["V_X"].max()), 5e-4, "mm/s"),
-        Number(where, "stick intervals in 5 s", 2959, len(run.stick_intervals), 0),
-        Number(where, "time stuck in 5 s", 0.323110, run.statistics.time_stuck, 5e-7, "s"),
-        Number(where, "u_x(5 s)", 1.3305693378, 1e3 * float(run.final["u_x"]), 1e-10, "mm"),
-        Number(where, "u_y(5 s)", 1.474023e-4, 1e3 * float(run.final["u_y"]), 5e-11, "mm"),
-    ]
-
-
-def reference_constant(run: Trajectory) -> list[Number]:
-    """Return the reference values for constant friction."""
-    d = run.data
-    tail = d["spring_x"].sel(time=slice(9.0, None)).values
-    return [
-        Number("reference", "constant friction: k_x u_x goes to", 1.9997, tail[-1], 5e-5, "N"),
-        Number("reference", "  its swing in the last second", 0.0, float(np.ptp(tail)), 1e-5, "N"),
-        Number("reference", "  largest X'", 1.6124, 1e3 * float(d["V_X"].max()), 2e-3, "mm/s"),
     ]

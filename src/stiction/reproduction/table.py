@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from stiction.reproduction.numbers import Number
+from stiction.presets import Number
 from stiction.storage.files import whole
 from stiction.text.sections import Section
 from stiction.text.sections import Table as Rows

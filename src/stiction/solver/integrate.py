@@ -146,7 +146,7 @@ def method_of(description: Description) -> Method:
     """Return the solver for a description."""
     slider, delta = description.slider, description.run.regularisation
     if delta is not None or has_state(slider.law):
-        return Smooth(slider, delta)
+        return Smooth(slider, delta, description.run.smoothing)
     return Multiscale(slider, description.run.rtol) if description.run.multiscale else Exact(slider)
 
 

@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, Self
+from typing import Annotated, Any, Literal, NamedTuple, Self
 
 from pydantic import Field, StrictBool, model_validator
 
@@ -40,6 +40,9 @@ class Settings(Described):
     regularisation : float or str, optional
         delta of the regularised law s/sqrt(|s|^2 + delta^2), m/s, at least 1e-11; by default
         the law is set-valued.
+    smoothing : {"root", "arctan"}, optional
+        The shape of the regularised law: as above, or F (2/pi) atan(|s|/delta), for comparison
+        with other programs.
     multiscale : bool, optional
         Whether to interpolate between cycles of stick and slip; see `stiction.simulate`.
     """
@@ -48,7 +51,15 @@ class Settings(Described):
     sample_rate: SampleRate | None = None
     rtol: Number = Field(default=1e-6, ge=1e-13, le=1e-2)
     regularisation: Smoothing | None = None
+    smoothing: Literal["root", "arctan"] = "root"
     multiscale: StrictBool = False
+
+    @model_validator(mode="after")
+    def _has_a_width(self) -> Self:
+        if self.smoothing != "root" and self.regularisation is None:
+            message = f"{self.smoothing!r} needs a width; give regularisation too"
+            raise faulty([Fault("smoothing", message)])
+        return self
 
     @model_validator(mode="after")
     def _can_be_kept(self) -> Self:

@@ -17,24 +17,16 @@ SCHEMA = "stiction.schema.json"
 BY_SCHEMA = f"#:schema {SCHEMA}\n"  # as editors of TOML understand it
 
 
-def init(path: str | Path = "slider.toml", *, force: bool = False, schema: bool = False) -> Path:
-    """Write a commented description of the paper's apparatus to adapt; return its path.
+def template_text() -> str:
+    """Return a commented description of the paper's apparatus."""
+    text = files("stiction").joinpath("template.toml").read_text(encoding="utf-8")
+    return text.replace("# {laws}\n", "".join(map(_law_lines, LAWS)))
 
-    Parameters
-    ----------
-    path : str or Path, optional
-        The file to write.
-    force : bool, optional
-        Whether to overwrite an existing file.
-    schema : bool, optional
-        Whether to write ``stiction.schema.json`` beside it, by which an editor completes and
-        checks what you write; an existing description stays as it is.
 
-    Raises
-    ------
-    StictionError
-        If the file exists, or cannot be written.
-    """
+def write_description(
+    path: str | Path, text: str, *, force: bool = False, schema: bool = False
+) -> Path:
+    """Write a description to a new file; see `stiction.init` for the arguments."""
     target = Path(path)
     if target.is_dir():
         raise StictionError(f"{target} is a folder; name a file in it")
@@ -47,8 +39,6 @@ def init(path: str | Path = "slider.toml", *, force: bool = False, schema: bool 
             return target
     if target.exists() and not force:
         raise StictionError(f"{target} exists already; choose another name, or force it")
-    text = files("stiction").joinpath("template.toml").read_text(encoding="utf-8")
-    text = text.replace("# {laws}\n", "".join(map(_law_lines, LAWS)))
     with whole(target) as part:
         part.write_text(BY_SCHEMA * schema + text, encoding="utf-8")
     return target

@@ -21,7 +21,7 @@ ALIASES = {
     "m": "mass",
 }
 MECHANICAL = ("mass", "k_x", "k_y", "c_x", "c_y", "phi", "normal_load", "driven")
-SETTINGS = ("duration", "sample_rate", "rtol", "regularisation", "multiscale")
+SETTINGS = ("duration", "sample_rate", "rtol", "regularisation", "smoothing", "multiscale")
 TABLES = ("slider", "friction", "drive", "load", "initial", "run", "study", "axes")
 
 

@@ -34,7 +34,7 @@ def test_a_law_is_registered_by_the_line_that_imports_it():
     folder = Path(laws.__file__).parent
     named = {
         name
-        for path in folder.glob("*.py")
+        for path in folder.rglob("*.py")
         for name in re.findall(r'^@registered\("([^"]+)"\)', path.read_text(), re.MULTILINE)
     }
     assert named == set(LAWS)

@@ -1,6 +1,6 @@
 """The summary below the table of numbers counts what is listed above it."""
 
-from stiction.reproduction.numbers import Number
+from stiction.presets import Number
 from stiction.reproduction.table import Table
 
 

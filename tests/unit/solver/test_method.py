@@ -7,7 +7,7 @@ one turn of its loop at a time, whose stages it remembers.
 import importlib
 import re
 from functools import cache
-from math import acos, asinh, atan2, cos, exp, hypot, inf, log, pi, sin, sqrt, tan
+from math import acos, asinh, atan, atan2, cos, exp, hypot, inf, log, pi, sin, sqrt, tan
 from pathlib import Path
 from typing import NamedTuple
 
@@ -32,7 +32,12 @@ from stiction.solver.problem import Elliptic, Isotropic, kinds_of
 from stiction.solver.segments import stretches
 from stiction.solver.smooth import loop as smooth_loop
 from stiction.solver.smooth.coordinate import coordinate, risen, slip_at, slip_slope
-from stiction.solver.smooth.dispatch import Smoothed, friction_and_gradient
+from stiction.solver.smooth.dispatch import (
+    Smoothed,
+    SmoothedByArctan,
+    arctan_share,
+    friction_and_gradient,
+)
 from stiction.solver.smooth.elimination import correct_states, residuals_without
 from stiction.solver.smooth.method import Smooth
 from stiction.solver.smooth.newton import factors, linear
@@ -621,10 +626,11 @@ def test_the_logarithmic_state(law):
 
 @pytest.mark.parametrize("slip", [(3e-7, -4e-7), (2e-3, 1e-3), (0.0, 0.0)])
 @pytest.mark.parametrize("surface", [Isotropic(), Elliptic(1.0, 0.2, 0.6)])
-def test_the_derivatives_of_a_smoothed_law(slip, surface):
+@pytest.mark.parametrize("kind", [Smoothed, SmoothedByArctan])
+def test_the_derivatives_of_a_smoothed_law(slip, surface, kind):
     """Those of (M60), by differences: what is compiled has both from one call."""
     law, load, delta = PAPER.law, 10.0, 1e-6
-    smoothed = Smoothed(law, surface, delta)
+    smoothed = kind(law, surface, delta)
     compiled = SMOOTHED(smoothed, slip, load)
     assert compiled[:2] == pytest.approx(smoothed.force(slip, load, ()), rel=1e-14)
     h = 1e-5 * max(delta, hypot(*slip))
@@ -636,6 +642,20 @@ def test_the_derivatives_of_a_smoothed_law(slip, surface):
     by_x, by_y = (np.subtract(a, b) / (2 * h) for a, b in ((ahead, behind), (up, down)))
     wanted = [by_x[0], by_y[0], by_x[1], by_y[1]]
     assert compiled[2:] == pytest.approx(wanted, abs=1e-7 * np.abs(wanted).max())
+
+
+@pytest.mark.parametrize("x", [0.0, 1e-5, 0.999e-3, 1.001e-3, 1.0, 1e3])
+def test_the_arc_tangent_of_a_smoothed_law(x):
+    """h = (2/pi) atan(q/delta)/q and -h'/(q h), by hand; the series is off by x^4."""
+    delta = 2e-3
+    h, fall = arctan_share(delta, (x * delta) ** 2)
+    exact = atan(x) / x if x else 1.0
+    assert h == pytest.approx(2 / pi / delta * exact, rel=1e-11)
+    if x >= 0.9e-3:
+        steeper = (exact - 1 / (1 + x * x)) / (exact * (x * delta) ** 2)
+        assert fall == pytest.approx(steeper, rel=1e-9)
+    else:
+        assert fall == pytest.approx(2 / 3 / delta**2, rel=1e-9)
 
 
 @numba.njit(error_model="numpy")

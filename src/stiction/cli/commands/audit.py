@@ -4,12 +4,18 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from stiction.cli.options import Changes, MaybeOutput, Trust, changes
+from stiction.cli.options import Changes, FromPreset, MaybeOutput, Trust, changes, slider_from
 from stiction.cli.terminal import say
 
 
 def audit(
-    config: Path, /, *, output: MaybeOutput = None, trust: Trust = False, set: Changes = None
+    config: Path | None = None,
+    /,
+    *,
+    output: MaybeOutput = None,
+    preset: FromPreset = None,
+    trust: Trust = False,
+    set: Changes = None,
 ) -> int:
     """Audit the apparatus that CONFIG describes: will it measure friction, or itself?
 
@@ -37,16 +43,16 @@ def audit(
     from stiction.auditing.report import audit as examine
     from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
-    from stiction.system.slider import Slider
 
-    slider = Slider.from_toml(config, changes(set), trust=trust)
+    slider = slider_from(config, preset, changes(set), trust)
+    title = str(config or preset)
     if output is not None:
         from stiction.auditing.page import writable
 
         writable(output)
     with progress("auditing") as report:
         found = examine(slider, report)
-    print_sections(str(config), found.tables())
+    print_sections(title, found.tables())
     if output is not None:
-        say(f"wrote {found.write_html(output, str(config))}")
+        say(f"wrote {found.write_html(output, title)}")
     return 0 if found.ok else 1

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from stiction.cli.options import Changes, Output, Trust, changes
+from stiction.cli.options import Changes, FromPreset, Output, Trust, changes, description_from
 from stiction.cli.terminal import say
 
 if TYPE_CHECKING:
@@ -17,12 +17,13 @@ if TYPE_CHECKING:
 
 
 def compare(
-    config: Path,
+    config: Path | None = None,
     /,
     *,
     law: Annotated[list[str], Parameter(negative=())],
     output: Output,
     data: Path | None = None,
+    preset: FromPreset = None,
     trust: Trust = False,
     set: Changes = None,
 ) -> int:
@@ -61,9 +62,8 @@ def compare(
     from stiction.plotting.page.canvas import figure_of
     from stiction.plotting.page.save import drawable, write
     from stiction.storage.files import usable_folder
-    from stiction.system.description import Description
 
-    description = Description.from_toml(config, changes(set), trust=trust)
+    description = description_from(config, preset, changes(set), trust)
     drawable(output)
     if data is not None:
         usable_folder(data)
@@ -71,7 +71,7 @@ def compare(
         found = comparison.compare(description, law, progress=report)
         figure = figure_of(found.plot)
     write(figure, output)
-    print_sections(str(config), found.tables())
+    print_sections(str(config or preset), found.tables())
     for path in (output, *([] if data is None else save(found, data))):
         say(f"wrote {path}")
     return 0 if found.ok else 1

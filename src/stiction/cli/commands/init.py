@@ -4,10 +4,18 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from stiction.cli.options import FromPreset
 from stiction.cli.terminal import say
 
 
-def init(path: Path = Path("slider.toml"), /, *, force: bool = False, schema: bool = False) -> None:
+def init(
+    path: Path = Path("slider.toml"),
+    /,
+    *,
+    preset: FromPreset = None,
+    force: bool = False,
+    schema: bool = False,
+) -> None:
     """Write a commented description of the paper's apparatus to adapt.
 
     For example:
@@ -15,6 +23,8 @@ def init(path: Path = Path("slider.toml"), /, *, force: bool = False, schema: bo
         stiction init my.toml
 
         stiction init my.toml --schema
+
+        stiction init belt.toml --preset veraszto-stepan
 
     Parameters
     ----------
@@ -26,11 +36,11 @@ def init(path: Path = Path("slider.toml"), /, *, force: bool = False, schema: bo
         Write stiction.schema.json beside it, by which an editor completes and checks a description
         as you type; an existing description is left as it is.
     """
+    from stiction.presets.report import init as write
     from stiction.system.template import BY_SCHEMA, SCHEMA
-    from stiction.system.template import init as write
 
     there = path.exists() and not force
-    write(path, force=force, schema=schema)
+    write(path, preset=preset, force=force, schema=schema)
     if schema:
         say(f"wrote {path.with_name(SCHEMA)}")
     if schema and there:

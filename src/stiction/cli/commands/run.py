@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from stiction.cli.options import Changes, Output, Trust, changes
+from stiction.cli.options import Changes, FromPreset, Output, Trust, changes, description_from
 from stiction.cli.terminal import say
 
 REST = 1e-9  # of the drive velocity: slower slip counts as rest
@@ -14,7 +14,15 @@ if TYPE_CHECKING:
     from stiction.trajectory import Trajectory
 
 
-def run(config: Path, /, *, output: Output, trust: Trust = False, set: Changes = None) -> int:
+def run(
+    config: Path | None = None,
+    /,
+    *,
+    output: Output,
+    preset: FromPreset = None,
+    trust: Trust = False,
+    set: Changes = None,
+) -> int:
     """Simulate the apparatus that CONFIG describes and write the result as NetCDF.
 
     For example, with what `stiction init my.toml` writes, and then with another misalignment
@@ -23,6 +31,10 @@ def run(config: Path, /, *, output: Output, trust: Trust = False, set: Changes =
         stiction run my.toml -o my.nc
 
         stiction run my.toml --set phi=3deg --set V=2mm/s -o other.nc
+
+    A published system is run by its name, and compared with what is published of it:
+
+        stiction run --preset leine-belt -o belt.nc
 
     Exit status: 0 if the run reached its duration, 1 if it ended earlier (the part computed is
     still written), 2 if the description cannot be simulated.
@@ -36,17 +48,32 @@ def run(config: Path, /, *, output: Output, trust: Trust = False, set: Changes =
     """
     from stiction import simulation
     from stiction.cli.progress import progress
-    from stiction.system.description import Description
     from stiction.trajectory import writable
 
-    description = Description.from_toml(config, changes(set), trust=trust)
+    given = changes(set)
+    description = description_from(config, preset, given, trust)
     writable(output)
     with progress("simulating") as report:
         result = simulation.run(description, progress=report)
         result.save(output)
     for line in report_lines(result, output):
         say(line)
+    if preset is not None and not given:
+        compare_with_published(preset, result)
     return 0 if result.status.ok else 1
+
+
+def compare_with_published(preset: str, result: Trajectory) -> None:
+    """Print the numbers of a preset's run beside the published ones."""
+    from stiction.cli.progress import progress
+    from stiction.cli.tables import print_sections
+    from stiction.presets import find
+    from stiction.presets.report import comparison
+
+    found = find(preset)
+    with progress("comparing"):
+        section = comparison(found.numbers(result))
+    print_sections(f"\n{found.reference}", [section])
 
 
 def report_lines(result: Trajectory, output: Path) -> list[str]:

@@ -7,12 +7,12 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
-from stiction.cli.options import Changes, MaybeOutput, Trust, changes
+from stiction.cli.options import Changes, FromPreset, MaybeOutput, Trust, changes, slider_from
 from stiction.cli.terminal import say
 
 
 def stability(
-    config: Path,
+    config: Path | None = None,
     /,
     *,
     over: Annotated[list[str] | None, Parameter(negative=())] = None,
@@ -20,6 +20,7 @@ def stability(
         list[tuple[str, str]] | None, Parameter(negative=(), allow_leading_hyphen=True)
     ] = None,
     output: MaybeOutput = None,
+    preset: FromPreset = None,
     trust: Trust = False,
     set: Changes = None,
 ) -> None:
@@ -58,9 +59,8 @@ def stability(
     from stiction.linear_stability.examination import stability as examine
     from stiction.plotting.page.canvas import figure_of
     from stiction.plotting.page.save import drawable, write
-    from stiction.system.slider import Slider
 
-    slider = Slider.from_toml(config, changes(set), trust=trust)
+    slider = slider_from(config, preset, changes(set), trust)
     paths, ranges = over or OVER, [tuple(map(number, each)) for each in between or []]
     if len(paths) > 2 or len(ranges) not in (0, len(paths)):
         counts = f"{len(paths)} and {len(ranges)}"
@@ -70,7 +70,7 @@ def stability(
     if output is not None:
         drawable(output)
     found = examine(slider, paths, ranges or None)
-    print_sections(str(config), found.tables())
+    print_sections(str(config or preset), found.tables())
     if output is not None:
         say(f"wrote {write(figure_of(found.plot), output)}")
 

@@ -12,12 +12,16 @@ from stiction.friction.laws.exponential_weakening import (
 )
 from stiction.friction.laws.hyperbolic_weakening import HyperbolicWeakening as HyperbolicWeakening
 from stiction.friction.laws.lugre import LuGre as LuGre
-from stiction.friction.laws.rate_and_state_one import RateStateAgeing as RateStateAgeing
-from stiction.friction.laws.rate_and_state_one import RateStateSlip as RateStateSlip
-from stiction.friction.laws.rate_and_state_two import RateStateAgeing2 as RateStateAgeing2
-from stiction.friction.laws.rate_and_state_two import RateStateSlip2 as RateStateSlip2
+from stiction.friction.laws.lugre_hyperbolic import LuGreHyperbolic as LuGreHyperbolic
+from stiction.friction.laws.power_law_weakening import PowerLawWeakening as PowerLawWeakening
+from stiction.friction.laws.rate_and_state.one_state import RateStateAgeing as RateStateAgeing
+from stiction.friction.laws.rate_and_state.one_state import RateStatePerrin as RateStatePerrin
+from stiction.friction.laws.rate_and_state.one_state import RateStateSlip as RateStateSlip
+from stiction.friction.laws.rate_and_state.two_states import RateStateAgeing2 as RateStateAgeing2
+from stiction.friction.laws.rate_and_state.two_states import RateStateSlip2 as RateStateSlip2
 from stiction.friction.laws.stribeck import Stribeck as Stribeck
 from stiction.friction.laws.table import Table as Table
+from stiction.friction.laws.two_exponentials import TwoExponentials as TwoExponentials
 from stiction.friction.registry import LAWS
 
 

@@ -15,25 +15,29 @@ from stiction.text.validation import validate
 @register("hyperbolic-weakening")
 @validate
 class HyperbolicWeakening(NamedTuple):
-    """F = mu_0/(1 + v/v_h) W.
+    """F = [mu_inf + (mu_0 - mu_inf)/(1 + v/v_h)] W.
 
     Leine, van Campen, de Kraker & van den Steen, Nonlinear Dynamics 16 (1998), 41, write it
-    F_s/(1 + delta v), delta = 1/v_h, with delta = 3 s/m. Friction falls towards zero: the law
-    is meant for slip speeds of the order of v_h.
+    F_s/(1 + delta v), delta = 1/v_h, with delta = 3 s/m. There friction falls towards zero: that is
+    meant for slip speeds of the order of v_h. With mu_inf = 0.4, mu_0 = 0.8 and v_h = 0.2 m/s it is
+    what models of bowed strings take for rosin (`stiction presets`).
 
     Parameters
     ----------
     mu_0 : float
         Friction coefficient at vanishing slip speed.
     v_h : float or str
-        Slip speed at which the coefficient is half of mu_0, m/s.
+        Slip speed at which the coefficient has fallen by half, m/s.
     mu_static : float, optional
         Separate coefficient of static friction, not below mu_0; none when left out.
+    mu_inf : float, optional
+        Friction coefficient at large slip speed; zero when left out.
     """
 
     mu_0: Coefficient
     v_h: PositiveSpeed
     mu_static: Coefficient = 0.0
+    mu_inf: Coefficient = 0.0
 
     @classmethod
     def like(kind, static: float, kinetic: float, speed: float) -> HyperbolicWeakening:
@@ -55,9 +59,9 @@ class HyperbolicWeakening(NamedTuple):
 
     def coefficient(law, v: float) -> float:
         """Return the friction coefficient at slip speed `v` (m/s)."""
-        return law.mu_0 / (1.0 + v / law.v_h)
+        return law.mu_inf + (law.mu_0 - law.mu_inf) / (1.0 + v / law.v_h)
 
     def slope(law, v: float) -> float:
         """Return d(coefficient)/dv at slip speed `v` (m/s), in s/m."""
         x = 1.0 + v / law.v_h
-        return -law.mu_0 / (law.v_h * x * x)
+        return (law.mu_inf - law.mu_0) / (law.v_h * x * x)

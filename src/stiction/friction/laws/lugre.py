@@ -69,12 +69,8 @@ class LuGre(NamedTuple):
 
     def force(law, slip: Vector, load: float, state: tuple[float, ...]) -> Vector:
         """Return the friction force (N)."""
-        (s_x, s_y), (z_x, z_y) = slip, state
-        give = bending(law, s_x, s_y, load)
-        return (
-            law.sigma_0 * z_x + law.sigma_1 * (s_x - give * z_x) + law.sigma_2 * s_x,
-            law.sigma_0 * z_y + law.sigma_1 * (s_y - give * z_y) + law.sigma_2 * s_y,
-        )
+        give = bending(law, slip[0], slip[1], load)
+        return bristle_force(law.sigma_0, law.sigma_1, law.sigma_2, slip, give, state)
 
     def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
         """Return the rate of deflection (m/s)."""
@@ -86,17 +82,37 @@ class LuGre(NamedTuple):
         law, slip: Vector, load: float, state: tuple[float, ...]
     ) -> tuple[tuple[float, ...], ...]:
         """Return the derivatives of force and change by slip x, y and the deflection."""
-        (s_x, s_y), (z_x, z_y) = slip, state
-        give = bending(law, s_x, s_y, load)
-        by_x, by_y = bending_gradient(law, s_x, s_y, load)
-        xx, xy, yx, yy = 1.0 - by_x * z_x, -by_y * z_x, -by_x * z_y, 1.0 - by_y * z_y
-        one, two, by_z = law.sigma_1, law.sigma_2, law.sigma_0 - law.sigma_1 * give
-        return (
-            (one * xx + two, one * xy, by_z, 0.0),
-            (one * yx, one * yy + two, 0.0, by_z),
-            (xx, xy, -give, 0.0),
-            (yx, yy, 0.0, -give),
-        )
+        give = bending(law, slip[0], slip[1], load)
+        by = bending_gradient(law, slip[0], slip[1], load)
+        return bristle_gradient(law.sigma_0, law.sigma_1, law.sigma_2, give, by, state)
+
+
+@called_by_laws
+def bristle_force(
+    sigma_0: float, sigma_1: float, sigma_2: float, slip: Vector, give: float, z: tuple[float, ...]
+) -> Vector:
+    """Return sigma_0 z + sigma_1 z' + sigma_2 s for bristles that slip at the rate `give` (1/s)."""
+    (s_x, s_y), (z_x, z_y) = slip, z
+    return (
+        sigma_0 * z_x + sigma_1 * (s_x - give * z_x) + sigma_2 * s_x,
+        sigma_0 * z_y + sigma_1 * (s_y - give * z_y) + sigma_2 * s_y,
+    )
+
+
+@called_by_laws
+def bristle_gradient(
+    sigma_0: float, sigma_1: float, sigma_2: float, give: float, by: Vector, z: tuple[float, ...]
+) -> tuple[tuple[float, ...], ...]:
+    """Return the derivatives of force and deflection rate; `by` are those of `give` by the slip."""
+    (by_x, by_y), (z_x, z_y) = by, z
+    xx, xy, yx, yy = 1.0 - by_x * z_x, -by_y * z_x, -by_x * z_y, 1.0 - by_y * z_y
+    by_z = sigma_0 - sigma_1 * give
+    return (
+        (sigma_1 * xx + sigma_2, sigma_1 * xy, by_z, 0.0),
+        (sigma_1 * yx, sigma_1 * yy + sigma_2, 0.0, by_z),
+        (xx, xy, -give, 0.0),
+        (yx, yy, 0.0, -give),
+    )
 
 
 @called_by_laws

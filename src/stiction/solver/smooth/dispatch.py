@@ -6,7 +6,7 @@ One call returns friction and its derivatives. What internal states do is writte
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import sqrt
+from math import atan, pi, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,7 +20,6 @@ from stiction.solver.problem import (
     Elliptic,
     Isotropic,
     change,
-    coefficient,
     coefficient_and_slope,
     force,
     gradient,
@@ -54,12 +53,8 @@ class Smoothed(NamedTuple):
 
     def force(law, slip: Vector, load: float, state: tuple[float, ...]) -> Vector:
         """Return the friction force (N)."""
-        x, y = slip
-        n = law.surface
-        n_x, n_y = n.xx * x + n.xy * y, n.xy * x + n.yy * y
-        size = sqrt(x * n_x + y * n_y + law.delta * law.delta)
-        f = coefficient(law.law, sqrt(x * x + y * y)) * load / size
-        return f * n_x, f * n_y
+        f = smoothed_friction(law, slip, load, root_share(law.delta, squared(law, slip)))
+        return f[0], f[1]
 
     def grain(law, state: tuple[float, ...]) -> float:
         """Return delta: friction is proportional to the slip velocity below."""
@@ -67,24 +62,85 @@ class Smoothed(NamedTuple):
 
     def friction_and_gradient(law, slip: Vector, load: float) -> Friction:
         """Return the friction force (N) and its derivatives by the slip velocity (N s/m)."""
-        x, y = slip
-        n = law.surface
-        n_x, n_y = n.xx * x + n.xy * y, n.xy * x + n.yy * y
-        v = sqrt(x * x + y * y)
-        per = 1.0 / sqrt(x * n_x + y * n_y + law.delta * law.delta)
-        mu, slope = coefficient_and_slope(law.law, v)
-        f, along = mu * load * per, slope * load * per / v if v > 0.0 else 0.0
-        # d(f n)/ds, n = N s: f N + n (mu'/mu s/v - n per^2) f
-        turn = f * per * per
-        by_x, by_y = along * x - turn * n_x, along * y - turn * n_y
-        return (
-            f * n_x,
-            f * n_y,
-            f * n.xx + n_x * by_x,
-            f * n.xy + n_x * by_y,
-            f * n.xy + n_y * by_x,
-            f * n.yy + n_y * by_y,
-        )
+        return smoothed_friction(law, slip, load, root_share(law.delta, squared(law, slip)))
+
+
+class SmoothedByArctan(NamedTuple):
+    """F N s/q (2/pi) atan(q/delta), q^2 = s.N s: as `Smoothed`, by the arc tangent.
+
+    Leine et al., Nonlinear Dynamics 16 (1998), 41, doi:10.1023/A:1008289604683. It approaches F as
+    delta/q only, (M60) as its square.
+    """
+
+    law: Any
+    surface: Isotropic | Elliptic
+    delta: float
+
+    def force(law, slip: Vector, load: float, state: tuple[float, ...]) -> Vector:
+        """Return the friction force (N)."""
+        f = smoothed_friction(law, slip, load, arctan_share(law.delta, squared(law, slip)))
+        return f[0], f[1]
+
+    def grain(law, state: tuple[float, ...]) -> float:
+        """Return delta: friction is nearly proportional to the slip velocity below."""
+        return law.delta
+
+    def friction_and_gradient(law, slip: Vector, load: float) -> Friction:
+        """Return the friction force (N) and its derivatives by the slip velocity (N s/m)."""
+        return smoothed_friction(law, slip, load, arctan_share(law.delta, squared(law, slip)))
+
+
+SMOOTHED: dict[str, Any] = {"root": Smoothed, "arctan": SmoothedByArctan}
+
+
+@register_jitable
+def squared(law: Any, slip: Vector) -> float:
+    """Return s.N s."""
+    x, y, n = slip[0], slip[1], law.surface
+    n_x, n_y = n.xx * x + n.xy * y, n.xy * x + n.yy * y
+    found: float = x * n_x + y * n_y
+    return found
+
+
+@register_jitable
+def root_share(delta: float, square: float) -> tuple[float, float]:
+    """Return h = 1/sqrt(q^2 + delta^2) and -h'/(q h), for q^2."""
+    h = 1.0 / sqrt(square + delta * delta)
+    return h, h * h
+
+
+@register_jitable
+def arctan_share(delta: float, square: float) -> tuple[float, float]:
+    """Return h = (2/pi) atan(q/delta)/q and -h'/(q h), for q^2; a series where q is small."""
+    x = sqrt(square) / delta
+    if x < 1e-3:  # the first term left out is of the order x^4
+        h = 2.0 / (pi * delta) * (1.0 - x * x / 3.0)
+        return h, (2.0 / 3.0 - (4.0 / 5.0 - 2.0 / 9.0) * x * x) / (delta * delta)
+    share = atan(x) / x
+    h = 2.0 / (pi * delta) * share
+    return h, (share - 1.0 / (1.0 + x * x)) / (share * square)
+
+
+@register_jitable
+def smoothed_friction(law: Any, slip: Vector, load: float, share: tuple[float, float]) -> Friction:
+    """Return mu(v) W h N s and its derivatives, for h(q) and -h'/(q h)."""
+    x, y = slip
+    n = law.surface
+    n_x, n_y = n.xx * x + n.xy * y, n.xy * x + n.yy * y
+    v, per = sqrt(x * x + y * y), share[0]
+    mu, slope = coefficient_and_slope(law.law, v)
+    f, along = mu * load * per, slope * load * per / v if v > 0.0 else 0.0
+    # d(f n)/ds, n = N s: f N + n (mu'/mu s/v + n h'/(q h)) f
+    turn = f * share[1]
+    by_x, by_y = along * x - turn * n_x, along * y - turn * n_y
+    return (
+        f * n_x,
+        f * n_y,
+        f * n.xx + n_x * by_x,
+        f * n.xy + n_x * by_y,
+        f * n.xy + n_y * by_x,
+        f * n.yy + n_y * by_y,
+    )
 
 
 class PointedFlow(NamedTuple):

@@ -14,7 +14,7 @@ from stiction.solver.output import Output
 from stiction.solver.problem import Isotropic, Problem, at, force
 from stiction.solver.segments import friction_of
 from stiction.solver.smooth import loop
-from stiction.solver.smooth.dispatch import Smoothed, pointed
+from stiction.solver.smooth.dispatch import SMOOTHED, pointed
 from stiction.solver.smooth.state import Memory, Motion, State
 from stiction.solver.state import NOTHING, Accuracy, first_step
 from stiction.system.description import Description
@@ -28,12 +28,12 @@ FINER = 0.03
 class Smooth:
     """A law with internal state, or a set-valued one made smooth over `delta` (m/s)."""
 
-    def __init__(self, slider: Slider, delta: float | None) -> None:
+    def __init__(self, slider: Slider, delta: float | None, smoothing: str = "root") -> None:
         """Take the slider, and have its law compiled."""
         law, surface = friction_of(slider)
         self.first_step = 0.0
         self.states = len(states(law))
-        self.law: Any = law if delta is None else Smoothed(law, surface, delta)
+        self.law: Any = law if delta is None else SMOOTHED[smoothing](law, surface, delta)
         self.flow = pointed(self.law)
         self.columns = COLUMNS + self.states
 

@@ -7,7 +7,7 @@ from math import hypot
 from typing import NamedTuple, Self
 
 from stiction.friction.law import Internal, Vector
-from stiction.friction.laws.rate_and_state import (
+from stiction.friction.laws.rate_and_state.common import (
     ageing,
     ageing_gradient,
     comparable,

@@ -7,7 +7,7 @@ from math import hypot
 from typing import NamedTuple, Self
 
 from stiction.friction.law import Internal, Vector
-from stiction.friction.laws.rate_and_state import (
+from stiction.friction.laws.rate_and_state.common import (
     ageing,
     ageing_gradient,
     comparable,
@@ -17,6 +17,8 @@ from stiction.friction.laws.rate_and_state import (
     grain_of,
     slipping,
     slipping_gradient,
+    squaring,
+    squaring_gradient,
     steady,
     steady_log_theta,
 )
@@ -37,7 +39,7 @@ class OneState(NamedTuple):
 
     @classmethod
     def like(kind, static: float, kinetic: float, speed: float) -> Self:
-        """Return a comparable law; see `stiction.friction.laws.rate_and_state.comparable`."""
+        """Return a comparable law; see `stiction.friction.laws.rate_and_state`."""
         return kind(*comparable(static, kinetic, speed))
 
     def faults(law) -> Iterator[tuple[str, str]]:
@@ -149,4 +151,49 @@ class RateStateSlip(OneState):
             (xx, xy, law.b * x),
             (xy, yy, law.b * y),
             slipping_gradient(state[0], slip, law.V_star, law.D_c),
+        )
+
+
+@registered("rate-and-state-perrin")
+class RateStatePerrin(OneState):
+    """Rate-and-state friction, law of Perrin, Rice & Zheng (1995).
+
+        mu = a asinh[(V/2V*) exp((mu* + b ln(V* theta/2D_c))/a)],
+        theta' = 1 - (V theta/2D_c)^2
+
+    See `stiction.friction.laws.rate_and_state` for the symbols and the regularised form.
+    The internal state in results and in ``Initial(states=...)`` is ``log_theta`` =
+    ln(V* theta/2D_c): in steady sliding theta is 2 D_c/V. Contacts age at rest, as by the ageing
+    law; after a small step of the slip speed, friction changes exponentially with slip, as by the
+    slip law. (J. Mech. Phys. Solids 43, 1461.)
+
+    Parameters
+    ----------
+    a, b : float
+        Direct and evolution effect; in rock 0.005 to 0.02. Steady sliding weakens if b > a.
+    D_c : float or str
+        Slip distance over which the state evolves, m; 1 to 100 um in the laboratory.
+    mu_star : float
+        Coefficient of steady sliding at V_star.
+    V_star : float or str
+        Reference slip speed, m/s; any.
+    """
+
+    __slots__ = ()
+
+    def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
+        """Return d(log_theta)/dt, per second."""
+        V = hypot(slip[0], slip[1])
+        return (squaring(state[0], V, law.V_star, law.D_c),)
+
+    def gradient(
+        law, slip: Vector, load: float, state: tuple[float, ...]
+    ) -> tuple[tuple[float, ...], ...]:
+        """Return the derivatives of force and change by slip x, y and the state."""
+        psi = law.mu_star + law.b * state[0]
+        xx, xy, yy, x, y = friction_gradient(law.a, law.V_star, psi, slip, load)
+        return (
+            (xx, xy, law.b * x),
+            (xy, yy, law.b * y),
+            squaring_gradient(state[0], slip, law.V_star, law.D_c),
         )

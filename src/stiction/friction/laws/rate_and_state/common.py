@@ -1,18 +1,6 @@
 """Shared parts of the rate-and-state laws: the coefficient and comparable parameters.
 
-Friction depends on the slip speed V and on states theta, contact times of the surfaces
-(Dieterich 1979, doi:10.1029/JB084iB05p02161; Ruina 1983, doi:10.1029/JB088iB12p10359):
-
-    mu = mu* + a ln(V/V*) + sum_i b_i ln(V* theta_i/D_i)
-
-with a direct effect a, evolution effects b_i over the slip distances D_i, and mu* the steady
-coefficient at V*. At rest the logarithm is undefined. The regularised form, from the rate of
-thermally activated slip in both directions (Rice & Ben-Zion 1996; Lapusta et al. 2000,
-doi:10.1029/2000JB900250), differs only at slip speeds below 2 V* exp(-psi/a):
-
-    mu = a asinh[(V/2V*) exp(psi/a)],   psi = mu* + sum_i b_i ln(V* theta_i/D_i)
-
-The internal states of the solver are log_theta_i = ln(V* theta_i/D_i).
+The equations stand in `stiction.friction.laws.rate_and_state`.
 """
 
 from __future__ import annotations
@@ -90,6 +78,21 @@ def slipping(log_theta: float, V: float, V_star: float, D: float) -> float:
     if V == 0.0:
         return 0.0
     return -V / D * (log(V / V_star) + log_theta)
+
+
+@called_by_laws
+def squaring(log_theta: float, V: float, V_star: float, D: float) -> float:
+    """Return d(log_theta)/dt by theta' = 1 - (V theta/2D)^2, log_theta = ln(V* theta/2D)."""
+    return 0.5 * (V_star * exp(-log_theta) - V * V / V_star * exp(log_theta)) / D
+
+
+@called_by_laws
+def squaring_gradient(
+    log_theta: float, slip: tuple[float, float], V_star: float, D: float
+) -> tuple[float, float, float]:
+    """Return the derivatives of `squaring` by slip x, y and the state."""
+    square, aged = slip[0] * slip[0] + slip[1] * slip[1], exp(log_theta) / (V_star * D)
+    return -aged * slip[0], -aged * slip[1], -0.5 * (V_star * exp(-log_theta) / D + square * aged)
 
 
 @called_by_laws
