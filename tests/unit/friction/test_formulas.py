@@ -10,8 +10,8 @@ from stiction.errors import DescriptionError
 from stiction.friction import states
 from stiction.friction.equivalent import CHANGED, Traits, like, traits
 from stiction.friction.law import static_coefficient
-from stiction.friction.laws import rate_and_state as rs
 from stiction.friction.laws.lugre import bending
+from stiction.friction.laws.rate_and_state import common as rs
 
 SPEEDS = [0.0, 1e-4, 3e-3, 0.02, 0.5]
 RATE = {"a": 0.01, "b": 0.015, "D_c": 1e-5, "mu_star": 0.6, "V_star": 1e-6}
@@ -34,6 +34,42 @@ def test_set_valued_laws(v):
     assert st.Coulomb(0.2).slope(v) == 0.0
     assert st.laws.Stribeck(0.2, 0.15, 1e-9, 9.0).coefficient(1e300) == 0.15  # no overflow
     assert st.laws.Stribeck(0.2, 0.15, 1e-9, 9.0).slope(1e300) == 0.0
+
+
+@pytest.mark.parametrize("v", SPEEDS)
+def test_laws_of_rosin(v):
+    """As printed in the sources that `stiction presets` names, v in m/s."""
+    two = st.laws.TwoExponentials(0.35, 0.4, 0.01, 0.45, 0.1)
+    assert two.coefficient(v) == pytest.approx(0.4 * exp(-v / 0.01) + 0.45 * exp(-v / 0.1) + 0.35)
+    power = st.laws.PowerLawWeakening(0.2 * 0.011**-0.4, 0.011, 0.4)
+    assert power.coefficient(v) == pytest.approx(0.2 * (v + 0.011) ** -0.4)
+    hyperbola = st.laws.HyperbolicWeakening(0.8, 0.2, mu_inf=0.4)
+    assert hyperbola.coefficient(v) == pytest.approx(0.4 + 0.08 / (v + 0.2))
+    for law in (two, power, hyperbola):
+        h = 1e-6 * (v + 1e-3)
+        change = (law.coefficient(v + h) - law.coefficient(max(v - h, 0.0))) / (h + min(h, v))
+        assert law.slope(v) == pytest.approx(change, rel=1e-3 if v == 0.0 else 1e-7)
+
+
+@pytest.mark.parametrize("slip", [0.0, 1e-7, 3e-6])
+@pytest.mark.parametrize("log_theta", [-2.0, 0.3, 4.0])
+def test_the_law_of_perrin_rice_and_zheng(slip, log_theta):
+    """theta' = 1 - (V theta/2D)^2, with log_theta = ln(V* theta/2D)."""
+    law = st.laws.RateStatePerrin(**RATE)
+    theta = 2 * law.D_c / law.V_star * exp(log_theta)
+    wanted = (1 - (slip * theta / (2 * law.D_c)) ** 2) / theta
+    assert law.change((slip, 0.0), 1.0, (log_theta,)) == pytest.approx((wanted,), rel=1e-13)
+
+
+@pytest.mark.parametrize("v", SPEEDS)
+def test_bristles_on_hyperbolic_weakening(v):
+    """z' = s - sigma_0 |s| z/g, g = W mu_0/(1 + v/v_h); steady friction is g along the slip."""
+    law = st.laws.LuGreHyperbolic(0.2, 0.01, 1e5, 300.0, 2.0)
+    g = 10.0 * 0.2 / (1 + v / 0.01)
+    assert law.change((v, 0.0), 10.0, (1e-6, 2e-6)) == pytest.approx(
+        (v - 1e5 * v * 1e-6 / g, -1e5 * v * 2e-6 / g)
+    )
+    assert law.force((v, 0.0), 10.0, (g / 1e5, 0.0)) == pytest.approx((g + 2.0 * v, 0.0))
 
 
 def test_the_static_coefficient_is_the_larger_one():

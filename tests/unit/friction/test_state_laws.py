@@ -194,8 +194,10 @@ def test_error_falls_with_the_tolerance(kind):
     for name in ("u_x", *internal(best)):
         scale = largest(best.data[name].values)
         errors = [largest((run.data[name] - best.data[name]).values) / scale for run in runs]
-        assert errors[1] <= 0.03 * errors[0], name
-        assert errors[2] <= 0.03 * errors[1], name
+        # by six a decade on average, once the fast oscillation has died out; bristles by five
+        falls = 0.03 if name == "u_x" else 0.04
+        assert errors[1] <= falls * errors[0], name
+        assert errors[2] <= falls * errors[1], name
         assert errors[1] <= (1 if name == "u_x" else 200) * rtols[1], name
 
 
@@ -276,7 +278,7 @@ def test_what_a_law_says_of_itself(kind):
     assert law.coefficient(1e-6) == pytest.approx(0.2, abs=1e-3)
     assert law.coefficient(1e-1) <= 0.15
     sliding = law.settled(1e-3)
-    if kind is not st.laws.LuGre:  # its steady state depends on the load
+    if kind not in (st.laws.LuGre, st.laws.LuGreHyperbolic):  # its steady state depends on the load
         assert law.change((1e-3, 0.0), 1.0, sliding) == pytest.approx(
             [0.0] * len(sliding), abs=1e-12
         )
