@@ -49,8 +49,10 @@ COMMANDS = (
     "map",
     "check",
 )
+BESIDE = {"presets": "init"}  # commands in the file of another
 for _name in COMMANDS:  # light modules, which import heavy ones when called
-    app.command(getattr(import_module(f"stiction.cli.commands.{_name}"), _name))
+    _file = BESIDE.get(_name, _name)
+    app.command(getattr(import_module(f"stiction.cli.commands.{_file}"), _name))
 app.register_install_completion_command(
     help="Let the shell (bash, zsh, fish or PowerShell) complete commands and options."
 )

@@ -1,4 +1,4 @@
-"""``stiction init``: write a commented description as a starting point."""
+"""``stiction init`` and ``stiction presets``: descriptions to start from, and published systems."""
 
 from __future__ import annotations
 
@@ -47,3 +47,34 @@ def init(
         say(f"{path} is as it was; its editor needs the first line: {BY_SCHEMA.strip()}")
         return
     say(f"wrote {path}; edit it, then: stiction run {path} --output {path.with_suffix('.nc')}")
+
+
+def presets(name: str | None = None, /) -> None:
+    """List published systems, or tell all about one.
+
+    Each has its parameters, its reference, and the numbers that a run must give.
+
+    For example:
+
+        stiction presets
+
+        stiction presets earthquake-cycle
+
+        stiction run --preset earthquake-cycle -o cycle.nc
+
+        stiction init my.toml --preset earthquake-cycle
+
+    Parameters
+    ----------
+    name
+        The name of a preset, as the list has it.
+    """
+    from stiction.cli.tables import printed
+    from stiction.presets import find
+    from stiction.presets.report import overview, story
+
+    if name is None:
+        printed("stiction run --preset NAME --output RESULT.nc", overview())
+        return
+    first, *others = story(find(name))
+    printed(first.title, [first._replace(title="What it is"), *others])
