@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 from stiction.errors import DescriptionError, Fault
 from stiction.system.description import Description
 from stiction.system.slider import Slider
-from stiction.text.validation import unknown
+from stiction.text.validation import unknown_name
 
 if TYPE_CHECKING:
     from stiction.trajectory import Trajectory
@@ -162,7 +162,7 @@ def find(name: str) -> Preset:
     """
     known = name.replace("_", "-")
     if known not in PRESETS:
-        raise DescriptionError([Fault("preset", unknown("preset", name, PRESETS))])
+        raise DescriptionError([Fault("preset", unknown_name("preset", name, PRESETS))])
     return PRESETS[known]
 
 

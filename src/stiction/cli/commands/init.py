@@ -69,12 +69,12 @@ def presets(name: str | None = None, /) -> None:
     name
         The name of a preset, as the list has it.
     """
-    from stiction.cli.tables import printed
+    from stiction.cli.tables import print_sections
     from stiction.presets import find
     from stiction.presets.report import overview, story
 
     if name is None:
-        printed("stiction run --preset NAME --output RESULT.nc", overview())
+        print_sections("stiction run --preset NAME --output RESULT.nc", overview())
         return
     first, *others = story(find(name))
-    printed(first.title, [first._replace(title="What it is"), *others])
+    print_sections(first.title, [first._replace(title="What it is"), *others])

@@ -7,13 +7,13 @@ from typing import NamedTuple, Self
 
 from stiction.friction.law import Internal, Vector
 from stiction.friction.laws.lugre import bristle_force, bristle_gradient
-from stiction.friction.registry import called_by_laws, registered
+from stiction.friction.registry import called_by_laws, register
 from stiction.text.units import Damping, PositiveNumber, PositiveSpeed, Stiffness
-from stiction.text.validation import validated
+from stiction.text.validation import validate
 
 
-@registered("lugre-hyperbolic")
-@validated
+@register("lugre-hyperbolic")
+@validate
 class LuGreHyperbolic(NamedTuple):
     """The LuGre model on a surface with hyperbolic weakening, in two dimensions.
 

@@ -8,13 +8,13 @@ from typing import NamedTuple
 
 from stiction.errors import DescriptionError, Fault
 from stiction.friction.law import static_fault
-from stiction.friction.registry import registered
+from stiction.friction.registry import register
 from stiction.text.units import Coefficient, PositiveNumber, PositiveSpeed
-from stiction.text.validation import validated
+from stiction.text.validation import validate
 
 
-@registered("power-law-weakening")
-@validated
+@register("power-law-weakening")
+@validate
 class PowerLawWeakening(NamedTuple):
     """F = mu_0 (1 + v/v_0)^(-n) W.
 

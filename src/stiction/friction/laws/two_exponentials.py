@@ -7,13 +7,13 @@ from math import exp
 from typing import NamedTuple
 
 from stiction.friction.law import static_fault
-from stiction.friction.registry import registered
+from stiction.friction.registry import register
 from stiction.text.units import Coefficient, PositiveSpeed
-from stiction.text.validation import validated
+from stiction.text.validation import validate
 
 
-@registered("two-exponentials")
-@validated
+@register("two-exponentials")
+@validate
 class TwoExponentials(NamedTuple):
     """F = [mu_inf + mu_1 exp(-v/v_1) + mu_2 exp(-v/v_2)] W.
 

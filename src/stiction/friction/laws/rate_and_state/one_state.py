@@ -154,7 +154,7 @@ class RateStateSlip(OneState):
         )
 
 
-@registered("rate-and-state-perrin")
+@register("rate-and-state-perrin")
 class RateStatePerrin(OneState):
     """Rate-and-state friction, law of Perrin, Rice & Zheng (1995).
 
