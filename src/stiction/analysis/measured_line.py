@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stiction.analysis.record import Record
+from stiction.analysis.signals.even_grid import EvenGrid, even_grid, why_not
 from stiction.analysis.signals.ridge import follow_ridge
 from stiction.analysis.signals.spectrum import spectrogram
 from stiction.errors import ResultError
@@ -21,6 +22,10 @@ LOBE = 2.5  # lines to each side over which a Hamming window spreads a sine
 SPREAD = 2.0  # standard deviations of the periods
 MEAN_OF_HAMMING = 0.54  # of its peak: of a fall in its middle a window makes as much more
 STEPS = 5  # windows that overlap at any time
+LOST = 0.25  # of a window's samples: with more of them missing it shows no line
+# Standard error of a steady line's frequency, in lines of the spectrum: that of the parabola
+# through the logarithms, and of noise times the prominence, measured on random lines.
+BIAS, NOISE = 0.03, 0.8
 
 
 def strongest_line(
@@ -31,7 +36,8 @@ def strongest_line(
     Parameters
     ----------
     record : Record
-        With samples that are equally spaced.
+        Samples that are not equally spaced are interpolated on an even grid by straight lines;
+        windows with gaps of more than a quarter show no line.
     low : float
         Hz, above the frequencies of the stick-slip itself, a sawtooth with many harmonics; ten
         times its frequency is a good start.
@@ -52,14 +58,13 @@ def strongest_line(
     Raises
     ------
     ResultError
-        If samples are not equally spaced, `low` is not below half the sample rate, or windows
-        have too few samples.
+        If more than a tenth of the samples are missing, `low` is not below half the sample rate,
+        or windows have too few samples.
     """
-    steps, rate = np.diff(record.time), record.sample_rate
-    if len(steps) == 0 or np.ptp(steps) > 0.5 * steps.mean():
-        raise ResultError(
-            "a spectrum needs samples that are equally spaced; interpolate the record first"
-        )
+    grid = even_grid(record.time)
+    if grid is None or not grid.serves:
+        raise ResultError(why_not(grid))
+    rate = 1.0 / grid.step
     if not low > 0.0:
         raise ResultError(f"low must be above 0 Hz, is {low:g} Hz")
     if low >= 0.5 * rate:
@@ -74,13 +79,32 @@ def strongest_line(
         )
     try:
         lines = spectrogram(
-            record.force, rate, width=chosen, step=chosen / STEPS, start=float(record.time[0])
+            grid.on(record.force), rate, width=chosen, step=chosen / STEPS, start=grid.start
         )
         if cycles is not None and cycles.sizes["cycle"]:
             lines = _without_harmonics(lines, cycles, low)
-        return follow_ridge(lines.assign_attrs(units="N"), low, 0.5 * rate)
+        found = follow_ridge(lines.assign_attrs(units="N"), low, 0.5 * rate)
     except ValueError as error:  # too few samples in a window, or lines above `low`
         raise ResultError(str(error)) from None
+    found["frequency"] = found["frequency"].where(_lost(grid, found, chosen) <= LOST)
+    return found.assign(frequency_error=_frequency_error(found, lines))
+
+
+def _lost(grid: EvenGrid, found: xr.Dataset, width: float) -> np.ndarray:
+    """Return the share of samples that are missing in each window."""
+    lost = np.concatenate([[0], np.cumsum(grid.missing)])
+    middle = (found["time"].values - grid.start) / grid.step
+    half = 0.5 * width / grid.step
+    ends = np.clip(np.rint([middle - half, middle + half]).astype(np.intp), 0, grid.size)
+    return np.asarray((lost[ends[1]] - lost[ends[0]]) / np.maximum(ends[1] - ends[0], 1))
+
+
+def _frequency_error(found: xr.Dataset, lines: xr.DataArray) -> xr.DataArray:
+    """Return the standard error of the frequency in each window (Hz)."""
+    bin_width = float(lines["frequency"][1] - lines["frequency"][0])
+    error = bin_width * (BIAS**2 + (NOISE / found["prominence"]) ** 2) ** 0.5
+    named = {"units": "Hz", "long_name": "standard error of the frequency"}
+    return error.where(found["frequency"].notnull()).assign_attrs(named)
 
 
 def _without_harmonics(lines: xr.DataArray, cycles: xr.Dataset, low: float) -> xr.DataArray:

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, model_validator
+from pydantic import BeforeValidator, PrivateAttr, model_validator
 from pydantic_core import PydanticCustomError
 
 from stiction.errors import Fault, ResultError
@@ -48,6 +48,17 @@ def _samples(values: Any) -> Floats:
     return samples
 
 
+def _spread(time: Floats) -> Floats:
+    """Return times that increase, those of equal samples spread evenly up to the next."""
+    first = np.flatnonzero(np.diff(time, prepend=time[0] - 1.0))
+    count = np.diff(first, append=len(time))
+    ends = time[first]
+    typical = float(np.median(np.diff(ends))) / float(np.median(count[:-1]))
+    length = np.append(np.diff(ends), typical * count[-1])
+    number = np.arange(len(time)) - np.repeat(first, count)
+    return np.asarray(np.repeat(ends, count) + number * np.repeat(length / count, count))
+
+
 def _stated_unit(values: Any) -> str | None:
     """Return the unit that a pint quantity or an xarray array carries."""
     if hasattr(values, "magnitude") and hasattr(values, "units"):
@@ -82,8 +93,9 @@ class Record(Described):
     Parameters
     ----------
     time : array
-        (n,), s, increasing; it need not be equally spaced. This and every array may carry a unit,
-        as a pint quantity or as ``attrs["units"]`` of a DataArray.
+        (n,), s, increasing; it need not be equally spaced. Samples of the same time, as a clock
+        coarser than the sampling gives them, are spread evenly up to the next time. This and every
+        array may carry a unit, as a pint quantity or as ``attrs["units"]`` of a DataArray.
     force : array
         (n,), N: the spring force, positive where the spring pulls the mass along the drive.
     normal_load : float or str, optional
@@ -129,6 +141,7 @@ class Record(Described):
     force_unit: str = "N"
     position_unit: str = "m"
     slip_speed_unit: str = "m/s"
+    _same_time: int = PrivateAttr(0)
 
     @model_validator(mode="before")
     @classmethod
@@ -171,13 +184,32 @@ class Record(Described):
                     f"{name} has {len(values)} samples and time {len(self.time)}; "
                     "give one for each time"
                 )
-        back = np.flatnonzero(np.diff(self.time) <= 0.0)
+        back = np.flatnonzero(np.diff(self.time) < 0.0)
         if len(back):
             raise ValueError(
                 f"time must increase; sample {back[0] + 2}, at {self.time[back[0] + 1]:g} s, "
                 f"follows one at {self.time[back[0]]:g} s"
             )
         return self
+
+    @model_validator(mode="after")
+    def _one_sample_a_time(self) -> Self:
+        same = int(np.count_nonzero(np.diff(self.time) == 0.0))
+        if same:
+            if self.time[-1] == self.time[0]:
+                raise ValueError(
+                    f"time must increase; all {len(self.time)} samples are at {self.time[0]:g} s"
+                )
+            time = _spread(self.time)
+            time.setflags(write=False)
+            self.__dict__.update(time=time)
+            self._same_time += same
+        return self
+
+    @property
+    def same_time(self) -> int:
+        """Number of samples that were given the same time as the one before."""
+        return self._same_time
 
     def __len__(self) -> int:
         """Return the number of samples."""

@@ -16,10 +16,19 @@ def test_every_fault_of_a_record_is_named_with_its_remedy():
 def test_arrays_belong_together_and_time_increases():
     with pytest.raises(st.DescriptionError, match="force has 3 samples and time 2"):
         Record(time=[0.0, 1.0], force=[1.0, 2.0, 3.0])
-    with pytest.raises(st.DescriptionError, match="sample 3, at 1 s, follows one at 1 s"):
-        Record(time=[0.0, 1.0, 1.0], force=[1.0, 2.0, 3.0])
+    with pytest.raises(st.DescriptionError, match=r"sample 3, at 0\.5 s, follows one at 1 s"):
+        Record(time=[0.0, 1.0, 0.5], force=[1.0, 2.0, 3.0])
+    with pytest.raises(st.DescriptionError, match="all 3 samples are at 1 s"):
+        Record(time=[1.0, 1.0, 1.0], force=[1.0, 2.0, 3.0])
     with pytest.raises(st.DescriptionError, match="has 2; give one number per sample"):
         Record(time=[[0.0], [1.0]], force=[1.0, 2.0])
+
+
+def test_samples_of_one_time_are_spread_up_to_the_next():
+    record = Record(time=[0.0, 0.0, 3.0, 3.0, 3.0, 6.0], force=np.arange(6.0))
+    assert record.time.tolist() == [0.0, 1.5, 3.0, 4.0, 5.0, 6.0]
+    assert record.same_time == 3
+    assert Record(time=[0.0, 1.0, 1.0], force=np.arange(3.0)).time.tolist() == [0.0, 1.0, 2.0]
 
 
 def test_an_empty_record_has_no_duration():

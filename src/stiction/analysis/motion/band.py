@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.signals.hum import even_step, spectrum
+from stiction.analysis.signals.even_grid import even_grid
+from stiction.analysis.signals.hum import spectrum
 
 Floats = NDArray[np.float64]
 
@@ -66,13 +67,14 @@ def highest_hump(time: Floats, force: Floats, periods: int = PERIODS) -> Hump:
     Parameters
     ----------
     time, force : ndarray
-        (n,), s, evenly spaced, and N.
+        (n,), s, and N.
     periods : int, optional
         Of the vibration that the record has at least.
     """
-    step = even_step(time)
-    if step is None or np.ptp(force) == 0.0:
+    grid = even_grid(time)
+    if grid is None or not grid.serves or np.ptp(force) == 0.0:
         return NO_HUMP
+    step, force = grid.step, grid.on(force)
     power, width = spectrum(force)
     last = 2 * len(power) // SAMPLES
     if last <= periods:
@@ -97,16 +99,16 @@ def remaining(time: Floats, force: Floats, frequency: float) -> float:
     Parameters
     ----------
     time, force : ndarray
-        (n,), s, evenly spaced, and N.
+        (n,), s, and N.
     frequency : float
         Of the vibration, Hz. What is slower is left out.
     """
     from scipy.ndimage import uniform_filter1d  # type: ignore[attr-defined]
 
-    step = even_step(time)
-    if step is None or len(force) < EIGHTHS:
+    grid = even_grid(time)
+    if grid is None or not grid.serves or len(force) < EIGHTHS:
         return 1.0
-    period = max(round(1.0 / (frequency * step)), 1)
+    force, period = grid.on(force), max(round(1.0 / (frequency * grid.step)), 1)
     quick = force - uniform_filter1d(force, period, mode="nearest")
     size = np.array([np.sqrt(np.mean(part**2)) for part in np.array_split(quick, EIGHTHS)])
     size = np.maximum(size, NOTHING * size[0])

@@ -12,6 +12,7 @@ from stiction.analysis.motion.drift import Drift, find_drift
 from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.regime import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
+from stiction.analysis.signals.even_grid import even_grid, why_not
 from stiction.analysis.signals.hum import Line, of_mains
 from stiction.text.units import in_words
 
@@ -29,6 +30,7 @@ UNLOADED = 0.02  # of the largest force
 FLAT = 4  # times as many samples at the largest value as at any other, and so many at least
 FEW_CYCLES = 4  # before a change of period and after it
 CHANGED = 0.25  # logarithm of the ratio of the two periods: a quarter more or less
+FEW_OFF = 0.05  # of the samples: interpolated, they hardly weaken an oscillation
 NOISE = 5.0  # standard deviations
 
 
@@ -44,6 +46,7 @@ def warnings(record: Record, kind: str, cycles: xr.Dataset, friction: Friction) 
         *_coarse(record, cycles),
         *_drift(record, kind, cycles),
         *_zero(record, friction, cycles),
+        *_uneven(record),
     ]
     return tuple(found)
 
@@ -59,6 +62,47 @@ def taken_off(lines: tuple[Line, ...]) -> tuple[str, ...]:
             "search for cycles."
         )
     return tuple(found)
+
+
+def _uneven(record: Record) -> Iterator[str]:
+    """Name gaps, jitter and equal times, and how spectra deal with them."""
+    if record.same_time:
+        yield (
+            f"{_samples(record.same_time)} the same time as the one before: such samples are "
+            "spread evenly up to the next time."
+        )
+    grid = even_grid(record.time)
+    if grid is None or grid.exact:
+        return
+    if not grid.serves:
+        yield (
+            f"Neither hum nor a fast oscillation can be found: {why_not(grid)}. Cycles with a gap "
+            "of a quarter of their period are left out."
+        )
+        return
+    filled = "For spectra, and to find hum, straight lines lead over them"
+    missing, off = int(np.count_nonzero(grid.missing)), int(np.count_nonzero(grid.off_grid))
+    if missing:
+        longest = in_words(float(np.diff(record.time).max()), "s")
+        gaps = (
+            f"in {grid.gaps} gaps of up to {longest}" if grid.gaps > 1 else f"in one of {longest}"
+        )
+        yield f"{missing} of {grid.size} samples are missing, {gaps}. {filled}."
+    if off:
+        some = f"{off} of {len(record)} samples" if off > 1 else "One sample"
+        weaker = (
+            " An oscillation of a quarter of the sample rate then seems smaller, by up to a fifth, "
+            "and a faster one by more."
+        )
+        yield (
+            f"{some} lie{'s' * (off == 1)} more than a tenth of an interval off even times: for "
+            "spectra, and to find hum, the force is interpolated there by straight lines."
+            f"{weaker if off > FEW_OFF * len(record) else ''}"
+        )
+
+
+def _samples(count: int) -> str:
+    return f"{count} samples have" if count > 1 else "One sample has"
 
 
 def _mains(kind: str, cycles: xr.Dataset) -> Iterator[str]:

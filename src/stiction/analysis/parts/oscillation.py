@@ -33,6 +33,9 @@ def section(found: Analysis) -> Section:
     low, high = (in_words(float(each), "Hz") for each in (seen.min(), seen.max()))
     share = 100.0 * len(seen) / found.oscillation.sizes["time"]
     pitch = f"between {low} and {high}" if low != high else f"at {low}"
+    if "frequency_error" in found.oscillation:
+        error = float(np.nanmax(found.oscillation["frequency_error"].values))
+        pitch += f", each ± {in_words(float(f'{error:.1g}'), 'Hz')}"
     lines = [f"Seen in {share:.3g}% of the time, {pitch}."]
     if of_mains(float(np.median(seen))):
         lines[0] += " That is the frequency of the mains, or twice it: it is probably hum."

@@ -8,14 +8,15 @@ decide whether it is the motion or a disturbance (`stiction.analysis.motion.cycl
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.analysis.signals.even_grid import EvenGrid, even_grid
+
 Floats = NDArray[np.float64]
 
-EVEN = 0.1  # of a sample's distance: how far it may lie off an even grid
 PERIODS = 16  # of a line that a record has at least
 ABOVE = 30.0  # times the median power beside it: noise goes beyond in one of 2^30 samples
 BESIDE = 64  # samples of the spectrum at least, over which the median is taken
@@ -58,20 +59,21 @@ def narrow_lines(time: Floats, force: Floats) -> list[Line]:
     Parameters
     ----------
     time, force : ndarray
-        (n,), s, evenly spaced, and N.
+        (n,), s, and N.
     """
-    step = even_step(time)
-    if step is None or len(time) < 4 * PERIODS or np.ptp(force) == 0.0:
+    grid = even_grid(time)
+    if grid is None or not grid.serves or grid.size < 4 * PERIODS or np.ptp(force) == 0.0:
         return []
+    force = grid.on(force)
     power, bin_width = spectrum(force)
     floor = beside(power)
-    return [_measure_line(force, step, power, floor, bin_width, at) for at in _alone(power, floor)]
+    return [_measure_line(force, grid, power, floor, bin_width, at) for at in _alone(power, floor)]
 
 
 def _measure_line(
-    force: Floats, step: float, power: Floats, floor: Floats, width: float, at: int
+    force: Floats, grid: EvenGrid, power: Floats, floor: Floats, width: float, at: int
 ) -> Line:
-    """Return the line at a sample of the spectrum, with its harmonics."""
+    """Return the line at a sample of the spectrum, with its harmonics, at the record's times."""
     from scipy.ndimage import uniform_filter1d  # type: ignore[attr-defined]
 
     cycles = _middle(power, at) * width  # per sample
@@ -81,7 +83,8 @@ def _measure_line(
     for _ in range(2):  # as it wanders
         phase = _envelope(quick * turn.conj(), cycles)
         turn *= phase / np.maximum(np.abs(phase), 1e-300)
-    values = np.zeros(len(force))
+    values = np.zeros(len(grid.time))
+    turned = np.unwrap(np.angle(turn))
     for k in range(1, HARMONICS + 1):
         at = round(k * cycles / width)
         if at >= len(power) - LOBE:
@@ -89,9 +92,18 @@ def _measure_line(
         if k == 1 or power[_lobe(at)].max() > ABOVE * floor[at]:
             own, turns = turn**k, np.pi * k * cycles
             passed = 1.0 - np.sin(length * turns) / (length * np.sin(turns))
-            values += 2.0 / passed * (_envelope(quick * own.conj(), cycles) * own).real
+            envelope = _envelope(quick * own.conj(), cycles)
+            if not grid.exact:
+                envelope = _between(grid, envelope)
+                own = np.exp(1j * k * _between(grid, turned))
+            values += 2.0 / passed * (envelope * own).real
     height = float(np.subtract(*np.percentile(values, (99.0, 1.0))))
-    return Line(cycles / step, height, values)
+    return Line(cycles / grid.step, height, values)
+
+
+def _between(grid: EvenGrid, values: NDArray[Any]) -> NDArray[Any]:
+    """Return values that change slowly at the record's own times, from those on its grid."""
+    return np.asarray(np.interp(grid.places, np.arange(grid.size), values))
 
 
 def of_mains(frequency: float) -> bool:
@@ -111,15 +123,6 @@ def samples_per_period(force: Floats) -> float:
     line = float(power[_lobe(at)].sum())
     makes = power[at] > ABOVE * beside(power)[at] and line > MUCH * float(power.sum())
     return 1.0 / (at * width) if makes and at > 0 else np.inf
-
-
-def even_step(time: Floats) -> float | None:
-    """Return the time from sample to sample (s), None if they are not evenly spaced."""
-    n = len(time)
-    if n < 2:
-        return None
-    step = float(time[-1] - time[0]) / (n - 1)
-    return step if np.abs(time - time[0] - step * np.arange(n)).max() <= EVEN * step else None
 
 
 def spectrum(force: Floats) -> tuple[Floats, float]:

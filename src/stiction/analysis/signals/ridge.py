@@ -105,12 +105,18 @@ def best_path(level: Floats, jump: int, stiffness: float) -> NDArray[np.intp]:
 
 
 def _summits(level: Floats, path: NDArray[np.intp]) -> tuple[Floats, Floats]:
-    """Return height and offset (in lines) of the parabolas through three points at the path."""
+    """Return height and offset (in lines) of the parabolas through three points near the path.
+
+    Their middle is the highest of three lines: where a frequency lies half-way between two, the
+    path may stay on the lower one.
+    """
     times = np.arange(level.shape[1])
     inner = path.clip(1, level.shape[0] - 2)
+    beside = np.stack([level[inner + k, times] for k in (-1, 0, 1)])
+    inner = (inner + np.argmax(beside, axis=0) - 1).clip(1, level.shape[0] - 2)
     left, mid, right = (level[inner + k, times] for k in (-1, 0, 1))
     bend = left - 2.0 * mid + right
-    summit = (inner == path) & (mid >= left) & (mid >= right) & (bend < 0.0)
+    summit = (np.abs(inner - path) <= 1) & (mid >= left) & (mid >= right) & (bend < 0.0)
     offset = np.where(summit, 0.5 * (left - right) / np.where(summit, bend, -1.0), 0.0)
     height = np.where(summit, mid - 0.25 * (left - right) * offset, level[path, times])
-    return height, offset
+    return height, np.where(summit, inner - path + offset, 0.0)

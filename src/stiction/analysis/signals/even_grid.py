@@ -1,0 +1,169 @@
+"""An even grid of times for samples with gaps, or with a clock that is not quite even.
+
+Spectra need even times. A force is interpolated there by straight lines: they invent no swings, as
+a smoother curve would between two samples that are close to each other and differ by noise. They
+make a line of frequency f, sampled at a rate r, smaller by the factor (sin(pi f/r)/(pi f/r))^2 at
+most.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+EVEN = 0.1  # of a step: how far a sample may lie off the grid to count as on it
+GAP = 1.75  # steps between two samples: in a longer interval a sample is missing
+MOST_MISSING = 0.1  # of the grid's points, without a spectrum beyond
+CROWDED = 0.5  # of a step: so close to the sample before, a sample is one too many
+MOST_CROWDED = 0.25  # of the samples: a clock that jitters by a third of a step has 15 %
+FEWEST = 16  # samples with which the step is first refined
+
+
+@dataclass(frozen=True)
+class EvenGrid:
+    """Even times through those of a record.
+
+    Parameters
+    ----------
+    time : ndarray
+        (n,), s, the record's own times.
+    start, step : float
+        The first time of the grid and its step, s.
+    size : int
+        Number of its times.
+    """
+
+    time: Floats
+    start: float
+    step: float
+    size: int
+
+    @property
+    def exact(self) -> bool:
+        """Whether the record's samples are those of the grid, one for each time."""
+        return self.size == len(self.time) and not self.off_grid.any()
+
+    @cached_property
+    def _off(self) -> Floats:
+        """How far each sample lies off the grid, in steps."""
+        return np.asarray(self.places - np.rint(self.places))
+
+    @cached_property
+    def places(self) -> Floats:
+        """(n,) places of the samples on the grid, in steps from its first time."""
+        return np.asarray((self.time - self.start) / self.step)
+
+    @cached_property
+    def missing(self) -> NDArray[np.bool_]:
+        """(size,) which of the grid's times lie in a gap."""
+        found = np.zeros(self.size, bool)
+        gaps = np.flatnonzero(np.diff(self.places) > GAP)
+        for before, after in zip(self.places[gaps], self.places[gaps + 1], strict=True):
+            found[int(np.floor(before + 0.5)) + 1 : int(np.ceil(after - 0.5))] = True
+        return found
+
+    @property
+    def gaps(self) -> int:
+        """Number of gaps in which samples are missing."""
+        return int(np.count_nonzero(np.diff(self.missing, prepend=False) & self.missing))
+
+    @property
+    def crowded(self) -> float:
+        """The share of samples that follow the one before too closely."""
+        return float(np.mean(np.diff(self.places) < CROWDED))
+
+    @property
+    def off_grid(self) -> NDArray[np.bool_]:
+        """(n,) which samples do not lie on the grid."""
+        return np.asarray(np.abs(self._off) > EVEN)
+
+    @property
+    def serves(self) -> bool:
+        """Whether a spectrum can be computed on the grid."""
+        return bool(self.missing.mean() <= MOST_MISSING and self.crowded <= MOST_CROWDED)
+
+    def on(self, values: Floats) -> Floats:
+        """Return values at the times of the grid, from those at the record's own times."""
+        if self.exact:
+            return values
+        at = np.arange(self.size, dtype=np.float64)
+        found = np.interp(at, self.places, values)
+        near = np.flatnonzero(np.abs(self._off) <= EVEN)
+        place = np.rint(self.places[near]).astype(np.intp)
+        inside = (place >= 0) & (place < self.size)
+        found[place[inside]] = values[near[inside]]
+        return np.asarray(found)
+
+
+def even_grid(time: Floats) -> EvenGrid | None:
+    """Return the even grid that is closest to the times of a record.
+
+    Parameters
+    ----------
+    time : ndarray
+        (n,), s, increasing.
+
+    Returns
+    -------
+    EvenGrid or None
+        None for fewer than two samples.
+    """
+    n = len(time)
+    if n < 2:
+        return None
+    plain = EvenGrid(time, float(time[0]), float(time[-1] - time[0]) / (n - 1), n)
+    if plain.exact:
+        return plain
+    start, step = _fitted(time)
+    start -= step * np.floor((start - time[0]) / step + 0.5)
+    size = int(np.floor((time[-1] - start) / step + 0.5)) + 1
+    if size > n / (1.0 - MOST_MISSING) + 2:  # so many are missing that it is of no use
+        size = min(size, 4 * n)
+    return EvenGrid(time, float(start), step, size)
+
+
+def _fitted(time: Floats) -> tuple[float, float]:
+    """Return start and step of the grid, fitted to ever more samples, outliers left out."""
+    middle = len(time) // 2  # the first interval, and the last, may be unlike the others
+    step, start = float(np.median(np.diff(time))), float(time[middle])
+    around = FEWEST
+    while True:
+        part = time[max(middle - around, 0) : middle + around]
+        for _ in range(2):
+            place = (part - start) / step
+            near = np.abs(place - np.rint(place)) < 0.5 - EVEN
+            if np.count_nonzero(near) < 2:
+                return start, step
+            number = np.rint(place[near])
+            mean = number.mean()
+            spread = number - mean
+            if not spread.any():
+                return start, step
+            slope = float(spread @ part[near] / (spread @ spread))
+            step, start = slope, float(part[near].mean() - slope * mean)
+        if around >= len(time):
+            return start, step
+        around *= 2
+
+
+def why_not(grid: EvenGrid | None) -> str:
+    """Return why a spectrum cannot be computed, in words; '' if it can."""
+    if grid is None:
+        return "a spectrum needs two samples at least"
+    if grid.serves:
+        return ""
+    remedy = "analyse a part without gaps, or sample it evenly"
+    if grid.missing.mean() > MOST_MISSING:
+        return (
+            f"{100.0 * grid.missing.mean():.0f}% of the time lies in gaps between samples, and a "
+            f"spectrum allows {100.0 * MOST_MISSING:.0f}%: {remedy}"
+        )
+    return (
+        f"{100.0 * grid.crowded:.0f}% of the samples follow the one before within half the typical "
+        f"interval, and a spectrum allows {100.0 * MOST_CROWDED:.0f}%: {remedy}"
+    )

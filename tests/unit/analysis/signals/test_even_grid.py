@@ -1,0 +1,104 @@
+"""Uneven samples get their spectrum: gaps, jitter, equal times, a first interval of its own."""
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.analysis.measured_line import strongest_line
+from stiction.analysis.signals.even_grid import even_grid, why_not
+from stiction.analysis.signals.hum import narrow_lines
+
+N, STEP = 10_000, 1e-4
+
+
+def even(random):
+    return STEP * np.arange(N)
+
+
+def gaps(random):
+    kept = np.ones(N, bool)
+    for at in random.integers(5, N - 10, N // 80):  # 5 % of all
+        kept[at : at + random.integers(1, 8)] = False
+    return even(random)[kept]
+
+
+def jitter(random):
+    return np.sort(even(random) + 0.3 * STEP * random.normal(size=N))
+
+
+def late(random):
+    return np.append(-37.3 * STEP, even(random)[1:])
+
+
+def repeated(random):
+    return np.repeat(even(random), 1 + (random.random(N) < 1e-3))
+
+
+SAMPLED = pytest.mark.parametrize("sampled", [gaps, jitter, late, repeated])
+
+
+def record(sampled, seed):
+    """Return a record with a line, and the line's frequency and amplitude."""
+    random = np.random.default_rng([7, seed])
+    time = sampled(random)
+    frequency, amplitude = random.uniform(300, 2500), 10 ** random.uniform(-1.5, -0.5)
+    line = amplitude * np.sin(2 * np.pi * frequency * time)
+    slow = 2.0 + 0.5 * np.sin(7.0 * time)
+    force = slow + line + 0.05 * random.normal(size=len(time))
+    return st.Record(time=time, force=force), frequency, line
+
+
+@SAMPLED
+@pytest.mark.parametrize("seed", range(6))
+def test_the_frequency_of_a_line_lies_within_its_error(sampled, seed):
+    uneven, frequency, _ = record(sampled, seed)
+    found = strongest_line(uneven, 100.0)
+    seen = np.isfinite(found["frequency"].values)
+    off = (found["frequency"].values - frequency)[seen] / found["frequency_error"].values[seen]
+    assert seen.mean() > 0.9
+    assert np.abs(off).max() < 4.0
+    assert np.mean(np.abs(off) > 2.0) <= 0.1
+
+
+@SAMPLED
+def test_a_line_is_taken_off_at_the_times_of_the_record(sampled):
+    uneven, frequency, line = record(sampled, 1)
+    (found, *_) = narrow_lines(uneven.time, uneven.force)
+    assert found.frequency == pytest.approx(frequency, rel=1e-4)
+    left = np.std(found.values - line) / np.std(line)
+    # straight lines make it smaller by sinc^2, where all samples are interpolated
+    assert left < 0.05 + 1.0 - np.sinc(frequency * STEP) ** 2
+
+
+@pytest.mark.parametrize(
+    ("sampled", "said"),
+    [
+        (gaps, "samples are missing, in"),
+        (jitter, "lie more than a tenth of an interval off even times"),
+        (late, "37 of 10037 samples are missing, in one of 3.83 ms"),
+        (repeated, "samples have the same time as the one before"),
+        (even, None),
+    ],
+)
+def test_words_say_how_uneven_samples_are(sampled, said):
+    told = " ".join(st.analyse(record(sampled, 2)[0]).warnings)
+    assert (said is None) == ("straight lines" not in told and "same time" not in told)
+    assert said is None or said in told
+
+
+def test_samples_at_random_times_get_none_and_are_told_why():
+    time = np.sort(np.random.default_rng(5).uniform(0.0, 1.0, N))
+    grid = even_grid(time)
+    assert grid is not None
+    assert "of the time lies in gaps between samples" in why_not(grid)
+    assert narrow_lines(time, np.sin(300.0 * time)) == []
+
+
+def test_a_window_within_a_gap_shows_no_line():
+    time = even(None)
+    kept = (time < 0.5) | (time > 0.56)
+    force = np.sin(2 * np.pi * 1000.0 * time)[kept]
+    found = strongest_line(st.Record(time=time[kept], force=force), 500.0, width=0.02)
+    inside = (found["time"].values > 0.515) & (found["time"].values < 0.545)
+    assert np.isnan(found["frequency"].values[inside]).all()
+    assert np.isfinite(found["frequency"].values[~inside]).mean() > 0.8
