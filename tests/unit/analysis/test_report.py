@@ -33,6 +33,29 @@ def test_a_run_says_everything_of_itself(found):
     assert degrees(found.misalignment.phi) == pytest.approx(1.0, abs=0.02)
 
 
+@pytest.fixture(scope="module")
+def fast():
+    """A vibration at thirty times the paper's velocity."""
+    slider = PAPER.replace(drive=st.ConstantVelocity("30 mm/s"))
+    return st.analyse(st.simulate(slider, duration=1.0, sample_rate=10e3))
+
+
+def test_the_energies_shown_of_each_cycle_add_up_to_its_work(fast):
+    (shown,) = [part for part in fast.tables() if part.title == "Energy"]
+    names = [heading.split(" (")[0].replace(" ", "_") for heading in shown.table.headings[2:]]
+    left = fast.energy["work"] - sum(fast.energy[name] for name in names)
+    left_out = 8 - len(names)
+    assert np.abs(left).max() <= left_out * 1e-3 * np.abs(fast.energy["work"]).min()
+
+
+def test_the_first_peak_of_a_vibration_is_not_taken_for_static_friction(fast):
+    assert fast.regime.kind == "harmonic vibration"
+    assert fast.friction.break_away.coefficient > 1.05 * PAPER.law.coefficient(0.0)
+    assert "the mass moves before it, so that static friction is less" in " ".join(
+        str(fast).split()
+    )
+
+
 def test_bare_arrays_say_what_they_can(run):
     record = st.Record(time=run.data["time"].values, force=run.data["spring_x"].values)
     found = st.analyse(record)

@@ -54,12 +54,14 @@ def section(found: Analysis) -> Section:
         return Section("Energy", [f"Not known: {found.missing['energy']}."])
     budget = found.energy
     work, left = (float(np.abs(budget[name]).sum()) for name in ("work", "residual"))
-    names = [name for name in ENERGIES if np.abs(budget[name]).max() > NOTHING * work]
+    least = NOTHING * np.maximum(np.abs(budget["work"]), NOTHING * work)
+    names = [name for name in ENERGIES if (np.abs(budget[name]) > least).any()]
     columns = {"from": Quantity(budget["start"].values, "s")}
     columns |= {ENERGIES[name]: Quantity(budget[name].values, "J") for name in names}
     closes = f"It closes to {left / work:.1g} of the work." if work > 0.0 else "No work is done."
     small = [ENERGIES[name] for name in ENERGIES if name not in names]
-    less = f" Less than {100 * NOTHING:g}% of it: {', '.join(small)}." if small and work else ""
+    most = f"{100 * NOTHING:g}% of it"
+    less = f" Always less than {most}: {', '.join(small)}." if small and work else ""
     sentence = f"Where the work of the drive goes, from each time to the next. {closes}{less}"
     return Section("Energy", [sentence], grid(columns, SHOWN, alike="J"))
 

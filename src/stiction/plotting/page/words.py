@@ -10,7 +10,7 @@ from typing import Any, get_type_hints
 
 from stiction import theory
 from stiction.drive import ConstantVelocity, Modulation
-from stiction.friction import Anisotropic, name_of
+from stiction.friction import Anisotropic, name_of, states
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import DIGITS
 from stiction.text.units import in_words, unit_of
@@ -152,4 +152,5 @@ def outcome_in_words(run: Trajectory, width: int = 38) -> list[str]:
     share = 100 * float((stuck[:, 1] - stuck[:, 0]).sum()) / lasted if lasted > 0 else 0.0
     count = f"{len(stuck)} stick{'s' * (len(stuck) != 1)}, {share:.3g} % of the time"
     simulated = f"{in_words(lasted, 's')} simulated"
-    return [*wrap(run.status.value, width), simulated, count if len(stuck) else "no stick"]
+    none = "no true rest: the law has a state" if states(run.slider.law) else "no stick"
+    return [*wrap(run.status.value, width), simulated, count if len(stuck) else none]
