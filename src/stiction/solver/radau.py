@@ -101,15 +101,3 @@ def integral(values: Triple, c: float) -> float:
         + values[1] * (j[0] + c * (j[1] + c * j[2]))
         + values[2] * (k[0] + c * (k[1] + c * k[2]))
     )
-
-
-@inlined
-def ease(error: float) -> float:
-    """Return the power -1/4 of the local error over its tolerance, which falls with h^4."""
-    return 1.0 / sqrt(sqrt(error + 1e-10))
-
-
-@inlined
-def step_factor(error: float, limit: float) -> float:
-    """Return the factor for the step size from the error over tolerance (M43)."""
-    return min(limit, max(0.2, 0.9 * ease(error)))

@@ -42,14 +42,3 @@ def test_the_weights_of_the_interior_point():
     assert np.dot(radau.DERIVATIVE, values) == pytest.approx(slope, abs=1e-13)
     integral = QUADRATIC.integ()(radau.INTERIOR)
     assert np.dot(radau.INTEGRAL, stages) == pytest.approx(integral, abs=1e-13)
-
-
-@pytest.mark.parametrize("error", [1e-3, 0.3, 1.0, 20.0])
-def test_the_factor_for_the_step_size(error):
-    """(M43): 0.9 of what would do for an error that falls with h^4, from 0.2 to a limit."""
-    theta = (error + 1e-10) ** -0.25
-    assert plain(radau.ease)(error) == pytest.approx(theta, rel=1e-14)
-    wanted = min(1.5, max(0.2, 0.9 * theta))
-    assert plain(radau.step_factor)(error, 1.5) == pytest.approx(wanted, rel=1e-14)
-    assert plain(radau.step_factor)(1e9, 1.5) == 0.2
-    assert plain(radau.ease)(0.0) == pytest.approx(1e-10**-0.25)

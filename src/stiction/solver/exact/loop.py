@@ -8,6 +8,7 @@ import numpy as np
 
 from stiction.solver.block_algebra import Triple, dot
 from stiction.solver.compilation.jit import compiled, inlined
+from stiction.solver.control import GROWTH, ease, step_factor, trend
 from stiction.solver.exact.newton import products
 from stiction.solver.exact.pursuit import land, pursuit
 from stiction.solver.exact.sampling import sample_slip, sample_stick
@@ -22,7 +23,7 @@ from stiction.solver.problem import (
     rate,
     travel,
 )
-from stiction.solver.radau import A, ease, step_factor
+from stiction.solver.radau import A
 from stiction.solver.state import (
     COMPLETED,
     NON_FINITE,
@@ -43,8 +44,6 @@ from stiction.solver.state import (
 )
 from stiction.solver.stick import holding, margin, stick_duration, to_spare
 from stiction.solver.surface import takeoff
-
-GROWTH = 2.0
 
 
 @inlined
@@ -138,8 +137,7 @@ def slip(
     # Gustafsson's predictive control (M43): a growing error is expected to grow on; not after a cut
     # step, as before a landing, which it would postpone for ever
     if r > 0.0 and memory.warm and h > 0.9 * size_to_try(memory):
-        trend = 0.9 * h / memory.h_last * at_ease * at_ease / memory.ease
-        factor = min(factor, max(0.2, trend))
+        factor = min(factor, trend(h, memory.h_last, at_ease, memory.ease))
     memory = Memory(
         h * factor if h > 0.1 * memory.h or end < t_stop else memory.h,
         plan,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from stiction.solver.block_algebra import Triple, solved
 from stiction.solver.compilation.jit import inlined
+from stiction.solver.control import CONTRACTS, diverging, settled
 from stiction.solver.exact.collocation import factors, stage
 from stiction.solver.exact.oscillation import Oscillator, Swing, swing
 from stiction.solver.exact.slip_frame import Frame
@@ -79,14 +80,14 @@ def solve(
         if not size < 1e10 or h <= 0.0:
             return False, s, p, w, h, iteration
         rate = size if iteration == 1 else size / last
-        if size < enough or size * rate < enough:
+        if settled(size, rate, enough):
             return True, s, p, w, h, iteration
-        if iteration > 3 and rate > 1.0:
+        if diverging(iteration, rate):
             return False, s, p, w, h, iteration
         s0 = stage(problem, frame, s, h, FIRST, p, w, products(p, w))
         s1 = stage(problem, frame, s, h, SECOND, p, w, products(p, w))
         s2 = stage(problem, frame, s, h, THIRD, p, w, products(p, w))
-        if rate > 0.1:
+        if rate > CONTRACTS:
             m = factors(frame, s, h, landing, p, w, s0, s1, s2)
         last = size
     return False, s, p, w, h, ITERATIONS

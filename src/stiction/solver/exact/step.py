@@ -6,19 +6,15 @@ from math import inf
 
 from stiction.solver.block_algebra import Triple
 from stiction.solver.compilation.jit import inlined
+from stiction.solver.control import ATTEMPTS, FAILED, RESOLUTION, step_factor
 from stiction.solver.exact.error_estimate import dips, local_error, moving
 from stiction.solver.exact.newton import solve
 from stiction.solver.exact.oscillation import NO_LANDING, Swing, oscillator, swing, within_reach
 from stiction.solver.exact.predictor import passes, predicted, swung_to_rest, time_to_landing
 from stiction.solver.exact.slip_frame import Frame, Outset
 from stiction.solver.problem import Problem
-from stiction.solver.radau import step_factor
 from stiction.solver.state import Accuracy, Memory, size_to_try
 
-# of a step before it fails; 0.4^100 is below the resolution of any float
-ATTEMPTS = 100
-# of the time, far below a float's resolution: motion goes on within a thin boundary layer
-RESOLUTION = 1e-30
 ROUNDING = 1e-15  # of the time: a landing so close to the end of the stretch is at its end
 DIRECT, EVEN = 1.1, 0.55  # of the time to landing: land at once, or in two even steps
 
@@ -84,7 +80,7 @@ def step(
             h *= frame.r / (frame.r - p[2])
             p, landing, warm = (0.5 * frame.r, 0.2 * frame.r, 0.0), True, True
             continue
-        factor = 0.3
+        factor = FAILED
         if converged and min(p) >= 0.0:
             relative = local_error(problem, frame, o, s, h, p, w, accuracy, motion)
             error = relative / accuracy.tolerance

@@ -8,8 +8,9 @@ import numpy as np
 
 from stiction.solver.block_algebra import dot
 from stiction.solver.compilation.jit import compiled, piece
+from stiction.solver.control import GROWTH, step_factor
 from stiction.solver.problem import Problem, in_principal_axes, travel
-from stiction.solver.radau import A, step_factor
+from stiction.solver.radau import A
 from stiction.solver.smooth.coordinate import coordinate
 from stiction.solver.smooth.dispatch import grain_of
 from stiction.solver.smooth.right_hand_side import Outset, evaluate, measure, moving, pull
@@ -26,7 +27,6 @@ from stiction.solver.state import (
     counted,
 )
 
-GROWTH = 2.0
 COARSEST = 1e12  # of the slip speed that is resolved: a slip coordinate that is linear in effect
 
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from stiction.solver.block_algebra import Factors, Matrix, Triple, eliminated, solved, times
 from stiction.solver.compilation.jit import inlined, piece
+from stiction.solver.control import CONTRACTS, diverging, settled
 from stiction.solver.problem import Problem
 from stiction.solver.radau import A, C, D
 from stiction.solver.smooth.coordinate import risen, slip_at
@@ -234,14 +235,14 @@ def solve(
         if not size < 1e100:
             return False, iteration
         rate = turn if fresh else size / last
-        if size < enough or (size * rate < enough and rate < 1.0):
+        if settled(size, rate, enough):
             w.values[1, 0], w.values[1, 1] = slip_at(eps, q_x[0], q_y[0])
             w.values[2, 0], w.values[2, 1] = slip_at(eps, q_x[1], q_y[1])
             w.values[3, 0], w.values[3, 1] = slip_at(eps, q_x[2], q_y[2])
             return True, iteration
-        if iteration > 3 and size > last and eps == inf:
+        if eps == inf and diverging(iteration, size / last):
             return False, iteration
-        fresh = rate > 0.1
+        fresh = rate > CONTRACTS
         at = stages_at(problem, eps, pulls, q_x, q_y, w, fresh)
         if fresh:
             m = factors(h, x, y, at, w)

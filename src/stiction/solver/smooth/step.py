@@ -6,9 +6,9 @@ import numpy as np
 
 from stiction.solver.block_algebra import Triple
 from stiction.solver.compilation.jit import inlined, piece
-from stiction.solver.exact.step import ATTEMPTS, RESOLUTION
+from stiction.solver.control import ATTEMPTS, FAILED, RESOLUTION, step_factor
 from stiction.solver.problem import Problem
-from stiction.solver.radau import C, cubic, step_factor
+from stiction.solver.radau import C, cubic
 from stiction.solver.smooth.coordinate import coordinate
 from stiction.solver.smooth.error_estimate import local_error
 from stiction.solver.smooth.newton import solve
@@ -85,7 +85,7 @@ def step(
         x, y = predict(w, q_x, q_y, h / h_last, warm)
         converged, count = solve(problem, start, h, x, y, w, accuracy)
         iterations += count
-        factor = 0.3
+        factor = FAILED
         if converged:
             error = local_error(problem, start, h, w, accuracy) / accuracy.tolerance
             if error <= 1.0:

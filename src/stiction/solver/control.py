@@ -1,0 +1,56 @@
+"""What both solvers ask of Newton's method, and how the error of a step sets the next one's size.
+
+Newton's method is Hairer & Wanner, Solving Ordinary Differential Equations II, section IV.8; the
+control of step sizes is Gustafsson's, ACM Trans. Math. Softw. 20 (1994), 496.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from stiction.solver.compilation.jit import inlined
+
+ATTEMPTS = 100  # of a step before it fails; 0.4^100 is below the resolution of any float
+# of the time, far below a float's resolution: motion goes on within a thin boundary layer
+RESOLUTION = 1e-30
+GROWTH = 2.0  # of step sizes, at most
+FAILED = 0.3  # of the size, where a step was not solved
+CONTRACTS = 0.1  # of a correction to the last one: the Jacobian is kept
+PATIENCE = 3  # iterations that may diverge
+
+
+@inlined
+def settled(size: float, rate: float, enough: float) -> bool:
+    """Return whether corrections are, or the next one will be, negligible (M33).
+
+    `rate` is the size of a correction over that of the last one; with a new Jacobian, which
+    squares the error, the size itself.
+    """
+    return size < enough or size * rate < enough
+
+
+@inlined
+def diverging(iteration: int, growth: float) -> bool:
+    """Return whether corrections grow, after the first few."""
+    return iteration > PATIENCE and growth > 1.0
+
+
+@inlined
+def ease(error: float) -> float:
+    """Return the power -1/4 of the local error over its tolerance, which falls with h^4."""
+    return 1.0 / sqrt(sqrt(error + 1e-10))
+
+
+@inlined
+def step_factor(error: float, limit: float) -> float:
+    """Return the factor for the step size from the error over tolerance (M43)."""
+    return min(limit, max(0.2, 0.9 * ease(error)))
+
+
+@inlined
+def trend(h: float, h_last: float, at_ease: float, before: float) -> float:
+    """Return the factor from the trend of errors: one that has grown will grow on (M43).
+
+    Given the sizes of the step and the last one (s), then the eases of their errors.
+    """
+    return max(0.2, 0.9 * h / h_last * at_ease * at_ease / before)
