@@ -18,6 +18,7 @@ from stiction.friction.equivalent import Traits, like, traits
 from stiction.friction.law import static_coefficient
 from stiction.friction.user.loading import finder_for_descriptions
 from stiction.machine import shortage
+from stiction.names import draw
 from stiction.simulation import automatic_times, run
 from stiction.system.description import SAMPLE, Description, description_of
 from stiction.system.initial import Initial
@@ -70,9 +71,7 @@ class Comparison(dict[str, Trajectory]):
 
     def plot(self, axes: Any = None) -> Any:
         """Draw the runs together; see `stiction.plotting.plot_comparison`."""
-        from stiction.plotting import plot_comparison
-
-        return plot_comparison(self, axes)
+        return draw("plot_comparison", self, axes)
 
 
 def row(label: str, run: Trajectory) -> tuple[str, ...]:

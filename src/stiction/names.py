@@ -57,6 +57,11 @@ def public(
     return old_names(room, formerly or {}, find), names
 
 
+def draw(figure: str, *what: Any) -> Any:
+    """Return what a public figure draws: a result asks for its own when called, see `plotting`."""
+    return getattr(import_module("stiction.plotting"), figure)(*what)
+
+
 def session_name(kind: type) -> str:
     """Return a class as one writes it in a session: ``st.laws.LuGre``; others by their name.
 

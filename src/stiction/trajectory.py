@@ -12,6 +12,7 @@ import numpy as np
 
 from stiction.errors import DescriptionError, ResultError, Status
 from stiction.friction import states
+from stiction.names import draw
 from stiction.result.dataset import VARIABLES, apparent_friction, cf_attributes, stick_table
 from stiction.result.file import ENDS, age, read_tables, write_result
 from stiction.storage.files import placeable, whole
@@ -130,9 +131,7 @@ class Trajectory:
 
     def plot(self, axes: Any = None) -> Any:
         """Draw the run; see `stiction.plotting.plot_run`."""
-        from stiction.plotting import plot_run
-
-        return plot_run(self, axes)
+        return draw("plot_run", self, axes)
 
     def state(self, time: float | str) -> Initial:
         """Return the state at the sample nearest to `time` (s), as the start of another run.

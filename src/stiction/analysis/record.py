@@ -10,6 +10,7 @@ from pydantic import BeforeValidator, PrivateAttr, model_validator
 from pydantic_core import PydanticCustomError
 
 from stiction.errors import Fault, ResultError
+from stiction.names import draw
 from stiction.text.units import Force, Kind, Mass, PositiveSpeed, Stiffness, reader, to_si
 from stiction.text.validation import Described, faulty
 from stiction.trajectory import Trajectory
@@ -227,9 +228,7 @@ class Record(Described):
 
     def plot(self, axes: Any = None) -> Any:
         """Draw the force with its cycles; see `stiction.plotting.plot_cycles`."""
-        from stiction.plotting import plot_cycles
-
-        return plot_cycles(self, axes)
+        return draw("plot_cycles", self, axes)
 
 
 def as_record(source: Trajectory | Record) -> Record:

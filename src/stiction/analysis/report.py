@@ -26,6 +26,7 @@ from stiction.analysis.oscillation import (
 from stiction.analysis.parts import functions
 from stiction.analysis.record import Record, as_record
 from stiction.deprecation import warn_renamed
+from stiction.names import draw
 from stiction.text.sections import Section, as_html, as_text
 from stiction.trajectory import Trajectory, load
 
@@ -124,9 +125,7 @@ class Analysis(NamedTuple):
 
     def plot(self, axes: Any = None) -> Any:
         """Draw the force with its cycles; see `stiction.plotting.plot_analysis`."""
-        from stiction.plotting import plot_analysis
-
-        return plot_analysis(self, axes)
+        return draw("plot_analysis", self, axes)
 
 
 def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) -> Analysis:

@@ -23,6 +23,7 @@ from stiction.linear_stability.linear import (
 )
 from stiction.linear_stability.roots import Critical, critical
 from stiction.linear_stability.spectrum import modes_over
+from stiction.names import draw
 from stiction.system.parameter import read
 from stiction.system.slider import Slider, slider_of
 from stiction.text.sections import Section, Table, as_html, as_text
@@ -102,9 +103,7 @@ class Stability:
 
         See `stiction.plotting.plot_modes` and `stiction.plotting.plot_boundary`.
         """
-        from stiction.plotting import plot_stability
-
-        return plot_stability(self, axes)
+        return draw("plot_stability", self, axes)
 
 
 def stability(

@@ -10,8 +10,7 @@ from 1. ``V`` is short for ``drive.velocity``, ``W`` for ``normal_load``, ``m`` 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from functools import lru_cache
-from typing import Any, TypeVar, cast, get_args, get_type_hints
+from typing import Any, TypeVar, cast, get_args
 
 from stiction.drive.pieces import LEVELS
 from stiction.errors import DescriptionError, Fault
@@ -19,7 +18,7 @@ from stiction.friction import Anisotropic
 from stiction.system.description import Description
 from stiction.system.slider import Slider
 from stiction.text.paths import canonical
-from stiction.text.units import unit_of
+from stiction.text.units import hints_of, unit_of
 from stiction.text.validation import make, unknown_name
 
 Owner = TypeVar("Owner", Slider, Description)
@@ -199,12 +198,7 @@ def _value(owner: Slider | Description, name: str) -> float:
 
 
 def _hints(part: Any) -> dict[str, Any]:
-    return _hints_of(cast(Any, type(part)))
-
-
-@lru_cache(maxsize=256)
-def _hints_of(kind: Any) -> dict[str, Any]:
-    return get_type_hints(kind, include_extras=True)
+    return hints_of(type(part))
 
 
 def _fields(part: Any) -> tuple[str, ...]:

@@ -5,13 +5,12 @@ from __future__ import annotations
 import json
 from importlib.resources import files
 from pathlib import Path
-from typing import get_type_hints
 
 from stiction.errors import StictionError
 from stiction.friction.registry import LAWS
 from stiction.storage.files import whole
 from stiction.system.schema import schema as description_schema
-from stiction.text.units import unit_of
+from stiction.text.units import hints_of, unit_of
 
 SCHEMA = "stiction.schema.json"
 BY_SCHEMA = f"#:schema {SCHEMA}\n"  # as editors of TOML understand it
@@ -47,7 +46,7 @@ def write_description(
 def _law_lines(name: str) -> str:
     """Return a law as a comment: its name, what it is, and the parameters that it takes."""
     kind = LAWS[name]
-    hints = get_type_hints(kind, include_extras=True)
+    hints = hints_of(kind)
     takes: dict[bool, list[str]] = {True: [], False: []}
     for field in kind._fields:
         its = unit_of(hints.get(field))

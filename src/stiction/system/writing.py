@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, get_type_hints
+from typing import TYPE_CHECKING, Any
 
 from stiction.drive import ConstantVelocity
 from stiction.drive.pieces import DRIVE_PIECES, LEVELS, LOAD_PIECES
 from stiction.friction import Anisotropic, law_table
 from stiction.text.quantity_text import quantity_text
 from stiction.text.sections import Table as Rows
-from stiction.text.units import FORCE, VELOCITY, Kind, kind_of
+from stiction.text.units import FORCE, VELOCITY, Kind, hints_of, kind_of
 
 if TYPE_CHECKING:
     from stiction.system.slider import Slider
@@ -42,7 +42,7 @@ def parameter_table(tables: Mapping[str, Table]) -> Rows:
 
 def describe(value: Any, names: Iterable[str]) -> Table:
     """Return the fields of a description that differ from their defaults, with units."""
-    fields, hints = type(value).model_fields, get_type_hints(type(value), include_extras=True)
+    fields, hints = type(value).model_fields, hints_of(type(value))
     return {
         name: _write(getattr(value, name), kind_of(hints[name]))
         for name in names
@@ -60,7 +60,7 @@ def _write(value: Any, kind: Kind | None) -> Any:
 
 def _describe_tuple(value: Any) -> Table:
     """Return the fields of a NamedTuple that differ from their defaults, with units."""
-    hints, defaults = get_type_hints(type(value), include_extras=True), value._field_defaults
+    hints, defaults = hints_of(type(value)), value._field_defaults
     return {
         name: _write(its, kind_of(hints.get(name)))
         for name, its in value._asdict().items()

@@ -8,11 +8,12 @@ does not say whether it is in degrees or radians.
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from fractions import Fraction
-from functools import partial
+from functools import cache, partial
 from math import inf, isfinite, isinf, isnan, pi, radians
 from types import UnionType
-from typing import Annotated, Any, NamedTuple, Union, get_args, get_origin
+from typing import Annotated, Any, NamedTuple, Union, get_args, get_origin, get_type_hints
 
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
 from pydantic_core import PydanticCustomError
@@ -29,6 +30,8 @@ class Kind(NamedTuple):
     example: str
 
 
+# the annotations of a class by field, with their quantities
+hints_of: Callable[[Any], dict[str, Any]] = cache(partial(get_type_hints, include_extras=True))
 LONGEST = 200  # characters of a number and its unit
 LARGEST, SMALLEST = 1e60, 1e-60  # in SI; smaller ones are zero. Products of five stay finite
 VELOCITY = Kind("a velocity", "m/s", "1 mm/s")

@@ -16,7 +16,7 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 from stiction.errors import DescriptionError, Fault
 from stiction.names import session_name
 from stiction.text.quantity_text import angle_text
-from stiction.text.units import as_float, kind_of, unit_of
+from stiction.text.units import as_float, hints_of, kind_of, unit_of
 
 if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass
@@ -42,7 +42,7 @@ class Described(BaseModel, metaclass=_Presented):
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
         """Show names, units and defaults in the signature, not the validators."""
-        hints, plain = get_type_hints(cls, include_extras=True), get_type_hints(cls)
+        hints, plain = hints_of(cls), get_type_hints(cls)
         parameters = [
             Parameter(
                 name,
@@ -65,7 +65,7 @@ class Described(BaseModel, metaclass=_Presented):
 
     def __repr__(self) -> str:
         """Return the call that makes an equal object."""
-        hints = get_type_hints(type(self), include_extras=True)
+        hints = hints_of(type(self))
         fields = type(self).model_fields
         return _call(self, {name: hints.get(name) for name in fields}, _defaults(fields))
 
@@ -203,10 +203,7 @@ def _no_faults(made: object) -> Iterable[tuple[str, str]]:
 @cache
 def fields(kind: Any) -> type[Described]:
     """Return the model that validates the parameters of a NamedTuple `kind`."""
-    hints = {
-        name: Plain if hint is float else hint
-        for name, hint in get_type_hints(kind, include_extras=True).items()
-    }
+    hints = {name: Plain if hint is float else hint for name, hint in hints_of(kind).items()}
     defaults = kind._field_defaults
     model: type[Described] = create_model(  # type: ignore[call-overload]
         kind.__name__,
@@ -281,7 +278,7 @@ def validate(kind: type[T]) -> type[T]:
 
 def _signature(constructor: Any, kind: Any) -> Signature:
     """Return the signature of a NamedTuple with accepted types and units."""
-    hints, plain = get_type_hints(kind, include_extras=True), get_type_hints(kind)
+    hints, plain = hints_of(kind), get_type_hints(kind)
     return Signature(
         [
             each.replace(annotation=_show_annotation(hints[name], plain[name]))
@@ -294,7 +291,7 @@ def _signature(constructor: Any, kind: Any) -> Signature:
 
 def write_call(value: Any) -> str:
     """Return the call that makes an equal NamedTuple."""
-    hints = get_type_hints(type(value), include_extras=True)
+    hints = hints_of(type(value))
     return _call(value, {name: hints.get(name) for name in value._fields}, value._field_defaults)
 
 

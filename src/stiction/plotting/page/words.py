@@ -6,14 +6,14 @@ import re
 from collections.abc import Sequence
 from math import degrees, pi, sin
 from textwrap import wrap
-from typing import Any, get_type_hints
+from typing import Any
 
 from stiction import theory
 from stiction.drive import ConstantVelocity, Modulation
 from stiction.friction import Anisotropic, name_of, states
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import DIGITS
-from stiction.text.units import in_words, unit_of
+from stiction.text.units import hints_of, in_words, unit_of
 from stiction.trajectory import Trajectory
 
 LETTERS = {"mu": r"\mu", "sigma": r"\sigma", "omega": r"\omega", "theta": r"\theta"}
@@ -89,7 +89,7 @@ def parameters_in_words(law: Any) -> list[str]:
     if isinstance(law, Anisotropic):
         grain = f"across/along {law.ratio:.4g}", f"axis at {degrees(law.angle):.4g}°"
         return [*parameters_in_words(law.law), *grain]
-    hints = get_type_hints(type(law), include_extras=True)
+    hints = hints_of(type(law))
     left_out = {name for name, value in law._field_defaults.items() if value == 0}
     words = []
     for name, value in law._asdict().items():

@@ -30,6 +30,7 @@ from stiction.solver.smooth.workspace import FIRST, LAST, SECOND, START, WANTED,
 from stiction.solver.state import Accuracy
 
 ITERATIONS = 14
+FIRM = 0.01  # of the tolerance: corrections that are negligible, where states remember them
 CLOSEST = 1e-14  # relative: corrections below are rounding
 
 
@@ -212,7 +213,7 @@ def solve(
     along_y = pulls[0].y, pulls[1].y, pulls[2].y
     x = linear(h, system.k_x * per, system.c_x * per, s_x, along_x)
     y = linear(h, system.k_y * per, system.c_y * per, s_y, along_y)
-    enough = max(min(accuracy.newton, 0.01 * accuracy.tolerance) * start.share, CLOSEST)
+    enough = max(min(accuracy.newton, FIRM * accuracy.tolerance) * start.share, CLOSEST)
     last, fresh = 1.0, True
     at = stages_at(problem, eps, pulls, q_x, q_y, w, WANTED)
     m = factors(h, x, y, at, w)
