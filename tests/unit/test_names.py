@@ -9,7 +9,10 @@ import pytest
 import stiction as st
 from stiction.names import public_names, session_name
 
-ROOMS = ["stiction", "stiction.analysis", "stiction.plotting", "stiction.results"]
+ROOMS = [
+    "stiction",
+    *(f"stiction.{room}" for room in ("analysis", "linear_stability", "plotting", "results")),
+]
 SESSION = {
     *("Slider", "Description", "Settings", "Initial", "ConstantVelocity", "Coulomb"),
     *("ExponentialWeakening", "Trajectory", "Record", "Study", "Grid", "Random", "Sobol"),

@@ -11,16 +11,6 @@ from bisect import bisect_left, bisect_right
 from math import inf
 from typing import Any
 
-from stiction.drive.pieces import (
-    Constant,
-    Free,
-    Harmonic,
-    Hold,
-    Modulation,
-    Ramp,
-    Reversal,
-    Step,
-)
 from stiction.drive.program import DriveProgram, LoadProgram, pick
 from stiction.drive.signal import Course, Loading
 from stiction.drive.steady import ConstantLoad, ConstantVelocity
@@ -78,21 +68,13 @@ def read_load(table: dict[str, Any]) -> LoadProgram:
 
 
 __all__ = [
-    "Constant",
     "ConstantLoad",
     "ConstantVelocity",
     "Course",
     "Drive",
     "DriveProgram",
-    "Free",
-    "Harmonic",
-    "Hold",
     "LoadProgram",
     "Loading",
-    "Modulation",
-    "Ramp",
-    "Reversal",
-    "Step",
     "ahead",
     "drive_stretches",
     "jump",

@@ -7,33 +7,6 @@ st.protocols.Hold(duration=3.0)
 
 from __future__ import annotations
 
-from stiction.drive.pieces import (
-    Constant,
-    Free,
-    Harmonic,
-    Hold,
-    Modulation,
-    Ramp,
-    Reversal,
-    Step,
-)
-from stiction.drive.program import DriveProgram, LoadProgram
-from stiction.drive.steady import ConstantVelocity
+from stiction.names import public
 
-__all__ = [
-    "Constant",
-    "ConstantVelocity",
-    "DriveProgram",
-    "Free",
-    "Harmonic",
-    "Hold",
-    "LoadProgram",
-    "Modulation",
-    "Ramp",
-    "Reversal",
-    "Step",
-]
-
-
-def __dir__() -> list[str]:
-    return sorted(__all__)
+__getattr__, __dir__ = public(__name__)

@@ -6,20 +6,8 @@
 152.35
 """
 
-from stiction.linear_stability.curve import boundary
-from stiction.linear_stability.examination import Stability, stability
-from stiction.linear_stability.linear import Linearisation, growth_rate, steady_sliding
-from stiction.linear_stability.roots import Critical, critical
-from stiction.linear_stability.spectrum import modes_over
+from __future__ import annotations
 
-__all__ = [
-    "Critical",
-    "Linearisation",
-    "Stability",
-    "boundary",
-    "critical",
-    "growth_rate",
-    "modes_over",
-    "stability",
-    "steady_sliding",
-]
+from stiction.names import public
+
+__getattr__, __dir__ = public(__name__)

@@ -9,7 +9,8 @@ from textwrap import wrap
 from typing import Any
 
 from stiction import theory
-from stiction.drive import ConstantVelocity, Modulation
+from stiction.drive import ConstantVelocity
+from stiction.drive.pieces import Modulation
 from stiction.friction import Anisotropic, name_of, states
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import DIGITS

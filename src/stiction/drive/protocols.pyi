@@ -1,0 +1,11 @@
+from stiction.drive.pieces import Constant as Constant
+from stiction.drive.pieces import Free as Free
+from stiction.drive.pieces import Harmonic as Harmonic
+from stiction.drive.pieces import Hold as Hold
+from stiction.drive.pieces import Modulation as Modulation
+from stiction.drive.pieces import Ramp as Ramp
+from stiction.drive.pieces import Reversal as Reversal
+from stiction.drive.pieces import Step as Step
+from stiction.drive.program import DriveProgram as DriveProgram
+from stiction.drive.program import LoadProgram as LoadProgram
+from stiction.drive.steady import ConstantVelocity as ConstantVelocity
