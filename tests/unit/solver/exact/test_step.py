@@ -10,8 +10,9 @@ from tests.unit.solver.exact.test_newton import SLIDES
 from tests.unit.solver.exact.test_predictor import COLD
 from tests.unit.solver.systems import SLIDERS, motion_of, problem_of
 
+from stiction.solver.control import RESOLUTION
 from stiction.solver.exact import error_estimate, oscillation, predictor, slip_frame
-from stiction.solver.exact.step import RESOLUTION, step
+from stiction.solver.exact.step import step
 from stiction.solver.state import Accuracy
 
 ALL = pytest.mark.parametrize(("name", "drawn"), [(n, d) for n in SLIDERS for d in SLIDES])

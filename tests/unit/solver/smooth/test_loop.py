@@ -19,11 +19,11 @@ from tests.unit.solver.smooth.systems import (
     smooth_problem,
 )
 
+from stiction.solver.control import GROWTH, step_factor
 from stiction.solver.exact.sampling import COLUMNS
-from stiction.solver.radau import step_factor
 from stiction.solver.smooth import loop, right_hand_side
 from stiction.solver.smooth.coordinate import coordinate
-from stiction.solver.smooth.loop import COARSEST, GROWTH
+from stiction.solver.smooth.loop import COARSEST
 from stiction.solver.smooth.state import Memory, Motion, State
 from stiction.solver.smooth.workspace import START, workspace
 from stiction.solver.state import (

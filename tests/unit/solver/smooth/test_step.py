@@ -9,8 +9,7 @@ from tests.drawn import inside
 from tests.entry import plain
 from tests.unit.solver.smooth.systems import EXACT, LAWS, C, Equations, at_stages, begun
 
-from stiction.solver.exact.step import ATTEMPTS, RESOLUTION
-from stiction.solver.radau import step_factor
+from stiction.solver.control import ATTEMPTS, RESOLUTION, step_factor
 from stiction.solver.smooth import error_estimate, newton, step
 from stiction.solver.smooth.workspace import START, workspace
 
