@@ -98,7 +98,7 @@ def change_parameter(owner: Owner, path: str, value: float | str) -> Owner:
     Examples
     --------
     >>> import stiction as st
-    >>> changed(st.presets.nakano_popov_2020(), "drive.velocity", "2 mm/s").drive.velocity
+    >>> change_parameter(st.presets.nakano_popov_2020(), "drive.velocity", "2 mm/s").drive.velocity
     0.002
     """
     unit(owner, path)
