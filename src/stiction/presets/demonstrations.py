@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import asin, pi
 from typing import TYPE_CHECKING
 
-from stiction.drive import ConstantVelocity, DriveProgram, Modulation
+from stiction.drive.protocols import ConstantVelocity, DriveProgram, Modulation
 from stiction.friction.laws import Coulomb, Stribeck
 from stiction.presets.preset import Published, holds, on_a_line, preset
 from stiction.system.description import Description, Settings

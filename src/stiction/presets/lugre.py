@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import pi, sqrt
 from typing import TYPE_CHECKING
 
-from stiction.drive import Constant, ConstantVelocity, DriveProgram, Hold, Modulation
+from stiction.drive.protocols import Constant, ConstantVelocity, DriveProgram, Hold, Modulation
 from stiction.friction.laws import LuGre
 from stiction.presets.preset import Published, holds, on_a_line, preset
 from stiction.system.description import Description, Settings

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from stiction.drive import Constant, DriveProgram, Hold
+from stiction.drive.protocols import Constant, DriveProgram, Hold
 from stiction.friction.laws import (
     RateStateAgeing,
     RateStateAgeing2,

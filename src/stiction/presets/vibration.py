@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stiction.drive import ConstantVelocity, DriveProgram, Modulation
+from stiction.drive.protocols import ConstantVelocity, DriveProgram, Modulation
 from stiction.friction.laws import Coulomb
 from stiction.presets.preset import Published, on_a_line, preset
 from stiction.presets.samples import crest
