@@ -56,6 +56,25 @@ def test_the_first_peak_of_a_vibration_is_not_taken_for_static_friction(fast):
     )
 
 
+def test_a_single_cycle_has_no_spread():
+    time = np.arange(0.0, 2.8, 1e-3)
+    found = st.analyse(st.Record(time=time, force=1.0 + (time + 0.4) % 1.2))
+    assert found.cycles.sizes["cycle"] == 1
+    assert "periods differ" not in str(found)
+
+
+def test_a_loading_without_a_slip_has_no_stick_phase_that_ends(run):
+    early = run.data["time"].values < 1.9
+    given = {"time": run.data["time"].values[early], "force": run.data["spring_x"].values[early]}
+    found = st.analyse(st.Record(**given, stiffness=1e3, drive_velocity=1e-3))
+    assert found.missing["creep"] == "no stick phase ends in a slip"
+
+
+def test_without_misalignment_the_last_motion_is_the_slip():
+    found = st.analyse(st.simulate(PAPER.replace(phi="0 deg"), duration=4.0, sample_rate=5e3))
+    assert "A motion in the last moments is the slip itself" in " ".join(str(found).split())
+
+
 def test_bare_arrays_say_what_they_can(run):
     record = st.Record(time=run.data["time"].values, force=run.data["spring_x"].values)
     found = st.analyse(record)

@@ -118,6 +118,8 @@ def calibrate(record: Record, cycles: xr.Dataset, found: Misalignment | None = N
 def _mean(curves: xr.Dataset, record: Record) -> xr.Dataset:
     """Return the mean creep curve, if it does not go backwards."""
     if not np.isfinite(curves["velocity"].values).any():
+        if not curves.sizes["phase"]:
+            raise ResultError("no stick phase ends in a slip")
         raise ResultError("no stick phase has enough samples")
     mean = mean_creep(curves)
     velocity, error = (mean[name].values for name in ("velocity", "velocity_error"))

@@ -19,6 +19,7 @@ SURE = 4.0  # standard errors
 WORTH = 0.02  # of the mean force, over the record: smaller drift is not reported
 PARTS = 20  # number of means of a force without cycles, over its second half
 FEWEST = 4  # cycles that show a drift
+STEADY = 1.0  # of its rate, by which that of the two halves may differ
 
 
 class Drift(NamedTuple):
@@ -46,13 +47,30 @@ def find_drift(record: Record, cycles: xr.Dataset) -> Drift:
         )
     else:
         return Drift(0.0, np.nan, 0.0, stands_out=False)
-    line = np.polyfit(at, middle, 1)
-    rate, left = float(line[0]), middle - np.polyval(line, at)
-    spread = float((left @ left / (len(at) - 2)) ** 0.5)
-    error = spread / float(np.sqrt(((at - at.mean()) ** 2).sum()))
+    rate, error = _fit_line(at, middle)
     change = rate * float(at[-1] - at[0])
     large = abs(change) > WORTH * abs(float(middle.mean()))
-    return Drift(rate, error, change, stands_out=bool(large and abs(rate) > SURE * error))
+    sure = abs(rate) > SURE * error and _goes_on(at, middle, rate)
+    return Drift(rate, error, change, stands_out=bool(large and sure))
+
+
+def _fit_line(at: Floats, middle: Floats) -> tuple[float, float]:
+    """Return the slope of a line, and its standard error."""
+    line = np.polyfit(at, middle, 1)
+    rate, left = float(line[0]), middle - np.polyval(line, at)
+    spread = float((left @ left / max(len(at) - 2, 1)) ** 0.5)
+    return rate, spread / float(np.sqrt(((at - at.mean()) ** 2).sum()))
+
+
+def _goes_on(at: Floats, middle: Floats, rate: float) -> bool:
+    """Return whether both halves change at about this rate: a loading, once, is no drift."""
+    if len(at) < 2 * FEWEST:
+        return True
+    half = len(at) // 2
+    halves = [_fit_line(at[part], middle[part]) for part in (slice(half), slice(half, None))]
+    (first, first_error), (second, second_error) = halves
+    apart = SURE * float(np.hypot(first_error, second_error)) + STEADY * abs(rate)
+    return abs(first - second) < apart
 
 
 def detrend(record: Record) -> Record:

@@ -212,12 +212,11 @@ def _by_shape(record: Record, found: Swings) -> Regime:
         evidence["backward"] = alike / count
     else:
         evidence["rest_share"] = float(rest_share(typical))
-    evidence |= {
-        "cycles_alike": alike / count,
-        "period_spread": float(table["period"].std() / table["period"].mean()),
-    }
+    period_spread = float(table["period"].std() / table["period"].mean())
+    if count > 1:
+        evidence |= {"cycles_alike": alike / count, "period_spread": period_spread}
     drop = table["drop"].values
-    if kind == HARMONIC:
+    if kind == HARMONIC and count > 1:
         evidence["drop_spread"] = drop_spread(drop)
     evidence |= _natural_period(record, table)
     if found.noise > NOISE_SHOWS * np.median(drop):
@@ -232,7 +231,7 @@ def _by_shape(record: Record, found: Swings) -> Regime:
     confidence = max(counted, _chance(shares, kind, step / float(table["period"].mean())))
     if other:  # as likely
         return Regime(kind, 0.5 * confidence, evidence, other)
-    irregular = irregularity(evidence["period_spread"], drop) if kind == HARMONIC else 0.0
+    irregular = irregularity(period_spread, drop) if kind == HARMONIC else 0.0
     if irregular > 0.5:
         return Regime(IRREGULAR, irregular * confidence, evidence, HARMONIC)
     confidence *= 1.0 - irregular

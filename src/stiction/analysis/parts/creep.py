@@ -10,6 +10,7 @@ import numpy as np
 from stiction.analysis.creep.findings import RESTS, drive_speed
 from stiction.analysis.motion.regime import STUCK
 from stiction.analysis.parts.wording import number
+from stiction.friction import states
 from stiction.text.sections import Section
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
@@ -43,6 +44,8 @@ def section(found: Analysis) -> Section:
         lines.append("Counted from the even loading in the first half of each rise.")
     if isinstance(found.source, Trajectory) and found.source.slider.phi == 0.0:
         lines.append("There is no misalignment, so friction does not turn.")
+        if not states(found.source.slider.law):
+            lines.append("A motion in the last moments is the slip itself, which begins.")
     if d is not None:
         lines.append(
             f"It diverges towards slip with the exponent {d.exponent:.3f} ± {d.exponent_error:.3f} "
