@@ -28,7 +28,7 @@ from stiction.plotting.page.save import save, write
 from stiction.plotting.page.style import BLACK, BLUE, PURPLE, new_figure, style
 from stiction.plotting.page.words import plain
 from stiction.plotting.run.overview import plot_run
-from stiction.plotting.run.time_series import cut_open, draw_line, envelope
+from stiction.plotting.run.time_series import cut_open, draw_line, envelope, swings
 from stiction.plotting.stability.damping import draw_damping_map
 from stiction.reproduction.creep import creep
 from stiction.reproduction.figure3 import figure3
@@ -331,6 +331,17 @@ def test_angles_are_cut_where_none_lie():
     assert np.nanmax(opened) - np.nanmin(opened) == pytest.approx(193.0)  # no jump from -175 to 178
     forward = np.array([-90.0, 0.0, 89.0])
     assert cut_open(forward).tolist() == forward.tolist()
+
+
+def test_a_slow_period_among_fast_ones_makes_no_bar() -> None:
+    """The friction of a mass that rests now and then: its band has no gaps."""
+    period = np.full(600, 30.0)  # samples, three bins of ten each
+    period[::40] = 55.0
+    ends = np.cumsum(period)
+    values = np.sin(2 * np.pi * np.interp(np.arange(15_000.0), ends, np.arange(len(ends))))
+    fast, _ = swings(values)
+    inner = fast[50:1450]
+    assert inner.all()
 
 
 def test_trials_of_many_swings_show_a_few_of_them() -> None:

@@ -60,6 +60,7 @@ CERTAIN = 0.995  # a confidence that is written as 1.00: it leaves no room for a
 # spring swing as well, as friction that turns couples them. On one spring friction only prolongs it
 COUPLED = 0.9
 GROWN = 0.1  # of a force drop: less is not worth a word
+NO_MORE = 1e-6  # a ratio that is less is nothing, up to rounding
 NOISE_SHOWS = 1e-3  # of a force drop; what is less is no noise of a load cell
 
 
@@ -72,7 +73,7 @@ def _percent(value: float) -> str:
 
 
 def _three_digits(value: float) -> str:
-    return f"{float(f'{value:.3g}'):g}"
+    return f"{float(f'{value:.3g}'):g}" if abs(value) > NO_MORE else "0"
 
 
 def _force(value: float) -> str:

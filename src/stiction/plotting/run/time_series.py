@@ -67,10 +67,18 @@ def swings(values: ArrayLike, bins: int = BINS) -> tuple[NDArray[np.bool_], Floa
     mean = np.add.reduceat(np.where(known, v, 0.0), starts) / count
     within = np.searchsorted(starts, turns, side="right") - 1
     nearby = np.convolve(np.bincount(within, minlength=bins), np.ones(NEAR), "same")
-    fast = nearby >= TURNS
+    fast = _without_gaps(nearby >= TURNS)
     whole = np.hanning(SMOOTH)  # a bin may hold a period and a half
     weight = np.maximum(np.convolve(fast, whole, "same"), 1e-300)
     return fast, np.where(fast, np.convolve(mean * fast, whole, "same") / weight, mean)
+
+
+def _without_gaps(fast: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return bins with oscillations, and those of short gaps: a slow period, or a pause."""
+    from scipy.ndimage import binary_closing  # type: ignore[attr-defined]
+
+    wide = np.pad(fast, HALF)
+    return np.asarray(binary_closing(wide, np.ones(HALF))[HALF:-HALF])
 
 
 def draw_line(

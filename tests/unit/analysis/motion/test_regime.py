@@ -307,3 +307,10 @@ def test_words_have_units_and_no_powers_of_ten() -> None:
     text = str(st.analysis.classify(st.Record(time=time, force=1e-9 * (time % 2.0), **rig)))
     assert "a period is 10100 times the mass's own" in text  # 2 s sqrt(k/m)/(2 pi)
     assert "spans 310 pN" in str(st.analysis.classify(st.Record(time=time, force=1.6e-11 * time)))
+
+
+def test_a_ratio_that_is_only_rounding_is_nothing() -> None:
+    time = np.arange(0.0, 8.0, 1e-3)
+    force = np.minimum(time, 1.0) + 1e-15 * np.sin(time)
+    record = st.Record(time=time, force=force, stiffness=1e3, drive_velocity=1e-3)
+    assert "its rate is 0 times stiffness" in str(st.analysis.classify(record))
