@@ -1,4 +1,4 @@
-"""``python -m benchmarks``: is it right, how fast is it, against whom?"""
+"""``python -m benchmarks``: accuracy and speed, beside other solvers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``python -m benchmarks.against [REVISION]``: is this tree slower than a revision of it?
+"""``python -m benchmarks.against [REVISION]``: the speed of this tree against a revision of it.
 
 Both are built and timed here and now, by the same cases, in turn, so that a noisy machine treats
 them alike. Each generation starts fresh processes, since two processes may differ by some per cent
@@ -21,7 +21,15 @@ from rich.console import Console
 from rich.progress import Progress
 from rich.table import Table
 
-from benchmarks.regression.trees import ROOT, Absent, Worker, at_work, changed, known, laid_out
+from benchmarks.regression.trees import (
+    ROOT,
+    Absent,
+    Worker,
+    at_work,
+    differs,
+    is_revision,
+    laid_out,
+)
 from benchmarks.regression.verdict import CONFIDENCE, Ratio, ratio, slower
 from benchmarks.regression.workload import CASES
 
@@ -40,10 +48,10 @@ def main() -> int:
     """Time this tree against a revision of it, and say how they compare."""
     options = _options()
     console = Console()
-    if not known(options.revision):
+    if not is_revision(options.revision):
         console.print(f"git knows no revision {options.revision!r}; name a branch, tag or commit")
         return 2
-    if not changed(options.revision):
+    if not differs(options.revision):
         console.print(
             f"src is what it is in {options.revision}: nothing to compare. Name another revision,"
             " for example HEAD~1 or origin/main."

@@ -1,4 +1,4 @@
-"""Where the benchmark ran, and with which versions."""
+"""Machine and versions of a benchmark."""
 
 from __future__ import annotations
 

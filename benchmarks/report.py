@@ -1,4 +1,4 @@
-"""What the benchmark found: on the terminal, as Markdown, as JSON, as figures."""
+"""The results of the benchmark: on the terminal, as Markdown, as JSON, as figures."""
 
 from __future__ import annotations
 

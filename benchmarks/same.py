@@ -1,4 +1,4 @@
-"""``python -m benchmarks.same [REVISION]``: are results those of a revision, to the last bit?
+"""``python -m benchmarks.same [REVISION]``: results of this tree against a revision's, bit by bit.
 
 200 runs over all laws, programs and modes are made in both trees. Who moves or renames code changes
 none. Exit status 1 if one differs, 2 if there is nothing to compare.
@@ -16,7 +16,7 @@ from rich.console import Console
 from rich.progress import track
 
 from benchmarks.regression.results import runs
-from benchmarks.regression.trees import ROOT, known, laid_out
+from benchmarks.regression.trees import ROOT, is_revision, laid_out
 
 RESULTS = Path(__file__).parent / "regression" / "results.py"
 
@@ -27,7 +27,7 @@ def main() -> int:
     parser.add_argument("revision", nargs="?", default="main", help="git revision (default main)")
     revision = parser.parse_args().revision
     console = Console()
-    if not known(revision):
+    if not is_revision(revision):
         console.print(f"git knows no revision {revision!r}; name a branch, tag or commit")
         return 2
     with laid_out(revision) as then:

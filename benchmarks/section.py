@@ -1,4 +1,4 @@
-"""What a part of the benchmark found: tables, figures and sentences, in one shape for all."""
+"""The results of a part of the benchmark: tables, figures and sentences."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``python -m benchmarks.syncing``: what it costs a study that a power cut takes nothing of it.
+"""``python -m benchmarks.syncing``: the cost of making a study safe against power cuts.
 
 A study of 10 000 runs is done with and without waiting for the disk, in turn, in a folder inside
 the present one. Compared are the medians of the wall times, and of the processor's, which tell the
@@ -56,7 +56,7 @@ class Times(NamedTuple):
     processor: float
 
 
-def timed(side: int, synced: bool) -> Times:
+def time_study(side: int, synced: bool) -> Times:
     """Do a study."""
     os.sync()  # what others left to write is no part of it
     with tempfile.TemporaryDirectory(dir=Path.cwd()) as folder, syncing(synced):
@@ -70,11 +70,11 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.syncing", description=__doc__)
     parser.add_argument("--rounds", type=int, default=5, help="pairs of studies")
     options = parser.parse_args()
-    timed(2, True)  # loads what is compiled
+    time_study(2, True)  # loads what is compiled
     seen: dict[bool, list[Times]] = {True: [], False: []}
     for number in range(options.rounds):
         for synced in (True, False) if number % 2 else (False, True):
-            seen[synced].append(timed(SIDE, synced))
+            seen[synced].append(time_study(SIDE, synced))
         print(f"without: {seen[False][-1]}, with: {seen[True][-1]}", flush=True)
     wall, processor = (longer(seen, name) for name in Times._fields)
     print(f"syncing takes {wall:+.1%} of the wall time, {processor:+.1%} of the processor's")

@@ -1,4 +1,4 @@
-"""A force from a load cell: which motion is it, where are its cycles, and how did it creep?
+"""The force from a load cell: kind of motion, cycles, and creep before each slip.
 
 Here the "measurement" is a simulated one with noise and drift; a real one is read with
 ``time, force = np.loadtxt("record.csv", delimiter=",", skiprows=1).T``.

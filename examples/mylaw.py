@@ -1,4 +1,4 @@
-"""A friction law of one's own, in a file: `own_law.toml` and `own_law.py` use it.
+"""A user's friction law, in a file: `own_law.toml` and `own_law.py` use it.
 
 A function that the methods call must be decorated with `numba.njit`; keep it in this file.
 """

@@ -1,7 +1,7 @@
-"""Where it sticks and slips, vibrates or comes to rest: a study over two parameters.
+"""A map of stick-slip, vibration and steady sliding: a study over two parameters.
 
 Writes regime_map.zarr, which xarray.open_zarr reads, and regime_map.png. Stopped and started
-again, it does what is missing.
+again, it computes the missing runs.
 """
 
 import stiction as st

@@ -1,6 +1,6 @@
 """Slide, hold, slide: does the force peak after a hold, if friction itself does not age?
 
-With constant friction the spring creeps on during the hold, and nothing peaks afterwards.
+With constant friction the spring continues to creep during the hold, and no peak follows.
 """
 
 import stiction as st

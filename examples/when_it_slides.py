@@ -1,4 +1,4 @@
-"""From which misalignment, speed or damper on does it slide steadily, and how hard is the onset?"""
+"""The least misalignment, speed and damping for steady sliding, and the kind of onset."""
 
 import numpy as np
 

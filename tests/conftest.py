@@ -1,4 +1,4 @@
-"""Runs that many tests look at, computed once."""
+"""Runs that many tests use, computed once."""
 
 import os
 import shutil

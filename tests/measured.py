@@ -13,7 +13,7 @@ FOLDER = Path(__file__).parents[2] / "shared" / "data" / "paper-friction"
 MASS, GRAVITY = 0.0307, 9.81  # kg, m/s^2; from the data's README
 
 
-def measured(name: str) -> st.Record:
+def read_measured(name: str) -> st.Record:
     """Return a record with what is known of its rig; skip the test where the data are absent."""
     path = FOLDER / f"{name}.csv.gz"
     if not path.is_file():

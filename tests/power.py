@@ -1,4 +1,4 @@
-"""A disk that loses what it was not told to keep, to see what a power cut may leave of a folder.
+"""A disk that loses unsynced data, to show which states of a folder a power cut may leave.
 
 Between any two calls that sync or rename, a file system may have written none of what is not
 synced, or all of it, or names without content, of length zero or full of zeros. Each of these is a
@@ -27,22 +27,22 @@ class Disk:
         self.content: dict[int, bytes] = {}  # of files, and of folders, by number: as written
         self.names: dict[int, dict[str, int]] = {}
         for each in (root, *root.rglob("*")):
-            self._written(os.open(each, os.O_RDONLY))
+            self._note_content(os.open(each, os.O_RDONLY))
         monkeypatch.setattr(files, "AT_ONCE", 1)  # one after the other: always in the same order
         for call in ("fsync", "replace"):
-            monkeypatch.setattr(os, call, self._watched(getattr(os, call)))
+            monkeypatch.setattr(os, call, self._watch(getattr(os, call)))
 
-    def _watched(self, call: Callable) -> Callable:
+    def _watch(self, call: Callable) -> Callable:
         def watched(*arguments):
             self.look()
             call(*arguments)
             if isinstance(arguments[0], int):
-                self._written(os.dup(arguments[0]))
+                self._note_content(os.dup(arguments[0]))
             self.look()
 
         return watched
 
-    def _written(self, handle: int) -> None:
+    def _note_content(self, handle: int) -> None:
         """Note what is on the disk; the file stays open, so that no other takes its number."""
         self.open.append(handle)
         found = os.fstat(handle)
@@ -54,7 +54,7 @@ class Disk:
     def look(self) -> None:
         """Note the states that the folder may be found in now."""
         lost: State = {}
-        self._kept(self.root.stat().st_ino, "", lost)
+        self._collect(self.root.stat().st_ino, "", lost)
         now = {each: each.stat() for each in self.root.rglob("*")}
         named, zeroed, all_there = {}, {}, {}
         for each, found in now.items():
@@ -70,12 +70,12 @@ class Disk:
             if state not in self.states:
                 self.states.append(state)
 
-    def _kept(self, number: int, at: str, state: State) -> None:
+    def _collect(self, number: int, at: str, state: State) -> None:
         """Collect what is on the disk of a folder."""
         for name, inside in self.names.get(number, {}).items():
             path = os.path.join(at, name)
             state[path] = self.content.get(inside, b"" if inside not in self.names else None)
-            self._kept(inside, path, state)
+            self._collect(inside, path, state)
 
     def close(self) -> None:
         """Let the files go."""

@@ -1,4 +1,4 @@
-"""Waiting for what another process does: for an event, however long a busy machine takes."""
+"""Waiting for events of another process, however long a busy machine takes."""
 
 import time
 from collections.abc import Callable

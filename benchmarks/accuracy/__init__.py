@@ -1,1 +1,1 @@
-"""How right: known solutions, convergence, conservation, linear theory."""
+"""Accuracy: known solutions, convergence, conservation, linear theory."""

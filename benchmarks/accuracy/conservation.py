@@ -1,4 +1,4 @@
-"""Conservation: the energy balance of a hundred stick-slip cycles, and whether they drift."""
+"""Conservation: the energy balance of a hundred stick-slip cycles, and their drift."""
 
 from __future__ import annotations
 

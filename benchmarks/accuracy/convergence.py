@@ -1,4 +1,4 @@
-"""How the error of the paper's run falls with the tolerance and with the steps taken."""
+"""The error of the paper's run over the tolerance and over the number of steps."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the drive's work goes, integrated over a run as exactly as it is solved.
+"""The drive's work and its parts, integrated over a run as exactly as the run is solved.
 
 The run is made twice: once for its stick intervals, then with samples at the nodes of a quadrature
 that breaks at every stick and crowds towards its ends, where slip is not smooth in time. While

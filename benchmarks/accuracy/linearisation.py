@@ -1,4 +1,4 @@
-"""Whether the stated uncertainty of an eigenvalue is one: against 50 digits, on random apparatus.
+"""The stated uncertainty of eigenvalues against 50 digits, on random apparatus.
 
 ``uv run --group benchmarks python -m benchmarks.accuracy.linearisation 1000`` linearises as many
 about steady sliding, all laws in turn, and does the same with the laws' formulas in 50 digits.

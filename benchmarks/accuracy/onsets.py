@@ -1,4 +1,4 @@
-"""Whether the stated onset of an oscillation is where linear theory has it, on random apparatus.
+"""The stated onset of an oscillation against linear theory, on random apparatus.
 
 ``python -m benchmarks.accuracy.onsets 100``: soft onsets over misalignment (friction that weakens
 exponentially) and hard ones over damping (a Stribeck law far beyond its speed, on a damper), from

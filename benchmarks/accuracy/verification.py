@@ -1,4 +1,4 @@
-"""Accuracy: every case with a known solution, and how the error falls with the tolerance."""
+"""Accuracy: every case with a known solution, and its error over the tolerance."""
 
 from __future__ import annotations
 

@@ -7,7 +7,7 @@ from functools import cache
 from scipy.integrate import solve_ivp
 
 from benchmarks.cases.case import Case
-from benchmarks.cases.published import published
+from benchmarks.cases.published import published_cases
 from stiction.presets import Number, find
 
 SPEED, D = 0.2, 3.0  # of the belt; F = 1/(1 + d |slip|)
@@ -52,7 +52,7 @@ def by_scipy() -> tuple[float, float, float, float]:
 
 def belt(rtol: float) -> list[Number]:
     """The preset `leine-belt`, beside SciPy."""
-    found = published(find("leine-belt"), rtol)
+    found = published_cases(find("leine-belt"), rtol)
     slip, stick, _, highest, lowest, _ = (number.computed for number in found)
     names = ("length of a slip", "length of a stick", "largest u", "smallest du/dt")
     values = zip(

@@ -1,4 +1,4 @@
-"""A case with a known solution, and what several of them need."""
+"""A case with a known solution, and functions for several of them."""
 
 from __future__ import annotations
 

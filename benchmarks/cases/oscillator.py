@@ -7,12 +7,12 @@ from functools import partial
 import stiction as st
 from benchmarks.cases.case import Case
 from stiction.presets import Number
-from stiction.presets.vibration import amplitudes, exact_amplitude, forced
+from stiction.presets.vibration import amplitudes, exact_amplitude, forced_oscillator
 
 
 def den_hartog(r: float, S: float, wanted: float, rtol: float) -> list[Number]:
     """Forced vibration without stops: x_0 k/P_0 = sqrt(U^2 - (S W)^2); the preset is one pair."""
-    description = forced(r, S)
+    description = forced_oscillator(r, S)
     settings = description.run.model_dump(exclude_none=True) | {"rtol": rtol}
     run = st.run(description._replace(run=st.Settings(**settings)))
     one, other, stops = amplitudes(run)

@@ -9,7 +9,7 @@ from benchmarks.cases.case import Case
 from stiction.presets import PRESETS, Number, Preset
 
 
-def published(preset: Preset, rtol: float) -> list[Number]:
+def published_cases(preset: Preset, rtol: float) -> list[Number]:
     """Run a preset; return its published numbers beside those found."""
     description = preset.make()
     settings = description.run.model_dump(exclude_none=True) | {"rtol": rtol}
@@ -17,5 +17,6 @@ def published(preset: Preset, rtol: float) -> list[Number]:
 
 
 CASES = tuple(
-    Case(name, partial(published, each), each.make().run.rtol) for name, each in PRESETS.items()
+    Case(name, partial(published_cases, each), each.make().run.rtol)
+    for name, each in PRESETS.items()
 )

@@ -10,12 +10,12 @@ from scipy.special import ellipk
 import stiction as st
 from benchmarks.cases.case import Case
 from stiction.presets import Number
-from stiction.presets.vibration import mean_friction, shaken
+from stiction.presets.vibration import mean_friction, shaken_slider
 
 
 def mean(r: float, wanted: float, rtol: float) -> list[Number]:
     """Mean friction along X over mu_0 W is (2/pi) K(-r^2), for a slider that follows the drive."""
-    description = shaken(r)
+    description = shaken_slider(r)
     settings = description.run.model_dump(exclude_none=True) | {"rtol": rtol}
     found = mean_friction(st.run(description._replace(run=st.Settings(**settings))))
     return [

@@ -37,7 +37,7 @@ def main() -> int:
     options = parser.parse_args()
     if options.only is not None:
         return one(options.seed, options.only)
-    console, seen = Console(), kept(options.keep)
+    console, seen = Console(), read_kept(options.keep)
     wanted = sorted(set(range(options.systems)) - {each.number for each in seen})
     with options.keep.open("a") if options.keep else nullcontext() as file:
         for each in looked_at(options.seed, wanted, options.processes):
@@ -51,7 +51,7 @@ def main() -> int:
     return 0 if keeps else 1
 
 
-def kept(path: Path | None) -> list[Seen]:
+def read_kept(path: Path | None) -> list[Seen]:
     """Return what was seen before."""
     if path is None or not path.exists():
         return []

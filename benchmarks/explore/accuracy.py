@@ -1,4 +1,4 @@
-"""Does a run at `rtol`, in steps and by the multiscale mode, keep what `simulate` promises?
+"""Errors of runs at `rtol`, in steps and by the multiscale mode, against the bounds of `simulate`.
 
 The error is held against the response: what the apparatus itself would do if its mass, or its
 normal load, were greater by the share to which each step is kept. Where that alone changes

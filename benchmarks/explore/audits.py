@@ -1,4 +1,4 @@
-"""``python -m benchmarks.explore.audits``: whether audits of random rigs contradict themselves.
+"""``python -m benchmarks.explore.audits``: contradictions within audits of random rigs.
 
 Each rig is audited, its page written, and what words, numbers, advice and linear theory say is held
 against each other. Deterministic in its seed; exit status 1 if a rule is broken.
@@ -97,7 +97,7 @@ def law(draw: Draw, mu: float, V: float, load: float) -> Any:
 # --- what must not contradict -------------------------------------------------------------------
 
 
-def said(found: Audit, title: str) -> str:
+def sentences(found: Audit, title: str) -> str:
     """Return the sentences of a part of the report."""
     part = next(each for each in found.tables() if each.title == title)
     return " ".join(part.sentences)
@@ -120,7 +120,7 @@ def verdict_and_margin(found: Audit) -> bool:
 
 def verdict_and_motion(found: Audit) -> bool:
     """Where a test shows other than linear theory says, the words say so."""
-    words, slides = said(found, "Verdict"), found.sliding_on.comes_to
+    words, slides = sentences(found, "Verdict"), found.sliding_on.comes_to
     if found.sliding.verdict == STABLE and slides == OSCILLATES:
         return "stable only to disturbances far below" in words
     if found.sliding.verdict == UNSTABLE and slides == SLIDES:
@@ -130,7 +130,7 @@ def verdict_and_motion(found: Audit) -> bool:
 
 def nothing_to_change(found: Audit) -> bool:
     """Nothing is to be changed only where it comes to slide from rest, and sliding is stable."""
-    nothing = said(found, "What to change").startswith("Nothing: it slides steadily")
+    nothing = sentences(found, "What to change").startswith("Nothing: it slides steadily")
     calm = found.observation.comes_to == SLIDES and found.sliding.stable
     return nothing == (calm and not found.advices)
 
@@ -138,20 +138,20 @@ def nothing_to_change(found: Audit) -> bool:
 def numbers_in_words(found: Audit) -> bool:
     """The period in words is that of the table."""
     shown = {row[0]: row[2] for row in numbers(found)}
-    told = re.search(TOLD, said(found, "Verdict"))
+    told = re.search(TOLD, sentences(found, "Verdict"))
     return told is None or told.groups() == (shown["period"], shown["force drop"])
 
 
 def vibration_is_no_creep(found: Audit) -> bool:
     """What vibrates about steady sliding does not creep."""
-    words = said(found, "Is it stick?") + said(found, "Transverse oscillation")
+    words = sentences(found, "Is it stick?") + sentences(found, "Transverse oscillation")
     vibrates = found.observation.motion in VIBRATES
     return not (vibrates and ("creeping" in words or "During creep" in words))
 
 
 def advice_works(found: Audit) -> bool:
     """What is advised slides steadily, by linear theory and from rest; words count it."""
-    words = said(found, "What to change")
+    words = sentences(found, "What to change")
     works = [each for each in found.advices if each.works]
     none = words.startswith("None of these")
     stable = all(each.growth < 0.0 and each.tried.comes_to == SLIDES for each in works)

@@ -1,4 +1,4 @@
-"""``python -m benchmarks.explore.claims``: what a run claims beside its error, on random systems.
+"""``python -m benchmarks.explore.claims``: properties of random runs beside their error.
 
 A sample inside a step is what a run that ends there gives. Units that differ by powers of two
 change no bit. The residual of the energy budget keeps its bound. A vibration about steady sliding,

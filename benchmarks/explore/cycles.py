@@ -111,7 +111,7 @@ def edges(cycles: xr.Dataset) -> Floats:
     return np.append(cycles["start"].values, cycles["trough_time"].values[-1:])
 
 
-def tested(slider: st.Slider) -> xr.Dataset:
+def cycles_of_test(slider: st.Slider) -> xr.Dataset:
     """Return the cycles that an audit finds in its test from rest."""
     expected = predict(slider)
     rate = max(expected.sample_rate, observation.coarse_rate(expected))
@@ -138,7 +138,7 @@ def rigs(count: int, seed: int) -> Iterator[Counted]:
         analysed = edges(found)
         studied = seen.end - np.append(np.cumsum(seen.period[::-1])[::-1], 0.0)
         half, *others = periods([falls[1], analysed, studied])
-        own, audited = periods([analysed, edges(tested(slider))])
+        own, audited = periods([analysed, edges(cycles_of_test(slider))])
         yield Counted(
             (len(falls[0]) - 1, len(falls[1]) - 1, len(falls[2]) - 1),
             found.sizes["cycle"],

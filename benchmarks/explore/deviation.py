@@ -1,4 +1,4 @@
-"""How far a run is off, and how far the apparatus itself would be off if it were a little other."""
+"""The error of a run, and the response of the apparatus to a small change of a parameter."""
 
 from __future__ import annotations
 

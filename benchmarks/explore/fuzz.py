@@ -63,7 +63,7 @@ PARAMETERS = ("phi", "V", "friction.mu_0", "drive.velocity.x", "run.duration", "
 KNOWN = ("normal_load", "stiffness", "drive_velocity", "mass", "zero", "time_unit", "force_unit")
 
 
-def nested(depth: int) -> Any:
+def nest(depth: int) -> Any:
     """Return lists inside lists."""
     value: Any = []
     for _ in range(depth):
@@ -81,12 +81,12 @@ def nonsense(draw: Draw) -> Any:
             lambda: draw.decades(1e-300, 1e300),
             lambda: f"{draw.decades(1e-12, 1e12):g} {draw.among(UNITS)}",
             lambda: deepcopy(draw.among(odd)),
-            lambda: nested(draw.among([3, 30, 300])),
+            lambda: nest(draw.among([3, 30, 300])),
         ]
     )()
 
 
-def damaged(draw: Draw, tree: Any) -> Any:
+def damage_tree(draw: Draw, tree: Any) -> Any:
     """Return nested tables with some values replaced, taken away, moved or called otherwise."""
     tree = deepcopy(tree)
     for _ in range(draw.among([1, 1, 2, 4])):
@@ -113,7 +113,7 @@ def _places(owner: Any) -> Any:
             yield from _places(owner[key])
 
 
-def torn(draw: Draw, content: bytes) -> bytes:
+def damage_bytes(draw: Draw, content: bytes) -> bytes:
     """Return bytes with some flipped, cut out, doubled or with a token put in."""
     for _ in range(draw.among([1, 1, 2, 5, 20])):
         at, to = sorted(int(draw.between(0, len(content) + 1)) for _ in range(2))
@@ -175,40 +175,40 @@ def description_text(draw: Draw, folder: Path) -> None:
     """A description in TOML, damaged in any way; what can be read is run."""
     described = draw.among(DESCRIPTIONS)
     if draw.chance(0.5):
-        tables = damaged(draw, described.to_dict())
+        tables = damage_tree(draw, described.to_dict())
         content = _toml(tables).encode("utf-8", "replace")
     else:
-        content = torn(draw, described.to_toml().encode())
+        content = damage_bytes(draw, described.to_toml().encode())
     path = folder / "a.toml"
     path.write_bytes(content)
-    tried(st.Description.from_toml(path))
+    try_description(st.Description.from_toml(path))
 
 
 def description_json(draw: Draw, folder: Path) -> None:
     """A description as results have it."""
     described = draw.among(DESCRIPTIONS)
     if draw.chance(0.5):
-        text = json.dumps(damaged(draw, described.to_dict()))
+        text = json.dumps(damage_tree(draw, described.to_dict()))
     else:
-        text = torn(draw, described.to_json().encode()).decode("utf-8", "replace")
-    tried(st.Description.from_json(text))
+        text = damage_bytes(draw, described.to_json().encode()).decode("utf-8", "replace")
+    try_description(st.Description.from_json(text))
 
 
 def study_text(draw: Draw, folder: Path) -> None:
     """A study in TOML."""
-    study = st.Study.from_dict(damaged(draw, {**STUDY.to_dict()}))
+    study = st.Study.from_dict(damage_tree(draw, {**STUDY.to_dict()}))
     if study.layout.runs < 100:
         study.description(tuple(size - 1 for size in study.layout.shape))
 
 
-def changed(draw: Draw, folder: Path) -> None:
+def change_values(draw: Draw, folder: Path) -> None:
     """Values that ``--set`` gives."""
     text = draw.among([str(nonsense(draw)), draw.among(TEXTS), draw.among(TOKENS)])
     described = draw.among(DESCRIPTIONS)
     st.Description.from_toml(described.to_toml(), {draw.among(PARAMETERS): option(text)})
 
 
-def tried(described: st.Description) -> None:
+def try_description(described: st.Description) -> None:
     """Run what could be read, for a few steps, if its code is there already."""
     law, drive = type(described.slider.law), type(described.slider.motion)
     other = described.run.multiscale or described.run.regularisation or described.slider.load
@@ -241,18 +241,20 @@ def record(draw: Draw, folder: Path) -> None:
     time = np.arange(count) * draw.among([1e-3, 1e-9, 1.0, 1e-300, 1e90])
     force: Any = 1.0 + 0.2 * (time * 10.0 % 1.0)
     for _ in range(draw.among([0, 1, 2, 3])):
-        time, force = (_spoilt(draw, each) if draw.chance(0.5) else each for each in (time, force))
+        time, force = (
+            _spoil_array(draw, each) if draw.chance(0.5) else each for each in (time, force)
+        )
     more: dict[str, Any] = {
         name: nonsense(draw) if draw.chance(0.5) else draw.decades(1e-9, 1e9)
         for name in KNOWN
         if draw.chance(0.15)
     }
     if draw.chance(0.2):
-        more[draw.among(["position", "slip_speed"])] = _spoilt(draw, force)
+        more[draw.among(["position", "slip_speed"])] = _spoil_array(draw, force)
     str(st.analyse(st.Record(time=time, force=force, **more)))
 
 
-def _spoilt(draw: Draw, values: Any) -> Any:
+def _spoil_array(draw: Draw, values: Any) -> Any:
     """Return an array that is not what it was."""
     odd = draw.among([0.0, np.nan, np.inf, -1.0, 1e300, 1e99, 5e-324, 1.0])
     if not isinstance(values, np.ndarray):
@@ -288,7 +290,7 @@ def result(draw: Draw, folder: Path) -> None:
     path.write_bytes(whole)
     if draw.chance(0.25):
         checksum = whole.rindex(checksums.MARK)  # of the whole file: others write none
-        path.write_bytes(torn(draw, whole[: draw.among([checksum, len(whole)])]))
+        path.write_bytes(damage_bytes(draw, whole[: draw.among([checksum, len(whole)])]))
     else:
         with h5py.File(path, "r+") as file:
             for _ in range(draw.among([1, 1, 2, 4])):
@@ -327,7 +329,7 @@ def _spoil(draw: Draw, file: h5py.File) -> None:
             _put(owner.attrs, draw.among(its), draw)
         return
     values = file[name][()]
-    new = _spoilt(draw, values)
+    new = _spoil_array(draw, values)
     new = new if isinstance(new, np.ndarray) and new.dtype.kind in "fic" else np.array([b"text"])
     if new.shape == values.shape and new.dtype.kind == values.dtype.kind:
         file[name][...] = new
@@ -340,7 +342,7 @@ def _spoil(draw: Draw, file: h5py.File) -> None:
 def _put(attributes: Any, key: str, draw: Draw) -> None:
     value = nonsense(draw)
     if key == "description" and draw.chance(0.7):
-        value = json.dumps(damaged(draw, DESCRIPTIONS[0].to_dict()))
+        value = json.dumps(damage_tree(draw, DESCRIPTIONS[0].to_dict()))
     try:
         attributes[key] = value
     except (TypeError, ValueError, OSError, OverflowError):
@@ -362,9 +364,9 @@ def store(draw: Draw, folder: Path) -> None:
         if draw.chance(0.15):
             file.unlink()
         elif file.name == "zarr.json" and draw.chance(0.7):
-            file.write_text(json.dumps(damaged(draw, json.loads(file.read_text()))))
+            file.write_text(json.dumps(damage_tree(draw, json.loads(file.read_text()))))
         else:
-            file.write_bytes(torn(draw, file.read_bytes()))
+            file.write_bytes(damage_bytes(draw, file.read_bytes()))
     if draw.chance(0.7):  # sealed again, as who damages it on purpose would
         with suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
             seal(path)
@@ -385,7 +387,9 @@ def _whole_store(folder: Path) -> Path:
 def quantity(draw: Draw, folder: Path) -> None:
     """A number with its unit."""
     text = "".join(draw.among(PARTS) for _ in range(int(draw.decades(1, 60))))
-    text = draw.among([f"1 {text}", text, torn(draw, b"1 kN s/m").decode("utf-8", "replace")])
+    text = draw.among(
+        [f"1 {text}", text, damage_bytes(draw, b"1 kN s/m").decode("utf-8", "replace")]
+    )
     st.Settings(duration=text)
 
 
@@ -424,12 +428,12 @@ def command(draw: Draw, folder: Path) -> None:
         text = str(draw.among([nonsense(draw), draw.among(TOKENS), f"phi={draw.among(TEXTS)}"]))
         line[at] = text.replace("\x00", "0").replace("/", "_")  # nothing outside the folder
     with redirect_stdout(StringIO()), redirect_stderr(StringIO()), chdir(folder):
-        _called(line)
+        _call(line)
     if left := [*folder.rglob("*.part")]:
         raise ValueError(f"half a file is left behind: {left[0].name}")
 
 
-def _called(line: list[str]) -> None:
+def _call(line: list[str]) -> None:
     try:
         main_line(line)
     except SystemExit as end:
@@ -440,8 +444,8 @@ def _called(line: list[str]) -> None:
 READERS: dict[str, Callable[[Draw, Path], None]] = {
     each.__name__: each
     for each in (
-        description_text, description_json, study_text, changed, record, result, store, quantity,
-        laws, command,
+        description_text, description_json, study_text, change_values,
+        record, result, store, quantity, laws, command,
     )
 }  # fmt: skip
 

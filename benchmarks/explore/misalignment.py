@@ -129,10 +129,10 @@ def main() -> int:
         one = look_at_creep(rng) if options.creep else look(rng, options.noise, options.off)
         if one is not None:
             seen.append(one)
-    return told(Console(), seen)
+    return report(Console(), seen)
 
 
-def told(console: Console, seen: list[Seen]) -> int:
+def report(console: Console, seen: list[Seen]) -> int:
     """Say what was seen; return 1 if a bound is broken."""
     known = [each for each in seen if not each.reason]
     if not known:

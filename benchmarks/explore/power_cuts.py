@@ -51,7 +51,7 @@ def study() -> st.Study:
 
 
 @contextmanager
-def mounted(image: Path, at: Path) -> Iterator[Path]:
+def mount(image: Path, at: Path) -> Iterator[Path]:
     """Mount a file system that is a file."""
     subprocess.run(["mount", "-o", "loop,commit=1", image, at], check=True)
     try:
@@ -60,7 +60,7 @@ def mounted(image: Path, at: Path) -> Iterator[Path]:
         subprocess.run(["umount", at], check=True)
 
 
-def cut(made: st.Study, folder: Path, after: float) -> int:
+def cut_power(made: st.Study, folder: Path, after: float) -> int:
     """Do a study until the power fails; return how many blocks it said were done."""
     command = [sys.executable, "-c", CHILD, made.to_json(), folder / "a.zarr"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as child:
@@ -109,9 +109,9 @@ def main() -> int:
             with image.open("wb") as file:
                 file.truncate(SIZE)
             subprocess.run(["mkfs.ext4", "-q", image], check=True)
-            with mounted(image, at):
-                said = cut(made, at, after)
-            with mounted(image, at):
+            with mount(image, at):
+                said = cut_power(made, at, after)
+            with mount(image, at):
                 fault = gone_on(made, at / "a.zarr", undisturbed, said)
             wrong += bool(fault)
             print(

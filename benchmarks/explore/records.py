@@ -128,7 +128,7 @@ def harmonic(random: np.random.Generator) -> Labelled:
     return st.Record(time=phase / pitch, force=3.0 + force), None, (HARMONIC,)
 
 
-def filtered(random: np.random.Generator, periods: float, samples: float) -> Floats:
+def filter_noise(random: np.random.Generator, periods: float, samples: float) -> Floats:
     """Return noise through a filter of 2 to 20 % of its frequency, of standard deviation 1.
 
     The filter is wide enough for the height to change in the record: it is else one of a size.
@@ -144,7 +144,7 @@ def filtered(random: np.random.Generator, periods: float, samples: float) -> Flo
 def narrow(random: np.random.Generator, periods: float) -> Labelled:
     """Return noise through a narrow filter, on a force that moves slowly, under white noise."""
     pitch, samples = 10 ** random.uniform(0.5, 2.5), 10 ** random.uniform(0.7, 2.6)
-    force = filtered(random, periods, samples)
+    force = filter_noise(random, periods, samples)
     time = np.arange(len(force)) / (pitch * samples)
     turn = random.uniform(1, 2 * pi) * time / time[-1] + random.uniform(0, 6)
     slow = random.uniform(0, 5) * np.sin(turn)
@@ -165,7 +165,7 @@ def long(random: np.random.Generator) -> Labelled:
 def wandering(random: np.random.Generator) -> Labelled:
     """Return irregular vibration beside a random walk that goes as far in a period, or less."""
     samples = 10 ** random.uniform(0.9, 2)
-    force = filtered(random, random.uniform(30.0, 400.0), samples)
+    force = filter_noise(random, random.uniform(30.0, 400.0), samples)
     time = np.arange(len(force)) / (48.0 * samples)
     walk = np.cumsum(random.normal(size=len(time))) / np.sqrt(samples)
     noise = 10 ** random.uniform(-1.8, -1) * random.normal(size=len(time))
@@ -257,7 +257,7 @@ class Judged(NamedTuple):
         return not self.right and self.kind != UNDETERMINED
 
 
-def judged(make: Callable[[np.random.Generator], Labelled], seed: int, number: int) -> Judged:
+def judge(make: Callable[[np.random.Generator], Labelled], seed: int, number: int) -> Judged:
     """Draw a record and judge what is seen of it."""
     record, count, kinds = make(np.random.default_rng([seed, number]))
     seen = swings(record)
@@ -293,7 +293,7 @@ def main() -> None:
     for make in LABELLED:
         if make.__name__ not in options.only:
             continue
-        found = [judged(make, options.seed, number) for number in range(options.records)]
+        found = [judge(make, options.seed, number) for number in range(options.records)]
         everything += found
         wrong = [f"{n} ({each.confidence:.2f})" for n, each in enumerate(found) if each.wrong]
         table.add_row(

@@ -1,4 +1,4 @@
-"""What a comparison found about one solver with its settings."""
+"""The result of a comparison for one solver with its settings."""
 
 from __future__ import annotations
 

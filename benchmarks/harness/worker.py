@@ -1,4 +1,4 @@
-"""``python -m benchmarks.harness.worker MODULE``: what a library's process does.
+"""``python -m benchmarks.harness.worker MODULE``: the process of one library.
 
 It says which rows the module's ``contestants()`` are, then answers one request a line, in JSON:
 solve a row for so many points in time over so many seconds, and say how long that took. Only NumPy
@@ -42,14 +42,14 @@ def main() -> None:
         request = json.loads(line)
         try:
             times = np.linspace(0.0, request["duration"], request["points"])
-            say({"seconds": timed(contestants[request["row"]], times, request["into"])})
+            say({"seconds": time_contestant(contestants[request["row"]], times, request["into"])})
         except Failed as reason:
             say({"failed": str(reason)})
         except Exception as problem:  # of whatever kind: a library's, on its row
             say({"failed": f"{type(problem).__name__}: {problem}"})
 
 
-def timed(contestant: Contestant, times, into: str | None) -> float:
+def time_contestant(contestant: Contestant, times, into: str | None) -> float:
     """Return how long a contestant takes, s; its elongations go to a file if one is named.
 
     One that takes less than a moment goes on until that is over, and its shortest time counts: a

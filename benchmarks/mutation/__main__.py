@@ -71,12 +71,12 @@ def main() -> int:
     options = parser.parse_args()
     options.results.mkdir(parents=True, exist_ok=True)
     rows: list[Row] = []
-    with_tests(options.tests, lambda items: rows.extend(tried(items, options)))
+    with_tests(options.tests, lambda items: rows.extend(try_mutants(items, options)))
     left = told(rows, equivalent())
     return 0 if left <= ALLOWED * len(rows) else 1
 
 
-def tried(items: Sequence[pytest.Item], options: argparse.Namespace) -> Iterator[Row]:
+def try_mutants(items: Sequence[pytest.Item], options: argparse.Namespace) -> Iterator[Row]:
     """Yield what came of each mutant, known from before or tried now."""
     without = {path for each in options.without for path in files([each])}
     sources = [path for path in files(map(Path, options.sources)) if path not in without]
@@ -90,14 +90,14 @@ def tried(items: Sequence[pytest.Item], options: argparse.Namespace) -> Iterator
         for number, mutant in enumerate(sample):
             row = known.get(mutant)
             if row is None or (options.again and row["outcome"] in (SURVIVED, UNREACHED)):
-                tests = tests or reached(items, sources, options)
+                tests = tests or tests_by_line(items, sources, options)
                 row = outcome(mutant, tests, by_name, options.most)
                 print(json.dumps(row), file=file, flush=True)
                 print(f"{number + 1}: {row['outcome']}", *mutant[:2], mutant.after, flush=True)
             yield row
 
 
-def reached(
+def tests_by_line(
     items: Sequence[pytest.Item], sources: Sequence[Path], options: argparse.Namespace
 ) -> list[Test]:
     """Return the tests with the lines that they run, from the folder or by running them."""

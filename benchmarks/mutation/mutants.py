@@ -1,4 +1,4 @@
-"""What can be changed in a source file, and a random sample of it."""
+"""The possible changes of a source file, and a random sample of them."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def digest(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 
-def mutated(text: str, operator: str, occurrence: int) -> str:
+def mutate(text: str, operator: str, occurrence: int) -> str:
     """Return the changed text of a source."""
     changed: str | None = mutate_code(text, operators()[operator], occurrence)
     assert changed is not None
@@ -99,7 +99,7 @@ def mutated(text: str, operator: str, occurrence: int) -> str:
 
 def mutant(path: str, text: str, operator: str, occurrence: int) -> Mutant:
     """Return the change with the lines in which it shows."""
-    old, new = text.splitlines(), mutated(text, operator, occurrence).splitlines()
+    old, new = text.splitlines(), mutate(text, operator, occurrence).splitlines()
     if len(old) == len(new):
         lines = [i for i, pair in enumerate(zip(old, new, strict=True)) if pair[0] != pair[1]]
         first, last = lines[0], lines[-1]
@@ -137,7 +137,7 @@ def files(paths: Iterable[Path]) -> list[Path]:
     return sorted(found)
 
 
-def drawn(sources: Sequence[Path], count: int, seed: int, folder: Path) -> list[Mutant]:
+def draw_mutants(sources: Sequence[Path], count: int, seed: int, folder: Path) -> list[Mutant]:
     """Return `count` changes at places drawn evenly, none of them twice.
 
     A place is drawn by a digest of its name, so that an edit changes no other part of the sample.

@@ -1,4 +1,4 @@
-"""The package as plain Python: it forgives what compiled code does, and can be changed in place."""
+"""The package as plain Python: as lenient as compiled code, and open to changes in place."""
 
 from __future__ import annotations
 

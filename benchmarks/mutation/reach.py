@@ -1,4 +1,4 @@
-"""Which tests there are for a line: those that are short, and run it."""
+"""The tests for a line: short ones that run it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Test(NamedTuple):
         return self.name.partition("::")[0]
 
 
-def watched(
+def watch_tests(
     items: Sequence[pytest.Item], sources: Sequence[Path], longest: float, place: Path
 ) -> tuple[list[Test], list[str]]:
     """Return the tests that pass in so many CPU seconds, and the names of the others.

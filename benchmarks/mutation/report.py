@@ -1,4 +1,4 @@
-"""What came of the mutants, by room, and those that have survived."""
+"""The outcome of mutants by room, and the list of survivors."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def equivalent() -> dict[Key, str]:
     return {(row["file"], row["before"], row["after"]): row["why"] for row in rows}
 
 
-def told(rows: Sequence[Mapping[str, Any]], known: Mapping[Key, str]) -> int:
+def report(rows: Sequence[Mapping[str, Any]], known: Mapping[Key, str]) -> int:
     """Print what came of the mutants; return how many have survived and are not equivalent."""
     console, counts, left = Console(width=160), defaultdict(Counter), []
     for row in rows:

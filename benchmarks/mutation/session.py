@@ -1,4 +1,4 @@
-"""One session of pytest, which reads all tests once; what runs them is forked from it."""
+"""One session of pytest, which reads all tests once; processes that run them are forked from it."""
 
 from __future__ import annotations
 

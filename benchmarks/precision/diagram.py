@@ -17,7 +17,7 @@ from benchmarks.precision import levels
 from benchmarks.precision.case import GRID, spring_force
 from benchmarks.precision.figure import figure
 from benchmarks.precision.peers import PEERS
-from benchmarks.precision.peers.ours import compiled
+from benchmarks.precision.peers.ours import compile_rows
 from benchmarks.precision.reference import RTOL, Reference, largest, reference
 from benchmarks.section import Cell, Section, Table
 
@@ -52,7 +52,7 @@ def run(progress: Progress, quick: bool) -> Section:
             libraries.append(library)
         task = progress.add_task("reference, and the twin beside it", total=1)
         with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as beside:
-            compiling = beside.submit(compiled)  # while the twin takes its time on another core
+            compiling = beside.submit(compile_rows)  # while the twin takes its time on another core
             known = reference()
             compiling.result()
         progress.advance(task)

@@ -1,4 +1,4 @@
-"""The equations of the case for those who need them regularised, compiled with numba.
+"""The regularised equations of the case for peers that need them, compiled with numba.
 
 The state is ``(u_x, u_y, s_x, s_y)``: elongations (m) and slip velocity (m/s), ``s = v_d - du/dt``.
 The elongation rates would do as well on paper, but slip is what the friction depends on and what is

@@ -1,4 +1,4 @@
-"""The levels of accuracy to be reached, and how much faster than LSODA each is to be."""
+"""The levels of accuracy, and the required ratio of speed to LSODA at each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the errors are measured against, and how far that can be trusted."""
+"""The reference for errors, and its own uncertainty."""
 
 from __future__ import annotations
 

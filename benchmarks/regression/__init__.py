@@ -1,1 +1,1 @@
-"""Whether this tree is slower than another revision of it: ``python -m benchmarks.against``."""
+"""The speed of this tree against another revision of it: ``python -m benchmarks.against``."""

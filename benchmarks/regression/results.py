@@ -46,13 +46,13 @@ def runs() -> Iterator[tuple[str, dict[str, object]]]:
             law = STATES[number % 5].like(0.5, draw.between(0.2, 0.4), draw.decades(1e-3, 1e-2))
             yield f"states {number}", common | {"slider": slider.replace(friction=law)}
         elif number < 50:
-            yield f"program {number}", common | {"slider": driven(draw, slider)}
+            yield f"program {number}", common | {"slider": add_program(draw, slider)}
         else:
             delta = draw.decades(1e-7, 1e-5)
             yield f"smoothed {number}", common | {"slider": slider, "regularisation": delta}
 
 
-def driven(draw: Draw, slider: st.Slider) -> st.Slider:
+def add_program(draw: Draw, slider: st.Slider) -> st.Slider:
     """Return the slider with a program of the drive, of the load, or of both."""
     which, hertz = draw.between(0.0, 3.0), f"{draw.between(10.0, 80.0)!r} Hz"
     changes: dict[str, object] = {}

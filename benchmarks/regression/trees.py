@@ -20,7 +20,7 @@ class Absent(LookupError):
     """A tree does not know what a case needs."""
 
 
-def changed(revision: str) -> bool:
+def differs(revision: str) -> bool:
     """Return whether `src` is other than in a revision, with what is not committed."""
     differs = ["git", "diff", "--quiet", revision, "--", "src"]
     new = ["git", "ls-files", "--others", "--exclude-standard", "src"]
@@ -29,7 +29,7 @@ def changed(revision: str) -> bool:
     return bool(subprocess.run(new, cwd=ROOT, check=True, capture_output=True).stdout)
 
 
-def known(revision: str) -> bool:
+def is_revision(revision: str) -> bool:
     """Return whether git knows a revision."""
     command = ["git", "rev-parse", "--quiet", "--verify", f"{revision}^{{commit}}"]
     return subprocess.run(command, cwd=ROOT, capture_output=True).returncode == 0

@@ -1,4 +1,4 @@
-"""What ratios of times say: how much longer one tree takes than the other, and how sure that is."""
+"""The verdict from ratios of times: how much longer one tree takes, with a confidence interval."""
 
 from __future__ import annotations
 

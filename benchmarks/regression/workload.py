@@ -1,4 +1,4 @@
-"""What is timed in both trees, and the process that times it.
+"""The workloads that are timed in both trees, and the process that times them.
 
 Run as a script with the tree to time on PYTHONPATH: for each line with a case's name that it reads,
 it runs that case once and answers with the seconds it took. A case that this tree does not know is
@@ -21,7 +21,7 @@ def paper(rtol: float) -> Callable[[], object]:
     return lambda: st.simulate(slider, 5.0, sample_rate=0.2, rtol=rtol)
 
 
-def sampled() -> Callable[[], object]:
+def sample_paper() -> Callable[[], object]:
     """The same, sampled at 10 kHz: dense output, and the labelled arrays."""
     slider = st.presets.nakano_popov_2020()
     return lambda: st.simulate(slider, 5.0, sample_rate=10e3)
@@ -63,7 +63,7 @@ def start() -> Callable[[], object]:
 CASES: dict[str, Callable[[], Callable[[], object]]] = {
     "Fig. 3, rtol=1e-6": lambda: paper(1e-6),
     "Fig. 3, rtol=1e-9": lambda: paper(1e-9),
-    "Fig. 3, sampled at 10 kHz": sampled,
+    "Fig. 3, sampled at 10 kHz": sample_paper,
     "rate and state": law_with_state,
     "program of the drive": program,
     "64 short runs": many,

@@ -1,1 +1,1 @@
-"""How fast: scaling, start-up, studies, memory."""
+"""Speed: scaling, start-up, studies, memory."""

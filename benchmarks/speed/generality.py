@@ -1,4 +1,4 @@
-"""What generality costs: laws, protocols and stored results beside the plain case, in one run."""
+"""The cost of generality: laws, protocols and stored results beside the plain case, in one run."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def tables(progress: Progress, quick: bool) -> tuple[Table, Table]:
     _compile(progress, list(known))
     calls = {name: _simulation(slider) for name, slider in known.items()}
     took = {name: call().statistics for name, call in calls.items()}
-    times = interleaved(progress, "laws, protocols", calls, rounds)
+    times = interleave(progress, "laws, protocols", calls, rounds)
     rows: list[tuple[Cell, ...]] = []
     for name, own in times.items():
         steps, sticks = took[name].steps, took[name].stick_count
@@ -86,7 +86,7 @@ def tables(progress: Progress, quick: bool) -> tuple[Table, Table]:
     return Table("Cost of generality", headings, rows), _storage(progress, known[PLAIN], rounds)
 
 
-def interleaved(
+def interleave(
     progress: Progress, what: str, calls: Mapping[str, Callable[[], Any]], rounds: int
 ) -> dict[str, list[float]]:
     """Return the times (s) of each call, all in turn, round after round."""
@@ -114,7 +114,7 @@ def _storage(progress: Progress, slider: st.Slider, rounds: int) -> Table:
             "writing 10 kHz": lambda: sampled.save(file),
             "reading it": lambda: st.load(file),
         }
-        times = interleaved(progress, "samples, files", calls, rounds)
+        times = interleave(progress, "samples, files", calls, rounds)
     plain = times["no samples"]
     rows = [
         (name, 1e3 * median(own), _ratio(own, plain), size if "ing" in name else "")

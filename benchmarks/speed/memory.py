@@ -1,4 +1,4 @@
-"""How much memory a run takes, each in a process of its own."""
+"""The memory of a run, each in a process of its own."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The multiscale mode beside the solver that takes every cycle in steps, over short runs and long.
+"""The multiscale mode beside the solver in steps, over short and long runs.
 
 The paper's case at a bound of the error of k_x u_x: of either the fastest row that keeps it.
 """
@@ -15,7 +15,7 @@ from rich.progress import Progress
 from benchmarks.harness.contestant import rows
 from benchmarks.harness.rounds import round_robin
 from benchmarks.harness.row import Errors, Row, fastest
-from benchmarks.harness.worker import timed
+from benchmarks.harness.worker import time_contestant
 from benchmarks.precision.case import spring_force
 from benchmarks.precision.peers.ours import MULTISCALE, SOLVER, solve
 from benchmarks.precision.reference import largest
@@ -58,7 +58,7 @@ def run(progress: Progress, quick: bool) -> Section:
     task = progress.add_task("multiscale", total=len(durations))
     pairs = []
     for duration in durations:
-        pairs.append(compared(duration))
+        pairs.append(compare_rows(duration))
         progress.advance(task)
     lines = [line(pair) for pair in pairs]
     return Section(
@@ -68,7 +68,7 @@ def run(progress: Progress, quick: bool) -> Section:
     )
 
 
-def compared(duration: float) -> Pair:
+def compare_rows(duration: float) -> Pair:
     """Time all rows in rounds and return the fastest two."""
     contestants = [
         *rows(SOLVER, solve, [{"rtol": rtol} for rtol in RTOL]),
@@ -77,7 +77,7 @@ def compared(duration: float) -> Pair:
     grid, ends = np.linspace(0.0, duration, round(1e3 * duration) + 1), np.array([0.0, duration])
     known = spring_force(solve(grid, rtol=REFERENCE))
     errors = [largest(spring_force(each.solve(grid)), known) for each in contestants]
-    measures = [partial(timed, each, ends, None) for each in contestants]
+    measures = [partial(time_contestant, each, ends, None) for each in contestants]
     times = round_robin(measures, repeats=ROUNDS, budget=inf)
     found = [
         Row(each.solver, each.settings, own, error)

@@ -1,4 +1,4 @@
-"""Scaling: time, steps and memory against what makes a run long, and what generality costs."""
+"""Scaling: time, steps and memory over the length of a run, and the cost of generality."""
 
 from __future__ import annotations
 

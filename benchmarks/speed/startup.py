@@ -1,4 +1,4 @@
-"""Start-up: what a user waits for, from an empty machine to a figure."""
+"""Start-up: the waiting times of a user, from an empty machine to a figure."""
 
 from __future__ import annotations
 
@@ -40,11 +40,15 @@ def run(progress: Progress, quick: bool) -> Section:
     task = progress.add_task("start-up", total=None)
     with tempfile.TemporaryDirectory() as folder:
         empty = {"NUMBA_CACHE_DIR": folder}
-        first = timed([sys.executable, "-c", RUN], empty)
-        later = [timed([sys.executable, "-c", RUN], empty) for _ in range(rounds)]
-    rows = [_row("python -c pass", [timed([sys.executable, "-c", "pass"]) for _ in range(rounds)])]
+        first = time_command([sys.executable, "-c", RUN], empty)
+        later = [time_command([sys.executable, "-c", RUN], empty) for _ in range(rounds)]
+    rows = [
+        _row(
+            "python -c pass", [time_command([sys.executable, "-c", "pass"]) for _ in range(rounds)]
+        )
+    ]
     for what, command in _commands().items():
-        rows.append(_row(what, [timed(command) for _ in range(rounds)]))
+        rows.append(_row(what, [time_command(command) for _ in range(rounds)]))
     rows += [_row("first run of Fig. 3", [first]), _row("later ones", later)]
     tables, notes = [Table("Fresh processes", HEADINGS, rows)], [*NOTES]
     if quick:
@@ -96,16 +100,16 @@ def cold() -> list[tuple[Cell, ...]]:
         install = [uv, "pip", "install", "--compile-bytecode", "--python", python, str(ROOT)]
         figure = [stiction, "paper", "--figure", "3", "--out", str(place / "paper")]
         steps = {
-            "new environment": timed(make, caches),
-            "install, packages downloaded": timed(install, caches),
-            "first figure, stiction paper --figure 3": timed(figure, caches),
+            "new environment": time_command(make, caches),
+            "install, packages downloaded": time_command(install, caches),
+            "first figure, stiction paper --figure 3": time_command(figure, caches),
         }
-        again = timed(figure, caches)
+        again = time_command(figure, caches)
     rows: list[tuple[Cell, ...]] = [*steps.items()]
     return [*rows, ("from nothing to a figure", sum(steps.values())), ("the figure again", again)]
 
 
-def timed(command: Sequence[str], changes: Mapping[str, str] | None = None) -> float:
+def time_command(command: Sequence[str], changes: Mapping[str, str] | None = None) -> float:
     """Return how long a command takes (s), with some variables of the environment changed.
 
     Raises

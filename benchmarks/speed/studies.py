@@ -1,4 +1,4 @@
-"""Studies: how much of the kernel's speed is left, on one thread and on all, and how much memory.
+"""Studies: their speed against the bare kernel's, on one thread and on all, and their memory.
 
 Each measurement is a process of its own.
 """
@@ -132,7 +132,7 @@ def run(progress: Progress, quick: bool) -> Section:
     found: dict[tuple[str, int], list[dict[str, Any]]] = {}
     for _ in range(rounds):
         for name, script, n in cases:
-            found.setdefault((name, n), []).append(said(script, side, n))
+            found.setdefault((name, n), []).append(output_of(script, side, n))
             progress.advance(task)
     rows: list[tuple[Cell, ...]] = []
     for (name, n), each in found.items():
@@ -163,13 +163,13 @@ def least(found: list[dict[str, Any]], what: str) -> float:
 
 def plan(runs: int, progress: Progress, task: Any) -> tuple[Cell, ...]:
     """Return the row of a study that is planned and begun."""
-    made = said(PLAN, 100, runs // 100)
+    made = output_of(PLAN, 100, runs // 100)
     progress.advance(task)
     memory = (round(made[when]) for when in ("before", "memory"))
     return f"{runs:.0e}", made["tasks"], made["metadata"], *memory
 
 
-def said(script: str, *arguments: int) -> dict[str, Any]:
+def output_of(script: str, *arguments: int) -> dict[str, Any]:
     """Return what a script prints, run in a process of its own."""
     command = [sys.executable, "-c", script, *map(str, arguments)]
     done = subprocess.run(command, check=True, capture_output=True, text=True)

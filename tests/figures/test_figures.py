@@ -1,4 +1,4 @@
-"""Every figure is drawn, and shows what it says it shows."""
+"""Every figure is drawn, and shows its data."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ from stiction.reproduction.zero_slip import zero_slip
 from stiction.text.quantity_text import metric_prefix
 
 
-def drawn(fig: Figure) -> Figure:
+def draw(fig: Figure) -> Figure:
     """Draw it for real, so that whatever is wrong with it shows."""
     fig.set_dpi(60)
     fig.draw_without_rendering()
@@ -66,7 +66,7 @@ def fine(paper_run: st.Trajectory) -> st.Trajectory:
 
 
 def test_figure3_shows_five_quantities_with_units_and_the_creep(paper_run: st.Trajectory) -> None:
-    fig = drawn(figure3(paper_run))
+    fig = draw(figure3(paper_run))
     labels = [ax.get_ylabel() for ax in fig.axes]
     assert [label.split("(")[1] for label in labels] == ["N)", "N)", "N)", "deg)", "mm)"]
     assert fig.axes[-1].get_xlabel() == "time $t$ (s)"
@@ -79,7 +79,7 @@ def test_figure3_shows_five_quantities_with_units_and_the_creep(paper_run: st.Tr
 
 
 def test_figure4_shows_the_falling_frequency(paper_run: st.Trajectory) -> None:
-    fig = drawn(figure4(paper_run))
+    fig = draw(figure4(paper_run))
     names = [ax.get_ylabel() for ax in fig.axes[:4]]
     assert names == ["$v_x$ (mm/s)", "frequency (kHz)", "$v_y$ (µm/s)", "frequency (kHz)"]
     assert fig.axes[4].get_xlabel() == "amplitude (dB re 1 µm/s)"
@@ -100,7 +100,7 @@ def test_spectrum_starts_at_the_natural_frequency_and_falls(
 
 
 def test_figure5_has_its_cross_where_zeta_is_one(slider: st.Slider) -> None:
-    fig = drawn(figure5(slider))
+    fig = draw(figure5(slider))
     (ax,) = fig.axes
     crosses = [line for line in ax.lines if line.get_marker() == "x"]
     assert len(crosses) == 1  # none for 10 deg
@@ -133,7 +133,7 @@ def test_what_has_no_damping_number_is_refused(
 
 
 def test_zero_slip_shows_rests_inside_the_circle(fine: st.Trajectory) -> None:
-    fig = drawn(zero_slip(fine, (0.5, 0.504)))
+    fig = draw(zero_slip(fine, (0.5, 0.504)))
     speed, circle, arc, force = fig.axes
     assert speed.get_ylabel().endswith("(µm/s)")
     assert len(speed.collections[0].get_paths()) == 4  # shaded once each oscillation
@@ -157,7 +157,7 @@ def test_creep_agrees_with_theory(paper_run: st.Trajectory) -> None:
     exact = theory.creep_velocity(early["time"].values, 1e-3, radians(1), 2e-3)
     np.testing.assert_allclose(early.values, exact, rtol=0.012)
     assert 2.0 < first_slip_time(paper_run) < 2.04
-    fig = drawn(creep(paper_run))
+    fig = draw(creep(paper_run))
     value, deviation = fig.axes
     assert value.get_yscale() == "log"
     assert len(value.get_legend().get_texts()) == 4
@@ -177,7 +177,7 @@ def test_schematic_draws_the_misalignment(slider: st.Slider, phi: float) -> None
     with style():
         fig = new_figure(3.4, 3.4)
         ax = draw_schematic(fig.subplots(), damped)
-    drawn(fig)
+    draw(fig)
     shown = degrees(drawn_misalignment(radians(phi)))
     assert (shown == pytest.approx(phi)) == ("drawn at" not in words(ax))
     assert f"{phi}°".replace("-", "−") in words(ax)
@@ -195,7 +195,7 @@ def test_names_of_springs_and_dampers_stand_beside_them(slider: st.Slider, phi: 
     with style():
         fig = new_figure(2.4, 2.4)
         ax = draw_schematic(fig.subplots(), slider.replace(phi=f"{phi} deg", c_x=1.0, c_y=0.5))
-    drawn(fig)
+    draw(fig)
     named = [text for text in ax.texts if "c_" in text.get_text()]
     assert len(named) == 2
     look = (BLACK, "-")
@@ -214,7 +214,7 @@ def way(arrow: FancyArrowPatch) -> float:
 
 @pytest.mark.parametrize("velocity", [1e-3, 0.0, -1e-3])
 def test_schematic_draws_any_drive(slider: st.Slider, velocity: float) -> None:
-    fig = drawn(schematic(slider.replace(drive=st.ConstantVelocity(velocity), phi="-40 deg")))
+    fig = draw(schematic(slider.replace(drive=st.ConstantVelocity(velocity), phi="-40 deg")))
     apparatus, side, top, triangle = fig.axes
     assert ("V = 0" in words(top)) == (velocity == 0) == ("V = 0" in words(side))
     assert "leaf spring" in words(apparatus)
@@ -239,7 +239,7 @@ def test_overview_of_any_system(
     slider: st.Slider, changes: dict[str, object], rate: str | None
 ) -> None:
     run = st.simulate(slider.replace(**changes), 0.1, sample_rate=rate)
-    fig = drawn(figure_of(plot_run, run))
+    fig = draw(figure_of(plot_run, run))
     text = " ".join(words(ax) for ax in fig.axes)
     assert run.status.value in text
     for ax in fig.axes[2:]:
@@ -247,7 +247,7 @@ def test_overview_of_any_system(
 
 
 def test_overview_of_the_paper_shows_every_stick(paper_run: st.Trajectory) -> None:
-    fig = drawn(figure_of(plot_run, paper_run))
+    fig = draw(figure_of(plot_run, paper_run))
     assert "2959 sticks" in words(fig.axes[1])
     stairs = fig.axes[-1].patches[0].get_data()
     share = (stairs.values * np.diff(stairs.edges)).sum() / 100
@@ -257,7 +257,7 @@ def test_overview_of_the_paper_shows_every_stick(paper_run: st.Trajectory) -> No
 def test_overview_of_a_run_that_broke_off_says_why(slider: st.Slider) -> None:
     run = st.simulate(slider, 1.0, sample_rate=1e3, max_steps=50)
     assert not run.status.ok
-    assert "max_steps" in words(drawn(figure_of(plot_run, run)).axes[1])
+    assert "max_steps" in words(draw(figure_of(plot_run, run)).axes[1])
 
 
 # --- what they are made of ---
@@ -379,7 +379,7 @@ def test_marks_of_a_small_force_leave_it_to_be_seen() -> None:
     """They touch it with their tips: that of a peak stands above, that of a trough below."""
     time = np.arange(0.0, 40.0, 0.01)
     force = np.minimum(time, 3.6) + 0.01 * np.sin(10.0 * time) * (time > 4.0)
-    ax = drawn(figure_of(plot_cycles, st.Record(time=time, force=force))).axes[0]
+    ax = draw(figure_of(plot_cycles, st.Record(time=time, force=force))).axes[0]
     for label, side in (("peak", 1.0), ("trough", -1.0)):
         (marks,) = [line for line in ax.lines if line.get_label() == label]
         look = MarkerStyle(marks.get_marker())
@@ -390,7 +390,7 @@ def test_marks_of_a_small_force_leave_it_to_be_seen() -> None:
 def test_times_of_milliseconds_are_written_so() -> None:
     time = np.arange(0.0, 8e-4, 1e-6)
     record = st.Record(time=time, force=1.0 + np.sin(2 * np.pi * time / 5e-5))
-    ax = drawn(figure_of(plot_cycles, record)).axes[-1]
+    ax = draw(figure_of(plot_cycles, record)).axes[-1]
     assert ax.get_xlabel() == "time $t$ (ms)"
     labels = [float(text.get_text()) for text in ax.get_xticklabels() if text.get_text()]
     assert 0.1 < max(labels) <= 0.8

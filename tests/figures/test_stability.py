@@ -1,4 +1,4 @@
-"""The figures of stability are drawn, and show what they say they show."""
+"""The figures of stability are drawn, and show their data."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ PAPER = st.presets.nakano_popov_2020()
 PLANE = {"x_between": ("0 deg", "25 deg"), "y_between": ("0.1 mm/s", "100 mm/s")}
 
 
-def drawn(fig: Figure) -> Figure:
+def draw(fig: Figure) -> Figure:
     fig.set_dpi(60)
     fig.draw_without_rendering()
     return fig
@@ -29,7 +29,7 @@ def test_the_map_names_both_sides_and_marks_the_slider():
     mu, slope = ([f(v) for v in speeds] for f in (PAPER.law.coefficient, PAPER.law.slope))
     known = theory.critical_misalignment(speeds, mu, slope)
     curve = boundary(PAPER, "phi", "drive.velocity", **PLANE)
-    (ax,) = drawn(figure_of(plot_boundary, curve, (known, speeds))).axes
+    (ax,) = draw(figure_of(plot_boundary, curve, (known, speeds))).axes
     places = {text.get_text(): text.get_position() for text in ax.texts}
     assert places.keys() == {"stable", "unstable"}
     for name, (x, y) in places.items():  # fractions of the axes: is it so there?
@@ -45,14 +45,14 @@ def test_the_map_names_both_sides_and_marks_the_slider():
 def test_a_plane_without_a_boundary_is_named_as_a_whole():
     slider = PAPER.replace(friction=st.Coulomb(mu_0=0.2))
     curve = boundary(slider, "phi", "mass", x_between=("1 deg", "89 deg"))
-    (ax,) = drawn(figure_of(plot_boundary, curve)).axes
+    (ax,) = draw(figure_of(plot_boundary, curve)).axes
     assert [text.get_text() for text in ax.texts] == ["stable"]
 
 
 def test_modes_have_the_critical_value_marked():
     between = ("1 deg", "30 deg")
     found = critical(PAPER, "phi", between)
-    above, below = drawn(figure_of(plot_modes, modes_over(PAPER, "phi", between), found)).axes
+    above, below = draw(figure_of(plot_modes, modes_over(PAPER, "phi", between), found)).axes
     assert "8.656" in [text.get_text() for text in above.texts]
     assert (above.get_ylabel(), below.get_ylabel()) == ("growth rate (1/s)", "frequency (Hz)")
     assert below.get_xlabel() == r"$\varphi$ (deg)"
@@ -64,7 +64,7 @@ def test_the_onset_shows_both_sweeps_and_the_hysteresis():
     c = -law.slope(0.036) * slider.normal_load
     found = st.analysis.find_onset(slider, "c_x", [0.8 * c, 1.2 * c, 2.2 * c])
     assert found.kind == "hard"
-    fig = drawn(figure_of(plot_onset, found, critical=c))
+    fig = draw(figure_of(plot_onset, found, critical=c))
     (ax,) = fig.axes
     labels = {text.get_text() for legend in [ax.get_legend()] for text in legend.get_texts()}
     assert labels == {"swept up", "swept down", "hysteresis", "linear: $c_{x}$ = 10.57 N s/m"}
@@ -119,6 +119,6 @@ def test_numbers_of_close_critical_values_stand_apart():
     rig = {"mass": 0.2, "k_x": 150, "k_y": 6e4, "phi": "0.5 deg", "normal_load": 2}
     soft = st.Slider(**rig, friction=law, drive=st.ConstantVelocity("2 mm/s"))
     found = st.stability(soft, over="phi")
-    fig = drawn(figure_of(plot_modes, found.modes, found.criticals[0]))
+    fig = draw(figure_of(plot_modes, found.modes, found.criticals[0]))
     first, second = (text.get_window_extent() for text in fig.axes[0].texts)
     assert first.x1 < second.x0

@@ -1,4 +1,4 @@
-"""What `rtol` promises, on systems that ``python -m benchmarks.explore`` draws, the worst included.
+"""The bounds of `rtol`, on systems of ``python -m benchmarks.explore``, the worst included.
 
 Both bounds hold on 30 000 of them; these are of the two laws that other tests compile as well.
 """

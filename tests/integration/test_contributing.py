@@ -1,4 +1,4 @@
-"""What CONTRIBUTING.md says of adding things is true: each is built from its text and used."""
+"""The worked examples of CONTRIBUTING.md, built from its text and used."""
 
 import os
 import re

@@ -37,12 +37,12 @@ def test_nonsense_is_refused_in_words(reader, folder):
 def test_the_corpus_is_the_same_each_time(folder):
     def drawn():
         draw = fuzz.Draw(SEED, 3)
-        return repr([fuzz.damaged(draw, fuzz.STUDY.to_dict()) for _ in range(20)])
+        return repr([fuzz.damage_tree(draw, fuzz.STUDY.to_dict()) for _ in range(20)])
 
     assert drawn() == drawn()
 
 
-def refused(text, *options, capsys, tmp_path):
+def refusal(text, *options, capsys, tmp_path):
     """Return what the command line says of a description."""
     path = tmp_path / "a.toml"
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
@@ -77,7 +77,7 @@ GOOD = st.Description(fuzz.PAPERS, st.Initial(), fuzz.SETTINGS).to_toml()
 )
 def test_a_value_that_broke_it_once(value, path, said, capsys, tmp_path):
     text = GOOD.replace('mass = "250 g"', f"mass = {value}")
-    told = refused(text, capsys=capsys, tmp_path=tmp_path)
+    told = refusal(text, capsys=capsys, tmp_path=tmp_path)
     where = str(tmp_path / path) if path == "a.toml" else f"slider.{path}"
     assert f"  {where}: " in told
     assert said in told
@@ -88,7 +88,7 @@ def test_a_value_that_broke_it_once(value, path, said, capsys, tmp_path):
 @pytest.mark.parametrize("value", ["1e-320", "1e300", "1e-59", "1e59"])
 def test_a_magnitude_is_refused_or_run(name, value):
     """Whatever may be written can be squared, and multiplied by all else."""
-    with told() as refused:
+    with refusals() as refused:
         described = st.Description.from_toml(GOOD, {name: float(value)})
         coarse = described.run.model_copy(update={"sample_rate": 0.0})
         found = run(described._replace(run=coarse), max_steps=200)
@@ -99,7 +99,7 @@ def test_a_magnitude_is_refused_or_run(name, value):
 
 
 @contextmanager
-def told():
+def refusals():
     """Yield a list that holds what was refused, if anything was, in the end."""
     seen = []
     try:
@@ -118,7 +118,7 @@ def test_what_is_no_description_in_json(text):
 
 def test_every_fault_of_a_file_is_told_at_once(capsys, tmp_path):
     text = GOOD.replace('mass = "250 g"', "mass = 1e400").replace("v_f", "v_F") + "x = 1\n[y]\n"
-    told = refused(text, capsys=capsys, tmp_path=tmp_path)
+    told = refusal(text, capsys=capsys, tmp_path=tmp_path)
     for path in ("slider.mass", "friction.v_f", "friction.v_F", "run.x", "y"):
         assert f"  {path}: " in told
 

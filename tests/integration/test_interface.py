@@ -1,4 +1,4 @@
-"""What a user sees of the names: signatures, help, texts that can be pasted back, TOML."""
+"""The interface that a user sees: names, signatures, help, texts that can be pasted back, TOML."""
 
 import inspect
 import pydoc

@@ -1,4 +1,4 @@
-"""What the numbers of a run promise: samples, sticks, small vibrations, and any units."""
+"""The numbers of a run: samples, sticks, small vibrations, and any units."""
 
 from math import pi
 

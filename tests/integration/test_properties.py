@@ -1,4 +1,4 @@
-"""What must hold for any system: energy, symmetry, scaling, restart; and that no run hangs."""
+"""Properties of any system: energy, symmetry, scaling, restart, and an end of each run."""
 
 from math import pi
 
@@ -33,7 +33,7 @@ def slider_of(draw: Draw, damped: bool = True) -> st.Slider:
     )
 
 
-def drawn(count: int) -> pytest.MarkDecorator:
+def on_draws(count: int) -> pytest.MarkDecorator:
     """Repeat a test with so many streams of random numbers, the same each time."""
     return pytest.mark.parametrize("number", range(count))
 
@@ -83,7 +83,7 @@ def energy_residual(run: st.Trajectory, every: int) -> tuple[float, float]:
     return residual, abs(work) + friction + damper + np.ptp(stored)
 
 
-@drawn(40)
+@on_draws(40)
 def test_energy_balance(draw):
     slider = slider_of(draw)
     # from the end of the first stick on, so that the samples resolve what happens
@@ -100,7 +100,7 @@ def test_energy_balance(draw):
     assert abs(fine) <= abs(coarse - fine) + 10 * 5e-7 * scale
 
 
-@drawn(25)
+@on_draws(25)
 def test_mirror_symmetry(draw):
     slider = slider_of(draw)
     """phi -> -phi mirrors the motion at the x axis, to the last bit."""
@@ -112,7 +112,7 @@ def test_mirror_symmetry(draw):
     assert np.array_equal(one.stick_intervals, other.stick_intervals)
 
 
-@drawn(25)
+@on_draws(25)
 def test_dimensional_scaling(draw):
     """Other units of mass, length and time leave the dimensionless solution unchanged."""
     slider = slider_of(draw, damped=False)
@@ -141,7 +141,7 @@ def test_dimensional_scaling(draw):
         assert got == pytest.approx(want[: len(got)], rel=1e-5, abs=1e-6 * np.abs(want).max())
 
 
-@drawn(25)
+@on_draws(25)
 def test_restart_continues_the_trajectory(draw):
     slider, k = slider_of(draw), int(draw.between(5, 196))
     duration = some_periods(slider, 3.0)
@@ -160,7 +160,7 @@ def test_restart_continues_the_trajectory(draw):
         assert got[:n] == pytest.approx(want[:n], rel=1e-4, abs=scale)
 
 
-@drawn(60)
+@on_draws(60)
 def test_far_from_the_paper_a_run_ends_and_is_finite(draw):
     phi, ratio = draw.among([0.0, 0.01, 1.0, 30.0, 89.0, 90.0]), draw.decades(1.0, 1e6)
     V, mass, mu_inf = draw.decades(1e-7, 1.0), draw.decades(1e-4, 1e3), draw.between(0.0, 0.5)

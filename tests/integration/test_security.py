@@ -1,4 +1,4 @@
-"""What SECURITY.md promises, a test for each line; laws of files are in `test_user`."""
+"""The promises of SECURITY.md, a test for each line; laws of files are in `test_user`."""
 
 import gc
 import json

@@ -1,4 +1,4 @@
-"""Fig. 3's system: what a tolerance means, and what samples do not change.
+"""Fig. 3's system: the meaning of a tolerance, and samples that change nothing.
 
 The reference values are among the verification cases.
 """

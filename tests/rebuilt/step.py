@@ -65,7 +65,7 @@ class Step:
 
     # section 6
 
-    def laid(self, h):
+    def is_laid_over(self, h):
         """Return whether a step is laid over the oscillation."""
         return 1e-3 < self.k[0, 0] * h * h < 6.25 and self.weak
 
@@ -81,7 +81,7 @@ class Step:
 
     def terms(self, h):
         """Return p and its derivative at the stages, R and Z (M25), and (M46)."""
-        if not self.laid(h):
+        if not self.is_laid_over(h):
             return np.zeros((6, 3))
         p, v, a, z = self.oscillation(C * h)
         R, Z = h * v - D @ (p - self.r), z / h - A @ p
@@ -162,7 +162,7 @@ class Step:
     def guess(self, h):
         """Return the first guess of the stages."""
         c, last = C * h, self.run.last
-        if self.laid(h):
+        if self.is_laid_over(h):
             p, v, _, Z, _, _ = self.terms(h)
             pull = self.a[1] - self.turn + self.db[1] * c - self.k[0, 1] * h * (A @ p + Z)
             rows = p[:, None] * D + h * h * self.k[1, 1] * A * p + h * np.diag(self.f + v)
@@ -183,7 +183,7 @@ class Step:
 
     def inside(self, c, h, p):
         """Return p and its derivative by c: the oscillation, and the cubic of the rest."""
-        laid = self.laid(h)
+        laid = self.is_laid_over(h)
         rest = cubic(0.0 if laid else self.r, p - self.terms(h)[0])
         above, rate = self.oscillation(c * h)[:2] if laid else (0.0, 0.0)
         return np.polyval(rest, c) + above, np.polyval(np.polyder(rest), c) + h * rate
@@ -192,11 +192,13 @@ class Step:
         """Return the distances slid."""
         rest = p - self.terms(h)[0]
         z = [h * np.polyval(np.polyint(TO_QUADRATIC @ each), c) for each in (rest, p * w)]
-        return np.array([z[0] + (self.oscillation(c * h)[3] if self.laid(h) else 0.0), z[1]])
+        return np.array(
+            [z[0] + (self.oscillation(c * h)[3] if self.is_laid_over(h) else 0.0), z[1]]
+        )
 
     def error(self, h, p, w):
         """(M38), at one point or at two."""
-        points = (0.4, 0.85) if self.k[0, 0] * h * h > 6.25 else (0.4,)
+        points = (0.4, 0.85) if np.diag(self.k).max() * h * h > 6.25 else (0.4,)
         return max(self.error_at(c, h, p, w) for c in points)
 
     def error_at(self, c, h, p, w):
@@ -235,13 +237,16 @@ class Step:
     def kinds(self, h):
         """Return words for the step."""
         long = {"long"} if self.k[0, 0] * h * h > 6.25 else set()
-        return long | {"laid over" if self.laid(h) else "plain", "slip" if self.r else "take-off"}
+        return long | {
+            "laid over" if self.is_laid_over(h) else "plain",
+            "slip" if self.r else "take-off",
+        }
 
     # section 13
 
-    def improved(self, t):
+    def improve(self, t):
         """Return the time to zero slip after a step of Newton's method on the oscillation."""
-        if not self.laid(t):
+        if not self.is_laid_over(t):
             return t
         p, v, _, _ = self.oscillation(t)
         return max(t - p / v, 0.5 * t) if v < 0 else t
@@ -254,7 +259,7 @@ class Step:
             return inf
         root = sqrt(square)
         t = 2 * self.r / (root - self.dp) if self.dp < 0 else (self.dp + root) / -curve
-        return self.improved(t) if t < 2.5 * h else t
+        return self.improve(t) if t < 2.5 * h else t
 
     def pursuit(self):
         """Return the time to the end and the distance until then (M49), if (M50) lets."""
@@ -281,8 +286,8 @@ class Step:
         T = self.time_to_landing(h)
         if h <= 0.55 * T:
             return h, False
-        rest, passes = self.improved(T), False
-        if self.laid(rest):
+        rest, passes = self.improve(T), False
+        if self.is_laid_over(rest):
             z = self.oscillation(rest)[3]
             passes = run.margin(run.u + run.v_d * rest - z * self.e) > 0
         return (0.55 * T, False) if h < 1.1 * T or passes else (rest, True)

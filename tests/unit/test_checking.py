@@ -1,4 +1,4 @@
-"""What is damaged is never silent: it is refused, or computed again and then as it was."""
+"""Damage is never silent: it is refused, or the damaged part is computed again, bit by bit."""
 
 import json
 import pickle
@@ -237,7 +237,7 @@ def test_a_study_that_is_not_done_is_no_damage(store, tmp_path):
     assert (found.ok, found.pending) == (True, 1)
 
 
-def unchecked(path: Path) -> Path:
+def write_format_1(path: Path) -> Path:
     """Make of a store one of format 1, as versions without checksums wrote it."""
     for file in [each for each in path.rglob("*") if each.is_file()]:
         if file.name != "zarr.json":
@@ -259,7 +259,7 @@ def without_codec(table: dict) -> dict:
 
 
 def test_a_store_without_checksums_goes_on(store, tmp_path):
-    path = unchecked(shutil.copytree(store, tmp_path / "a.zarr"))
+    path = write_format_1(shutil.copytree(store, tmp_path / "a.zarr"))
     right = xr.open_zarr(store).load().drop_attrs(deep=False)
     assert st.open_study(path).load().drop_attrs(deep=False).identical(right)
     (path / "status" / "c" / "0" / "0").write_bytes(b"")  # as a power cut left it

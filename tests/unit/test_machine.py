@@ -1,4 +1,4 @@
-"""What takes more memory than the machine lends is refused before it is asked for."""
+"""Objects larger than the available memory are refused before they are allocated."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ def small(monkeypatch):
     monkeypatch.setattr(machine, "largest_object", lambda: 1e9)
 
 
-def told(make) -> str:
+def fault_of(make) -> str:
     with pytest.raises(st.DescriptionError) as error:
         make()
     return str(error.value)
@@ -25,19 +25,21 @@ def told(make) -> str:
 def test_samples_are_refused_by_their_path(tmp_path):
     text = BASE.to_toml().replace('duration = "5 ms"', 'duration = "5 s"\nsample_rate = "10 MHz"')
     (tmp_path / "a.toml").write_text(text)
-    said = told(lambda: st.Description.from_toml(tmp_path / "a.toml"))
+    said = fault_of(lambda: st.Description.from_toml(tmp_path / "a.toml"))
     assert said.startswith(
         "run.sample_rate: duration times sample_rate is 5e+07 samples, which takes"
     )
     assert "15 GB of memory, and this machine lends 1 GB; lower the rate" in said
-    assert "run.sample_rate: makes 5e+06 samples in 2 runs" in told(
+    assert "run.sample_rate: makes 5e+06 samples in 2 runs" in fault_of(
         lambda: st.compare(BASE._replace(run=st.Settings(duration=25, sample_rate=1e5)), "coulomb")
     )
 
 
 @pytest.mark.parametrize("kind", [st.Grid, st.Random, st.Sobol])
 def test_an_axis_is_refused_before_it_is_made(kind):
-    said = told(lambda: st.Study(base=BASE, axes={"phi": kind("1 deg", "2 deg", 1_000_000_000)}))
+    said = fault_of(
+        lambda: st.Study(base=BASE, axes={"phi": kind("1 deg", "2 deg", 1_000_000_000)})
+    )
     assert "axes.phi.count: 1000000000 values: takes" in said
 
 
@@ -45,10 +47,10 @@ def test_runs_and_traces_are_refused_before_they_are_laid_out():
     def axes(count):
         return {"phi": st.Grid("1 deg", "2 deg", count), "k_x": st.Grid(1e3, 2e3, count)}
 
-    assert "axes: 100000 x 100000 runs: to count them takes" in told(
+    assert "axes: 100000 x 100000 runs: to count them takes" in fault_of(
         lambda: st.Study(base=BASE, axes=axes(100_000))
     )
-    assert "trace_samples: 1 measures, 1 traces of 100000 samples of each run: takes" in told(
+    assert "trace_samples: 1 measures, 1 traces of 100000 samples of each run: takes" in fault_of(
         lambda: st.Study(
             base=BASE, axes=axes(10_000), measures=["regime"], traces=["force"],
             trace_samples=100_000,
@@ -62,14 +64,14 @@ def test_sticks_are_refused_before_there_is_room_for_them():
     out.make_room(4096)
     assert len(out.sticks) == 8192
     out.sticks = np.zeros((2**23, 2))
-    said = told(lambda: out.make_room(2**23))
+    said = fault_of(lambda: out.make_room(2**23))
     assert said.startswith("run.duration: more than 8388608 sticks, of which each is recorded")
     assert said.endswith("this machine lends 1 GB; shorten it")
 
 
 def test_a_multiscale_run_ends_before_it_fills_the_memory(monkeypatch):
     monkeypatch.setattr(machine, "largest_object", lambda: 1e6)  # room for some thousand sticks
-    said = told(lambda: st.simulate(BASE.slider, 1e9, multiscale=True))
+    said = fault_of(lambda: st.simulate(BASE.slider, 1e9, multiscale=True))
     assert said.startswith("run.duration: more than 8192 sticks")
 
 

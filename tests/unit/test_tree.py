@@ -1,6 +1,7 @@
 """The tree: rooms stay small, and what benchmarks import is there."""
 
 import ast
+import re
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -10,6 +11,13 @@ from benchmarks.__main__ import PARTS
 ROOT = Path(__file__).parents[2]
 DOZEN = 12
 TREES = ("src/stiction", "tests", "benchmarks")
+PARTICIPLE = re.compile(
+    "[a-z]+(ed|en)|(k|cr|sw|sl)ept|known|shown|drawn|grown|torn|told|held|sold|made|done|said|gone"
+    "|found|wound|lent|bent|left|lost|meant|paid|sought|thought|spent|stuck|sung|swung|risen"
+)
+NO_PARTICIPLES = {"between", "len", "reopen", "speed", "seed"}
+# decorators describe the function below them; laws of users, stored in results, have `settled`
+CONTRACTS = {"compiled", "inlined", "settled", "disturbed"}
 BENCHMARKS = sorted((ROOT / "benchmarks").rglob("*.py"))
 
 
@@ -35,3 +43,22 @@ def test_what_a_benchmark_imports_of_ours_is_there(path):
 
 def test_each_part_of_the_benchmark_is_there():
     assert [part for part in PARTS.values() if find_spec(f"benchmarks.{part}") is None] == []
+
+
+def functions_of(tree):
+    """Yield the functions and methods of a module; properties and fixtures describe a thing."""
+    owners = [tree, *(node for node in tree.body if isinstance(node, ast.ClassDef))]
+    for node in (node for owner in owners for node in owner.body):
+        marks = " ".join(map(ast.unparse, getattr(node, "decorator_list", [])))
+        if isinstance(node, ast.FunctionDef) and not re.search("property|fixture", marks):
+            yield node.name.strip("_")
+
+
+def test_functions_are_nouns_or_imperatives():
+    """No name is a lone participle (CONTRIBUTING, English)."""
+    wrong = set()
+    for path in (path for tree in TREES for path in (ROOT / tree).rglob("*.py")):
+        for name in functions_of(ast.parse(path.read_text("utf-8"))):
+            if PARTICIPLE.fullmatch(name) and name not in NO_PARTICIPLES | CONTRACTS:
+                wrong.add(f"{path.relative_to(ROOT)}: {name}")
+    assert sorted(wrong) == []

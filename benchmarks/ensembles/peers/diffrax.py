@@ -7,7 +7,7 @@ import numpy as np
 from benchmarks.ensembles.many import PHI
 from benchmarks.harness.contestant import Contestant, Failed, rows
 from benchmarks.precision.case import drive, initial_state
-from benchmarks.precision.peers.diffrax import jitted
+from benchmarks.precision.peers.diffrax import jit_method
 
 KVAERNO3 = (
     {"delta": 3e-6, "rtol": 1e-3, "atol": 1e-8},
@@ -30,7 +30,7 @@ def solver(method):
     """Return the function that solves by a method."""
     import jax
 
-    run = jax.jit(jax.vmap(jitted(method), in_axes=(None, 0, (0, 0, None), None, None)))
+    run = jax.jit(jax.vmap(jit_method(method), in_axes=(None, 0, (0, 0, None), None, None)))
     states = np.array([initial_state(phi) for phi in PHI])
     v_x, v_y = np.array([drive(phi) for phi in PHI]).T
 

@@ -9,7 +9,7 @@ import numpy as np
 from benchmarks.ensembles.many import PHI
 from benchmarks.harness.contestant import Contestant, Failed, rows
 from benchmarks.precision.case import drive, initial_state
-from benchmarks.precision.peers.heyoka import regularised
+from benchmarks.precision.peers.heyoka import regularise
 
 SETTINGS = (
     {"delta": 3e-6, "tol": 1e-5},
@@ -23,7 +23,7 @@ def contestants() -> list[Contestant]:
     """Return the rows of both ways."""
     import heyoka as hy
 
-    system = regularised(hy)
+    system = regularise(hy)
     states = np.array([initial_state(phi) for phi in PHI])
     drives = np.array([drive(phi) for phi in PHI])
 

@@ -43,7 +43,7 @@ def contestants() -> list[Contestant]:
 
 def solver(method):
     """Return the function that solves by a method."""
-    run = jitted(method)
+    run = jit_method(method)
 
     def solve(times, *, delta, rtol, atol, phi=PHI):
         found, success = run(times, initial_state(phi), (*drive(phi), delta), rtol, atol)
@@ -67,7 +67,7 @@ def rates(t, state, parameters):
     )
 
 
-def jitted(method):
+def jit_method(method):
     """Return ``(times, state, parameters, rtol, atol) -> (elongations, success)``, compiled."""
     import diffrax
     import jax

@@ -47,7 +47,7 @@ def friction(hy, speed):
     return (MU_INF + (MU_0 - MU_INF) * hy.exp(speed * (-1.0 / V_F))) * (W / MASS)
 
 
-def regularised(hy):
+def regularise(hy):
     """Return the system in ``(u_x, u_y, s_x, s_y)`` with parameters ``(v_x, v_y, delta)``."""
     u_x, u_y, s_x, s_y = hy.make_vars("u_x", "u_y", "s_x", "s_y")
     length = hy.sqrt(s_x * s_x + s_y * s_y + hy.par[2] * hy.par[2])
@@ -72,7 +72,7 @@ class Regularised:
     def solve(self, times, *, delta, tol, phi=PHI):
         """Solve at a tolerance, the regularisation being a parameter at run time."""
         if tol not in self.built:
-            self.built[tol] = self.hy.taylor_adaptive(regularised(self.hy), np.zeros(4), tol=tol)
+            self.built[tol] = self.hy.taylor_adaptive(regularise(self.hy), np.zeros(4), tol=tol)
         integrator = self.built[tol]
         integrator.time, integrator.pars[:] = 0.0, [*drive(phi), delta]
         integrator.state[:] = initial_state(phi)
@@ -127,7 +127,7 @@ class EventDriven:
                 # landing and stick: the spring's end drags the elongation along
                 moved = t + landing_time(u, r, theta)
                 u = u + v * (moved - t) - 0.5 * r * (moved - t) * np.array([cos(theta), sin(theta)])
-                t = moved + held(u, v)
+                t = moved + holding_time(u, v)
                 while done < len(times) and times[done] <= t + TAKE_OFF:
                     found[done] = u + v * (times[done] - moved)
                     done += 1
@@ -157,7 +157,7 @@ def landing_time(u, r, theta):
     return r * (HELD + along) / (HELD * HELD - a @ a)
 
 
-def held(u, v):
+def holding_time(u, v):
     """Return how long friction holds, s: until ``|a + a' t|`` is what it can hold."""
     a, change = STIFFNESS * u, STIFFNESS * v
     square, mixed, rest = change @ change, a @ change, HELD * HELD - a @ a

@@ -30,7 +30,7 @@ LSODA = (
 
 def contestants() -> list[Contestant]:
     """Return the rows of JiTCODE."""
-    ode = compiled()
+    ode = compile_system()
 
     def solve(times, *, delta, rtol, atol, phi=PHI):
         ode.set_parameters(*drive(phi), delta)
@@ -47,7 +47,7 @@ def contestants() -> list[Contestant]:
     return rows("LSODA (JiTCODE)", solve, LSODA)
 
 
-def compiled():
+def compile_system():
     """Return the system of JiTCODE, compiled."""
     import symengine
     from jitcode import jitcode, y

@@ -25,7 +25,7 @@ def contestants() -> list[Contestant]:
     ]
 
 
-def compiled() -> None:
+def compile_rows() -> None:
     """Compile for the multiscale rows: what one process compiles is on disk for all."""
     solve(ENDS, rtol=1e-3, multiscale=True)
 

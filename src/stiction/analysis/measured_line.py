@@ -86,11 +86,11 @@ def strongest_line(
         found = follow_ridge(lines.assign_attrs(units="N"), low, 0.5 * rate)
     except ValueError as error:  # too few samples in a window, or lines above `low`
         raise ResultError(str(error)) from None
-    found["frequency"] = found["frequency"].where(_lost(grid, found, chosen) <= LOST)
+    found["frequency"] = found["frequency"].where(_missing_share(grid, found, chosen) <= LOST)
     return found.assign(frequency_error=_frequency_error(found, lines))
 
 
-def _lost(grid: EvenGrid, found: xr.Dataset, width: float) -> np.ndarray:
+def _missing_share(grid: EvenGrid, found: xr.Dataset, width: float) -> np.ndarray:
     """Return the share of samples that are missing in each window."""
     lost = np.concatenate([[0], np.cumsum(grid.missing)])
     middle = (found["time"].values - grid.start) / grid.step

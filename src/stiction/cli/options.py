@@ -55,7 +55,7 @@ def description_from(
     from stiction.system.description import Description
     from stiction.text.paths import with_changes
 
-    found = chosen(config, preset)
+    found = choose(config, preset)
     if found is None:
         return Description.from_toml(Path(str(config)), given, trust=trust)
     made = found.make()
@@ -68,12 +68,12 @@ def slider_from(
     """Do as `description_from` for a slider alone: a file's [run] is not read."""
     from stiction.system.slider import Slider
 
-    if chosen(config, preset) is None:
+    if choose(config, preset) is None:
         return Slider.from_toml(Path(str(config)), given, trust=trust)
     return description_from(config, preset, given, trust).slider
 
 
-def chosen(config: Path | None, preset: str | None) -> Preset | None:
+def choose(config: Path | None, preset: str | None) -> Preset | None:
     """Return the requested preset, None for a file; one of both must be given."""
     from stiction.presets import find
 

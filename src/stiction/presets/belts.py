@@ -153,7 +153,9 @@ def _veraszto(run: Trajectory) -> list[float]:
     hopf = float(brentq(growth, 0.15, 0.25, xtol=1e-12))  # type: ignore[no-untyped-call]
     landed = float(run.stick_intervals[1, 0] - run.stick_intervals[0, 1])
     at = float(np.interp(run.stick_intervals[1, 0], run.data["time"], run.data["u_x"]))
-    above = simulate(veraszto(0.28), 10.0, initial=_loaded(0.28), rtol=1e-9, sample_rate=0)
+    above = simulate(
+        veraszto(0.28), 10.0, initial=_start_before_slip(0.28), rtol=1e-9, sample_rate=0
+    )
     last = float(above.stick_intervals[:, 1].max(initial=0.0))
     return [
         hopf,
@@ -166,7 +168,7 @@ def _veraszto(run: Trajectory) -> list[float]:
     ]
 
 
-def _loaded(V: float) -> Initial:
+def _start_before_slip(V: float) -> Initial:
     """Return the start just before a stick ends, where k u + c V is the static friction."""
     slider = veraszto(V)
     u = (slider.F_0 - slider.c_x * V) / slider.k_x
@@ -198,4 +200,4 @@ def veraszto_stepan() -> Description:
     depends on the start.
     """
     settings = Settings(duration=1.0, sample_rate=100e3, rtol=1e-10)
-    return Description(veraszto(COEXIST), _loaded(COEXIST), settings)
+    return Description(veraszto(COEXIST), _start_before_slip(COEXIST), settings)

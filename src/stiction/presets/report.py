@@ -115,11 +115,11 @@ def init(
     StictionError
         If the file exists, or cannot be written, or if there is no such preset.
     """
-    text = template_text() if preset is None else commented(find(preset))
+    text = template_text() if preset is None else comment(find(preset))
     return write_description(path, text, force=force, schema=schema)
 
 
-def commented(preset: Preset) -> str:
+def comment(preset: Preset) -> str:
     """Return the description of a preset in TOML, below what is known of it, as comments."""
     lines: list[str] = []
     for part in story(preset)[:-1]:

@@ -22,7 +22,7 @@ STRING = (
 )
 
 
-def bowed(law: Any) -> Description:
+def cello_string(law: Any) -> Description:
     """Return the point of a cello's G string under the bow: one mode, 0.3439 m/s, 2.3433 N."""
     slider = on_a_line(
         mass=2.784e-3, k_x=2954.0, normal_load=2.3433, friction=law, drive=ConstantVelocity(0.3439)
@@ -53,7 +53,7 @@ def _curve(*mu: float) -> tuple[Published, ...]:
 )
 def rosin_two_exponentials() -> Description:
     """mu = 0.4 exp(-v/10 mm/s) + 0.45 exp(-v/100 mm/s) + 0.35, as measured in steady sliding."""
-    return bowed(TwoExponentials(0.35, 0.4, 0.01, 0.45, 0.1))
+    return cello_string(TwoExponentials(0.35, 0.4, 0.01, 0.45, 0.1))
 
 
 @preset(
@@ -67,7 +67,7 @@ def rosin_two_exponentials() -> Description:
 )
 def rosin_power_law() -> Description:
     """mu = 0.2 (v + 0.011)^(-0.4), v in m/s: a fit that goes on falling."""
-    return bowed(PowerLawWeakening(0.2 * 0.011**-0.4, 0.011, 0.4))
+    return cello_string(PowerLawWeakening(0.2 * 0.011**-0.4, 0.011, 0.4))
 
 
 @preset(
@@ -81,4 +81,4 @@ def rosin_power_law() -> Description:
 )
 def rosin_hyperbolic() -> Description:
     """mu = 0.4 + 0.08/(v + 0.2), v in m/s: less weakening, over a higher speed."""
-    return bowed(HyperbolicWeakening(0.8, 0.2, mu_inf=0.4))
+    return cello_string(HyperbolicWeakening(0.8, 0.2, mu_inf=0.4))

@@ -25,7 +25,7 @@ def _late(run: Trajectory) -> tuple[float, float]:
     return float(force.mean()), float(np.ptp(force))
 
 
-def _changed(run: Trajectory, **changes: Any) -> Trajectory:
+def _change(run: Trajectory, **changes: Any) -> Trajectory:
     """Return the run with some parameters of its slider changed."""
     from stiction.simulation import run as simulate
 
@@ -35,7 +35,7 @@ def _changed(run: Trajectory, **changes: Any) -> Trajectory:
 
 def _brake(run: Trajectory) -> list[float]:
     angles = ("1 deg", "4 deg", "12 deg", "25 deg")
-    means, swings = zip(*(_late(_changed(run, phi=phi)) for phi in angles), strict=True)
+    means, swings = zip(*(_late(_change(run, phi=phi)) for phi in angles), strict=True)
     falling = bool(np.all(np.diff(swings) < 0.0))
     return [falling, swings[-1] < 1e-6 * means[-1], means[-1] >= max(means[:-1])]
 
@@ -82,7 +82,7 @@ SPEEDS = (0.01, 0.03, 0.1, 0.3, 1.0)  # m/s
 
 def _wiper(run: Trajectory) -> list[float]:
     def swing(phi: str, V: float) -> float:
-        return _late(_changed(run, phi=phi, drive=ConstantVelocity(V)))[1]
+        return _late(_change(run, phi=phi, drive=ConstantVelocity(V)))[1]
 
     load = run.slider.normal_load
     smooth = all(swing("40 deg", V) < 0.02 * load for V in SPEEDS)
@@ -138,7 +138,7 @@ def in_series(contact: float) -> tuple[float, float]:
 def _tip(run: Trajectory) -> list[float]:
     def sideways(contact: float) -> float:
         k_x, k_y = in_series(contact)
-        end = _changed(run, k_x=k_x, k_y=k_y, drive=ConstantVelocity(1e-4)).final
+        end = _change(run, k_x=k_x, k_y=k_y, drive=ConstantVelocity(1e-4)).final
         return float(abs(end["Y"]) / np.hypot(end["u_x"], end["u_y"]))
 
     return [1e9 * float(run.final["Y"]), sideways(1e-2) < 0.01]
@@ -192,7 +192,7 @@ def friction_force_microscope() -> Description:
 
 def _paper(run: Trajectory) -> list[float]:
     load = run.slider.normal_load
-    soft, stiff = (_late(_changed(run, k_x=k, k_y=k))[1] for k in (500.0, 5e3))
+    soft, stiff = (_late(_change(run, k_x=k, k_y=k))[1] for k in (500.0, 5e3))
     return [soft > 1e-3 * load, stiff < 1e-6 * load]
 
 

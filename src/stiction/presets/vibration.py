@@ -21,7 +21,7 @@ PERIODS = 100  # until the forced vibration is periodic
 SAMPLES, FINE = 100, 20_000  # a period; to measure
 
 
-def forced(r: float, S: float) -> Description:
+def forced_oscillator(r: float, S: float) -> Description:
     """Return Den Hartog's oscillator, m = k = P_0 = 1, at a frequency ratio and a friction ratio.
 
     With x = d - u, the slip, Eq. (1) is m x'' + k x = m d'' + k d - F sign(x'): the drive
@@ -35,7 +35,7 @@ def forced(r: float, S: float) -> Description:
 
 
 def amplitudes(run: Trajectory) -> tuple[float, float, int]:
-    """Return both amplitudes of the slip in the period after a `forced` run, and its stops."""
+    """Return both amplitudes of the slip in the period after such a run, and its stops."""
     from stiction.simulation import simulate
 
     r, end = 2 * pi * run.slider.shaken[0], float(run.final["time"])
@@ -80,7 +80,7 @@ def den_hartog() -> Description:
     W = tan(pi/2r)/r, which is 1.9277745 here. The benchmark has two more pairs (r, S). The force is
     that of an accelerated plate; the slip is the mass's displacement in his terms.
     """
-    return forced(0.7, 0.2)
+    return forced_oscillator(0.7, 0.2)
 
 
 FIRST, RADIUS = atan(6 / 13), sqrt(13**2 + 6**2) - 1  # of the first half circle about -1
@@ -125,7 +125,7 @@ def free_vibration() -> Description:
     return Description(slider, start, Settings(duration=30.0, sample_rate=1e3, rtol=1e-9))
 
 
-def shaken(r: float) -> Description:
+def shaken_slider(r: float) -> Description:
     """Return a stiff slider, driven at 1 m/s and shaken across with a velocity amplitude `r`."""
     k = 1e6 * (2 * pi) ** 2  # so stiff that the mass lags by 1e-6 of the travel; critically damped
     slider = on_a_line(
@@ -138,7 +138,7 @@ def shaken(r: float) -> Description:
 
 
 def mean_friction(run: Trajectory) -> float:
-    """Return the mean force along X over mu_0 W in the last period of a `shaken` run."""
+    """Return the mean force along X over mu_0 W in the last period of a `shaken_slider` run."""
     last = run.data.isel(time=slice(-2000, None))  # a whole period: the damper's part is nought
     return float(last["spring_x"].mean()) / (0.3 * run.slider.normal_load)
 
@@ -159,4 +159,4 @@ def transverse_vibration() -> Description:
     of a rigid slider the mean friction along the way is mu_0 W (2/pi) K(-r^2), r = 2 the ratio of
     both velocities and K the complete elliptic integral of the parameter -r^2.
     """
-    return shaken(2.0)
+    return shaken_slider(2.0)

@@ -63,7 +63,7 @@ class Factors(NamedTuple):
 
 
 @inlined
-def eliminated(pp: Matrix, pw: Matrix, wp: Matrix, ww: Matrix) -> Factors:
+def eliminate(pp: Matrix, pw: Matrix, wp: Matrix, ww: Matrix) -> Factors:
     """Return the factors of the matrix of the four blocks."""
     inverse_ww = inverse(ww)
     w_by_p = product(inverse_ww, wp)
@@ -75,7 +75,7 @@ def eliminated(pp: Matrix, pw: Matrix, wp: Matrix, ww: Matrix) -> Factors:
 
 
 @inlined
-def solved(m: Factors, right_p: Triple, right_w: Triple) -> tuple[Triple, Triple]:
+def solve_blocks(m: Factors, right_p: Triple, right_w: Triple) -> tuple[Triple, Triple]:
     """Return (p, w) for the given right-hand side."""
     w = times(m.inverse_ww, right_w)
     p = times(m.inverse_pp, less(right_p, times(m.p_by_w, w)))

@@ -29,8 +29,8 @@ from stiction.system.description import Description
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
 
-LEAST = 1e-15  # of the initial speeds: slower slip counts as zero
-ROUNDING = 1e-13  # of velocities: error that any step may have, well above a float's rounding
+LEAST_SPEED = 1e-15  # of the initial speeds: slower slip counts as zero
+LEAST_MOTION = 1e-13  # of velocities: error that any step may have, well above a float's rounding
 TINY = float(np.finfo(np.float64).tiny)
 FACTOR = 0.8  # of (M39): measured by python -m benchmarks --only calibration
 BUDGET = 100_000  # turns of the loop between two progress reports: some 30 ms
@@ -88,7 +88,7 @@ def accuracy(
     if free > 0.0:
         speed = min(speed, free)
     weakening = 0.0 if has_state(law) else steepest_weakening(law, speed) * load
-    speed = max(speed / (1.0 + weakening**2 / (k * slider.mass)), LEAST * elastic, TINY)
+    speed = max(speed / (1.0 + weakening**2 / (k * slider.mass)), LEAST_SPEED * elastic, TINY)
     local = tolerance(rtol)
     # (M34): Newton's error must not show at a step's end, which is more accurate than its interior
     newton = min(0.2, 100.0 * sqrt(local)) * local
@@ -96,7 +96,7 @@ def accuracy(
     longest = 0.5 * pi / rate if rate > 0.0 else inf
     drive = along or across or inf
     touch = local * speed
-    least = ROUNDING * (along + across + free_x + free_y) / local
+    least = LEAST_MOTION * (along + across + free_x + free_y) / local
     return Accuracy(
         local, newton, speed, free_x, free_y, longest, drive, square_x, square_y, touch, least
     )
@@ -130,7 +130,7 @@ class Method(Protocol):
     def begin(self, description: Description) -> Any:
         """Return the initial state of a run."""
 
-    def entered(self, state: Any, x: float, y: float) -> Any:
+    def enter_segment(self, state: Any, x: float, y: float) -> Any:
         """Return the state at the start of a stretch, where the slip velocity jumps by (x, y)."""
 
     def advance(
@@ -166,7 +166,7 @@ def integrate(
             progress((t - initial.time) / settings.duration)
 
     for stretch in stretches(slider, t, end):
-        state = method.entered(state, *slip_jump(slider, t))
+        state = method.enter_segment(state, *slip_jump(slider, t))
         held = accuracy(slider, initial, stretch, t, settings.rtol)
         code = RUNNING
         while code == RUNNING:

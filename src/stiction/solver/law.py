@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.friction.law import static_coefficient
-from stiction.solver.compilation.interrupt import uninterrupted
+from stiction.solver.compilation.interrupt import delay_interrupt
 from stiction.solver.compilation.jit import compiled
 from stiction.solver.compilation.pointer import address, caller, memory, pointee, types
 from stiction.solver.problem import coefficient, slope
@@ -42,9 +42,9 @@ class PointedLaw(NamedTuple):
         return float(call(law.code, law.fields, (v,))[0])
 
 
-def pointed(law: Any) -> PointedLaw:
+def point_to(law: Any) -> PointedLaw:
     """Return a set-valued law behind pointers."""
-    with uninterrupted():
+    with delay_interrupt():
         code = address(coefficient_and_slope_at, law, types.float64)
         return PointedLaw(code, memory(law), static_coefficient(law))
 

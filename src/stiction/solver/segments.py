@@ -76,7 +76,7 @@ def friction_of(slider: Slider) -> tuple[Any, Isotropic | Elliptic]:
         square = law.ratio**2
         surface = Elliptic(c * c + square * s * s, (1 - square) * c * s, s * s + square * c * c)
         law = law.law
-    return getattr(law, "prepared", lambda: law)(), surface
+    return getattr(law, "prepare", lambda: law)(), surface
 
 
 def speeds(slider: Slider, drive: Any, start: float, end: float) -> tuple[float, float]:

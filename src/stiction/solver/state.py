@@ -110,7 +110,7 @@ def plain(state: State) -> Plain:
     return state.motion[:], state.memory[:], state.counts[:]
 
 
-def named(state: Plain) -> State:
+def state_from_plain(state: Plain) -> State:
     """Return the state from its plain tuples."""
     motion, memory, counts = state
     return State(Motion(*motion), Memory(*memory), Counts(*counts))
@@ -132,7 +132,7 @@ def start(slider: Slider, t: float, u: tuple[float, float], slip: tuple[float, f
     return State(Motion(t, u[0], u[1], r, e[0], e[1]), memory, NOTHING)
 
 
-def cooled(memory: Memory, h: float) -> Memory:
+def drop_memory(memory: Memory, h: float) -> Memory:
     """Return the memory after a kink of the motion, with cubics that predict nothing."""
     return Memory(h, memory.plan, PLANNED, memory.h_last, memory.ease, False, memory.p, memory.w)
 
@@ -145,7 +145,7 @@ def at_takeoff(memory: Memory) -> Memory:
 
 
 @inlined
-def planned(plan: Plan, place: int, h: float) -> Plan:
+def write_plan(plan: Plan, place: int, h: float) -> Plan:
     """Return the plan with the size `h` at one of its places."""
     return (
         h if place == 0 else plan[0],
@@ -168,7 +168,7 @@ def size_to_try(memory: Memory) -> float:
 
 
 @inlined
-def counted(counts: Counts, rejected: int, iterations: int) -> Counts:
+def count_step(counts: Counts, rejected: int, iterations: int) -> Counts:
     """Return the counts with one more step."""
     return Counts(
         counts.steps + 1,

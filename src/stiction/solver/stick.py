@@ -21,7 +21,7 @@ from stiction.solver.problem import (
 from stiction.solver.surface import held_product
 
 USED_UP = 1e-14  # of f^2: the margin |a|^2 - f^2 is zero within rounding
-LOOKS = 10_000  # evaluations of the margin before control returns to the loop
+MARGIN_LOOKS = 10_000  # evaluations of the margin before control returns to the loop
 
 
 @inlined
@@ -83,7 +83,7 @@ def stick_duration(
         j = holding_change(problem, t)
         return used_up(excess, change, held_product(problem, j, j)), True
     gone = 0.0
-    for _ in range(LOOKS):
+    for _ in range(MARGIN_LOOKS):
         if excess > -USED_UP * square and change > 0.0:
             return gone, True
         # excess + 2 change x + bend x^2/2 < 0 before this

@@ -74,7 +74,7 @@ def quantity(number: Schema, kind: Kind) -> Schema:
 
 def table(model: type[Described], told: Any = None, without: Iterable[str] = ()) -> Schema:
     """Return the schema of a table; what its docstring says of each key is shown by editors."""
-    found = bounded(model.model_json_schema(schema_generator=Generator))
+    found = place_bounds(model.model_json_schema(schema_generator=Generator))
     meanings = {
         name: " ".join(text.split())
         for names, text in MEANING.findall(cleandoc(str((told or model).__doc__)) + "\n")
@@ -94,18 +94,18 @@ def table(model: type[Described], told: Any = None, without: Iterable[str] = ())
     }
 
 
-def bounded(part: Any, bounds: Mapping[str, float] | None = None) -> Any:
+def place_bounds(part: Any, bounds: Mapping[str, float] | None = None) -> Any:
     """Return a part of a schema, the bounds of choices put where their numbers are."""
     if isinstance(part, list):
-        return [bounded(each, bounds) for each in part]
+        return [place_bounds(each, bounds) for each in part]
     if not isinstance(part, dict):
         return part
     inner = dict(bounds or {}) | {BOUNDS[key]: part[key] for key in BOUNDS if key in part}
-    found = {key: bounded(each, inner) for key, each in part.items() if key not in BOUNDS}
+    found = {key: place_bounds(each, inner) for key, each in part.items() if key not in BOUNDS}
     return found | inner if part.get("type") == "number" else found
 
 
-def chosen(key: str, kinds: Mapping[str, Schema], other: Schema | None = None) -> Schema:
+def schema_by_choice(key: str, kinds: Mapping[str, Schema], other: Schema | None = None) -> Schema:
     """Return the schema of a table whose other keys depend on the value of one."""
     for name, each in kinds.items():
         each["properties"][key] = {"const": name}
@@ -126,7 +126,7 @@ def friction() -> Schema:
     laws = {name: table(fields(cast(Any, kind)), kind) for name, kind in LAWS.items()}
     for each in laws.values():
         each["properties"]["anisotropy"] = table(fields(Anisotropic), Anisotropic, ["law"])
-    return chosen("law", laws, {"type": "string", "pattern": ":"})
+    return schema_by_choice("law", laws, {"type": "string", "pattern": ":"})
 
 
 def program(
@@ -134,14 +134,16 @@ def program(
 ) -> Schema:
     """Return the schema of a program of drive or load."""
     found = table(model)
-    of = {name: levelled(table(fields(piece), piece), kind) for name, piece in pieces.items()}
-    found["properties"]["program"]["items"] = chosen("piece", of)
+    of = {
+        name: schema_of_levels(table(fields(piece), piece), kind) for name, piece in pieces.items()
+    }
+    found["properties"]["program"]["items"] = schema_by_choice("piece", of)
     for wave in waves:
-        found["properties"][wave] = levelled(table(fields(Modulation), Modulation), kind)
+        found["properties"][wave] = schema_of_levels(table(fields(Modulation), Modulation), kind)
     return found
 
 
-def levelled(piece: Schema, kind: Kind) -> Schema:
+def schema_of_levels(piece: Schema, kind: Kind) -> Schema:
     """Return the schema of a piece whose levels are of a quantity."""
     for name in LEVELS:
         if name in piece["properties"]:

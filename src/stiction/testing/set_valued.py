@@ -94,7 +94,7 @@ def check_compiled(law: Any, speeds: Sequence[float]) -> Iterator[str]:
     from stiction.solver import problem
     from stiction.solver.compilation import refusal
 
-    prepared = getattr(law, "prepared", lambda: law)()
+    prepared = getattr(law, "prepare", lambda: law)()
     for function in (problem.coefficient, problem.slope):
         name = function.__name__
         fast = numba.njit(error_model="numpy")(_calling(function))

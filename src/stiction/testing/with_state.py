@@ -170,7 +170,7 @@ def check_compiled(law: Any, speeds: Sequence[float]) -> Iterator[str]:
     from stiction.solver import problem
     from stiction.solver.compilation import refusal
 
-    prepared = getattr(law, "prepared", lambda: law)()
+    prepared = getattr(law, "prepare", lambda: law)()
     for function in (problem.force, problem.change):
         name = function.__name__
         fast = numba.njit(error_model="numpy")(_calling(function))

@@ -1,4 +1,4 @@
-"""Where the work of the drive goes, against closed forms and the solver's tolerance."""
+"""The parts of the drive's work, against closed forms and the solver's tolerance."""
 
 from itertools import pairwise
 from math import pi

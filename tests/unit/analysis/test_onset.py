@@ -1,4 +1,4 @@
-"""How an oscillation sets in: soft and hard, against linear theory and the averaged equation."""
+"""The onset of an oscillation: soft and hard, against linear theory and the averaged equation."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""The oscillation's frequency and share of the cycle; spectra of what is beyond memory."""
+"""The oscillation's frequency and share of the cycle; spectra of records larger than memory."""
 
 import tracemalloc
 from math import pi, sin
@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 from scipy.signal import ShortTimeFFT
 from scipy.signal.windows import hamming
-from tests.measured import measured
+from tests.measured import read_measured
 
 import stiction as st
 from stiction.analysis.oscillation import apart
@@ -159,7 +159,7 @@ def test_what_has_no_spectrum_is_refused():
     [("k168_v42", 40.0, 50.0), ("k2254_v42", 40.0, 50.0), ("k1002_v4300", 100.0, None)],
 )  # the last one oscillates at 29 Hz itself
 def test_a_measured_record_has_the_hum_of_the_mains_or_nothing(name, low, hum):
-    heard = st.analysis.strongest_line(measured(name), low)["frequency"].values
+    heard = st.analysis.strongest_line(read_measured(name), low)["frequency"].values
     if hum is None:
         assert not np.isfinite(heard).any()
     else:

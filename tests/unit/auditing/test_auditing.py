@@ -239,7 +239,7 @@ def test_what_cannot_be_audited_or_written_says_why(tmp_path, capsys):
     assert "drive.velocity: is zero" in capsys.readouterr().err
 
 
-def said(slider: st.Slider) -> str:
+def audit_text(slider: st.Slider) -> str:
     return " ".join(sentence for part in sections(examine(slider)) for sentence in part.sentences)
 
 
@@ -253,7 +253,7 @@ def test_friction_with_state_is_no_artefact_of_the_misalignment():
     rig = {"mass": "100 kg", "k_x": "1 MN/m", "k_y": "1 GN/m", "normal_load": "50 kN"}
     drive = st.ConstantVelocity("10 um/s")
     block = st.Slider(**rig, phi="0.3 deg", friction=law, drive=drive)
-    text = said(block)
+    text = audit_text(block)
     assert "Friction with internal state creeps by itself" in text
     assert "~ " in rows_of(block)
     assert "artefact" not in text
@@ -264,7 +264,7 @@ def test_a_transverse_spring_that_is_not_stiff_is_said_to_be_none():
     law = st.laws.Stribeck(mu_s=0.6, mu_c=0.45, v_s="5 mm/s", d=1)
     rig = {"mass": "200 g", "k_x": "5 kN/m", "k_y": "1 MN/m", "normal_load": "20 N"}
     pin = st.Slider(**rig, phi="0.5 deg", friction=law, drive=st.ConstantVelocity("0.5 mm/s"))
-    text = said(pin)
+    text = audit_text(pin)
     assert "here 1.75 k_x" in text  # 200 tan(0.5 deg)
     # it is the same closed form as above, and no number of the finite spring
     assert "unstable at every φ of that sign; on a transverse spring that is rigid" in text
@@ -272,7 +272,7 @@ def test_a_transverse_spring_that_is_not_stiff_is_said_to_be_none():
 
 
 def test_an_aligned_apparatus_does_not_creep(found):
-    text = said(PAPER.replace(phi="0 deg"))
+    text = audit_text(PAPER.replace(phi="0 deg"))
     assert "There is no misalignment, so friction does not turn." in text
     assert "creeping" not in text
     assert "artefact" in " ".join(sections(found)[2].sentences)

@@ -1,4 +1,4 @@
-"""Drives and loads in time: what is read, and what the solver makes of it.
+"""Drives and loads in time: reading, and their signals in the solver.
 
 Runs of one dimension have phi = 0 and nothing moving along y.
 """

@@ -1,4 +1,4 @@
-"""The contract of friction laws: what is registered keeps it, what is broken does not."""
+"""The contract of friction laws: registered laws keep it, and broken laws are found."""
 
 import re
 from math import exp, hypot

@@ -117,7 +117,7 @@ def rate_and_state(law, s, load, z):
     return mu * load * s / r, np.array([r / law.D_c * dz])
 
 
-def integrated(slider, law, times, equations, y0, rtol):
+def integrate_by_scipy(slider, law, times, equations, y0, rtol):
     """u, slip and internal states at `times`, by SciPy."""
     drive = slider.drive.velocity * np.array(slider.direction)
     stiffness = np.array([slider.k_x, slider.k_y])
@@ -162,7 +162,9 @@ def test_the_papers_apparatus_agrees_with_scipy(name):
     ours, loose = (columns(run, *names) for run in runs)
     y0 = np.array([1e-3, 1e-8, *start.slip(slider), *z])
     times = runs[0].data["time"].values
-    theirs, rough = (integrated(slider, law, times, equations, y0, r) for r in (1e-10, 1e-8))
+    theirs, rough = (
+        integrate_by_scipy(slider, law, times, equations, y0, r) for r in (1e-10, 1e-8)
+    )
     for k in range(len(names)):
         changes = largest(ours[k] - loose[k]) + largest(theirs[k] - rough[k])
         assert changes <= 1e-5 * largest(ours[k]), "neither has converged"

@@ -1,4 +1,4 @@
-"""A law of the user's own, in a file that a description names: read, kept, and read back."""
+"""A law of the user's own, in a file that a description names: read, stored, and read back."""
 
 import inspect
 import json
@@ -90,14 +90,14 @@ def python(code, cwd, **environment):
     return done.stdout
 
 
-def simulated(config):
+def simulate_file(config):
     from stiction.simulation import run
 
     return run(st.Description.from_toml(config))
 
 
 def test_a_description_names_a_file_and_a_class(config):
-    run = simulated(config)
+    run = simulate_file(config)
     law = run.slider.law
     assert type(law).__name__ == "Mine"
     assert law == (0.2, 0.05)
@@ -281,7 +281,7 @@ def test_a_trial_of_a_law_leaves_no_trace(config):
 def test_what_cannot_be_compiled_is_told_in_a_line(config):
     (config.parent / "mylaw.py").write_text(LAW.replace("@njit", ""))
     with pytest.raises(st.DescriptionError) as error:
-        simulated(config)
+        simulate_file(config)
     first, _ = map(str, error.value.faults)
     assert first.startswith("friction: coefficient cannot be compiled: Untyped global name 'ratio'")
     assert "numba.njit" in first
@@ -291,7 +291,7 @@ def test_what_cannot_be_compiled_is_told_in_a_line(config):
 
 
 def test_back_in_the_same_process(config, tmp_path):
-    run = simulated(config)
+    run = simulate_file(config)
     again = st.Description.from_json(run.description.to_json())
     assert again == run.description
     assert type(again.slider.law) is type(run.slider.law)
@@ -316,7 +316,7 @@ except st.ResultError as error:
 
 
 def test_another_process_runs_nothing(config, tmp_path):
-    path = str(simulated(config).save(tmp_path / "a.nc"))
+    path = str(simulate_file(config).save(tmp_path / "a.nc"))
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
     # the same text beside the result, and in the working folder: the sender may have put it there
@@ -341,7 +341,7 @@ def test_another_process_runs_nothing(config, tmp_path):
 
 def test_a_result_without_the_text_runs_no_file(config, tmp_path):
     """A result that names a file, but does not hold its text, has nothing run."""
-    run = simulated(config)
+    run = simulate_file(config)
     table = run.description.to_dict()
     del table["friction"]["source"]
     (tmp_path / "other.py").write_text(LAW + "# another\n")

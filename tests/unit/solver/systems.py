@@ -69,7 +69,7 @@ class Printed:
         """Return a vector of the drive in the principal axes."""
         return self.turn @ getattr(self.problem.drive, name)(*times)
 
-    def held(self, t, u):
+    def holding(self, t, u):
         """Return what spring and drive do at zero slip (M2)."""
         force = self.K @ u + self.C @ self.drive("rate", t)
         return force / self.m + self.problem.system.inertia * self.drive("rate_change", t)
@@ -81,7 +81,7 @@ class Printed:
 
     def b(self, dt):
         """(M17)."""
-        return self.axes @ self.held(self.t + dt, self.u + self.drive("travel", self.t, dt))
+        return self.axes @ self.holding(self.t + dt, self.u + self.drive("travel", self.t, dt))
 
     def db(self, dt):
         """Return the rate of change of b."""

@@ -32,7 +32,7 @@ def test_an_inverse_times_its_matrix_is_one(m):
 @pytest.mark.parametrize("m", MATRICES)
 def test_six_equations_by_blocks(m):
     whole, right = np.block([[m[0], m[1]], [m[2], m[3]]]), np.arange(1.0, 7.0)
-    factors = plain(blocks.eliminated)(*map(rows, m))
-    p, w = plain(blocks.solved)(factors, tuple(right[:3]), tuple(right[3:]))
+    factors = plain(blocks.eliminate)(*map(rows, m))
+    p, w = plain(blocks.solve_blocks)(factors, tuple(right[:3]), tuple(right[3:]))
     rounding = 1e-13 * np.linalg.cond(whole) * np.linalg.cond(m[3])
     assert whole @ [*p, *w] == pytest.approx(right, abs=rounding)

@@ -1,4 +1,4 @@
-"""What each step of a run is held to, and what jumps with the drive."""
+"""The tolerances of each step, and the jump of the slip velocity with the drive."""
 
 from math import hypot, inf, pi, sqrt
 
@@ -14,7 +14,7 @@ from stiction.solver.segments import stretches
 AT_REST = st.Initial(v_x=STEADY.direction[0] * 2e-3, v_y=STEADY.direction[1] * 2e-3)
 
 
-def held(slider, initial=AT_REST, start=0.0, rtol=1e-6):
+def accuracy_of(slider, initial=AT_REST, start=0.0, rtol=1e-6):
     return accuracy(slider, initial, next(stretches(slider, start, start + 1.0)), start, rtol)
 
 
@@ -26,7 +26,7 @@ def weakening(slider):
 
 def test_what_a_step_is_held_to():
     """(M39) to (M42)."""
-    found, s = held(STEADY), STEADY
+    found, s = accuracy_of(STEADY), STEADY
     along, across = 2e-3 * np.array(s.direction)
     tol = 0.8 * 1e-6**0.8
     free = [0.2 * 10.0 / sqrt(s.mass * k) for k in (s.k_x, s.k_y)]
@@ -40,7 +40,7 @@ def test_what_a_step_is_held_to():
 @pytest.mark.parametrize("phi", ["0 deg", "90 deg"])
 def test_along_a_principal_axis_the_speed_is_the_drive_s_along_it(phi):
     s = STEADY.replace(phi=phi)
-    found = held(s, st.Initial())
+    found = accuracy_of(s, st.Initial())
     k = s.k_y if phi == "90 deg" else s.k_x
     wanted = 2e-3 / (1 + weakening(s) ** 2 / (k * s.mass))
     assert found.speed == pytest.approx(wanted, rel=1e-6)
@@ -50,7 +50,7 @@ def test_along_a_principal_axis_the_speed_is_the_drive_s_along_it(phi):
 def test_without_a_drive_or_friction():
     """A millionth of what friction can do; else next to nothing of the speeds at the start."""
     still = STEADY.replace(drive=st.ConstantVelocity(0.0))
-    found = held(still)
+    found = accuracy_of(still)
     sigma = 1e-6 * min(found.free_x, found.free_y)
     damped = sigma / (1 + weakening(still) ** 2 / (still.k_x * still.mass))
     assert found.speed == pytest.approx(damped, rel=1e-4)
@@ -58,20 +58,22 @@ def test_without_a_drive_or_friction():
     bare = still.replace(friction=st.Coulomb(0.0))
     begun = st.Initial(u_x=1e-3, u_y=2e-5, v_x=3e-3, v_y=-1e-3)
     elastic = hypot(3e-3, 1e-3, 1e-3 * sqrt(1e3 / 0.25), 2e-5 * sqrt(4e4 / 0.25))
-    assert held(bare, begun).speed == pytest.approx(1e-15 * elastic)
-    assert held(bare, st.Initial()).speed == np.finfo(float).tiny
+    assert accuracy_of(bare, begun).speed == pytest.approx(1e-15 * elastic)
+    assert accuracy_of(bare, st.Initial()).speed == np.finfo(float).tiny
     fast = STEADY.replace(drive=st.ConstantVelocity(1e3), friction=st.Coulomb(0.2))
-    assert held(fast).speed == pytest.approx(min(held(fast).free_x, held(fast).free_y))
+    assert accuracy_of(fast).speed == pytest.approx(
+        min(accuracy_of(fast).free_x, accuracy_of(fast).free_y)
+    )
 
 
 def test_an_ellipse_and_a_program():
     """v_fx takes the root of N_xx, and a step is a quarter of the fastest oscillation at most."""
-    plain, found = held(STEADY), held(ELLIPSE)
+    plain, found = accuracy_of(STEADY), accuracy_of(ELLIPSE)
     n = next(stretches(ELLIPSE, 0.0, 1.0)).problem.surface
     assert found.free_x == pytest.approx(plain.free_x * sqrt(n.xx))
     assert found.free_y == pytest.approx(plain.free_y * sqrt(n.yy))
-    assert held(PROGRAM).longest == pytest.approx(0.5 * pi / (2 * pi * 70.0))
-    assert held(PROGRAM).free_x == pytest.approx(plain.free_x * 1.05)  # of the largest load
+    assert accuracy_of(PROGRAM).longest == pytest.approx(0.5 * pi / (2 * pi * 70.0))
+    assert accuracy_of(PROGRAM).free_x == pytest.approx(plain.free_x * 1.05)  # of the largest load
 
 
 @pytest.mark.parametrize("rtol", [1e-2, 1e-4, 1e-6, 1e-12])

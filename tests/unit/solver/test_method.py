@@ -1,6 +1,6 @@
 """The equations of ``docs/method.md``, one by one, against the compiled solver.
 
-Those of a step of slip are written down once more in `tests.rebuilt`. Steps are the solver's own:
+Those of a step of slip are written down once more in `tests.rebuild`. Steps are the solver's own:
 one turn of its loop at a time, whose stages it remembers.
 """
 
@@ -22,16 +22,16 @@ from tests.rebuilt.step import PI, A, C, D, Step, gamma
 
 import stiction as st
 import stiction.solver
-from stiction.solver.block_algebra import solved
-from stiction.solver.compilation.jit import called
+from stiction.solver.block_algebra import solve_blocks
+from stiction.solver.compilation.jit import call_compiled
 from stiction.solver.exact.loop import steps
 from stiction.solver.exact.pursuit import slip_before_landing
 from stiction.solver.integrate import accuracy, tolerance
-from stiction.solver.law import pointed
+from stiction.solver.law import point_to
 from stiction.solver.problem import Elliptic, Isotropic, kinds_of
 from stiction.solver.segments import stretches
 from stiction.solver.smooth import loop as smooth_loop
-from stiction.solver.smooth.coordinate import coordinate, risen, slip_at, slip_slope
+from stiction.solver.smooth.coordinate import coordinate, damped_rise, slip_at, slip_slope
 from stiction.solver.smooth.dispatch import (
     Smoothed,
     SmoothedByArctan,
@@ -43,7 +43,7 @@ from stiction.solver.smooth.method import Smooth
 from stiction.solver.smooth.newton import factors, linear
 from stiction.solver.smooth.right_hand_side import Stages
 from stiction.solver.smooth.workspace import workspace
-from stiction.solver.state import Motion, State, named, start
+from stiction.solver.state import Motion, State, start, state_from_plain
 from stiction.solver.stick import stick_duration, to_spare
 from stiction.solver.surface import takeoff
 
@@ -51,7 +51,9 @@ ROOT = Path(__file__).parents[3]
 TEXT = (ROOT / "docs/method.md").read_text(encoding="utf-8")
 SOLVER = Path(stiction.solver.__file__).parent
 
-coordinate, risen, slip_at, slip_slope = map(entry, (coordinate, risen, slip_at, slip_slope))
+coordinate, damped_rise, slip_at, slip_slope = map(
+    entry, (coordinate, damped_rise, slip_at, slip_slope)
+)
 stick_duration, takeoff, to_spare = map(entry, (stick_duration, takeoff, to_spare))
 
 SMOOTHED = numba.njit(lambda law, slip, load: friction_and_gradient(law, slip, load))
@@ -113,13 +115,13 @@ def turn(problem, held, state, times=()):
     times, sticks = np.array(times, dtype=float), np.zeros((8, 2))
     samples = np.full((len(times), 7), np.nan)
     state = state._replace(counts=state.counts._replace(sticks=0, stuck=0.0))
-    problem = problem._replace(law=pointed(problem.law))
+    problem = problem._replace(law=point_to(problem.law))
     arguments = problem, state, 1e9, held, 1, times, samples, 0, sticks
-    _, after, _, _ = called(steps, kinds_of(problem), *arguments)
-    return named(after), samples
+    _, after, _, _ = call_compiled(steps, kinds_of(problem), *arguments)
+    return state_from_plain(after), samples
 
 
-def rebuilt(slider, motion):
+def rebuild(slider, motion):
     """Return the rebuilt solver in a state of motion."""
     run = Solver(slider, 1e-6)
     run.t, run.u, run.r = motion.t, np.array([motion.u_x, motion.u_y]), motion.r
@@ -129,7 +131,7 @@ def rebuilt(slider, motion):
 
 def end_of_stick(slider, motion):
     """Return the motion at the end of a stick, by (M5) to (M7) and (M18)."""
-    run = rebuilt(slider, motion)
+    run = rebuild(slider, motion)
     run.stick(inf)
     return Motion(run.t, *run.u, 0.0, *run.e)
 
@@ -153,9 +155,9 @@ def walk(name):
     return problem, held, found
 
 
-def printed(name, step):
+def equations_of(name, step):
     """Return the equations of a step that the solver has taken."""
-    return Step(rebuilt(SLIDERS[name], step.before))
+    return Step(rebuild(SLIDERS[name], step.before))
 
 
 def test_the_steps_looked_at_are_of_all_kinds():
@@ -163,7 +165,9 @@ def test_the_steps_looked_at_are_of_all_kinds():
     seen = set()
     for name in SLIDERS:
         for step in walk(name)[2]:
-            seen |= printed(name, step).kinds(step.h) | ({"landing"} if step.p[2] == 0.0 else set())
+            seen |= equations_of(name, step).kinds(step.h) | (
+                {"landing"} if step.p[2] == 0.0 else set()
+            )
     assert seen == {"take-off", "slip", "landing", "long", "plain", "laid over"}
 
 
@@ -174,7 +178,7 @@ def test_the_steps_looked_at_are_of_all_kinds():
 def test_the_printed_residuals_vanish(name):
     """Newton's error is 1e-11 of p and of w, and D is 8 at most."""
     for step in walk(name)[2]:
-        each = printed(name, step)
+        each = equations_of(name, step)
         found, _ = each.equations(step.h, step.p, step.w)
         forces = step.h * np.abs(each.accelerations(step.h, step.p, step.w)).max()
         terms = forces + np.abs(D).max() * max(step.before.r, step.p.max())
@@ -185,7 +189,7 @@ def test_the_printed_residuals_vanish(name):
 def test_the_printed_jacobian_is_the_derivative_of_the_residuals(name):
     """(M31) and (M44) to (M46); of differences about a step that is laid over the oscillation."""
     for step in walk(name)[2][4:8]:
-        equations, h = printed(name, step).equations, step.h
+        equations, h = equations_of(name, step).equations, step.h
         x = np.concatenate([step.p + 1e-3 * step.p.max(), step.w])
         scale = np.repeat([step.p.max(), 1e-2], 3)
 
@@ -203,7 +207,7 @@ def test_the_printed_jacobian_is_the_derivative_of_the_residuals(name):
 @pytest.mark.parametrize("name", SLIDERS)
 def test_the_printed_end_of_a_step_is_the_solver_s(name):
     for step in walk(name)[2]:
-        u, r, e = printed(name, step).end(step.h, step.p, step.w)
+        u, r, e = equations_of(name, step).end(step.h, step.p, step.w)
         after = step.after
         assert after.t == pytest.approx(step.before.t + step.h, rel=1e-14)
         assert (after.u_x, after.u_y) == pytest.approx(u, rel=1e-11)
@@ -215,7 +219,7 @@ def test_the_printed_end_of_a_step_is_the_solver_s(name):
 def test_the_friction_along_and_across_is_that_of_the_ellipse(w):
     """(M12) is N s/|M s| in the step's axes, (M16) its derivative."""
     n = problem_of(ELLIPSE)[0].surface
-    each = Step(rebuilt(ELLIPSE, Motion(0.0, 0.0, 0.0, 1.0, 0.6, 0.8)))
+    each = Step(rebuild(ELLIPSE, Motion(0.0, 0.0, 0.0, 1.0, 0.6, 0.8)))
     N, s = np.array([[n.xx, n.xy], [n.xy, n.yy]]), each.e + w * each.n
     force = N @ s / sqrt(s @ N @ s)
     _, _, *found = each.friction(1.0, w)
@@ -259,7 +263,7 @@ def test_the_equations_of_motion(slider):
 @pytest.mark.parametrize("slider", [DAMPED, ELLIPSE], ids=["isotropic", "ellipse"])
 def test_the_p_w_form_is_newton_s_law(slider):
     """(M11), (M13) and (M14) give the vector equation (M2)."""
-    each = Step(rebuilt(slider, Motion(0.0, 1e-3, 2e-6, 1e-3, 0.6, 0.8)))
+    each = Step(rebuild(slider, Motion(0.0, 1e-3, 2e-6, 1e-3, 0.6, 0.8)))
     for p, w in ((1e-3, 0.0), (2e-3, 0.4), (3e-4, -1.3)):
         a = each.b - each.c @ [p, p * w]
         f, _, (n_1, _), (tau, _) = each.friction(p, w)
@@ -277,7 +281,7 @@ def test_the_branch_of_a_take_off(name):
     """(M19) is what a step comes to as its size goes to zero; its error is of the next order."""
     problem, held, taken = walk(name)
     first = next(step for step in taken if step.before.r == 0.0)
-    each = printed(name, first)
+    each = equations_of(name, first)
     (a_1, a_2), (da_1, da_2), (c_11, c_12), slope = each.a, each.db, each.c[0], each.df
     assert a_2 == pytest.approx(0.0, abs=1e-9 * a_1)
     excess = each.dp if name == "static coefficient" else 0.0  # or else rounding
@@ -296,7 +300,7 @@ def test_the_branch_of_a_take_off(name):
 
 def test_the_turn_follows_from_its_balance_of_forces_at_zero_slip():
     """(M15): there the derivative of (M14) by w is a_1 + f tau'."""
-    each = Step(rebuilt(ELLIPSE, Motion(0.0, 1e-3, 2e-6, 0.0, 0.6, 0.8)))
+    each = Step(rebuild(ELLIPSE, Motion(0.0, 1e-3, 2e-6, 0.0, 0.6, 0.8)))
     h, p, w = 1e-7, np.array([1e-9, 1e-9, 0.0]), np.array([0.0, 0.1, 0.2])
     f, _, _, (_, dtau) = each.friction(p, w)
     wanted = h * (each.accelerations(h, p, w)[0] + f * dtau)[2]
@@ -353,7 +357,7 @@ def test_the_printed_error_estimate_is_the_solver_s(name):
     seen = [step for step in taken if step.error > 0.0]
     assert len(seen) > 5
     for step in seen:
-        error = printed(name, step).error(step.h, step.p, step.w)
+        error = equations_of(name, step).error(step.h, step.p, step.w)
         assert error / held.tolerance == pytest.approx(step.error, rel=1e-6)
 
 
@@ -405,7 +409,7 @@ def test_a_slip_ends_along_the_force(name):
     """(M29) at the last stage of a landing: a_2 - w a_1 - f tau = 0 there."""
     for step in walk(name)[2]:
         if step.p[2] == 0.0:
-            each = printed(name, step)
+            each = equations_of(name, step)
             a_1, a_2 = each.accelerations(step.h, step.p, step.w)[:, 2]
             f, _, _, (tau, _) = each.friction(0.0, step.w[2])
             assert a_2 - step.w[2] * a_1 - f * tau == pytest.approx(0.0, abs=1e-9 * abs(a_1))
@@ -493,7 +497,7 @@ def test_a_sample_is_the_end_of_a_shorter_step(name):
     """Found here by SciPy, from the printed equations."""
     problem, held, taken = walk(name)
     step = max(taken[:10], key=lambda it: it.error if it.p[2] > 0.0 else 0.0)
-    nodes, each = np.array([0.0, *C]), printed(name, step)
+    nodes, each = np.array([0.0, *C]), equations_of(name, step)
     along = Polynomial.fit(nodes, [step.before.r, *step.p], 3, domain=[0, 1])
     turned = Polynomial.fit(nodes, [0.0, *step.w], 3, domain=[0, 1])
     scale = np.repeat([step.p.max(), np.abs(step.w).max()], 3)
@@ -608,7 +612,7 @@ def test_the_slope_of_the_slip_coordinate(q):
 def test_a_damped_update(share):
     """(M69), to a thousandth, as iterates need."""
     q, rise = 3.0, 5.0
-    up = risen(q, rise, share)
+    up = damped_rise(q, rise, share)
     left = share * (np.sinh(up) - np.sinh(q)) / np.cosh(q) + (1 - share) * (up - q)
     assert left == pytest.approx(rise, rel=1e-2)
 
@@ -687,7 +691,7 @@ def eliminated_and_solved(h, k, c, slope, friction, flow, right):
     r_y = right[1, 0], right[1, 1], right[1, 2]
     if n > 0:
         r_x, r_y = residuals_without(h, r_x, r_y, w)
-    d_x, d_y = solved(m, r_x, r_y)
+    d_x, d_y = solve_blocks(m, r_x, r_y)
     if n > 0:
         correct_states(d_x, d_y, w)
     return d_x, d_y, -w.values[1:4, 2:]
@@ -731,7 +735,7 @@ def test_the_printed_residuals_of_a_smooth_step_vanish():
     stretch = next(stretches(s, 0.0, 1.0))
     held = accuracy(s, description.initial, stretch, 0.0, 1e-6)._replace(newton=NEWTON)
     method = Smooth(s, None)
-    held, state = method.resolved(held), method.begin(description)
+    held, state = method.step_accuracy(held), method.begin(description)
     problem = stretch.problem._replace(law=method.flow)
     K, damping = np.array([s.k_x, s.k_y]), np.array([s.c_x, s.c_y])
     v = s.drive.velocity * np.array(s.direction)

@@ -1,4 +1,4 @@
-"""Radau IIA: the quadrature it stands for, and its polynomials inside a step."""
+"""Radau IIA: its quadrature, and its polynomials inside a step."""
 
 import numpy as np
 import pytest

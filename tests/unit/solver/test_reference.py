@@ -45,7 +45,7 @@ def largest(values):
     return np.max(np.abs(values), initial=0.0)
 
 
-def sampled(run):
+def sample_run(run):
     return np.array([run.data[name].values for name in NAMES])
 
 
@@ -91,7 +91,7 @@ def test_compiled_and_twin_agree(name):
     times = runs[0].data["time"].values
     twins = [twin(slider, duration, times, initial=initial, rtol=rtol) for rtol in (1e-11, 1e-9)]
 
-    ours, loose = map(sampled, runs)
+    ours, loose = map(sample_run, runs)
     theirs, rough = (np.array([getattr(run, name) for name in NAMES]) for run in twins)
     # beside the changes: rounding, of sines and cosines above all
     rounding = 100 * EPS * np.repeat([largest(ours[:2]), largest(ours[2:])], 2)
@@ -144,7 +144,7 @@ def test_the_twin_refuses_a_drive_that_is_not_steady():
 # --- the regularised law ------------------------------------------------------------------------
 
 
-def smoothed(slider, times, delta, rtol):
+def solve_smoothed(slider, times, delta, rtol):
     """Eqs. (4) and (5) with s/|s| replaced by s/sqrt(|s|^2 + delta^2): u and slip at `times`."""
     drive = slider.drive.velocity * np.array(slider.direction)
     stiffness = np.array([slider.k_x, slider.k_y]) / slider.mass
@@ -171,8 +171,8 @@ def test_regularised_solver_agrees_with_lsoda(delta):
         for rtol in (1e-10, 1e-9)
     ]
     times = runs[0].data["time"].values
-    ours, loose = map(sampled, runs)
-    theirs, rough = (smoothed(PAPER, times, delta, rtol) for rtol in (1e-10, 1e-8))
+    ours, loose = map(sample_run, runs)
+    theirs, rough = (solve_smoothed(PAPER, times, delta, rtol) for rtol in (1e-10, 1e-8))
     for k in range(len(NAMES)):
         changes = largest(ours[k] - loose[k]) + largest(theirs[k] - rough[k])
         assert changes <= 1e-4 * largest(ours[k]), "neither has converged"
@@ -188,9 +188,11 @@ def test_set_valued_friction_is_the_limit_of_the_regularised_law():
     than in proportion.
     """
     exact = st.simulate(PAPER, 0.03, sample_rate=1e3, rtol=1e-12)
-    u = sampled(exact)[:2]
+    u = sample_run(exact)[:2]
     deltas = np.geomspace(1e-9, 4e-12, 4)
-    found = np.array([smoothed(PAPER, exact.data["time"].values, d, 1e-11)[:2] for d in deltas])
+    found = np.array(
+        [solve_smoothed(PAPER, exact.data["time"].values, d, 1e-11)[:2] for d in deltas]
+    )
     errors = np.abs(found - u).max(axis=2)  # by delta, then x and y
     orders = np.log(errors[:-1] / errors[1:]) / np.log(deltas[0] / deltas[1])
     assert np.all(np.diff(orders, axis=0) > 0)
@@ -243,7 +245,7 @@ def test_landing_in_closed_form(ratio, angle):
     assert landing_slip(r, *a, f) == pytest.approx(slid, abs=small * r * rest + 1e-8 * r * T)
 
 
-def held(slider, u, tau):
+def friction_excess(slider, u, tau):
     """|K (u + v_d tau) + C v_d| less mu_0 W."""
     drive = slider.drive.velocity * np.array(slider.direction)
     k, c = np.array([slider.k_x, slider.k_y]), np.array([slider.c_x, slider.c_y])
@@ -264,13 +266,16 @@ def test_stick_duration_is_the_root(angle, share, c_y):
     k = np.array([slider.k_x, slider.k_y])
     u = share * slider.F_0 / k * [np.cos(angle), np.sin(angle)]
     duration = held_for(slider, *u)
-    if held(slider, u, 0.0) > 0.0:
+    if friction_excess(slider, u, 0.0) > 0.0:
         assert duration == 0.0
         return
     far = 4 * slider.F_0 / (slider.k_x * slider.drive.velocity)
-    root = brentq(lambda tau: held(slider, u, tau), 0.0, far, xtol=1e-300, rtol=4 * EPS)
+    root = brentq(lambda tau: friction_excess(slider, u, tau), 0.0, far, xtol=1e-300, rtol=4 * EPS)
     # both find the root of a difference of forces that are rounded to a few EPS F_0
-    slope = abs(held(slider, u, root + 1e-6) - held(slider, u, root - 1e-6)) / 2e-6
+    slope = (
+        abs(friction_excess(slider, u, root + 1e-6) - friction_excess(slider, u, root - 1e-6))
+        / 2e-6
+    )
     assert duration == pytest.approx(root, abs=10 * EPS * slider.F_0 / slope, rel=10 * EPS)
 
 

@@ -1,4 +1,4 @@
-"""What the loop carries from step to step."""
+"""The state of the loop from step to step."""
 
 from math import sqrt
 
@@ -24,7 +24,7 @@ MEMORY = state.Memory(
 def test_a_plan_changes_in_one_place(place):
     wanted = list(MEMORY.plan)
     wanted[place] = 0.5
-    assert plain(state.planned)(MEMORY.plan, place, 0.5) == tuple(wanted)
+    assert plain(state.write_plan)(MEMORY.plan, place, 0.5) == tuple(wanted)
 
 
 def test_the_size_to_try_is_the_plan_s_within_bounds():
@@ -43,13 +43,13 @@ def test_the_size_to_try_is_the_plan_s_within_bounds():
 def test_a_take_off_begins_the_plan_and_a_kink_ends_it():
     begun = plain(state.at_takeoff)(MEMORY)
     assert begun == MEMORY._replace(h=MEMORY.plan[0], place=0, warm=False)
-    cold = state.cooled(MEMORY, 5e-4)
+    cold = state.drop_memory(MEMORY, 5e-4)
     assert cold == MEMORY._replace(h=5e-4, place=state.PLANNED, warm=False)
 
 
 def test_counts_of_one_more_step():
     counts = state.Counts(5, 2, 20, 3, 0.7, 1)
-    assert plain(state.counted)(counts, 4, 9) == state.Counts(6, 6, 29, 3, 0.7, 1)
+    assert plain(state.count_step)(counts, 4, 9) == state.Counts(6, 6, 29, 3, 0.7, 1)
 
 
 def test_a_run_starts_along_its_slip():
@@ -62,6 +62,6 @@ def test_a_run_starts_along_its_slip():
     assert begun.counts == state.NOTHING == (0, 0, 0, 0, 0.0, 0)
     at_rest = state.start(STEADY, 0.5, (1.0, 2.0), (0.0, 0.0)).motion
     assert at_rest == (0.5, 1.0, 2.0, 0.0, 1.0, 0.0)
-    assert state.named(plain(state.plain)(begun)) == begun
+    assert state.state_from_plain(plain(state.plain)(begun)) == begun
     stiff = STEADY.replace(k_x=9e4)
     assert state.first_step(stiff) == pytest.approx(0.05 / sqrt(9e4 / STEADY.mass))

@@ -1,4 +1,4 @@
-"""What zero slip takes, how long friction can hold it, and what it has to spare."""
+"""The force at zero slip, the time for which friction can hold it, and the margin."""
 
 from math import inf, sqrt
 
@@ -19,12 +19,12 @@ def margin_of(name, t, u):
     problem = problem_of(name)
     printed = Printed(problem, motion_of(*u, 1.0, 0.0, t))
     n = problem.surface
-    a, N = printed.held(t, np.array(u)), np.array([[n.xx, n.xy], [n.xy, n.yy]])
+    a, N = printed.holding(t, np.array(u)), np.array([[n.xx, n.xy], [n.xy, n.yy]])
     f = problem.law.coefficient(0.0) * problem.load.at(t) / printed.m
     return a @ np.linalg.solve(N, a) - f * f
 
 
-def moved(name, t, u, dt):
+def elongation_after(name, t, u, dt):
     """(M5)."""
     printed = Printed(problem_of(name), motion_of(*u, 1.0, 0.0, t))
     return np.array(u) + printed.drive("travel", t, dt)
@@ -37,7 +37,9 @@ def test_the_margin_and_its_rate_of_change(name, u):
     problem, t, step = problem_of(name), 0.35, 1e-6
     excess, half, square = plain(stick.margin)(problem, t, *u)
     assert excess == pytest.approx(margin_of(name, t, u), rel=1e-12)
-    before, after = (margin_of(name, t + dt, moved(name, t, u, dt)) for dt in (-step, step))
+    before, after = (
+        margin_of(name, t + dt, elongation_after(name, t, u, dt)) for dt in (-step, step)
+    )
     assert 2 * half == pytest.approx((after - before) / (2 * step), rel=1e-4, abs=1e-7 * square)
     f = problem.law.coefficient(0.0) * problem.load.at(t) / problem.system.mass
     assert square == pytest.approx(f * f, rel=1e-14)
@@ -49,7 +51,7 @@ def test_a_stick_lasts_until_the_margin_is_used_up(name, u):
     """(M7) in closed form, (M9) in steps; by a search for the first change of sign."""
     t = 0.35
     times = np.linspace(0.0, 0.4, 401)
-    margins = [margin_of(name, t + dt, moved(name, t, u, dt)) for dt in times]
+    margins = [margin_of(name, t + dt, elongation_after(name, t, u, dt)) for dt in times]
     duration, ends = plain(stick.stick_duration)(problem_of(name), t, *u, inf)
     assert ends
     first = int(np.argmax(np.array(margins) > 0.0))
@@ -57,7 +59,8 @@ def test_a_stick_lasts_until_the_margin_is_used_up(name, u):
         assert duration == 0.0
     elif first > 0:
         wanted = brentq(
-            lambda dt: margin_of(name, t + dt, moved(name, t, u, dt)), *times[first - 1 : first + 1]
+            lambda dt: margin_of(name, t + dt, elongation_after(name, t, u, dt)),
+            *times[first - 1 : first + 1],
         )
         assert duration == pytest.approx(wanted, rel=1e-9)
     else:
@@ -80,12 +83,12 @@ def test_what_a_short_stick_has_to_spare(name):
     problem, t = problem_of(name), 0.35
     # a little before the end of a stick
     duration, _ = plain(stick.stick_duration)(problem, t, 0.0, 0.0, inf)
-    u = moved(name, t, (0.0, 0.0), 0.999 * duration)
+    u = elongation_after(name, t, (0.0, 0.0), 0.999 * duration)
     left, _ = plain(stick.stick_duration)(problem, t, *u, inf)
     f = problem.law.coefficient(0.0) * problem.load.at(t) / problem.system.mass
 
     def spare(dt):
-        return f - sqrt(margin_of(name, t + dt, moved(name, t, u, dt)) + f * f)
+        return f - sqrt(margin_of(name, t + dt, elongation_after(name, t, u, dt)) + f * f)
 
     wanted, _ = quad(spare, 0.0, left)
     assert plain(stick.to_spare)(problem, t, *u, left) == pytest.approx(wanted, rel=1e-2)

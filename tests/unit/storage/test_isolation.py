@@ -1,4 +1,4 @@
-"""What breaks the library that reads a file ends in a process of its own."""
+"""A file that crashes or hangs its reader does so in a process of its own."""
 
 import os
 import signal
@@ -67,7 +67,7 @@ def test_what_does_not_end_is_ended(result, monkeypatch):
         isolation.apart(loop, result)
 
 
-def unsigned(path):
+def remove_checksum(path):
     """Take away the checksum of the whole file, as whoever writes into it does."""
     content = path.read_bytes()
     path.write_bytes(content[: content.rindex(MARK)])
@@ -75,7 +75,7 @@ def unsigned(path):
 
 
 def test_a_file_that_hdf5_reads_without_end_is_refused(result, monkeypatch, capsys):
-    content = bytearray(unsigned(result).read_bytes())
+    content = bytearray(remove_checksum(result).read_bytes())
     first = content.index(b"GCOL") + 16  # texts: HDF5 goes on by the size of each, here by zero
     content[first : first + 16] = bytes(16)
     result.write_bytes(content)
@@ -100,7 +100,7 @@ def test_a_file_with_a_byte_changed_is_not_shown_to_hdf5(result, monkeypatch):
 
 def test_a_file_without_its_checksum_is_read_as_any_other(result):
     run = st.load(result)
-    assert as_written(unsigned(result)) is None
+    assert as_written(remove_checksum(result)) is None
     assert st.load(result).data.identical(run.data)
     assert st.load(result).sticks.identical(run.sticks)
 
@@ -108,4 +108,4 @@ def test_a_file_without_its_checksum_is_read_as_any_other(result):
 def test_nothing_of_the_working_folder_is_imported(result, tmp_path, monkeypatch):
     (tmp_path / "numpy.py").write_text("raise SystemExit('a file of the working folder was run')")
     monkeypatch.chdir(tmp_path)
-    assert st.load(unsigned(result)).status.ok
+    assert st.load(remove_checksum(result)).status.ok

@@ -1,4 +1,4 @@
-"""Results for other programs: what is in the files, with its units."""
+"""Results for other programs: the content of the files, with units."""
 
 import builtins
 

@@ -1,4 +1,4 @@
-"""A study is killed at random moments, by the system, and goes on with what is missing.
+"""A study is killed at random moments, and continues with the missing runs.
 
 A process that has imported everything forks one that does the study, which is then killed: it is
 as real as one started anew, but there in a hundredth of the time.

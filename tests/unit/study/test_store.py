@@ -1,4 +1,4 @@
-"""Studies stay when the power fails: each state that a cut may leave goes on to the same end.
+"""Studies survive power cuts: from each possible state they continue to the same result.
 
 The cut of a real file system is a command: ``python -m benchmarks.explore.power_cuts``.
 """
@@ -29,10 +29,10 @@ def disk(tmp_path, monkeypatch):
 
 def test_a_store_is_there_whole_or_not_at_all(disk):
     create(STUDY, disk.root / "a.zarr")
-    found = [named(state, "a.zarr") for state in disk.states]
+    found = [contents(state, "a.zarr") for state in disk.states]
     disk.states.clear()
     disk.look()
-    right, *others = [named(state, "a.zarr") for state in disk.states]
+    right, *others = [contents(state, "a.zarr") for state in disk.states]
     assert all(each == right for each in others)
     assert all(each in ({}, right) for each in found)
     assert {} in found
@@ -57,7 +57,7 @@ def test_no_block_is_taken_for_done_that_is_not_whole(tmp_path, monkeypatch):
     disk.close()
 
 
-def named(state: State, folder: str) -> State:
+def contents(state: State, folder: str) -> State:
     """Return what is in a folder of a state."""
     return {name: content for name, content in state.items() if name.startswith(folder)}
 

@@ -1,4 +1,4 @@
-"""Studies: described, laid out, run, stopped, gone on with."""
+"""Studies: description, layout, run, interruption, continuation."""
 
 from pathlib import Path
 

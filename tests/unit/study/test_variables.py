@@ -1,4 +1,4 @@
-"""What a study keeps of each run, against the same found otherwise."""
+"""The stored variables of each run, against independent values."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ from stiction.study.variables.observation import observe
 PAPER = st.presets.nakano_popov_2020()
 
 
-def seen(slider, duration, **settings):
+def observe_run(slider, duration, **settings):
     """Return a run as a study sees it."""
     run = st.Settings(duration=duration, **settings)
     return observe(st.Description(slider, st.Initial(), run), None)
@@ -22,7 +22,7 @@ def seen(slider, duration, **settings):
 
 @pytest.fixture(scope="module")
 def paper():
-    return seen(PAPER, "5 s")
+    return observe_run(PAPER, "5 s")
 
 
 def value(name, run):
@@ -69,7 +69,7 @@ def test_a_transverse_swing_is_no_slip_at_any_angle(phi, law):
     """At 40 deg and more the mass swings faster than the drive, and stays where it was."""
     slider = PAPER.replace(phi=f"{phi} deg", friction=law)
     for sample_rate in (None, "10 kHz"):
-        run = seen(slider, "1 s", sample_rate=sample_rate)
+        run = observe_run(slider, "1 s", sample_rate=sample_rate)
         assert np.isnan(value("first_slip_time", run))
         assert np.isnan(value("creep_distance", run))
     run = st.simulate(slider, "1 s", sample_rate="10 kHz")
@@ -82,7 +82,7 @@ def test_the_first_slip_of_a_mass_that_rests_begins_where_the_spring_can_hold_no
         drive = st.ConstantVelocity(V)
         slider = PAPER.replace(phi="0 deg", friction=law, drive=drive)
         at = 0.5 * 10.0 / 1e3 / 1e-3  # s: until the spring carries what holds the mass
-        run = seen(slider, "6 s")
+        run = observe_run(slider, "6 s")
         assert value("first_slip_time", run) == pytest.approx(at, rel=1e-2)
         assert value("creep_distance", run) == pytest.approx(0.0, abs=1e-5)
 
@@ -90,7 +90,7 @@ def test_the_first_slip_of_a_mass_that_rests_begins_where_the_spring_can_hold_no
 @pytest.mark.parametrize("multiscale", [False, True])
 def test_the_mode_of_the_solver_does_not_matter(paper, multiscale):
     """To 1e-6, the tolerance, of the largest value."""
-    other = seen(PAPER, "5 s", multiscale=multiscale)
+    other = observe_run(PAPER, "5 s", multiscale=multiscale)
     for name in ("regime", "peak_force", "period", "creep_distance"):
         assert value(name, other) == pytest.approx(value(name, paper), rel=1e-5)
 
@@ -100,7 +100,7 @@ def test_the_mode_of_the_solver_does_not_matter(paper, multiscale):
 def test_regimes_are_those_of_records(phi, V):
     """Noise-free rules and those for any record agree where both see enough cycles."""
     slider = PAPER.replace(phi=f"{phi} deg", drive=st.ConstantVelocity(V))
-    run = seen(slider, 8e-3 / V + 4.0)
+    run = observe_run(slider, 8e-3 / V + 4.0)
     record = st.Record(
         time=run.time,
         force=run.force,
@@ -119,12 +119,12 @@ def test_regimes_are_those_of_records(phi, V):
 def test_a_transverse_oscillation_goes_on_when_the_slow_motion_has_settled():
     """Drawn nearly along the stiff axis, the fast oscillation is the one that weakening drives."""
     slider = PAPER.replace(phi="80 deg")
-    run = seen(slider, "5 s")
+    run = observe_run(slider, "5 s")
     assert run.regime == TRANSVERSE
     late = st.simulate(slider, "5 s", sample_rate="100 kHz").data.sel(time=slice(4.97, None))
     rate = 0.5 * float(np.ptp(late["v_y"].values)) / (1e-3 * np.sin(np.radians(80.0)))
     assert run.transverse_oscillation == pytest.approx(rate, rel=0.05)  # 16 samples a period
-    slow = seen(PAPER.replace(phi="30 deg"), "5 s")
+    slow = observe_run(PAPER.replace(phi="30 deg"), "5 s")
     assert slow.transverse_oscillation == pytest.approx(0.0, abs=1e-3)
 
 
@@ -147,19 +147,19 @@ def test_what_does_not_turn_has_no_turning_points(values):
 
 @pytest.mark.parametrize("name", MEASURES)
 def test_every_measure_of_a_run_that_hardly_began(name):
-    run = seen(PAPER, "1 us")
+    run = observe_run(PAPER, "1 us")
     assert np.isscalar(value(name, run))
     assert run.regime in ("stuck", "undetermined")
 
 
 def test_what_never_slips_is_stuck():
-    assert seen(PAPER.replace(drive=st.ConstantVelocity(0.0)), "5 s").regime == "stuck"
+    assert observe_run(PAPER.replace(drive=st.ConstantVelocity(0.0)), "5 s").regime == "stuck"
 
 
 def test_swings_after_which_it_is_quiet_are_a_transient():
     """They are seen down to the tolerance; none follows in many periods."""
     slider = PAPER.replace(phi="14.5 deg", drive=st.ConstantVelocity("3.16 mm/s"))
-    run = seen(slider, "6.5 s")
+    run = observe_run(slider, "6.5 s")
     assert run.end - run.swings.end > 20 * run.swings.period.max()
     assert run.regime == "settling"
     assert len(run.swings.drop) > 0 == len(run.cycles.drop)
@@ -182,7 +182,7 @@ def test_a_small_vibration_on_both_springs(phi, V):
     reach half of the median, on which the smallest that either sees have a part.
     """
     slider = PIN.replace(phi=f"{phi} deg", drive=st.ConstantVelocity(V))
-    run = seen(slider, "8 s")
+    run = observe_run(slider, "8 s")
     assert run.regime == TRANSVERSE
     found = st.analyse(st.simulate(slider, "8 s", sample_rate="10 kHz"))
     assert found.regime.kind in ("harmonic vibration", "transitional oscillation")
@@ -198,12 +198,12 @@ def test_swings_that_grow_with_the_load_and_then_die_out_are_a_transient():
     slider = PIN.replace(phi="20 deg", drive=st.ConstantVelocity("2 mm/s"))
     assert st.linear_stability.growth_rate(slider) < -5.0
     assert st.analysis.classify(st.simulate(slider, "8 s", sample_rate="10 kHz")).kind == "settling"
-    assert seen(slider, "8 s").regime == "settling"
+    assert observe_run(slider, "8 s").regime == "settling"
 
 
 def test_a_coarse_sample_rate_of_the_description_changes_no_measure():
     """It says what a run's file holds; samples too far apart would show other, slower cycles."""
-    run, coarse = seen(PIN, "4 s"), seen(PIN, "4 s", sample_rate="70 Hz")
+    run, coarse = observe_run(PIN, "4 s"), observe_run(PIN, "4 s", sample_rate="70 Hz")
     assert coarse.regime == run.regime
     assert value("cycles", coarse) == value("cycles", run)
     assert value("period", coarse) == value("period", run)

@@ -30,13 +30,13 @@ def store(tmp_path_factory):
     return path
 
 
-def drawn(fig):
+def draw(fig):
     return {text.get_text() for legend in fig.legends for text in legend.get_texts()}
 
 
 def test_a_map_of_regimes_with_both_boundaries(store):
     fig = figure_of(st.map(store, at={"friction.mu_inf": 0.15}).plot)
-    found = drawn(fig)
+    found = draw(fig)
     assert {PHI_C, ZETA, "stick-slip", "settling"} <= found
     (ax,) = fig.axes
     assert (ax.get_xlabel(), ax.get_ylabel()) == (r"$\varphi$ (deg)", "$V$ (mm/s)")
@@ -78,7 +78,7 @@ def test_kinds_over_one_parameter_are_named(store):
 
 def test_what_has_no_value_is_explained(store):
     fig = figure_of(st.map(store, "period", {"friction.mu_inf": 0.15}).plot)
-    assert "no value" in drawn(fig)
+    assert "no value" in draw(fig)
 
 
 def test_theory_over_the_plane(store):
@@ -122,7 +122,7 @@ def test_failed_and_missing_runs_are_hatched(tmp_path):
     base = st.Description(shaken, st.Initial(), st.Settings(duration="0.5 s"))
     st.sweep(st.Study(base=base, axes=axes), tmp_path / "a.zarr")
     fig = figure_of(st.map(tmp_path / "a.zarr").plot)
-    assert "no result" in drawn(fig)
+    assert "no result" in draw(fig)
 
 
 def test_the_command(store, tmp_path, capsys):

@@ -1,4 +1,4 @@
-"""Descriptions: what is read, what is refused, and how that is said."""
+"""Descriptions: reading, refusals, and their messages."""
 
 import copy
 import pickle
@@ -35,7 +35,7 @@ rtol = 1e-6
 """
 
 
-def written(path, text=TOML, **changes):
+def write_file(path, text=TOML, **changes):
     for old, new in changes.values():
         assert old in text
         text = text.replace(old, new)
@@ -50,7 +50,7 @@ def faults(path) -> dict[str, str]:
 
 
 def test_the_contract_s_example_is_the_paper_s_preset(tmp_path, slider):
-    description = st.Description.from_toml(written(tmp_path / "a.toml"))
+    description = st.Description.from_toml(write_file(tmp_path / "a.toml"))
     assert description.slider == slider == st.Slider.from_toml(tmp_path / "a.toml")
     assert description.run.duration == 5.0
     assert description.run.sample_rate == 1e4
@@ -68,7 +68,7 @@ def test_units_become_si(slider):
 
 def test_every_fault_at_once_by_path(tmp_path):
     found = faults(
-        written(
+        write_file(
             tmp_path / "bad.toml",
             mass=('mass = "0.25 kg"', "mass = -1"),
             k_x=('"1 kN/m"', '"1 kN"'),
@@ -113,20 +113,20 @@ def test_every_fault_at_once_by_path(tmp_path):
     ],
 )
 def test_a_fault_says_what_to_write(tmp_path, old, new, path, words):
-    found = faults(written(tmp_path / "bad.toml", change=(old, new)))
+    found = faults(write_file(tmp_path / "bad.toml", change=(old, new)))
     assert list(found) == [path]
     assert words in found[path]
 
 
 def test_unreadable_files(tmp_path):
     assert "No such file" in str(*faults(tmp_path / "none.toml").values())
-    assert "not TOML" in str(*faults(written(tmp_path / "x.toml", "mass = 0.25 kg")).values())
+    assert "not TOML" in str(*faults(write_file(tmp_path / "x.toml", "mass = 0.25 kg")).values())
     (tmp_path / "y.toml").write_bytes(b"\xff\xfe\x00")
     assert "UTF-8" in str(*faults(tmp_path / "y.toml").values())
 
 
 def test_a_byte_order_mark_is_no_fault(tmp_path):
-    path = written(tmp_path / "bom.toml")
+    path = write_file(tmp_path / "bom.toml")
     path.write_text("\ufeff" + path.read_text(), encoding="utf-8")
     assert st.Slider.from_toml(path).mass == 0.25
 
@@ -149,7 +149,7 @@ def test_python_reports_every_fault_too():
 
 
 def test_round_trip_and_pickle(tmp_path):
-    description = st.Description.from_toml(written(tmp_path / "a.toml"))
+    description = st.Description.from_toml(write_file(tmp_path / "a.toml"))
     assert st.Description.from_json(description.to_json()) == description
     assert pickle.loads(pickle.dumps(description)) == description
 

@@ -24,7 +24,7 @@ BETWEEN = (
 WRONG = (True, [], {}, "", "fast", "1 , 2")  # of no table, quantity, name or number
 
 
-def described(**changes):
+def describe(**changes):
     """A description as nested tables, as if from TOML."""
     slider = PAPER.replace(**changes)
     whole = st.Description(slider, st.Initial(), st.Settings(duration="1 s", sample_rate="1 kHz"))
@@ -45,10 +45,10 @@ def programs():
 
 def laws():
     for name, kind in LAWS.items():
-        yield name, described(friction=kind.like(0.2, 0.15, 1e-2))
+        yield name, describe(friction=kind.like(0.2, 0.15, 1e-2))
     rough = st.laws.Anisotropic(st.Coulomb(mu_0=0.2), 0.8, "10 deg")
-    yield "anisotropic", described(friction=rough)
-    yield "programs", described(**programs())
+    yield "anisotropic", describe(friction=rough)
+    yield "programs", describe(**programs())
 
 
 CASES = dict(laws())
@@ -66,7 +66,7 @@ def is_read(tables):
     return not faults(tables)
 
 
-def changed(tables):
+def change(tables):
     """Yield copies with one fault each: a key that is unknown, absent, or of a wrong type."""
 
     def places(part, path=()):
@@ -109,7 +109,7 @@ def test_so_are_the_template_the_examples_and_every_law(tmp_path):
 def test_it_finds_the_faults_of_keys_and_types_that_the_parser_finds(name):
     missed = [
         path
-        for path, tables in changed(CASES[name])
+        for path, tables in change(CASES[name])
         if VALIDATOR.is_valid(tables)
         and any(not says.startswith(BETWEEN) for says in faults(tables))
     ]
@@ -120,7 +120,7 @@ def test_it_finds_the_faults_of_keys_and_types_that_the_parser_finds(name):
 def test_it_refuses_nothing_that_the_parser_takes(name):
     refused = [
         path
-        for path, tables in changed(CASES[name])
+        for path, tables in change(CASES[name])
         if is_read(tables) and not VALIDATOR.is_valid(tables)
     ]
     assert not refused
@@ -139,7 +139,7 @@ def test_it_refuses_nothing_that_the_parser_takes(name):
     ],
 )
 def test_bounds_choices_and_bare_angles(table, key, value):
-    tables = described()
+    tables = describe()
     tables[table][key] = value
     assert not VALIDATOR.is_valid(tables)
     assert not is_read(tables)

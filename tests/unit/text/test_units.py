@@ -1,4 +1,4 @@
-"""Units as people write them: what is read, and what is refused."""
+"""Units as people write them: accepted and refused spellings."""
 
 import numpy as np
 import pint

@@ -46,7 +46,7 @@ def warnings(record: Record, kind: str, cycles: xr.Dataset, friction: Friction) 
         *_coarse(record, cycles),
         *_drift(record, kind, cycles),
         *_zero(record, friction, cycles),
-        *_uneven(record),
+        *_doubt_times(record),
     ]
     return tuple(found)
 
@@ -64,7 +64,7 @@ def taken_off(lines: tuple[Line, ...]) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _uneven(record: Record) -> Iterator[str]:
+def _doubt_times(record: Record) -> Iterator[str]:
     """Name gaps, jitter and equal times, and how spectra deal with them."""
     if record.same_time:
         yield (

@@ -57,11 +57,11 @@ def plainly(found: Analysis) -> str:
             STICK_SLIP: f"The mass sticks and slips {times}{every}; {size}",
             TRANSITIONAL: f"The mass slips {times}{every}, between stick-slip and plain "
             f"vibration; {size}",
-            HARMONIC: f"The mass swings {times}{every}{_stuck(found)}; {size}",
+            HARMONIC: f"The mass swings {times}{every}{_stick_share(found)}; {size}",
         }
         if kind in plain:
             each = " each time" if count > 1 else ""
-            return f"{plain[kind]}{each}.{_quick(found, period)}"
+            return f"{plain[kind]}{each}.{_note_fast_cycles(found, period)}"
     if found.regime.evidence.get("backward", 0.0) > 0.5:
         return (
             "The force falls slowly and rises fast: it is recorded with the other sign, in all "
@@ -78,7 +78,7 @@ def plainly(found: Analysis) -> str:
     return plain.get(kind, "This record does not show what the mass does.")
 
 
-def _stuck(found: Analysis) -> str:
+def _stick_share(found: Analysis) -> str:
     """Return how long a run sticks in its cycles, in words; '' for a record."""
     run, ends = found.source, found.cycles
     if not isinstance(run, Trajectory):
@@ -88,7 +88,7 @@ def _stuck(found: Analysis) -> str:
     return f", and sticks for {100.0 * share:.2g}% of that time" if share else ", without sticking"
 
 
-def _quick(found: Analysis, period: float) -> str:
+def _note_fast_cycles(found: Analysis, period: float) -> str:
     """Note that the cycles of a run are too fast for the softer spring alone."""
     if not isinstance(found.source, Trajectory) or found.regime.kind == STICK_SLIP:
         return ""

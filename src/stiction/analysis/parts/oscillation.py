@@ -29,7 +29,9 @@ def section(found: Analysis) -> Section:
     seen = found.oscillation["frequency"].values
     seen = seen[np.isfinite(seen)]
     if len(seen) < SELDOM * found.oscillation.sizes["time"] or not len(seen):
-        return Section("Oscillation", [f"No line stands out of the noise.{_hidden(found)}"])
+        return Section(
+            "Oscillation", [f"No line stands out of the noise.{_note_hidden_cycles(found)}"]
+        )
     low, high = (in_words(float(each), "Hz") for each in (seen.min(), seen.max()))
     share = 100.0 * len(seen) / found.oscillation.sizes["time"]
     pitch = f"between {low} and {high}" if low != high else f"at {low}"
@@ -57,11 +59,11 @@ def section(found: Analysis) -> Section:
         for name, each in columns.items()
         if np.isfinite(np.asarray(each.values, dtype=np.float64)[:SHOWN]).any()
     }
-    lines[0] += _hidden(found)
+    lines[0] += _note_hidden_cycles(found)
     return Section("Oscillation", lines, grid(known, SHOWN))
 
 
-def _hidden(found: Analysis) -> str:
+def _note_hidden_cycles(found: Analysis) -> str:
     """Note that cycles follow too closely to be distinguished from an oscillation."""
     oscillation = found.oscillation
     if found.phases is None or oscillation is None or not hides(oscillation, found.cycles):

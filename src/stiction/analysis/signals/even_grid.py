@@ -119,7 +119,7 @@ def even_grid(time: Floats) -> EvenGrid | None:
     plain = EvenGrid(time, float(time[0]), float(time[-1] - time[0]) / (n - 1), n)
     if plain.exact:
         return plain
-    start, step = _fitted(time)
+    start, step = _fit_grid(time)
     start -= step * np.floor((start - time[0]) / step + 0.5)
     size = int(np.floor((time[-1] - start) / step + 0.5)) + 1
     if size > n / (1.0 - MOST_MISSING) + 2:  # so many are missing that it is of no use
@@ -127,7 +127,7 @@ def even_grid(time: Floats) -> EvenGrid | None:
     return EvenGrid(time, float(start), step, size)
 
 
-def _fitted(time: Floats) -> tuple[float, float]:
+def _fit_grid(time: Floats) -> tuple[float, float]:
     """Return start and step of the grid, fitted to ever more samples, outliers left out."""
     middle = len(time) // 2  # the first interval, and the last, may be unlike the others
     step, start = float(np.median(np.diff(time))), float(time[middle])

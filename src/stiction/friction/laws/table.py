@@ -53,17 +53,17 @@ class Table(NamedTuple):
         if not found:
             yield from static_fault(law)
 
-    def prepared(law) -> PreparedTable:
+    def prepare(law) -> PreparedTable:
         """Return the curve in the form that the solver takes."""
         return _curve(law)
 
     def coefficient(law, v: float) -> float:
         """Return the friction coefficient at slip speed `v` (m/s)."""
-        return float(law.prepared().coefficient(v))
+        return float(law.prepare().coefficient(v))
 
     def slope(law, v: float) -> float:
         """Return d(coefficient)/dv at slip speed `v` (m/s), in s/m."""
-        return float(law.prepared().slope(v))
+        return float(law.prepare().slope(v))
 
 
 class PreparedTable(NamedTuple):

@@ -10,7 +10,7 @@ from typing import Any
 
 
 @contextmanager
-def uninterrupted() -> Iterator[None]:
+def delay_interrupt() -> Iterator[None]:
     """Delay an interrupt until the block ends.
 
     An interrupt would crash the interpreter if it arrived while numba turns a result into Python

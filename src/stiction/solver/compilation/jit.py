@@ -12,7 +12,7 @@ from typing import Any, TypeVar, cast
 import numba
 import numpy as np
 
-from stiction.solver.compilation.interrupt import uninterrupted
+from stiction.solver.compilation.interrupt import delay_interrupt
 from stiction.solver.compilation.machine_code import Shelf
 from stiction.solver.compilation.part import PartCompiler, compile_part
 
@@ -65,7 +65,7 @@ def piece(function: F) -> F:
     return _part(function, _nrt=False)
 
 
-def uncompiled(function: F) -> F:
+def python_of(function: F) -> F:
     """Return the Python function of a compiled one."""
     return cast(F, getattr(function, "py_func", function))
 
@@ -95,7 +95,7 @@ def compiled_for(function: Any, digest: str | None) -> Any:
 
     The digest is None if the law's text is unknown; then each process compiles it anew.
     """
-    own = uncompiled(function)
+    own = python_of(function)
     return _entry(own, None if digest is None else Shelf(own, digest))
 
 
@@ -111,7 +111,7 @@ def _entry(function: F, shelf: Shelf | None) -> F:
 _met: set[tuple[Any, ...]] = set()
 
 
-def called(function: Any, kinds: tuple[type, ...], *arguments: Any) -> Any:
+def call_compiled(function: Any, kinds: tuple[type, ...], *arguments: Any) -> Any:
     """Call a compiled function that returns plain tuples and numbers.
 
     The first call with arguments of these types compiles or loads it. No interrupt may cut this
@@ -119,7 +119,7 @@ def called(function: Any, kinds: tuple[type, ...], *arguments: Any) -> Any:
     """
     if (function, kinds) in _met:
         return function(*arguments)
-    with uninterrupted():
+    with delay_interrupt():
         found = function(*arguments)
         _met.add((function, kinds))
     return found

@@ -69,7 +69,7 @@ class Shelf:
         """Return the code for a signature, or None if it is missing or damaged."""
         context.refresh()
         path = self._path(signature, context.codegen())
-        code = _undamaged(path)
+        code = _read_code(path)
         if code is None:
             if solver := _in_words(signature):  # other functions take less than a second
                 log.info("compiling %s, once", solver)
@@ -90,11 +90,11 @@ class Shelf:
 
     def _path(self, signature: Any, codegen: Any) -> Path:
         arguments, _ = normalize_signature(signature)
-        origin = (self._name, self._made_from, [*map(_told, arguments)], codegen.magic_tuple())
+        origin = (self._name, self._made_from, [*map(_full_name, arguments)], codegen.magic_tuple())
         return folder() / f"{self._name}-{hashlib.sha256(repr(origin).encode()).hexdigest()}.code"
 
 
-def _undamaged(path: Path) -> bytes | None:
+def _read_code(path: Path) -> bytes | None:
     """Return the code in a file; discard a damaged file."""
     try:
         content = path.read_bytes()
@@ -109,27 +109,27 @@ def _undamaged(path: Path) -> bytes | None:
 
 def _in_words(signature: Any) -> str:
     """Return the drive and load of a solver's signature in words; "" for other functions."""
-    names = dict.fromkeys(name for kind in signature for name in _chosen(kind))
+    names = dict.fromkeys(name for kind in signature for name in _class_names(kind))
     return f"the solver for {', '.join(names)}" if names else ""
 
 
-def _chosen(kind: Any) -> Iterator[str]:
+def _class_names(kind: Any) -> Iterator[str]:
     if isinstance(kind, types.BaseTuple):
         made_by = getattr(kind, "instance_class", tuple)
         if made_by.__module__.startswith("stiction.drive"):
             yield made_by.__name__
         for part in cast(Iterable[Any], kind):
-            yield from _chosen(part)
+            yield from _class_names(part)
 
 
-def _told(kind: Any) -> str:
+def _full_name(kind: Any) -> str:
     """Return a type in full: numba names a tuple by its class, without the module."""
     if isinstance(kind, types.CPointer):
-        return f"{_told(kind.dtype)}*"
+        return f"{_full_name(kind.dtype)}*"
     if not isinstance(kind, types.BaseTuple):
         return str(kind)
     made_by, parts = getattr(kind, "instance_class", tuple), cast(Iterable[Any], kind)
-    return f"{made_by.__module__}.{made_by.__qualname__}({', '.join(map(_told, parts))})"
+    return f"{made_by.__module__}.{made_by.__qualname__}({', '.join(map(_full_name, parts))})"
 
 
 @cache

@@ -76,7 +76,7 @@ def _write_value(_: Any, value: Any, to: Any) -> Any:
 
     def generate(context: Any, builder: Any, _: Any, arguments: Any) -> Any:
         kind = context.get_data_type(value).as_pointer()
-        lent = _lent(context, builder, value, arguments[0])
+        lent = _borrow(context, builder, value, arguments[0])
         context.pack_value(builder, value, lent, builder.inttoptr(arguments[1], kind))
         return context.get_dummy_value()
 
@@ -86,7 +86,7 @@ def _write_value(_: Any, value: Any, to: Any) -> Any:
 write_value: Any = intrinsic(_write_value)
 
 
-def _lent(context: Any, builder: Any, kind: Any, value: Any) -> Any:
+def _borrow(context: Any, builder: Any, kind: Any, value: Any) -> Any:
     """Return a value whose arrays have no reference counts here: Python owns them."""
     if isinstance(kind, types.Array):
         array = context.make_array(kind)(context, builder, value)
@@ -95,7 +95,9 @@ def _lent(context: Any, builder: Any, kind: Any, value: Any) -> Any:
         return array._getvalue()
     if isinstance(kind, types.BaseTuple):
         parts = zip(cast(Iterable[Any], kind), cgutils.unpack_tuple(builder, value), strict=True)
-        return context.make_tuple(builder, kind, [_lent(context, builder, *part) for part in parts])
+        return context.make_tuple(
+            builder, kind, [_borrow(context, builder, *part) for part in parts]
+        )
     context.nrt.incref(builder, kind, value)  # other counted objects are never freed
     return value
 

@@ -24,7 +24,7 @@ REMEDY = (
 
 def reasons(law: Any) -> Iterator[str]:
     """Yield the reason for each method that cannot be compiled by itself."""
-    law = getattr(law, "prepared", lambda: law)()
+    law = getattr(law, "prepare", lambda: law)()
     for name, arguments in METHODS.items():
         method = getattr(type(law), name, None)
         if method is None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
-from stiction.solver.block_algebra import Factors, Triple, dot, eliminated
+from stiction.solver.block_algebra import Factors, Triple, dot, eliminate
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.oscillation import Swing
 from stiction.solver.exact.slip_frame import Frame, friction, pull
@@ -96,11 +96,16 @@ def jacobian_rows(
     own_pw = h * (by_w * n.n_1 + at_i.f * n.dn_1 + c_12 * p_i)
     own_wp = dot(d, w) + h * (c_12 + c_22 * w_i - w_i * (c_11 + c_12 * w_i) + by_p * n.tau)
     own_ww = h * (at_i.a_1 + c_22 * p_i - w_i * c_12 * p_i + by_w * n.tau + at_i.f * n.dtau)
-    return added(pp, i, own_pp), added(pw, i, own_pw), added(wp, i, own_wp), added(ww, i, own_ww)
+    return (
+        add_to_entry(pp, i, own_pp),
+        add_to_entry(pw, i, own_pw),
+        add_to_entry(wp, i, own_wp),
+        add_to_entry(ww, i, own_ww),
+    )
 
 
 @inlined
-def added(row: Triple, i: int, x: float) -> Triple:
+def add_to_entry(row: Triple, i: int, x: float) -> Triple:
     """Return the row with x added to its entry i."""
     return (
         row[0] + (x if i == 0 else 0.0),
@@ -129,7 +134,7 @@ def factors(
         pp0, wp0 = by_step_size(h, w[0], s0, swing.rest_by_h[0], pp0, wp0)
         pp1, wp1 = by_step_size(h, w[1], s1, swing.rest_by_h[1], pp1, wp1)
         pp2, wp2 = by_step_size(h, w[2], s2, swing.rest_by_h[2], pp2, wp2)
-    return eliminated((pp0, pp1, pp2), (pw0, pw1, pw2), (wp0, wp1, wp2), (ww0, ww1, ww2))
+    return eliminate((pp0, pp1, pp2), (pw0, pw1, pw2), (wp0, wp1, wp2), (ww0, ww1, ww2))
 
 
 @inlined

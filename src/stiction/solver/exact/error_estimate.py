@@ -28,7 +28,7 @@ from stiction.solver.radau import (
 from stiction.solver.state import Accuracy
 from stiction.solver.surface import flow
 
-LOOKS = 6  # iterations at most in the search for the least slip
+DIP_LOOKS = 6  # iterations at most in the search for the least slip
 
 
 @inlined
@@ -69,14 +69,14 @@ def local_error(
     over = s.p_in, s.rest_in, s.slid_in
     error = error_at(problem, frame, over, h, p, w, accuracy, motion, INTERIOR, DEFECT_WEIGHT)
     if max(frame.k_11, frame.k_22) * h * h > MOST:
-        over = superposed(o, s, h)
+        over = superpose(o, s, h)
         later = error_at(problem, frame, over, h, p, w, accuracy, motion, LATER, LATER_WEIGHT)
         error = max(error, later)
     return error
 
 
 @inlined
-def superposed(o: Oscillator, s: Swing, h: float) -> Triple:
+def superpose(o: Oscillator, s: Swing, h: float) -> Triple:
     """Return the contribution of the oscillation at the later point, zero if there is none."""
     if not swings(o, h):
         return 0.0, 0.0, 0.0
@@ -158,7 +158,7 @@ def dips(o: Oscillator, s: Swing, h: float, r: float, p: Triple, margin: float) 
     if not rises > 0.0:
         return False
     side = 0
-    for _ in range(LOOKS):
+    for _ in range(DIP_LOOKS):
         x = left + (right - left) * falls / (falls - rises)
         now, change = cubic(rest, x), cubic_slope(rest, x)
         if laid:

@@ -12,7 +12,14 @@ from stiction.solver.control import GROWTH, ease, step_factor, trend
 from stiction.solver.exact.newton import products
 from stiction.solver.exact.pursuit import land, pursuit
 from stiction.solver.exact.sampling import sample_slip, sample_stick
-from stiction.solver.exact.slip_frame import Frame, Outset, elongation, frame_of, outset, turned
+from stiction.solver.exact.slip_frame import (
+    Frame,
+    Outset,
+    elongation,
+    frame_of,
+    outset,
+    turned_direction,
+)
 from stiction.solver.exact.step import step
 from stiction.solver.problem import (
     Problem,
@@ -37,10 +44,10 @@ from stiction.solver.state import (
     Plain,
     State,
     at_takeoff,
-    counted,
+    count_step,
     plain,
-    planned,
     size_to_try,
+    write_plan,
 )
 from stiction.solver.stick import holding, margin, stick_duration, to_spare
 from stiction.solver.surface import takeoff
@@ -76,7 +83,7 @@ def stick(
         d_x, d_y = in_principal_axes(problem, travel(problem.drive, t, end - t))
         u_x, u_y = u_x + d_x, u_y + d_y
         if held:
-            counts = recorded(counts, t, end, goes_on, sticks)
+            counts = record_stick(counts, t, end, goes_on, sticks)
     a_x, a_y = holding(problem, end, u_x, u_y)
     limit = coefficient(problem.law, 0.0) * at(problem.load, end) * problem.system.per_mass
     a_x, a_y = takeoff(problem, (a_x, a_y), limit)
@@ -91,7 +98,7 @@ def stick(
 
 
 @inlined
-def recorded(counts: Counts, t: float, end: float, goes_on: bool, sticks: np.ndarray) -> Counts:
+def record_stick(counts: Counts, t: float, end: float, goes_on: bool, sticks: np.ndarray) -> Counts:
     """Write a stick interval, or extend the last one; return the updated counts."""
     row = counts.sticks
     if goes_on:
@@ -121,19 +128,19 @@ def slip(
     done, landing, swing, h, p, w, error, rejected, iterations = step(
         problem, frame, start, t_stop, memory, accuracy
     )
-    counts = counted(counts, rejected, iterations)
+    counts = count_step(counts, rejected, iterations)
     if not done:
         return False, State(motion, memory, counts), k
     k = sample_slip(problem, frame, start, swing, h, p, w, accuracy, times, samples, k)
     slid_1, slid_2 = h * (dot(A[2], p) + swing.slid[2]), h * dot(A[2], products(p, w))
     u_x, u_y = elongation(problem, frame, h, slid_1, slid_2)
-    e_x, e_y = turned(frame, w[2])
+    e_x, e_y = turned_direction(frame, w[2])
     at_ease = ease(error)
     factor = step_factor(error, GROWTH)
     end = t_stop if t + h >= t_stop else t + h
     plan = memory.plan
     if memory.place < PLANNED and end < t_stop:
-        plan = planned(plan, memory.place, h * step_factor(error, 4.0))
+        plan = write_plan(plan, memory.place, h * step_factor(error, 4.0))
     # Gustafsson's predictive control (M43): a growing error is expected to grow on; not after a cut
     # step, as before a landing, which it would postpone for ever
     if r > 0.0 and memory.warm and h > 0.9 * size_to_try(memory):

@@ -5,15 +5,15 @@ from __future__ import annotations
 from math import sqrt
 from typing import Any
 
-from stiction.solver.compilation.jit import called, compiled
+from stiction.solver.compilation.jit import call_compiled, compiled
 from stiction.solver.exact.loop import steps
 from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.exact.slip_frame import friction
-from stiction.solver.law import pointed
+from stiction.solver.law import point_to
 from stiction.solver.output import Output
 from stiction.solver.problem import Problem, kinds_of
 from stiction.solver.segments import friction_of
-from stiction.solver.state import Accuracy, Motion, State, cooled, named, start
+from stiction.solver.state import Accuracy, Motion, State, drop_memory, start, state_from_plain
 from stiction.solver.stick import holding
 from stiction.solver.surface import friction_along
 from stiction.system.description import Description
@@ -27,19 +27,19 @@ class Exact:
 
     def __init__(self, slider: Slider) -> None:
         """Store the slider, and compile its law."""
-        self.law = pointed(friction_of(slider)[0])
+        self.law = point_to(friction_of(slider)[0])
 
     def begin(self, description: Description) -> State:
         """Return the initial state of a run."""
         slider, initial, _ = description
         return start(slider, initial.time, (initial.u_x, initial.u_y), initial.slip(slider))
 
-    def entered(self, state: State, x: float, y: float) -> State:
+    def enter_segment(self, state: State, x: float, y: float) -> State:
         """Return the state at the start of a stretch, where the slip velocity jumps by (x, y).
 
         It drops the memory of earlier steps, which is useless after a bend.
         """
-        memory = cooled(state.memory, min(state.memory.h, state.memory.plan[0]))
+        memory = drop_memory(state.memory, min(state.memory.h, state.memory.plan[0]))
         m = state.motion
         if x == y == 0.0:
             return State(m, memory, state.counts)
@@ -52,16 +52,16 @@ class Exact:
         self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
     ) -> tuple[int, State]:
         """Advance until `end` (s) or until the budget is used up."""
-        return advanced(steps, self.seen(problem), state, end, held, budget, out)
+        return advance_compiled(steps, self.point_law(problem), state, end, held, budget, out)
 
     def last_row(self, problem: Problem, state: State) -> list[float]:
         """Return the sample of a state between two steps."""
         motion = state.motion
         slip = [motion.r * motion.e_x, motion.r * motion.e_y]
-        force = called(force_between, kinds_of(problem), self.seen(problem), motion)
+        force = call_compiled(force_between, kinds_of(problem), self.point_law(problem), motion)
         return [motion.u_x, motion.u_y, *slip, *force, float(motion.r == 0.0)]
 
-    def seen(self, problem: Problem) -> Problem:
+    def point_law(self, problem: Problem) -> Problem:
         """Return a problem for compiled code, with its law behind pointers."""
         return problem._replace(law=self.law)
 
@@ -78,7 +78,7 @@ def force_between(problem: Problem, motion: Motion) -> tuple[float, float]:
     return f * f_x, f * f_y
 
 
-def advanced(
+def advance_compiled(
     function: Any,
     problem: Problem,
     state: State,
@@ -91,8 +91,8 @@ def advanced(
     """Call a compiled loop, and make room for more sticks."""
     times, samples, sticks = out.times, out.samples, out.sticks
     arguments = problem, state, end, held, budget, times, samples, out.filled, sticks, *more
-    code, now, out.filled, turns = called(function, kinds_of(problem), *arguments)
-    state = named(now)
+    code, now, out.filled, turns = call_compiled(function, kinds_of(problem), *arguments)
+    state = state_from_plain(now)
     out.used += turns
     out.make_room(state.counts.sticks)
     return code, state

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from stiction.solver.block_algebra import Triple, solved
+from stiction.solver.block_algebra import Triple, solve_blocks
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.control import CONTRACTS, diverging, settled
 from stiction.solver.exact.collocation import factors, stage
@@ -61,7 +61,7 @@ def solve(
     enough = accuracy.newton * min(1.0, motion / (speed + frame.r))
     last = 1.0
     for iteration in range(1, ITERATIONS + 1):
-        dp, dw = solved(
+        dp, dw = solve_blocks(
             m,
             (s0.residual_p, s1.residual_p, s2.residual_p),
             (s0.residual_w, s1.residual_w, s2.residual_w),

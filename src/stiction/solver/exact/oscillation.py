@@ -104,14 +104,14 @@ def propagator(o: Oscillator, t: float) -> tuple[float, float]:
 
 
 @inlined
-def then(o: Oscillator, a: tuple[float, float], b: tuple[float, float]) -> tuple[float, float]:
+def compose(o: Oscillator, a: tuple[float, float], b: tuple[float, float]) -> tuple[float, float]:
     """Return the propagator over the sum of two times."""
     square = o.k - o.beta * o.beta
     return a[0] * b[0] - square * a[1] * b[1], a[1] * b[0] + a[0] * b[1]
 
 
 @inlined
-def moved(o: Oscillator, u: tuple[float, float], t: float) -> tuple[float, float, float]:
+def propagate(o: Oscillator, u: tuple[float, float], t: float) -> tuple[float, float, float]:
     """Return p, p' and the distance slipped after `t` (M22), (M23), given its propagator `u`."""
     x = o.x * u[0] + (o.v + o.beta * o.x) * u[1]
     v = o.v * u[0] - (o.beta * o.v + o.k * o.x) * u[1]
@@ -122,8 +122,8 @@ def moved(o: Oscillator, u: tuple[float, float], t: float) -> tuple[float, float
 def after(o: Oscillator, t: float) -> tuple[float, float, float]:
     """Return p, p' and the distance slipped after `t`."""
     u = propagator(o, 0.25 * t)
-    u = then(o, u, u)
-    return moved(o, then(o, u, u), t)
+    u = compose(o, u, u)
+    return propagate(o, compose(o, u, u), t)
 
 
 NO_LANDING = switch(False)
@@ -136,11 +136,11 @@ def swing(o: Oscillator, h: float, landing: bool) -> Swing:
         nothing = (0.0, 0.0, 0.0)
         return Swing(nothing, nothing, nothing, nothing, nothing, nothing, 0.0, 0.0, 0.0)
     fifth = propagator(o, FIFTH * h)
-    two = then(o, fifth, fifth)
-    p0, v0, z0 = moved(o, then(o, two, propagator(o, -APART * h)), C[0] * h)
-    p1, v1, z1 = moved(o, then(o, two, propagator(o, APART * h)), C[1] * h)
-    p2, v2, z2 = moved(o, then(o, then(o, two, two), fifth), h)
-    p_in, v_in, z_in = moved(o, two, INTERIOR * h)
+    two = compose(o, fifth, fifth)
+    p0, v0, z0 = propagate(o, compose(o, two, propagator(o, -APART * h)), C[0] * h)
+    p1, v1, z1 = propagate(o, compose(o, two, propagator(o, APART * h)), C[1] * h)
+    p2, v2, z2 = propagate(o, compose(o, compose(o, two, two), fifth), h)
+    p_in, v_in, z_in = propagate(o, two, INTERIOR * h)
     p, dp, per_h, r = (p0, p1, p2), (h * v0, h * v1, h * v2), 1.0 / h, o.level + o.x
     above = (p0 - r, p1 - r, p2 - r)
     sums = (dot(A[0], p), dot(A[1], p), dot(A[2], p))

@@ -6,7 +6,7 @@ from math import inf, sqrt
 
 from stiction.solver.block_algebra import Triple, inverse, times
 from stiction.solver.compilation.jit import inlined
-from stiction.solver.exact.collocation import added
+from stiction.solver.exact.collocation import add_to_entry
 from stiction.solver.exact.newton import products
 from stiction.solver.exact.oscillation import Oscillator, Swing, after, swings
 from stiction.solver.exact.slip_frame import Frame, Outset, elongation
@@ -61,12 +61,12 @@ def passes(problem: Problem, frame: Frame, o: Oscillator, t: float) -> bool:
 
 
 @inlined
-def predicted(
+def predict(
     frame: Frame, start: Outset, o: Oscillator, s: Swing, h: float, memory: Memory
 ) -> tuple[Triple, Triple]:
     """Return a first guess of the stages (p, w)."""
     if swings(o, h):
-        return swung(frame, start, s, h)
+        return predict_by_oscillation(frame, start, s, h)
     if memory.warm:
         x = h / memory.h_last
         c = (1.0 + C[0] * x, 1.0 + C[1] * x, 1.0 + C[2] * x)
@@ -93,7 +93,9 @@ def predicted(
 
 
 @inlined
-def swung(frame: Frame, start: Outset, s: Swing, h: float) -> tuple[Triple, Triple]:
+def predict_by_oscillation(
+    frame: Frame, start: Outset, s: Swing, h: float
+) -> tuple[Triple, Triple]:
     """Return a first guess of the stages from the oscillation along the slip.
 
     The turn w follows from its own equation, linear for given p; its effect on p is added.
@@ -131,4 +133,4 @@ def turn_row(start: Outset, s: Swing, i: int, h: float, p: Triple, k_22: float) 
         p[i] * D[i][1] + x * A[i][1] * p[1],
         p[i] * D[i][2] + x * A[i][2] * p[2],
     )
-    return added(row, i, h * start.f + s.dp[i])
+    return add_to_entry(row, i, h * start.f + s.dp[i])

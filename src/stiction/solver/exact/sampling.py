@@ -48,7 +48,7 @@ def within(
     o, x = oscillator(frame, start), dt / h
     s = swing(o, dt, NO_LANDING)
     if dt == h:
-        return ended(h, s, p, w)
+        return end_of_step(h, s, p, w)
     rest, way = less(p, laid.p), (0.0, w[0], w[1], w[2])
     if swings(o, dt) and swings(o, h):
         q = (
@@ -72,7 +72,7 @@ def within(
     first = q[2], turn[2]
     found, s, q, turn, _, _ = solve(problem, frame, o, s, dt, NO_LANDING, q, turn, accuracy, motion)
     if found and min(q) >= 0.0:
-        return ended(dt, s, q, turn)
+        return end_of_step(dt, s, q, turn)
     slid = after(o, dt)[2] if swings(o, h) else 0.0
     return (
         slid + h * integral(rest, x),
@@ -83,7 +83,7 @@ def within(
 
 
 @inlined
-def ended(h: float, s: Swing, p: Triple, w: Triple) -> tuple[float, float, float, float]:
+def end_of_step(h: float, s: Swing, p: Triple, w: Triple) -> tuple[float, float, float, float]:
     """Return the distance slipped in a step along and across it, and p and w at its end."""
     return h * (dot(A[2], p) + s.slid[2]), h * dot(A[2], products(p, w)), p[2], w[2]
 

@@ -194,7 +194,7 @@ def elongation(
 
 
 @inlined
-def turned(frame: Frame, w: float) -> tuple[float, float]:
+def turned_direction(frame: Frame, w: float) -> tuple[float, float]:
     """Return the direction of (1, w) in the axes (x, y)."""
     g = 1.0 / sqrt(1.0 + w * w)
     return (frame.e_x - w * frame.e_y) * g, (frame.e_y + w * frame.e_x) * g

@@ -10,7 +10,7 @@ from stiction.solver.control import ATTEMPTS, FAILED, RESOLUTION, step_factor
 from stiction.solver.exact.error_estimate import dips, local_error, moving
 from stiction.solver.exact.newton import solve
 from stiction.solver.exact.oscillation import NO_LANDING, Swing, oscillator, swing, within_reach
-from stiction.solver.exact.predictor import passes, predicted, swung_to_rest, time_to_landing
+from stiction.solver.exact.predictor import passes, predict, swung_to_rest, time_to_landing
 from stiction.solver.exact.slip_frame import Frame, Outset
 from stiction.solver.problem import Problem
 from stiction.solver.state import Accuracy, Memory, size_to_try
@@ -65,7 +65,7 @@ def step(
             break
         s = swing(o, h, landing)
         if not warm:
-            p, w = predicted(frame, start, o, s, h, memory)
+            p, w = predict(frame, start, o, s, h, memory)
         if landing:
             p = (p[0], p[1], 0.0)
         tried, warm = h, False

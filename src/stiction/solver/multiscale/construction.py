@@ -6,11 +6,11 @@ from math import inf, nan, sqrt
 
 import numpy as np
 
-from stiction.solver.compilation.jit import inlined, piece, uncompiled
+from stiction.solver.compilation.jit import inlined, piece, python_of
 from stiction.solver.exact import loop
-from stiction.solver.multiscale.interpolant import POINTS, interpolated
+from stiction.solver.multiscale.interpolant import POINTS, interpolate
 from stiction.solver.multiscale.return_map import NEAR, NODES, Cycle, Returns
-from stiction.solver.multiscale.section import angle, elongation_held, lead, wrapped
+from stiction.solver.multiscale.section import angle, elongation_held, lead, wrap_angle
 from stiction.solver.problem import Problem, in_principal_axes, rate
 from stiction.solver.state import (
     NOTHING,
@@ -25,14 +25,14 @@ from stiction.solver.state import (
 from stiction.solver.stick import stick_duration
 
 NODE_STEPS = 10_000
-FINER = 0.1  # tolerance of a node's steps over that of others; their noise is below `closing`
+NODE_SHARE = 0.1  # tolerance of a node's steps over that of others; their noise is below `closing`
 
 # compiled as a part of its caller, so that a user's law is cached only with that
-advance = piece(uncompiled(loop.advance))
+advance = piece(python_of(loop.advance))
 
 
 @inlined
-def added(a: Counts, b: Counts) -> Counts:
+def add_counts(a: Counts, b: Counts) -> Counts:
     """Return the counts plus the steps of others, but not their stick intervals."""
     return Counts(
         a.steps + b.steps,
@@ -47,12 +47,12 @@ def added(a: Counts, b: Counts) -> Counts:
 @inlined
 def finer(accuracy: Accuracy) -> Accuracy:
     """Return the tolerances for the steps of a node's cycle."""
-    tolerance, newton = FINER * accuracy.tolerance, FINER * accuracy.newton
-    return Accuracy(tolerance, newton, *accuracy[2:-1], accuracy.least / FINER)
+    tolerance, newton = NODE_SHARE * accuracy.tolerance, NODE_SHARE * accuracy.newton
+    return Accuracy(tolerance, newton, *accuracy[2:-1], accuracy.least / NODE_SHARE)
 
 
 @inlined
-def solved(
+def solve_cycle(
     problem: Problem,
     accuracy: Accuracy,
     memory: Memory,
@@ -77,9 +77,9 @@ def solved(
     end = state.motion
     held, _ = stick_duration(problem, end.t, end.u_x, end.u_y, inf)
     there = angle(problem, end.u_x + v_x * held, end.u_y + v_y * held)
-    swing = wrapped(there - angle(problem, end.u_x, end.u_y))
+    swing = wrap_angle(there - angle(problem, end.u_x, end.u_y))
     returns = code == RUNNING and state.counts.sticks == 1 and 0.0 < held < inf
-    return returns, Cycle(wrapped(there - theta), end.t - stick[0, 1] + held, held), swing, state
+    return returns, Cycle(wrap_angle(there - theta), end.t - stick[0, 1] + held, held), swing, state
 
 
 @inlined
@@ -90,7 +90,7 @@ def added_node(coefficients: np.ndarray, n: int, cycle: Cycle, swing: float) -> 
     repeat.
     """
     c, x, product = coefficients, POINTS[n], 1.0
-    turn, time, square = interpolated(c, n, x)
+    turn, time, square = interpolate(c, n, x)
     for i in range(n):
         product *= x - POINTS[i]
     off_turn, off_time = cycle.turn - turn, cycle.time - time
@@ -127,8 +127,8 @@ def chart(
     patch[0] = theta
     for n in range(first, NODES):
         there = theta + 0.5 * (POINTS[n] + 1.0) * reach
-        returns, cycle, swing, end = solved(problem, accuracy, memory, known, there, longest)
-        memory, counts = end.memory, added(counts, end.counts)
+        returns, cycle, swing, end = solve_cycle(problem, accuracy, memory, known, there, longest)
+        memory, counts = end.memory, add_counts(counts, end.counts)
         known.sizes[3] += 1
         if not returns:
             known.edges[known.sizes[1]] = there

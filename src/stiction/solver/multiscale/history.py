@@ -80,7 +80,7 @@ def same_end(known: Returns, theta: float, last: Cycle) -> tuple[bool, Cycle]:
 
 
 @inlined
-def remembered(known: Returns, theta: float, last: Cycle) -> tuple[bool, Cycle]:
+def recall(known: Returns, theta: float, last: Cycle) -> tuple[bool, Cycle]:
     """Return the cycle from an angle, predicted from the two nearest solved ones.
 
     A long cycle follows from their common end. Any other lies on a line through both, and is

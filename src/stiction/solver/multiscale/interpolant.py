@@ -17,7 +17,7 @@ import numpy as np
 
 from stiction.solver.compilation.jit import inlined, piece
 from stiction.solver.multiscale.return_map import NODES, Cycle, Hold, Returns
-from stiction.solver.multiscale.section import wrapped
+from stiction.solver.multiscale.section import wrap_angle
 
 
 def leja(count: int) -> np.ndarray:
@@ -34,7 +34,7 @@ POINTS = leja(NODES)
 
 
 @inlined
-def interpolated(coefficients: np.ndarray, n: int, x: float) -> tuple[float, float, float]:
+def interpolate(coefficients: np.ndarray, n: int, x: float) -> tuple[float, float, float]:
     """Return the polynomials through the first `n` nodes: turn, time (s), time held squared.
 
     It sums two halves in parallel, for speed; for odd `n` the row after the last coefficients is
@@ -74,12 +74,12 @@ def place(known: Returns, theta: float) -> tuple[int, float]:
 def cycle_from(known: Returns, row: int, x: float) -> Cycle:
     """Return the cycle from a place in a patch; its time held is zero without a stick."""
     n = int(known.patches[row, 2])
-    turn, time, square = interpolated(known.coefficients[row], n, x)
+    turn, time, square = interpolate(known.coefficients[row], n, x)
     return Cycle(turn, time, sqrt(max(square, 0.0)))
 
 
 @piece
-def followed(
+def follow_patches(
     known: Returns, hold: Hold, cycle: Cycle, sticks: np.ndarray, count: int, until: float
 ) -> tuple[Hold, Cycle, int, float]:
     """Follow the patches from a stick until they end, time `until` (s) is reached, or room ends.
@@ -106,7 +106,7 @@ def followed(
         sticks[count, 1] = end
         stuck += end - start
         count += 1
-        start, end, theta = end + (time - held), end + time, wrapped(theta + turn)
+        start, end, theta = end + (time - held), end + time, wrap_angle(theta + turn)
         cycle = following
         x = (theta - known.patches[row, 0]) * known.patches[row, 1] - 1.0
         if not -1.0 <= x <= 1.0:

@@ -9,11 +9,11 @@ import numpy as np
 from stiction.solver.compilation.jit import compiled, inlined
 from stiction.solver.exact.loop import at_rest
 from stiction.solver.multiscale.construction import advance, chart
-from stiction.solver.multiscale.history import remember, remembered
-from stiction.solver.multiscale.interpolant import cycle_from, followed, place
-from stiction.solver.multiscale.replay import hold_of, landed, sample_cycle
+from stiction.solver.multiscale.history import recall, remember
+from stiction.solver.multiscale.interpolant import cycle_from, follow_patches, place
+from stiction.solver.multiscale.replay import hold_of, sample_cycle, state_at_landing
 from stiction.solver.multiscale.return_map import FAR, PATCHES, Cycle, Hold, Returns
-from stiction.solver.multiscale.section import wrapped
+from stiction.solver.multiscale.section import wrap_angle
 from stiction.solver.problem import Problem
 from stiction.solver.state import (
     COMPLETED,
@@ -86,11 +86,11 @@ def known_cycle(known: Returns, theta: float, last: Cycle) -> tuple[bool, Cycle]
     row, x = place(known, theta)
     if row >= 0:
         return True, cycle_from(known, row, x)
-    return remembered(known, theta, last)
+    return recall(known, theta, last)
 
 
 @inlined
-def mapped(
+def learn_and_follow(
     problem: Problem,
     state: State,
     t_end: float,
@@ -104,14 +104,14 @@ def mapped(
     """Learn from the cycle that ends with the present stick, and follow the map from there."""
     hold, found_before = hold_of(problem, state.motion), state.counts.mapped
     theta, taken_off = known.last[0], known.last[1]
-    cycle = Cycle(wrapped(hold.theta - theta), hold.end - taken_off, hold.end - hold.start)
+    cycle = Cycle(wrap_angle(hold.theta - theta), hold.end - taken_off, hold.end - hold.start)
     known.sizes[4] += 1
     if cycle.turn < inf:  # a number: both ends are known
         remember(known, theta, cycle)
     while cycle.turn < inf and state.counts.sticks < len(sticks):
         until = min(t_end, times[k]) if k < len(times) else t_end
         count = state.counts.sticks
-        hold, cycle, count, stuck = followed(known, hold, cycle, sticks, count, until)
+        hold, cycle, count, stuck = follow_patches(known, hold, cycle, sticks, count, until)
         state = State(state.motion, state.memory, with_sticks(state.counts, count, stuck))
         if count == len(sticks):
             break
@@ -135,10 +135,10 @@ def mapped(
         sticks[count, 0], sticks[count, 1] = hold.start, hold.end
         counts = with_sticks(state.counts, count + 1, hold.end - hold.start)
         state = State(state.motion, state.memory, counts)
-        hold = Hold(landing, end, wrapped(hold.theta + following.turn))
+        hold = Hold(landing, end, wrap_angle(hold.theta + following.turn))
         cycle = following
     if state.counts.mapped > found_before:
-        state = landed(problem, state, hold)
+        state = state_at_landing(problem, state, hold)
     known.last[0], known.last[1] = hold.theta, hold.end
     return COMPLETED, state, k
 
@@ -175,7 +175,7 @@ def stride(
         rests = at_rest(problem, state.motion, accuracy)
         if rests and not known.last[1] >= state.motion.t:
             steps = state.counts.steps
-            code, state, k = mapped(
+            code, state, k = learn_and_follow(
                 problem, state, t_end, accuracy, times, samples, k, sticks, known
             )
             turns += state.counts.steps - steps

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from math import nan
 
-from stiction.solver.exact.method import Exact, advanced
+from stiction.solver.exact.method import Exact, advance_compiled
 from stiction.solver.multiscale.loop import stride
-from stiction.solver.multiscale.return_map import Returns, unknown
+from stiction.solver.multiscale.return_map import Returns, empty_map
 from stiction.solver.output import Output
 from stiction.solver.problem import Problem, constant, steady
 from stiction.solver.state import Accuracy, State
 from stiction.system.slider import Slider
 
-FINER = 0.3  # tolerance of steps for the return map, over that of others
+STEP_SHARE = 0.3  # tolerance of steps for the return map, over that of others
 
 
 class Multiscale(Exact):
@@ -25,11 +25,11 @@ class Multiscale(Exact):
         self.problem: Problem | None = None
         self.known: Returns | None = None
 
-    def entered(self, state: State, x: float, y: float) -> State:
+    def enter_segment(self, state: State, x: float, y: float) -> State:
         """Return the state at the start of a stretch, where the slip velocity jumps by (x, y)."""
         if self.known is not None:
             self.known.last[:] = nan
-        return super().entered(state, x, y)
+        return super().enter_segment(state, x, y)
 
     def advance(
         self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
@@ -38,11 +38,13 @@ class Multiscale(Exact):
         if not (steady(problem.drive) and constant(problem.load)):
             return super().advance(problem, state, end, held, budget, out)
         if self.known is None or problem != self.problem:
-            self.problem, self.known = problem, unknown(self.rtol)
+            self.problem, self.known = problem, empty_map(self.rtol)
         fine = held._replace(
-            tolerance=FINER * held.tolerance,
-            newton=FINER * held.newton,
-            least=held.least / FINER,
+            tolerance=STEP_SHARE * held.tolerance,
+            newton=STEP_SHARE * held.newton,
+            least=held.least / STEP_SHARE,
             touch=0.0,  # cycles are counted from one stick to the next, however short
         )
-        return advanced(stride, self.seen(problem), state, end, fine, budget, out, self.known)
+        return advance_compiled(
+            stride, self.point_law(problem), state, end, fine, budget, out, self.known
+        )

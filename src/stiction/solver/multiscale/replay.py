@@ -8,7 +8,7 @@ import numpy as np
 
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.sampling import sample_stick
-from stiction.solver.multiscale.construction import added, advance
+from stiction.solver.multiscale.construction import add_counts, advance
 from stiction.solver.multiscale.return_map import Hold
 from stiction.solver.multiscale.section import angle, elongation_held
 from stiction.solver.problem import Problem, in_principal_axes, rate
@@ -39,7 +39,7 @@ def hold_of(problem: Problem, motion: Motion) -> Hold:
 
 
 @inlined
-def landed(problem: Problem, state: State, hold: Hold) -> State:
+def state_at_landing(problem: Problem, state: State, hold: Hold) -> State:
     """Return the state at the start of a stick."""
     motion, memory, counts = state
     u_x, u_y = elongation_held(problem, hold.theta)
@@ -67,7 +67,7 @@ def sample_cycle(
     The steps find their own landing, which does not matter, because samples do not influence the
     motion. `room` is for one of their sticks. Later samples are those of the next stick.
     """
-    start = landed(problem, state, hold)
+    start = state_at_landing(problem, state, hold)
     motion, memory, counts = start
     u_x, u_y = motion.u_x, motion.u_y
     k = sample_stick(problem, hold.start, u_x, u_y, hold.end, True, times, samples, k)
@@ -84,5 +84,5 @@ def sample_cycle(
         code, alone, k, _ = advance(
             problem, alone, landing + slip, accuracy, SLIP_STEPS, times[:until], samples, k, room
         )
-        counts = added(counts, alone.counts)
+        counts = add_counts(counts, alone.counts)
     return code, State(state.motion, state.memory, counts), k

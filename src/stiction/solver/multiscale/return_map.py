@@ -67,7 +67,7 @@ class Returns(NamedTuple):
     closing: float
 
 
-def unknown(rtol: float) -> Returns:
+def empty_map(rtol: float) -> Returns:
     """Return an empty map."""
     return Returns(
         np.full((PATCHES, 3), nan),

@@ -23,7 +23,7 @@ def angle(problem: Problem, u_x: float, u_y: float) -> float:
 
 
 @inlined
-def held(problem: Problem, theta: float) -> tuple[float, float]:
+def limit_at_angle(problem: Problem, theta: float) -> tuple[float, float]:
     """Return the limit of friction at an angle, over mass (x, y)."""
     n, f = problem.surface, static(problem.law) * at(problem.load, 0.0) * problem.system.per_mass
     x, y = f * cos(theta) / sqrt(n.xx), f * sin(theta) * sqrt(n.yy - n.xy * n.xy / n.xx)
@@ -33,7 +33,7 @@ def held(problem: Problem, theta: float) -> tuple[float, float]:
 @inlined
 def elongation_held(problem: Problem, theta: float) -> tuple[float, float]:
     """Return the elongation (x, y) at which a stick ends."""
-    s, (a_x, a_y) = problem.system, held(problem, theta)
+    s, (a_x, a_y) = problem.system, limit_at_angle(problem, theta)
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, 0.0))
     return (s.mass * a_x - s.c_x * v_x) / s.k_x, (s.mass * a_y - s.c_y * v_y) / s.k_y
 
@@ -44,12 +44,12 @@ def lead(problem: Problem, theta: float) -> float:
 
     It covers half of the chord of a in the ellipse (M54).
     """
-    a, j = held(problem, theta), holding_change(problem, 0.0)
+    a, j = limit_at_angle(problem, theta), holding_change(problem, 0.0)
     rise, square = held_product(problem, a, j), held_product(problem, j, j)
     return rise / square if rise > 0.0 else 0.0
 
 
 @inlined
-def wrapped(angle: float) -> float:
+def wrap_angle(angle: float) -> float:
     """Return a difference of angles, -pi to pi."""
     return angle - 2.0 * pi * round(angle / (2.0 * pi)) if abs(angle) > pi else angle

@@ -11,7 +11,7 @@ from math import asinh, cosh, exp, hypot, inf, log, sinh, sqrt
 from stiction.solver.compilation.jit import inlined, piece
 
 SMALL = 1e-4  # below, sinh(x)/x = 1 + x^2/6 to the last digit
-LARGEST = 700.0  # sinh of more is no float
+LARGEST = 700.0  # sinh of more overflows
 ROUNDS = 30
 
 
@@ -34,7 +34,7 @@ def coordinate(eps: float, s_x: float, s_y: float) -> tuple[float, float]:
     """Return q at a slip velocity (m/s)."""
     if eps == inf:
         return s_x, s_y
-    s = hypot(s_x, s_y)  # whose square may be no float
+    s = hypot(s_x, s_y)  # the square may underflow
     f = asinh(s / eps) / s if s > 0.0 else 0.0
     return f * s_x, f * s_y
 
@@ -57,11 +57,11 @@ def slip_slope(eps: float, q_x: float, q_y: float) -> tuple[float, float, float]
 
 
 @piece
-def risen(q: float, rise: float, share: float) -> float:
-    """Return |q| after an update by `rise` > 0 of which `share` is meant for s, not for q (M69).
+def damped_rise(q: float, rise: float, share: float) -> float:
+    """Return |q| after a damped update by `rise` > 0 (M69); `share` is that of inertia.
 
-    What resists in Newton's equations is inertia, exponential in q, and friction, about
-    linear in it. The update would be right if both were linear; this solves
+    In Newton's equations inertia is exponential in q, and friction about linear in it. The plain
+    update would be right if both were linear; this function solves
 
         share (sinh q' - sinh q)/cosh q + (1 - share) (q' - q) = rise
 

@@ -1,6 +1,6 @@
-"""What the smooth solver asks of a law, by the law's type; a set-valued law made smooth.
+"""Friction and its derivatives for the smooth solver, by the type of law; smoothed set-valued laws.
 
-One call returns friction and its derivatives. What internal states do is written to arrays.
+One call returns friction and its derivatives, and writes the rates of the states to arrays.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 from numba.extending import overload, register_jitable
 
 from stiction.friction.law import Vector, states
-from stiction.solver.compilation.interrupt import uninterrupted
+from stiction.solver.compilation.interrupt import delay_interrupt
 from stiction.solver.compilation.jit import compiled, inlined
 from stiction.solver.compilation.pointer import address, caller, memory, pointee, types
 from stiction.solver.problem import (
@@ -35,7 +35,7 @@ Friction = tuple[float, float, float, float, float, float]
 
 
 class Smoothed(NamedTuple):
-    """F N s/sqrt(s.N s + delta^2) (M60): a set-valued law F without what happens at zero slip.
+    """F N s/sqrt(s.N s + delta^2) (M60): a set-valued law F without its jump at zero slip.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class Smoothed(NamedTuple):
 
     def force(law, slip: Vector, load: float, state: tuple[float, ...]) -> Vector:
         """Return the friction force (N)."""
-        f = smoothed_friction(law, slip, load, root_share(law.delta, squared(law, slip)))
+        f = smoothed_friction(law, slip, load, root_share(law.delta, square(law, slip)))
         return f[0], f[1]
 
     def grain(law, state: tuple[float, ...]) -> float:
@@ -62,7 +62,7 @@ class Smoothed(NamedTuple):
 
     def friction_and_gradient(law, slip: Vector, load: float) -> Friction:
         """Return the friction force (N) and its derivatives by the slip velocity (N s/m)."""
-        return smoothed_friction(law, slip, load, root_share(law.delta, squared(law, slip)))
+        return smoothed_friction(law, slip, load, root_share(law.delta, square(law, slip)))
 
 
 class SmoothedByArctan(NamedTuple):
@@ -78,7 +78,7 @@ class SmoothedByArctan(NamedTuple):
 
     def force(law, slip: Vector, load: float, state: tuple[float, ...]) -> Vector:
         """Return the friction force (N)."""
-        f = smoothed_friction(law, slip, load, arctan_share(law.delta, squared(law, slip)))
+        f = smoothed_friction(law, slip, load, arctan_share(law.delta, square(law, slip)))
         return f[0], f[1]
 
     def grain(law, state: tuple[float, ...]) -> float:
@@ -87,14 +87,14 @@ class SmoothedByArctan(NamedTuple):
 
     def friction_and_gradient(law, slip: Vector, load: float) -> Friction:
         """Return the friction force (N) and its derivatives by the slip velocity (N s/m)."""
-        return smoothed_friction(law, slip, load, arctan_share(law.delta, squared(law, slip)))
+        return smoothed_friction(law, slip, load, arctan_share(law.delta, square(law, slip)))
 
 
 SMOOTHED: dict[str, Any] = {"root": Smoothed, "arctan": SmoothedByArctan}
 
 
 @register_jitable
-def squared(law: Any, slip: Vector) -> float:
+def square(law: Any, slip: Vector) -> float:
     """Return s.N s."""
     x, y, n = slip[0], slip[1], law.surface
     n_x, n_y = n.xx * x + n.xy * y, n.xy * x + n.yy * y
@@ -171,7 +171,7 @@ class PointedFlow(NamedTuple):
     fields : ndarray
         Memory with the law's fields.
     unitless : ndarray of bool
-        Whether what stands in a column has no unit, for slip x, y and the internal states.
+        Whether the quantity in a column has no unit, for slip x, y and the internal states.
     """
 
     flow_code: int
@@ -180,11 +180,11 @@ class PointedFlow(NamedTuple):
     unitless: np.ndarray
 
 
-def pointed(law: Any) -> PointedFlow:
+def point_to_flow(law: Any) -> PointedFlow:
     """Return a law as the smooth solver takes it."""
     plain = np.array([True, True, *(state.unit == "1" for state in states(law))])
     own = (flow_at, *FLOW) if states(law) else (friction_at, *FRICTION)
-    with uninterrupted():
+    with delay_interrupt():
         flows, grains = address(own[0], law, *own[1:]), address(grain_at, law, *GRAIN)
         return PointedFlow(flows, grains, memory(law), plain)
 
@@ -193,15 +193,15 @@ def pointed(law: Any) -> PointedFlow:
 def flow(
     law: PointedFlow, slip: Vector, load: float, per_mass: float, w: Workspace, i: int, wanted: bool
 ) -> Friction:
-    """Return friction over mass, and its derivatives by slip if they are wanted.
+    """Return friction over mass and, on request, its derivatives by slip.
 
     Parameters
     ----------
     slip, load, per_mass
         m/s, N, 1/kg.
     w : Workspace
-        Row `i` of the values has the internal states; how they change, and the derivatives of
-        that and of friction, are written to the rows `i` of flow and jacobian.
+        Row `i` of the values holds the internal states. Their rates of change, and the derivatives
+        of these and of friction, are written to the rows `i` of flow and jacobian.
     """
     found: Friction
     if w.size.shape[0] == 2:
@@ -285,7 +285,7 @@ def write_flow(law: Any, at: At, rows: Rows, i: int) -> None:
 
 
 def write_gradient(law: Any, at: At, rows: Rows, i: int) -> None:
-    """Write the derivatives of what stands in ``flow[i]`` to ``jacobian[i]``.
+    """Write the derivatives of ``flow[i]`` to ``jacobian[i]``.
 
     They are the law's own, or forward differences.
     """

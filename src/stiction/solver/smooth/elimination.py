@@ -1,9 +1,8 @@
-"""Elimination of internal states from linear equations: what is left is that of the slip alone.
+"""Elimination of internal states from linear equations, which leaves equations of the slip alone.
 
-Unknowns are those of slip x and y and the states z. In a step each stands for three stages, and
-what one equation says of one unknown is a block of 3 by 3 (M68). The states' own blocks need no
-pivots: states that decay add positive numbers to the diagonal of D, and Radau IIA leaves that
-regular.
+The unknowns are slip x and y and the states z, each at three stages, so that the coefficients of
+one unknown in one equation are a block of 3 by 3 (M68). The states' own blocks need no pivots:
+states that decay add positive numbers to the diagonal of D, and Radau IIA leaves that regular.
 """
 
 from __future__ import annotations
@@ -121,9 +120,9 @@ def residuals_without(h: float, x: Triple, y: Triple, w: Workspace) -> tuple[Tri
 
 @piece
 def correct_states(x: Triple, y: Triple, w: Workspace) -> float:
-    """Correct the states at the stages, given what slip is corrected by; return by how much.
+    """Correct the states at the stages for a correction of slip; return the largest correction.
 
-    That is relative to the states' sizes.
+    It is relative to the states' sizes.
     """
     enter(w, X, x)
     enter(w, Y, y)
@@ -144,7 +143,7 @@ def correct_states(x: Triple, y: Triple, w: Workspace) -> float:
 def slip_without_states(
     g: float, weight: float, at: Point, slip: Equations, w: Workspace
 ) -> Equations:
-    """Return the equations of slip inside a step after eliminating the states, as those of (M70).
+    """Return the equations (M70) of slip inside a step after eliminating the states.
 
     `g` is the weight times the step size.
     """

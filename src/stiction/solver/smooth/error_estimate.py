@@ -1,4 +1,4 @@
-"""Inside a step: the collocation cubic, its error, and what friction makes of it.
+"""The inside of a step: the collocation cubic, its error, and the error where friction is stiff.
 
 The cubic through the start and the stages misses the equations by a defect, which goes as
 pi(c) = (c - c_1)(c - c_2)(c - 1); so its error goes as the integral of pi. Where friction
@@ -17,12 +17,18 @@ from stiction.solver.problem import Problem
 from stiction.solver.radau import DEFECT_WEIGHT, INTERIOR, C, cubic, cubic_slope, integral
 from stiction.solver.smooth.coordinate import coordinate
 from stiction.solver.smooth.elimination import correct_states_inside, slip_without_states
-from stiction.solver.smooth.newton import corrected, larger
-from stiction.solver.smooth.right_hand_side import Outset, Point, evaluate, inertia_share, pull
+from stiction.solver.smooth.newton import correct, larger
+from stiction.solver.smooth.right_hand_side import (
+    Point,
+    SmoothOutset,
+    evaluate,
+    inertia_share,
+    pull,
+)
 from stiction.solver.smooth.workspace import INSIDE, START, WANTED, Workspace
 from stiction.solver.state import Accuracy
 
-ITERATIONS = 20
+BALANCE_ITERATIONS = 20
 # how the error goes inside a step, 1 in magnitude at c_1, where it is largest
 _PI = Polynomial.fromroots(C).integ()
 ERROR = tuple(float(x) for x in (_PI / abs(_PI(C[0]))).coef[1:])
@@ -63,7 +69,7 @@ def within(w: Workspace, c: float) -> Within:
 
 @inlined
 def less_error(w: Workspace, p: Within, c: float) -> Within:
-    """Return the polynomials at `c` less their estimated error, but for the distance slid."""
+    """Return the polynomials at `c` less their estimated error; the distance slid is as it is."""
     e1, e2, e3, e4 = ERROR
     shape = c * (e1 + c * (e2 + c * (e3 + c * e4)))
     slope = e1 + c * (2.0 * e2 + c * (3.0 * e3 + c * 4.0 * e4))
@@ -84,7 +90,7 @@ def less_error(w: Workspace, p: Within, c: float) -> Within:
 @piece
 def balance(
     problem: Problem,
-    start: Outset,
+    start: SmoothOutset,
     h: float,
     c: float,
     weight: float,
@@ -92,10 +98,10 @@ def balance(
     w: Workspace,
     enough: float,
 ) -> tuple[bool, Point]:
-    """Solve for what slip and states are at `c` in the step; states go into the row `INSIDE`.
+    """Solve for slip and states at `c` in the step; write the states to the row `INSIDE`.
 
-    That is x with x - p + weight (p' - h f(x)) = 0, p being the polynomial and f the equations:
-    p itself up to its error where f is gentle, what balances where f is stiff.
+    They are x with x - p + weight (p' - h f(x)) = 0 (M70), p being the polynomial and f the
+    right-hand side. Where f is gentle, x is p up to its error; where it is stiff, forces balance.
     """
     n, system, eps = w.size.shape[0], problem.system, start.eps
     a_x, a_y, load = pull(problem, start, c * h)
@@ -109,7 +115,7 @@ def balance(
     given_x, given_y = p.s_x - weight * p.d_x + g * a_x, p.s_y - weight * p.d_y + g * a_y
     x, y = 1.0 + damping_x, 1.0 + damping_y
     at = evaluate(problem, eps, load, q_x, q_y, w, INSIDE, WANTED)
-    for _ in range(ITERATIONS):
+    for _ in range(BALANCE_ITERATIONS):
         r_x, r_y = x * at.s_x + g * at.f_x - given_x, y * at.s_y + g * at.f_y - given_y
         xx, xy = x * at.s_xx + g * at.f_xx, x * at.s_xy + g * at.f_xy
         yx, yy = y * at.s_xy + g * at.f_yx, y * at.s_yy + g * at.f_yy
@@ -123,7 +129,7 @@ def balance(
         if eps < inf:
             slope, friction = (at.s_xx, at.s_xy, at.s_yy), (at.f_xx, at.f_xy, at.f_yy)
             share = inertia_share(problem, g, 1.0, (q_x, q_y), slope, friction)
-        q_x, q_y, _, size = corrected(start, share, start.unit, q_x, q_y, d_x, d_y)
+        q_x, q_y, _, size = correct(start, share, start.unit, q_x, q_y, d_x, d_y)
         if n > 2:
             size = larger(correct_states_inside(d_x, d_y, w), size)
         if not size < 1e100:
@@ -136,11 +142,11 @@ def balance(
 
 @piece
 def local_error(
-    problem: Problem, start: Outset, h: float, w: Workspace, accuracy: Accuracy
+    problem: Problem, start: SmoothOutset, h: float, w: Workspace, accuracy: Accuracy
 ) -> float:
     """Return the relative error of the step's cubic, and write the error itself.
 
-    Where the motion about steady sliding is slower than the slip, relative to that.
+    It is relative to the slip, or to the motion about steady sliding if that is slower.
     """
     p = within(w, INTERIOR)
     found, at = balance(problem, start, h, INTERIOR, DEFECT_WEIGHT, p, w, 0.1)

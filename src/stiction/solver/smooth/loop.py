@@ -13,9 +13,9 @@ from stiction.solver.problem import Problem, in_principal_axes, travel
 from stiction.solver.radau import A
 from stiction.solver.smooth.coordinate import coordinate
 from stiction.solver.smooth.dispatch import grain_of
-from stiction.solver.smooth.right_hand_side import Outset, evaluate, measure, moving, pull
+from stiction.solver.smooth.right_hand_side import SmoothOutset, evaluate, measure, moving, pull
 from stiction.solver.smooth.sampling import sample
-from stiction.solver.smooth.state import Memory, Motion, State
+from stiction.solver.smooth.state import SmoothMemory, SmoothMotion, SmoothState
 from stiction.solver.smooth.step import remember, step
 from stiction.solver.smooth.workspace import LAST, START, Workspace, workspace
 from stiction.solver.state import (
@@ -24,7 +24,7 @@ from stiction.solver.state import (
     RUNNING,
     STEP_UNDERFLOW,
     Accuracy,
-    counted,
+    count_step,
 )
 
 COARSEST = 1e12  # of the slip speed that is resolved: a slip coordinate that is linear in effect
@@ -32,9 +32,9 @@ COARSEST = 1e12  # of the slip speed that is resolved: a slip coordinate that is
 
 @piece
 def begin(
-    problem: Problem, motion: Motion, z: np.ndarray, w: Workspace, accuracy: Accuracy
-) -> tuple[Outset, float, float]:
-    """Write the first row of a step; return where it starts, and its slip coordinate."""
+    problem: Problem, motion: SmoothMotion, z: np.ndarray, w: Workspace, accuracy: Accuracy
+) -> tuple[SmoothOutset, float, float]:
+    """Write the first row of a step; return its start and its slip coordinate."""
     t, u_x, u_y, s_x, s_y = motion
     speed = accuracy.speed
     w.values[START, 0], w.values[START, 1] = s_x, s_y
@@ -46,28 +46,30 @@ def begin(
     eps = grain if len(z) > 0 and grain < COARSEST * speed else inf
     unit = min(grain, speed) if eps == inf else min(1.0, speed / eps)
     q_x, q_y = coordinate(eps, s_x, s_y)
-    start = Outset(t, u_x, u_y, eps, unit, 1.0)
+    start = SmoothOutset(t, u_x, u_y, eps, unit, 1.0)
     acting = pull(problem, start, 0.0)
     at = evaluate(problem, eps, acting.load, q_x, q_y, w, START, len(z) > 0)
     measure(problem, acting.load, w)
     share = min(1.0, moving(problem, t, acting, at, accuracy) / (speed + hypot(s_x, s_y)))
-    return Outset(t, u_x, u_y, eps, unit, share), q_x, q_y
+    return SmoothOutset(t, u_x, u_y, eps, unit, share), q_x, q_y
 
 
 @piece
-def ended(problem: Problem, start: Outset, h: float, end: float, w: Workspace) -> Motion:
+def motion_at_end(
+    problem: Problem, start: SmoothOutset, h: float, end: float, w: Workspace
+) -> SmoothMotion:
     """Return the motion at the end of a step."""
     d_x, d_y = in_principal_axes(problem, travel(problem.drive, start.t, h))
     v = w.values
     slid_x = h * dot(A[2], (v[1, 0], v[2, 0], v[3, 0]))
     slid_y = h * dot(A[2], (v[1, 1], v[2, 1], v[3, 1]))
     u_x, u_y = start.u_x + (d_x - slid_x), start.u_y + (d_y - slid_y)
-    return Motion(end, u_x, u_y, v[LAST, 0], v[LAST, 1])
+    return SmoothMotion(end, u_x, u_y, v[LAST, 0], v[LAST, 1])
 
 
 @piece
-def finite(motion: Motion, z: np.ndarray) -> bool:
-    """Return whether every number is one."""
+def finite(motion: SmoothMotion, z: np.ndarray) -> bool:
+    """Return whether all numbers are finite."""
     total = motion.u_x + motion.u_y + motion.s_x + motion.s_y
     for k in range(len(z)):
         total += z[k]
@@ -77,14 +79,14 @@ def finite(motion: Motion, z: np.ndarray) -> bool:
 @compiled
 def advance(
     problem: Problem,
-    state: State,
+    state: SmoothState,
     t_end: float,
     accuracy: Accuracy,
     budget: int,
     times: np.ndarray,
     samples: np.ndarray,
     k: int,
-) -> tuple[int, State, int, int]:
+) -> tuple[int, SmoothState, int, int]:
     """Advance until `t_end` or until the budget is used up, as `exact.loop.advance` does.
 
     Rows of `samples` are 7 + n long; see `stiction.solver.smooth.sampling`.
@@ -107,14 +109,14 @@ def advance(
         done, taken, error, rejected, iterations = step(
             problem, start, q_x, q_y, t_end, h, h_last, warm, w, accuracy
         )
-        counts = counted(counts, rejected, iterations)
+        counts = count_step(counts, rejected, iterations)
         turns += 1
         if not done:
             code = STEP_UNDERFLOW
             break
         k = sample(problem, start, taken, w, inner, accuracy, times, samples, k)
         end = t_end if start.t + taken >= t_end else start.t + taken
-        motion = ended(problem, start, taken, end, w)
+        motion = motion_at_end(problem, start, taken, end, w)
         for i in range(len(z)):
             z[i] = w.values[LAST, 2 + i]
         past[:, :] = w.values[:4, :]
@@ -123,4 +125,4 @@ def advance(
         h_last, warm = taken, end < t_end
     if motion.t >= t_end:
         code = COMPLETED
-    return code, State(motion, z, Memory(h, h_last, warm, past), counts), k, turns
+    return code, SmoothState(motion, z, SmoothMemory(h, h_last, warm, past), counts), k, turns

@@ -5,12 +5,12 @@ from __future__ import annotations
 from math import inf, sqrt
 from typing import NamedTuple
 
-from stiction.solver.block_algebra import Factors, Matrix, Triple, eliminated, solved, times
+from stiction.solver.block_algebra import Factors, Matrix, Triple, eliminate, solve_blocks, times
 from stiction.solver.compilation.jit import inlined, piece
 from stiction.solver.control import CONTRACTS, diverging, settled
 from stiction.solver.problem import Problem
 from stiction.solver.radau import A, C, D
-from stiction.solver.smooth.coordinate import risen, slip_at
+from stiction.solver.smooth.coordinate import damped_rise, slip_at
 from stiction.solver.smooth.elimination import (
     correct_states,
     residuals_without,
@@ -18,9 +18,9 @@ from stiction.solver.smooth.elimination import (
     without_states,
 )
 from stiction.solver.smooth.right_hand_side import (
-    Outset,
     Point,
     Pull,
+    SmoothOutset,
     Stages,
     evaluate,
     inertia_share,
@@ -80,7 +80,7 @@ def stages_at(
     w: Workspace,
     wanted: bool,
 ) -> Stages:
-    """Return what holds at the stages."""
+    """Return slip and friction at the stages."""
     a: Point = evaluate(problem, eps, pulls[0].load, q_x[0], q_y[0], w, FIRST, wanted)
     b: Point = evaluate(problem, eps, pulls[1].load, q_x[1], q_y[1], w, SECOND, wanted)
     c: Point = evaluate(problem, eps, pulls[2].load, q_x[2], q_y[2], w, LAST, wanted)
@@ -121,12 +121,12 @@ def factors(h: float, x: Linear, y: Linear, at: Stages, w: Workspace) -> Factors
     yy = block(y.by_slip, at.s_yy, h, at.f_yy)
     if w.size.shape[0] > 2:
         xx, xy, yx, yy = without_states(h, at, (xx, xy, yx, yy), w)
-    return eliminated(xx, xy, yx, yy)
+    return eliminate(xx, xy, yx, yy)
 
 
 @inlined
 def shares(problem: Problem, h: float, q_x: Triple, q_y: Triple, at: Stages) -> Triple:
-    """Return which share of what resists a change of |q| is inertia, at each stage."""
+    """Return the share of inertia in the resistance to a change of |q|, at each stage (M69)."""
     f_mixed = (
         0.5 * (at.f_xy[0] + at.f_yx[0]),
         0.5 * (at.f_xy[1] + at.f_yx[1]),
@@ -143,10 +143,10 @@ def shares(problem: Problem, h: float, q_x: Triple, q_y: Triple, at: Stages) -> 
 
 
 class Corrected(NamedTuple):
-    """The slip coordinate after a correction, and the size of that.
+    """The slip coordinate after a correction, and the size of the correction.
 
-    `size` is relative to the slip speed, or to the speed that is resolved if that is more; `turn`
-    to the slip speed over which friction turns about: by that, Newton's method is off next time.
+    `size` is relative to the slip speed, or to the resolved speed if that is larger; `turn` to the
+    slip speed over which friction turns, which determines the error of the next iteration.
     """
 
     q_x: float
@@ -156,8 +156,8 @@ class Corrected(NamedTuple):
 
 
 @inlined
-def corrected(
-    start: Outset, share: float, speed: float, q_x: float, q_y: float, d_x: float, d_y: float
+def correct(
+    start: SmoothOutset, share: float, speed: float, q_x: float, q_y: float, d_x: float, d_y: float
 ) -> Corrected:
     """Return q less a correction, damped by (M69) where it is logarithmic."""
     q, d = sqrt(q_x * q_x + q_y * q_y), sqrt(d_x * d_x + d_y * d_y)
@@ -166,7 +166,7 @@ def corrected(
         return Corrected(q_x, q_y, d / (speed + q), d / (start.unit + q))
     to = sqrt(q_x * q_x + q_y * q_y)
     if to - q > 0.1:
-        f = risen(q, to - q, share) / to
+        f = damped_rise(q, to - q, share) / to
         q_x, q_y = f * q_x, f * q_y
     size = d / min(1.0, start.unit + q)
     return Corrected(q_x, q_y, size, size)
@@ -174,14 +174,14 @@ def corrected(
 
 @inlined
 def larger(a: float, b: float) -> float:
-    """Return the larger of two numbers, or what is none."""
+    """Return the larger of two numbers, or NaN if one is."""
     return a if not a <= b else b
 
 
 @piece
 def solve(
     problem: Problem,
-    start: Outset,
+    start: SmoothOutset,
     h: float,
     q_x: Triple,
     q_y: Triple,
@@ -197,8 +197,8 @@ def solve(
 
     Notes
     -----
-    The first Jacobian is kept while it contracts. One iteration with a fresh one squares the
-    (relative) error, hence the test on the first correction's square.
+    The first Jacobian is used as long as the iteration contracts. One iteration with a fresh one
+    squares the relative error, hence the test on the square of the first correction.
     """
     system, eps, states = problem.system, start.eps, w.size.shape[0] > 2
     speed = accuracy.speed
@@ -223,10 +223,10 @@ def solve(
         r_y = residual(y, h, at.s_y, s_y, at.f_y)
         if states:
             r_x, r_y = residuals_without(h, r_x, r_y, w)
-        d_x, d_y = solved(m, r_x, r_y)
-        c0 = corrected(start, share[0], speed, q_x[0], q_y[0], d_x[0], d_y[0])
-        c1 = corrected(start, share[1], speed, q_x[1], q_y[1], d_x[1], d_y[1])
-        c2 = corrected(start, share[2], speed, q_x[2], q_y[2], d_x[2], d_y[2])
+        d_x, d_y = solve_blocks(m, r_x, r_y)
+        c0 = correct(start, share[0], speed, q_x[0], q_y[0], d_x[0], d_y[0])
+        c1 = correct(start, share[1], speed, q_x[1], q_y[1], d_x[1], d_y[1])
+        c2 = correct(start, share[2], speed, q_x[2], q_y[2], d_x[2], d_y[2])
         q_x, q_y = (c0.q_x, c1.q_x, c2.q_x), (c0.q_y, c1.q_y, c2.q_y)
         size = larger(c2.size, larger(c1.size, c0.size))
         turn = larger(c2.turn, larger(c1.turn, c0.turn))

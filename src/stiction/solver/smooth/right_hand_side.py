@@ -1,4 +1,4 @@
-"""What acts on the mass and what its law says, at one point in time."""
+"""Forces on the mass, friction and the rates of internal states at one point in time."""
 
 from __future__ import annotations
 
@@ -14,13 +14,15 @@ from stiction.solver.smooth.workspace import START, Workspace
 from stiction.solver.state import Accuracy
 from stiction.solver.stick import holding
 
-NOTICED = 0.01  # change of the friction coefficient by which the size of a state is judged
+NOTICED = 0.01  # change of the friction coefficient that sets the scale of a state's errors
 
 
-class Outset(NamedTuple):
-    """A step's start: time (s), elongation (m), the speed eps of the slip coordinate (m/s) and
-    the unit in which q counts, where it is smaller; by what errors are held against less than the
-    slip speed, where the motion about steady sliding is slower."""
+class SmoothOutset(NamedTuple):
+    """A step's start: time (s), elongation (m), the speed eps of the slip coordinate (m/s).
+
+    Then the unit of q where q is smaller than 1, and the share of the slip speed to which errors
+    are relative: less than 1 where the motion about steady sliding is slower.
+    """
 
     t: float
     u_x: float
@@ -31,7 +33,7 @@ class Outset(NamedTuple):
 
 
 class Pull(NamedTuple):
-    """What acts at a point without slip, over mass (m/s^2), and the normal load (N)."""
+    """The forces over mass (m/s^2) at a point without slip, and the normal load (N)."""
 
     x: float
     y: float
@@ -74,8 +76,8 @@ class Stages(NamedTuple):
 
 
 @inlined
-def pull(problem: Problem, start: Outset, dt: float) -> Pull:
-    """Return what acts `dt` after the step's start, as if nothing had slipped since."""
+def pull(problem: Problem, start: SmoothOutset, dt: float) -> Pull:
+    """Return the forces `dt` after the step's start, as if there were no slip since."""
     d_x, d_y = in_principal_axes(problem, travel(problem.drive, start.t, dt))
     a_x, a_y = holding(problem, start.t + dt, start.u_x + d_x, start.u_y + d_y)
     return Pull(a_x, a_y, at(problem.load, start.t + dt))
@@ -94,7 +96,7 @@ def evaluate(
 ) -> Point:
     """Return slip and friction at a slip coordinate and the states in row `i`.
 
-    Derivatives only if they are wanted. What the states do is written to row `i`.
+    It computes derivatives on request, and writes the rates of the states to row `i`.
     """
     s = slip_at(eps, q_x, q_y)
     f_x, f_y, xx, xy, yx, yy = flow(problem.law, s, load, problem.system.per_mass, w, i, wanted)
@@ -118,7 +120,7 @@ def evaluate(
 def inertia_share(
     problem: Problem, h: float, a: float, q: tuple[float, float], s: Triple, f: Triple
 ) -> float:
-    """Return which share of what resists a change of |q| is inertia (M69).
+    """Return the share of inertia in the resistance to a change of |q| (M69).
 
     `a` is the factor of the slip velocity in the equation; `s` and `f` are derivatives of slip and
     friction by q: xx, xy + yx over two, yy.
@@ -136,10 +138,7 @@ def inertia_share(
 
 @inlined
 def moving(problem: Problem, t: float, p: Pull, at_start: Point, accuracy: Accuracy) -> float:
-    """Return how fast the system moves about steady sliding at a step's start, m/s.
-
-    As `stiction.solver.exact.error_estimate.moving`.
-    """
+    """Return the speed of the motion about steady sliding at a step's start (M42), m/s."""
     system, (s_x, s_y) = problem.system, (at_start.s_x, at_start.s_y)
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, t))
     g_x, g_y = in_principal_axes(problem, rate_change(problem.drive, t))
@@ -152,10 +151,10 @@ def moving(problem: Problem, t: float, p: Pull, at_start: Point, accuracy: Accur
 
 @inlined
 def measure(problem: Problem, load: float, w: Workspace) -> None:
-    """Write what errors of the internal states are held against, from the row `START`.
+    """Write the scales of the internal states' errors, from the row `START`.
 
-    Each is relative to the state itself; near zero, to what changes the friction coefficient
-    by `NOTICED`, or to 1 if that is less and the state has no unit.
+    A scale is the state itself plus the change of it that changes the friction coefficient by
+    `NOTICED`; this change counts as 1 at most if the state has no unit.
     """
     enough = NOTICED * load * problem.system.per_mass
     for k in range(2, w.size.shape[0]):

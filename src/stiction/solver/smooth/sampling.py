@@ -1,7 +1,7 @@
 """Output samples inside a step; they do not influence the steps.
 
-A row is that of `stiction.solver.exact.sampling`, then the internal states. It is the end of a
-shorter step from the same start, as there.
+A row is one of `stiction.solver.exact.sampling`, followed by the internal states. As there, it is
+the end of a shorter step from the same start.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from stiction.solver.smooth.coordinate import coordinate
 from stiction.solver.smooth.dispatch import flow
 from stiction.solver.smooth.error_estimate import balance, less_error, within
 from stiction.solver.smooth.newton import solve
-from stiction.solver.smooth.right_hand_side import Outset
+from stiction.solver.smooth.right_hand_side import SmoothOutset
 from stiction.solver.smooth.workspace import INSIDE, LAST, START, UNWANTED, Workspace
 from stiction.solver.state import Accuracy
 
@@ -26,7 +26,7 @@ from stiction.solver.state import Accuracy
 @piece
 def sample(
     problem: Problem,
-    start: Outset,
+    start: SmoothOutset,
     h: float,
     w: Workspace,
     inner: Workspace,
@@ -49,7 +49,7 @@ def sample(
             f = flow(problem.law, slip, load, problem.system.per_mass, inner, LAST, UNWANTED)
             write(problem, u_x, u_y, slip, (f[0], f[1]), samples, k)
             write_states(inner, LAST, samples, k)
-        else:  # the weight grows from zero at the start: there the polynomial is right
+        else:  # the weight grows from zero at the start, where the polynomial is exact
             p = less_error(w, within(w, x), x)
             _, there = balance(problem, start, h, x, x, p, w, accuracy.newton)
             u_x, u_y = u_x - h * p.slid_x, u_y - h * p.slid_y
@@ -63,7 +63,7 @@ def sample(
 @piece
 def shorter(
     problem: Problem,
-    start: Outset,
+    start: SmoothOutset,
     x: float,
     h: float,
     w: Workspace,

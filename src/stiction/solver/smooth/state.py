@@ -1,4 +1,4 @@
-"""What the smooth solver carries from step to step, so that it can pause anywhere and go on."""
+"""The state of the smooth solver from step to step, so that it can pause anywhere and continue."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from stiction.solver.state import Counts
 
 
-class Motion(NamedTuple):
+class SmoothMotion(NamedTuple):
     """Time (s), elongation (m), slip velocity (m/s) along x and y."""
 
     t: float
@@ -19,8 +19,8 @@ class Motion(NamedTuple):
     s_y: float
 
 
-class Memory(NamedTuple):
-    """What the last step teaches the next one.
+class SmoothMemory(NamedTuple):
+    """Information of the last step for the next one.
 
     h : size to try next, s; h_last : size of the last step; warm : whether `past`, slip
     velocities and internal states at its start and stages (4, 2 + n), predicts the next.
@@ -32,10 +32,10 @@ class Memory(NamedTuple):
     past: np.ndarray
 
 
-class State(NamedTuple):
-    """Everything that a paused run needs to go on, and come out the same; `internal` (n,)."""
+class SmoothState(NamedTuple):
+    """Everything that a paused run needs to continue with the same results; `internal` (n,)."""
 
-    motion: Motion
+    motion: SmoothMotion
     internal: np.ndarray
-    memory: Memory
+    memory: SmoothMemory
     counts: Counts

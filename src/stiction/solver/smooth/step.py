@@ -12,7 +12,7 @@ from stiction.solver.radau import C, cubic
 from stiction.solver.smooth.coordinate import coordinate
 from stiction.solver.smooth.error_estimate import local_error
 from stiction.solver.smooth.newton import solve
-from stiction.solver.smooth.right_hand_side import Outset
+from stiction.solver.smooth.right_hand_side import SmoothOutset
 from stiction.solver.smooth.workspace import START, Workspace
 from stiction.solver.state import Accuracy
 
@@ -21,8 +21,8 @@ from stiction.solver.state import Accuracy
 def predict(w: Workspace, q_x: float, q_y: float, x: float, warm: bool) -> tuple[Triple, Triple]:
     """Return a first guess of q at the stages, and write one of the states.
 
-    That is what held at the start or, if the last step predicts it, that step continued by `x` of
-    its size. Where it would turn back, friction brings it to rest, or nearly: it starts from there.
+    The guess is the value at the start or, if the last step can predict, its cubic continued by `x`
+    of its size. Where the slip would turn back, friction nearly stops it: there the guess is zero.
     """
     for k in range(2, w.size.shape[0]):
         for i in range(3):
@@ -31,7 +31,7 @@ def predict(w: Workspace, q_x: float, q_y: float, x: float, warm: bool) -> tuple
                 w.values[i + 1, k] = cubic(last(w, k), 1.0 + C[i] * x)
     if not warm:
         return (q_x, q_x, q_x), (q_y, q_y, q_y)
-    a, b = continued(last(w, 0), x), continued(last(w, 1), x)
+    a, b = continue_cubic(last(w, 0), x), continue_cubic(last(w, 1), x)
     k1, k2, k3 = (
         1.0 if a[0] * q_x + b[0] * q_y > 0.0 else 0.0,
         1.0 if a[1] * q_x + b[1] * q_y > 0.0 else 0.0,
@@ -47,7 +47,7 @@ def last(w: Workspace, k: int) -> tuple[float, float, float, float]:
 
 
 @inlined
-def continued(values: tuple[float, float, float, float], x: float) -> Triple:
+def continue_cubic(values: tuple[float, float, float, float], x: float) -> Triple:
     """Return a cubic at the stages of the next step, `x` times as long."""
     a, b, c = 1.0 + C[0] * x, 1.0 + C[1] * x, 1.0 + C[2] * x
     return cubic(values, a), cubic(values, b), cubic(values, c)
@@ -65,7 +65,7 @@ def remember(w: Workspace, past: np.ndarray, eps: float) -> None:
 @piece
 def step(
     problem: Problem,
-    start: Outset,
+    start: SmoothOutset,
     q_x: float,
     q_y: float,
     t_stop: float,

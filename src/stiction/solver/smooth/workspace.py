@@ -1,8 +1,8 @@
-"""The room in which a step is computed, made once for each call of the loop.
+"""The arrays in which a step is computed, allocated once for each call of the loop.
 
 Rows are points in time: the step's start, its three stages, a point inside it, and one for
-trials. Columns are slip x, y and the internal states z. Only what is there for any number of
-states lies here; slip and friction of a step are numbers of their own.
+trials. Columns are slip x, y and the internal states z. These arrays hold what depends on
+the number of states; slip and friction of a step are plain numbers.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ WANTED, UNWANTED = switch(True), switch(False)  # derivatives
 class Workspace(NamedTuple):
     """Arrays over rows and columns.
 
-    values : slip velocity (m/s) and z; flow : friction over mass (only where something asks for
-    it) and dz/dt; jacobian : derivatives of the flow by values, ``[row, of, by]``; size : what
-    values are held against; error : estimated error of values inside the step; past : slip
+    values : slip velocity (m/s) and z; flow : friction over mass (only where it is
+    needed) and dz/dt; jacobian : derivatives of the flow by values, ``[row, of, by]``; size :
+    scales of the errors of values; error : estimated error of values inside the step; past : slip
     coordinate and z of the last step; cubic : values inside the step and their derivative
     times h, ``[which, column]``; blocks, point, right : linear equations of a step and of a
     point inside it, see `elimination`.

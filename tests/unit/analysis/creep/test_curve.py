@@ -5,7 +5,7 @@ from math import radians
 import numpy as np
 import pytest
 import xarray as xr
-from tests.measured import measured
+from tests.measured import read_measured
 
 import stiction as st
 from stiction import theory
@@ -212,7 +212,7 @@ def test_what_cannot_be_known_is_refused(curves):
 
 
 def test_a_measured_record_creeps_before_slip():
-    record = measured("k168_v42")
+    record = read_measured("k168_v42")
     cycles = st.analysis.find_cycles(record)
     # as the early loading has it, with which the mass then rests on the average
     record = record.model_copy(update={"stiffness": float(cycles["stiffness"].median())})

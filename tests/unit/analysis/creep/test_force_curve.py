@@ -1,4 +1,4 @@
-"""The misalignment from a measured force alone: right where it is told, and not told otherwise."""
+"""The misalignment from a measured force alone: right where it is given, or not given."""
 
 from math import cos, degrees, radians
 
@@ -11,7 +11,7 @@ RATE = 2e3
 PAPER = st.presets.nakano_popov_2020()
 
 
-def measured(phi: float, noise: float = 0.0, stiffness: float = 1.0) -> st.Record:
+def measure(phi: float, noise: float = 0.0, stiffness: float = 1.0) -> st.Record:
     """Return what a load cell sees of the paper's rig at phi (deg), its stiffness misstated."""
     slider = PAPER.replace(phi=f"{phi} deg")
     run = st.simulate(slider, 6.0, sample_rate=RATE)
@@ -30,7 +30,7 @@ def measured(phi: float, noise: float = 0.0, stiffness: float = 1.0) -> st.Recor
     [(1.0, 0.0, 1.0), (1.0, 1e-4, 0.98), (2.0, 1e-3, 1.0), (2.0, 1e-3, 1.02), (4.0, 4e-3, 0.99)],
 )
 def test_a_force_alone_implies_the_misalignment(phi: float, noise: float, stiffness: float) -> None:
-    found = st.analysis.misalignment_from_force(measured(phi, noise, stiffness))
+    found = st.analysis.misalignment_from_force(measure(phi, noise, stiffness))
     low, high = found.interval
     assert low < radians(phi) < high
     assert found.phi_error < 0.3 * found.phi
@@ -39,11 +39,11 @@ def test_a_force_alone_implies_the_misalignment(phi: float, noise: float, stiffn
 
 def test_what_noise_hides_is_not_determined() -> None:
     with pytest.raises(st.ResultError, match="not determined: the bend of the rises"):
-        st.analysis.misalignment_from_force(measured(0.2, 0.03))
+        st.analysis.misalignment_from_force(measure(0.2, 0.03))
 
 
 def test_steps_of_an_eighth_of_the_drop_hide_it() -> None:
-    record = measured(1.0)
+    record = measure(1.0)
     step = 0.1  # N, of a drop of 0.8 N
     cycles = st.analysis.find_cycles(record)
     coarse = record.model_copy(update={"force": step * np.round(record.force / step)})
@@ -53,11 +53,11 @@ def test_steps_of_an_eighth_of_the_drop_hide_it() -> None:
 
 def test_a_stiffness_that_cannot_be_is_named() -> None:
     with pytest.raises(st.ResultError, match=r"0.9\d* times stiffness times drive velocity"):
-        st.analysis.misalignment_from_force(measured(1.0, 1e-4, 1.1))
+        st.analysis.misalignment_from_force(measure(1.0, 1e-4, 1.1))
 
 
 def test_an_analysis_takes_it_from_the_force() -> None:
-    found = st.analyse(measured(1.0))
+    found = st.analyse(measure(1.0))
     assert degrees(found.misalignment.phi) == pytest.approx(1.0, abs=0.25)
     late = found.creep.isel(bin=slice(1, 10))
     assert (late["velocity"].values > 0.0).all()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from benchmarks.explore.records import sawtooth
 from numpy.typing import NDArray
-from tests.measured import bare, measured
+from tests.measured import bare, read_measured
 
 import stiction as st
 from stiction.analysis.motion.cycle_summary import TIMES
@@ -54,10 +54,10 @@ def test_reversals_of_a_signal_are_paired_as_rainflow_pairs_them() -> None:
 def test_a_random_signal_has_the_reversals_that_a_slow_count_finds() -> None:
     values = np.random.default_rng(1).integers(0, 1000, 300)
     for height in (200, 500, 800):
-        assert standing_out(values, height, height).tolist() == walked(values, height)
+        assert standing_out(values, height, height).tolist() == walk(values, height)
 
 
-def walked(values: NDArray[np.int64], height: int) -> list[int]:
+def walk(values: NDArray[np.int64], height: int) -> list[int]:
     """Turning points by walking along: each is known once the signal has come back by `height`."""
     found, low, high, way = [], 0, 0, 0
     for i, value in enumerate(values):
@@ -181,7 +181,7 @@ def test_a_dip_before_a_slip_is_a_hesitation_and_no_cycle(phi: str) -> None:
     cycles = st.analysis.find_cycles(run)
     force = run.data["spring_x"].values
     late = run.data["time"].values > 2.0
-    falls = walked(np.rint(1e6 * force).astype(np.int64), int(0.5e6 * np.ptp(force[late])))
+    falls = walk(np.rint(1e6 * force).astype(np.int64), int(0.5e6 * np.ptp(force[late])))
     assert abs(cycles.sizes["cycle"] - (len(falls) - 1) // 2) <= 1
     share = cycles["period"] / cycles["period"].median()
     assert ((share > 0.6) & (share < 1.5)).all()  # neither a dip nor two cycles in one
@@ -411,7 +411,7 @@ NOISY = 0.09
 
 
 def test_measured_stick_slip_has_the_same_cycles_in_pieces_and_in_any_unit() -> None:
-    record = bare(measured("k168_v42"))
+    record = bare(read_measured("k168_v42"))
     whole = st.analysis.find_cycles(record)
     assert whole.sizes["cycle"] == 71
     assert (whole["drop"] > 0.002).all()  # seven steps of the converter: as an eye counts them
@@ -433,7 +433,7 @@ def test_measured_stick_slip_has_the_same_cycles_in_pieces_and_in_any_unit() -> 
 
 @pytest.mark.parametrize("slope", [2.0, -2.0])
 def test_measured_cycles_withstand_noise_drift_and_thinning(slope: float) -> None:
-    record = measured("k168_v42")
+    record = read_measured("k168_v42")
     whole = st.analysis.find_cycles(record)
     noise = 0.03 * float(whole["drop"].median()) * np.random.default_rng(2).normal(size=len(record))
     drift = slope * np.ptp(record.force) * (record.time - record.time[0]) / record.duration
@@ -448,7 +448,7 @@ def test_measured_cycles_withstand_noise_drift_and_thinning(slope: float) -> Non
 
 
 def test_no_false_cycles_where_it_slides_under_strong_noise() -> None:
-    assert st.analysis.find_cycles(measured("k2254_v42")).sizes["cycle"] == 0
+    assert st.analysis.find_cycles(read_measured("k2254_v42")).sizes["cycle"] == 0
 
 
 # --- edges ---

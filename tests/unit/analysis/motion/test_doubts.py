@@ -21,12 +21,12 @@ def force():
     return run.data["time"].values, run.data["spring_x"].values
 
 
-def told(time: np.ndarray, force: np.ndarray, **changes: object) -> str:
+def doubts_in_words(time: np.ndarray, force: np.ndarray, **changes: object) -> str:
     return " ".join(st.analyse(st.Record(time=time, force=force, **KNOWN | changes)).warnings)
 
 
 def test_what_belongs_together_is_not_doubted(force) -> None:
-    assert told(*force) == ""
+    assert doubts_in_words(*force) == ""
 
 
 @pytest.mark.parametrize(
@@ -44,7 +44,7 @@ def test_what_belongs_together_is_not_doubted(force) -> None:
 )
 def test_numbers_that_cannot_be_true_are_doubted(force, stretch, gain, changes, said) -> None:
     time, newtons = force
-    assert said in told(stretch * time, gain * newtons, **changes)
+    assert said in doubts_in_words(stretch * time, gain * newtons, **changes)
 
 
 def test_drift_is_seen_and_taken_off(force) -> None:
@@ -60,14 +60,16 @@ def test_drift_is_seen_and_taken_off(force) -> None:
 
 def test_a_zero_that_is_off_is_seen_and_taken_off(force) -> None:
     time, newtons = force
-    assert "at 300 mN: if the spring was unloaded, give zero='0.3 N'" in told(time, newtons + 0.3)
-    assert told(time, newtons + 0.3, zero="0.3 N") == ""
-    assert "against the drive" in told(time, newtons - 2.5)
+    assert "at 300 mN: if the spring was unloaded, give zero='0.3 N'" in doubts_in_words(
+        time, newtons + 0.3
+    )
+    assert doubts_in_words(time, newtons + 0.3, zero="0.3 N") == ""
+    assert "against the drive" in doubts_in_words(time, newtons - 2.5)
 
 
 def test_coarse_sampling_is_named() -> None:
     time = np.arange(0.0, 60.0, 1e-3)
-    assert "Sample at" in told(time, 1.0 + 0.3 * (time % 1.1))
+    assert "Sample at" in doubts_in_words(time, 1.0 + 0.3 * (time % 1.1))
 
 
 def test_a_break_away_before_steady_sliding() -> None:

@@ -1,4 +1,4 @@
-"""Which reversals are hesitations of a cycle, and which are cycles."""
+"""Reversals are classified as hesitations within a cycle, or as cycles."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Each kind of motion is told from the others, with what is known of the rig and without."""
+"""Each kind of motion is distinguished from the others, with and without data of the rig."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ import pytest
 from benchmarks.explore.records import (
     Labelled,
     brief_vibration,
-    filtered,
-    judged,
+    filter_noise,
+    judge,
     long,
     settling,
     short,
     wandering,
 )
 from scipy.signal import lfilter
-from tests.measured import bare, measured
+from tests.measured import bare, read_measured
 
 import stiction as st
 from stiction.analysis.motion.band import highest_hump
@@ -38,7 +38,7 @@ TRANSITIONAL = "transitional oscillation"
     ],
 )
 def test_measured_records_are_told_apart(name: str, kind: str, least: float) -> None:
-    record = measured(name)
+    record = read_measured(name)
     for known in (record, bare(record)):
         regime = st.analysis.classify(known)
         assert regime.kind == kind
@@ -51,7 +51,7 @@ def test_measured_records_are_told_apart(name: str, kind: str, least: float) -> 
 
 
 def test_between_says_what_else_it_could_be() -> None:
-    regime = st.analysis.classify(measured("k168_v1100"))
+    regime = st.analysis.classify(read_measured("k168_v1100"))
     assert regime.runner_up == "stick-slip"
     assert regime.confidence < 0.7
     assert "the force rises for 7" in str(regime)
@@ -150,12 +150,12 @@ def test_noise_of_any_colour_is_no_vibration(seed: int) -> None:
 def test_small_vibration_beside_a_force_that_wanders_is_seen(
     make: Callable[[np.random.Generator], Labelled], number: int
 ) -> None:
-    assert judged(make, 20270101, number).right
+    assert judge(make, 20270101, number).right
 
 
 def test_vibration_on_a_force_that_rises_is_no_stick() -> None:
     random = np.random.default_rng(19)
-    vibration = filtered(random, 200.0, 12.0)
+    vibration = filter_noise(random, 200.0, 12.0)
     time = np.arange(len(vibration)) / 600.0
     noise = 0.1 * random.normal(size=len(time))
     rising = st.Record(time=time, force=20.0 * time / time[-1] + vibration + noise)
@@ -168,7 +168,7 @@ def test_vibration_on_a_force_that_rises_is_no_stick() -> None:
 
 def test_vibrations_of_few_periods_are_told_with_the_confidence_that_they_deserve() -> None:
     """Of thirty periods some look harmonic: then nothing is sure."""
-    found = [judged(short, 20270101, number) for number in (*range(40), 57, 98, 187, 192)]
+    found = [judge(short, 20270101, number) for number in (*range(40), 57, 98, 187, 192)]
     wrong = [each for each in found if not each.right]
     assert 4 <= len(wrong) <= 8  # the last four, and one of ten others at most
     assert all(each.confidence < 0.7 for each in wrong)
@@ -179,7 +179,7 @@ def test_vibrations_of_few_periods_are_told_with_the_confidence_that_they_deserv
 
 @pytest.mark.parametrize("number", [2, 29, 54, 66, 101, 116])
 def test_a_vibration_that_decays_settles_however_few_its_swings(number: int) -> None:
-    found = judged(settling, 1, number)
+    found = judge(settling, 1, number)
     assert found.right, found
 
 

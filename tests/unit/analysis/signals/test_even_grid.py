@@ -11,7 +11,7 @@ from stiction.analysis.signals.hum import narrow_lines
 N, STEP = 10_000, 1e-4
 
 
-def even(random):
+def even_times(random):
     return STEP * np.arange(N)
 
 
@@ -19,22 +19,22 @@ def gaps(random):
     kept = np.ones(N, bool)
     for at in random.integers(5, N - 10, N // 80):  # 5 % of all
         kept[at : at + random.integers(1, 8)] = False
-    return even(random)[kept]
+    return even_times(random)[kept]
 
 
 def jitter(random):
-    return np.sort(even(random) + 0.3 * STEP * random.normal(size=N))
+    return np.sort(even_times(random) + 0.3 * STEP * random.normal(size=N))
 
 
 def late(random):
-    return np.append(-37.3 * STEP, even(random)[1:])
+    return np.append(-37.3 * STEP, even_times(random)[1:])
 
 
-def repeated(random):
-    return np.repeat(even(random), 1 + (random.random(N) < 1e-3))
+def repeat(random):
+    return np.repeat(even_times(random), 1 + (random.random(N) < 1e-3))
 
 
-SAMPLED = pytest.mark.parametrize("sampled", [gaps, jitter, late, repeated])
+SAMPLED = pytest.mark.parametrize("sampled", [gaps, jitter, late, repeat])
 
 
 def record(sampled, seed):
@@ -76,8 +76,8 @@ def test_a_line_is_taken_off_at_the_times_of_the_record(sampled):
         (gaps, "samples are missing, in"),
         (jitter, "lie more than a tenth of an interval off even times"),
         (late, "37 of 10037 samples are missing, in one of 3.83 ms"),
-        (repeated, "samples have the same time as the one before"),
-        (even, None),
+        (repeat, "samples have the same time as the one before"),
+        (even_times, None),
     ],
 )
 def test_words_say_how_uneven_samples_are(sampled, said):
@@ -95,7 +95,7 @@ def test_samples_at_random_times_get_none_and_are_told_why():
 
 
 def test_a_window_within_a_gap_shows_no_line():
-    time = even(None)
+    time = even_times(None)
     kept = (time < 0.5) | (time > 0.56)
     force = np.sin(2 * np.pi * 1000.0 * time)[kept]
     found = strongest_line(st.Record(time=time[kept], force=force), 500.0, width=0.02)

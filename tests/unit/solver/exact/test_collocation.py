@@ -15,7 +15,7 @@ ALL = pytest.mark.parametrize(("name", "drawn"), [(n, d) for n in SLIDERS for d 
 H = {"laid over the oscillation": 1.5, "not": 0.02}  # times the root of 1/k_11
 
 
-def begun(name, drawn, part):
+def begin(name, drawn, part):
     """Return what a step starts from, and a step size."""
     problem, motion = problem_of(name), motion_of(*drawn)
     frame = plain(slip_frame.frame_of)(problem, motion)
@@ -44,7 +44,7 @@ def residuals(*arguments):
 @pytest.mark.parametrize(("p", "w"), STAGES)
 def test_the_residuals(name, drawn, part, p, w):
     """(M25) to (M29)."""
-    problem, frame, o, printed, h = begun(name, drawn, part)
+    problem, frame, o, printed, h = begin(name, drawn, part)
     p, w = p * frame.r, 0.3 * w
     over = np.array([plain(oscillation.after)(o, c * h) for c in C]).T
     R = h * over[1] - D @ (over[0] - frame.r)
@@ -75,11 +75,11 @@ def test_the_jacobian_is_the_derivative_of_the_residuals(name, drawn, part, p, w
     A load that changes is left out of (M44).
     """
     if landing and name in ("program", "spring"):
-        problem, frame, o, _, h = begun(name, drawn, part)
+        problem, frame, o, _, h = begin(name, drawn, part)
         problem = problem._replace(load=problem_of("steady").load)
         o = plain(oscillation.oscillator)(frame, plain(slip_frame.outset)(problem, frame))
     else:
-        problem, frame, o, _, h = begun(name, drawn, part)
+        problem, frame, o, _, h = begin(name, drawn, part)
     x = np.array([*(p * frame.r), *(0.3 * w), h])
     scale = np.array([frame.r] * 3 + [1.0] * 3 + [h])
     columns = []
@@ -98,6 +98,6 @@ def test_the_jacobian_is_the_derivative_of_the_residuals(name, drawn, part, p, w
     )
     wanted = np.array([0.3, -0.5, 0.7, 0.2, 0.9, -0.4])
     right = matrix @ wanted
-    dp, dw = plain(newton.solved)(factors, tuple(right[:3]), tuple(right[3:]))
+    dp, dw = plain(newton.solve_blocks)(factors, tuple(right[:3]), tuple(right[3:]))
     off = 1e-9 * np.linalg.cond(matrix / np.abs(matrix).max(axis=1, keepdims=True))
     assert np.array([*dp, *dw]) / size == pytest.approx(wanted, abs=off)

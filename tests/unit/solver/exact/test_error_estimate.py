@@ -1,4 +1,4 @@
-"""The error of a step, under any drive and load, and the motion that it is held against."""
+"""The error of a step, under any drive and load, and the motion that it is relative to."""
 
 from math import inf
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 from tests.entry import plain
-from tests.unit.solver.exact.test_collocation import A, C, begun
+from tests.unit.solver.exact.test_collocation import A, C, begin
 from tests.unit.solver.exact.test_newton import SLIDES
 from tests.unit.solver.systems import SLIDERS
 
@@ -25,7 +25,7 @@ ALL = pytest.mark.parametrize(("name", "drawn"), [(n, d) for n in SLIDERS for d 
 @ALL
 def test_the_motion_about_steady_sliding(name, drawn):
     """(M42)."""
-    problem, frame, _, printed, _ = begun(name, drawn, "not")
+    problem, frame, _, printed, _ = begin(name, drawn, "not")
     start, e = plain(slip_frame.outset)(problem, frame), printed.axes
     f, _ = printed.friction(frame.t, frame.r)
     n_1, tau = printed.flow(0.0)
@@ -45,7 +45,7 @@ def test_the_motion_about_steady_sliding(name, drawn):
 @pytest.mark.parametrize("accuracy", [ACCURACY, ACCURACY._replace(drive=inf, free_x=1.0)])
 def test_the_error_of_a_step(name, drawn, size, motion, accuracy):
     """(M37), (M38) and (M41), at one point, or at two in a step longer than either oscillation."""
-    problem, frame, o, printed, h = begun(name, drawn, "not")
+    problem, frame, o, printed, h = begin(name, drawn, "not")
     h *= size / 0.02
     laid = plain(oscillation.swings)(o, h)
     assert laid == (size == 1.5)
@@ -86,7 +86,7 @@ def test_the_error_of_a_step(name, drawn, size, motion, accuracy):
 
 
 def test_a_slip_below_zero_is_infinitely_wrong():
-    problem, frame, o, _, h = begun("steady", SLIDES[0], "not")
+    problem, frame, o, _, h = begin("steady", SLIDES[0], "not")
     swing = plain(oscillation.swing)(o, h, False)
     stages = (-frame.r,) * 3, (0.0,) * 3
     error = plain(error_estimate.local_error)

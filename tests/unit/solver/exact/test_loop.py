@@ -31,7 +31,7 @@ def at_rest_at(u, t=0.35):
     return State(Motion(t, *u, 0.0, 0.6, 0.8), MEMORY, Counts(5, 1, 20, 1, 0.5, 0))
 
 
-def advanced(name, state, t_end, budget=1000, accuracy=None, room=50):
+def advance(name, state, t_end, budget=1000, accuracy=None, room=50):
     """Advance; return the code, the state, and the sticks."""
     sticks = np.zeros((room, 2))
     accuracy = accuracy or held_to(1e-4)
@@ -54,7 +54,7 @@ def test_a_stick_ends_where_friction_cannot_hold_any_more(name):
     printed = Printed(problem, motion_of(*u, 1.0, 0.0, t))
     end = u + printed.drive("travel", t, duration)
     assert motion[:4] == pytest.approx((t + duration, *end, 0.0), rel=1e-12)
-    a, e = printed.held(t + duration, end), np.array(motion[4:])
+    a, e = printed.holding(t + duration, end), np.array(motion[4:])
     assert e @ e == pytest.approx(1.0, rel=1e-14)
     n = problem.surface
     normal = np.linalg.solve(np.array([[n.xx, n.xy], [n.xy, n.yy]]), a)
@@ -114,9 +114,9 @@ def test_without_force_slip_starts_along_what_pulls_next():
 
 def test_sticks_are_recorded_or_made_longer():
     sticks = np.zeros((3, 2))
-    counts = plain(loop.recorded)(NOTHING, 1.0, 1.5, False, sticks)
-    counts = plain(loop.recorded)(counts, 2.0, 2.25, False, sticks)
-    counts = plain(loop.recorded)(counts, 2.25, 2.5, True, sticks)
+    counts = plain(loop.record_stick)(NOTHING, 1.0, 1.5, False, sticks)
+    counts = plain(loop.record_stick)(counts, 2.0, 2.25, False, sticks)
+    counts = plain(loop.record_stick)(counts, 2.25, 2.5, True, sticks)
     assert sticks.tolist() == [[1.0, 1.5], [2.0, 2.5], [0.0, 0.0]]
     assert counts == (0, 0, 0, 2, 1.0, 0)
 
@@ -151,7 +151,7 @@ def test_when_a_slip_is_zero():
 def test_the_loop_ends_where_it_is_to_and_goes_on(name):
     """In one go, or with any budget; and says why it ends."""
     state = at_rest_at((1.9e-3, 1e-5))._replace(counts=NOTHING)
-    code, end, sticks, turns = advanced(name, state, 0.45)
+    code, end, sticks, turns = advance(name, state, 0.45)
     assert (code, end.motion.t) == (COMPLETED, 0.45)
     assert turns < 1000
     assert end.counts.sticks == len(sticks)
@@ -167,18 +167,18 @@ def test_the_loop_ends_where_it_is_to_and_goes_on(name):
     assert code == COMPLETED
     assert paused == end
     assert table[: len(sticks)].tolist() == sticks.tolist()
-    assert advanced(name, end, 0.45)[0] == COMPLETED
-    assert advanced(name, state, 0.45, room=0)[0] == RUNNING
-    assert advanced(name, state, 0.45, room=0)[1] == state
+    assert advance(name, end, 0.45)[0] == COMPLETED
+    assert advance(name, state, 0.45, room=0)[0] == RUNNING
+    assert advance(name, state, 0.45, room=0)[1] == state
     wild = state._replace(motion=state.motion._replace(u_y=nan))
-    assert advanced(name, wild, 0.45)[0] == NON_FINITE
+    assert advance(name, wild, 0.45)[0] == NON_FINITE
     wild = state._replace(motion=state.motion._replace(r=inf))
-    assert advanced(name, wild, 0.45)[0] == NON_FINITE
+    assert advance(name, wild, 0.45)[0] == NON_FINITE
     wild = state._replace(motion=state.motion._replace(u_x=-inf))
-    assert advanced(name, wild, 0.45)[0] == NON_FINITE
+    assert advance(name, wild, 0.45)[0] == NON_FINITE
     never = held_to(1e-4)._replace(newton=0.0)
     sliding = state._replace(motion=state.motion._replace(r=1e-2))
-    assert advanced(name, sliding, 0.45, accuracy=never)[0] == STEP_UNDERFLOW
+    assert advance(name, sliding, 0.45, accuracy=never)[0] == STEP_UNDERFLOW
 
 
 def test_a_landing_in_closed_form_and_its_samples():

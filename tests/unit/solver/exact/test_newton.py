@@ -1,11 +1,11 @@
-"""Newton's method for a step: where it ends, and when it stops."""
+"""Newton's method for a step: its solution, and its failures."""
 
 from math import inf
 
 import numpy as np
 import pytest
 from tests.entry import plain
-from tests.unit.solver.exact.test_collocation import begun, residuals
+from tests.unit.solver.exact.test_collocation import begin, residuals
 from tests.unit.solver.systems import SLIDERS, problem_of
 
 from stiction.solver.exact import newton, oscillation, slip_frame
@@ -21,9 +21,9 @@ def held_to(tolerance):
     return Accuracy(1e-6, tolerance, SPEED, 0.0, 0.0, inf, inf, 1.0, 1.0, 0.0, 0.0)
 
 
-def solved(name, drawn, tolerance, share=0.3, motion=1.0, guess=1.0):
+def solve_step(name, drawn, tolerance, share=0.3, motion=1.0, guess=1.0):
     """Solve a step from a slip as at its start; return what `solve` does, and the step."""
-    problem, frame, o, _, h = begun(name, drawn, "laid over the oscillation")
+    problem, frame, o, _, h = begin(name, drawn, "laid over the oscillation")
     h, p = share * h, (guess * frame.r,) * 3
     s = plain(oscillation.swing)(o, h, False)
     w, accuracy = (0.0, 0.0, 0.0), held_to(tolerance)
@@ -33,7 +33,7 @@ def solved(name, drawn, tolerance, share=0.3, motion=1.0, guess=1.0):
 
 @ALL
 def test_the_residuals_vanish(name, drawn):
-    (converged, _, p, w, h, count), step = solved(name, drawn, 1e-13)
+    (converged, _, p, w, h, count), step = solve_step(name, drawn, 1e-13)
     assert converged
     assert h == step[-1]
     assert 1 < count <= newton.ITERATIONS
@@ -47,25 +47,25 @@ def test_it_stops_where_what_is_left_is_less_than_asked_for(name, drawn):
 
     With a tolerance of ten times the first correction, one iteration is enough.
     """
-    (_, _, p, w, _, most), (_, frame, _, _) = solved(name, drawn, 1e-13)
+    (_, _, p, w, _, most), (_, frame, _, _) = solve_step(name, drawn, 1e-13)
     for tolerance in (1e-3, 1e-6, 1e-9):
-        (converged, _, rough, turn, _, count), _ = solved(name, drawn, tolerance)
+        (converged, _, rough, turn, _, count), _ = solve_step(name, drawn, tolerance)
         assert converged
         off = np.subtract(rough, p) / (SPEED + np.abs(p))
         assert max(np.abs(off).max(), np.abs(np.subtract(turn, w)).max()) < 10 * tolerance
         assert count <= most
     first = np.abs([*(np.array(p) / frame.r - 1.0), *w]).max()
-    assert solved(name, drawn, 10 * first)[0][-1] == 1
-    assert solved(name, drawn, 1e-3 * first)[0][-1] > 1
+    assert solve_step(name, drawn, 10 * first)[0][-1] == 1
+    assert solve_step(name, drawn, 1e-3 * first)[0][-1] > 1
     # held to a motion that is slower than the slip, by as much more
     part = 1e-3 * (SPEED + frame.r)
-    assert solved(name, drawn, 10 * first, motion=part)[0][-1] > 1
+    assert solve_step(name, drawn, 10 * first, motion=part)[0][-1] > 1
 
 
 @ALL
 def test_it_converges_fast(name, drawn):
     """Quadratically at first, by a tenth at least then: 13 digits in less than ten iterations."""
-    (converged, *_, count), _ = solved(name, drawn, 1e-13)
+    (converged, *_, count), _ = solve_step(name, drawn, 1e-13)
     assert converged
     assert count < 10
 
@@ -73,7 +73,7 @@ def test_it_converges_fast(name, drawn):
 @pytest.mark.parametrize("name", ["steady", "ellipse", "program"])
 def test_a_landing_is_a_step_of_unknown_size(name):
     """p = 0 at its end, where the residuals vanish, from a size that is off by a fifth."""
-    problem, frame, o, _, _ = begun(name, (1e-3, 1e-5, 3e-4, 1e-4), "not")
+    problem, frame, o, _, _ = begin(name, (1e-3, 1e-5, 3e-4, 1e-4), "not")
     outset = plain(slip_frame.outset)(problem, frame)
     guess = frame.r / (outset.f - outset.a_1)
     assert guess > 0.0
@@ -97,11 +97,13 @@ def test_a_landing_is_a_step_of_unknown_size(name):
 
 def test_it_gives_up():
     """Where corrections grow or are no numbers, or a landing would be before its start."""
-    (converged, *_), _ = solved("steady", SLIDES[0], 1e-12, guess=np.nan)
+    (converged, *_), _ = solve_step("steady", SLIDES[0], 1e-12, guess=np.nan)
     assert not converged
-    (converged, *_, count), _ = solved("steady", SLIDES[0], 0.0)  # no correction is small enough
+    (converged, *_, count), _ = solve_step(
+        "steady", SLIDES[0], 0.0
+    )  # no correction is small enough
     assert (converged, count <= newton.ITERATIONS) == (False, True)
-    problem, frame, o, _, h = begun("steady", SLIDES[0], "not")
+    problem, frame, o, _, h = begin("steady", SLIDES[0], "not")
     rising = problem._replace(load=problem_of("steady").load._replace(force=1e-9))
     s, p = plain(oscillation.swing)(o, h, True), (frame.r, frame.r, 0.0)
     pulled = frame._replace(spring_1=1e3)  # it speeds up: there is no landing

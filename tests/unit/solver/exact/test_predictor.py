@@ -1,4 +1,4 @@
-"""When a slip may end, and first guesses of the stages."""
+"""The time to landing, and first guesses of the stages."""
 
 from math import inf
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 from tests.entry import plain
-from tests.unit.solver.exact.test_collocation import begun
+from tests.unit.solver.exact.test_collocation import begin
 from tests.unit.solver.exact.test_newton import SLIDES, held_to
 from tests.unit.solver.systems import SLIDERS, motion_of, problem_of
 
@@ -22,7 +22,7 @@ ALL = pytest.mark.parametrize(("name", "drawn"), [(n, d) for n in SLIDERS for d 
 
 
 def outset_of(name, drawn, part="not"):
-    problem, frame, o, _, h = begun(name, drawn, part)
+    problem, frame, o, _, h = begin(name, drawn, part)
     return problem, frame, plain(slip_frame.outset)(problem, frame), o, h
 
 
@@ -89,7 +89,7 @@ def test_a_slip_that_goes_on_is_a_guess_by_its_cubics():
     _, frame, start, o, h = outset_of("steady", SLIDES[0])
     warm = COLD._replace(warm=True, h_last=2 * h, p=tuple(p(NODES)), w=tuple(w(NODES)))
     swing = plain(oscillation.swing)(o, h, False)
-    guess = plain(predictor.predicted)(frame, start, o, swing, h, warm)
+    guess = plain(predictor.predict)(frame, start, o, swing, h, warm)
     x = 1.0 + 0.5 * np.array(C)
     assert guess[0] == pytest.approx(p(x), rel=1e-12)
     assert guess[1] == pytest.approx(w(x) - w(1.0), rel=1e-11)
@@ -101,7 +101,7 @@ def test_a_slip_of_which_nothing_is_known_goes_on_in_a_line():
     r, swing, c = frame.r, plain(oscillation.swing)(o, h, False), np.array(C)
     for change in (0.5 * r / h, -0.5 * r / h, -3.0 * r / h):
         pulled = start._replace(a_1=start.f + change)
-        p, w = plain(predictor.predicted)(frame, pulled, o, swing, h, COLD)
+        p, w = plain(predictor.predict)(frame, pulled, o, swing, h, COLD)
         least = [*(r * (1 - c[:2])), 0.1 * r]
         assert p == pytest.approx(np.maximum(r + change * c * h, least), rel=1e-12)
         assert w == (0.0, 0.0, 0.0)
@@ -133,7 +133,7 @@ def test_a_take_off_is_guessed_along_its_branch(static):
         start = start._replace(a_1=start.f)  # or else rounding
     for h in (1e-6, 1e-7):
         s = plain(oscillation.swing)(o, h, False)
-        p, w = plain(predictor.predicted)(frame, start, o, s, h, COLD)
+        p, w = plain(predictor.predict)(frame, start, o, s, h, COLD)
         accuracy = held_to(1e-12)._replace(speed=1e-30)
         found = plain(newton.solve)(problem, frame, o, s, h, False, p, w, accuracy, 1.0)
         assert found[0]
@@ -149,7 +149,7 @@ def test_over_the_oscillation_the_guess_is_of_the_second_order(name, drawn):
     off = []
     for part in (0.1, 0.03):
         s = plain(oscillation.swing)(o, part * h, False)
-        p, w = plain(predictor.predicted)(frame, start, o, s, part * h, COLD)
+        p, w = plain(predictor.predict)(frame, start, o, s, part * h, COLD)
         _, _, p_1, w_1, _, _ = plain(newton.solve)(
             problem, frame, o, s, part * h, False, p, w, held_to(1e-13), 1.0
         )

@@ -15,7 +15,7 @@ F = 8.0
 CASES = [(2e-3, 3.0, 1.0), (2e-3, -3.0, -4.0), (5.0, 0.5, 7.0), (2e-3, -5.0, 0.0), (1.0, 0.0, 0.0)]
 
 
-def followed(r, a_1, a_2, until):
+def follow(r, a_1, a_2, until):
     """Return z and s at a time, of s' = a - f s/|s|."""
 
     def change(_, y):
@@ -30,7 +30,7 @@ def followed(r, a_1, a_2, until):
 def test_time_and_distance_to_landing(r, a_1, a_2):
     """(M49), with the rest of a slip that a thousandth of the time is left of."""
     T = plain(pursuit.landing_time)(r, a_1, a_1**2 + a_2**2, F)
-    z_1, z_2, *s = followed(r, a_1, a_2, 0.999 * T)
+    z_1, z_2, *s = follow(r, a_1, a_2, 0.999 * T)
     assert hypot(*s) < 2e-3 * F / (F - hypot(a_1, a_2)) * r * F / (F - hypot(a_1, a_2))
     slid = plain(pursuit.landing_slip)(r, a_1, a_2, F)
     assert np.subtract(slid, (z_1, z_2)) == pytest.approx([0.0, 0.0], abs=1e-3 * T * hypot(*s))
@@ -49,7 +49,7 @@ def test_time_and_distance_to_landing(r, a_1, a_2):
 def test_the_slip_before_a_landing(r, a_1, a_2, part):
     """r sin(alpha) tan(alpha/2)^(-f/|a|) is constant."""
     T = plain(pursuit.landing_time)(r, a_1, a_1**2 + a_2**2, F)
-    _, _, *s = followed(r, a_1, a_2, part * T)
+    _, _, *s = follow(r, a_1, a_2, part * T)
     speed, along, across = plain(pursuit.slip_before_landing)(r, a_1, a_2, F, (1 - part) * T)
     assert (speed * along, speed * across) == pytest.approx(s, abs=1e-8 * r)
 

@@ -5,7 +5,7 @@ from math import inf
 import numpy as np
 import pytest
 from tests.entry import plain
-from tests.unit.solver.exact.test_collocation import A, begun
+from tests.unit.solver.exact.test_collocation import A, begin
 from tests.unit.solver.exact.test_newton import SLIDES, held_to
 from tests.unit.solver.systems import SLIDERS, Printed, motion_of, problem_of
 
@@ -17,7 +17,7 @@ EXACT = held_to(1e-13)._replace(speed=1e-6, square_x=1e-3, square_y=1e-3)
 
 def step_of(name, drawn, size):
     """Return a step of slip, solved."""
-    problem, frame, o, printed, h = begun(name, drawn, "not")
+    problem, frame, o, printed, h = begin(name, drawn, "not")
     h *= size / 0.02
     return problem, frame, o, printed, h, solve(problem, frame, o, h)
 
@@ -99,7 +99,7 @@ def test_samples_of_a_stick(name, held):
     assert np.isnan(samples[[0, 4]]).all()
     for time, row in zip(times[1:4], samples[1:4], strict=True):
         there = u + printed.drive("travel", t, time - t)
-        force = printed.m * printed.held(time, there)
+        force = printed.m * printed.holding(time, there)
         wanted = *there, 0.0, 0.0, *force, float(held)
         assert row == pytest.approx(wanted, rel=1e-12)
     assert fill(problem, t, *u, inf, held, times, samples, 4) == 5

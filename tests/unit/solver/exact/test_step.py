@@ -5,7 +5,7 @@ from math import inf
 import numpy as np
 import pytest
 from tests.entry import plain
-from tests.unit.solver.exact.test_collocation import begun, residuals
+from tests.unit.solver.exact.test_collocation import begin, residuals
 from tests.unit.solver.exact.test_newton import SLIDES
 from tests.unit.solver.exact.test_predictor import COLD
 from tests.unit.solver.systems import SLIDERS, motion_of, problem_of
@@ -24,9 +24,9 @@ def held_to(tolerance):
     return Accuracy(tolerance, 1e-3 * tolerance, speed, *free, inf, 2e-3, 2.5e-4, 6e-6, 0.0, 1e-12)
 
 
-def taken(name, drawn, accuracy, h=1e-3, t_stop=inf):
+def take_step(name, drawn, accuracy, h=1e-3, t_stop=inf):
     """Take a step; return it, and what it starts from."""
-    problem, frame, o, _, _ = begun(name, drawn, "not")
+    problem, frame, o, _, _ = begin(name, drawn, "not")
     start = plain(slip_frame.outset)(problem, frame)
     found = plain(step)(problem, frame, start, t_stop, COLD._replace(h=h), accuracy)
     return found, (problem, frame, o, start)
@@ -37,8 +37,8 @@ def taken(name, drawn, accuracy, h=1e-3, t_stop=inf):
 def test_an_accepted_step_keeps_its_tolerance(name, drawn, tolerance):
     """Its residuals vanish, and its error is the estimate's, over the tolerance."""
     accuracy = held_to(tolerance)
-    (done, landing, s, h, p, w, error, rejected, iterations), (problem, frame, o, start) = taken(
-        name, drawn, accuracy
+    (done, landing, s, h, p, w, error, rejected, iterations), (problem, frame, o, start) = (
+        take_step(name, drawn, accuracy)
     )
     assert (done, landing) == (True, False)
     assert iterations > rejected
@@ -58,22 +58,22 @@ def test_an_accepted_step_keeps_its_tolerance(name, drawn, tolerance):
 @ALL
 def test_a_step_that_is_refused_is_tried_again_shorter(name, drawn):
     """Until it is accepted; the size that was is accepted at once."""
-    (_, _, _, h, _, _, _, rejected, _), _ = taken(name, drawn, held_to(1e-9), h=3e-3)
+    (_, _, _, h, _, _, _, rejected, _), _ = take_step(name, drawn, held_to(1e-9), h=3e-3)
     assert rejected > 0
     assert h < 3e-3
-    (_, _, _, same, *_, again, _), _ = taken(name, drawn, held_to(1e-9), h=h)
+    (_, _, _, same, *_, again, _), _ = take_step(name, drawn, held_to(1e-9), h=h)
     assert (same, again) == (h, 0)
 
 
 @ALL
 def test_a_step_ends_at_the_end_of_the_segment_at_most(name, drawn):
-    free, (_, frame, *_) = taken(name, drawn, held_to(1e-3), h=1e-4)
+    free, (_, frame, *_) = take_step(name, drawn, held_to(1e-3), h=1e-4)
     for stop, wanted in ((frame.t + 0.4e-4, 0.4e-4), (frame.t + 1.6e-4, free[3])):
-        found, _ = taken(name, drawn, held_to(1e-3), h=1e-4, t_stop=stop)
+        found, _ = take_step(name, drawn, held_to(1e-3), h=1e-4, t_stop=stop)
         assert found[0]
         assert found[3] == pytest.approx(wanted, rel=1e-9)
     longest = held_to(1e-3)._replace(longest=3e-5)
-    assert taken(name, drawn, longest, h=1e-4)[0][3] == 3e-5
+    assert take_step(name, drawn, longest, h=1e-4)[0][3] == 3e-5
 
 
 def slowing(r, name="steady"):
@@ -115,7 +115,7 @@ def test_a_landing_is_the_end_of_a_step(name):
 def test_no_step_is_found_where_none_converges():
     """Each try is 0.3 times as long, until that is no time at all."""
     never = held_to(1e-3)._replace(newton=0.0)
-    (done, landing, *_, error, rejected, iterations), _ = taken("steady", SLIDES[0], never)
+    (done, landing, *_, error, rejected, iterations), _ = take_step("steady", SLIDES[0], never)
     assert (done, landing, error) == (False, False, inf)
     assert 1e-3 * 0.3**rejected <= RESOLUTION * 0.35 < 1e-3 * 0.3 ** (rejected - 1)
     assert iterations >= rejected

@@ -11,7 +11,7 @@ from tests.unit.solver.exact.test_step import held_to
 import stiction as st
 from stiction.solver.exact import loop
 from stiction.solver.multiscale import construction, interpolant, section
-from stiction.solver.multiscale.return_map import WIDEST, unknown
+from stiction.solver.multiscale.return_map import WIDEST, empty_map
 from stiction.solver.segments import stretches
 from stiction.solver.state import NOTHING, Counts, Motion, State
 
@@ -35,7 +35,7 @@ def taking_off(problem, theta, t=0.0):
     return State(Motion(t, *u, 0.0, 1.0, 0.0), MEMORY, NOTHING)
 
 
-def stepped(problem, theta, count):
+def step_through(problem, theta, count):
     """Return the stick intervals after a take-off, by steps, and the angles at their ends."""
     sticks, state = np.zeros((count, 2)), taking_off(problem, theta)
     advance, never = plain(loop.advance), (np.empty(0), np.empty((0, 7)))
@@ -47,10 +47,12 @@ def stepped(problem, theta, count):
 @pytest.mark.parametrize("theta", THETAS)
 def test_a_cycle_from_an_angle(name, theta):
     """From one stick's end to the next one's, as steps find it; and nothing else is left behind."""
-    problem, known = problem_of(name), unknown(1e-6)
-    found, cycle, swing, end = plain(construction.solved)(problem, EXACT, MEMORY, known, theta, 1.0)
+    problem, known = problem_of(name), empty_map(1e-6)
+    found, cycle, swing, end = plain(construction.solve_cycle)(
+        problem, EXACT, MEMORY, known, theta, 1.0
+    )
     assert found
-    ((start, until),) = stepped(problem, theta, 1)
+    ((start, until),) = step_through(problem, theta, 1)
     assert cycle.held == pytest.approx(until - start, rel=1e-6)
     assert cycle.time == pytest.approx(until, rel=1e-6)
     v = problem.drive.velocity * np.array([problem.system.cos_phi, problem.system.sin_phi])
@@ -61,10 +63,10 @@ def test_a_cycle_from_an_angle(name, theta):
     assert swing == pytest.approx(section_angle(problem, u) - landed)
     assert end.counts.sticks == 1
     # one that takes longer than it may, or does not stick, is none
-    assert not plain(construction.solved)(
+    assert not plain(construction.solve_cycle)(
         problem, EXACT, MEMORY, known, theta, 0.5 * (cycle.time - cycle.held)
     )[0]
-    assert plain(construction.solved)(
+    assert plain(construction.solve_cycle)(
         problem, EXACT, MEMORY, known, theta, 1.01 * (cycle.time - cycle.held)
     )[0]
 
@@ -77,7 +79,7 @@ def section_angle(problem, u):
 @pytest.mark.parametrize("rtol", [1e-4, 1e-6])
 def test_a_patch_stands_for_the_cycles_over_it(reach, rtol):
     """(M58): anywhere in it, its cycle is the one solved there, to some times the closing error."""
-    problem, known, theta = problem_of("soft"), unknown(rtol), 1.2
+    problem, known, theta = problem_of("soft"), empty_map(rtol), 1.2
     begun = State(taking_off(problem, theta).motion, MEMORY, Counts(7, 1, 20, 3, 0.5, 2))
     held = held_to(1e-3 * rtol)
     state = plain(construction.chart)(problem, held, begun, known, theta, reach, 1.0)
@@ -97,7 +99,7 @@ def test_a_patch_stands_for_the_cycles_over_it(reach, rtol):
         row, x = plain(interpolant.place)(known, there)
         assert (row, x) == (0, pytest.approx(2 * part - 1.0))
         cycle = plain(interpolant.cycle_from)(known, row, x)
-        found, wanted, swing, _ = plain(construction.solved)(
+        found, wanted, swing, _ = plain(construction.solve_cycle)(
             problem, held, MEMORY, known, there, 1.0
         )
         assert found
@@ -109,10 +111,10 @@ def test_a_patch_stands_for_the_cycles_over_it(reach, rtol):
 
 def test_where_a_cycle_does_not_return_there_is_an_edge():
     """Its nodes were in vain, but the first is kept for the next attempt from the same angle."""
-    problem, known = problem_of("soft"), unknown(1e-4)
+    problem, known = problem_of("soft"), empty_map(1e-4)
     begun = taking_off(problem, 1.3)
-    _, last, _, _ = plain(construction.solved)(problem, EXACT, MEMORY, known, 0.9, 1.0)
-    _, first, _, _ = plain(construction.solved)(problem, EXACT, MEMORY, known, 1.3, 1.0)
+    _, last, _, _ = plain(construction.solve_cycle)(problem, EXACT, MEMORY, known, 0.9, 1.0)
+    _, first, _, _ = plain(construction.solve_cycle)(problem, EXACT, MEMORY, known, 1.3, 1.0)
     longest = 0.5 * (last.time - last.held + first.time - first.held)
     held = held_to(1e-7)
     chart = plain(construction.chart)
@@ -128,7 +130,7 @@ def test_where_a_cycle_does_not_return_there_is_an_edge():
     assert known.coefficients[0, 0].tolist() == before.tolist()
     assert n > 3
     # where the first node does not return, nothing is kept
-    nothing = unknown(1e-4)
+    nothing = empty_map(1e-4)
     chart(problem, held, begun, nothing, 0.9, 0.4, longest)
     assert nothing.sizes.tolist() == [0, 1, 0, 1, 0]
     assert nothing.edges[0] == 0.9
@@ -137,7 +139,7 @@ def test_where_a_cycle_does_not_return_there_is_an_edge():
 
 def test_where_the_map_is_not_smooth_the_next_patch_is_half_as_wide():
     """Too noisy steps never close it: it is given up, at half of the nodes or all."""
-    problem, known = problem_of("soft"), unknown(1e-13)
+    problem, known = problem_of("soft"), empty_map(1e-13)
     begun, rough = taking_off(problem, 1.2), held_to(1e-2)
     plain(construction.chart)(problem, rough, begun, known, 1.2, -0.1, 1.0)
     assert known.width[0] == 0.5 * WIDEST

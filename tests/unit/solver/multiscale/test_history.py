@@ -1,19 +1,19 @@
-"""Cycles that were solved before, and what they tell of others."""
+"""Stored cycles, and the prediction of others from them."""
 
 import numpy as np
 import pytest
 from tests.entry import plain
 
 from stiction.solver.multiscale import history
-from stiction.solver.multiscale.return_map import FAR, NEAR, PAST, Cycle, unknown
+from stiction.solver.multiscale.return_map import FAR, NEAR, PAST, Cycle, empty_map
 
 LAST = Cycle(0.01, 1e-3, 4e-4)  # so that a long cycle takes more than 2 ms
-BOUND = NEAR * unknown(1e-6).closing
+BOUND = NEAR * empty_map(1e-6).closing
 
 
 def knowing(*cycles):
     """Return a map with cycles remembered: angle, turn, time, time held."""
-    known = unknown(1e-6)
+    known = empty_map(1e-6)
     for theta, *cycle in cycles:
         plain(history.remember)(known, theta, Cycle(*cycle))
     return known
@@ -78,7 +78,7 @@ def test_a_long_cycle_ends_where_others_did():
     found, cycle = plain(history.same_end)(known, theta, LAST)
     assert found
     assert cycle == pytest.approx(long_cycle(theta)[1:], rel=1e-12)
-    assert plain(history.remembered)(known, theta, LAST) == (found, cycle)
+    assert plain(history.recall)(known, theta, LAST) == (found, cycle)
     # not if one alone is known, nor before both, nor where they end apart
     assert not plain(history.same_end)(knowing(long_cycle(0.495)), theta, LAST)[0]
     assert not plain(history.same_end)(known, 0.4, LAST)[0]
@@ -101,7 +101,7 @@ def test_a_short_cycle_on_a_line_that_hardly_matters(column):
             a = np.array([0.50, -0.02, 1e-3, 4e-4])
             b = np.array([0.51, *a[1:]])
             b[column] += way * share * BOUND * abs(a[column if column < 3 else 2])
-            found, cycle = plain(history.remembered)(knowing(a, b), 0.49, LAST)
+            found, cycle = plain(history.recall)(knowing(a, b), 0.49, LAST)
             assert found == wanted
             assert cycle == pytest.approx(tuple(a[1:] - (b - a)[1:]), rel=1e-12)
-    assert plain(history.remembered)(knowing(a), 0.5, LAST) == (False, LAST)
+    assert plain(history.recall)(knowing(a), 0.5, LAST) == (False, LAST)

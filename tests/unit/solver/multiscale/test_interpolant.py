@@ -7,7 +7,7 @@ from tests.entry import plain
 
 from stiction.solver.multiscale import construction, interpolant
 from stiction.solver.multiscale.interpolant import POINTS
-from stiction.solver.multiscale.return_map import NEAR, NODES, Cycle, Hold, unknown
+from stiction.solver.multiscale.return_map import NEAR, NODES, Cycle, Hold, empty_map
 
 TURN, TIME = Polynomial([0.02, 0.004, -0.001, 0.0003]), Polynomial([2.0, -0.3, 0.05, 0.01])
 SQUARE = Polynomial([0.5, 0.2, -0.03, 0.02])  # of the time held, s^2
@@ -20,7 +20,7 @@ def cycle(x):
 
 def known_of(*starts, reach=0.5, n=4):
     """Return a map with patches of the same polynomials, and by what each node missed."""
-    known, misses = unknown(1e-6), []
+    known, misses = empty_map(1e-6), []
     for row, start in enumerate(starts):
         known.coefficients[row] = 0.0
         for i in range(n):
@@ -46,7 +46,7 @@ def test_each_node_is_where_it_tells_most():
 def test_the_polynomials_go_through_their_nodes(n, x):
     """Four nodes hold cubics exactly, and further ones change nothing."""
     known, _ = known_of(0.3, n=n)
-    found = plain(interpolant.interpolated)(known.coefficients[0], n, x)
+    found = plain(interpolant.interpolate)(known.coefficients[0], n, x)
     assert found == pytest.approx((TURN(x), TIME(x), SQUARE(x)), abs=1e-13)
     assert plain(interpolant.cycle_from)(known, 0, x) == pytest.approx(cycle(x), abs=1e-13)
 
@@ -69,7 +69,7 @@ def test_a_node_tells_by_how_much_the_polynomials_missed_it():
         known, _ = known_of(0.3, n=3)
         c = known.coefficients[0]
         node = Cycle(*cycle(x)) if which == 0 else Cycle(TURN(x), TIME(x), 3 * held)
-        square = off[2] if which == 0 else abs(9 * SQUARE(x) - (SQUARE(x) - signed(x)))
+        square = off[2] if which == 0 else abs(9 * SQUARE(x) - (SQUARE(x) - sign_of_cubic(x)))
         parts = (
             off[0] / max(abs(TURN(x)), least),
             off[1] / time,
@@ -79,7 +79,7 @@ def test_a_node_tells_by_how_much_the_polynomials_missed_it():
         assert found == pytest.approx(max(parts), rel=1e-9)
 
 
-def signed(x):
+def sign_of_cubic(x):
     """Return by what the cubic lies above the parabola through the first nodes."""
     lower = Polynomial.fit(POINTS[:3], SQUARE(POINTS[:3]), 2, domain=[-1, 1])
     return SQUARE(x) - lower(x)
@@ -101,7 +101,7 @@ def test_the_map_is_followed_from_stick_to_stick(until, room):
     """Each cycle begins where the last one has ended; to a time, a patch's end, or the room."""
     known, sticks = known_of(0.3, 0.8)[0], np.zeros((room, 2))
     hold, last = Hold(1.0, 1.5, 0.31), cycle(-1.0)
-    found = plain(interpolant.followed)(known, hold, last, sticks, 2, until)
+    found = plain(interpolant.follow_patches)(known, hold, last, sticks, 2, until)
     rows, (start, end, theta) = [], hold
     while 0.3 <= theta <= 1.3 and 2 + len(rows) < room:
         following = cycle((theta - (0.3 if theta <= 0.8 else 0.8)) * 4.0 - 1.0)
@@ -127,7 +127,7 @@ def test_where_the_polynomials_have_no_stick_the_map_ends():
     hold, last, sticks = Hold(1.0, 1.5, 0.31), cycle(-1.0), np.zeros((9, 2))
     for square in (-1.0, 100.0):
         known.coefficients[0, :, 2] = [square, *[0.0] * (NODES - 1)]
-        found = plain(interpolant.followed)(known, hold, last, sticks, 0, 1e9)
+        found = plain(interpolant.follow_patches)(known, hold, last, sticks, 0, 1e9)
         assert found == (hold, last, 0, 0.0)
     assert plain(interpolant.cycle_from)(known, 0, 0.0).held == 10.0
     known.coefficients[0, 0, 2] = -1.0

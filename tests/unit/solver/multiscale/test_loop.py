@@ -1,4 +1,4 @@
-"""Over which angles a patch of the map is tried, and whether it pays."""
+"""The range of angles of a patch of the map, and whether it pays."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ from stiction.solver.multiscale.return_map import (
     WIDEST,
     Cycle,
     Hold,
-    unknown,
+    empty_map,
 )
 from stiction.solver.multiscale.section import elongation_held
 from stiction.solver.state import (
@@ -28,14 +28,14 @@ from stiction.solver.state import (
     Memory,
     Motion,
     State,
-    named,
+    state_from_plain,
 )
 
 CYCLE, HOLD = Cycle(0.01, 1.0, 0.4), Hold(0.5, 1.0, 0.3)
 
 
 def test_nothing_is_known_at_first():
-    known = unknown(1e-6)
+    known = empty_map(1e-6)
     assert known.closing == CLOSING * 1e-6
     assert known.patches.shape == (PATCHES, 3)
     assert known.coefficients.shape == (PATCHES, NODES, 3)
@@ -49,7 +49,7 @@ def test_nothing_is_known_at_first():
 @pytest.mark.parametrize("way", [1.0, -1.0])
 def test_how_far_a_patch_is_tried(way):
     """Half way to an edge, a quarter after a try in vain, and up to another patch."""
-    known, theta, turn = unknown(1e-6), 0.3, way * 0.01
+    known, theta, turn = empty_map(1e-6), 0.3, way * 0.01
     reach = plain(loop.reach)
     known.edges[:2] = theta + way * 0.5, theta - way * 0.1  # one of them behind
     assert reach(known, theta, turn) == way * WIDEST
@@ -71,7 +71,7 @@ def test_how_far_a_patch_is_tried(way):
 
 def test_a_patch_pays_if_it_is_good_for_eight_cycles():
     """Over its angles and in the time that is left; and if not too many were in vain."""
-    known, pays = unknown(1e-6), plain(loop.pays)
+    known, pays = empty_map(1e-6), plain(loop.pays)
     assert pays(known, HOLD, CYCLE, 0.0801, 100.0)
     assert pays(known, HOLD, CYCLE, -0.0801, 100.0)
     assert pays(known, HOLD, CYCLE._replace(turn=-0.01), -0.0801, 100.0)
@@ -99,13 +99,13 @@ def test_counts_of_what_the_map_has_found():
     found = plain(loop.with_sticks)(counts, 7, 0.2)
     assert found == pytest.approx((5, 2, 20, 7, 0.9, 5))
     other = Counts(50, 20, 200, 30, 7.0, 10)
-    assert plain(construction.added)(counts, other) == (55, 22, 220, 3, 0.7, 1)
+    assert plain(construction.add_counts)(counts, other) == (55, 22, 220, 3, 0.7, 1)
 
 
 def test_a_node_s_steps_are_finer():
     accuracy = Accuracy(*range(1, 12))
     found = plain(construction.finer)(accuracy)
-    part = construction.FINER
+    part = construction.NODE_SHARE
     wanted = accuracy._replace(tolerance=part * 1, newton=part * 2, least=11 / part)
     assert found == pytest.approx(wanted)
 
@@ -121,7 +121,7 @@ def test_from_a_landing_to_the_angle_of_its_stick_and_back(name):
     memory = Memory(1.0, (0.3,) * 8, 5, 2.0, 1.1, True, (1.0,) * 4, (2.0,) * 4)
     counts = Counts(1, 2, 3, 4, 5.0, 6)
     state = State(landing._replace(t=0.1, u_x=0.0, u_y=0.0), memory, counts)
-    found = plain(replay.landed)(problem, state, hold)
+    found = plain(replay.state_at_landing)(problem, state, hold)
     assert found.motion == pytest.approx(landing, rel=1e-9)
     assert found.memory == memory._replace(h=0.3, place=0, warm=False)
     assert found.counts == counts
@@ -138,7 +138,7 @@ def test_from_a_landing_to_the_angle_of_its_stick_and_back(name):
 def test_strides_lead_to_the_same_sticks_as_steps(name, until):
     """With samples along the way, at a fraction of the steps."""
     problem, begun = soft(name), taking_off(soft(name), 1.0)
-    times, known = np.array([0.05, 0.25, 0.251, 0.255, 0.262, 0.37]), unknown(1e-6)
+    times, known = np.array([0.05, 0.25, 0.251, 0.255, 0.262, 0.37]), empty_map(1e-6)
     (code, state, k, _), sticks, samples = run(loop.stride, problem, begun, until, times, known)
     (_, wanted, _, _), exact, rows = run(exact_loop.advance, problem, begun, until, times)
     counts = Counts(*state[2])
@@ -166,30 +166,30 @@ def run(function, problem, state, until, times, *more):
 
 
 def test_a_stride_stops_with_its_budget_or_room_and_goes_on():
-    problem, state, known = soft("soft"), taking_off(soft("soft"), 1.0), unknown(1e-6)
+    problem, state, known = soft("soft"), taking_off(soft("soft"), 1.0), empty_map(1e-6)
     (code, whole, _, steps), table, _ = run(loop.stride, problem, state, 0.5, np.empty(0), known)
     assert code == COMPLETED
     held, never = held_to(1e-8)._replace(touch=0.0), (np.empty(0), np.empty((0, 7)), 0)
-    sticks, known, paused, used = np.zeros((200, 2)), unknown(1e-6), state, 0
+    sticks, known, paused, used = np.zeros((200, 2)), empty_map(1e-6), state, 0
     for _ in range(1000):
         code, plainly, _, turns = plain(loop.stride)(
             problem, paused, 0.5, held, 60, *never, sticks, known
         )
-        paused, used = named(plainly), used + turns
+        paused, used = state_from_plain(plainly), used + turns
         if code != RUNNING:
             break
     assert (code, plainly, used) == (COMPLETED, whole, steps)
     assert sticks.tolist() == table.tolist()
     room = np.zeros((5, 2))
     code, plainly, _, _ = plain(loop.stride)(
-        problem, state, 0.5, held, 10**6, *never, room, unknown(1e-6)
+        problem, state, 0.5, held, 10**6, *never, room, empty_map(1e-6)
     )
     assert (code, plainly[2][3]) == (RUNNING, 5)
     assert room.tolist() == table[:5].tolist()
 
 
 def test_a_cycle_is_known_from_a_patch_or_from_the_past():
-    known, cycle = unknown(1e-6), Cycle(0.01, 2.0, 0.5)
+    known, cycle = empty_map(1e-6), Cycle(0.01, 2.0, 0.5)
     found, _ = plain(loop.known_cycle)(known, 0.3, cycle)
     assert not found
     known.coefficients[0] = 0.0

@@ -7,15 +7,15 @@ import pytest
 from tests.entry import entry
 
 import stiction as st
-from stiction.solver.multiscale.history import remember, remembered
-from stiction.solver.multiscale.interpolant import POINTS, interpolated
-from stiction.solver.multiscale.return_map import Cycle, unknown
-from stiction.solver.multiscale.section import angle, elongation_held, lead, wrapped
+from stiction.solver.multiscale.history import recall, remember
+from stiction.solver.multiscale.interpolant import POINTS, interpolate
+from stiction.solver.multiscale.return_map import Cycle, empty_map
+from stiction.solver.multiscale.section import angle, elongation_held, lead, wrap_angle
 from stiction.solver.problem import Problem
 from stiction.solver.segments import stretches
 
-angle, elongation_held, lead, wrapped = map(entry, (angle, elongation_held, lead, wrapped))
-interpolated, remember, remembered = map(entry, (interpolated, remember, remembered))
+angle, elongation_held, lead, wrap_angle = map(entry, (angle, elongation_held, lead, wrap_angle))
+interpolate, remember, recall = map(entry, (interpolate, remember, recall))
 
 
 def error(run: st.Trajectory, reference: st.Trajectory, name: str) -> float:
@@ -198,9 +198,9 @@ def test_sticks_end_on_a_closed_curve(slider, theta, driven):
 
 
 def test_differences_of_angles_are_small():
-    assert wrapped(3.0) == 3.0
-    assert wrapped(-6.0) == pytest.approx(2 * pi - 6.0)
-    assert wrapped(5.0) == pytest.approx(5.0 - 2 * pi)
+    assert wrap_angle(3.0) == 3.0
+    assert wrap_angle(-6.0) == pytest.approx(2 * pi - 6.0)
+    assert wrap_angle(5.0) == pytest.approx(5.0 - 2 * pi)
 
 
 @pytest.mark.parametrize("n", [14, 15])
@@ -208,40 +208,40 @@ def test_newton_s_form_through_leja_points(n):
     values = np.exp(POINTS[:n])
     coefficients = np.zeros((n + 1, 3))
     for i in range(n):
-        rest = values[i] - interpolated(coefficients, i, POINTS[i])[1]
+        rest = values[i] - interpolate(coefficients, i, POINTS[i])[1]
         coefficients[i, 1] = rest / np.prod(POINTS[i] - POINTS[:i])
     x = np.linspace(-1, 1, 101)
-    found = [interpolated(coefficients, n, at)[1] for at in x]
+    found = [interpolate(coefficients, n, at)[1] for at in x]
     assert found == pytest.approx(np.exp(x), rel=1e-13)
     assert len(np.unique(POINTS)) == len(POINTS)
 
 
-def recalled(theta: float, *begun: float) -> tuple[bool, float, float]:
+def recall_slips(theta: float, *begun: float) -> tuple[bool, float, float]:
     """What slips that began at these angles, and ended at 2, tell of one from `theta`."""
-    known, last = unknown(1e-3), Cycle(0.01, 0.001, 1e-6)
+    known, last = empty_map(1e-3), Cycle(0.01, 0.001, 1e-6)
     for start in begun:
         remember(known, start, Cycle(2.0 - start, 0.5 - 0.1 * start, 0.02))
-    found, cycle = remembered(known, theta, last)
+    found, cycle = recall(known, theta, last)
     return found, theta + cycle.turn, cycle.time
 
 
 def test_slips_end_where_others_did():
-    found, end, time = recalled(1.006, 1.0, 1.004)
+    found, end, time = recall_slips(1.006, 1.0, 1.004)
     assert found
     assert end == pytest.approx(2.0, abs=1e-15)
     assert time == pytest.approx(0.5 - 0.1006, abs=1e-15)
 
 
 def test_what_may_be_before_the_edge_is_not_known():
-    assert not recalled(0.999, 1.0, 1.004)[0]  # it may stick again before it slips
-    assert not recalled(1.03, 1.0, 1.004)[0]  # nor is it known what comes that far behind
-    assert not recalled(1.006, 1.004)[0]  # one slip does not show that all end there
+    assert not recall_slips(0.999, 1.0, 1.004)[0]  # it may stick again before it slips
+    assert not recall_slips(1.03, 1.0, 1.004)[0]  # nor is it known what comes that far behind
+    assert not recall_slips(1.006, 1.004)[0]  # one slip does not show that all end there
 
 
 def test_a_stick_too_short_to_tell_is_none():
     """With 1e-6 s a turn of 0.01 before the edge, the bound of 3e-7 s is 0.0009 before it."""
-    assert recalled(1.0 - 0.8e-3, 1.0, 1.004)[0]
-    assert not recalled(1.0 - 1.0e-3, 1.0, 1.004)[0]
+    assert recall_slips(1.0 - 0.8e-3, 1.0, 1.004)[0]
+    assert not recall_slips(1.0 - 1.0e-3, 1.0, 1.004)[0]
 
 
 def test_pausing_changes_nothing(slider, monkeypatch):

@@ -21,8 +21,8 @@ def test_an_angle_and_its_elongation(name, theta):
     L = np.linalg.cholesky(np.array([[n.xx, n.xy], [n.xy, n.yy]]))
     f = problem.law.coefficient(0.0) * problem.load.force / problem.system.mass
     a = f * L @ [np.cos(theta), np.sin(theta)]
-    assert plain(section.held)(problem, theta) == pytest.approx(a, rel=1e-12)
-    assert Printed(problem, motion_of(*u, 1.0, 0.0)).held(0.0, np.array(u)) == pytest.approx(a)
+    assert plain(section.limit_at_angle)(problem, theta) == pytest.approx(a, rel=1e-12)
+    assert Printed(problem, motion_of(*u, 1.0, 0.0)).holding(0.0, np.array(u)) == pytest.approx(a)
     excess, _, square = plain(margin)(problem, 0.0, *u)
     assert excess == pytest.approx(0.0, abs=1e-12 * square)
     assert plain(section.angle)(problem, *u) == pytest.approx(theta, rel=1e-9)
@@ -49,5 +49,5 @@ def test_a_stick_can_be_begun_half_of_the_chord_before_its_end(name, theta):
 @pytest.mark.parametrize("turns", [-3, 0, 1, 5])
 @pytest.mark.parametrize("angle", [-3.1, 0.0, 0.4, 3.1])
 def test_a_difference_of_angles(turns, angle):
-    assert plain(section.wrapped)(angle + 2 * np.pi * turns) == pytest.approx(angle, abs=1e-13)
-    assert np.isnan(plain(section.wrapped)(np.nan))
+    assert plain(section.wrap_angle)(angle + 2 * np.pi * turns) == pytest.approx(angle, abs=1e-13)
+    assert np.isnan(plain(section.wrap_angle)(np.nan))

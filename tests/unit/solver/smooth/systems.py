@@ -14,7 +14,7 @@ from stiction.solver.problem import Elliptic, Isotropic
 from stiction.solver.radau import A, C, D
 from stiction.solver.smooth import dispatch, loop
 from stiction.solver.smooth.dispatch import PointedFlow, Smoothed
-from stiction.solver.smooth.state import Motion
+from stiction.solver.smooth.state import SmoothMotion
 from stiction.solver.smooth.workspace import workspace
 from stiction.solver.state import Accuracy
 
@@ -74,7 +74,7 @@ def begun(law, drive="program", accuracy=EXACT, motion=MOTION):
     """Return a problem with a step's start, its workspace and the slip coordinate."""
     problem, z = smooth_problem(law, drive), np.array(LAWS[law][1])
     w = plain(workspace)(len(z))
-    start, q_x, q_y = plain(loop.begin)(problem, Motion(TIME, *motion), z, w, accuracy)
+    start, q_x, q_y = plain(loop.begin)(problem, SmoothMotion(TIME, *motion), z, w, accuracy)
     return problem, start, w, (q_x, q_y)
 
 
@@ -91,7 +91,7 @@ class Equations:
 
     def b(self, dt):
         """Return spring and drive over mass if nothing has slipped (M17), in x and y."""
-        return self.printed.held(TIME + dt, self.u + self.printed.drive("travel", TIME, dt))
+        return self.printed.holding(TIME + dt, self.u + self.printed.drive("travel", TIME, dt))
 
     def load(self, dt):
         """Return the normal load (N)."""

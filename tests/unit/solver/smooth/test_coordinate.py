@@ -7,7 +7,7 @@ import pytest
 from tests.entry import plain
 
 from stiction.solver.smooth import coordinate as of
-from stiction.solver.smooth.coordinate import LARGEST, coordinate, risen, slip_at, slip_slope
+from stiction.solver.smooth.coordinate import LARGEST, coordinate, damped_rise, slip_at, slip_slope
 
 EPS = 1e-9
 POINTS = [(0.0, 0.0), (3e-5, -4e-5), (0.3, 0.4), (-3.0, 4.0), (30.0, 0.0), (0.0, -200.0)]
@@ -55,9 +55,9 @@ def test_the_slope_does_not_jump_where_a_series_begins():
 @pytest.mark.parametrize("share", [0.0, 1e-6, 0.5, 1.0])
 def test_a_damped_update(q, rise, share):
     """(M69), to a thousandth, as far as floats go; a small rise is taken as it is."""
-    up = plain(risen)(q, rise, share)
+    up = plain(damped_rise)(q, rise, share)
     assert up >= q
-    assert plain(risen)(q, 0.09, share) == q + 0.09
+    assert plain(damped_rise)(q, 0.09, share) == q + 0.09
     if up < LARGEST - 1.0:  # over cosh q, without overflow
         grown = (np.exp(up - q) - np.exp(-up - q)) / (1 + np.exp(-2 * q)) - np.tanh(q)
         left = share * grown + (1 - share) * (up - q)

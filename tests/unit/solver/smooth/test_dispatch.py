@@ -1,4 +1,4 @@
-"""What the solver asks of a law: friction, the change of its states, and the derivatives."""
+"""A law in the smooth solver: friction, the rates of its states, and the derivatives."""
 
 import numpy as np
 import pytest
@@ -109,7 +109,7 @@ def test_a_grain_is_no_less_than_the_finest():
 
 @pytest.mark.parametrize(("name", "unitless"), [("lugre", [False, False]), ("ageing", [True])])
 def test_which_columns_have_no_unit(name, unitless):
-    law = dispatch.pointed(LAWS[name][0])
+    law = dispatch.point_to_flow(LAWS[name][0])
     assert isinstance(law, PointedFlow)
     assert law.unitless.tolist() == [True, True, *unitless]
 

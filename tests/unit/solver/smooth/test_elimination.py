@@ -5,7 +5,7 @@ import pytest
 from tests.drawn import inside
 from tests.entry import plain
 
-from stiction.solver.block_algebra import eliminated, solved
+from stiction.solver.block_algebra import eliminate, solve_blocks
 from stiction.solver.radau import D
 from stiction.solver.smooth import elimination
 from stiction.solver.smooth.right_hand_side import Point, Stages
@@ -15,7 +15,7 @@ D = np.array(D)
 H = 0.3
 
 
-def drawn(n, seed):
+def draw_workspace(n, seed):
     """Return a workspace with random values and derivatives, and a stream of numbers."""
     numbers = iter(inside(seed + 1, *[(-1.0, 1.0)] * 600)[seed])
     w = plain(workspace)(n)
@@ -35,7 +35,7 @@ def triples(numbers, count):
 @pytest.mark.parametrize("seed", [0, 1])
 def test_a_step_of_slip_and_states(n, seed):
     """(M67) and (M68) as one matrix: what is eliminated solves it."""
-    w, numbers = drawn(n, seed)
+    w, numbers = draw_workspace(n, seed)
     s_xx, s_xy, s_yy, *rest = triples(numbers, 3 + 8)
     nothing = (0.0, 0.0, 0.0)
     stages = Stages(*[nothing] * 4, *map(tuple, (s_xx, s_xy, s_yy)), *[nothing] * 4)
@@ -58,7 +58,7 @@ def test_a_step_of_slip_and_states(n, seed):
     as_tuples = [tuple(map(tuple, block.tolist())) for block in blocks]
     left = plain(elimination.without_states)(H, stages, tuple(as_tuples), w)
     right = plain(elimination.residuals_without)(H, tuple(x), tuple(y), w)
-    d_x, d_y = plain(solved)(plain(eliminated)(*left), *right)
+    d_x, d_y = plain(solve_blocks)(plain(eliminate)(*left), *right)
     rounding = 1e-12 * np.linalg.cond(matrix)
     assert np.array([d_x, d_y]) == pytest.approx(wanted[:2], abs=rounding)
     before = w.values.copy()
@@ -73,7 +73,7 @@ def test_a_step_of_slip_and_states(n, seed):
 @pytest.mark.parametrize("seed", [0, 1])
 def test_a_point_inside_a_step(n, seed):
     """(M70), y - P + gamma (P_c - h f) = 0, of the states; slip's own equations are given."""
-    w, numbers = drawn(n, seed)
+    w, numbers = draw_workspace(n, seed)
     weight, size = 0.4, n + 2
     g = weight * H
     xx, xy, yy, *slip = (next(numbers) for _ in range(9))

@@ -24,7 +24,7 @@ from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.smooth import loop, right_hand_side
 from stiction.solver.smooth.coordinate import coordinate
 from stiction.solver.smooth.loop import COARSEST
-from stiction.solver.smooth.state import Memory, Motion, State
+from stiction.solver.smooth.state import SmoothMemory, SmoothMotion, SmoothState
 from stiction.solver.smooth.workspace import START, workspace
 from stiction.solver.state import (
     COMPLETED,
@@ -40,11 +40,11 @@ NO_TIMES = np.zeros(0)
 
 def state_of(name, motion=MOTION, h=1e-5):
     z = np.array(LAWS[name][1])
-    memory = Memory(h, h, False, np.zeros((4, 2 + len(z))))
-    return State(Motion(TIME, *motion), z, memory, NOTHING)
+    memory = SmoothMemory(h, h, False, np.zeros((4, 2 + len(z))))
+    return SmoothState(SmoothMotion(TIME, *motion), z, memory, NOTHING)
 
 
-def advanced(
+def advance(
     name, end, accuracy=HELD, state=None, budget=1000, drive="program", times=NO_TIMES, law=None
 ):
     """Advance, and return the code, the state, the samples and the steps of this call."""
@@ -78,14 +78,14 @@ def test_where_a_step_starts(name):
     assert start.share == 1.0
     still = workspace_of(name)
     slow = EXACT._replace(speed=5.0 * moving)
-    motion = Motion(TIME, *MOTION)
+    motion = SmoothMotion(TIME, *MOTION)
     start, _, _ = plain(loop.begin)(problem, motion, np.array(z), still, slow)
     assert start.share == pytest.approx(moving / (slow.speed + hypot(*MOTION[2:])))
     if logarithmic:  # far above the grain the slip velocity is its own coordinate
         for part, wanted in ((0.99, grain), (1.01, inf)):
             rough = EXACT._replace(speed=grain / COARSEST / part)
             start, _, _ = plain(loop.begin)(
-                problem, Motion(TIME, *MOTION), np.array(z), still, rough
+                problem, SmoothMotion(TIME, *MOTION), np.array(z), still, rough
             )
             assert start.eps == (grain if part < 1.0 else inf) == wanted
 
@@ -101,7 +101,7 @@ def test_what_states_are_held_against_is_made_anew():
     assert (sizes[2:] > np.abs(LAWS["lugre"][1])).all()
     again = workspace_of("lugre")
     again.size[:] = 77.0
-    motion = Motion(TIME, *MOTION)
+    motion = SmoothMotion(TIME, *MOTION)
     plain(loop.begin)(smooth_problem("lugre"), motion, np.array(LAWS["lugre"][1]), again, EXACT)
     assert again.size == pytest.approx(sizes)
 
@@ -121,7 +121,7 @@ def test_a_stretch_against_scipy(name, drive):
     begin = np.array([*printed.s, *printed.z, 0.0, 0.0])
     scale = np.array([*np.abs(printed.s), *np.abs(printed.z), 1e-6, 1e-6])
     sharp = solve_ivp(rates, (0.0, span), begin, "Radau", after, rtol=1e-9, atol=1e-10 * scale).y.T
-    code, state, samples, turns = advanced(name, TIME + span, drive=drive, times=times)
+    code, state, samples, turns = advance(name, TIME + span, drive=drive, times=times)
     assert (code, state.motion.t, len(samples)) == (COMPLETED, TIME + span, 4)
     assert state.counts.steps == turns > 3
     assert state.counts.iterations >= turns
@@ -140,13 +140,13 @@ def test_a_stretch_against_scipy(name, drive):
 def test_a_stretch_in_parts_is_the_whole(name):
     """A budget of steps pauses it: to the last bit the same."""
     end = TIME + 2e-3
-    code, whole, _, turns = advanced(name, end)
+    code, whole, _, turns = advance(name, end)
     assert (code, whole.counts.steps) == (COMPLETED, turns)
-    code, state, _, part = advanced(name, end, budget=3)
+    code, state, _, part = advance(name, end, budget=3)
     assert (code, part) == (RUNNING, 3)
     assert state.memory.warm
     given = state.internal.copy()
-    code, state, _, more = advanced(name, end, state=state)
+    code, state, _, more = advance(name, end, state=state)
     assert (code, part + more) == (COMPLETED, turns)
     assert state.motion == whole.motion
     assert state.counts == whole.counts
@@ -155,15 +155,15 @@ def test_a_stretch_in_parts_is_the_whole(name):
     assert not whole.memory.warm  # at the end of a stretch nothing predicts the next
     if len(given):
         assert state_of(name).internal.tolist() == list(LAWS[name][1])
-    assert advanced(name, TIME)[0] == COMPLETED
-    assert advanced(name, end, budget=0)[0] == RUNNING
-    assert advanced(name, end, budget=turns)[0] == COMPLETED
+    assert advance(name, TIME)[0] == COMPLETED
+    assert advance(name, end, budget=0)[0] == RUNNING
+    assert advance(name, end, budget=turns)[0] == COMPLETED
 
 
 def test_what_it_starts_from_is_not_changed():
     state = state_of("lugre")
     internal, past = state.internal.copy(), state.memory.past.copy()
-    advanced("lugre", TIME + 1e-4, state=state)
+    advance("lugre", TIME + 1e-4, state=state)
     assert state.internal.tolist() == internal.tolist()
     assert state.memory.past.tolist() == past.tolist()
 
@@ -175,22 +175,22 @@ def test_the_size_of_the_next_step(name):
     problem, start, w, q = begun(name, accuracy=HELD)
     *_, error, rejected, _ = plain(loop.step)(problem, start, *q, end, 1e-5, 1e-5, False, w, HELD)
     assert rejected == 0
-    _, state, _, _ = advanced(name, end, budget=1)
+    _, state, _, _ = advance(name, end, budget=1)
     assert state.memory.h == 1e-5 * plain(step_factor)(error, GROWTH)
     assert (state.memory.h_last, state.memory.warm) == (1e-5, True)
     assert state.memory.past == pytest.approx(w.values[:4])
     longest = HELD._replace(longest=1.2e-5)
-    assert advanced(name, end, longest, budget=1)[1].memory.h == 1.2e-5
-    _, state, _, _ = advanced(name, end, longest, state_of(name, h=1.0), budget=1)
+    assert advance(name, end, longest, budget=1)[1].memory.h == 1.2e-5
+    _, state, _, _ = advance(name, end, longest, state_of(name, h=1.0), budget=1)
     assert state.memory.h_last == 1.2e-5
     # after a refusal it grows no more
-    _, state, _, _ = advanced(name, end, state=state_of(name, h=1e-2), budget=1)
+    _, state, _, _ = advance(name, end, state=state_of(name, h=1e-2), budget=1)
     assert state.counts.rejected > 0
     assert state.memory.h <= state.memory.h_last
     # a step that the end of the stretch cuts says nothing of the next
-    _, state, _, _ = advanced(name, TIME + 1e-7)
+    _, state, _, _ = advance(name, TIME + 1e-7)
     assert state.memory.h == 1e-5
-    _, state, _, _ = advanced(name, TIME + 0.9e-5)
+    _, state, _, _ = advance(name, TIME + 0.9e-5)
     assert state.memory.h > 1e-5
 
 
@@ -199,7 +199,7 @@ def test_the_end_of_a_step():
     problem, start, w, _ = begun("lugre")
     w.values[1:4, :2] = [[1e-3, 2e-3], [3e-3, 5e-3], [7e-3, 1e-2]]
     h, printed = 2e-3, Equations("lugre")
-    motion = plain(loop.ended)(problem, start, h, 17.0, w)
+    motion = plain(loop.motion_at_end)(problem, start, h, 17.0, w)
     u = printed.u + printed.printed.drive("travel", TIME, h) - h * A[2] @ w.values[1:4, :2]
     assert motion == pytest.approx((17.0, *u, 7e-3, 1e-2))
 
@@ -209,12 +209,12 @@ def test_what_is_no_number_ends_it(wrong):
     for i in range(4):
         motion = [*MOTION]
         motion[i] = wrong
-        code, state, _, turns = advanced("lugre", TIME + 1.0, state=state_of("lugre", motion))
+        code, state, _, turns = advance("lugre", TIME + 1.0, state=state_of("lugre", motion))
         assert (code, turns) == (NON_FINITE, 0)
         assert state.motion.t == TIME
     state = state_of("lugre")
     state.internal[1] = wrong
-    assert advanced("lugre", TIME + 1.0, state=state)[0] == NON_FINITE
+    assert advance("lugre", TIME + 1.0, state=state)[0] == NON_FINITE
     finite = plain(loop.finite)
     assert finite(state_of("lugre").motion, np.array([1.0, 2.0]))
     assert not finite(state_of("lugre").motion, np.array([1.0, wrong]))
@@ -222,7 +222,7 @@ def test_what_is_no_number_ends_it(wrong):
 
 def test_where_no_step_is_accepted_it_ends():
     """As with a law that gives no numbers."""
-    code, state, _, turns = advanced("fed", TIME + 1.0, law=Fed(np.nan))
+    code, state, _, turns = advance("fed", TIME + 1.0, law=Fed(np.nan))
     assert (code, turns) == (STEP_UNDERFLOW, 1)
     assert state.motion == state_of("fed").motion
     assert state.counts.rejected > 10

@@ -1,4 +1,4 @@
-"""What stands between a run and the smooth solver: its state, its jumps, what it is held to."""
+"""The smooth solver's interface to a run: its state, its jumps, its tolerances."""
 
 from math import inf
 
@@ -10,7 +10,7 @@ from tests.unit.solver.systems import ELLIPSE, STEADY, problem_of
 import stiction as st
 from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.smooth.dispatch import Smoothed
-from stiction.solver.smooth.method import FINER, Smooth
+from stiction.solver.smooth.method import SPEED_SHARE, Smooth
 from stiction.solver.state import NOTHING
 from stiction.system.description import Description
 
@@ -48,12 +48,12 @@ def test_a_jump_of_the_drive():
     """The slip velocity jumps, and steps begin anew, no longer than the first."""
     method, state = begun(AGEING)
     warm = state._replace(memory=state.memory._replace(warm=True, h=7.0))
-    entered = method.entered(warm, 3e-3, -4e-3)
+    entered = method.enter_segment(warm, 3e-3, -4e-3)
     s_x, s_y = state.motion[3:]
     assert entered.motion == (*state.motion[:3], s_x + 3e-3, s_y - 4e-3)
     assert (entered.memory.h, entered.memory.warm) == (method.first_step, False)
     short = warm._replace(memory=warm.memory._replace(h=0.1 * method.first_step))
-    assert method.entered(short, 0.0, 0.0).memory.h == 0.1 * method.first_step
+    assert method.enter_segment(short, 0.0, 0.0).memory.h == 0.1 * method.first_step
     assert entered.internal is state.internal
 
 
@@ -73,10 +73,10 @@ def test_the_sample_of_a_state(delta):
 def test_what_each_step_is_held_to():
     """States remember slower slip; so does what vibrates."""
     held = EXACT._replace(speed=1e-4, free_x=3.0, free_y=2.0)
-    assert begun(ELLIPSE, 1e-3)[0].resolved(held) == held
+    assert begun(ELLIPSE, 1e-3)[0].step_accuracy(held) == held
     finer = begun(AGEING)[0]
-    assert finer.resolved(held) == held._replace(speed=FINER * 1e-4)
+    assert finer.step_accuracy(held) == held._replace(speed=SPEED_SHARE * 1e-4)
     shaken = held._replace(longest=1e-2)
-    assert finer.resolved(shaken) == shaken._replace(speed=2e-6)
-    assert finer.resolved(shaken._replace(speed=1e-9)).speed == FINER * 1e-9
+    assert finer.step_accuracy(shaken) == shaken._replace(speed=2e-6)
+    assert finer.step_accuracy(shaken._replace(speed=1e-9)).speed == SPEED_SHARE * 1e-9
     assert held.longest == inf

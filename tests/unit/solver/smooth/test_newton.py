@@ -17,12 +17,12 @@ from tests.unit.solver.smooth.systems import (
 )
 from tests.unit.solver.systems import problem_of
 
-from stiction.solver.block_algebra import solved
+from stiction.solver.block_algebra import solve_blocks
 from stiction.solver.radau import A, C, D
 from stiction.solver.smooth import elimination, newton, right_hand_side
-from stiction.solver.smooth.coordinate import coordinate, risen, slip_at
+from stiction.solver.smooth.coordinate import coordinate, damped_rise, slip_at
 from stiction.solver.smooth.newton import ITERATIONS
-from stiction.solver.smooth.right_hand_side import Outset
+from stiction.solver.smooth.right_hand_side import SmoothOutset
 from stiction.solver.smooth.workspace import START
 
 A, C, D = np.array(A), np.array(C), np.array(D)
@@ -47,8 +47,8 @@ def test_the_residuals_along_an_axis(row):
 
 def test_corrections_of_the_slip_velocity():
     """Without a logarithm: as they are, relative to the slip speed and what is resolved."""
-    start = Outset(0.0, 0.0, 0.0, inf, 1e-6, 1.0)
-    found = plain(newton.corrected)(start, 0.5, 1e-3, 3e-3, 4e-3, 3e-4, -4e-4)
+    start = SmoothOutset(0.0, 0.0, 0.0, inf, 1e-6, 1.0)
+    found = plain(newton.correct)(start, 0.5, 1e-3, 3e-3, 4e-3, 3e-4, -4e-4)
     assert (found.q_x, found.q_y) == pytest.approx((2.7e-3, 4.4e-3))
     assert found.size == pytest.approx(5e-4 / (1e-3 + 5e-3))
     assert found.turn == pytest.approx(5e-4 / (1e-6 + 5e-3))
@@ -57,20 +57,20 @@ def test_corrections_of_the_slip_velocity():
 @pytest.mark.parametrize("share", [0.3, 1.0])
 def test_corrections_of_its_logarithm(share):
     """A rise of more than 0.1 is damped by (M69), and the direction stays."""
-    start = Outset(0.0, 0.0, 0.0, 1e-9, 0.2, 1.0)
+    start = SmoothOutset(0.0, 0.0, 0.0, 1e-9, 0.2, 1.0)
     for d, damped in (((-3.0, -4.0), True), ((0.3, 0.4), False), ((-0.03, -0.04), False)):
-        found = plain(newton.corrected)(start, share, 1e-3, 3.0, 4.0, *d)
+        found = plain(newton.correct)(start, share, 1e-3, 3.0, 4.0, *d)
         plainly = 3.0 - d[0], 4.0 - d[1]
         size = hypot(*d) / 1.0
         assert found.size == found.turn == pytest.approx(size)
         if damped:
-            to = plain(risen)(5.0, hypot(*plainly) - 5.0, share)
+            to = plain(damped_rise)(5.0, hypot(*plainly) - 5.0, share)
             assert hypot(found.q_x, found.q_y) == pytest.approx(to)
             assert found.q_x / found.q_y == pytest.approx(plainly[0] / plainly[1])
             assert to < hypot(*plainly)
         else:
             assert (found.q_x, found.q_y) == pytest.approx(plainly)
-    near = plain(newton.corrected)(start, share, 1e-3, 0.03, 0.04, 0.01, 0.0)
+    near = plain(newton.correct)(start, share, 1e-3, 0.03, 0.04, 0.01, 0.0)
     assert near.size == pytest.approx(0.01 / (0.2 + 0.05))
 
 
@@ -130,7 +130,7 @@ def test_a_correction_is_that_of_the_whole_of_the_equations(name, h):
     r_y = plain(newton.residual)(y, h, at.s_y, s[1], at.f_y)
     if n:
         r_x, r_y = plain(elimination.residuals_without)(h, r_x, r_y, w)
-    d_x, d_y = plain(solved)(m, r_x, r_y)
+    d_x, d_y = plain(solve_blocks)(m, r_x, r_y)
     before = w.values[1:4, 2:].copy()
     if n:
         plain(elimination.correct_states)(d_x, d_y, w)

@@ -1,4 +1,4 @@
-"""What acts at a point, with its derivatives, and what errors are held against."""
+"""Forces at a point, with their derivatives, and the scales of errors."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ from tests.unit.solver.systems import SLIDERS
 
 from stiction.solver.smooth import right_hand_side
 from stiction.solver.smooth.coordinate import coordinate, slip_at
-from stiction.solver.smooth.right_hand_side import NOTICED, Outset
+from stiction.solver.smooth.right_hand_side import NOTICED, SmoothOutset
 from stiction.solver.smooth.workspace import LAST, START, workspace
 
 
@@ -25,7 +25,7 @@ from stiction.solver.smooth.workspace import LAST, START, workspace
 def test_what_acts_without_slip(drive, dt):
     """(M17), and the load then."""
     printed = Equations("smoothed", drive)
-    start = Outset(TIME, *printed.u, np.inf, 1e-3, 1.0)
+    start = SmoothOutset(TIME, *printed.u, np.inf, 1e-3, 1.0)
     found = plain(right_hand_side.pull)(smooth_problem("smoothed", drive), start, dt)
     assert found[:2] == pytest.approx(printed.b(dt), rel=1e-12)
     assert found.load == printed.load(dt)

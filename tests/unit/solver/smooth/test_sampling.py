@@ -20,7 +20,7 @@ from stiction.solver.smooth import error_estimate, newton, sampling
 from stiction.solver.smooth.workspace import INSIDE, LAST, START, workspace
 
 
-def ended(name, h, drive):
+def end_at(name, h, drive):
     """Return the slip velocities at the stages of a step by itself, and its states at the end."""
     _, _, w = solved_step(name, h, drive)
     return w.values[1:4, :2], w.values[LAST, 2:]
@@ -45,7 +45,7 @@ def test_samples_inside_a_step(name, drive):
     for time, row in zip(times[1:5], samples[1:5], strict=True):
         dt, s, z, slid = time - TIME, printed.s, printed.z, np.zeros(2)
         if dt > 0.0:
-            stages, z = ended(name, dt, drive)
+            stages, z = end_at(name, dt, drive)
             s, slid = stages[2], dt * A[2] @ stages
         u = printed.u + printed.printed.drive("travel", TIME, dt) - slid
         force = printed.m * printed.friction(dt, s, z)
@@ -73,7 +73,7 @@ def test_where_a_shorter_step_is_not_found_the_polynomial_is_balanced(name, monk
     (row,) = samples
     u = printed.u + printed.printed.drive("travel", TIME, x * h) - h * slid
     assert row[:2] == pytest.approx(u, rel=1e-12)
-    stages, z = ended(name, x * h, "steady")
+    stages, z = end_at(name, x * h, "steady")
     sizes = np.array([1.0, 1.0, *w.size[2:]])
     exact, found = np.array([*stages[2], *z]), np.array([*row[2:4], *row[COLUMNS:]])
     assert found / sizes == pytest.approx(exact / sizes, rel=1e-3)

@@ -51,7 +51,7 @@ def accuracy(tolerance):
     return EXACT._replace(tolerance=tolerance, newton=1e-3 * tolerance)
 
 
-def taken(name, h, tolerance, t_stop=inf, drive="program"):
+def take_step(name, h, tolerance, t_stop=inf, drive="program"):
     """Take a step from the start, without a step before it."""
     problem, start, w, q = begun(name, drive, accuracy(tolerance))
     found = plain(step.step)(problem, start, *q, t_stop, h, 1.0, False, w, accuracy(tolerance))
@@ -63,7 +63,7 @@ def taken(name, h, tolerance, t_stop=inf, drive="program"):
 @pytest.mark.parametrize("h", [1e-6, 1e-2])
 def test_an_accepted_step_keeps_its_tolerance(name, tolerance, h):
     """Its stages solve the equations, and its error is the estimate's, over the tolerance."""
-    problem, start, w, (done, size, error, rejected, iterations) = taken(name, h, tolerance)
+    problem, start, w, (done, size, error, rejected, iterations) = take_step(name, h, tolerance)
     assert done
     assert 0.0 <= error <= 1.0
     assert iterations > rejected
@@ -80,7 +80,7 @@ def test_an_accepted_step_keeps_its_tolerance(name, tolerance, h):
         assert rejected > 0
         assert size < h
         # this size itself is accepted at once
-        *_, (done, same, error, none, _) = taken(name, size, tolerance)
+        *_, (done, same, error, none, _) = take_step(name, size, tolerance)
         assert (done, same, none) == (True, size, 0)
         assert error <= 1.0
 
@@ -88,7 +88,7 @@ def test_an_accepted_step_keeps_its_tolerance(name, tolerance, h):
 def test_a_refused_step_is_tried_again_as_its_error_says():
     """By (M43), never longer."""
     tolerance, name = 1e-6, "smoothed"
-    *_, (done, h, _, rejected, _) = taken(name, 4e-4, tolerance)
+    *_, (done, h, _, rejected, _) = take_step(name, 4e-4, tolerance)
     assert done
     assert rejected >= 1
     problem, start, w, q = begun(name)
@@ -99,16 +99,16 @@ def test_a_refused_step_is_tried_again_as_its_error_says():
     held = accuracy(tolerance)
     error = plain(error_estimate.local_error)(problem, start, 4e-4, w, held) / tolerance
     factor = plain(step_factor)(error, 1.0)
-    *_, (_, first, _, more, _) = taken(name, 4e-4 * factor, tolerance)
+    *_, (_, first, _, more, _) = take_step(name, 4e-4 * factor, tolerance)
     assert more == rejected - 1
     assert first == pytest.approx(h, rel=1e-3)
 
 
 @pytest.mark.parametrize("name", ["smoothed", "ageing"])
 def test_a_step_ends_at_the_end_of_the_stretch_at_most(name):
-    _, start, _, _ = taken(name, 1e-6, 1e-3)
+    _, start, _, _ = take_step(name, 1e-6, 1e-3)
     for part, wanted in ((0.4, 0.4e-6), (1.0, 1e-6), (1.6, 1e-6)):
-        *_, (done, h, _, _, _) = taken(name, 1e-6, 1e-3, start.t + part * 1e-6)
+        *_, (done, h, _, _, _) = take_step(name, 1e-6, 1e-3, start.t + part * 1e-6)
         assert done
         assert h == pytest.approx(wanted, rel=1e-9)
 
