@@ -143,23 +143,6 @@ def smoothed_friction(law: Any, slip: Vector, load: float, share: tuple[float, f
     )
 
 
-class At(NamedTuple):
-    """Slip velocity (m/s), normal load (N) and 1/mass (1/kg) at which a law is asked."""
-
-    slip: Vector
-    load: float
-    per_mass: float
-
-
-class Rows(NamedTuple):
-    """The arrays of a workspace of which a law reads a row, with its states, and writes one."""
-
-    values: np.ndarray
-    flow: np.ndarray
-    jacobian: np.ndarray
-    size: np.ndarray
-
-
 class PointedFlow(NamedTuple):
     """A law as the smooth solver takes it: compiled functions, and its fields.
 
@@ -256,10 +239,10 @@ def flow_at(
 ) -> Friction:
     """Do as `flow` for the law with states at a pointer."""
     found: Any = pointee(law)
-    at, rows = At((s_x, s_y), load, per_mass), Rows(values, to, jacobian, size)
-    write_flow(found, at, rows, i)
+    slip = (s_x, s_y)
+    write_flow(found, slip, load, per_mass, values, i, to)
     if wanted:
-        write_gradient(found, at, rows, i)
+        write_gradient(found, slip, load, per_mass, values, i, to, jacobian, size)
     m = jacobian[i]
     return to[i, 0], to[i, 1], m[0, 0], m[0, 1], m[1, 0], m[1, 1]
 
@@ -277,47 +260,77 @@ def friction_and_gradient(law: Any, slip: Vector, load: float) -> Friction:
     return found
 
 
-def write_flow(law: Any, at: At, rows: Rows, i: int) -> None:
-    """Write friction over mass and the internal states' rates of change to ``flow[i]``."""
-    z = states_in(law, rows.values, i)
-    rows.flow[i, :2] = np.array(force(law, at.slip, at.load, z)) * at.per_mass
-    rows.flow[i, 2:] = change(law, at.slip, at.load, z)
+def write_flow(
+    law: Any, slip: Vector, load: float, per_mass: float, values: np.ndarray, i: int, to: np.ndarray
+) -> None:
+    """Write friction over mass and the internal states' rates of change to ``to[i]``."""
+    z = states_in(law, values, i)
+    to[i, :2] = np.array(force(law, slip, load, z)) * per_mass
+    to[i, 2:] = change(law, slip, load, z)
 
 
-def write_gradient(law: Any, at: At, rows: Rows, i: int) -> None:
+def write_gradient(
+    law: Any,
+    slip: Vector,
+    load: float,
+    per_mass: float,
+    values: np.ndarray,
+    i: int,
+    flow: np.ndarray,
+    jacobian: np.ndarray,
+    size: np.ndarray,
+) -> None:
     """Write the derivatives of ``flow[i]`` to ``jacobian[i]``.
 
     They are the law's own, or forward differences.
     """
     write = own_gradient if hasattr(law, "gradient") else differences
-    write(law, at, rows, i)
+    write(law, slip, load, per_mass, values, i, flow, jacobian, size)
 
 
 @register_jitable
-def own_gradient(law: Any, at: At, rows: Rows, i: int) -> None:
+def own_gradient(
+    law: Any,
+    slip: Vector,
+    load: float,
+    per_mass: float,
+    values: np.ndarray,
+    i: int,
+    flow: np.ndarray,
+    jacobian: np.ndarray,
+    size: np.ndarray,
+) -> None:
     """Do as `write_gradient` for a law that gives its derivatives."""
-    found = gradient(law, at.slip, at.load, states_in(law, rows.values, i))
-    n, to = len(rows.size), rows.jacobian
-    for j in range(n):
-        for k in range(n):
-            to[i, j, k] = found[j][k] * at.per_mass if j < 2 else found[j][k]
+    rows = gradient(law, slip, load, states_in(law, values, i))
+    for j in range(len(size)):
+        for k in range(len(size)):
+            jacobian[i, j, k] = rows[j][k] * per_mass if j < 2 else rows[j][k]
 
 
 @register_jitable
-def differences(law: Any, at: At, rows: Rows, i: int) -> None:
+def differences(
+    law: Any,
+    slip: Vector,
+    load: float,
+    per_mass: float,
+    values: np.ndarray,
+    i: int,
+    flow: np.ndarray,
+    jacobian: np.ndarray,
+    size: np.ndarray,
+) -> None:
     """Do as `write_gradient` for any other."""
-    values, flow, jacobian, size = rows
-    trial = values[TRIAL]
-    trial[:] = values[i]
-    trial[0], trial[1] = at.slip
+    at = values[TRIAL]
+    at[:] = values[i]
+    at[0], at[1] = slip
     for k in range(len(size)):
-        before = trial[k]
-        trial[k] = before + INCREMENT * (size[k] + abs(before))
-        per = 1.0 / (trial[k] - before)
-        write_flow(law, At((trial[0], trial[1]), at.load, at.per_mass), rows, TRIAL)
+        before = at[k]
+        at[k] = before + INCREMENT * (size[k] + abs(before))
+        per = 1.0 / (at[k] - before)
+        write_flow(law, (at[0], at[1]), load, per_mass, values, TRIAL, flow)
         for j in range(len(size)):
             jacobian[i, j, k] = (flow[TRIAL, j] - flow[i, j]) * per
-        trial[k] = before
+        at[k] = before
 
 
 def states_in(law: Any, values: np.ndarray, i: int) -> tuple[float, ...]:
@@ -351,14 +364,16 @@ def _states_in(law: Any, values: Any, i: Any) -> Callable[..., Any]:
 
 
 @overload(write_flow, strict=False)
-def _write_flow(law: Any, at: Any, rows: Any, i: Any) -> Callable[..., None]:
+def _write_flow(
+    law: Any, slip: Any, load: Any, per_mass: Any, values: Any, i: Any, to: Any
+) -> Callable[..., None]:
     n = _count(law)
 
-    def write(law: Any, at: Any, rows: Any, i: Any) -> None:
-        z, to = states_in(law, rows.values, i), rows.flow
-        f = force(law, at.slip, at.load, z)
-        to[i, 0], to[i, 1] = f[0] * at.per_mass, f[1] * at.per_mass
-        dz = change(law, at.slip, at.load, z)
+    def write(law: Any, slip: Any, load: Any, per_mass: Any, values: Any, i: Any, to: Any) -> None:
+        z = states_in(law, values, i)
+        f = force(law, slip, load, z)
+        to[i, 0], to[i, 1] = f[0] * per_mass, f[1] * per_mass
+        dz = change(law, slip, load, z)
         for k in range(n):
             to[i, 2 + k] = dz[k]
 
@@ -366,6 +381,18 @@ def _write_flow(law: Any, at: Any, rows: Any, i: Any) -> Callable[..., None]:
 
 
 @overload(write_gradient, strict=False)
-def _write_gradient(law: Any, at: Any, rows: Any, i: Any) -> Callable[..., None]:
+def _write_gradient(
+    law: Any,
+    slip: Any,
+    load: Any,
+    per_mass: Any,
+    values: Any,
+    i: Any,
+    flow: Any,
+    jacobian: Any,
+    size: Any,
+) -> Callable[..., None]:
     write: Any = own_gradient if hasattr(law.instance_class, "gradient") else differences
-    return lambda law, at, rows, i: write(law, at, rows, i)
+    return lambda law, slip, load, per_mass, values, i, flow, jacobian, size: write(
+        law, slip, load, per_mass, values, i, flow, jacobian, size
+    )
