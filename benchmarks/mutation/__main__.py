@@ -33,6 +33,7 @@ SOURCES = (
     "src/stiction/analysis/signals/reversals.py",
     "src/stiction/analysis/signals/turning_points.py",
 )
+COMPILING = (Path("src/stiction/solver/compilation"),)  # in plain Python nothing is compiled
 TESTS = (  # of pieces, in plain Python; whole runs take long there
     *(f"tests/unit/solver/{each}" for each in ("exact", "multiscale", "smooth")),
     *(f"tests/unit/solver/test_{each}.py" for each in ("block_algebra", "integrate", "radau")),
@@ -56,7 +57,7 @@ def main() -> int:
     """Try the mutants asked for; return the exit status."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.mutation", description=__doc__)
     parser.add_argument("--sources", nargs="+", type=Path, default=SOURCES, help="files, folders")
-    parser.add_argument("--without", nargs="*", type=Path, default=(), help="files, folders")
+    parser.add_argument("--without", nargs="*", type=Path, default=COMPILING, help="files, folders")
     parser.add_argument("--tests", nargs="+", default=TESTS, help="files, folders")
     parser.add_argument("--mutants", type=int, default=500, help="how many")
     parser.add_argument("--seed", type=int, default=1, help="of the sample")
