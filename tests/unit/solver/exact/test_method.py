@@ -1,0 +1,75 @@
+"""What stands between a run and the exact solver: its state, jumps of the drive, samples."""
+
+import numpy as np
+import pytest
+from tests.entry import plain
+from tests.unit.solver.exact.test_predictor import COLD
+from tests.unit.solver.systems import SLIDERS, STEADY, Printed, motion_of, problem_of
+
+import stiction as st
+from stiction.solver.exact import method
+from stiction.solver.exact.sampling import COLUMNS
+from stiction.solver.state import NOTHING, PLANNED, Motion, State, first_step
+from stiction.system.description import Description
+
+START = st.Initial(u_x=1e-3, u_y=2e-6, v_x=1e-3, v_y=-5e-4, time=0.3)
+MOVING = Motion(0.35, 1e-3, 2e-6, 5e-3, 0.6, 0.8)
+
+
+@pytest.fixture(scope="module")
+def exact():
+    return method.Exact(STEADY)
+
+
+def test_the_state_from_which_a_run_starts(exact):
+    state = exact.begin(Description(STEADY, START, None))
+    s = START.slip(STEADY)
+    assert exact.columns == COLUMNS
+    assert state.motion[:3] == (0.3, 1e-3, 2e-6)
+    assert state.motion[3:] == pytest.approx((np.hypot(*s), *(s / np.hypot(*s))))
+    assert state.memory.h == state.memory.plan[0] == first_step(STEADY)
+    assert state.counts == NOTHING
+
+
+def test_a_jump_of_the_drive(exact):
+    """The slip velocity jumps, and no step before predicts the next."""
+    memory = COLD._replace(h=3.0, plan=(2.0, *[0.5] * 7), warm=True)
+    state = State(MOVING, memory, NOTHING)
+    cooled = memory._replace(h=2.0, warm=False, place=PLANNED)
+    assert exact.entered(state, 0.0, 0.0) == State(MOVING, cooled, NOTHING)
+    short = State(MOVING, memory._replace(h=1.0), NOTHING)
+    assert exact.entered(short, 0.0, 0.0).memory.h == 1.0
+    for jump in ((1e-3, 0.0), (0.0, -2e-3), (3e-3, 4e-3)):
+        found = exact.entered(state, *jump)
+        wanted = np.array([3e-3, 4e-3]) + jump
+        assert found.memory == cooled
+        assert found.motion[:3] == MOVING[:3]
+        assert found.motion.r == pytest.approx(np.hypot(*wanted))
+        assert found.motion.r * np.array(found.motion[4:]) == pytest.approx(wanted)
+    stopped = exact.entered(state, -3e-3, -4e-3).motion
+    assert stopped == MOVING._replace(r=0.0)
+
+
+@pytest.mark.parametrize("name", SLIDERS)
+@pytest.mark.parametrize("r", [0.0, 5e-3])
+def test_the_friction_force_between_two_steps(name, r):
+    """(M2) while it sticks; (M1) in slip, along N s for an elliptic surface."""
+    problem, motion = problem_of(name), MOVING._replace(r=r)
+    printed = Printed(problem, motion_of(1e-3, 2e-6, 3e-3, 4e-3, 0.35))
+    found = plain(method.force_between)(problem, motion)
+    if r == 0.0:
+        wanted = printed.m * printed.held(0.35, printed.u)
+    else:
+        n, e = problem.surface, np.array([0.6, 0.8])
+        N = np.array([[n.xx, n.xy], [n.xy, n.yy]])
+        wanted = printed.m * printed.friction(0.35, r)[0] * N @ e / np.sqrt(e @ N @ e)
+    assert found == pytest.approx(wanted, rel=1e-12)
+
+
+@pytest.mark.parametrize("r", [0.0, 5e-3])
+def test_the_sample_of_a_state(exact, r):
+    problem, motion = problem_of("steady"), MOVING._replace(r=r)
+    row = exact.last_row(problem, State(motion, COLD, NOTHING))
+    force = plain(method.force_between)(problem, motion)
+    wanted = [1e-3, 2e-6, 0.6 * r, 0.8 * r, *force, 1.0 if r == 0.0 else 0.0]
+    assert row == pytest.approx(wanted, rel=1e-12)
