@@ -46,7 +46,7 @@ TESTS = (  # of pieces, in plain Python; whole runs take long there
     "tests/unit/analysis/motion/test_hesitations.py",
     "tests/unit/analysis/signals",
 )
-ROOM, TIMES = 5.0, 4.0  # s, and multiples of what the tests take: then it is endless
+ROOM, TIMES = 2.0, 3.0  # s, and multiples of what the tests take: then it is endless
 ALLOWED = 0.05  # of the mutants
 KILLED, SURVIVED, TIMEOUT, UNREACHED = "killed", "survived", "timeout", "unreached"
 
@@ -67,7 +67,7 @@ def main() -> int:
     parser.add_argument(
         "--longest", type=float, default=1.0, help="CPU s that a test takes at most"
     )
-    parser.add_argument("--most", type=float, default=30.0, help="CPU s of tests for one mutant")
+    parser.add_argument("--most", type=float, default=10.0, help="CPU s of tests for one mutant")
     parser.add_argument("--again", action="store_true", help="try those that survived again")
     options = parser.parse_args()
     options.results.mkdir(parents=True, exist_ok=True)

@@ -100,29 +100,15 @@ def rows_of(items: Sequence[pytest.Item], sources: Sequence[Path]) -> list[Any]:
 def fitting(tests: Sequence[Test], path: str, line: int, most: float) -> tuple[list[str], float]:
     """Return the tests to run for a line, and how long they take (s).
 
-    First those of the file that has its name from the source's, then the shortest files; of a
-    file, first the shortest that run the line. All tests of a file that runs the line: what one of
-    them computes another may look at. For a line that is run as the file is imported, those that
-    run anything of that file.
+    First those of the file that has its name from the source's, then the shortest. For a line that
+    is run as the file is imported, those that run anything of that file.
     """
-    reaching = {each.file for each in tests if line in each.lines.get(path, ())}
-    reaching = reaching or {each.file for each in tests if path in each.lines}
-    by_file: dict[str, list[Test]] = {}
-    for each in tests:
-        if each.file in reaching:
-            by_file.setdefault(each.file, []).append(each)
+    reaching = [each for each in tests if line in each.lines.get(path, ())]
+    reaching = reaching or [each for each in tests if path in each.lines]
     own = f"test_{Path(path).name}"
-
-    def order(group: list[Test]) -> tuple[bool, float]:
-        return Path(group[0].file).name != own, sum(each.seconds for each in group)
-
-    def speed(each: Test) -> tuple[bool, float]:
-        return line not in each.lines.get(path, ()), each.seconds
-
     chosen, total = [], 0.0
-    for group in sorted(by_file.values(), key=order):
-        for each in sorted(group, key=speed):
-            if total + each.seconds <= most:
-                chosen.append(each.name)
-                total += each.seconds
+    for each in sorted(reaching, key=lambda each: (Path(each.file).name != own, each.seconds)):
+        if total + each.seconds <= most:
+            chosen.append(each.name)
+            total += each.seconds
     return chosen, total
