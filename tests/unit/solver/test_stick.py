@@ -107,4 +107,6 @@ def test_the_positive_root(constant, linear, quadratic):
 
 def test_the_root_of_a_line():
     assert plain(stick.used_up)(-3.0, 2.0, 0.0) == 0.75
+    assert plain(stick.used_up)(-3.0, 0.5, 0.0) == 3.0
+    assert plain(stick.used_up)(-3.0, 0.0, 0.0) == inf
     assert plain(stick.used_up)(-3.0, -2.0, 0.0) == inf

@@ -266,6 +266,29 @@ def test_a_smooth_top_is_placed_between_samples(sign, width):
     assert found.value[1] == pytest.approx(sign * (2.0 - off), abs=1e-9)
 
 
+@pytest.mark.parametrize("noise", [0.0, 0.6, 2.2, 50.0])
+@pytest.mark.parametrize("index", [[4, 9, 15, 18], [1, 9, 18], [5, 8], [2, 4, 15, 17, 18]])
+@pytest.mark.parametrize("first_trough", [True, False])
+def test_the_samples_of_a_top_are_those_within_the_noise(noise, index, first_trough):
+    """A slow search of each leg; the top and its neighbours at least."""
+    index = np.array(index)
+    trough = np.arange(len(index)) % 2 == (0 if first_trough else 1)
+    turns = np.interp(np.arange(20), [-3, *index, 23], [0.0, *np.where(trough, -3.0, 3.0), 0.0])
+    values = turns + 0.8 * np.sin(7.0 * np.arange(20))
+    upward = np.where(trough, -1.0, 1.0)
+    points = turning_points.TurningPoints(index, trough, values, 1, noise, 99.0)
+    ends = [2 * index[0] - index[1], *index, 2 * index[-1] - index[-2]]
+    ends = [max(0, ends[0]), *index, min(19, ends[-1])]
+    first, last = peak_refinement._within_noise(points, upward)
+    for i, top in enumerate(index):
+        level = upward[i] * values[top] - noise
+        on_top = [j for j in range(20) if upward[i] * values[j] >= level]
+        rise = [j for j in on_top if ends[i] <= j < top]
+        fall = [j for j in on_top if top <= j < ends[i + 2]]
+        assert first[i] == min([*rise, min(max(top - 1, 0), 17)])
+        assert last[i] == max([*fall, min(max(top + 1, 2), 19)])
+
+
 def test_a_corner_stays_where_it_is_sampled():
     """It bends more than twice as much as next to it; a parabola would lie beside."""
     values = np.array([0.0, 1.0, 2.0, 3.0, 4.0, 1.0, 0.5, 0.2, 1.0, 2.0, 3.0])
@@ -274,6 +297,20 @@ def test_a_corner_stays_where_it_is_sampled():
     )
     found = peak_refinement.vertices(np.arange(11.0) * 0.1, points)
     assert (found.time[0], found.value[0]) == pytest.approx((0.4, 4.0))
+    # of second differences 1 and 1.2 beside one of 2.5: more than twice; of 1 and 1.3, not
+    for beside, corner in ((1.2, True), (1.3, False)):
+        bends = np.array([0.5, 0.7, 1.0, 2.5, beside, 0.6, 0.5])
+        for mirrored in (bends, bends[::-1]):
+            top = -np.cumsum(np.cumsum([0.0, 0.0, *mirrored]))
+            slope = np.diff(top)[np.argmax(mirrored) : np.argmax(mirrored) + 2].mean()
+            top = top - (slope + 0.3) * np.arange(9)
+            at = int(np.argmax(top))
+            assert at == np.argmax(mirrored) + 1
+            ends = turning_points.TurningPoints(
+                np.array([1, at, 7]), np.array([True, False, True]), top, 1, 0.0, 99.0
+            )
+            place = peak_refinement.vertices(np.arange(9.0), ends).time[1]
+            assert (place == at) == corner
 
 
 def test_the_top_of_a_parabola_within_its_piece():
