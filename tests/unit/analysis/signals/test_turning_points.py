@@ -111,6 +111,13 @@ def test_the_widest_gap_lies_between_two_kinds_of_heights(small, large):
     assert gap.widest_gap(heights, 0.0, 60) == gap.NO_GAP
 
 
+def test_a_gap_reaches_up_to_the_lowest_of_the_large_heights():
+    """To an edge below it, which are a quarter of an octave apart, down from the largest height."""
+    heights = [*np.linspace(0.5, 1.0, 200), *np.linspace(0.9, 1.0, 30) * 20.0]
+    found = gap.widest_gap(heights, 0.1, 60)
+    assert 0.9 * 20.0 * 2**-0.25 < found.high <= 0.9 * 20.0
+
+
 def test_a_gap_is_as_unlikely_as_a_random_walk_makes_it():
     """n (a/b)^2 of n heights above a are above b; each end lies 2 x 0.583 steps farther."""
     heights, step = [*[2.0] * 99, 16.0, 16.0, 16.0, 16.0], 0.5
@@ -128,6 +135,11 @@ def test_a_walk_has_no_clear_gap():
         points = turning_points.turning_points(np.cumsum(walk))
         assert len(points.index) == 0
         assert points.clearness < turning_points.CLEAR
+    assert 0.5 / 400 < 20 * 20 * np.exp(-turning_points.CLEAR) < 1 / 400
+
+
+def test_a_record_of_few_samples_is_not_clear_at_all():
+    assert turning_points.turning_points(np.arange(5.0)).clearness == 0.0
 
 
 # --- levels -------------------------------------------------------------------------------------

@@ -95,6 +95,23 @@ def test_a_landing_is_a_step_of_unknown_size(name):
     assert ends == pytest.approx([ends[0]] * 3, rel=1e-9)
 
 
+@pytest.mark.parametrize("part", [0.8, 1.2])
+def test_the_size_of_a_landing_counts_by_itself(part):
+    """Where errors of the slip velocity would not matter, its own correction goes on."""
+    problem, frame, o, _, _ = begun("steady", (1e-3, 1e-5, 3e-4, 1e-4), "not")
+    outset = plain(slip_frame.outset)(problem, frame)
+    guess, sizes = frame.r / (outset.f - outset.a_1), []
+    for accuracy in (held_to(1e-12), held_to(1e-5)._replace(speed=1e9)):
+        h, p = part * guess, (0.8 * frame.r, 0.3 * frame.r, 0.0)
+        s = plain(oscillation.swing)(o, h, True)
+        *found, _ = plain(newton.solve)(
+            problem, frame, o, s, h, True, p, (0.0,) * 3, accuracy, 1e12
+        )
+        assert found[0]
+        sizes.append(found[4])
+    assert sizes[1] == pytest.approx(sizes[0], rel=1e-4)
+
+
 def test_it_gives_up():
     """Where corrections grow or are no numbers, or a landing would be before its start."""
     (converged, *_), _ = solve_step("steady", SLIDES[0], 1e-12, guess=np.nan)

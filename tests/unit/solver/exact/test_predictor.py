@@ -11,7 +11,7 @@ from tests.unit.solver.exact.test_newton import SLIDES, held_to
 from tests.unit.solver.systems import SLIDERS, motion_of, problem_of
 
 from stiction.solver.exact import newton, oscillation, predictor, slip_frame
-from stiction.solver.radau import C
+from stiction.solver.radau import A, C, D
 from stiction.solver.state import Memory
 from stiction.solver.stick import margin, stick_duration
 
@@ -156,3 +156,20 @@ def test_over_the_oscillation_the_guess_is_of_the_second_order(name, drawn):
         off.append([np.abs(np.subtract(p, p_1)).max() / frame.r, np.abs(np.subtract(w, w_1)).max()])
     assert np.max(off[0]) < 4e-3
     assert (np.array(off[1]) < 0.25 * np.array(off[0])).all()
+
+
+@ALL
+def test_the_guess_over_the_oscillation_solves_the_turn_s_linear_equation(name, drawn):
+    """(M29) without w^2 and on no ellipse, for the oscillation's p; then its effect on p, once."""
+    _, frame, start, o, h = outset_of(name, drawn, "laid over the oscillation")
+    s = plain(oscillation.swing)(o, h, False)
+    found, w = map(np.array, plain(predictor.swung)(frame, start, s, h))
+    (a, c, d), p = (np.array(each) for each in (A, C, D)), np.array(s.p)
+    k_12, k_22 = frame.k_12, frame.k_22
+    pull = start.a_2 - start.turn + c * h * start.da_2 - h * k_12 * (a @ p + s.slid)
+    matrix = np.diag(p) @ d + h * h * k_22 * a @ np.diag(p) + np.diag(h * start.f + s.dp)
+    assert w == pytest.approx(np.linalg.solve(matrix, h * pull), rel=1e-9)
+    more = h * a @ (0.5 * start.f * w * w - h * k_12 * a @ (p * w))
+    assert found - p == pytest.approx(more, rel=1e-6, abs=1e-15)
+    plainly = plain(predictor.predicted)(frame, start, o, s, h, COLD)
+    assert np.array(plainly) == pytest.approx(np.array([found, w]))

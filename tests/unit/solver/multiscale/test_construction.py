@@ -146,3 +146,43 @@ def test_where_the_map_is_not_smooth_the_next_patch_is_half_as_wide():
     assert known.sizes[:3].tolist() == [0, 0, 0]
     assert 12 < known.sizes[3] <= 24
     assert known.patches[0, 0] == 1.2
+
+
+CLOSED = 0.03 * 1e-4  # (M58) at a relative tolerance of 1e-4
+
+
+@pytest.mark.parametrize(
+    ("misses", "nodes"),
+    [
+        ([1.0, 5.0, 2.0, 0.5], 4),
+        ([1e3, 0.5, 0.5], 3),  # the one before had missed by too much
+        ([1e3, 11.0, 0.9, 9.0, 1.1, 0.99], 6),
+        ([9.0, 0.9], 2),
+        ([1e3] * 12 + [1e4], 0),  # the error should fall: it is given up at half of the nodes
+        ([1e4] * 11 + [1e2] * 13, 0),
+        ([1e4] * 12 + [1e2] * 10 + [9.0, 0.9], 24),
+    ],
+)
+def test_when_a_patch_is_closed(misses, nodes, monkeypatch):
+    """By a node missed by less than the closing error, the one before by less than ten times."""
+    chart, known, seen = plain(construction.chart), unknown(1e-4), []
+    begun, end = taking_off(problem_of("soft"), 1.2), taking_off(problem_of("soft"), 0.7)
+
+    def solved(problem, accuracy, memory, known, theta, longest):
+        seen.append(theta)
+        return True, interpolant.Cycle(0.1, 1.0, 0.5), 0.2, end
+
+    left = iter(misses)
+    monkeypatch.setitem(chart.__globals__, "solved", solved)
+    monkeypatch.setitem(chart.__globals__, "added_node", lambda *_: next(left) * CLOSED)
+    chart(problem_of("soft"), EXACT, begun, known, 1.2, -0.1, 1.0)
+    assert seen == pytest.approx(1.2 - 0.05 * (interpolant.POINTS[: len(seen)] + 1.0))
+    if nodes:
+        assert known.patches[0] == pytest.approx([1.2, -20.0, nodes])
+        assert len(seen) == nodes
+        assert known.sizes.tolist() == [1, 0, 0, 0, 0]
+        assert known.width[0] == WIDEST
+    else:
+        assert len(seen) == (13 if misses[0] == 1e3 else 24)
+        assert known.sizes.tolist() == [0, 0, 0, len(seen), 0]
+        assert known.width[0] == 0.5 * WIDEST

@@ -122,6 +122,28 @@ def test_the_error_falls_with_the_fourth_power_of_the_step():
         assert errors[0] / errors[1] == pytest.approx(16.0, rel=0.3)
 
 
+@pytest.mark.parametrize("name", ["ageing", "slip"])
+@pytest.mark.parametrize("h", [1e-4, 1e-3, 1e-2])
+def test_a_balance_over_many_decades_takes_few_iterations(name, h, monkeypatch):
+    """From 1e-15 m/s on, since updates are damped by the share of inertia (M69)."""
+    problem, start, w, _ = begun(name, "steady", motion=(3e-3, 1e-6, 1e-15, -2e-16))
+    w.values[1:4] = w.values[START]
+    balance, points = plain(error_estimate.balance), []
+    evaluate = balance.__globals__["evaluate"]
+
+    def noted(*arguments):
+        points.append(evaluate(*arguments))
+        return points[-1]
+
+    monkeypatch.setitem(balance.__globals__, "evaluate", noted)
+    p = plain(error_estimate.within)(w, INTERIOR)
+    found, at = balance(problem, start, h, INTERIOR, DEFECT_WEIGHT, p, w, 1e-12)
+    assert found
+    assert at is points[-1]
+    assert at.s_x > 0.5 * h
+    assert len(points) <= 7  # without the damping 9 to 11
+
+
 @pytest.mark.parametrize("name", ["smoothed", "lugre", "ageing"])
 def test_without_a_balance_the_error_is_infinite(name):
     problem, start, w = solved_step(name, 1e-3)

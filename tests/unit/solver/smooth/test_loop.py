@@ -10,12 +10,14 @@ from tests.unit.solver.smooth.systems import (
     EXACT,
     LAWS,
     MOTION,
+    STATEFUL,
     TIME,
     A,
     Equations,
     Fed,
     begun,
     behind,
+    derivative,
     smooth_problem,
 )
 
@@ -94,16 +96,21 @@ def workspace_of(name):
     return plain(workspace)(len(LAWS[name][1]))
 
 
-def test_what_states_are_held_against_is_made_anew():
+@pytest.mark.parametrize("name", STATEFUL)
+def test_what_states_are_held_against_is_made_anew(name):
     """From the states and derivatives at the start, not from the last step's sizes."""
-    _, _, w, _ = begun("lugre")
-    sizes = w.size.copy()
-    assert (sizes[2:] > np.abs(LAWS["lugre"][1])).all()
-    again = workspace_of("lugre")
+    _, _, w, _ = begun(name)
+    sizes, (law, z) = w.size.copy(), LAWS[name]
+    load = Equations(name).load(0.0)
+    by_state = derivative(lambda x: np.array(law.force(MOTION[2:], load, tuple(x))), z, 1e-9)
+    least = 0.01 * load / np.hypot(*by_state)
+    wanted = np.abs(z) + (np.minimum(1.0, least) if name in ("ageing", "slip") else least)
+    assert sizes[2:] == pytest.approx(wanted, rel=1e-3)
+    again = workspace_of(name)
     again.size[:] = 77.0
-    motion = SmoothMotion(TIME, *MOTION)
-    plain(loop.begin)(smooth_problem("lugre"), motion, np.array(LAWS["lugre"][1]), again, EXACT)
-    assert again.size == pytest.approx(sizes)
+    motion = Motion(TIME, *MOTION)
+    plain(loop.begin)(smooth_problem(name), motion, np.array(z), again, EXACT)
+    assert again.size == pytest.approx(sizes, rel=1e-6)
 
 
 @pytest.mark.parametrize("name", LAWS)

@@ -97,6 +97,21 @@ def test_the_share_of_inertia(q):
     assert share(problem, h, a, (0.0, 0.0), *triples) == 1.0
 
 
+def test_each_stage_has_its_own_share_of_inertia():
+    """The factor of a stage is its entry in the diagonal of D."""
+    problem, h = problem_of("steady"), 0.01
+    columns = np.array([each[:11] for each in inside(3, *[(0.5, 2.0)] * 11)]).T
+    at = right_hand_side.Stages(*map(tuple, columns))
+    q_x, q_y = (0.3, -1.0, 2.0), (0.7, 0.5, -0.2)
+    found = plain(newton.shares)(problem, h, q_x, q_y, at)
+    for i in range(3):
+        s = at.s_xx[i], at.s_xy[i], at.s_yy[i]
+        f = at.f_xx[i], 0.5 * (at.f_xy[i] + at.f_yx[i]), at.f_yy[i]
+        wanted = plain(right_hand_side.inertia_share)(problem, h, D[i, i], (q_x[i], q_y[i]), s, f)
+        assert found[i] == pytest.approx(wanted)
+    assert len(set(found)) == 3
+
+
 GUESSES = [1.0, 0.9]  # of the slip velocity at the start
 
 
@@ -212,3 +227,18 @@ def test_no_numbers_and_no_convergence_are_no_step():
         assert found
         assert iterations < ITERATIONS
         assert not np.array_equal(before, w.values[1:4, :2])
+
+
+@pytest.mark.parametrize("name", ["ageing", "slip"])
+@pytest.mark.parametrize("h", [1e-5, 1e-4, 1e-3, 3e-3])
+def test_a_breakaway_over_many_decades_takes_few_iterations(name, h):
+    """From 1e-15 m/s to millimetres a second, since updates are damped by each stage's share."""
+    motion = (3e-3, 1e-6, 1e-15, -2e-16)
+    problem, start, w, (q_x, q_y) = begun(name, "steady", motion=motion)
+    w.values[1:4] = w.values[START]
+    found, iterations = plain(newton.solve)(problem, start, h, (q_x,) * 3, (q_y,) * 3, w, EXACT)
+    assert found
+    assert iterations <= 8  # 9 to 14, or none, with all of it inertia or the first share for good
+    assert w.values[3, 0] > h
+    residual, _ = Equations(name, "steady", motion).residuals(h, *at_stages(w))
+    assert np.abs(residual).max() < 1e-11 * w.values[3, 0]

@@ -104,6 +104,19 @@ def test_a_refused_step_is_tried_again_as_its_error_says():
     assert first == pytest.approx(h, rel=1e-3)
 
 
+@pytest.mark.parametrize(("error", "refused"), [(1.0, False), (1.0001, True)])
+def test_an_error_as_large_as_the_tolerance_is_accepted(error, refused, monkeypatch):
+    errors = iter([error * 2.0**-20, 0.0])
+    found = plain(step.step)
+    monkeypatch.setitem(found.__globals__, "local_error", lambda *_: next(errors))
+    *_, (done, h, last, rejected, _) = taken("smoothed", 1e-6, 2.0**-20)
+    assert (done, rejected) == (True, int(refused))
+    if refused:
+        assert h == 1e-6 * plain(step_factor)(error, 1.0)
+    else:
+        assert (h, last) == (1e-6, 1.0)
+
+
 @pytest.mark.parametrize("name", ["smoothed", "ageing"])
 def test_a_step_ends_at_the_end_of_the_stretch_at_most(name):
     _, start, _, _ = take_step(name, 1e-6, 1e-3)
