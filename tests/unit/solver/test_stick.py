@@ -67,6 +67,18 @@ def test_a_stick_lasts_until_the_margin_is_used_up(name, u):
         assert duration > times[-1]
 
 
+@pytest.mark.parametrize("name", SLIDERS)
+@pytest.mark.parametrize("u_x", [-4e-3, 4e-3])
+def test_beyond_the_limit_nothing_sticks_wherever_the_drive_goes(name, u_x):
+    """Not even where the drive lets the springs go."""
+    problem = problem_of(name)
+    excess, change, _ = plain(stick.margin)(problem, 0.35, u_x, 0.0)
+    assert excess > 0.0
+    if name in ("steady", "ellipse"):
+        assert (change > 0.0) == (u_x > 0.0)
+    assert plain(stick.stick_duration)(problem, 0.35, u_x, 0.0, inf) == (0.0, True)
+
+
 def test_a_stick_under_a_program_that_outlasts_the_stretch():
     """It is then infinite; in closed form the caller looks at the end itself."""
     u, t = (0.0, 0.0), 0.35

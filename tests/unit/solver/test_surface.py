@@ -6,6 +6,7 @@ from tests.entry import plain
 from tests.unit.solver.systems import MOTIONS, Printed, motion_of, problem_of
 
 from stiction.solver import surface
+from stiction.solver.problem import Isotropic
 
 
 @pytest.mark.parametrize("name", ["steady", "ellipse"])
@@ -50,3 +51,7 @@ def test_where_a_slip_takes_off(beyond, angle):
     y = plain(surface.takeoff)(problem, tuple(point + beyond * f * normal), f)
     assert y / np.hypot(*y) == pytest.approx(normal, abs=1e-9)
     assert plain(surface.takeoff)(problem_of("steady"), (9.0, 3.0), f) == (9.0, 3.0)
+
+
+def test_the_tensor_of_an_isotropic_surface_is_one():
+    assert Isotropic() == (1.0, 0.0, 1.0)
