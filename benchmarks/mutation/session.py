@@ -41,8 +41,14 @@ class Session:
 
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         """Do the task, once all tests are read, with those that run no whole simulation."""
-        self.task([item for item in session.items if not RUNS & set(item.fixturenames)])
+        self.task([item for item in session.items if not RUNS & fixtures(item)])
         return True
+
+
+def fixtures(item: Any) -> set[str]:
+    """Return the names of a test's fixtures, without its parameters."""
+    parameters = item.callspec.params if hasattr(item, "callspec") else ()
+    return set(item.fixturenames) - set(parameters)
 
 
 def with_tests(paths: Sequence[str], task: Callable[[list[pytest.Item]], None]) -> None:

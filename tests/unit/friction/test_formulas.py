@@ -308,3 +308,12 @@ def test_the_gradient_of_a_law_with_state(law, state, slip):
     found, wanted = np.array(law.gradient(slip, 10.0, state)), np.transpose(columns)
     scale = np.abs(at(tuple(x)))[:, None] / np.array(steps) * 1e-9  # rounding
     assert (np.abs(found - wanted) < 1e-7 * np.abs(wanted) + scale + 1e-300).all()
+
+
+def test_at_zero_slip_friction_is_linear_and_blind_to_the_state():
+    """(M61): F = a W s/eps, whatever psi does."""
+    stiff = 0.01 * 7.0 / rs.grain_of(0.01, 1e-6, 0.6)
+    assert rs.friction_gradient(0.01, 1e-6, 0.6, (0.0, 0.0), 7.0) == (stiff, 0.0, stiff, 0.0, 0.0)
+    tiny = 1e-6 * rs.grain_of(0.01, 1e-6, 0.6)
+    found = rs.friction_gradient(0.01, 1e-6, 0.6, (0.0, tiny), 7.0)
+    assert found == pytest.approx((stiff, 0.0, stiff, 0.0, 0.0), rel=1e-9, abs=1e-5 * 7.0)

@@ -116,6 +116,11 @@ def test_bounds_hold(slider):
     assert weaker == pytest.approx(2 * (4 * J[0] ** 2 + 2 * F * J[1] + F * F_2), rel=1e-9)
 
 
+def test_a_constant_velocity_is_its_own_bound_and_does_not_change():
+    bounds = segments.drive_bounds(st.ConstantVelocity(-2e-3), 0.3, 0.9)
+    assert bounds == ((2e-3, 0.0), (0.0, 0.0), (0.0, 0.0), (0.0, 0.0))
+
+
 def test_when_a_load_vanishes():
     """The first zero, by steps that cannot pass it."""
     swinging = Loading(Signal(0.0, 1.0, -0.1, 0.5, 20.0, 0.3))

@@ -138,6 +138,15 @@ def test_a_walk_has_no_clear_gap():
     assert 0.5 / 400 < 20 * 20 * np.exp(-turning_points.CLEAR) < 1 / 400
 
 
+@pytest.mark.parametrize("first", [0.0, 1.0])
+def test_turns_at_every_sample_begin_with_what_the_first_two_tell(first):
+    values = np.where(np.arange(24) % 2 == 0, first, 1.0 - first)
+    points = turning_points.turning_points(values)
+    assert points.index[0] == 1
+    assert points.trough[0] == (first == 1.0)
+    assert (points.trough[1:] != points.trough[:-1]).all()
+
+
 def test_a_record_of_few_samples_is_not_clear_at_all():
     assert turning_points.turning_points(np.arange(5.0)).clearness == 0.0
 

@@ -43,14 +43,15 @@ def test_the_motion_about_steady_sliding(name, drawn):
 @pytest.mark.parametrize("size", [0.02, 1.5, 2.6])
 @pytest.mark.parametrize("motion", [1e-3, inf])
 @pytest.mark.parametrize("accuracy", [ACCURACY, ACCURACY._replace(drive=inf, free_x=1.0)])
-def test_the_error_of_a_step(name, drawn, size, motion, accuracy):
-    """(M37), (M38) and (M41), at one point, or at two in a step longer than either oscillation."""
-    problem, frame, o, printed, h = begin(name, drawn, "not")
+@pytest.mark.parametrize("turned_by", [1.0, 30.0])
+def test_the_error_of_a_step(name, drawn, size, motion, accuracy, turned_by):
+    """(M37), (M38) and (M41), at one point, or at two in a step longer than an oscillation."""
+    problem, frame, o, printed, h = begun(name, drawn, "not")
     h *= size / 0.02
     laid = plain(oscillation.swings)(o, h)
     assert laid == (size == 1.5)
     swing = plain(oscillation.swing)(o, h, False)
-    p, w = frame.r * np.array([1.05, 0.9, 0.95]), np.array([0.02, -0.1, 0.15])
+    p, w = frame.r * np.array([1.05, 0.9, 0.95]), turned_by * np.array([0.02, -0.1, 0.15])
     after, found = plain(oscillation.after), []
     stiffest = max(frame.k_11, frame.k_22)
     assert size < 2.5 or stiffest * h * h > 6.25

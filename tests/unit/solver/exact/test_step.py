@@ -112,6 +112,29 @@ def test_a_landing_is_the_end_of_a_step(name):
     assert h == pytest.approx(0.8 * until, rel=1e-9)
 
 
+@pytest.mark.parametrize("name", SLIDERS)
+@pytest.mark.parametrize("part", [1.15, 1.3])
+def test_a_landing_that_was_not_foreseen_is_found_from_the_step_beyond(name, part, monkeypatch):
+    """Where p would be negative at the end: from the size at which a line through it is zero."""
+    problem, frame, start, _, until = slowing(1e-3, name)
+    memory, accuracy = COLD._replace(h=part * until), held_to(3e-2)
+    found = plain(step)(problem, frame, start, inf, memory, accuracy)
+    blind = plain(step)
+    monkeypatch.setitem(blind.__globals__, "time_to_landing", lambda *_: inf)
+    done, landing, _, h, p, _, _, rejected, iterations = blind(
+        problem, frame, start, inf, memory, accuracy
+    )
+    assert (done, landing, rejected) == (True, True, 0)
+    assert h == pytest.approx(found[3], rel=1e-3)
+    assert p[2] == 0.0
+    assert iterations <= found[-1] + 7
+    # not beyond the end of the stretch
+    stop = frame.t + 0.9 * h
+    done, landing, _, h, *_ = blind(problem, frame, start, stop, memory, accuracy)
+    assert (done, landing) == (True, False)
+    assert h == pytest.approx(stop - frame.t, rel=1e-9)
+
+
 def test_no_step_is_found_where_none_converges():
     """Each try is 0.3 times as long, until that is no time at all."""
     never = held_to(1e-3)._replace(newton=0.0)

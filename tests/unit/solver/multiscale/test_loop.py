@@ -155,6 +155,13 @@ def test_strides_lead_to_the_same_sticks_as_steps(name, until):
     assert samples[:, 2:6] == pytest.approx(rows[:, 2:6], rel=2e-3, abs=2e-5)
     assert samples[:, 6].tolist() == rows[:, 6].tolist()
     assert known.sizes[4] == counts.sticks - counts.mapped
+    # what is remembered are cycles from one stick's end to the next, the first from the start
+    _, turn, time, held = known.past[0]
+    ends = np.array([0.0, *sticks[:n, 1]])
+    row = int(np.argmin(np.abs(np.diff(ends) - time)))
+    wanted = np.diff(ends)[row], np.diff(sticks[row])[0]
+    assert (time, held) == pytest.approx(wanted, rel=1e-6)
+    assert turn < 0.0
 
 
 def run(function, problem, state, until, times, *more):

@@ -22,18 +22,18 @@ def test_a_first_guess_is_the_last_step_continued(warm):
     """Cubics exactly; at rest where the slip would turn back; else what held at the start."""
     w, x = plain(workspace)(1), 0.6
     along, state = Polynomial([1.0, 0.4, -0.2, 0.1]), Polynomial([3.0, -1.0, 0.5, 0.2])
-    w.past[:] = np.transpose([along(NODES), -0.5 * along(NODES), state(NODES)])
-    w.values[START] = 0.7, -0.35, 9.0
-    q_x, q_y = plain(step.predict)(w, 0.7, -0.35, x, warm)
+    w.past[:] = np.transpose([along(NODES), -2.0 * along(NODES), state(NODES)])
+    w.values[START] = 0.7, -1.4, 9.0
+    q_x, q_y = plain(step.predict)(w, 0.7, -1.4, x, warm)
     if warm:
         there = 1.0 + x * C
         assert q_x == pytest.approx(along(there))
-        assert q_y == pytest.approx(-0.5 * along(there))
+        assert q_y == pytest.approx(-2.0 * along(there))
         assert w.values[1:4, 2] == pytest.approx(state(there))
-        back = plain(step.predict)(w, -0.7, 0.35, x, True)
+        back = plain(step.predict)(w, -0.7, 1.4, x, True)
         assert back == ((0.0,) * 3, (-0.0,) * 3)
     else:
-        assert (q_x, q_y) == ((0.7,) * 3, (-0.35,) * 3)
+        assert (q_x, q_y) == ((0.7,) * 3, (-1.4,) * 3)
         assert w.values[1:4, 2].tolist() == [9.0] * 3
 
 
