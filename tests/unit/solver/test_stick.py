@@ -108,7 +108,14 @@ def test_what_a_short_stick_has_to_spare(name):
 
 @pytest.mark.parametrize(
     ("constant", "linear", "quadratic"),
-    [(-3.0, 2.0, 5.0), (-3.0, -2.0, 5.0), (-3.0, 0.0, 5.0), (-1e-12, 2.0, 5.0), (0.0, -2.0, 5.0)],
+    [
+        (-3.0, 2.0, 5.0),
+        (-3.0, -2.0, 5.0),
+        (-3.0, 0.0, 5.0),
+        (-1e-12, 2.0, 5.0),
+        (0.0, -2.0, 5.0),
+        (-1e-12, -0.5, 5.0),
+    ],
 )
 def test_the_positive_root(constant, linear, quadratic):
     """(M7), without cancellation."""

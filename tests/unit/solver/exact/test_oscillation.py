@@ -1,16 +1,24 @@
 """The oscillation over which a step of slip is laid."""
 
-from math import cos, pi, sqrt
+from math import cos, inf, pi, sqrt
 
 import numba
 import numpy as np
 import pytest
 from scipy.linalg import expm
-from tests.entry import entry
+from tests.entry import entry, plain
+from tests.unit.solver.exact.test_newton import held_to
 
 import stiction as st
 from stiction.solver.exact.error_estimate import dips
-from stiction.solver.exact.oscillation import MOST, Oscillator, after, swing
+from stiction.solver.exact.oscillation import (
+    MOST,
+    STRONGEST,
+    Oscillator,
+    after,
+    swing,
+    within_reach,
+)
 from stiction.solver.radau import A, C, D, cubic
 
 OSCILLATORS = [
@@ -117,3 +125,20 @@ def test_constant_friction_along_an_axis_is_exact_at_any_tolerance():
     # u'' = -omega^2 u + F/m as long as the slip V - u' is positive
     want = F / omega**2 + (0.08 - F / omega**2) * cos(omega * turn)
     assert end["u_x"].item() == pytest.approx(want, rel=1e-12)
+
+
+@pytest.mark.parametrize(("x", "v"), [(1.0, 0.0), (0.0, 1.0), (0.6, -0.8)])
+@pytest.mark.parametrize("motion", [inf, 1e-4])
+def test_a_step_covers_a_part_of_an_oscillation_that_can_be_seen(x, v, motion):
+    """One of less than the tolerance, of the slip or of the slower motion, is none."""
+    k, accuracy = 400.0, held_to(1e-3)._replace(tolerance=1e-3)
+    reach, most = plain(within_reach), np.sqrt(0.99 * MOST / k)
+    for part, seen in ((0.99, False), (1.01, True)):
+        level = 7e-3
+        # its size, x^2 + v^2/k, over the tolerance times sigma + P + x or the motion
+        scale = min(accuracy.speed + level, motion) * 1e-3 / (1.0 - 1e-3 * x * (motion == inf))
+        o = Oscillator(k, 1 / k, 0.0, level, part * scale * x, part * scale * v * 20.0)
+        assert reach(o, 2 * most, accuracy, motion) == pytest.approx(most if seen else 2 * most)
+        assert reach(o, 0.9 * most, accuracy, motion) == 0.9 * most
+        damped = o._replace(beta=1.1 * STRONGEST * 20.0)
+        assert reach(damped, 2 * most, accuracy, motion) == 2 * most
