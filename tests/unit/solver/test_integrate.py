@@ -8,8 +8,10 @@ from tests.unit.solver.systems import ELLIPSE, PROGRAM, STEADY
 
 import stiction as st
 from stiction.drive import jump
-from stiction.solver import integrate
+from stiction.errors import DescriptionError
+from stiction.solver import integrate, output
 from stiction.solver.integrate import accuracy, slip_jump, steepest_weakening, tolerance
+from stiction.solver.output import STICK, Output
 from stiction.solver.segments import stretches
 from stiction.solver.state import (
     COMPLETED,
@@ -147,7 +149,7 @@ class Scripted:
     def begin(self, description):
         return at_time(description.initial.time)
 
-    def entered(self, state, x, y):
+    def enter_segment(self, state, x, y):
         return state
 
     def advance(self, problem, state, end, held, budget, out):
@@ -214,3 +216,29 @@ def test_each_stretch_of_a_program_follows_the_one_before(monkeypatch):
     found, _ = run(monkeypatch, method, slider)
     assert (method.ends, found.code) == ([1.0], STEP_UNDERFLOW)
     assert found.times.tolist() == [0.3, 0.9]
+
+
+def output_for(sticks):
+    return Output(np.empty(0), np.empty((0, 7)), np.arange(2.0 * sticks).reshape(sticks, 2))
+
+
+def test_room_is_doubled_when_it_is_filled(monkeypatch):
+    """After a look at the memory that so much room takes, for all tables."""
+    asked = []
+    monkeypatch.setattr(output, "shortage", asked.append)
+    out = output_for(4)
+    before = out.sticks.copy()
+    out.make_room(3)
+    assert out.sticks.tolist() == before.tolist()
+    assert asked == []
+    out.make_room(4)
+    assert out.sticks.shape == (8, 2)
+    assert out.sticks[:4].tolist() == before.tolist()
+    assert asked == [STICK * 8]
+    assert (out.filled, out.used) == (0, 0)
+
+
+def test_sticks_that_do_not_fit_are_refused(monkeypatch):
+    monkeypatch.setattr(output, "shortage", lambda _: "takes 9 GB, of which 1 GB is free")
+    with pytest.raises(DescriptionError, match=r"more than 4 sticks.*takes 9 GB.*shorten it"):
+        output_for(4).make_room(4)

@@ -46,7 +46,7 @@ def test_the_motion_about_steady_sliding(name, drawn):
 @pytest.mark.parametrize("turned_by", [1.0, 30.0])
 def test_the_error_of_a_step(name, drawn, size, motion, accuracy, turned_by):
     """(M37), (M38) and (M41), at one point, or at two in a step longer than an oscillation."""
-    problem, frame, o, printed, h = begun(name, drawn, "not")
+    problem, frame, o, printed, h = begin(name, drawn, "not")
     h *= size / 0.02
     laid = plain(oscillation.swings)(o, h)
     assert laid == (size == 1.5)

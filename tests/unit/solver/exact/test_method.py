@@ -36,17 +36,17 @@ def test_a_jump_of_the_drive(exact):
     memory = COLD._replace(h=3.0, plan=(2.0, *[0.5] * 7), warm=True)
     state = State(MOVING, memory, NOTHING)
     cooled = memory._replace(h=2.0, warm=False, place=PLANNED)
-    assert exact.entered(state, 0.0, 0.0) == State(MOVING, cooled, NOTHING)
+    assert exact.enter_segment(state, 0.0, 0.0) == State(MOVING, cooled, NOTHING)
     short = State(MOVING, memory._replace(h=1.0), NOTHING)
-    assert exact.entered(short, 0.0, 0.0).memory.h == 1.0
+    assert exact.enter_segment(short, 0.0, 0.0).memory.h == 1.0
     for jump in ((1e-3, 0.0), (0.0, -2e-3), (3e-3, 4e-3)):
-        found = exact.entered(state, *jump)
+        found = exact.enter_segment(state, *jump)
         wanted = np.array([3e-3, 4e-3]) + jump
         assert found.memory == cooled
         assert found.motion[:3] == MOVING[:3]
         assert found.motion.r == pytest.approx(np.hypot(*wanted))
         assert found.motion.r * np.array(found.motion[4:]) == pytest.approx(wanted)
-    stopped = exact.entered(state, -3e-3, -4e-3).motion
+    stopped = exact.enter_segment(state, -3e-3, -4e-3).motion
     assert stopped == MOVING._replace(r=0.0)
 
 
@@ -58,7 +58,7 @@ def test_the_friction_force_between_two_steps(name, r):
     printed = Printed(problem, motion_of(1e-3, 2e-6, 3e-3, 4e-3, 0.35))
     found = plain(method.force_between)(problem, motion)
     if r == 0.0:
-        wanted = printed.m * printed.held(0.35, printed.u)
+        wanted = printed.m * printed.holding(0.35, printed.u)
     else:
         n, e = problem.surface, np.array([0.6, 0.8])
         N = np.array([[n.xx, n.xy], [n.xy, n.yy]])

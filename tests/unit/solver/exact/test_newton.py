@@ -98,7 +98,7 @@ def test_a_landing_is_a_step_of_unknown_size(name):
 @pytest.mark.parametrize("part", [0.8, 1.2])
 def test_the_size_of_a_landing_counts_by_itself(part):
     """Where errors of the slip velocity would not matter, its own correction goes on."""
-    problem, frame, o, _, _ = begun("steady", (1e-3, 1e-5, 3e-4, 1e-4), "not")
+    problem, frame, o, _, _ = begin("steady", (1e-3, 1e-5, 3e-4, 1e-4), "not")
     outset = plain(slip_frame.outset)(problem, frame)
     guess, sizes = frame.r / (outset.f - outset.a_1), []
     for accuracy in (held_to(1e-12), held_to(1e-5)._replace(speed=1e9)):

@@ -165,7 +165,7 @@ CLOSED = 0.03 * 1e-4  # (M58) at a relative tolerance of 1e-4
 )
 def test_when_a_patch_is_closed(misses, nodes, monkeypatch):
     """By a node missed by less than the closing error, the one before by less than ten times."""
-    chart, known, seen = plain(construction.chart), unknown(1e-4), []
+    chart, known, seen = plain(construction.chart), empty_map(1e-4), []
     begun, end = taking_off(problem_of("soft"), 1.2), taking_off(problem_of("soft"), 0.7)
 
     def solved(problem, accuracy, memory, known, theta, longest):
@@ -173,7 +173,7 @@ def test_when_a_patch_is_closed(misses, nodes, monkeypatch):
         return True, interpolant.Cycle(0.1, 1.0, 0.5), 0.2, end
 
     left = iter(misses)
-    monkeypatch.setitem(chart.__globals__, "solved", solved)
+    monkeypatch.setitem(chart.__globals__, "solve_cycle", solved)
     monkeypatch.setitem(chart.__globals__, "added_node", lambda *_: next(left) * CLOSED)
     chart(problem_of("soft"), EXACT, begun, known, 1.2, -0.1, 1.0)
     assert seen == pytest.approx(1.2 - 0.05 * (interpolant.POINTS[: len(seen)] + 1.0))

@@ -177,7 +177,7 @@ def test_a_stride_stops_with_its_budget_or_room_and_goes_on():
     (code, whole, _, steps), table, _ = run(loop.stride, problem, state, 0.5, np.empty(0), known)
     assert code == COMPLETED
     held, never = held_to(1e-7)._replace(touch=0.0), (np.empty(0), np.empty((0, 7)), 0)
-    sticks, known, paused, used = np.zeros((200, 2)), unknown(1e-6), state, 0
+    sticks, known, paused, used = np.zeros((200, 2)), empty_map(1e-6), state, 0
     for _ in range(1000):
         code, plainly, _, turns = plain(loop.stride)(
             problem, paused, 0.5, held, 60, *never, sticks, known

@@ -7,7 +7,7 @@ from tests.unit.solver.multiscale.test_construction import SOFT, problem_of, tak
 from tests.unit.solver.systems import problem_of as other_problem
 
 from stiction.solver.multiscale import method
-from stiction.solver.multiscale.method import FINER, Multiscale
+from stiction.solver.multiscale.method import STEP_SHARE, Multiscale
 from stiction.solver.multiscale.return_map import CLOSING
 from stiction.solver.output import Output
 
@@ -23,8 +23,8 @@ def calls(monkeypatch):
         found.append((function, *arguments))
         return 0, arguments[1]
 
-    monkeypatch.setattr(method, "advanced", noted)
-    monkeypatch.setattr("stiction.solver.exact.method.advanced", noted)
+    monkeypatch.setattr(method, "advance_compiled", noted)
+    monkeypatch.setattr("stiction.solver.exact.method.advance_compiled", noted)
     return found
 
 
@@ -41,9 +41,9 @@ def test_steps_are_finer_and_every_stick_counts(calls):
     assert (end, budget) == (2.0, 7)
     assert seen == problem._replace(law=solver.law)
     assert fine == HELD._replace(
-        tolerance=FINER * HELD.tolerance,
-        newton=FINER * HELD.newton,
-        least=HELD.least / FINER,
+        tolerance=STEP_SHARE * HELD.tolerance,
+        newton=STEP_SHARE * HELD.newton,
+        least=HELD.least / STEP_SHARE,
         touch=0.0,
     )
     assert known.closing == CLOSING * 1e-5
@@ -78,9 +78,9 @@ def test_where_drive_or_load_vary_steps_are_taken(calls):
 def test_a_jump_ends_the_last_cycle():
     solver, problem = Multiscale(SOFT, 1e-5), problem_of("soft")
     state = taking_off(problem, 1.0)
-    assert solver.entered(state, 0.0, 0.0).motion == state.motion
-    solver.known = method.unknown(1e-5)
+    assert solver.enter_segment(state, 0.0, 0.0).motion == state.motion
+    solver.known = method.empty_map(1e-5)
     solver.known.last[:] = 0.3, 1.0
-    found = solver.entered(state, 1e-3, 0.0)
+    found = solver.enter_segment(state, 1e-3, 0.0)
     assert np.isnan(solver.known.last).all()
     assert found.motion.r == pytest.approx(1e-3)

@@ -58,7 +58,7 @@ def test_a_damped_update(q, rise, share):
     """(M69), to a thousandth, as far as floats go; a small rise is taken as it is."""
     up = plain(damped_rise)(q, rise, share)
     assert up >= q
-    assert plain(risen)(q, 0.09, share) == q + 0.09
+    assert plain(damped_rise)(q, 0.09, share) == q + 0.09
 
     def left(y):  # over cosh q, without overflow
         grown = (exp(y - q) - exp(-y - q)) / (1.0 + exp(-2.0 * q)) - tanh(q)

@@ -108,7 +108,7 @@ def test_what_states_are_held_against_is_made_anew(name):
     assert sizes[2:] == pytest.approx(wanted, rel=1e-3)
     again = workspace_of(name)
     again.size[:] = 77.0
-    motion = Motion(TIME, *MOTION)
+    motion = SmoothMotion(TIME, *MOTION)
     plain(loop.begin)(smooth_problem(name), motion, np.array(z), again, EXACT)
     assert again.size == pytest.approx(sizes, rel=1e-6)
 

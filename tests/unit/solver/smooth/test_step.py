@@ -109,7 +109,7 @@ def test_an_error_as_large_as_the_tolerance_is_accepted(error, refused, monkeypa
     errors = iter([error * 2.0**-20, 0.0])
     found = plain(step.step)
     monkeypatch.setitem(found.__globals__, "local_error", lambda *_: next(errors))
-    *_, (done, h, last, rejected, _) = taken("smoothed", 1e-6, 2.0**-20)
+    *_, (done, h, last, rejected, _) = take_step("smoothed", 1e-6, 2.0**-20)
     assert (done, rejected) == (True, int(refused))
     if refused:
         assert h == 1e-6 * plain(step_factor)(error, 1.0)
