@@ -48,14 +48,14 @@ def test_a_better_time_to_landing(off):
     for _ in range(60):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if after(o, middle)[0] > 0.0 else (low, middle)
-    found = plain(predictor.predict_by_oscillation_to_rest)(o, low * (1 + off))
+    found = plain(predictor.swung_to_rest)(o, low * (1 + off))
     assert abs(found / low - 1.0) < off * off
     rising = o._replace(x=1.0, v=0.5)
-    assert plain(predictor.predict_by_oscillation_to_rest)(rising, 0.1) == 0.1
+    assert plain(predictor.swung_to_rest)(rising, 0.1) == 0.1
     falling = o._replace(x=-0.29, v=-1.0)  # p/v would be before the start
-    assert plain(predictor.predict_by_oscillation_to_rest)(falling, 0.5) == 0.25
+    assert plain(predictor.swung_to_rest)(falling, 0.5) == 0.25
     assert (
-        plain(predictor.predict_by_oscillation_to_rest)(o, 1e-3) == 1e-3
+        plain(predictor.swung_to_rest)(o, 1e-3) == 1e-3
     )  # no step is laid over it
 
 
@@ -64,7 +64,7 @@ def test_the_time_to_landing_is_close_if_it_is_within_reach():
     start = start._replace(a_1=start.f - 0.9 * frame.r * np.sqrt(frame.k_11))
     o = plain(oscillation.oscillator)(frame, start)
     parabola = plain(predictor.landing_of_parabola)(frame, start)
-    closer = plain(predictor.predict_by_oscillation_to_rest)(o, parabola)
+    closer = plain(predictor.swung_to_rest)(o, parabola)
     assert closer != parabola
     found = plain(predictor.time_to_landing)
     assert found(frame, start, o, parabola / 2.4) == closer
@@ -173,5 +173,5 @@ def test_the_guess_over_the_oscillation_solves_the_turn_s_linear_equation(name, 
     assert w == pytest.approx(np.linalg.solve(matrix, h * pull), rel=1e-9)
     more = h * a @ (0.5 * start.f * w * w - h * k_12 * a @ (p * w))
     assert found - p == pytest.approx(more, rel=1e-6, abs=1e-15)
-    plainly = plain(predictor.predicted)(frame, start, o, s, h, COLD)
+    plainly = plain(predictor.predict)(frame, start, o, s, h, COLD)
     assert np.array(plainly) == pytest.approx(np.array([found, w]))
