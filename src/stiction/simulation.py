@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numba.core.errors import NumbaError
 
+from stiction.drive.procedures import end
 from stiction.errors import STATUSES, DescriptionError, Fault, Status
 from stiction.friction import has_state, states
 from stiction.result.dataset import VARIABLES, dataset
@@ -30,7 +31,7 @@ PAPERS = Initial()
 
 def simulate(
     slider: Slider,
-    duration: float | str,
+    duration: float | str | None = None,
     *,
     sample_rate: float | str | None = None,
     rtol: float = 1e-6,
@@ -49,8 +50,8 @@ def simulate(
     ----------
     slider : Slider
         The system.
-    duration : float or str
-        How long to simulate, s.
+    duration : float or str, optional
+        How long to simulate, s; until the programs of drive and load end, if they do.
     sample_rate : float or str, optional
         Output samples per second, at start, start + 1/rate, ... up to and including the
         end; 0 for the first and last state only. When left out, 20 in each period of the
@@ -113,6 +114,8 @@ def simulate(
         if isinstance(slider, Description):
             remedy = "st.run(description) simulates a whole description, duration and all"
         raise DescriptionError([Fault("slider", f"{slider!r} is not a Slider; {remedy}")])
+    if duration is None:
+        duration = left(slider, initial or PAPERS)
     given: dict[str, Any] = {
         "duration": duration,
         "sample_rate": sample_rate,
@@ -124,6 +127,18 @@ def simulate(
     return run(
         Description(slider, initial or PAPERS, settings), max_steps=max_steps, progress=progress
     )
+
+
+def left(slider: Slider, initial: Initial) -> float:
+    """Return how long the programs of drive and load go on from the start of a run, s."""
+    until = end(slider.motion, slider.load)
+    if until is None:
+        message = "missing; only a program of drive or load whose last piece ends has one"
+        raise DescriptionError([Fault("duration", message)])
+    if not until > initial.time:
+        message = f"missing; the programs end at {until:g} s, where the run starts"
+        raise DescriptionError([Fault("duration", message)])
+    return until - initial.time
 
 
 def run(

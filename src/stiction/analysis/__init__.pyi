@@ -13,6 +13,10 @@ from stiction.analysis.motion.regime import classify as classify
 from stiction.analysis.onset import find_onset as find_onset
 from stiction.analysis.oscillation import oscillation_by_phase as oscillation_by_phase
 from stiction.analysis.oscillation import transverse_oscillation as transverse_oscillation
+from stiction.analysis.protocols.healing import healing as healing
+from stiction.analysis.protocols.hysteresis import hysteresis as hysteresis
+from stiction.analysis.protocols.velocity_steps import velocity_steps as velocity_steps
+from stiction.analysis.protocols.yaw import apparent_friction as apparent_friction
 from stiction.analysis.record import record_of as record_of
 from stiction.analysis.report import Analysis as Analysis
 from stiction.analysis.signals.ridge import follow_ridge as follow_ridge

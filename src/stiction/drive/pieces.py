@@ -8,6 +8,7 @@ in `DRIVE_PIECES` or `LOAD_PIECES`.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import pi
 from typing import Annotated, Any, NamedTuple
 
@@ -64,18 +65,27 @@ class Step(NamedTuple):
 
     Parameters
     ----------
-    by : float or str
+    by : float or str, optional
         Change of velocity or of force.
     duration : float or str, optional
         s; to the end when left out, which only the last piece may.
+    to : float or str, optional
+        Velocity or force after the jump, in place of `by`.
     """
 
-    by: Level
+    by: Level | None = None
     duration: Duration | None = None
+    to: Level | None = None
+
+    def faults(piece) -> Iterator[tuple[str, str]]:
+        """Check that the jump is given once."""
+        if (piece.by is None) == (piece.to is None):
+            yield "by", "give either by or to: the change, or the value after it"
 
     def shape(piece, base: float, present: float, still: float) -> Shape:
-        """Return the present value plus the jump."""
-        return Shape(present + piece.by)
+        """Return the value after the jump."""
+        to: Any = piece.to if piece.by is None else present + piece.by
+        return Shape(to)
 
 
 @validate

@@ -1,4 +1,4 @@
-"""Programs of the drive and of the normal load, and the pieces that they are composed of.
+"""Friction tests by name, programs of the drive and of the normal load, and their pieces.
 
 >>> import stiction as st
 >>> st.protocols.Hold("3 s")

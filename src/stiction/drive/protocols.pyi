@@ -6,6 +6,12 @@ from stiction.drive.pieces import Modulation as Modulation
 from stiction.drive.pieces import Ramp as Ramp
 from stiction.drive.pieces import Reversal as Reversal
 from stiction.drive.pieces import Step as Step
+from stiction.drive.procedures import end as end
+from stiction.drive.procedures import load_ramp as load_ramp
+from stiction.drive.procedures import reversal_loops as reversal_loops
+from stiction.drive.procedures import slide_hold_slide as slide_hold_slide
+from stiction.drive.procedures import velocity_steps as velocity_steps
 from stiction.drive.program import DriveProgram as DriveProgram
 from stiction.drive.program import LoadProgram as LoadProgram
 from stiction.drive.steady import ConstantVelocity as ConstantVelocity
+from stiction.study.plan.yaw_sweep import yaw_sweep as yaw_sweep

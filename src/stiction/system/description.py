@@ -10,6 +10,8 @@ from typing import Annotated, Any, Literal, NamedTuple, Self
 
 from pydantic import Field, StrictBool, model_validator
 
+from stiction.drive import read_drive, read_load
+from stiction.drive.procedures import end
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import law_table, read_law
 from stiction.friction.user.loading import Find, finder_for_descriptions, finder_for_results, is_own
@@ -31,7 +33,7 @@ class Settings(Described):
     Parameters
     ----------
     duration : float or str
-        s.
+        s; in a description's [run] by default until the programs of drive and load end.
     sample_rate : float or str, optional
         Output samples per second, Hz; 0 for the first and last state only. By default a rate
         that suits the system, see `stiction.simulate`.
@@ -129,6 +131,7 @@ class Description(NamedTuple):
         tables: dict[str, Reader] = {**TABLES, "friction": partial(read_law, find=find)}
         last = ("friction",) if is_own(raw.get("friction")) else ()
         absent = OPTIONAL_TABLES
+        raw = with_duration(raw)
         parts = gather(raw, tables, optional=("initial",), absent=absent, last=last, known=known)
         return cls(Slider.from_parts(parts), parts["initial"], parts["run"])
 
@@ -164,6 +167,23 @@ class Description(NamedTuple):
     def to_json(self) -> str:
         """Return the description as one JSON string."""
         return json.dumps(self.to_dict())
+
+
+def with_duration(raw: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the tables of a description with a duration in [run], if its programs have an end."""
+    settings, drive, load = (raw.get(name, {}) for name in ("run", "drive", "load"))
+    tables = (settings, drive, load)
+    if not all(isinstance(each, Mapping) for each in tables) or "duration" in settings:
+        return raw
+    try:
+        programs = [read(dict(table)) for read, table in ((read_drive, drive), (read_load, load))]
+        start = Initial(**raw.get("initial", {})).time
+    except (DescriptionError, TypeError):  # which is told when the rest is read
+        return raw
+    until = end(*programs)
+    if until is None or not until > start:
+        return raw
+    return {**raw, "run": {**settings, "duration": until - start}}
 
 
 def description_of(source: Description | str | Path) -> Description:

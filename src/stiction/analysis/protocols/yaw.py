@@ -1,0 +1,96 @@
+"""Apparent friction over the yaw angle: what a load cell on the soft spring reads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from stiction.analysis.protocols.course import Floats
+from stiction.errors import ResultError
+from stiction.system.slider import Slider
+from stiction.text.sections import Section, Table
+
+
+@dataclass(frozen=True)
+class ApparentFriction:
+    """Forces of a yaw sweep over the normal load.
+
+    Attributes
+    ----------
+    phi : ndarray
+        (n,), misalignment, rad.
+    mean, peak : ndarray
+        (n,), mean in the last quarter and largest value of the force on the soft spring over the
+        normal load.
+    amplitude : ndarray
+        (n,), half the span of that force in the last quarter, over the normal load.
+    steady : ndarray
+        (n,), mu(V) cos(phi): what steady sliding gives.
+    """
+
+    phi: Floats
+    mean: Floats
+    peak: Floats
+    amplitude: Floats
+    steady: Floats
+
+    @property
+    def corrected(self) -> Floats:
+        """Mean friction along the drive where sliding is steady: `mean` over cos(phi), (n,)."""
+        return self.mean / np.cos(self.phi)
+
+    @property
+    def section(self) -> Section:
+        """The sweep in words and as a table."""
+        calm = np.flatnonzero(self.amplitude <= 1e-3 * self.mean)
+        said = "It vibrates at every angle."
+        if len(calm):
+            said = f"Sliding is steady at {_degrees(self.phi[calm[0]])} first."
+        rows = [
+            (_degrees(phi), *(f"{value:.4f}" for value in values))
+            for phi, *values in zip(
+                self.phi, self.mean, self.peak, self.amplitude, self.steady, strict=True
+            )
+        ]
+        headings = ("phi", "mean", "peak", "amplitude", "steady: mu(V) cos(phi)")
+        return Section("Apparent friction over the yaw angle", [said], Table(headings, rows))
+
+    def __str__(self) -> str:
+        """Return the section as text."""
+        return str(self.section)
+
+
+def _degrees(phi: float) -> str:
+    return f"{np.degrees(phi):.3g} deg"
+
+
+def apparent_friction(study: xr.Dataset, slider: Slider) -> ApparentFriction:
+    """Return the friction that a load cell on the soft spring reads, over the misalignment.
+
+    In steady sliding friction mu(V) W acts along the drive, of which the soft spring carries
+    cos(phi); stick-slip makes its mean lower.
+
+    Parameters
+    ----------
+    study : Dataset
+        Of `st.protocols.yaw_sweep`, from `st.open_study`.
+    slider : Slider
+        The apparatus that was swept, for normal load, law and drive velocity.
+
+    Raises
+    ------
+    ResultError
+        If the study is not one over phi alone, or lacks a measure.
+    """
+    wanted = ("mean_force", "peak_force", "amplitude")
+    if set(study.dims) != {"phi"} or not {*wanted} <= {str(name) for name in study.data_vars}:
+        raise ResultError(
+            "the data are not a study over phi alone with its forces; see st.protocols.yaw_sweep"
+        )
+    W, V = slider.normal_load, abs(slider.motion.rate(0.0)[0])
+    phi = study["phi"].values * (np.pi / 180.0 if study["phi"].attrs["units"] == "deg" else 1.0)
+    mean, peak, amplitude = (study[name].values.astype(np.float64) / W for name in wanted)
+    steady = float(slider.law.coefficient(V)) * np.cos(phi)
+    return ApparentFriction(phi, mean, peak, amplitude, steady)

@@ -1,0 +1,175 @@
+"""Friction tests that have a name, each as the program that runs it.
+
+>>> import stiction as st
+>>> program = st.protocols.slide_hold_slide("10 um/s", ["1 s", "10 s"], slide="20 s")
+>>> [type(piece).__name__ for piece in program.program]
+['Constant', 'Hold', 'Constant', 'Hold', 'Constant']
+>>> st.protocols.end(program)
+71.0
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from stiction.drive.pieces import Constant, Hold, Ramp, Reversal, Step
+from stiction.drive.program import DriveProgram, LoadProgram
+from stiction.drive.steady import ConstantVelocity
+from stiction.errors import DescriptionError, Fault
+from stiction.text.units import FORCE, VELOCITY, Kind, to_si
+
+TIME, LENGTH = Kind("a time", "s", "5 s"), Kind("a length", "m", "0.1 mm")
+Quantity = float | str
+
+
+def velocity_steps(
+    velocities: Sequence[Quantity],
+    *,
+    duration: Quantity | None = None,
+    distance: Quantity | None = None,
+) -> DriveProgram:
+    """Return the program of a velocity-step test: one speed after the other, by jumps.
+
+    Parameters
+    ----------
+    velocities : sequence of float or str
+        The speeds of the drive, m/s.
+    duration : float or str, optional
+        How long each lasts, s.
+    distance : float or str, optional
+        How far the drive moves at each, m, in place of `duration`: friction evolves with slip.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> program = st.protocols.velocity_steps(["1 um/s", "10 um/s", "1 um/s"], distance="0.1 mm")
+    >>> [round(piece.duration, 9) for piece in program.program]
+    [100.0, 10.0, 100.0]
+    """
+    speeds = _read_all("velocities", velocities, VELOCITY)
+    if (duration is None) == (distance is None):
+        raise _fault("duration", "give either the duration or the distance of each speed")
+    if duration is not None:
+        times = [_positive("duration", duration, TIME)] * len(speeds)
+    else:
+        far = _positive("distance", distance, LENGTH)
+        if 0.0 in speeds:
+            raise _fault("velocities", "a drive at rest covers no distance; give a duration")
+        times = [far / abs(speed) for speed in speeds]
+    first, *later = zip(speeds, times, strict=True)
+    steps = [Step(to=speed, duration=time) for speed, time in later]
+    return DriveProgram(velocity=first[0], program=[Constant(duration=first[1]), *steps])
+
+
+def slide_hold_slide(
+    velocity: Quantity, holds: Sequence[Quantity], *, slide: Quantity
+) -> DriveProgram:
+    """Return the program of slide-hold-slide: sliding, a hold, sliding, a longer hold, ...
+
+    Parameters
+    ----------
+    velocity : float or str
+        Of the drive while it slides, m/s.
+    holds : sequence of float or str
+        How long each hold lasts, s.
+    slide : float or str
+        How long it slides before each hold and after the last, s: long enough for friction to
+        become steady.
+    """
+    V, between = _read("velocity", velocity, VELOCITY), _positive("slide", slide, TIME)
+    pieces: list[Constant | Hold] = [Constant(duration=between)]
+    for i, each in enumerate(_listed("holds", holds), 1):
+        pieces += [Hold(_positive(f"holds.{i}", each, TIME)), Constant(duration=between)]
+    return DriveProgram(velocity=V, program=pieces)
+
+
+def reversal_loops(velocity: Quantity, travel: Quantity, *, loops: int = 3) -> DriveProgram:
+    """Return the program of a reversal test: to and fro about the start, by jumps of the velocity.
+
+    Parameters
+    ----------
+    velocity : float or str
+        Speed of the drive, m/s.
+    travel : float or str
+        From one turn to the other, m.
+    loops : int, optional
+        How often it goes back and forth, after half a way to the first turn.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> program = st.protocols.reversal_loops("1 mm/s", "10 mm", loops=1)
+    >>> [piece.duration for piece in program.program]
+    [5.0, 10.0, 10.0]
+    """
+    V = _positive("velocity", velocity, VELOCITY)
+    leg = _positive("travel", travel, LENGTH) / V
+    if loops < 1:
+        raise _fault("loops", f"must be at least 1, is {loops}")
+    turns = [Reversal(duration=leg)] * (2 * loops)
+    return DriveProgram(velocity=V, program=[Constant(duration=0.5 * leg), *turns])
+
+
+def load_ramp(
+    levels: Sequence[Quantity], *, ramp: Quantity, hold: Quantity | None = None
+) -> LoadProgram:
+    """Return the program of a load ramp: from the slider's load to each level in turn.
+
+    Parameters
+    ----------
+    levels : sequence of float or str
+        Normal loads, N.
+    ramp : float or str
+        How long each change takes, s.
+    hold : float or str, optional
+        How long each level is held, s; not at all when left out.
+    """
+    time = _positive("ramp", ramp, TIME)
+    pieces: list[Ramp | Hold] = []
+    for level in _read_all("levels", levels, FORCE):
+        pieces.append(Ramp(level, time))
+        if hold is not None:
+            pieces.append(Hold(_positive("hold", hold, TIME)))
+    return LoadProgram(program=pieces)
+
+
+def end(*programs: ConstantVelocity | DriveProgram | LoadProgram | None) -> float | None:
+    """Return when the last of some programs of drive and load ends, s; None if none has an end."""
+    ends = [_end(each) for each in programs if isinstance(each, DriveProgram | LoadProgram)]
+    known = [each for each in ends if each is not None]
+    return max(known) if known else None
+
+
+def _end(program: DriveProgram | LoadProgram) -> float | None:
+    times = [piece.duration for piece in program.program]
+    return None if not times or None in times else program.repeat * float(sum(times))
+
+
+def _listed(path: str, values: Sequence[Quantity]) -> Sequence[Quantity]:
+    if isinstance(values, str) or not len(values):
+        raise _fault(path, f"{values!r} must be a list of at least one value")
+    return values
+
+
+def _read_all(path: str, values: Sequence[Quantity], kind: Kind) -> list[float]:
+    return [_read(f"{path}.{i}", each, kind) for i, each in enumerate(_listed(path, values), 1)]
+
+
+def _positive(path: str, value: Quantity | None, kind: Kind) -> float:
+    number = _read(path, value, kind)
+    if not number > 0.0:
+        raise _fault(path, f"must be greater than 0, is {value!r}")
+    return number
+
+
+def _read(path: str, value: Quantity | None, kind: Kind) -> float:
+    from pydantic_core import PydanticCustomError
+
+    try:
+        return to_si(value, kind)
+    except PydanticCustomError as error:
+        raise _fault(path, error.message()) from None
+
+
+def _fault(path: str, message: str) -> DescriptionError:
+    return DescriptionError([Fault(path, message)])

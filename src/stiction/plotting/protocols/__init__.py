@@ -1,0 +1,1 @@
+"""Figures of friction tests with a name."""

@@ -1,0 +1,142 @@
+"""Analyses of friction tests by name, against closed forms on stiff rigs.
+
+Quasi-static: m V^2 is 1e-12 of a W D_c, and springs are 1e5 times as stiff as the critical one, so
+that rate and state gives its limits to some 1e-4.
+"""
+
+from math import log, log10
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.presets.preset import on_a_line
+
+A, B, D, V = 0.01, 0.015, 10e-6, 10e-6
+STIFF = 1e5 * (B - A) / D
+AGEING = st.laws.RateStateAgeing(A, B, D, 0.6, V)
+SLIP = st.laws.RateStateSlip(A, B, D, 0.6, V)
+
+
+def steadily_run(law, program, k=STIFF, rate=200.0):
+    """Run a program on a rig of a stiffness that begins with steady sliding."""
+    start = law.coefficient(abs(program.rate(0.0)[0]))
+    slider = on_a_line(
+        mass=1e-12 * A * D / V**2, k_x=k, friction=law, drive=program, driven="spring"
+    )
+    initial = st.Initial(u_x=start / k, v_x=0.0, v_y=0.0)
+    return st.simulate(slider, initial=initial, sample_rate=rate, rtol=1e-9)
+
+
+def test_friction_heals_by_b_per_e_fold():
+    """The gain is b ln(1 + t V/D_c): the state grows by t while nothing slides."""
+    holds = [10.0, 100.0, 1000.0]
+    run = steadily_run(AGEING, st.protocols.slide_hold_slide(V, holds, slide=20.0))
+    found = st.analysis.healing(run)
+    assert found.hold == pytest.approx(holds)
+    assert found.steady == pytest.approx(0.6, abs=1e-6)
+    assert found.gain == pytest.approx([B * log(1.0 + t * V / D) for t in holds], abs=2e-4)
+    line = np.polyfit(np.log10(holds), found.gain, 1)
+    assert [found.per_decade, found.at_one_second] == pytest.approx(line)
+    assert found.per_decade == pytest.approx(B * log(10.0), rel=0.03)
+    assert 0.0 < found.per_decade_error < 0.03 * found.per_decade
+    assert "per decade" in str(found)
+
+
+@pytest.mark.parametrize(("law", "name"), [(AGEING, "ageing"), (SLIP, "slip")])
+def test_velocity_steps_give_back_the_law(law, name):
+    program = st.protocols.velocity_steps([V, 10 * V, V], distance="0.2 mm")
+    found = st.analysis.velocity_steps(steadily_run(law, program), law=name)
+    assert len(found.steps) == 2
+    for each in found.steps:
+        assert each.a_minus_b == pytest.approx(A - B, abs=1e-6)
+        # by the first sample after the jump, at 10 V, it has slid 5 % of D_c, and lost b of that
+        assert each.a == pytest.approx(A, rel=0.05 * B / A)
+        assert each.b == pytest.approx(B, rel=1e-3)
+        assert each.D_c == pytest.approx(D, rel=1e-3)
+        assert each.D_c_error < 1e-3 * D
+    assert found.stiffness == pytest.approx(STIFF * D / B, rel=1e-2)
+    assert "weakens" in str(found)
+    assert "not stiff" not in str(found)
+
+
+def test_a_soft_rig_is_said_to_be_soft():
+    program = st.protocols.velocity_steps([V, 2 * V], distance="0.2 mm")
+    found = st.analysis.velocity_steps(steadily_run(AGEING, program, k=10 * (B - A) / D))
+    assert found.steps[0].a_minus_b == pytest.approx(A - B, abs=1e-6)
+    assert "The rig is not stiff, k D_c/(b W) = " in str(found)
+
+
+def reversed_test():
+    """Constant friction of 3 N on a spring of 1 N/mm, between turns 20 mm apart."""
+    slider = on_a_line(
+        mass=1e-3,
+        k_x=1e3,
+        c_x=0.5,
+        friction=st.Coulomb(0.3),
+        normal_load=10.0,
+        drive=st.protocols.reversal_loops("1 mm/s", "20 mm", loops=2),
+        driven="spring",
+    )
+    return st.simulate(slider, sample_rate=100.0)
+
+
+def test_a_loop_of_constant_friction():
+    """Area 2 mu W (L - 2 mu W/k), width L - 2 mu W/k; corners are cut by a sample of 10 um.
+
+    The mass swings on its spring as it starts to slide, by some 1e-4 of the friction.
+    """
+    found = st.analysis.hysteresis(reversed_test())
+    assert len(found.loops) == 2
+    for each in found.loops:
+        assert each.friction == pytest.approx(0.3, rel=2e-4)
+        assert each.width == pytest.approx(14e-3, abs=1e-5)
+        assert each.area == pytest.approx(6.0 * 14e-3, abs=6.0 * 1e-5)
+    assert "84 mJ" in str(found)
+
+
+def test_a_record_is_analysed_by_its_program():
+    run = reversed_test()
+    record = st.Record(
+        time=run.data["time"].values, force=run.data["spring_x"].values, normal_load=10.0
+    )
+    program = run.slider.motion
+    alone = st.analysis.hysteresis(record, program)
+    assert alone.loops[1].area == pytest.approx(st.analysis.hysteresis(run).loops[1].area)
+    with pytest.raises(st.ResultError, match="give its program"):
+        st.analysis.hysteresis(record)
+    bare = st.Record(time=record.time, force=record.force)
+    with pytest.raises(st.ResultError, match="needs the normal load"):
+        st.analysis.hysteresis(bare, program)
+    with pytest.raises(st.ResultError, match="no hold between two slides"):
+        st.analysis.healing(run)
+    with pytest.raises(st.ResultError, match="does not step"):
+        st.analysis.velocity_steps(run)
+    with pytest.raises(st.ResultError, match="does not turn twice"):
+        st.analysis.hysteresis(st.simulate(run.slider.replace(drive=st.ConstantVelocity(1e-3)), 1))
+
+
+def test_apparent_friction_over_the_yaw_angle(tmp_path):
+    """In steady sliding a load cell reads mu(V) cos(phi); else less on average."""
+    base = st.presets.yaw_angle_brake()
+    study = st.protocols.yaw_sweep(base, ["2 deg", "25 deg", "40 deg"])
+    st.sweep(study, tmp_path / "yaw.zarr")
+    data = st.open_study(tmp_path / "yaw.zarr")
+    found = st.analysis.apparent_friction(data, base.slider)
+    assert np.degrees(found.phi) == pytest.approx([2.0, 25.0, 40.0])
+    mu = base.slider.law.coefficient(0.02)
+    assert found.steady == pytest.approx(mu * np.cos(found.phi))
+    assert found.mean[1:] == pytest.approx(found.steady[1:], rel=1e-3)
+    assert found.corrected[1:] == pytest.approx(mu, rel=1e-3)
+    assert found.amplitude[0] > 0.1 * mu
+    assert found.mean[0] < found.steady[0] < found.peak[0]
+    assert "Sliding is steady at 25 deg first" in str(found)
+    with pytest.raises(st.ResultError, match="not a study over phi alone"):
+        st.analysis.apparent_friction(data.drop_vars("mean_force"), base.slider)
+
+
+def test_the_line_of_two_holds_has_no_error():
+    program = st.protocols.slide_hold_slide(V, [10.0, 100.0], slide=20.0)
+    found = st.analysis.healing(steadily_run(AGEING, program, rate=50.0))
+    assert found.per_decade == pytest.approx(np.diff(found.gain)[0] / log10(10.0))
+    assert np.isnan(found.per_decade_error)
