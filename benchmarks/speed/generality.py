@@ -17,6 +17,7 @@ from rich.progress import Progress
 
 import stiction as st
 from benchmarks.section import Cell, Table
+from stiction.presets import Preset, find
 
 DURATION = 5.0  # s
 ROUNDS = 15
@@ -27,6 +28,8 @@ NOTES = (
     f" to {PLAIN}. The laws are alike (0.20 at rest, 0.15 in fast slip, 10 mm/s), but the motion"
     " differs: compare the times a step, which hold its share of sticks, landings and the call."
     " Laws with internal state have another method, whose steps are larger and cost more.",
+    "Three earthquakes: rate and state with inertia, slip speed over seven decades in each cycle of"
+    " 3778.0755 s, run without samples; the error is that of the last period.",
 )
 
 
@@ -59,8 +62,8 @@ def sliders() -> dict[str, st.Slider]:
     }
 
 
-def tables(progress: Progress, quick: bool) -> tuple[Table, Table]:
-    """Return the cost of laws and protocols, and that of samples and files."""
+def tables(progress: Progress, quick: bool) -> tuple[Table, Table, Table]:
+    """Return the cost of laws and protocols, of samples and files, and of an earthquake."""
     rounds = 3 if quick else ROUNDS
     known = sliders()
     _compile(progress, list(known))
@@ -83,7 +86,42 @@ def tables(progress: Progress, quick: bool) -> tuple[Table, Table]:
         "a step, ratio",
         "run, ratio",
     )
-    return Table("Cost of generality", headings, rows), _storage(progress, known[PLAIN], rounds)
+    generality = Table("Cost of generality", headings, rows)
+    return generality, _storage(progress, known[PLAIN], rounds), earthquakes(progress, rounds)
+
+
+def earthquakes(progress: Progress, rounds: int) -> Table:
+    """Return the cost and the error of three cycles of the preset `earthquake-cycle`.
+
+    Slip speed spans seven decades in each, and the state as many.
+    """
+    preset = find("earthquake-cycle")
+    runs = {f"rtol={rtol:g}": _cycles(preset, rtol) for rtol in (1e-4, 1e-6, 1e-8, 1e-10)}
+    st.run(next(iter(runs.values())))  # compiles
+    times = interleaved(
+        progress, "earthquakes", {n: _bare(each) for n, each in runs.items()}, rounds
+    )
+    rows = []
+    for name, own in times.items():
+        run = st.run(runs[name])
+        period = preset.numbers(run)[1]
+        rows.append((name, 1e3 * median(own), run.statistics.steps, period.deviation))
+    return Table(
+        "Three earthquakes", ("run", "time (ms)", "steps", "error of the period (s)"), rows
+    )
+
+
+def _cycles(preset: Preset, rtol: float) -> st.Description:
+    description = preset.make()
+    settings = description.run.model_dump(exclude_none=True) | {"rtol": rtol}
+    return description._replace(run=st.Settings(**settings))
+
+
+def _bare(description: st.Description) -> Callable[[], st.Trajectory]:
+    """Return the run without samples."""
+    settings = description.run.model_dump(exclude_none=True) | {"sample_rate": 0.0}
+    bare = description._replace(run=st.Settings(**settings))
+    return lambda: st.run(bare)
 
 
 def interleave(
