@@ -6,12 +6,10 @@ from stiction.plotting.analysis.overview import plot_analysis as plot_analysis
 from stiction.plotting.analysis.spectrogram import plot_spectrogram as plot_spectrogram
 from stiction.plotting.analysis.trials import plot_trials as plot_trials
 from stiction.plotting.apparatus.schematic import plot_slider as plot_slider
-from stiction.plotting.protocols.apparent_friction import (
-    plot_apparent_friction as plot_apparent_friction,
-)
 from stiction.plotting.protocols.healing import plot_healing as plot_healing
 from stiction.plotting.protocols.hysteresis import plot_hysteresis as plot_hysteresis
 from stiction.plotting.protocols.velocity_steps import plot_velocity_steps as plot_velocity_steps
+from stiction.plotting.protocols.yaw import plot_apparent_friction as plot_apparent_friction
 from stiction.plotting.run.comparison import plot_comparison as plot_comparison
 from stiction.plotting.run.law import plot_law as plot_law
 from stiction.plotting.run.overview import plot_run as plot_run
