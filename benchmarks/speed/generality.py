@@ -98,7 +98,7 @@ def earthquakes(progress: Progress, rounds: int) -> Table:
     preset = find("earthquake-cycle")
     runs = {f"rtol={rtol:g}": _cycles(preset, rtol) for rtol in (1e-4, 1e-6, 1e-8, 1e-10)}
     st.run(next(iter(runs.values())))  # compiles
-    times = interleaved(
+    times = interleave(
         progress, "earthquakes", {n: _bare(each) for n, each in runs.items()}, rounds
     )
     rows = []
