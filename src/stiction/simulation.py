@@ -115,7 +115,7 @@ def simulate(
             remedy = "st.run(description) simulates a whole description, duration and all"
         raise DescriptionError([Fault("slider", f"{slider!r} is not a Slider; {remedy}")])
     if duration is None:
-        duration = left(slider, initial or PAPERS)
+        duration = time_to_end(slider, initial or PAPERS)
     given: dict[str, Any] = {
         "duration": duration,
         "sample_rate": sample_rate,
@@ -129,7 +129,7 @@ def simulate(
     )
 
 
-def left(slider: Slider, initial: Initial) -> float:
+def time_to_end(slider: Slider, initial: Initial) -> float:
     """Return how long the programs of drive and load go on from the start of a run, s."""
     until = end(slider.motion, slider.load)
     if until is None:

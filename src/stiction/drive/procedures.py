@@ -78,7 +78,7 @@ def slide_hold_slide(
     """
     V, between = _read("velocity", velocity, VELOCITY), _positive("slide", slide, TIME)
     pieces: list[Constant | Hold] = [Constant(duration=between)]
-    for i, each in enumerate(_listed("holds", holds), 1):
+    for i, each in enumerate(_at_least_one("holds", holds), 1):
         pieces += [Hold(_positive(f"holds.{i}", each, TIME)), Constant(duration=between)]
     return DriveProgram(velocity=V, program=pieces)
 
@@ -145,14 +145,16 @@ def _end(program: DriveProgram | LoadProgram) -> float | None:
     return None if not times or None in times else program.repeat * float(sum(times))
 
 
-def _listed(path: str, values: Sequence[Quantity]) -> Sequence[Quantity]:
+def _at_least_one(path: str, values: Sequence[Quantity]) -> Sequence[Quantity]:
     if isinstance(values, str) or not len(values):
         raise _fault(path, f"{values!r} must be a list of at least one value")
     return values
 
 
 def _read_all(path: str, values: Sequence[Quantity], kind: Kind) -> list[float]:
-    return [_read(f"{path}.{i}", each, kind) for i, each in enumerate(_listed(path, values), 1)]
+    return [
+        _read(f"{path}.{i}", each, kind) for i, each in enumerate(_at_least_one(path, values), 1)
+    ]
 
 
 def _positive(path: str, value: Quantity | None, kind: Kind) -> float:
