@@ -54,9 +54,7 @@ def test_a_better_time_to_landing(off):
     assert plain(predictor.swung_to_rest)(rising, 0.1) == 0.1
     falling = o._replace(x=-0.29, v=-1.0)  # p/v would be before the start
     assert plain(predictor.swung_to_rest)(falling, 0.5) == 0.25
-    assert (
-        plain(predictor.swung_to_rest)(o, 1e-3) == 1e-3
-    )  # no step is laid over it
+    assert plain(predictor.swung_to_rest)(o, 1e-3) == 1e-3  # no step is laid over it
 
 
 def test_the_time_to_landing_is_close_if_it_is_within_reach():
