@@ -241,7 +241,7 @@ def comparable(kind: Any, description: Description) -> Law:
     made: Any = like(kind, shared_traits(description))
     known = slider.law._asdict() if hasattr(slider.law, "_asdict") else {}  # a user's class
     sigma_0, memory = BRISTLES * slider.k_x, slider.F_0 / slider.k_x / MEMORY
-    own = {"sigma_0": sigma_0, "sigma_1": 2.0 * sqrt(sigma_0 * slider.mass)}
+    own = {"sigma_0": sigma_0, "sigma_1": 2.0 * sqrt(sigma_0 * slider.masses[0])}
     own |= {"D_c": memory, "D_1": memory, "D_2": 10.0 * memory}
     chosen = {
         name: known.get(name, float(f"{value:.4g}"))
@@ -280,5 +280,5 @@ def shared_traits(description: Description) -> Traits:
     drive = max(float(np.hypot(*slider.motion.rate(float(time)))) for time in times)
     law = slider.law
     mu = law.coefficient(drive or 1e-6) if has_state(law) else static_coefficient(law)
-    free = mu * slider.normal_load / sqrt(slider.mass * min(slider.k_x, slider.k_y))
+    free = mu * slider.normal_load / sqrt(min(slider.masses) * min(slider.k_x, slider.k_y))
     return traits(law, drive, drive + free or 1.0)

@@ -5,7 +5,7 @@ import pytest
 
 import stiction as st
 from stiction import machine
-from stiction.solver.output import Output
+from stiction.solver.state import Output
 
 BASE = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="5 ms"))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import cos, sin
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from stiction.drive.program import pick
 from stiction.errors import ResultError
 from stiction.solver.integrate import tolerance
 from stiction.system.slider import Slider
+from stiction.system.tensors import damping_tensor, mass_tensor
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -25,8 +27,8 @@ ENERGIES = {
     "work": "work of the drive",
     "friction_x": "dissipated by friction along x",
     "friction_y": "dissipated by friction along y",
-    "damper_x": "dissipated by the damper along x",
-    "damper_y": "dissipated by the damper along y",
+    "damper_x": "dissipated by the damper along x, or its own axis",
+    "damper_y": "dissipated by the damper along y, or its own axis",
     "spring_x": "change of the energy of the spring along x",
     "spring_y": "change of the energy of the spring along y",
     "kinetic": "change of the kinetic energy",
@@ -39,16 +41,16 @@ ENERGIES = {
 def energy_budget(run: Trajectory, edges: ArrayLike | None = None) -> xr.Dataset:
     """Return the energy budget of a run, between each edge and the next.
 
-    With slip velocity s, elongation u and friction F, the mass obeys m u'' + C u' + K u = F in
+    With slip velocity s, elongation u and friction F, the mass obeys M u'' + C u' + K u = F in
     the frame of the spring's far end; multiplied by the velocities,
 
-        P = F.s + u'.C u' + d/dt (u.K u/2 + m |v|^2/2).
+        P = F.s + u'.C u' + d/dt (u.K u/2 + v.M v/2).
 
     A driven plate: the drive works on the plate, P = F.v_d, and v = u'. A driven spring: the drive
     works on the spring's end, P = v_d.(K u + C u'), and v = s. At a steady drive both are the same
     run in two frames. Friction reverses within no time where slip nearly vanishes, which a
     quadrature may miss; the spring's force does not. Therefore the work on the plate is computed as
-    P = v_d.(m u'' + C u' + K u), its first term by partial integration.
+    P = v_d.(M u'' + C u' + K u), its first term by partial integration.
 
     Each term is integrated independently from the run's states, and nothing is adjusted: the
     residual is the error of the solver. The local tolerance limits the energy error of each step,
@@ -138,26 +140,31 @@ def _powers(run: Trajectory, t: Floats, rows: Floats) -> Floats:
     u_x, u_y, s_x, s_y, f_x, f_y = rows[:, :6].T
     d_x, d_y = _on_axes(s, s.motion.rate(t))
     v_x, v_y = d_x - s_x, d_y - s_y
-    work = (s.k_x * u_x + s.c_x * v_x) * d_x + (s.k_y * u_y + s.c_y * v_y) * d_y
+    M, C, v = mass_tensor(s), damping_tensor(s), np.stack([v_x, v_y])
+    c_x, c_y = C @ v
+    work = (s.k_x * u_x + c_x) * d_x + (s.k_y * u_y + c_y) * d_y
     if s.driven == "plate":
         changes = pick(drive_stretches(s.motion), t, lambda course, at, _: course.rate_change(at))
         a_x, a_y = _on_axes(s, changes)
-        work = work - s.mass * (v_x * a_x + v_y * a_y)
-    return np.stack([work, f_x * s_x, f_y * s_y, s.c_x * v_x**2, s.c_y * v_y**2])
+        p_x, p_y = M @ v
+        work = work - (p_x * a_x + p_y * a_y)
+    cos_d, sin_d = cos(s.damping_angle), sin(s.damping_angle)
+    along, across = cos_d * v_x + sin_d * v_y, cos_d * v_y - sin_d * v_x
+    return np.stack([work, f_x * s_x, f_y * s_y, s.c_x * along**2, s.c_y * across**2])
 
 
 def _momentum_gain(run: Trajectory, borders: Floats) -> Floats:
-    """Return m u'.v_d over the smooth stretches of a plate's drive, end less start, J.
+    """Return u'.M v_d over the smooth stretches of a plate's drive, end less start, J.
 
-    Added to the work of spring and dampers on the plate, minus the integral of m u'.a_d, it yields
-    the integral of F.v_d = v_d.(m u'' + C u' + K u). A jump of the plate's velocity leaves the mass
+    Added to the work of spring and dampers on the plate, minus the integral of u'.M a_d, it yields
+    the integral of F.v_d = v_d.(M u'' + C u' + K u). A jump of the plate's velocity leaves the mass
     unaffected.
     """
     s = run.slider
     jumps = [end for end, _ in drive_stretches(s.motion) if borders[0] <= end < borders[-1]]
     times = np.union1d(borders, jumps)
     d = np.reshape(_on_axes(s, s.motion.rate(times)), (2, -1))  # one column for a steady drive
-    momentum = s.mass * (d - states_at(run, times)[:, 2:4].T)
+    momentum = mass_tensor(s) @ (d - states_at(run, times)[:, 2:4].T)
     carried = (momentum * d).sum(axis=0)
     leaps = np.array([_on_axes(s, jump(s.motion, t)) for t in times[:-1].tolist()]).T
     inside = np.searchsorted(times, borders)
@@ -179,5 +186,6 @@ def _stored_energies(run: Trajectory, t: Floats, rows: Floats) -> Floats:
     if s.driven == "plate":
         d_x, d_y = _on_axes(s, s.motion.rate(t))
         v_x, v_y = d_x - v_x, d_y - v_y
-    kinetic = 0.5 * s.mass * (v_x**2 + v_y**2)
+    M = mass_tensor(s)
+    kinetic = 0.5 * (M[0, 0] * v_x**2 + 2.0 * M[0, 1] * v_x * v_y + M[1, 1] * v_y**2)
     return np.stack([0.5 * s.k_x * u_x**2, 0.5 * s.k_y * u_y**2, kinetic])

@@ -63,7 +63,7 @@ def scales(slider: Slider) -> tuple[float, float, float]:
     c, s = slider.direction
     speed = hypot(*slider.motion.rate(0.0))
     compliance = c * c / slider.k_x + s * s / slider.k_y
-    natural = sqrt(slider.mass * compliance)
+    natural = sqrt(max(slider.masses) * compliance)
     frequency = float(linear.frequencies[0])
     period = 1.0 / frequency if frequency > 0.0 else 2.0 * pi * natural
     friction = hypot(slider.k_x * linear.state[0], slider.k_y * linear.state[1])

@@ -183,7 +183,7 @@ def _label(dimension: str, rows: Rows) -> dict[str, tuple[str, Any, dict[str, st
 
 def _scales(run: Trajectory) -> tuple[float, float]:
     """Return the transverse natural frequency (Hz), and how wide windows are (s)."""
-    omega_y = float(theory.natural_frequency(run.slider.k_y, run.slider.mass))
+    omega_y = float(theory.natural_frequency(run.slider.k_y, run.slider.masses[1]))
     return omega_y / (2.0 * pi), WIDTH * 2.0 * pi / omega_y
 
 
@@ -217,5 +217,6 @@ def _in_windows(run: Trajectory, middle: Floats, width: float) -> tuple[Floats, 
     across = np.abs(mean("drive_X") * s + mean("drive_Y") * c)
     holds = slider.F_0 * mean("normal_load") / slider.normal_load
     cosine = np.clip(np.abs(mean("spring_x")) / np.maximum(holds, 1e-300), 0.0, 1.0)
-    expected = theory.oscillation_frequency(np.arccos(cosine), slider.k_x, slider.k_y, slider.mass)
+    m = slider.masses[1]  # the oscillation is across, on the stiff spring
+    expected = theory.oscillation_frequency(np.arccos(cosine), slider.k_x, slider.k_y, m)
     return 0.5 * range_y, across, expected

@@ -8,7 +8,7 @@ points, and the seven Gauss points among them give the error.
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import pi, sqrt
+from math import pi
 from typing import NamedTuple
 
 import numpy as np
@@ -133,7 +133,7 @@ def panels(run: Trajectory, edges: Floats) -> tuple[Floats, Floats]:
     breaks = breaks[(breaks >= first) & (breaks <= last)]
     starts, lengths = breaks[:-1], np.diff(breaks)
     imposed = max((fastest_swing(s.problem) for s in stretches(slider, first, last)), default=0.0)
-    natural = sqrt(max(slider.k_x, slider.k_y) / slider.mass)
+    natural = 2.0 * pi * slider.natural_frequencies[1]
     held = np.searchsorted(run.stick_intervals[:, 0], starts, side="right")
     stuck = starts < np.append(run.stick_intervals[:, 1], -np.inf)[held - 1]
     omega = np.where(stuck, imposed, max(imposed, natural))

@@ -250,25 +250,32 @@ def as_record(source: Trajectory | Record) -> Record:
 
 
 def record_of(run: Trajectory) -> Record:
-    """Return a run as a load cell records it: k_x u_x, with position and slip speed.
+    """Return a run as its load cell records it, with position and slip speed.
+
+    The force is k_x u_x, or that along the cell's own axis where the slider has a `cell_angle`.
 
     The force is positive where the spring pulls along the drive. NaN samples at the end of a failed
     run are left out.
     """
     slider, data = run.slider, run.data
-    along = slider.motion.velocity * slider.direction[0]
+    x, y = (1.0, 0.0) if slider.cell_angle is None else slider.cell
+    c, s = slider.direction
+    share = x * c + y * s
+    along = slider.motion.velocity * share
+    stiffness = slider.k_x if share == 0.0 else (x * slider.k_x * c + y * slider.k_y * s) / share
     way = -1.0 if along < 0.0 else 1.0
-    columns = np.stack([data[name].values for name in ("time", "spring_x", "X", "slip_speed")])
-    time, force, X, slip_speed = columns[:, np.isfinite(columns).all(axis=0)]
+    names = ("time", "spring_x", "spring_y", "X", "slip_speed")
+    columns = np.stack([data[name].values for name in names])
+    time, f_x, f_y, X, slip_speed = columns[:, np.isfinite(columns).all(axis=0)]
     if not len(time):
         raise ResultError("no sample of the run is a number; simulate it again")
     return Record(
         time=time,
-        force=way * force,
+        force=way * (f_x if y == 0.0 else x * f_x + y * f_y),
         normal_load=slider.normal_load,
-        stiffness=slider.k_x,
+        stiffness=stiffness,
         drive_velocity=abs(along) or None,
-        mass=slider.mass,
+        mass=slider.masses[0],
         position=way * X,
         slip_speed=slip_speed,
     )

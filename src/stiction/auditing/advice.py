@@ -133,7 +133,7 @@ def further(slider: Slider, path: str) -> Iterator[float]:
             if abs(then) <= radians(MOST_TURNED):
                 yield then
         elif path == "c_x":
-            yield now + more * 2.0 * sqrt(slider.k_x * slider.mass)
+            yield now + more * 2.0 * sqrt(slider.k_x * slider.masses[0])
         else:
             yield now * more
 
@@ -153,7 +153,7 @@ def limits(slider: Slider, path: str) -> tuple[float | str, float | str] | None:
     if path == "phi":
         return ("-90 deg", "0 deg") if slider.phi < 0.0 else ("0 deg", "90 deg")
     if path == "c_x":
-        return 0.0, max(STRONGEST * 2.0 * sqrt(slider.k_x * slider.mass), 2.0 * slider.c_x)
+        return 0.0, max(STRONGEST * 2.0 * sqrt(slider.k_x * slider.masses[0]), 2.0 * slider.c_x)
     return None
 
 

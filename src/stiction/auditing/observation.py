@@ -87,7 +87,7 @@ class Observation(NamedTuple):
     def coarse(self) -> bool:
         """Whether the sampling is too coarse for the transverse oscillation."""
         slider = self.run.slider
-        f_y = theory.natural_frequency(slider.k_y, slider.mass) / (2.0 * pi)
+        f_y = theory.natural_frequency(slider.k_y, slider.masses[1]) / (2.0 * pi)
         return bool(self.record.sample_rate < 0.9 * SEEN * f_y)
 
     def mean(self, name: str) -> float:

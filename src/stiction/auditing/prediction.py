@@ -11,6 +11,7 @@ from stiction import theory
 from stiction.friction import Anisotropic, has_state
 from stiction.friction.law import static_coefficient
 from stiction.system.slider import Slider
+from stiction.system.tensors import is_aligned
 from stiction.text.units import in_words
 
 SEEN = 10.0  # samples per transverse period, enough for its shape and not only its frequency
@@ -96,8 +97,11 @@ def predict(slider: Slider) -> Prediction:
     V = hypot(*s.motion.rate(0.0))
     F_0, l_x = s.F_0, s.F_0 / s.k_x
     F_static = F_0 if has_state(s.law) else static_coefficient(s.law) * s.normal_load
-    omega_x, omega_y = (float(theory.natural_frequency(k, s.mass)) for k in (s.k_x, s.k_y))
-    A = float(theory.damping_number(F_0, V, phi, s.mass, s.k_x))
+    m_x, m_y = s.masses
+    omega_x, omega_y = (
+        float(theory.natural_frequency(*kin)) for kin in ((s.k_x, m_x), (s.k_y, m_y))
+    )
+    A = float(theory.damping_number(F_0, V, phi, m_x, s.k_x))
     zeta = float(theory.damping_ratio(A, phi)) if isfinite(A) else 0.0
     theta_c = float(theory.critical_angle(A)) if isfinite(A) else 0.0
     first_stick = float(theory.first_stick_duration(F_static, V, phi, s.k_x, s.k_y))
@@ -161,7 +165,7 @@ def suppositions(slider: Slider, p: Prediction) -> list[str]:
     if phi != 0.0 and p.F_static > p.F_0 * (1.0 + 1e-9):
         found.append("no static friction above the kinetic one ends each rest with a jump")
     weakening = -float(law.slope(0.0)) * s.normal_load
-    if phi != 0.0 and weakening > 2.0 * sqrt(s.mass * s.k_y):
+    if phi != 0.0 and weakening > 2.0 * sqrt(s.masses[1] * s.k_y):
         found.append(
             "friction weakens gently (here so steeply that each rest ends in a slip of its own)"
         )
@@ -171,8 +175,11 @@ def suppositions(slider: Slider, p: Prediction) -> list[str]:
             f"friction is still F_0 when creep turns into slip (here, at "
             f"{in_words(p.creep_at_slip, 'm/s')}, it has lost {in_words(lost, 'N')})"
         )
-    if max(s.c_x / sqrt(s.k_x * s.mass), s.c_y / sqrt(s.k_y * s.mass)) > DAMPED:
+    m_x, m_y = s.masses
+    if max(s.c_x / sqrt(s.k_x * m_x), s.c_y / sqrt(s.k_y * m_y)) > DAMPED:
         found.append("nothing but friction damps")
+    if not is_aligned(s):
+        found.append("the mass is the same along x and y (here it is not, or dampers are askew)")
     return found
 
 
@@ -206,7 +213,7 @@ def stick_slip(slider: Slider, peak: float) -> tuple[float, float]:
     tau = (np.arange(64) + 0.5) * (pi / 64)
     mean = 0.5 * peak
     for _ in range(60):  # damped by one half: steeply weakening friction would overshoot
-        v = max(peak - mean, 0.0) / sqrt(slider.k_x * slider.mass) + V
+        v = max(peak - mean, 0.0) / sqrt(slider.k_x * slider.masses[0]) + V
         force = [slider.law.coefficient(v * sin(at)) * slider.normal_load for at in tau]
         mean = 0.5 * (mean + float(np.mean(force * np.sin(tau)) * pi / 2.0))
     return 2.0 * (peak - mean), mean

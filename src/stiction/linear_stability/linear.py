@@ -17,6 +17,7 @@ from stiction.linear_stability.eigenvalues import Complex, Eigenvalues, eigenval
 from stiction.linear_stability.steady import drive_velocity, steady_friction
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
+from stiction.system.tensors import damping_tensor, mass_tensor, stiffness_tensor
 
 STABLE, UNSTABLE = "stable", "unstable"
 BOUNDARY = "on the boundary of stability within its uncertainty"
@@ -29,7 +30,7 @@ class Linearisation:
     In steady sliding the slip velocity is that of the drive, s = v_d, the spring holds friction,
     K u = F(v_d), and internal states do not change. A disturbance obeys, to first order,
 
-        m u'' + (C + dF/ds) u' + K u = (dF/dz) z,   z' = (dG/dz) z - (dG/ds) u',
+        M u'' + (C + dF/ds) u' + K u = (dF/dz) z,   z' = (dG/dz) z - (dG/ds) u',
 
     where z' = G(s, z) is the rate of the law's internal states, if it has any. The solutions are
     sums of exp(lambda t); each eigenvalue lambda belongs to a mode.
@@ -196,16 +197,17 @@ def growth_rate(slider: Slider) -> float:
 
 def system(slider: Slider, response: Response) -> tuple[Floats, Floats]:
     """Return the matrix of a disturbance u, u', z, and an estimate of its error."""
-    n, m = len(response.value) - 2, slider.mass
-    K, C = np.diag([slider.k_x, slider.k_y]), np.diag([slider.c_x, slider.c_y])
+    n = len(response.value) - 2
+    K, C = stiffness_tensor(slider), damping_tensor(slider)
+    per_mass = np.linalg.inv(mass_tensor(slider))
     answer = response.slopes.copy()
     answer[:, :2] *= -1.0  # s = v_d - u'
     answer[:2, :2] -= C
-    answer[:2] /= m
+    answer[:2] = per_mass @ answer[:2]
     matrix, error = np.zeros((4 + n, 4 + n)), np.zeros((4 + n, 4 + n))
     matrix[:2, 2:4] = np.eye(2)
-    matrix[2:4, :2] = -K / m
+    matrix[2:4, :2] = -per_mass @ K
     matrix[2:, 2:] = answer
     error[2:, 2:] = response.error
-    error[2:4] /= m
+    error[2:4] = np.abs(per_mass) @ error[2:4]
     return matrix, error

@@ -34,7 +34,10 @@ VARIABLES = {
     "drive_X": ("m/s", "drive velocity along X"),
     "drive_Y": ("m/s", "drive velocity across X"),
     "normal_load": ("N", "normal load"),
-    "mu": ("1", "apparent friction coefficient: spring force along X over the normal load"),
+    "mu": (
+        "1",
+        "apparent friction coefficient: spring force along X, or the load cell, over the load",
+    ),
     "sticking": ("1", "whether the slip is zero"),
 }
 STICKS = {
@@ -109,11 +112,11 @@ def dataset(
 
 
 def apparent_friction(slider: Slider, values: Mapping[Any, Any]) -> Any:
-    """Return the spring force along the drive direction X over the normal load.
+    """Return the spring force along the load cell, by default along X, over the normal load.
 
     A friction test reports this ratio; in steady sliding it is the law's coefficient.
     """
-    c, s = slider.direction
+    c, s = slider.cell
     with np.errstate(divide="ignore", invalid="ignore"):  # the load may vanish at the end of a run
         return (values["spring_x"] * c + values["spring_y"] * s) / values["normal_load"]
 

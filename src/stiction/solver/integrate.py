@@ -13,9 +13,16 @@ from stiction.drive import jump
 from stiction.friction import has_state
 from stiction.solver.exact.method import Exact
 from stiction.solver.multiscale.method import Multiscale
-from stiction.solver.output import Output
 from stiction.solver.problem import Problem
-from stiction.solver.segments import Stretch, fastest_swing, load_bounds, speeds, stretches
+from stiction.solver.segments import (
+    Stretch,
+    begin,
+    fastest_swing,
+    load_bounds,
+    rig_of,
+    speeds,
+    stretches,
+)
 from stiction.solver.smooth.method import Smooth
 from stiction.solver.state import (
     COMPLETED,
@@ -24,10 +31,12 @@ from stiction.solver.state import (
     TOO_MANY_STEPS,
     Accuracy,
     Counts,
+    Output,
 )
 from stiction.system.description import Description
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
+from stiction.system.tensors import is_aligned, solver_axes
 
 LEAST_SPEED = 1e-15  # of the initial speeds: slower slip counts as zero
 LEAST_MOTION = 1e-13  # of velocities: error that any step may have, well above a float's rounding
@@ -77,18 +86,18 @@ def accuracy(
     load = load_bounds(stretch.problem.load, start, stretch.end)[0]
     mu = slider.F_0 / slider.normal_load
     surface = stretch.problem.surface
-    free_x = mu * load * sqrt(surface.xx / (slider.mass * slider.k_x))
-    free_y = mu * load * sqrt(surface.yy / (slider.mass * slider.k_y))
+    system = stretch.problem.system
+    free_x = mu * load * sqrt(surface.xx / (system.mass * system.k_x))
+    free_y = mu * load * sqrt(surface.yy / (system.mass * system.k_y))
     free = min(free_x, free_y)
-    square_x, square_y = slider.mass / slider.k_x, slider.mass / slider.k_y
-    elastic = hypot(
-        *initial.slip(slider), initial.u_x / sqrt(square_x), initial.u_y / sqrt(square_y)
-    )
-    speed, k = (across, slider.k_y) if across > 0.0 else (along or 1e-6 * free, slider.k_x)
+    square_x, square_y = system.mass / system.k_x, system.mass / system.k_y
+    (u_x, u_y), slip = begin(slider, initial)
+    elastic = hypot(*slip, u_x / sqrt(square_x), u_y / sqrt(square_y))
+    speed, k = (across, system.k_y) if across > 0.0 else (along or 1e-6 * free, system.k_x)
     if free > 0.0:
         speed = min(speed, free)
     weakening = 0.0 if has_state(law) else steepest_weakening(law, speed) * load
-    speed = max(speed / (1.0 + weakening**2 / (k * slider.mass)), LEAST_SPEED * elastic, TINY)
+    speed = max(speed / (1.0 + weakening**2 / (k * system.mass)), LEAST_SPEED * elastic, TINY)
     local = tolerance(rtol)
     # (M34): Newton's error must not show at a step's end, which is more accurate than its interior
     newton = min(0.2, 100.0 * sqrt(local)) * local
@@ -188,7 +197,19 @@ def integrate(
         earlier = times < state.motion.t
         times = np.append(times[earlier], state.motion.t)
         samples = np.vstack([samples[earlier], method.last_row(stretch.problem, state)])
+    samples = outward(slider, samples)
     return Solution(code, times, samples, out.sticks[: counts.sticks].copy(), counts)
+
+
+def outward(slider: Slider, samples: np.ndarray) -> np.ndarray:
+    """Return samples in the axes x and y, from those of the solver."""
+    if is_aligned(slider):
+        return samples
+    axes, turned = solver_axes(slider), samples.copy()
+    turned[:, 0:2] = axes.outward(samples[:, 0:2])
+    turned[:, 2:4] = axes.outward(samples[:, 2:4])
+    turned[:, 4:6] = axes.force_outward(samples[:, 4:6])
+    return turned
 
 
 def slip_jump(slider: Slider, t: float) -> tuple[float, float]:
@@ -200,5 +221,4 @@ def slip_jump(slider: Slider, t: float) -> tuple[float, float]:
     if slider.driven != "plate":
         return 0.0, 0.0
     X, Y = jump(slider.motion, t)
-    c, s = slider.direction
-    return X * c - Y * s, X * s + Y * c
+    return rig_of(slider).into_axes(*slider.direction, (X, Y))

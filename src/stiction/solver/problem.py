@@ -18,6 +18,7 @@ from stiction.friction import FUNCTIONS as LAW_FUNCTIONS
 from stiction.friction import FrictionLaw, StateLaw
 from stiction.friction.law import Vector, static_coefficient
 from stiction.solver.compilation.jit import inlined
+from stiction.solver.rig import Aligned, General
 
 
 class System(NamedTuple):
@@ -63,7 +64,8 @@ class Problem(NamedTuple):
     """Everything that determines the motion in a stretch of time.
 
     `drive` and `load` are stretches (see `stiction.drive.signal`). `bend` bounds the second
-    derivative of a stick's margin |a|^2 - f^2 (m^2/s^6); see `stiction.solver.stick`.
+    derivative of a stick's margin |a|^2 - f^2 (m^2/s^6); see `stiction.solver.stick`. On a
+    general `rig` the system and the surface are those in the solver's axes.
     """
 
     system: System
@@ -72,11 +74,12 @@ class Problem(NamedTuple):
     drive: Any
     load: Any
     bend: float
+    rig: Aligned | General = Aligned()
 
 
 def kinds_of(problem: Problem) -> tuple[Any, ...]:
     """Return the types for which the compiled code is specialised."""
-    return type(problem.surface), type(problem.drive), type(problem.load)
+    return type(problem.surface), type(problem.drive), type(problem.load), type(problem.rig)
 
 
 def coefficient(law: FrictionLaw, v: float) -> float:
@@ -173,6 +176,36 @@ def isotropic(surface: Isotropic | Elliptic) -> bool:
     return surface.isotropic()
 
 
+def is_aligned(rig: Aligned | General) -> bool:
+    """Return whether the solver's axes are x and y, as known at compile time."""
+    return rig.is_aligned()
+
+
+def outward(rig: Aligned | General, r: Vector) -> Vector:
+    """Return a slip, or an elongation, in the axes x and y."""
+    return rig.outward(r)
+
+
+def inward(rig: Aligned | General, force: Vector) -> Vector:
+    """Return a force in the solver's axes."""
+    return rig.inward(force)
+
+
+def metric(rig: Aligned | General) -> tuple[float, float, float]:
+    """Return the tensor by which the slip speed follows from a slip in the solver's axes."""
+    return rig.metric()
+
+
+def into_axes(rig: Aligned | General, cos_phi: float, sin_phi: float, vector: Vector) -> Vector:
+    """Return a laboratory vector (X, Y) in the solver's axes."""
+    return rig.into_axes(cos_phi, sin_phi, vector)
+
+
+def cross_damping(rig: Aligned | General) -> float:
+    """Return the damping between the solver's axes, N s/m."""
+    return rig.cross_damping()
+
+
 EVERYWHERE = inf  # friction is smooth at any slip speed
 
 
@@ -201,6 +234,12 @@ for _function in (
     steady,
     constant,
     isotropic,
+    is_aligned,
+    outward,
+    inward,
+    metric,
+    into_axes,
+    cross_damping,
 ):
     _by_type(_function)
 for _piece in (*SIGNAL_FUNCTIONS, *LAW_FUNCTIONS):
@@ -227,6 +266,15 @@ def _grain(law: Any, state: Any) -> Any:
 
 @inlined
 def in_principal_axes(problem: Problem, vector: tuple[float, float]) -> tuple[float, float]:
-    """Return a laboratory vector (X, Y) in the axes (x, y)."""
-    c, s = problem.system.cos_phi, problem.system.sin_phi
-    return vector[0] * c - vector[1] * s, vector[0] * s + vector[1] * c
+    """Return a laboratory vector (X, Y) in the solver's axes."""
+    return into_axes(problem.rig, problem.system.cos_phi, problem.system.sin_phi, vector)
+
+
+@inlined
+def damping(problem: Problem, v_x: float, v_y: float) -> tuple[float, float]:
+    """Return the dampers' force (N) at a velocity in the solver's axes."""
+    s = problem.system
+    if is_aligned(problem.rig):
+        return s.c_x * v_x, s.c_y * v_y
+    c = cross_damping(problem.rig)
+    return s.c_x * v_x + c * v_y, c * v_x + s.c_y * v_y

@@ -24,6 +24,7 @@ from scipy.optimize import brentq
 from stiction.drive import ConstantVelocity
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
+from stiction.system.tensors import is_aligned
 
 TAKE_OFF = 0.1  # length of a take-off, in units of the shorter natural period over 2 pi
 DEGREE = 8  # of the polynomials in time that describe it; their error is near rounding
@@ -125,6 +126,8 @@ def equations_of(slider: Slider) -> Equations:
     """Return the equations of motion of a slider."""
     if not isinstance(slider.drive, ConstantVelocity) or slider.load is not None:
         raise ValueError(f"the twin knows a steady drive and load only, not {slider.drive!r}")
+    if not is_aligned(slider):
+        raise ValueError("the twin knows one mass and dampers along the springs only")
     drive = slider.drive.velocity * np.array(slider.direction)
     force, law = slider.normal_load / slider.mass, slider.law
     stiffness = np.array([slider.k_x, slider.k_y]) / slider.mass

@@ -10,12 +10,17 @@ from collections.abc import Iterator
 from math import cos, hypot, inf, sin
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from stiction.drive import Course, Loading, ahead, drive_stretches, load_stretches
 from stiction.drive.signal import Signal, signal_at, signal_bounds, signal_change
 from stiction.friction import Anisotropic, has_state
 from stiction.friction.law import static_coefficient
 from stiction.solver.problem import Elliptic, Isotropic, Problem, System
+from stiction.solver.rig import Aligned, General
+from stiction.system.initial import Initial
 from stiction.system.slider import Slider
+from stiction.system.tensors import is_aligned, solver_axes
 
 
 class Stretch(NamedTuple):
@@ -31,7 +36,7 @@ def stretches(slider: Slider, start: float, end: float) -> Iterator[Stretch]:
     drives = drive_stretches(slider.motion)
     loads = load_stretches(slider.normal_load, slider.load)
     law, surface = friction_of(slider)
-    system, t = system_of(slider), start
+    system, rig, t = system_of(slider), rig_of(slider), start
     while t < end:
         until, drive = ahead(drives, t)
         until_load, load = ahead(loads, t)
@@ -40,8 +45,8 @@ def stretches(slider: Slider, start: float, end: float) -> Iterator[Stretch]:
         lost = vanishes(load, t, stop)
         curve = 0.0
         if not (drive.steady() and load.constant()):  # otherwise a stick ends in closed form
-            curve = bend(slider, system.inertia, drive, load, t, stop)
-        problem = Problem(system, law, surface, drive, load, curve)
+            curve = bend(slider, drive, load, t, stop)
+        problem = Problem(system, law, surface, drive, load, curve, rig)
         yield Stretch(min(stop, lost), problem, lost <= stop)
         if lost <= stop:
             return
@@ -61,26 +66,60 @@ def alike(drive: Any, load: Any) -> tuple[Any, Any]:
 
 
 def system_of(slider: Slider) -> System:
-    """Return the numbers of a slider."""
+    """Return the numbers of a slider in the solver's axes."""
     s = slider
     inertia = 1.0 if s.driven == "plate" else 0.0
-    return System(s.mass, s.k_x, s.k_y, s.c_x, s.c_y, *s.direction, 1.0 / s.mass, inertia)
+    if is_aligned(s):
+        return System(s.mass, s.k_x, s.k_y, s.c_x, s.c_y, *s.direction, 1.0 / s.mass, inertia)
+    axes = solver_axes(s)
+    m, (k_x, k_y), (c_x, c_y) = axes.mass, axes.stiffness.tolist(), np.diag(axes.damping).tolist()
+    return System(m, k_x, k_y, c_x, c_y, *s.direction, 1.0 / m, inertia)
+
+
+def rig_of(slider: Slider) -> Aligned | General:
+    """Return how the solver's axes lie in the axes x and y."""
+    if is_aligned(slider):
+        return Aligned()
+    axes, (c, s) = solver_axes(slider), slider.direction
+    drive = axes.inward(np.array([[c, s], [-s, c]]))
+    numbers = (*axes.turn.ravel(), axes.damping[0, 1], *drive.ravel())
+    return General(*(float(each) for each in numbers))
+
+
+def begin(slider: Slider, initial: Initial) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the elongation (m) and slip (m/s) at the start, in the solver's axes."""
+    u, slip = (initial.u_x, initial.u_y), initial.slip(slider)
+    if is_aligned(slider):
+        return u, slip
+    (u_x, u_y), (s_x, s_y) = solver_axes(slider).inward(np.array([u, slip])).tolist()
+    return (u_x, u_y), (s_x, s_y)
+
+
+def surface_of(slider: Slider) -> Isotropic | Elliptic:
+    """Return the surface in the axes x and y."""
+    law: Any = slider.law
+    if not isinstance(law, Anisotropic):
+        return Isotropic()
+    c, s = cos(slider.phi + law.angle), sin(slider.phi + law.angle)
+    square = law.ratio**2
+    return Elliptic(c * c + square * s * s, (1 - square) * c * s, s * s + square * c * c)
 
 
 def friction_of(slider: Slider) -> tuple[Any, Isotropic | Elliptic]:
-    """Return the law behind pointers, and the surface."""
+    """Return the law behind pointers, and the surface in the solver's axes."""
     law: Any = slider.law
-    surface: Isotropic | Elliptic = Isotropic()
+    surface = surface_of(slider)
+    if not is_aligned(slider):
+        T, n = solver_axes(slider).turn, surface
+        N = T.T @ np.array([[n.xx, n.xy], [n.xy, n.yy]]) @ T
+        surface = Elliptic(float(N[0, 0]), float(N[0, 1]), float(N[1, 1]))
     if isinstance(law, Anisotropic):
-        c, s = cos(slider.phi + law.angle), sin(slider.phi + law.angle)
-        square = law.ratio**2
-        surface = Elliptic(c * c + square * s * s, (1 - square) * c * s, s * s + square * c * c)
         law = law.law
     return getattr(law, "prepare", lambda: law)(), surface
 
 
 def speeds(slider: Slider, drive: Any, start: float, end: float) -> tuple[float, float]:
-    """Return bounds of the drive velocity along x and y in a stretch (m/s)."""
+    """Return bounds of the drive velocity along the solver's axes in a stretch (m/s)."""
     return _in_axes(slider, drive_bounds(drive, start, end)[0])
 
 
@@ -111,7 +150,7 @@ def fastest_swing(problem: Problem) -> float:
     return max((abs(omega) for amplitude, omega in harmonics if amplitude != 0.0), default=0.0)
 
 
-def bend(slider: Slider, inertia: float, drive: Any, load: Any, start: float, end: float) -> float:
+def bend(slider: Slider, drive: Any, load: Any, start: float, end: float) -> float:
     """Return a bound of the second derivative of |a|^2 - f^2 while the slip is zero (M8).
 
     a is the friction over mass at zero slip, f its limit; |a| <= f.
@@ -120,16 +159,29 @@ def bend(slider: Slider, inertia: float, drive: Any, load: Any, start: float, en
     law: Any = slider.law
     if has_state(law):
         return 0.0
-    s = slider
-    v, dv, ddv, dddv = (_in_axes(s, pair) for pair in drive_bounds(drive, start, end))
+    s, inertia = (system := system_of(slider)), system.inertia
+    v, dv, ddv, dddv = (_in_axes(slider, pair) for pair in drive_bounds(drive, start, end))
     k, c = (s.k_x / s.mass, s.k_y / s.mass), (s.c_x / s.mass, s.c_y / s.mass)
-    first = hypot(*(k[i] * v[i] + c[i] * dv[i] + inertia * ddv[i] for i in (0, 1)))
-    second = hypot(*(k[i] * dv[i] + c[i] * ddv[i] + inertia * dddv[i] for i in (0, 1)))
+    mixed = abs(rig_of(slider).cross_damping()) / s.mass
+    first = hypot(
+        *(k[i] * v[i] + c[i] * dv[i] + mixed * dv[1 - i] + inertia * ddv[i] for i in (0, 1))
+    )
+    second = hypot(
+        *(k[i] * dv[i] + c[i] * ddv[i] + mixed * ddv[1 - i] + inertia * dddv[i] for i in (0, 1))
+    )
     mu = static_coefficient(law) / s.mass
     f, _, ddf = (mu * bound for bound in load_bounds(load, start, end))
-    weakest = min(1.0, law.ratio) if isinstance(law, Anisotropic) else 1.0
+    weakest = weakest_share(friction_of(slider)[1])
     first, second = first / weakest, second / weakest
     return 2.0 * (first * first + f * second + f * ddf)
+
+
+def weakest_share(surface: Isotropic | Elliptic) -> float:
+    """Return the shorter half-axis of the ellipse of friction over f, 1 on an isotropic surface."""
+    mean, half = 0.5 * (surface.xx + surface.yy), 0.5 * (surface.xx - surface.yy)
+    # the smaller eigenvalue of N as its determinant over the larger
+    larger = mean + hypot(half, surface.xy)
+    return float(((surface.xx * surface.yy - surface.xy**2) / larger) ** 0.5)
 
 
 def vanishes(load: Any, start: float, end: float) -> float:
@@ -157,5 +209,8 @@ def vanishes(load: Any, start: float, end: float) -> float:
 
 
 def _in_axes(slider: Slider, vector: tuple[float, float]) -> tuple[float, float]:
-    c, s = (abs(x) for x in slider.direction)
-    return vector[0] * c + vector[1] * s, vector[0] * s + vector[1] * c
+    """Return bounds along the solver's axes of a vector with these bounds along X and Y."""
+    rig, (c, s) = rig_of(slider), slider.direction
+    (X_x, X_y), (Y_x, Y_y) = rig.into_axes(c, s, (1.0, 0.0)), rig.into_axes(c, s, (0.0, 1.0))
+    X, Y = vector
+    return X * abs(X_x) + Y * abs(Y_x), X * abs(X_y) + Y * abs(Y_y)

@@ -1,14 +1,51 @@
-"""The state of the loop from step to step, so that it can pause anywhere and continue."""
+"""The state of the loop from step to step, so that it can pause anywhere; its output arrays."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import sqrt
 from typing import Any, NamedTuple
 
-from stiction.solver.compilation.jit import inlined
-from stiction.system.slider import Slider
+import numpy as np
 
+from stiction.errors import DescriptionError, Fault
+from stiction.machine import shortage
+from stiction.solver.compilation.jit import inlined
+from stiction.solver.problem import System
+
+STICK = 80.0  # bytes of memory per stick interval, for all tables and intermediate arrays
 RUNNING, COMPLETED, STEP_UNDERFLOW, NON_FINITE, TOO_MANY_STEPS, CONTACT_LOST = -1, 0, 1, 2, 3, 4
+
+
+@dataclass
+class Output:
+    """Samples at `times` (ascending, s), stick intervals, and the progress of both.
+
+    `samples` (n, columns), `sticks` (m, 2) in s, `filled` samples, `used` steps.
+    """
+
+    times: np.ndarray
+    samples: np.ndarray
+    sticks: np.ndarray
+    filled: int = 0
+    used: int = 0
+
+    def make_room(self, sticks: int) -> None:
+        """Double the room for stick intervals if `sticks` fill it.
+
+        Raises
+        ------
+        DescriptionError
+            If they do not fit into memory.
+        """
+        if sticks < len(self.sticks):
+            return
+        if short := shortage(STICK * 2.0 * sticks):
+            message = (
+                f"more than {sticks} sticks, of which each is recorded; room for twice as many"
+            )
+            raise DescriptionError([Fault("run.duration", f"{message} {short}; shorten it")])
+        self.sticks = np.concatenate([self.sticks, np.empty_like(self.sticks)])
 
 
 class Accuracy(NamedTuple):
@@ -116,16 +153,16 @@ def state_from_plain(state: Plain) -> State:
     return State(Motion(*motion), Memory(*memory), Counts(*counts))
 
 
-def first_step(slider: Slider) -> float:
+def first_step(system: System) -> float:
     """Return the size of the first step to try, s."""
-    return 0.05 / sqrt(max(slider.k_x, slider.k_y) / slider.mass)
+    return 0.05 / sqrt(max(system.k_x, system.k_y) / system.mass)
 
 
-def start(slider: Slider, t: float, u: tuple[float, float], slip: tuple[float, float]) -> State:
+def start(system: System, t: float, u: tuple[float, float], slip: tuple[float, float]) -> State:
     """Return the initial state of a run."""
     r = sqrt(slip[0] ** 2 + slip[1] ** 2)
     e = (slip[0] / r, slip[1] / r) if r > 0.0 else (1.0, 0.0)
-    h = first_step(slider)
+    h = first_step(system)
     nothing = (0.0, 0.0, 0.0, 0.0)
     plan = (h, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     memory = Memory(h, plan, 0, h, 1.0, False, nothing, nothing)

@@ -9,6 +9,7 @@ from stiction.solver.problem import (
     Problem,
     at,
     constant,
+    damping,
     drift,
     in_principal_axes,
     rate,
@@ -33,9 +34,10 @@ def holding(problem: Problem, t: float, u_x: float, u_y: float) -> tuple[float, 
     system = problem.system
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, t))
     g_x, g_y = in_principal_axes(problem, rate_change(problem.drive, t))
+    c_x, c_y = damping(problem, v_x, v_y)
     return (
-        (system.k_x * u_x + system.c_x * v_x) * system.per_mass + system.inertia * g_x,
-        (system.k_y * u_y + system.c_y * v_y) * system.per_mass + system.inertia * g_y,
+        (system.k_x * u_x + c_x) * system.per_mass + system.inertia * g_x,
+        (system.k_y * u_y + c_y) * system.per_mass + system.inertia * g_y,
     )
 
 
@@ -46,9 +48,10 @@ def holding_change(problem: Problem, t: float) -> tuple[float, float]:
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, t))
     g_x, g_y = in_principal_axes(problem, rate_change(problem.drive, t))
     j_x, j_y = in_principal_axes(problem, rate_curve(problem.drive, t))
+    c_x, c_y = damping(problem, g_x, g_y)
     return (
-        (system.k_x * v_x + system.c_x * g_x) * system.per_mass + system.inertia * j_x,
-        (system.k_y * v_y + system.c_y * g_y) * system.per_mass + system.inertia * j_y,
+        (system.k_x * v_x + c_x) * system.per_mass + system.inertia * j_x,
+        (system.k_y * v_y + c_y) * system.per_mass + system.inertia * j_y,
     )
 
 

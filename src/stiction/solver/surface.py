@@ -15,7 +15,7 @@ from math import sqrt
 from typing import NamedTuple
 
 from stiction.solver.compilation.jit import inlined
-from stiction.solver.problem import Problem, isotropic
+from stiction.solver.problem import Problem, is_aligned, isotropic, metric
 
 
 class Flow(NamedTuple):
@@ -53,7 +53,39 @@ def turned_into(problem: Problem, e_x: float, e_y: float) -> Tensor:
     """Return N in axes along e = (e_x, e_y) and across it."""
     if isotropic(problem.surface):
         return Tensor(1.0, 0.0, 1.0)
-    xx, xy, yy = problem.surface.xx, problem.surface.xy, problem.surface.yy
+    return tensor_into(Tensor(problem.surface.xx, problem.surface.xy, problem.surface.yy), e_x, e_y)
+
+
+@inlined
+def metric_into(problem: Problem, e_x: float, e_y: float) -> Tensor:
+    """Return G, by which |s|^2 = r.G r, in axes along e = (e_x, e_y) and across it."""
+    if is_aligned(problem.rig):
+        return Tensor(1.0, 0.0, 1.0)
+    xx, xy, yy = metric(problem.rig)
+    return tensor_into(Tensor(xx, xy, yy), e_x, e_y)
+
+
+@inlined
+def speed_ratio(problem: Problem, tensor: Tensor, w: float) -> float:
+    """Return the slip speed over p for slip along (1, w); `tensor` is G in the step's axes."""
+    if is_aligned(problem.rig):
+        return sqrt(1.0 + w * w)
+    return sqrt(tensor.xx + (2.0 * tensor.xy + tensor.yy * w) * w)
+
+
+@inlined
+def speed_along(problem: Problem, e_x: float, e_y: float) -> float:
+    """Return the slip speed for unit slip along e in the solver's axes."""
+    if is_aligned(problem.rig):
+        return 1.0
+    xx, xy, yy = metric(problem.rig)
+    return sqrt(xx * e_x * e_x + 2.0 * xy * e_x * e_y + yy * e_y * e_y)
+
+
+@inlined
+def tensor_into(tensor: Tensor, e_x: float, e_y: float) -> Tensor:
+    """Return a tensor in axes along e = (e_x, e_y) and across it."""
+    xx, xy, yy = tensor
     return Tensor(
         xx * e_x * e_x + 2.0 * xy * e_x * e_y + yy * e_y * e_y,
         (yy - xx) * e_x * e_y + xy * (e_x * e_x - e_y * e_y),

@@ -24,6 +24,7 @@ from stiction.errors import DescriptionError
 from stiction.friction import Law, has_state, read_law
 from stiction.friction.user.loading import finder_for_descriptions, is_own
 from stiction.friction.user.validation import is_law
+from stiction.system.tensors import is_aligned, solver_axes
 from stiction.system.writing import parameter_table, slider_tables
 from stiction.text.sections import Section, as_html
 from stiction.text.toml import Reader, folder_of, gather, read_toml, toml_text
@@ -67,6 +68,7 @@ def _is_load(value: Any) -> Any:
     return value
 
 
+ANGLES = ("phi", "mass_angle", "damping_angle", "cell_angle")
 DRIVE = "ConstantVelocity | DriveProgram"
 
 
@@ -80,6 +82,10 @@ class Apparatus(Described):
     normal_load: Force
     c_x: Damping = 0.0
     c_y: Damping = 0.0
+    mass_y: Mass | None = None
+    mass_angle: Angle = 0.0
+    damping_angle: Angle = 0.0
+    cell_angle: Angle | None = None
     driven: Literal["plate", "spring"] = "plate"
 
 
@@ -108,6 +114,16 @@ class Slider(Apparatus):
         The normal load in time, if it is not constant.
     c_x, c_y : float or str, optional
         Damping constants of the spring along x and y, N s/m; none in the paper.
+    mass_y : float or str, optional
+        The mass in motion along y, if it is another one than along x: where one stage rides on
+        another, the upper moves with less. Then `mass` is that along x.
+    mass_angle, damping_angle : str, optional
+        From x, towards y, to the axis of `mass` and of `c_x`, where masses or dampers have axes
+        of their own.
+    cell_angle : str, optional
+        From the drive direction X, towards Y, to the axis of the load cell. By default ``mu`` is
+        of the force along X, and a run is analysed by its force along x; else both are along the
+        cell.
     driven : {"plate", "spring"}, optional
         What the drive moves: the plate, with the far end of the spring fixed (Fig. 1 and
         Eq. (1)), or the far end of the spring, with the plate at rest (Fig. 2). At constant
@@ -188,8 +204,29 @@ class Slider(Apparatus):
     @property
     def natural_frequencies(self) -> tuple[float, float]:
         """Natural frequencies of the mass on its spring, the slower first, in Hz."""
-        low, high = sorted((self.k_x, self.k_y))
-        return sqrt(low / self.mass) / (2 * pi), sqrt(high / self.mass) / (2 * pi)
+        m_x, m_y = self.masses
+        low, high = sorted((self.k_x / m_x, self.k_y / m_y))
+        return sqrt(low) / (2 * pi), sqrt(high) / (2 * pi)
+
+    @property
+    def masses(self) -> tuple[float, float]:
+        """The mass that swings on each spring, in kg: k over its natural frequency squared.
+
+        Where the mass has axes of its own, the two swings are those of mass and springs together.
+        """
+        if is_aligned(self):
+            return self.mass, self.mass
+        axes = solver_axes(self)
+        x, y = (float(k / axes.mass) for k in axes.stiffness)  # squares of the frequencies
+        return self.k_x / x, self.k_y / y
+
+    @property
+    def cell(self) -> tuple[float, float]:
+        """Unit vector of the load cell's axis, along (x, y); that of X by default."""
+        if self.cell_angle is None:
+            return self.direction
+        angle = self.phi + self.cell_angle
+        return cos(angle), sin(angle)
 
     @property
     def modulation_frequencies(self) -> tuple[float, ...]:
@@ -213,7 +250,7 @@ class Slider(Apparatus):
     def replace(self, **changes: Any) -> Self:
         """Return the same slider with some parameters changed, e.g. ``phi="3 deg"``."""
         values = {name: getattr(self, name) for name in type(self).model_fields}
-        values["phi"] = f"{self.phi!r} rad"
+        values |= {name: f"{values[name]!r} rad" for name in ANGLES if values[name] is not None}
         return type(self)(**(values | changes))
 
     @classmethod

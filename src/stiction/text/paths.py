@@ -20,7 +20,10 @@ ALIASES = {
     "W": "normal_load",
     "m": "mass",
 }
-MECHANICAL = ("mass", "k_x", "k_y", "c_x", "c_y", "phi", "normal_load", "driven")
+MECHANICAL = (
+    *("mass", "mass_y", "mass_angle", "k_x", "k_y", "c_x", "c_y", "damping_angle"),
+    *("phi", "normal_load", "driven", "cell_angle"),
+)
 SETTINGS = ("duration", "sample_rate", "rtol", "regularisation", "smoothing", "multiscale")
 TABLES = ("slider", "friction", "drive", "load", "initial", "run", "study", "axes")
 

@@ -4,7 +4,7 @@ from math import hypot, inf, pi, sqrt
 
 import numpy as np
 import pytest
-from tests.unit.solver.systems import ELLIPSE, PROGRAM, STEADY
+from tests.systems import ELLIPSE, PROGRAM, STEADY
 
 import stiction as st
 from stiction.drive import jump

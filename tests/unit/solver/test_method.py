@@ -781,7 +781,7 @@ def test_every_equation_is_held_by_a_test():
 
 
 def test_the_files_named_beside_the_text_exist():
-    """Section 19; a name after one in a folder is in that folder too."""
+    """Section 20; a name after one in a folder is in that folder too."""
     table = TEXT.partition("## 19.")[2].partition("`reference.py`")[0]
     lines = re.findall(r"^\| \d+ \| (.*) \|$", table, re.MULTILINE)
     assert len(lines) == 15
@@ -794,7 +794,7 @@ def test_the_files_named_beside_the_text_exist():
 
 
 def printed_constants():
-    """Yield file, name and value of each line of the table in section 17."""
+    """Yield file, name and value of each line of the table in section 18."""
     for line in TEXT.splitlines():
         found = re.match(r"\| ([a-z_/]+\.py) \| ([A-Z_]+) \| (\S+) \|", line)
         if found:
@@ -818,4 +818,4 @@ def test_every_constant_is_printed():
         for line in path.read_text(encoding="utf-8").splitlines():
             found = re.match(r"([A-Z_]{3,}(?:, [A-Z_]{3,})*) = ([-\d.e_, ]+)(?: *#.*)?$", line)
             for name in found[1].split(", ") if found and "RUNNING" not in found[1] else ():
-                assert (file, name) in printed, "a constant without a name in section 17"
+                assert (file, name) in printed, "a constant without a name in section 18"

@@ -4,7 +4,7 @@ from math import inf, pi
 
 import numpy as np
 import pytest
-from tests.unit.solver.systems import ELLIPSE, PROGRAM, SPRING, STEADY, problem_of
+from tests.systems import ELLIPSE, PROGRAM, SPRING, STEADY, problem_of
 
 import stiction as st
 from stiction.drive import Course, Loading

@@ -4,7 +4,7 @@ from math import sqrt
 
 import pytest
 from tests.entry import plain
-from tests.unit.solver.systems import STEADY
+from tests.systems import STEADY
 
 from stiction.solver import state
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 from tests.entry import plain
-from tests.unit.solver.systems import MOTIONS, SLIDERS, Printed, motion_of, problem_of
+from tests.systems import MOTIONS, SLIDERS, Printed, motion_of, problem_of
 
 from stiction.solver import stick
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from tests.entry import plain
-from tests.unit.solver.systems import MOTIONS, Printed, motion_of, problem_of
+from tests.systems import MOTIONS, Printed, motion_of, problem_of
 
 from stiction.solver import surface
 from stiction.solver.problem import Isotropic

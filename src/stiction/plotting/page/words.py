@@ -35,14 +35,28 @@ def system_in_words(slider: Slider) -> list[str]:
     """Return the mechanical parameters of a slider and its drive, in a few lines."""
     misalignment = f"{degrees(slider.phi):.4g}°".replace("-", "−")
     lines = [
-        f"$m$ = {in_words(slider.mass, 'kg')}, $W$ = {in_words(slider.normal_load, 'N')}",
+        f"{_masses(slider)}, $W$ = {in_words(slider.normal_load, 'N')}",
         f"$k_x$ = {in_words(slider.k_x, 'N/m')}, $k_y$ = {in_words(slider.k_y, 'N/m')}",
         rf"$\varphi$ = {misalignment}, $V$ = {in_words(base_velocity(slider), 'm/s')}",
     ]
     if slider.c_x > 0 or slider.c_y > 0:
         c_x, c_y = (in_words(c, "N s/m") for c in (slider.c_x, slider.c_y))
-        lines.insert(2, f"$c_x$ = {c_x}, $c_y$ = {c_y}")
+        lines.insert(2, f"$c_x$ = {c_x}, $c_y$ = {c_y}{_askew(slider.damping_angle)}")
     return lines + protocol_in_words(slider)
+
+
+def _masses(slider: Slider) -> str:
+    """Return the mass, or both where they differ."""
+    along = in_words(slider.mass, "kg")
+    if slider.mass_y is None:
+        return f"$m$ = {along}"
+    across = in_words(slider.mass_y, "kg")
+    return f"$m_x$ = {along}, $m_y$ = {across}{_askew(slider.mass_angle)}"
+
+
+def _askew(angle: float) -> str:
+    """Return at which angle to x a tensor's first axis lies, if at one."""
+    return f" at {degrees(angle):.4g}°".replace("-", "−") if angle else ""
 
 
 def base_velocity(slider: Slider) -> float:
@@ -124,7 +138,8 @@ def printed_text(text: str) -> str:
 def scales_in_words(slider: Slider) -> list[str]:
     """Return derived parameters: F_0, natural frequencies, damping number."""
     f_x, f_y = (
-        float(theory.natural_frequency(k, slider.mass)) / (2 * pi) for k in (slider.k_x, slider.k_y)
+        float(theory.natural_frequency(k, m)) / (2 * pi)
+        for k, m in zip((slider.k_x, slider.k_y), slider.masses, strict=True)
     )
     lines = [
         rf"$F_0 = \mu_0 W$ = {in_words(slider.F_0, 'N')}",
@@ -132,7 +147,7 @@ def scales_in_words(slider: Slider) -> list[str]:
     ]
     V, phi = abs(base_velocity(slider)), abs(slider.phi)
     if V > 0 and sin(phi) > 0:
-        A = float(theory.damping_number(slider.F_0, V, phi, slider.mass, slider.k_x))
+        A = float(theory.damping_number(slider.F_0, V, phi, slider.masses[0], slider.k_x))
         zeta = plain(A * sin(phi) ** 3, 2)
         lines.append(rf"$A$ = {plain(A)}, $\zeta(\theta=\varphi)$ = {zeta}")
     return lines

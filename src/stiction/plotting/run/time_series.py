@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from math import pi, sqrt
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
@@ -253,7 +251,7 @@ def draw_slip_speed(ax: Axes, run: Trajectory) -> Line2D:
 def average_slip(run: Trajectory) -> Slip:
     """Average slip over a 500th of the time, or less to resolve a rapid slip."""
     times, slider = run.data["time"].values, run.slider
-    rapid = pi * sqrt(slider.mass / min(slider.k_x, slider.k_y))
+    rapid = 0.5 / slider.natural_frequencies[0]
     parts = np.clip(5 * (times[-1] - times[0]) / rapid, PARTS, 20 * PARTS)
     return averaged_slip(run, int(parts))
 

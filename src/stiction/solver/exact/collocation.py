@@ -6,7 +6,6 @@ p is zero at the last stage, and the step size takes its place.
 
 from __future__ import annotations
 
-from math import sqrt
 from typing import NamedTuple
 
 from stiction.solver.block_algebra import Factors, Triple, dot, eliminate
@@ -15,7 +14,7 @@ from stiction.solver.exact.oscillation import Swing
 from stiction.solver.exact.slip_frame import Frame, friction, pull
 from stiction.solver.problem import Problem
 from stiction.solver.radau import FIRST, SECOND, THIRD, A, C, D
-from stiction.solver.surface import Flow, flow
+from stiction.solver.surface import Flow, flow, speed_ratio
 
 
 class Stage(NamedTuple):
@@ -29,7 +28,8 @@ class Stage(NamedTuple):
     da_2: float
     f: float
     gradient: float
-    stretch: float  # slip speed over p
+    per_p: float  # slip speed over p
+    per_w: float  # half the derivative of its square by w
     flow: Flow
 
 
@@ -55,13 +55,14 @@ def stage(
     a_2 = b_2 - h * (frame.k_12 * slid_1 + frame.k_22 * slid_2)
     a_1 -= frame.c_11 * p_i + frame.c_12 * q_i
     a_2 -= frame.c_12 * p_i + frame.c_22 * q_i
-    stretch = sqrt(1.0 + w_i * w_i)
+    per_p = speed_ratio(problem, frame.metric, w_i)
+    per_w = frame.metric.xy + frame.metric.yy * w_i
     n = flow(problem, frame.surface, w_i)
-    f, gradient = friction(problem, frame.t + C[i] * h, p_i * stretch)
+    f, gradient = friction(problem, frame.t + C[i] * h, p_i * per_p)
     dp = dot(D[i], (p[0] - frame.r, p[1] - frame.r, p[2] - frame.r))
     residual_p = dp - h * (a_1 - f * n.n_1) + swing.rest[i]
     residual_w = p_i * dot(D[i], w) - h * (a_2 - w_i * a_1 - f * n.tau)
-    return Stage(residual_p, residual_w, a_1, a_2, da_1, da_2, f, gradient, stretch, n)
+    return Stage(residual_p, residual_w, a_1, a_2, da_1, da_2, f, gradient, per_p, per_w, n)
 
 
 @inlined
@@ -91,7 +92,7 @@ def jacobian_rows(
         p_i * d[2] + square * a[2] * turned_2 * p[2],
     )
     # terms of the stage's own unknowns: friction, damping, and the products p w', w a_1
-    by_p, by_w = at_i.gradient * at_i.stretch, at_i.gradient * p_i * w_i / at_i.stretch
+    by_p, by_w = at_i.gradient * at_i.per_p, at_i.gradient * p_i * at_i.per_w / at_i.per_p
     own_pp = h * (by_p * n.n_1 + c_11 + c_12 * w_i)
     own_pw = h * (by_w * n.n_1 + at_i.f * n.dn_1 + c_12 * p_i)
     own_wp = dot(d, w) + h * (c_12 + c_22 * w_i - w_i * (c_11 + c_12 * w_i) + by_p * n.tau)

@@ -26,7 +26,7 @@ from stiction.solver.radau import (
     integral,
 )
 from stiction.solver.state import Accuracy
-from stiction.solver.surface import flow
+from stiction.solver.surface import flow, speed_ratio
 
 DIP_LOOKS = 6  # iterations at most in the search for the least slip
 
@@ -115,7 +115,7 @@ def error_at(
     a_1 = b_1 - frame.k_11 * slid_1 - frame.k_12 * slid_2 - (frame.c_11 + frame.c_12 * w_in) * p_in
     a_2 = b_2 - frame.k_12 * slid_1 - frame.k_22 * slid_2 - (frame.c_12 + frame.c_22 * w_in) * p_in
     stretch = sqrt(1.0 + w_in * w_in)
-    f = friction(problem, frame.t + dt, p_in * stretch)[0]
+    f = friction(problem, frame.t + dt, p_in * speed_ratio(problem, frame.metric, w_in))[0]
     if p_in < 0.0:
         return inf
     n = flow(problem, frame.surface, w_in)

@@ -10,12 +10,19 @@ from stiction.solver.exact.loop import steps
 from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.exact.slip_frame import friction
 from stiction.solver.law import point_to
-from stiction.solver.output import Output
 from stiction.solver.problem import Problem, kinds_of
-from stiction.solver.segments import friction_of
-from stiction.solver.state import Accuracy, Motion, State, drop_memory, start, state_from_plain
+from stiction.solver.segments import begin, friction_of, system_of
+from stiction.solver.state import (
+    Accuracy,
+    Motion,
+    Output,
+    State,
+    drop_memory,
+    start,
+    state_from_plain,
+)
 from stiction.solver.stick import holding
-from stiction.solver.surface import friction_along
+from stiction.solver.surface import friction_along, speed_along
 from stiction.system.description import Description
 from stiction.system.slider import Slider
 
@@ -32,7 +39,7 @@ class Exact:
     def begin(self, description: Description) -> State:
         """Return the initial state of a run."""
         slider, initial, _ = description
-        return start(slider, initial.time, (initial.u_x, initial.u_y), initial.slip(slider))
+        return start(system_of(slider), initial.time, *begin(slider, initial))
 
     def enter_segment(self, state: State, x: float, y: float) -> State:
         """Return the state at the start of a stretch, where the slip velocity jumps by (x, y).
@@ -73,7 +80,8 @@ def force_between(problem: Problem, motion: Motion) -> tuple[float, float]:
     if motion.r == 0.0:
         a_x, a_y = holding(problem, motion.t, motion.u_x, motion.u_y)
         return m * a_x, m * a_y
-    f = m * friction(problem, motion.t, motion.r)[0]
+    speed = motion.r * speed_along(problem, motion.e_x, motion.e_y)
+    f = m * friction(problem, motion.t, speed)[0]
     f_x, f_y = friction_along(problem, motion.e_x, motion.e_y)
     return f * f_x, f * f_y
 

@@ -24,7 +24,7 @@ from stiction.solver.problem import Problem, in_principal_axes, travel
 from stiction.solver.radau import A, C, cubic, integral
 from stiction.solver.state import Accuracy
 from stiction.solver.stick import holding
-from stiction.solver.surface import friction_along
+from stiction.solver.surface import friction_along, speed_ratio
 
 COLUMNS = 7
 
@@ -166,7 +166,8 @@ def sample_step(
         u_x, u_y = elongation(problem, frame, dt, z_1, z_2)
         stretch = sqrt(1.0 + turn * turn)
         g, speed = 1.0 / stretch, v * stretch
-        force = friction(problem, times[k], speed)[0] * problem.system.mass
+        true = v * speed_ratio(problem, frame.metric, turn)
+        force = friction(problem, times[k], true)[0] * problem.system.mass
         k = fill(problem, frame, u_x, u_y, speed, g, turn * g, force, samples, k)
     return k
 

@@ -20,7 +20,9 @@ from stiction.solver.problem import (
     Problem,
     at,
     coefficient_and_slope,
+    cross_damping,
     in_principal_axes,
+    is_aligned,
     rate,
     rate_change,
     rate_curve,
@@ -28,21 +30,23 @@ from stiction.solver.problem import (
     travel,
 )
 from stiction.solver.state import Motion
-from stiction.solver.surface import Tensor, flow, turned_into
+from stiction.solver.surface import Tensor, flow, metric_into, speed_ratio, tensor_into, turned_into
 
 
 class Frame(NamedTuple):
-    """The axes of a step: direction e, the laboratory's X in them, tensors over mass.
+    """The axes of a step: direction e, the laboratory's X and Y in them, tensors over mass.
 
-    Also the surface's tensor N (see `surface`), and the step's start: time, elongation
-    (u_x, u_y), slip speed r, and the spring's acceleration along and across e; for a steady
-    drive also the drive's contribution to it, and its rate.
+    Also the surface's tensor N and the rig's G (see `surface`), and the step's start: time,
+    elongation (u_x, u_y), slip speed r, and the spring's acceleration along and across e; for a
+    steady drive also the drive's contribution to it, and its rate.
     """
 
     e_x: float
     e_y: float
     X_1: float
     X_2: float
+    Y_1: float
+    Y_2: float
     k_11: float
     k_12: float
     k_22: float
@@ -50,6 +54,7 @@ class Frame(NamedTuple):
     c_12: float
     c_22: float
     surface: Tensor
+    metric: Tensor
     t: float
     u_x: float
     u_y: float
@@ -83,21 +88,32 @@ def frame_of(problem: Problem, motion: Motion) -> Frame:
     k_x, k_y = s.k_x * s.per_mass, s.k_y * s.per_mass
     c_x, c_y = s.c_x * s.per_mass, s.c_y * s.per_mass
     xx, xy, yy = e_x * e_x, e_x * e_y, e_y * e_y
+    X_x, X_y = in_principal_axes(problem, (1.0, 0.0))
+    Y_x, Y_y = in_principal_axes(problem, (0.0, 1.0))
     v_x = v_y = 0.0
     if steady(problem.drive):
         v_x, v_y = in_principal_axes(problem, rate(problem.drive, motion.t))
+    d_x, d_y = c_x * v_x, c_y * v_y
+    damping = Tensor(c_x * xx + c_y * yy, (c_y - c_x) * xy, c_y * xx + c_x * yy)
+    if not is_aligned(problem.rig):
+        c_xy = cross_damping(problem.rig) * s.per_mass
+        d_x, d_y = d_x + c_xy * v_y, d_y + c_xy * v_x
+        damping = tensor_into(Tensor(c_x, c_xy, c_y), e_x, e_y)
     return Frame(
         e_x,
         e_y,
-        s.cos_phi * e_x + s.sin_phi * e_y,
-        s.sin_phi * e_x - s.cos_phi * e_y,
+        X_x * e_x + X_y * e_y,
+        X_y * e_x - X_x * e_y,
+        Y_x * e_x + Y_y * e_y,
+        Y_y * e_x - Y_x * e_y,
         k_x * xx + k_y * yy,
         (k_y - k_x) * xy,
         k_y * xx + k_x * yy,
-        c_x * xx + c_y * yy,
-        (c_y - c_x) * xy,
-        c_y * xx + c_x * yy,
+        damping.xx,
+        damping.xy,
+        damping.yy,
         turned_into(problem, e_x, e_y),
+        metric_into(problem, e_x, e_y),
         motion.t,
         u_x,
         u_y,
@@ -105,8 +121,8 @@ def frame_of(problem: Problem, motion: Motion) -> Frame:
         # from the forces: rotating u would carry rounding of u_x into the stiff direction
         k_x * u_x * e_x + k_y * u_y * e_y,
         k_y * u_y * e_x - k_x * u_x * e_y,
-        c_x * v_x * e_x + c_y * v_y * e_y,
-        c_y * v_y * e_x - c_x * v_x * e_y,
+        d_x * e_x + d_y * e_y,
+        d_y * e_x - d_x * e_y,
         k_x * v_x * e_x + k_y * v_y * e_y,
         k_y * v_y * e_x - k_x * v_x * e_y,
     )
@@ -116,7 +132,9 @@ def frame_of(problem: Problem, motion: Motion) -> Frame:
 def outset(problem: Problem, frame: Frame) -> Outset:
     """Return the forces over mass at the start of a step."""
     b_1, b_2, db_1, db_2 = pull(problem, frame, 0.0)
-    f, gradient = friction(problem, frame.t, frame.r)
+    per_p = speed_ratio(problem, frame.metric, 0.0)
+    f, gradient = friction(problem, frame.t, frame.r * per_p)
+    gradient *= per_p
     along = flow(problem, frame.surface, 0.0)
     return Outset(
         b_1 - frame.c_11 * frame.r,
@@ -130,10 +148,12 @@ def outset(problem: Problem, frame: Frame) -> Outset:
 
 
 @inlined
-def in_frame(frame: Frame, vector: tuple[float, float]) -> tuple[float, float]:
+def in_frame(problem: Problem, frame: Frame, vector: tuple[float, float]) -> tuple[float, float]:
     """Return a laboratory vector (X, Y) in the step's axes."""
     X, Y = vector
-    return X * frame.X_1 - Y * frame.X_2, X * frame.X_2 + Y * frame.X_1
+    if is_aligned(problem.rig):
+        return X * frame.X_1 - Y * frame.X_2, X * frame.X_2 + Y * frame.X_1
+    return X * frame.X_1 + Y * frame.Y_1, X * frame.X_2 + Y * frame.Y_2
 
 
 @inlined
@@ -152,10 +172,10 @@ def pull(problem: Problem, frame: Frame, dt: float) -> tuple[float, float, float
             y,
         )
     t = frame.t
-    d_1, d_2 = in_frame(frame, travel(problem.drive, t, dt))
-    v_1, v_2 = in_frame(frame, rate(problem.drive, t + dt))
-    g_1, g_2 = in_frame(frame, rate_change(problem.drive, t + dt))
-    j_1, j_2 = in_frame(frame, rate_curve(problem.drive, t + dt))
+    d_1, d_2 = in_frame(problem, frame, travel(problem.drive, t, dt))
+    v_1, v_2 = in_frame(problem, frame, rate(problem.drive, t + dt))
+    g_1, g_2 = in_frame(problem, frame, rate_change(problem.drive, t + dt))
+    j_1, j_2 = in_frame(problem, frame, rate_curve(problem.drive, t + dt))
     inertia = problem.system.inertia
     k_11, k_12, k_22 = frame.k_11, frame.k_12, frame.k_22
     c_11, c_12, c_22 = frame.c_11, frame.c_12, frame.c_22

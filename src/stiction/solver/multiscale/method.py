@@ -7,9 +7,8 @@ from math import nan
 from stiction.solver.exact.method import Exact, advance_compiled
 from stiction.solver.multiscale.loop import stride
 from stiction.solver.multiscale.return_map import Returns, empty_map
-from stiction.solver.output import Output
 from stiction.solver.problem import Problem, constant, steady
-from stiction.solver.state import Accuracy, State
+from stiction.solver.state import Accuracy, Output, State
 from stiction.system.slider import Slider
 
 STEP_SHARE = 0.3  # tolerance of steps for the return map, over that of others

@@ -10,15 +10,15 @@ import numpy as np
 from stiction.friction import states
 from stiction.solver.compilation.interrupt import delay_interrupt
 from stiction.solver.exact.sampling import COLUMNS
-from stiction.solver.output import Output
 from stiction.solver.problem import Isotropic, Problem, at, force
-from stiction.solver.segments import friction_of
+from stiction.solver.segments import begin, friction_of, surface_of, system_of
 from stiction.solver.smooth import loop
 from stiction.solver.smooth.dispatch import SMOOTHED, point_to_flow
 from stiction.solver.smooth.state import SmoothMemory, SmoothMotion, SmoothState
-from stiction.solver.state import NOTHING, Accuracy, first_step
+from stiction.solver.state import NOTHING, Accuracy, Output, first_step
 from stiction.system.description import Description
 from stiction.system.slider import Slider
+from stiction.system.tensors import is_aligned
 
 # of the slip speed below which that of set-valued friction is not resolved: states remember slower
 # slip. LuGre's published case comes out 600 times better for 14 % more steps.
@@ -31,6 +31,8 @@ class Smooth:
     def __init__(self, slider: Slider, delta: float | None, smoothing: str = "root") -> None:
         """Store the slider, and compile its law."""
         law, surface = friction_of(slider)
+        if not is_aligned(slider):  # the law is asked in the axes x and y
+            surface = surface_of(slider)
         self.first_step = 0.0
         self.states = len(states(law))
         self.law: Any = law if delta is None else SMOOTHED[smoothing](law, surface, delta)
@@ -40,9 +42,10 @@ class Smooth:
     def begin(self, description: Description) -> SmoothState:
         """Return the initial state of a run."""
         slider, initial, _ = description
-        motion = SmoothMotion(initial.time, initial.u_x, initial.u_y, *initial.slip(slider))
+        u, slip = begin(slider, initial)
+        motion = SmoothMotion(initial.time, *u, *slip)
         internal = np.array(initial.internal(slider), dtype=np.float64)
-        h = self.first_step = first_step(slider)
+        h = self.first_step = first_step(system_of(slider))
         memory = SmoothMemory(h, h, False, np.zeros((4, 2 + self.states)))
         return SmoothState(motion, internal, memory, NOTHING)
 
@@ -78,7 +81,8 @@ class Smooth:
         """Return the sample of a state between two steps."""
         t, u_x, u_y, s_x, s_y = state.motion
         z = tuple(float(value) for value in state.internal)
-        f = force(self.law, (s_x, s_y), at(problem.load, t), z)
+        slip = problem.rig.outward((s_x, s_y))
+        f = problem.rig.inward(force(self.law, slip, at(problem.load, t), z))
         return [u_x, u_y, s_x, s_y, *f, 0.0, *z]
 
     def step_accuracy(self, held: Accuracy) -> Accuracy:

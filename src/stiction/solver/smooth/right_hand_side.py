@@ -5,11 +5,23 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
+from stiction.friction.law import Vector
 from stiction.solver.block_algebra import Triple
 from stiction.solver.compilation.jit import inlined
-from stiction.solver.problem import Problem, at, in_principal_axes, rate, rate_change, travel
+from stiction.solver.problem import (
+    Problem,
+    at,
+    cross_damping,
+    in_principal_axes,
+    inward,
+    is_aligned,
+    outward,
+    rate,
+    rate_change,
+    travel,
+)
 from stiction.solver.smooth.coordinate import slip_at, slip_slope
-from stiction.solver.smooth.dispatch import flow
+from stiction.solver.smooth.dispatch import Friction, flow
 from stiction.solver.smooth.workspace import START, Workspace
 from stiction.solver.state import Accuracy
 from stiction.solver.stick import holding
@@ -99,7 +111,7 @@ def evaluate(
     It computes derivatives on request, and writes the rates of the states to row `i`.
     """
     s = slip_at(eps, q_x, q_y)
-    f_x, f_y, xx, xy, yx, yy = flow(problem.law, s, load, problem.system.per_mass, w, i, wanted)
+    f_x, f_y, xx, xy, yx, yy = acting(problem, s, load, w, i, wanted)
     s_xx, s_xy, s_yy = slip_slope(eps, q_x, q_y) if wanted else (1.0, 0.0, 1.0)
     return Point(
         s[0],
@@ -114,6 +126,32 @@ def evaluate(
         yx * s_xx + yy * s_xy,
         yx * s_xy + yy * s_yy,
     )
+
+
+@inlined
+def acting(
+    problem: Problem, s: Vector, load: float, w: Workspace, i: int, wanted: bool
+) -> Friction:
+    """Return friction over mass and its derivatives, on a general rig with cross damping.
+
+    There the law is asked in the axes x and y, and what it says of states and slip is turned, too.
+    """
+    per = problem.system.per_mass
+    if is_aligned(problem.rig):
+        return flow(problem.law, s, load, per, w, i, wanted)
+    f_x, f_y, xx, xy, yx, yy = flow(problem.law, outward(problem.rig, s), load, per, w, i, wanted)
+    f_x, f_y = inward(problem.rig, (f_x, f_y))
+    c = cross_damping(problem.rig) * per
+    if wanted:
+        xx, yx = inward(problem.rig, (xx, yx))
+        xy, yy = inward(problem.rig, (xy, yy))
+        xx, xy = inward(problem.rig, (xx, xy))
+        yx, yy = inward(problem.rig, (yx, yy))
+        m = w.jacobian[i]
+        for k in range(2, w.size.shape[0]):
+            m[0, k], m[1, k] = inward(problem.rig, (m[0, k], m[1, k]))
+            m[k, 0], m[k, 1] = inward(problem.rig, (m[k, 0], m[k, 1]))
+    return f_x + c * s[1], f_y + c * s[0], xx, xy + c, yx + c, yy
 
 
 @inlined

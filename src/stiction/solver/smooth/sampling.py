@@ -12,13 +12,12 @@ from stiction.friction.law import Vector
 from stiction.solver.block_algebra import dot
 from stiction.solver.compilation.jit import inlined, piece
 from stiction.solver.exact.sampling import COLUMNS
-from stiction.solver.problem import Problem, at, in_principal_axes, travel
+from stiction.solver.problem import Problem, at, cross_damping, in_principal_axes, travel
 from stiction.solver.radau import A, C, cubic
 from stiction.solver.smooth.coordinate import coordinate
-from stiction.solver.smooth.dispatch import flow
 from stiction.solver.smooth.error_estimate import balance, less_error, within
 from stiction.solver.smooth.newton import solve
-from stiction.solver.smooth.right_hand_side import SmoothOutset
+from stiction.solver.smooth.right_hand_side import SmoothOutset, acting
 from stiction.solver.smooth.workspace import INSIDE, LAST, START, UNWANTED, Workspace
 from stiction.solver.state import Accuracy
 
@@ -46,7 +45,7 @@ def sample(
             u_x -= dt * dot(A[2], (v[1, 0], v[2, 0], v[3, 0]))
             u_y -= dt * dot(A[2], (v[1, 1], v[2, 1], v[3, 1]))
             slip, load = (v[LAST, 0], v[LAST, 1]), at(problem.load, start.t + dt)
-            f = flow(problem.law, slip, load, problem.system.per_mass, inner, LAST, UNWANTED)
+            f = acting(problem, slip, load, inner, LAST, UNWANTED)
             write(problem, u_x, u_y, slip, (f[0], f[1]), samples, k)
             write_states(inner, LAST, samples, k)
         else:  # the weight grows from zero at the start, where the polynomial is exact
@@ -99,9 +98,9 @@ def write(
     k: int,
 ) -> None:
     """Write one row, but for the states."""
-    m, row = problem.system.mass, samples[k]
+    m, row, c = problem.system.mass, samples[k], cross_damping(problem.rig)
     row[0], row[1], row[2], row[3] = u_x, u_y, slip[0], slip[1]
-    row[4], row[5], row[6] = friction[0] * m, friction[1] * m, 0.0
+    row[4], row[5], row[6] = friction[0] * m - c * slip[1], friction[1] * m - c * slip[0], 0.0
 
 
 @inlined

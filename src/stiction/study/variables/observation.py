@@ -19,6 +19,7 @@ from stiction.study.variables.fast_regime import Swings, cycles_among, kind_of, 
 from stiction.study.variables.features import Features, features
 from stiction.system.description import Description
 from stiction.system.slider import Slider
+from stiction.system.tensors import mass_tensor, stiffness_tensor
 
 Floats = NDArray[np.float64]
 
@@ -187,8 +188,9 @@ def observe(description: Description, report: Callable[[float], None] | None) ->
 
 def coupled_frequency(slider: Slider) -> float:
     """Return the frequency (Hz) of the mass if friction lets it move only along the drive."""
-    c, s = slider.direction
-    return sqrt((slider.k_x * c**2 + slider.k_y * s**2) / slider.mass) / (2.0 * pi)
+    e = np.array(slider.direction)
+    stiffness, mass = e @ stiffness_tensor(slider) @ e, e @ mass_tensor(slider) @ e
+    return float(sqrt(stiffness / mass) / (2.0 * pi))
 
 
 def seconds_of(description: Description) -> float:

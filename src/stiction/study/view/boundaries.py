@@ -101,4 +101,4 @@ def damping_ratio(slider: Slider) -> float:
 def damping_number(slider: Slider) -> float:
     """Return A of Eq. (10)."""
     V, phi = abs(slider.motion.velocity), abs(slider.phi)
-    return float(closed_forms.damping_number(slider.F_0, V, phi, slider.mass, slider.k_x))
+    return float(closed_forms.damping_number(slider.F_0, V, phi, slider.masses[0], slider.k_x))

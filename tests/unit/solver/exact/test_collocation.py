@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.drawn import inside
 from tests.entry import plain
-from tests.unit.solver.systems import MOTIONS, SLIDERS, Printed, motion_of, problem_of
+from tests.systems import MOTIONS, SLIDERS, Printed, motion_of, problem_of
 
 from stiction.solver.exact import collocation, newton, oscillation, slip_frame
 from stiction.solver.radau import A, C, D

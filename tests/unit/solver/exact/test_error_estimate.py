@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 from tests.entry import plain
+from tests.systems import SLIDERS
 from tests.unit.solver.exact.test_collocation import A, C, begin
 from tests.unit.solver.exact.test_newton import SLIDES
-from tests.unit.solver.systems import SLIDERS
 
 from stiction.solver.exact import error_estimate, oscillation, slip_frame
 from stiction.solver.state import Accuracy

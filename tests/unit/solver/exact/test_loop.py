@@ -5,9 +5,9 @@ from math import inf, nan
 import numpy as np
 import pytest
 from tests.entry import plain
+from tests.systems import SLIDERS, Printed, motion_of, problem_of
 from tests.unit.solver.exact.test_predictor import COLD
 from tests.unit.solver.exact.test_step import held_to
-from tests.unit.solver.systems import SLIDERS, Printed, motion_of, problem_of
 
 import stiction as st
 from stiction.solver import stick as sticking

@@ -5,8 +5,8 @@ from math import inf
 import numpy as np
 import pytest
 from tests.entry import plain
+from tests.systems import SLIDERS, problem_of
 from tests.unit.solver.exact.test_collocation import begin, residuals
-from tests.unit.solver.systems import SLIDERS, problem_of
 
 from stiction.solver.exact import newton, oscillation, slip_frame
 from stiction.solver.state import Accuracy

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 from tests.entry import plain
+from tests.systems import SLIDERS, motion_of, problem_of
 from tests.unit.solver.exact.test_collocation import begin
 from tests.unit.solver.exact.test_newton import SLIDES, held_to
-from tests.unit.solver.systems import SLIDERS, motion_of, problem_of
 
 from stiction.solver.exact import newton, oscillation, predictor, slip_frame
 from stiction.solver.radau import A, C, D

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from tests.entry import plain
-from tests.unit.solver.systems import SLIDERS, motion_of, problem_of
+from tests.systems import SLIDERS, motion_of, problem_of
 
 from stiction.solver.exact import pursuit, slip_frame
 from stiction.solver.state import Accuracy

@@ -5,9 +5,9 @@ from math import inf
 import numpy as np
 import pytest
 from tests.entry import plain
+from tests.systems import SLIDERS, Printed, motion_of, problem_of
 from tests.unit.solver.exact.test_collocation import A, begin
 from tests.unit.solver.exact.test_newton import SLIDES, held_to
-from tests.unit.solver.systems import SLIDERS, Printed, motion_of, problem_of
 
 from stiction.solver.exact import error_estimate, newton, oscillation, sampling, slip_frame
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from tests.entry import plain
-from tests.unit.solver.systems import MOTIONS, SLIDERS, Printed, motion_of, problem_of
+from tests.systems import MOTIONS, SLIDERS, Printed, motion_of, problem_of
 
 from stiction.solver.exact import slip_frame
 
@@ -20,7 +20,7 @@ def frames_of(name, drawn):
 
 @ALL
 def test_tensors_over_mass(name, drawn):
-    _, frame, printed = frames_of(name, drawn)
+    problem, frame, printed = frames_of(name, drawn)
     for letter, tensor in (("k", printed.k), ("c", printed.c)):
         found = [getattr(frame, f"{letter}_{ij}") for ij in (11, 12, 22)]
         assert found == pytest.approx(tensor[np.triu_indices(2)], rel=1e-12)
@@ -28,7 +28,8 @@ def test_tensors_over_mass(name, drawn):
     assert (frame.e_x, frame.e_y) == tuple(printed.axes[0])
     for vector in ((1.0, 0.0), (0.3, -2.0)):
         wanted = printed.axes @ printed.turn @ vector
-        assert plain(slip_frame.in_frame)(frame, vector) == pytest.approx(wanted, rel=1e-13)
+        found = plain(slip_frame.in_frame)(problem, frame, vector)
+        assert found == pytest.approx(wanted, rel=1e-13)
 
 
 @ALL

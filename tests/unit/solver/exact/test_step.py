@@ -5,10 +5,10 @@ from math import inf
 import numpy as np
 import pytest
 from tests.entry import plain
+from tests.systems import SLIDERS, motion_of, problem_of
 from tests.unit.solver.exact.test_collocation import begin, residuals
 from tests.unit.solver.exact.test_newton import SLIDES
 from tests.unit.solver.exact.test_predictor import COLD
-from tests.unit.solver.systems import SLIDERS, motion_of, problem_of
 
 from stiction.solver.control import RESOLUTION
 from stiction.solver.exact import error_estimate, oscillation, predictor, slip_frame

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from tests.entry import plain
+from tests.systems import problem_of
 from tests.unit.solver.exact.test_step import held_to
 from tests.unit.solver.multiscale.test_construction import problem_of as soft
 from tests.unit.solver.multiscale.test_construction import taking_off
-from tests.unit.solver.systems import problem_of
 
 from stiction.solver.exact import loop as exact_loop
 from stiction.solver.multiscale import construction, loop, replay

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from tests.entry import plain
-from tests.unit.solver.systems import Printed, motion_of, problem_of
+from tests.systems import Printed, motion_of, problem_of
 
 from stiction.solver.multiscale import section
 from stiction.solver.stick import margin, stick_duration

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 from tests.entry import plain
-from tests.unit.solver.systems import Printed, motion_of, problem_of
+from tests.systems import Printed, motion_of, problem_of
 
 import stiction as st
 from stiction.friction.law import Internal, states

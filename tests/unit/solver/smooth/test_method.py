@@ -4,8 +4,8 @@ from math import inf
 
 import numpy as np
 import pytest
+from tests.systems import ELLIPSE, STEADY, problem_of
 from tests.unit.solver.smooth.systems import EXACT
-from tests.unit.solver.systems import ELLIPSE, STEADY, problem_of
 
 import stiction as st
 from stiction.solver.exact.sampling import COLUMNS

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from tests.drawn import inside
 from tests.entry import plain
+from tests.systems import problem_of
 from tests.unit.solver.smooth.systems import (
     EXACT,
     LAWS,
@@ -15,7 +16,6 @@ from tests.unit.solver.smooth.systems import (
     begun,
     derivative,
 )
-from tests.unit.solver.systems import problem_of
 
 from stiction.solver.block_algebra import solve_blocks
 from stiction.solver.radau import A, C, D

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from tests.entry import plain
+from tests.systems import SLIDERS
 from tests.unit.solver.smooth.systems import (
     EXACT,
     LAWS,
@@ -12,7 +13,6 @@ from tests.unit.solver.smooth.systems import (
     derivative,
     smooth_problem,
 )
-from tests.unit.solver.systems import SLIDERS
 
 from stiction.solver.smooth import right_hand_side
 from stiction.solver.smooth.coordinate import coordinate, slip_at

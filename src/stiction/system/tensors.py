@@ -1,0 +1,109 @@
+"""Mass, stiffness and damping of a slider as tensors, and the axes in which they are simplest."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from math import atan2, copysign, cos, hypot, pi, sin, sqrt
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from stiction.system.slider import Slider
+
+Matrix = NDArray[np.float64]
+
+
+def mass_tensor(slider: Slider) -> Matrix:
+    """Return the mass tensor in the axes x and y, (2, 2), kg.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> slider = st.presets.nakano_popov_2020().replace(mass="1 kg", mass_y="2 kg")
+    >>> mass_tensor(slider)
+    array([[1., 0.],
+           [0., 2.]])
+    """
+    along = slider.mass
+    across = along if slider.mass_y is None else slider.mass_y
+    return principal(along, across, slider.mass_angle)
+
+
+def stiffness_tensor(slider: Slider) -> Matrix:
+    """Return the stiffness tensor in the axes x and y, (2, 2), N/m; these are its own axes."""
+    return np.diag([slider.k_x, slider.k_y])
+
+
+def damping_tensor(slider: Slider) -> Matrix:
+    """Return the damping tensor in the axes x and y, (2, 2), N s/m."""
+    return principal(slider.c_x, slider.c_y, slider.damping_angle)
+
+
+def principal(along: float, across: float, angle: float) -> Matrix:
+    """Return the symmetric tensor with these principal values, the first at `angle` (rad) to x."""
+    c, s = cos(angle), sin(angle)
+    mixed = (along - across) * c * s
+    return np.array(
+        [[along * c * c + across * s * s, mixed], [mixed, along * s * s + across * c * c]]
+    )
+
+
+def is_aligned(slider: Slider) -> bool:
+    """Return whether a slider has one mass, and dampers along its springs."""
+    one_mass = slider.mass_y is None or slider.mass_y == slider.mass
+    return one_mass and (slider.damping_angle == 0.0 or slider.c_x == slider.c_y)
+
+
+class Axes(NamedTuple):
+    """The solver's axes r, with slip s = T r: one mass m, springs along the axes (M71).
+
+    `turn` is T, (2, 2), `mass` m (kg), `stiffness` its two stiffnesses (N/m), `damping` T^T C T.
+    """
+
+    turn: Matrix
+    mass: float
+    stiffness: Matrix
+    damping: Matrix
+
+    def inward(self, vectors: Matrix) -> Matrix:
+        """Return slips or elongations, (..., 2), in these axes: T^-1 s."""
+        found: Matrix = vectors @ np.linalg.inv(self.turn).T
+        return found
+
+    def outward(self, vectors: Matrix) -> Matrix:
+        """Return slips or elongations, (..., 2), in the axes x and y: T r."""
+        found: Matrix = vectors @ self.turn.T
+        return found
+
+    def force_outward(self, forces: Matrix) -> Matrix:
+        """Return forces, (..., 2), in the axes x and y: T^-T f."""
+        found: Matrix = forces @ np.linalg.inv(self.turn)
+        return found
+
+
+def solver_axes(slider: Slider) -> Axes:
+    """Return the axes in which a slider has one mass and springs along the axes."""
+    mass, damping = mass_tensor(slider), damping_tensor(slider)
+    return _axes(mass.tobytes(), slider.k_x, slider.k_y, damping.tobytes())
+
+
+@lru_cache(maxsize=64)
+def _axes(mass: bytes, k_x: float, k_y: float, damping: bytes) -> Axes:
+    M, C = (np.frombuffer(each).reshape(2, 2) for each in (mass, damping))
+    m = sqrt(M[0, 0] * M[1, 1] - M[0, 1] ** 2)
+    # the inverse root of B^2 = M/m, whose determinant is 1: (B^-2 + 1)/sqrt(trace + 2)
+    inverse = np.array([[M[1, 1], -M[0, 1]], [-M[0, 1], M[0, 0]]]) / m
+    root = (inverse + np.eye(2)) / sqrt(inverse[0, 0] + inverse[1, 1] + 2.0)
+    own = root @ np.diag([k_x, k_y]) @ root
+    half = 0.5 * (own[0, 0] - own[1, 1])
+    stiff = 0.5 * (own[0, 0] + own[1, 1]) + hypot(half, own[0, 1])
+    soft = k_x * k_y / stiff  # from the determinant: a difference would round it away
+    angle = 0.5 * atan2(own[0, 1], half)  # of the stiff axis; the nearer one is that of x
+    along_x = abs(angle) <= 0.25 * pi
+    angle = angle if along_x else angle - copysign(0.5 * pi, angle)
+    c, s = cos(angle), sin(angle)
+    turn = root @ np.array([[c, -s], [s, c]])
+    k = np.array([stiff, soft] if along_x else [soft, stiff])
+    return Axes(turn, m, k, turn.T @ C @ turn)
