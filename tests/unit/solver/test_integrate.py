@@ -4,6 +4,7 @@ from math import hypot, inf, pi, sqrt
 
 import numpy as np
 import pytest
+from stiction.solver.output import STICK, Output
 from tests.systems import ELLIPSE, PROGRAM, STEADY
 
 import stiction as st
@@ -11,7 +12,6 @@ from stiction.drive import jump
 from stiction.errors import DescriptionError
 from stiction.solver import integrate, output
 from stiction.solver.integrate import accuracy, slip_jump, steepest_weakening, tolerance
-from stiction.solver.output import STICK, Output
 from stiction.solver.segments import stretches
 from stiction.solver.state import (
     COMPLETED,
