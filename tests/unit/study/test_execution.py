@@ -172,14 +172,14 @@ import json, pathlib, time
 from stiction.study.execution import task
 
 gate = pathlib.Path({0!r})
-done = task.ungated = getattr(task, "ungated", task.done)  # this is loaded more than once
+do_block = task.ungated = getattr(task, "ungated", task.do_block)  # loaded more than once
 
 def allowed(study, store, *arguments):
     while len([*store.path.glob("status/c/*/[!.]*")]) >= json.loads(gate.read_text()):
         time.sleep(0.01)
-    return done(study, store, *arguments)
+    return do_block(study, store, *arguments)
 
-task.done = allowed
+task.do_block = allowed
 """
 
 
