@@ -115,7 +115,8 @@ def test_signatures_show_parameters_units_and_defaults(kind):
 
 def test_units_stand_in_signatures():
     assert str(inspect.signature(st.protocols.Step)) == (
-        "(by: float (m/s or N) | str, duration: float (s) | str | None = None)"
+        "(by: float (m/s or N) | str | None = None, duration: float (s) | str | None = None, "
+        "to: float (m/s or N) | str | None = None)"
     )
     assert "v_f: float (m/s) | str" in str(inspect.signature(st.ExponentialWeakening))
     assert "phi: str (deg or rad)" in str(inspect.signature(st.Slider))

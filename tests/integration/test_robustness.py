@@ -167,11 +167,11 @@ def test_interrupts_do_no_harm():
 
 HELD_BACK = """
 import signal
-from stiction.solver.compilation.interrupt import uninterrupted
+from stiction.solver.compilation.interrupt import delay_interrupt
 
 def interrupted():
     try:
-        with uninterrupted():
+        with delay_interrupt():
             signal.raise_signal(signal.SIGINT)
             print("goes on", end=", ")
         print("and on")

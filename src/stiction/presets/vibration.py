@@ -38,7 +38,7 @@ def amplitudes(run: Trajectory) -> tuple[float, float, int]:
     """Return both amplitudes of the slip in the period after such a run, and its stops."""
     from stiction.simulation import simulate
 
-    r, end = 2 * pi * run.slider.shaken[0], float(run.final["time"])
+    r, end = 2 * pi * run.slider.modulation_frequencies[0], float(run.final["time"])
     after = simulate(
         run.slider,
         2 * pi / r,

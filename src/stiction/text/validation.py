@@ -121,15 +121,20 @@ def _show_annotation(hint: Any, plain: Any) -> Any:
 
     `plain` is the type without its validator; a text in the annotation takes precedence.
     """
-    texts = [item for item in getattr(hint, "__metadata__", ()) if isinstance(item, str)]
+    none = " | None" if type(None) in get_args(plain) else ""
+    texts = [
+        item
+        for part in (hint, *get_args(hint))
+        for item in getattr(part, "__metadata__", ())
+        if isinstance(item, str)
+    ]
     kind = kind_of(hint)
     if texts:
-        return _Annotation(texts[0])
+        return _Annotation(texts[0] + ("" if texts[0].endswith(none) else none))
     if kind is None or not kind.unit:
         return Parameter.empty if plain in (None, Any) else plain
     if kind.unit == "rad":
-        return _Annotation("str (deg or rad)")
-    none = " | None" if type(None) in get_args(plain) else ""
+        return _Annotation(f"str (deg or rad){none}")
     return _Annotation(f"float ({kind.unit}) | str{none}")
 
 

@@ -35,7 +35,7 @@ def test_a_law_is_registered_by_the_line_that_imports_it():
     named = {
         name
         for path in folder.rglob("*.py")
-        for name in re.findall(r'^@registered\("([^"]+)"\)', path.read_text(), re.MULTILINE)
+        for name in re.findall(r'^@register\("([^"]+)"\)', path.read_text(), re.MULTILINE)
     }
     assert named == set(LAWS)
 

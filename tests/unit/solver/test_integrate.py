@@ -4,13 +4,12 @@ from math import hypot, inf, pi, sqrt
 
 import numpy as np
 import pytest
-from stiction.solver.output import STICK, Output
 from tests.systems import ELLIPSE, PROGRAM, STEADY
 
 import stiction as st
 from stiction.drive import jump
 from stiction.errors import DescriptionError
-from stiction.solver import integrate, output
+from stiction.solver import integrate, state
 from stiction.solver.integrate import accuracy, slip_jump, steepest_weakening, tolerance
 from stiction.solver.segments import stretches
 from stiction.solver.state import (
@@ -18,8 +17,10 @@ from stiction.solver.state import (
     NOTHING,
     RUNNING,
     STEP_UNDERFLOW,
+    STICK,
     TOO_MANY_STEPS,
     Motion,
+    Output,
     State,
 )
 from stiction.system.description import Description, Settings
@@ -225,7 +226,7 @@ def output_for(sticks):
 def test_room_is_doubled_when_it_is_filled(monkeypatch):
     """After a look at the memory that so much room takes, for all tables."""
     asked = []
-    monkeypatch.setattr(output, "shortage", asked.append)
+    monkeypatch.setattr(state, "shortage", asked.append)
     out = output_for(4)
     before = out.sticks.copy()
     out.make_room(3)
@@ -239,6 +240,6 @@ def test_room_is_doubled_when_it_is_filled(monkeypatch):
 
 
 def test_sticks_that_do_not_fit_are_refused(monkeypatch):
-    monkeypatch.setattr(output, "shortage", lambda _: "takes 9 GB, of which 1 GB is free")
+    monkeypatch.setattr(state, "shortage", lambda _: "takes 9 GB, of which 1 GB is free")
     with pytest.raises(DescriptionError, match=r"more than 4 sticks.*takes 9 GB.*shorten it"):
         output_for(4).make_room(4)

@@ -20,6 +20,7 @@ BETWEEN = (
     "missing; only the last piece may have no end",
     "must have a value for each v",
     "must be at least two points",
+    "give either by or to",
 )
 WRONG = (True, [], {}, "", "fast", "1 , 2")  # of no table, quantity, name or number
 

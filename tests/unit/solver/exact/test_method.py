@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from tests.entry import plain
+from tests.systems import SLIDERS, STEADY, Printed, motion_of, problem_of
 from tests.unit.solver.exact.test_predictor import COLD
-from tests.unit.solver.systems import SLIDERS, STEADY, Printed, motion_of, problem_of
 
 import stiction as st
 from stiction.solver.exact import method

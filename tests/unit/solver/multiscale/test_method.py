@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
-from stiction.solver.output import Output
+from tests.systems import problem_of as other_problem
 from tests.unit.solver.exact.test_step import held_to
 from tests.unit.solver.multiscale.test_construction import SOFT, problem_of, taking_off
-from tests.unit.solver.systems import problem_of as other_problem
 
 from stiction.solver.multiscale import method
 from stiction.solver.multiscale.method import STEP_SHARE, Multiscale
 from stiction.solver.multiscale.return_map import CLOSING
+from stiction.solver.state import Output
 
 HELD = held_to(1e-4)._replace(touch=0.3)
 
