@@ -27,6 +27,8 @@ Integrand = Callable[[Floats, Floats], Floats]
 PASSES = 6  # of splitting panels in four: down to a thousandth of the first
 MOST = 200_000  # panels that are split further at once, some 0.5 GB
 AGAIN = 100  # times the steps of a run it may take to make it once more, sampled
+PER_STEP = 4  # panels to each of the solver's steps at first
+STEPS_OF_A_CYCLE = 20  # that a return map has found
 ROUNDING = 1e-13  # of an integral; sums of so many numbers are not closer
 
 # R. Piessens et al., QUADPACK (Springer, 1983), routine qk15: nodes from the end of (-1, 1) to
@@ -124,7 +126,9 @@ def panels(run: Trajectory, edges: Floats) -> tuple[Floats, Floats]:
     """Return starts and lengths (s) of panels within which no stick begins or ends.
 
     No panel contains an edge, or a jump or bend of the drive or load. None is longer than the
-    shortest period: that of springs and programs during slip, of programs alone during stick.
+    shortest period: that of springs and programs during slip, of programs alone during stick. Where
+    that is far shorter than the solver's steps, the springs' swing is damped away: then there are
+    some panels to a step, and more where the first ones do not suffice (see `integrals`).
     """
     slider, first, last = run.slider, edges[0], edges[-1]
     programs = [end for end, _ in drive_stretches(slider.motion)]
@@ -138,6 +142,11 @@ def panels(run: Trajectory, edges: Floats) -> tuple[Floats, Floats]:
     stuck = starts < np.append(run.stick_intervals[:, 1], -np.inf)[held - 1]
     omega = np.where(stuck, imposed, max(imposed, natural))
     counts = np.ceil(np.maximum(1.0, omega * lengths / (2.0 * pi))).astype(np.intp)
+    took = run.statistics
+    steps = max(took.steps, 0) + STEPS_OF_A_CYCLE * max(took.mapped, 0) + 100
+    share = PER_STEP * steps / counts.sum()
+    if share < 1.0:
+        counts = np.ceil(share * counts).astype(np.intp)
     return split(starts, lengths, counts)
 
 
