@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-Vector = tuple[float, float]
+from stiction.friction.law import Vector
 
 
 class Aligned(NamedTuple):

@@ -108,14 +108,19 @@ def surface_of(slider: Slider) -> Isotropic | Elliptic:
 def friction_of(slider: Slider) -> tuple[Any, Isotropic | Elliptic]:
     """Return the law behind pointers, and the surface in the solver's axes."""
     law: Any = slider.law
-    surface = surface_of(slider)
-    if not is_aligned(slider):
-        T, n = solver_axes(slider).turn, surface
-        N = T.T @ np.array([[n.xx, n.xy], [n.xy, n.yy]]) @ T
-        surface = Elliptic(float(N[0, 0]), float(N[0, 1]), float(N[1, 1]))
     if isinstance(law, Anisotropic):
         law = law.law
-    return getattr(law, "prepare", lambda: law)(), surface
+    return getattr(law, "prepare", lambda: law)(), solver_surface(slider)
+
+
+def solver_surface(slider: Slider) -> Isotropic | Elliptic:
+    """Return the surface in the solver's axes (M73)."""
+    n = surface_of(slider)
+    if is_aligned(slider):
+        return n
+    T = solver_axes(slider).turn
+    N = T.T @ np.array([[n.xx, n.xy], [n.xy, n.yy]]) @ T
+    return Elliptic(float(N[0, 0]), float(N[0, 1]), float(N[1, 1]))
 
 
 def speeds(slider: Slider, drive: Any, start: float, end: float) -> tuple[float, float]:
@@ -171,7 +176,7 @@ def bend(slider: Slider, drive: Any, load: Any, start: float, end: float) -> flo
     )
     mu = static_coefficient(law) / s.mass
     f, _, ddf = (mu * bound for bound in load_bounds(load, start, end))
-    weakest = weakest_share(friction_of(slider)[1])
+    weakest = weakest_share(solver_surface(slider))
     first, second = first / weakest, second / weakest
     return 2.0 * (first * first + f * second + f * ddf)
 

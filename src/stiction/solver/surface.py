@@ -74,15 +74,6 @@ def speed_ratio(problem: Problem, tensor: Tensor, w: float) -> float:
 
 
 @inlined
-def speed_along(problem: Problem, e_x: float, e_y: float) -> float:
-    """Return the slip speed for unit slip along e in the solver's axes."""
-    if is_aligned(problem.rig):
-        return 1.0
-    xx, xy, yy = metric(problem.rig)
-    return sqrt(xx * e_x * e_x + 2.0 * xy * e_x * e_y + yy * e_y * e_y)
-
-
-@inlined
 def tensor_into(tensor: Tensor, e_x: float, e_y: float) -> Tensor:
     """Return a tensor in axes along e = (e_x, e_y) and across it."""
     xx, xy, yy = tensor

@@ -22,7 +22,7 @@ from stiction.solver.state import (
     state_from_plain,
 )
 from stiction.solver.stick import holding
-from stiction.solver.surface import friction_along, speed_along
+from stiction.solver.surface import friction_along, metric_into, speed_ratio
 from stiction.system.description import Description
 from stiction.system.slider import Slider
 
@@ -80,7 +80,8 @@ def force_between(problem: Problem, motion: Motion) -> tuple[float, float]:
     if motion.r == 0.0:
         a_x, a_y = holding(problem, motion.t, motion.u_x, motion.u_y)
         return m * a_x, m * a_y
-    speed = motion.r * speed_along(problem, motion.e_x, motion.e_y)
+    along = metric_into(problem, motion.e_x, motion.e_y)
+    speed = motion.r * speed_ratio(problem, along, 0.0)
     f = m * friction(problem, motion.t, speed)[0]
     f_x, f_y = friction_along(problem, motion.e_x, motion.e_y)
     return f * f_x, f * f_y

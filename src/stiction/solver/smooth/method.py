@@ -18,7 +18,6 @@ from stiction.solver.smooth.state import SmoothMemory, SmoothMotion, SmoothState
 from stiction.solver.state import NOTHING, Accuracy, Output, first_step
 from stiction.system.description import Description
 from stiction.system.slider import Slider
-from stiction.system.tensors import is_aligned
 
 # of the slip speed below which that of set-valued friction is not resolved: states remember slower
 # slip. LuGre's published case comes out 600 times better for 14 % more steps.
@@ -30,9 +29,7 @@ class Smooth:
 
     def __init__(self, slider: Slider, delta: float | None, smoothing: str = "root") -> None:
         """Store the slider, and compile its law."""
-        law, surface = friction_of(slider)
-        if not is_aligned(slider):  # the law is asked in the axes x and y
-            surface = surface_of(slider)
+        law, surface = friction_of(slider)[0], surface_of(slider)  # asked in the axes x and y
         self.first_step = 0.0
         self.states = len(states(law))
         self.law: Any = law if delta is None else SMOOTHED[smoothing](law, surface, delta)
