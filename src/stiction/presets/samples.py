@@ -28,6 +28,7 @@ def upward_crossings(times: Floats, values: Floats) -> Floats:
         cubic = np.polynomial.Polynomial.fit(times[near], values[near], len(times[near]) - 1)
         roots = cubic.roots()
         real = roots[np.isreal(roots)].real
-        inside = real[(real >= times[i]) & (real <= times[i + 1])]
-        found.append(float(inside[0]) if inside.size else float(times[i]))
+        # rounding may put the root of a curve that is zero at a sample just beyond that sample
+        nearest = real[np.argmin(np.abs(real - (times[i] + times[i + 1]) / 2.0))]
+        found.append(float(np.clip(nearest, times[i], times[i + 1])))
     return np.array(found)

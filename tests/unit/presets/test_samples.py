@@ -16,3 +16,12 @@ def test_crossings_are_those_of_the_curve():
     t = np.linspace(0.0, 20.0, 401)
     found = upward_crossings(t, np.sin(t - 0.3))
     assert found == pytest.approx(0.3 + 2 * np.pi * np.arange(4), abs=0.05**4)
+
+
+def test_crossings_at_a_sample_are_found():
+    """Rounding may put the root of a curve that is zero at a sample beside the interval."""
+    for k in range(400):
+        shift = 0.05 * (k % 20 + 3) * (1.0 + 1e-16 * (k - 200))
+        t = np.linspace(0.0, 20.0, 401) + 1e-3 * k
+        found = upward_crossings(t, np.sin(t - t[0] - shift))
+        assert found[:3] == pytest.approx(t[0] + shift + 2 * np.pi * np.arange(3), abs=0.05**4)
