@@ -5,7 +5,7 @@ import pint
 import pytest
 
 from stiction.text.quantity_text import quantity_text
-from stiction.text.unit_text import LONGEST
+from stiction.text.unit_text import COMMON, LONGEST, factor
 from stiction.text.units import FORCE, VELOCITY, Kind, PydanticCustomError, in_words, to_si
 
 DAMPING = Kind("a damping constant", "N*s/m", "0.5 N*s/m")
@@ -48,6 +48,18 @@ def test_a_damping_constant_is_read_however_it_is_written(text):
 )
 def test_other_quantities(text, kind, value):
     assert to_si(text, kind) == pytest.approx(value, rel=1e-15)
+
+
+def test_common_units_are_those_of_the_registry():
+    """Factors without the registry equal its own, and it finds the same dimensions."""
+    registry = pint.UnitRegistry()
+    for name in COMMON:
+        known = registry.Quantity(1.0, name).to_base_units()
+        same = {"kilogram": "kg", "meter": "m", "second": "s"}
+        base = "*".join(f"{same[each]}^{int(power)}" for each, power in known.units._units.items())
+        assert factor(name, base) == pytest.approx(
+            registry.Quantity(1.0, name).to(base).magnitude, rel=1e-15
+        )
 
 
 def test_what_is_written_in_decimals_becomes_the_nearest_float():

@@ -26,6 +26,7 @@ from typing import Any, cast
 
 import numba
 from numba.core import compiler, types
+from numba.core.runtime import rtsys
 from numba.core.serialize import dumps as _dumps
 from numba.core.sigutils import normalize_signature as _normalize
 from platformdirs import user_cache_path
@@ -67,13 +68,13 @@ class Shelf:
 
     def load_overload(self, signature: Any, context: Any) -> Any:
         """Return the code for a signature, or None if it is missing or damaged."""
-        context.refresh()
         path = self._path(signature, context.codegen())
         code = _read_code(path)
         if code is None:
             if solver := _in_words(signature):  # other functions take less than a second
                 log.info("compiling %s, once", solver)
             return None
+        rtsys.initialize(context)
         return rebuild(context, *pickle.loads(code))
 
     def save_overload(self, signature: Any, result: Any) -> None:
