@@ -31,6 +31,7 @@ from stiction.cli.options import value as option
 from stiction.comparison import read_laws
 from stiction.result import checksums
 from stiction.result.file import open_tables
+from stiction.result.table import as_table
 from stiction.study.store.seal import seal
 from stiction.text.toml import toml_text
 
@@ -306,7 +307,7 @@ def result(draw: Draw, folder: Path) -> None:
 def reseal(path: Path) -> None:
     """Have a result's checksums fit what is in it, as who changes it on purpose would."""
     with suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
-        data, sticks = open_tables(path)
+        data, sticks = map(as_table, open_tables(path))
         seal = checksums.seal_tables({"samples": data, "sticks": sticks})
         with h5py.File(path, "r+") as file:
             file.attrs[checksums.SEAL] = seal

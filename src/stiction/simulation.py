@@ -7,7 +7,7 @@ from functools import partial
 from importlib.metadata import version
 from math import ceil
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numba.core.errors import NumbaError
@@ -15,16 +15,14 @@ from numba.core.errors import NumbaError
 from stiction.drive.procedures import end
 from stiction.errors import STATUSES, DescriptionError, Fault, Status
 from stiction.friction import has_state, states
-from stiction.result.dataset import VARIABLES, dataset
+from stiction.result.columns import VARIABLES, sample_table
+from stiction.result.table import Table
 from stiction.solver.compilation.refusal import reasons
 from stiction.solver.integrate import Solution, integrate
 from stiction.system.description import Description, Settings, description_of
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
 from stiction.trajectory import Statistics, Trajectory
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 PAPERS = Initial()
 
@@ -176,8 +174,8 @@ def run(
 
 def label(
     description: Description, solution: Solution, status: Status, statistics: Statistics
-) -> xr.Dataset:
-    """Return what a run found as labelled arrays, and how it was found."""
+) -> Table:
+    """Return what a run found as named arrays, and how it was found."""
     attributes = {
         "stiction_version": version("stiction"),
         "solver": f"{kind(description)}, Radau IIA 5",
@@ -185,7 +183,7 @@ def label(
         "status_message": status.value,
         **vars(statistics),
     }
-    return dataset(description, solution.times, solution.samples, attributes)
+    return sample_table(description, solution.times, solution.samples, attributes)
 
 
 def solve(

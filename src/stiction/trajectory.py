@@ -13,8 +13,9 @@ import numpy as np
 from stiction.errors import DescriptionError, ResultError, Status
 from stiction.friction import states
 from stiction.names import draw
-from stiction.result.dataset import VARIABLES, apparent_friction, cf_attributes, stick_table
+from stiction.result.columns import VARIABLES, apparent_friction, cf_attributes, stick_table
 from stiction.result.file import ENDS, age, read_tables, write_result
+from stiction.result.table import Column, Table, as_dataset, as_table
 from stiction.storage.files import placeable, whole
 from stiction.storage.table_files import exportable, write_tables
 from stiction.system.description import Description
@@ -63,7 +64,7 @@ class Trajectory:
     description : Description
         The description of the run.
     arrays : callable
-        Returns `data`, at first use.
+        Returns `samples`, at first use.
     stick_intervals : ndarray
         Start and end of each stick, (n, 2), in s; `sticks` as a plain array.
     status : Status
@@ -73,14 +74,14 @@ class Trajectory:
     """
 
     description: Description
-    arrays: Callable[[], xr.Dataset]
+    arrays: Callable[[], Table]
     stick_intervals: np.ndarray = field(compare=False)
     status: Status
     statistics: Statistics
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
-        n, end = self.data.sizes["time"], float(self.data["time"][-1])
+        n, end = len(self.samples["time"]), float(self.samples["time"][-1])
         sticks = self.statistics.stick_count
         return f"<Trajectory to {end:g} s, {n} samples, {sticks} sticks, {self.status.name}>"
 
@@ -89,9 +90,14 @@ class Trajectory:
         return as_html([head, Section("Slider", [], parameter_table(slider_tables(self.slider)))])
 
     @cached_property
-    def data(self) -> xr.Dataset:
-        """The samples: variables over ``time``, with units (see `stiction.result.dataset`)."""
+    def samples(self) -> Table:
+        """The samples as plain arrays, by name: ``run.samples["u_x"]``."""
         return self.arrays()
+
+    @cached_property
+    def data(self) -> xr.Dataset:
+        """The samples: variables over ``time``, with units (see `stiction.result.columns`)."""
+        return as_dataset(self.samples)
 
     @cached_property
     def sticks(self) -> xr.Dataset:
@@ -99,7 +105,7 @@ class Trajectory:
 
         `stick_start`, `stick_end` and `stick_duration`, in s.
         """
-        return stick_table(self.stick_intervals)
+        return as_dataset(stick_table(self.stick_intervals))
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return the samples as a pandas data frame, indexed by time.
@@ -160,8 +166,10 @@ class Trajectory:
             If the file cannot be written there.
         """
         target = writable(path)
+        shown = "data" in vars(self)  # who has seen the dataset may have added to it
+        samples = as_table(self.data) if shown else self.samples
         with whole(target) as part:
-            write_result(self.data, self.sticks, part)
+            write_result(samples, stick_table(self.stick_intervals), part)
         return target
 
 
@@ -250,13 +258,13 @@ def load(path: str | Path, *, trust: bool = False) -> Trajectory:
         told = f"its attributes cannot be read: {error}"
         raise ResultError(f"{path}: {told}{age(data)}") from None
     intervals = np.column_stack([sticks[name].values for name in ENDS])
-    arrays = partial(_with_mu, data, description.slider)
+    arrays = partial(_with_mu, as_table(data), description.slider)
     return Trajectory(description, arrays, intervals, status, statistics)
 
 
-def _with_mu(data: xr.Dataset, slider: Slider) -> xr.Dataset:
+def _with_mu(samples: Table, slider: Slider) -> Table:
     """Add the apparent friction coefficient to samples of version 0.4."""
-    if "mu" in data:
-        return data
-    mu = apparent_friction(slider, data)
-    return data.assign(mu=mu.assign_attrs(cf_attributes(*VARIABLES["mu"])))
+    if "mu" in samples.columns:
+        return samples
+    mu = Column(("time",), apparent_friction(slider, samples), cf_attributes(*VARIABLES["mu"]))
+    return Table({**samples.columns, "mu": mu}, samples.attributes)

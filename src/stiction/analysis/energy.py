@@ -120,7 +120,7 @@ def energy_budget(run: Trajectory, edges: ArrayLike | None = None) -> xr.Dataset
 
 def _edges(run: Trajectory, edges: ArrayLike | None) -> Floats:
     """Return the edges, if they are valid."""
-    first, last = (float(run.data["time"][i]) for i in (0, -1))
+    first, last = (float(run.samples["time"][i]) for i in (0, -1))
     if edges is None:
         return np.array([first, last])
     found = np.asarray(edges, dtype=np.float64)

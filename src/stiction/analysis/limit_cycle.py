@@ -40,7 +40,7 @@ def settle(slider: Slider, start: Initial, most_blocks: int, rtol: float) -> Fou
     state, amplitudes = start, []
     for count in range(1, most_blocks + 1):
         run = simulate(slider, block, initial=state, sample_rate=SAMPLES / period, rtol=rtol)
-        end = run.state(float(run.data["time"][-1]))
+        end = run.state(float(run.samples["time"][-1]))
         state = end.model_copy(update={"time": 0.0})  # drive and load are steady
         amplitudes.append(swing(slider, run.data))
         if amplitudes[-1] < DECAYED * small:

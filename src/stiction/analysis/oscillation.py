@@ -59,7 +59,7 @@ def transverse_oscillation(run: Trajectory) -> xr.Dataset:
         If the run is too short or too coarsely sampled for it, or nothing moves along y.
     """
     natural, width = _scales(run)
-    if not run.data["v_y"].values.any():
+    if not run.samples["v_y"].any():
         raise ResultError("nothing moves across the drive: there is no misalignment")
     found = follow_ridge(oscillation_spectrogram(run), LOWEST * natural, HIGHEST * natural)
     middle = found["time"].values
@@ -89,7 +89,7 @@ def transverse_oscillation(run: Trajectory) -> xr.Dataset:
 
 def oscillation_spectrogram(run: Trajectory) -> xr.DataArray:
     """Return the spectrogram of v_y (m/s), see `transverse_oscillation`."""
-    times = run.data["time"].values
+    times = run.samples["time"]
     natural, width = _scales(run)
     span = float(times[-1] - times[0])
     rate = (len(times) - 1) / span if span > 0.0 else 0.0
@@ -100,7 +100,7 @@ def oscillation_spectrogram(run: Trajectory) -> xr.DataArray:
             f"{rate:.4g} Hz and {span:.3g} s"
         )
     lines = spectrogram(
-        run.data["v_y"].values, rate, width=width, step=width / STEPS, start=float(times[0])
+        run.samples["v_y"], rate, width=width, step=width / STEPS, start=float(times[0])
     )
     return lines.assign_attrs(units="m/s", long_name="amplitude of v_y")
 

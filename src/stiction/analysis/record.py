@@ -257,7 +257,7 @@ def record_of(run: Trajectory) -> Record:
     The force is positive where the spring pulls along the drive. NaN samples at the end of a failed
     run are left out.
     """
-    slider, data = run.slider, run.data
+    slider, samples = run.slider, run.samples
     x, y = (1.0, 0.0) if slider.cell_angle is None else slider.cell
     c, s = slider.direction
     share = x * c + y * s
@@ -265,7 +265,7 @@ def record_of(run: Trajectory) -> Record:
     stiffness = slider.k_x if share == 0.0 else (x * slider.k_x * c + y * slider.k_y * s) / share
     way = -1.0 if along < 0.0 else 1.0
     names = ("time", "spring_x", "spring_y", "X", "slip_speed")
-    columns = np.stack([data[name].values for name in names])
+    columns = np.stack([samples[name] for name in names])
     time, f_x, f_y, X, slip_speed = columns[:, np.isfinite(columns).all(axis=0)]
     if not len(time):
         raise ResultError("no sample of the run is a number; simulate it again")

@@ -241,5 +241,5 @@ def _above(record: Record, cycles: xr.Dataset) -> float:
 
 def _phases(run: Trajectory, curves: xr.Dataset, cycles: xr.Dataset) -> np.ndarray:
     """Return start and end (s) of each stick phase of a run, the first loading among them."""
-    starts = np.concatenate([[float(run.data["time"][0])], cycles["start"].values])
+    starts = np.concatenate([[float(run.samples["time"][0])], cycles["start"].values])
     return np.column_stack([starts, curves["slip_time"].values])

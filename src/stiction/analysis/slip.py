@@ -43,7 +43,7 @@ def averaged_slip(run: Trajectory, parts: int) -> Slip:
 
     Samples that are farther apart stay as they are.
     """
-    size = run.data.sizes["time"]
+    size = len(run.samples["time"])
     starts = np.unique(np.linspace(0, size, FINE * parts, endpoint=False).astype(np.intp))
     counts = np.diff(starts, append=size)
     half = len(starts) // parts
@@ -51,15 +51,15 @@ def averaged_slip(run: Trajectory, parts: int) -> Slip:
     weight = np.convolve(counts, window, "same")[: len(starts)]
 
     def mean(name: str) -> Floats:
-        values = run.data[name].values.astype(np.float64)
+        values = run.samples[name].astype(np.float64)
         total = np.convolve(np.add.reduceat(values, starts), window, "same")
         result: Floats = total[: len(starts)] / weight
         return result
 
-    high = np.maximum.reduceat(run.data["slip_speed"].values, starts)
+    high = np.maximum.reduceat(run.samples["slip_speed"], starts)
     if half > 1:
         high = sliding_window_view(np.pad(high, half), 2 * half + 1).max(axis=1)
-    time, force = np.add.reduceat(run.data["time"].values, starts) / counts, mean("spring_x")
+    time, force = np.add.reduceat(run.samples["time"], starts) / counts, mean("spring_x")
     return Slip(time, force, mean("slip_speed"), high, mean("sticking"))
 
 
@@ -100,7 +100,7 @@ class Outcome(NamedTuple):
 
 def outcome(run: Trajectory) -> Outcome:
     """Return the outcome of a run; more samples make the speeds more accurate."""
-    speed, times = run.data["slip_speed"].values, run.data["time"].values
+    speed, times = run.samples["slip_speed"], run.samples["time"]
     end = first_slip_time(run)
     loading = speed[: np.searchsorted(times, end) + 1]
     parts = np.array_split(loading, min(100, len(loading)))
@@ -110,7 +110,7 @@ def outcome(run: Trajectory) -> Outcome:
         run.status,
         statistics.stick_count,
         statistics.time_stuck,
-        float(np.fmax.reduce(np.abs(run.data["spring_x"].values))) / run.slider.normal_load,
+        float(np.fmax.reduce(np.abs(run.samples["spring_x"]))) / run.slider.normal_load,
         float(np.fmax.reduce(speed)),  # ignores NaN at the end of a run
         0.0 if rests else float(np.fmin.reduce(loading)),
         float(np.median([part.mean() for part in parts])),

@@ -167,7 +167,7 @@ def outcome(run: Trajectory) -> str:
     The last quarters of the run count. A mass at rest deviates by the full speed; larger deviations
     in a slip are cut to that.
     """
-    times, speed = run.data["time"].values, run.data["V_X"].values / run.slider.motion.rate(0.0)[0]
+    times, speed = run.samples["time"], run.samples["V_X"] / run.slider.motion.rate(0.0)[0]
     late = times - times[0] >= 0.5 * (times[-1] - times[0])
     last = times - times[0] >= 0.75 * (times[-1] - times[0])
     if speed[late].max() < LOADING:
@@ -186,8 +186,8 @@ def coarse_rate(prediction: Prediction) -> float:
 
 def shares(run: Trajectory, cycles: xr.Dataset) -> Shares:
     """Return the shares of time in whole cycles, or in the loading if there are none."""
-    times, (drive, _) = run.data["time"].values, run.slider.motion.rate(0.0)
-    speed = run.data["V_X"].values / drive
+    times, (drive, _) = run.samples["time"], run.slider.motion.rate(0.0)
+    speed = run.samples["V_X"] / drive
     begin, end = times[0], times[np.argmax(speed > ALMOST)] if speed.max() > ALMOST else times[-1]
     if cycles.sizes["cycle"]:
         begin, end = float(cycles["start"][0]), float(cycles["trough_time"][-1])

@@ -237,9 +237,9 @@ def numbers(found: Audit) -> Table:
 
 def creep_before_slip(found: Audit, slip: float) -> float:
     """Return the distance moved until the first slip, m; NaN if there is none."""
-    data = found.observation.run.data
-    along = abs(data["X"].values - float(data["X"][0]))
-    return float(np.interp(slip, data["time"].values, along)) if isfinite(slip) else nan
+    samples = found.observation.run.samples
+    along = np.abs(samples["X"] - samples["X"][0])
+    return float(np.interp(slip, samples["time"], along)) if isfinite(slip) else nan
 
 
 def kinetic(seen: Observation) -> float:

@@ -25,13 +25,13 @@ BELT = 0.2  # m/s
 
 def _leine(run: Trajectory) -> list[float]:
     starts, ends = run.stick_intervals[1:-1].T  # whole ones, after a first cycle
-    whole = slice(*np.searchsorted(run.data["time"].values, ends[[0, -1]]))
+    whole = slice(*np.searchsorted(run.samples["time"], ends[[0, -1]]))
     return [
         float(np.mean(starts[1:] - ends[:-1])),
         float(np.mean(ends - starts)),
         float(np.mean(np.diff(starts))),
-        crest(run.data["u_x"].values[whole]),
-        -crest(-run.data["v_x"].values[whole]),
+        crest(run.samples["u_x"][whole]),
+        -crest(-run.samples["v_x"][whole]),
         len(starts),
     ]
 
@@ -69,7 +69,7 @@ def _weakening() -> HyperbolicWeakening:
 
 def _cycle(run: Trajectory) -> list[float]:
     """Return the period and the largest displacement of the last cycles."""
-    late = run.data.isel(time=run.data["time"].values > 0.4 * run.description.run.duration)
+    late = run.data.isel(time=run.samples["time"] > 0.4 * run.description.run.duration)
     u = late["u_x"].values
     starts = upward_crossings(late["time"].values, u - float(np.mean(u)))
     cycles = slice(*np.searchsorted(late["time"].values, starts[[0, -1]]))

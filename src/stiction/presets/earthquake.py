@@ -46,12 +46,12 @@ def two_states(share: float, inertia: float = INERTIA) -> Description:
 
 def crossings(run: Trajectory) -> tuple[Floats, Floats]:
     """Return the last 64 times (D_c/V) at which the slip passes V upwards, and the force then."""
-    t, s = run.data["time"].values * V / D, run.data["slip_x"].values
+    t, s = run.samples["time"] * V / D, run.samples["slip_x"]
     late = t > TRANSIENT
     times = upward_crossings(t[late], np.log(s[late] / V))[-65:]
     from scipy.interpolate import CubicSpline
 
-    return times, CubicSpline(t, run.data["spring_x"].values)(times)  # type: ignore[no-untyped-call]
+    return times, CubicSpline(t, run.samples["spring_x"])(times)  # type: ignore[no-untyped-call]
 
 
 def distinct(values: Floats) -> int:

@@ -129,7 +129,7 @@ def _lag(run: Trajectory) -> list[float]:
 
 def loop_width(run: Trajectory) -> float:
     """Return friction while the speed rises through 1.5 mm/s less that while it falls, N."""
-    F = run.data["friction"].values[-401:]
+    F = run.samples["friction"][-401:]
     falls, rises = F[100], F[300]  # a quarter and three quarters of the last period
     return float(rises - falls)
 

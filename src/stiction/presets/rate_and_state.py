@@ -49,9 +49,9 @@ def step(law: Any, k: float) -> Description:
 
 
 def _steps(run: Trajectory) -> list[float]:
-    at = run.data["time"].values.searchsorted([10.0 + t - 1e-9 for t in AFTER])
-    mu = run.data["spring_x"].values[at]
-    v = run.data["slip_speed"].values[at] / UM
+    at = run.samples["time"].searchsorted([10.0 + t - 1e-9 for t in AFTER])
+    mu = run.samples["spring_x"][at]
+    v = run.samples["slip_speed"][at] / UM
     return [*map(float, mu), *map(float, v)]
 
 
@@ -144,7 +144,7 @@ def velocity_step_two_states() -> Description:
 
 
 def _slide_hold_slide(run: Trajectory) -> list[float]:
-    t, mu = run.data["time"].values, run.data["spring_x"].values
+    t, mu = run.samples["time"], run.samples["spring_x"]
     at = t.searchsorted([20.0 - 1e-9, 120.0 - 1e-9])
     again = mu[at[1] :]
     return [*map(float, mu[at]), crest(again), float(again[-1])]

@@ -87,7 +87,7 @@ FIRST, RADIUS = atan(6 / 13), sqrt(13**2 + 6**2) - 1  # of the first half circle
 
 
 def _free(run: Trajectory) -> list[float]:
-    u, times = run.data["u_x"].values, run.data["time"].values
+    u, times = run.samples["u_x"], run.samples["time"]
     turns = [crest((-1) ** n * u[_around(times, FIRST + n * pi)]) for n in range(7)]
     start = float(run.stick_intervals[0, 0])
     return [*turns, start, float(run.final["u_x"]), len(run.stick_intervals)]

@@ -47,7 +47,7 @@ def figure3(run: Trajectory) -> Figure:
 
 def _magnify_creep(ax: Axes, run: Trajectory) -> Axes:
     """Draw, in an inset, how X (um) creeps before the first slip."""
-    start, end = float(run.data["time"][0]), first_slip_time(run)
+    start, end = float(run.samples["time"][0]), first_slip_time(run)
     stick = run.data.sel(time=slice(start, start + 0.98 * (end - start)))
     inset = ax.inset_axes((0.16, 0.48, 0.36, 0.44))
     factor, prefix = metric_prefix(stick["X"].values)

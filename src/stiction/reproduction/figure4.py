@@ -60,7 +60,7 @@ def figure4(run: Trajectory) -> Figure:
 
 def _magnify_stick(ax: Axes, run: Trajectory) -> Axes:
     """Draw, in an inset, v_x before the first slip, where its oscillation is small."""
-    start, end = float(run.data["time"][0]), first_slip_time(run)
+    start, end = float(run.samples["time"][0]), first_slip_time(run)
     stick = run.data["v_x"].sel(time=slice(start, start + 0.98 * (end - start)))
     factor, prefix = metric_prefix(stick.values)
     inset = ax.inset_axes((0.14, 0.2, 0.25, 0.52))

@@ -136,7 +136,7 @@ def _stick_share(run: Trajectory, start: float, end: float) -> float:
 def _ridge(run: Trajectory, start: float, end: float) -> float:
     """Return the frequency (Hz) of the strongest transverse oscillation between two times (s)."""
     part = run.data["v_y"].sel(time=slice(start, end)).values
-    rate = 1 / float(run.data["time"][1] - run.data["time"][0])
+    rate = 1 / float(run.samples["time"][1] - run.samples["time"][0])
     power = np.abs(np.fft.rfft((part - part.mean()) * np.hamming(len(part)), 1 << 15))
     frequency = np.fft.rfftfreq(1 << 15, 1 / rate)
     band = frequency > 200

@@ -14,42 +14,27 @@ import os
 from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from stiction.errors import ResultError
+from stiction.result.table import Table
 from stiction.storage.checksums import LENGTH, broken_parts, bytes_of, crc_of_file, seal
 from stiction.storage.foreign import opening
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 SEAL, DESCRIPTION = "checksums", "description"  # attributes of the file
-CHUNK = 2**16  # samples per checksum
 MARK = b"stiction crc-32c"  # precedes the checksum of a whole file
 
 
-def seal_tables(tables: Mapping[str, xr.Dataset]) -> str:
+def seal_tables(tables: Mapping[str, Table]) -> str:
     """Return the checksums of tables as the text of an attribute."""
     return seal(_parts(tables))
 
 
-def checksum_encoding(table: xr.Dataset) -> dict[Any, dict[str, Any]]:
-    """Return the encoding of a table's arrays, with HDF5's checksums."""
-    return {
-        name: {"fletcher32": True, "chunksizes": (min(each.size, CHUNK),)}
-        for name, each in table.variables.items()
-        if each.size
-    }
-
-
-def damaged_parts(known: str | None, tables: Mapping[str, xr.Dataset]) -> list[str]:
-    """Return the names of damaged parts; none for files of versions without checksums."""
-    if known is None:
-        arrays = [each for table in tables.values() for each in table.variables.values()]
-        return [SEAL] if any(each.encoding.get("fletcher32") for each in arrays) else []
-    return broken_parts(known, _parts(tables))
+def damaged_parts(known: str | None, tables: Mapping[str, Table]) -> list[str]:
+    """Return the names of damaged parts, by the text of `seal_tables`."""
+    return [SEAL] if known is None else broken_parts(known, _parts(tables))
 
 
 def intact_description(path: str | Path) -> str:
@@ -69,18 +54,18 @@ def intact_description(path: str | Path) -> str:
     return text
 
 
-def _parts(tables: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+def _parts(tables: Mapping[str, Table]) -> dict[str, Any]:
     """Return the contents of tables: each array's numbers, and all attributes together."""
     numbers: dict[str, Any] = {}
     attributes: dict[str, Any] = {}
     for name, table in tables.items():
-        kept = {key: value for key, value in table.attrs.items() if key != SEAL}
+        kept = {key: value for key, value in table.attributes.items() if key != SEAL}
         if DESCRIPTION in kept:
             numbers[DESCRIPTION] = str(kept.pop(DESCRIPTION)).encode()
         attributes[name] = _plain(kept)
-        for column, each in table.variables.items():
-            numbers[f"{name}.{column}"] = bytes_of(each.values)
-            attributes[f"{name}.{column}"] = [each.dtype.kind, each.dims, _plain(each.attrs)]
+        for column, (dims, values, about) in table.columns.items():
+            numbers[f"{name}.{column}"] = bytes_of(values)
+            attributes[f"{name}.{column}"] = [values.dtype.kind, dims, _plain(about)]
     return {**numbers, "attributes": json.dumps(attributes, sort_keys=True).encode()}
 
 

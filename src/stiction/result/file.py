@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Sequence
+from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,15 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stiction.errors import ResultError
-from stiction.result.checksums import (
-    SEAL,
-    as_written,
-    checksum_encoding,
-    damaged_parts,
-    seal_tables,
-    sign,
-)
-from stiction.result.dataset import STICKS, VARIABLES
+from stiction.result.checksums import SEAL, as_written, damaged_parts, seal_tables, sign
+from stiction.result.columns import STICKS, VARIABLES
+from stiction.result.table import Table, as_table
 from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files
 from stiction.storage.isolation import apart
 
@@ -28,21 +23,37 @@ if TYPE_CHECKING:
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"  # of HDF5, the format below NetCDF 4
 STICK_GROUP = "sticks"  # group of a result file
+CHUNK = 2**16  # samples per checksum of HDF5
 ENDS = ("stick_start", "stick_end")
 TEXTS = ("description", "status", "stiction_version")
 SHORTEST = 1e-100  # s, between two samples
 LATER = {"mu", "stick_duration"}  # columns that older versions did not write
 
 
-def write_result(data: xr.Dataset, sticks: xr.Dataset, path: Path) -> None:
+def write_result(samples: Table, sticks: Table, path: Path) -> None:
     """Write samples and sticks with checksums."""
-    tables = {"samples": data, "sticks": sticks}
-    whole = data.assign_attrs({SEAL: seal_tables(tables)})
-    whole.to_netcdf(path, engine="h5netcdf", encoding=checksum_encoding(data))
-    sticks.to_netcdf(
-        path, mode="a", group=STICK_GROUP, engine="h5netcdf", encoding=checksum_encoding(sticks)
-    )
+    h5netcdf: Any = import_module("h5netcdf")  # slow to import
+    seal = seal_tables({"samples": samples, "sticks": sticks})
+    with h5netcdf.File(path, "w") as file:
+        _write_table(file, Table(samples.columns, {**samples.attributes, SEAL: seal}))
+        _write_table(file.create_group(STICK_GROUP), sticks)
     sign(path)
+
+
+def _write_table(group: Any, table: Table) -> None:
+    """Write a table into a group of a file, with HDF5's checksum of each array."""
+    group.attrs.update(table.attributes)
+    for name, (dims, values, attributes) in table.columns.items():
+        for dim, size in zip(dims, values.shape, strict=True):
+            if dim not in group.dimensions:
+                group.dimensions[dim] = size
+        number = values.dtype.kind == "f"
+        how = {"fletcher32": True, "chunks": (min(values.size, CHUNK),)} if values.size else {}
+        column = group.create_variable(
+            name, dims, values.dtype, fillvalue=values.dtype.type(np.nan) if number else None, **how
+        )
+        column.attrs.update(attributes)
+        column[...] = values
 
 
 def read_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
@@ -68,7 +79,7 @@ def read_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
     with opening(path, UNREADABLE):
         refuse_other_files(path)
         data, sticks = open_tables(path)
-        lost = damaged_parts(data.attrs.get(SEAL), {"samples": data, "sticks": sticks})
+        lost = _damage_in(data, sticks)
     if lost:
         raise _damage(path, lost)
     data, sticks = data.drop_encoding(), sticks.drop_encoding()
@@ -83,6 +94,15 @@ def read_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
     if wrong:
         raise ResultError(f"{path}: not a result of 'stiction run'; {'; '.join(wrong)}{age(data)}")
     return data, sticks
+
+
+def _damage_in(data: xr.Dataset, sticks: xr.Dataset) -> list[str]:
+    """Return the names of damaged parts; none for files of versions without checksums."""
+    sealed, tables = data.attrs.get(SEAL), {"samples": data, "sticks": sticks}
+    arrays = [each for table in tables.values() for each in table.variables.values()]
+    if sealed is None and not any(each.encoding.get("fletcher32") for each in arrays):
+        return []
+    return damaged_parts(sealed, {name: as_table(each) for name, each in tables.items()})
 
 
 def _damage(path: str | Path, lost: Sequence[str]) -> ResultError:

@@ -73,12 +73,12 @@ def _loading(run: Trajectory) -> Loading:
 
 def first_slip_time(run: Trajectory) -> float:
     """Return the start of the first slip (s), see `loading`; the run's last time if none."""
-    return float(run.data["time"].values[_loading(run).slip])
+    return float(run.samples["time"][_loading(run).slip])
 
 
 def creep_end(run: Trajectory) -> float:
     """Return the end of the initial creep (s), with or without a slip: see `Loading`."""
-    return float(run.data["time"].values[_loading(run).end])
+    return float(run.samples["time"][_loading(run).end])
 
 
 def mean_creep_velocity(run: Trajectory, width: float = 0.02) -> xr.DataArray:
@@ -102,7 +102,7 @@ def mean_creep_velocity(run: Trajectory, width: float = 0.02) -> xr.DataArray:
     """
     import xarray as xr
 
-    times, X = run.data["time"].values, run.data["X"].values
+    times, X = run.samples["time"], run.samples["X"]
     end = first_slip_time(run)
     rests = run.stick_intervals[run.stick_intervals[:, 1] < end, 1]
     edges = list(rests[:1]) or [times[0]]

@@ -41,7 +41,7 @@ def find(found: Analysis) -> xr.Dataset:
 
 def edges(run: Trajectory, cycles: xr.Dataset) -> np.ndarray:
     """Return the times (s) that bound the run and each of its cycles, ascending."""
-    first, last = (float(run.data["time"][i]) for i in (0, -1))
+    first, last = (float(run.samples["time"][i]) for i in (0, -1))
     if first == last:
         raise ResultError("the run has a single sample; run it longer than 1/sample_rate")
     inner = np.concatenate([cycles["start"].values, cycles["trough_time"].values[-1:]])

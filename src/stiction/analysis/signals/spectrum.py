@@ -196,10 +196,10 @@ def rate_spectrogram(run: Trajectory, axis: str, *, width: float = 0.1) -> xr.Da
 
     See `spectrogram`; `width` is the width of the window, s.
     """
-    times = run.data["time"].values
+    times = run.samples["time"]
     rate = (len(times) - 1) / (times[-1] - times[0])
     found = spectrogram(
-        run.data[f"v_{axis}"].values, rate, width=width, step=width / 10, start=times[0]
+        run.samples[f"v_{axis}"], rate, width=width, step=width / 10, start=times[0]
     )
     return found.assign_attrs(units="m/s", long_name=f"amplitude of v_{axis}")
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from stiction.cli.options import Changes, FromPreset, Output, Trust, changes, description_from
 from stiction.cli.terminal import say
 
@@ -83,14 +85,14 @@ def report_lines(result: Trajectory, output: Path) -> list[str]:
     statistics = result.statistics
     lines = []
     if not result.status.ok:
-        reached = float(result.data.time[-1])
+        reached = float(result.samples["time"][-1])
         lines.append(f"ended early at t = {reached:.6g} s: {result.status.value}")
-    peak = float(abs(result.data["spring_x"]).max())
+    peak = float(np.abs(result.samples["spring_x"]).max())
     mapped = f", {statistics.mapped} intervals without any" if statistics.mapped else ""
-    few = result.data.sizes["time"] <= 2
-    sampled = " at start and end (sample_rate = 0)" if few else ""
+    count = len(result.samples["time"])
+    sampled = " at start and end (sample_rate = 0)" if count <= 2 else ""
     lines += [
-        f"{output}: {result.data.sizes['time']} samples, stick intervals: "
+        f"{output}: {count} samples, stick intervals: "
         f"{statistics.stick_count}, {in_words(statistics.time_stuck, 's')} in all"
         f"{share(result)}; {statistics.steps} steps{mapped}",
         f"largest force of the spring along x, k_x u_x{sampled}: {in_words(peak, 'N')}, "
@@ -99,7 +101,7 @@ def report_lines(result: Trajectory, output: Path) -> list[str]:
         f"stiction analyse {output}",
     ]
     if statistics.steps == 0 or (result.status.ok and rests_throughout(result)):
-        still = not result.data["drive_X"].any() and not result.data["drive_Y"].any()
+        still = not any(result.samples[name].any() for name in ("drive_X", "drive_Y"))
         remedy = "the drive is at rest; give it a velocity" if still else longer(result)
         lines.append(f"it never slipped: friction held all the time; {remedy}")
     return lines
@@ -107,7 +109,7 @@ def report_lines(result: Trajectory, output: Path) -> list[str]:
 
 def share(result: Trajectory) -> str:
     """Return the share of time stuck, in words."""
-    times = result.data["time"].values
+    times = result.samples["time"]
     lasted = float(times[-1] - times[0])
     return (
         f", {100 * result.statistics.time_stuck / lasted:.3g}% of the time" if lasted > 0.0 else ""
@@ -116,7 +118,7 @@ def share(result: Trajectory) -> str:
 
 def rests_throughout(result: Trajectory) -> bool:
     """Return whether the mass did not move, although its law does not allow true rest."""
-    V, slip = abs(result.slider.motion.velocity), result.data["slip_speed"].values
+    V, slip = abs(result.slider.motion.velocity), result.samples["slip_speed"]
     return V > 0.0 and bool((slip[1:] < REST * V).all())
 
 

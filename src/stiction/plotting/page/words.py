@@ -163,7 +163,7 @@ def plain(value: float, digits: int = DIGITS) -> str:
 
 def outcome_in_words(run: Trajectory, width: int = 38) -> list[str]:
     """Return how the run ended, in lines of at most `width` characters, and how it stuck."""
-    times = run.data["time"].values
+    times = run.samples["time"]
     lasted, stuck = float(times[-1] - times[0]), run.stick_intervals
     share = 100 * float((stuck[:, 1] - stuck[:, 0]).sum()) / lasted if lasted > 0 else 0.0
     count = f"{len(stuck)} stick{'s' * (len(stuck) != 1)}, {share:.3g} % of the time"

@@ -107,7 +107,7 @@ def legend_text(curve: Curve) -> str:
     heading = [name] if bare else wrap(curve.label, WIDTH)
     lines = [*heading, *wrap_words(parameters_in_words(law), WIDTH)]
     if not curve.run.status.ok:
-        end = float(curve.run.data["time"][-1])
+        end = float(curve.run.samples["time"][-1])
         reason = curve.run.status.name.lower().replace("_", " ")
         lines.append(f"× ended early at {end:.4g} s: {reason}")
     return "\n".join(lines)

@@ -62,10 +62,10 @@ def common(values: Iterable[ArrayLike]) -> tuple[float, str]:
 
 def draw_over_time(ax: Axes, curves: Sequence[Curve], variable: str, symbol: str) -> None:
     """Draw a variable of every run over time, with a cross where a run ended early."""
-    factor, prefix = common(curve.run.data[variable].values for curve in curves)
+    factor, prefix = common(curve.run.samples[variable] for curve in curves)
     ax.set_ylabel(f"{symbol} ({prefix}{curves[0].run.data[variable].attrs['units']})")
     for curve in curves:
-        times, values = curve.run.data["time"].values, curve.run.data[variable].values * factor
+        times, values = curve.run.samples["time"], curve.run.samples[variable] * factor
         ax.plot(*envelope(times, values), **curve.look)
         mark_early_end(ax, curve, times[-1], values[-1])
     ax.margins(y=0.08)

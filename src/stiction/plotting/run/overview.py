@@ -115,7 +115,7 @@ def _series(run: Trajectory) -> dict[str, Callable[[Axes, Trajectory], Any]]:
         def draw_series(ax: Axes, run: Trajectory) -> None:
             draw(ax, run)
             ax.set_xlabel("time $t$ (s)")
-            times = run.data["time"].values
+            times = run.samples["time"]
             if times[-1] > times[0]:
                 ax.set_xlim(times[0], times[-1])
             if draw not in (time_series.draw_slip_speed, time_series.draw_time_stuck):
@@ -144,9 +144,9 @@ def _series(run: Trajectory) -> dict[str, Callable[[Axes, Trajectory], Any]]:
 
 def _forces(ax: Axes, run: Trajectory) -> None:
     """Draw both spring forces."""
-    forces = [run.data[f"spring_{axis}"].values for axis in "xy"]
+    forces = [run.samples[f"spring_{axis}"] for axis in "xy"]
     factor, prefix = metric_prefix(np.concatenate(forces))
-    times = run.data["time"].values
+    times = run.samples["time"]
     for axis, color, force in zip("xy", (RED, ORANGE), forces, strict=True):
         line = time_series.draw_line(ax, times, force * factor, color)
         line.set_label(f"$k_{axis} u_{axis}$")

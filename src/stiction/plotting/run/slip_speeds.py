@@ -36,7 +36,7 @@ def draw_speeds(ax: Axes, curves: Sequence[Curve]) -> None:
 def draw_portrait(ax: Axes, curves: Sequence[Curve]) -> None:
     """Draw the mean slip speed (m/s) over the spring force."""
     ax.set_yscale("log", nonpositive="mask")
-    factor, _ = common(curve.run.data["spring_x"].values for curve in curves)
+    factor, _ = common(curve.run.samples["spring_x"] for curve in curves)
     for curve in curves:
         slip = curve.slip
         mean = np.where(slip.mean > 0, slip.mean, np.nan)
@@ -64,8 +64,8 @@ def set_speed_limits(ax: Axes, curves: Sequence[Curve]) -> None:
 
 def draw_rests(ax: Axes, curves: Sequence[Curve], bins: int = 300) -> None:
     """Draw the share of time at zero slip over time, a filled row for each run."""
-    first = curves[0].run.data["time"].values
-    end = max(float(curve.run.data["time"][-1]) for curve in curves)
+    first = curves[0].run.samples["time"]
+    end = max(float(curve.run.samples["time"][-1]) for curve in curves)
     edges = np.linspace(first[0], max(end, np.nextafter(first[0], np.inf)), bins + 1)
     for row, curve in enumerate(curves):
         share = np.diff(stuck_until(edges, curve.run.stick_intervals)) / np.diff(edges)
@@ -78,14 +78,14 @@ def draw_rests(ax: Axes, curves: Sequence[Curve], bins: int = 300) -> None:
 
 def draw_held(ax: Axes, curves: Sequence[Curve], bins: int = 120) -> None:
     """Draw the share of time at zero slip over the spring force, a filled row for each run."""
-    forces = [curve.run.data["spring_x"].values for curve in curves]
+    forces = [curve.run.samples["spring_x"] for curve in curves]
     factor, prefix = common(forces)
     finite = np.concatenate([force[np.isfinite(force)] for force in forces]) * factor
     low, high = (finite.min(), finite.max()) if len(finite) else (0.0, 1.0)
     pad = 0.04 * (high - low) or 1.0
     edges = np.linspace(low - pad, high + pad, bins + 1)
     for row, (curve, force) in enumerate(zip(curves, forces, strict=True)):
-        times = curve.run.data["time"].values
+        times = curve.run.samples["time"]
         # however short: all are counted
         stuck = np.diff(stuck_until(times, curve.run.stick_intervals))
         total, _ = np.histogram(force[:-1] * factor, edges, weights=np.diff(times))

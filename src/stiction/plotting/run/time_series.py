@@ -123,7 +123,7 @@ def draw_values(
     array = np.asarray(values, dtype=np.float64)
     factor, prefix = metric_prefix(array)
     ax.set_ylabel(f"{symbol} ({prefix}{unit})")
-    return draw_line(ax, run.data["time"].values, array * factor, color)
+    return draw_line(ax, run.samples["time"], array * factor, color)
 
 
 def imposed_quantities(run: Trajectory) -> list[tuple[str, Floats, str, str]]:
@@ -164,7 +164,7 @@ def _after_start(run: Trajectory, variable: str) -> Floats:
     There it moves with a millionth of the drive's speed, and friction is what it is in slip; it
     sticks, or creeps far slower, at once. Few samples, which are shown as such, keep it.
     """
-    values = run.data[variable].values.astype(np.float64)
+    values = run.samples[variable].astype(np.float64)
     if len(values) > FEW:
         values[0] = np.nan
     return values
@@ -177,7 +177,7 @@ def draw_direction(ax: Axes, run: Trajectory) -> Line2D:
     steps = [1, 1.5, 3, 4.5, 9, 10] if high - low > 40.0 else [1, 2, 5, 10]  # 30, 45, 90 deg
     ax.yaxis.set_major_locator(MaxNLocator(nbins=4, steps=steps))
     ax.set_ylabel(r"$\psi$ (deg)")
-    line = draw_line(ax, run.data["time"].values, angles, PURPLE)
+    line = draw_line(ax, run.samples["time"], angles, PURPLE)
     if high - low < STILL:
         ax.set_ylim(low - STILL, high + STILL)
     return line
@@ -201,7 +201,7 @@ def cut_open(angles: ArrayLike) -> Floats:
 
 def draw_position(ax: Axes, run: Trajectory) -> Line2D:
     """Draw the position X along the drive direction over time, without rounding errors."""
-    X, way = run.data["X"].values, fastest_drive(run) * float(np.ptp(run.data["time"].values))
+    X, way = run.samples["X"], fastest_drive(run) * float(np.ptp(run.samples["time"]))
     if np.ptp(X) > LEAST * way or not way > 0.0:
         return draw_quantity(ax, run, "X", "$X$", BLUE)
     line = draw_values(ax, run, np.zeros(len(X)), "$X$", run.data["X"].attrs["units"], BLUE)
@@ -211,7 +211,7 @@ def draw_position(ax: Axes, run: Trajectory) -> Line2D:
 
 def fastest_drive(run: Trajectory) -> float:
     """Return the largest speed of the drive in a run, m/s."""
-    return float(np.hypot(run.data["drive_X"].values, run.data["drive_Y"].values).max())
+    return float(np.hypot(run.samples["drive_X"], run.samples["drive_Y"]).max())
 
 
 def _say_only(ax: Axes, text: str) -> None:
@@ -237,11 +237,11 @@ def draw_slip_speed(ax: Axes, run: Trajectory) -> Line2D:
     ax.set_ylabel(r"$v_\mathrm{slip}$ (m/s)")
     if not largest > LEAST * fastest_drive(run):
         _say_only(ax, "no slip")
-        return draw_line(ax, run.data["time"].values, np.zeros(len(speed)), GREEN)
+        return draw_line(ax, run.samples["time"], np.zeros(len(speed)), GREEN)
     ax.set_yscale("log")
     if len(speed) <= FEW:
         shown = np.where(speed > 1e-7 * largest, speed, np.nan)
-        return draw_line(ax, run.data["time"].values, shown, GREEN)
+        return draw_line(ax, run.samples["time"], shown, GREEN)
     slip = average_slip(run)
     mean = np.where(slip.mean > 1e-7 * largest, slip.mean, np.nan)
     ax.fill_between(slip.time, mean, slip.high, color=GREEN, alpha=BAND, linewidth=0)
@@ -250,7 +250,7 @@ def draw_slip_speed(ax: Axes, run: Trajectory) -> Line2D:
 
 def average_slip(run: Trajectory) -> Slip:
     """Average slip over a 500th of the time, or less to resolve a rapid slip."""
-    times, slider = run.data["time"].values, run.slider
+    times, slider = run.samples["time"], run.slider
     rapid = 0.5 / slider.natural_frequencies[0]
     parts = np.clip(5 * (times[-1] - times[0]) / rapid, PARTS, 20 * PARTS)
     return averaged_slip(run, int(parts))
@@ -262,7 +262,7 @@ def draw_time_stuck(ax: Axes, run: Trajectory, bins: int = 300) -> StepPatch:
     Stick intervals can be far shorter than the sample interval and number thousands; their share
     in each of `bins` bins shows them all.
     """
-    times = run.data["time"].values
+    times = run.samples["time"]
     edges = np.linspace(times[0], max(times[-1], np.nextafter(times[0], np.inf)), bins + 1)
     share = 100.0 * np.diff(stuck_until(edges, run.stick_intervals)) / np.diff(edges)
     ax.set_ylabel("stuck (%)")

@@ -26,7 +26,7 @@ from typing import Any, cast
 
 import numba
 from numba.core import compiler, types
-from numba.core.runtime import rtsys
+from numba.core.runtime import nrt
 from numba.core.serialize import dumps as _dumps
 from numba.core.sigutils import normalize_signature as _normalize
 from platformdirs import user_cache_path
@@ -34,6 +34,7 @@ from platformdirs import user_cache_path
 from stiction.errors import ResultError
 from stiction.storage.files import whole
 
+rtsys: Any = nrt.rtsys
 rebuild: Any = compiler.CompileResult._rebuild
 dumps: Any = _dumps
 normalize_signature: Any = _normalize
@@ -57,6 +58,7 @@ class Shelf:
 
     def __init__(self, function: Callable[..., Any], own: str = "") -> None:
         """Store the function, and the digest of the user's law."""
+        self._own = own
         self._name = f"{function.__module__}.{function.__qualname__}"
         text = Path(getfile(function)).read_bytes()
         self._made_from = hashlib.sha256(text).hexdigest() + own
@@ -74,7 +76,9 @@ class Shelf:
             if solver := _in_words(signature):  # other functions take less than a second
                 log.info("compiling %s, once", solver)
             return None
-        rtsys.initialize(context)
+        if self._own:
+            context.refresh()  # whatever a user's law calls, of NumPy's linear algebra for example
+        rtsys.initialize(context)  # all that the package's own code calls
         return rebuild(context, *pickle.loads(code))
 
     def save_overload(self, signature: Any, result: Any) -> None:

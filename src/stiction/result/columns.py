@@ -1,18 +1,16 @@
-"""From the solver's arrays to two datasets with names and units: samples, stick intervals."""
+"""From the solver's arrays to two tables with names and units: samples, stick intervals."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from stiction.friction import states
+from stiction.result.table import Column, Table
 from stiction.system.description import Description
 from stiction.system.slider import Slider
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 # name: (unit, long name), as CF attributes
 VARIABLES = {
@@ -47,13 +45,13 @@ STICKS = {
 }
 
 
-def dataset(
+def sample_table(
     description: Description,
     times: np.ndarray,
     samples: np.ndarray,
     attributes: dict[str, Any],
-) -> xr.Dataset:
-    """Return the samples of a run as a dataset over ``time``.
+) -> Table:
+    """Return the samples of a run as a table over ``time``.
 
     Parameters
     ----------
@@ -64,14 +62,12 @@ def dataset(
     samples : ndarray
         (n, 7 + internal states); the columns of `stiction.solver.exact.sampling`, then the states.
     attributes : dict
-        Further attributes of the dataset.
+        Further attributes of the table.
     """
-    import xarray as xr
-
     slider = description.slider
     c, s = slider.direction
-    columns = np.ascontiguousarray(samples.T)
-    u_x, u_y, slip_x, slip_y, f_x, f_y, sticking = columns[:7]
+    rows = np.ascontiguousarray(samples.T)
+    (u_x, u_y, slip_x, slip_y, f_x, f_y, sticking), internal = rows[:7], rows[7:]
     travel_X, travel_Y = slider.motion.travel(0.0, times)
     rate_X, rate_Y = slider.motion.rate(times)
     v_x = rate_X * c - rate_Y * s - slip_x
@@ -101,17 +97,16 @@ def dataset(
         "sticking": sticking.astype(np.int8),
     }
     values["mu"] = apparent_friction(slider, values)
-    variables = {
-        name: ("time", values[name], cf_attributes(*VARIABLES[name])) for name in VARIABLES
-    }
-    for state, value in zip(states(slider.law), columns[7:], strict=True):
-        variables[state.name] = ("time", value, cf_attributes(state.unit, state.meaning))
-    time = ("time", times, cf_attributes("s", "time"))
-    attributes = {"description": description.to_json(), **attributes}
-    return xr.Dataset(variables, {"time": time}, attributes)
+    along = ("time",)
+    columns = {"time": Column(along, times, cf_attributes("s", "time"))}
+    for name, about in VARIABLES.items():
+        columns[name] = Column(along, values[name], cf_attributes(*about))
+    for state, value in zip(states(slider.law), internal, strict=True):
+        columns[state.name] = Column(along, value, cf_attributes(state.unit, state.meaning))
+    return Table(columns, {"description": description.to_json(), **attributes})
 
 
-def apparent_friction(slider: Slider, values: Mapping[Any, Any]) -> Any:
+def apparent_friction(slider: Slider, values: Mapping[Any, Any] | Table) -> Any:
     """Return the spring force along the load cell, by default along X, over the normal load.
 
     A friction test reports this ratio; in steady sliding it is the law's coefficient.
@@ -121,14 +116,13 @@ def apparent_friction(slider: Slider, values: Mapping[Any, Any]) -> Any:
         return (values["spring_x"] * c + values["spring_y"] * s) / values["normal_load"]
 
 
-def stick_table(intervals: np.ndarray) -> xr.Dataset:
-    """Return stick intervals, (n, 2) in s, as a dataset over ``stick``."""
-    import xarray as xr
-
+def stick_table(intervals: np.ndarray) -> Table:
+    """Return stick intervals, (n, 2) in s, as a table over ``stick``."""
     start, end = intervals.T
-    columns = dict(zip(STICKS, (start.copy(), end.copy(), end - start), strict=True))
-    return xr.Dataset(
-        {name: ("stick", columns[name], cf_attributes(*STICKS[name])) for name in STICKS}
+    values = zip(STICKS.items(), (start.copy(), end.copy(), end - start), strict=True)
+    return Table(
+        {name: Column(("stick",), value, cf_attributes(*about)) for (name, about), value in values},
+        {},
     )
 
 
