@@ -69,6 +69,48 @@ def hum(random: np.random.Generator) -> Labelled:
     return st.Record(time=time, force=force), count, (STICK_SLIP,)
 
 
+def mains(random: np.random.Generator, time: Floats) -> Floats:
+    """Return hum of the mains with two harmonics, of amplitude 1."""
+    turns = random.choice([50.0, 60.0]) + random.uniform(-0.1, 0.1)
+    phase = 2 * pi * turns * time
+    line = np.sin(phase + random.uniform(0, 6))
+    for harmonic in (2, 3):
+        line += random.uniform(0, 0.4) * np.sin(harmonic * phase + random.uniform(0, 6))
+    return np.asarray(line)
+
+
+def hum_over_loading(random: np.random.Generator) -> Labelled:
+    """Return a first loading, straight or bent, and steady sliding after it, under mains hum."""
+    duration, rate = 10 ** random.uniform(0.3, 1.3), 10 ** random.uniform(np.log10(400), 4)
+    time = np.arange(0.0, duration, 1.0 / rate)
+    loaded = random.uniform(0.15, 0.5) * duration
+    bent = 1.0 - np.exp(-3.0 * time / loaded)
+    force = bent if random.random() < 0.5 else np.minimum(time / loaded, 1.0)
+    if random.random() < 0.5:  # static friction is larger
+        since = np.maximum(time - loaded, 0.0) / (0.02 * duration)
+        force = force - random.uniform(0, 0.2) * (1.0 - np.exp(-since))
+    height = 10 ** random.uniform(-2.3, -0.7)
+    noise = 0.5 * 10 ** random.uniform(-2, 0) * random.normal(size=len(time))
+    force += height * (mains(random, time) + noise)
+    return st.Record(time=time, force=10 ** random.uniform(-2, 2) * force), 0, (STEADY, SETTLING)
+
+
+def random_times(random: np.random.Generator) -> Labelled:
+    """Return stick-slip with mains hum, sampled at random times."""
+    period, rate = 10 ** random.uniform(-0.5, 0.3), 10 ** random.uniform(2.7, 4)
+    corners = sawtooth(random, int(random.integers(12, 40)), period)
+    time, _, count = between(corners, rate)
+    if random.random() < 0.5:
+        time = np.sort(random.uniform(time[0], time[-1], len(time)))
+    else:
+        steps = np.cumsum(random.gamma(random.uniform(0.7, 3.0), 1.0, len(time)))
+        time = time[0] + (time[-1] - time[0]) * (steps - steps[0]) / (steps[-1] - steps[0])
+    noise = 10 ** random.uniform(-3, -1.3) * random.normal(size=len(time))
+    hum = 0.5 * 10 ** random.uniform(-1.3, 0) * mains(random, time)
+    force = 2.0 + np.interp(time, *corners) + hum + noise
+    return st.Record(time=time, force=force), count, (STICK_SLIP,)
+
+
 def few_samples(random: np.random.Generator) -> Labelled:
     """Return sixty cycles of four to seven samples each."""
     samples, fall = random.uniform(4, 7), random.uniform(0.02, 0.15)
@@ -240,6 +282,7 @@ def brief_sliding(random: np.random.Generator) -> Labelled:
 LABELLED: tuple[Callable[[np.random.Generator], Labelled], ...] = (
     hum, few_samples, wild_slips, wild_sliding, irregular, harmonic, short, long, wandering,
     sliding, brief_vibration, brief_harmonic, brief_slips, settling, loading, brief_sliding,
+    hum_over_loading, random_times,
 )  # fmt: skip
 
 

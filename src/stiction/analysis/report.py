@@ -168,7 +168,8 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
             lambda: strongest_line(record, _above(record, cycles), cycles=cycles),
         )
         width = _free_of_hum(oscillation, sticking)
-    friction = find_friction(record, regime.kind, cycles)
+    clean = record.model_copy(update={"force": found.force}) if found.lines else record
+    friction = find_friction(clean, regime.kind, cycles)
     doubts = warnings(record, regime.kind, cycles, friction) if run is None else ()
     doubts += taken_off(found.lines)
     cycles = _blank_meaningless(cycles, regime.kind, missing)

@@ -108,6 +108,7 @@ def test_regimes_are_those_of_records(phi, V):
         stiffness=slider.k_x,
         drive_velocity=V * slider.direction[0],
         mass=slider.mass,
+        slip_speed=np.hypot(run.column(2), run.column(3)),
     )
     found = st.analysis.classify(record)
     if run.regime != found.kind:  # then on the bound between two kinds of cycles

@@ -8,8 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.motion.course import built_up, dies_out
+from stiction.analysis.motion.disturbance import (
+    is_beside,
+    is_residue,
+    is_subharmonic,
+    lasts_through_loading,
+)
 from stiction.analysis.motion.hesitations import take_out
-from stiction.analysis.motion.rest import STICKING, rest_share
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.hum import Line, narrow_lines
 from stiction.analysis.signals.outliers import without_outliers
@@ -48,12 +53,7 @@ COLUMNS = {
 UNSEEN = 0.25  # of a period without a sample: the cycle is not known
 JUMP = 1.5  # sampling steps: a shorter pause is not a gap
 LOADING = (0.1, 0.5)  # part of the rise that is straight: after the swing, before the creep
-# A line beside the motion: swings without it have so many of its periods, and are as high or stick
-SLOWER, HIGHER = 2.0, 0.75
 LINES = 4  # taken off at most
-# Median cosine of the line's phase from one swing to the next, where it returns to within 11 deg:
-# slips twice as long as a line's period, but irregular by 5 %, come to 0.95
-WHOLE = 0.98
 OWN = 10.0  # harmonics of the cycles below this can be lines as well; they make no cycles more
 QUARTER = 4  # of a fall, to each side: cubics through so much of half a sine are 0.2 % too flat
 
@@ -134,6 +134,8 @@ class Swings(NamedTuple):
         `stiction.analysis.signals.turning_points`.
     lines : tuple of Line
         Lines, such as mains hum, subtracted from the force beforehand.
+    force : ndarray
+        (n,), N, without these lines and without wild samples.
     """
 
     table: xr.Dataset
@@ -141,6 +143,7 @@ class Swings(NamedTuple):
     turns: int
     noise: float
     clearness: float
+    force: Floats
     lines: tuple[Line, ...] = ()
 
     @property
@@ -155,7 +158,8 @@ def swings(record: Record) -> Swings:
     """Return all swings of the force that stand apart from smaller reversals.
 
     A narrow line is subtracted first, if the rest shows slower swings that are larger, or that
-    stick: then these are the motion, and the line is a disturbance.
+    stick: then these are the motion, and the line is a disturbance. So is a line that the record
+    shows while the spring is first loaded, unless the slip speed is known.
     """
     force = without_outliers(record.force)
     if force is not record.force:
@@ -172,38 +176,26 @@ def swings(record: Record) -> Swings:
 def _without_line(record: Record, found: Swings) -> tuple[Record, Swings] | None:
     """Return record and swings without a line beside the motion, if there is one."""
     for line in narrow_lines(record.time, record.force):
-        rest = record.model_copy(update={"force": record.force - line.values})
-        without = _swings(rest)
-        if _beside(line, without):
+        rest, without = swings_without(line, record)
+        without = without._replace(lines=(*found.lines, line))
+        if is_beside(line, without.table):
             number = line.frequency * float(without.table["period"].median())
             count, left = (each.table.sizes["cycle"] for each in (found, without))
-            own = 0 < count <= left + 1 or _is_subharmonic(line, without)
+            own = 0 < count <= left + 1 or is_subharmonic(line, without.table)
             if number >= OWN or not own:
-                return rest, without._replace(lines=(*found.lines, line))
+                return rest, without
+        if record.slip_speed is None and lasts_through_loading(line, record.time, record.force):
+            return rest, without
     return None
 
 
-def _is_subharmonic(line: Line, without: Swings) -> bool:
-    """Return whether swings are a subharmonic of the line.
-
-    If every second slip is larger, the rest without the line has twice the line's period, or
-    another whole multiple of it. Independent swings have no such period.
-    """
-    period, drop = without.table["period"].values, without.table["drop"].values
-    whole = float(np.median(np.cos(2.0 * np.pi * line.frequency * period)))
-    return whole > WHOLE and float(np.median(drop)) < line.height
-
-
-def _beside(line: Line, without: Swings) -> bool:
-    """Return whether a line is a disturbance of the motion.
-
-    Then the swings without it are slower and larger; or they stick, at any size of the line,
-    because a sticking mass does not vibrate.
-    """
-    period, drop, rise = (without.table[name].values for name in ("period", "drop", "rise_share"))
-    motion = (drop > HIGHER * line.height) | (rest_share(rise) >= STICKING)
-    aside = (period * line.frequency > SLOWER) & motion
-    return len(aside) >= 2 and bool(np.median(aside) == 1.0)
+def swings_without(line: Line, record: Record) -> tuple[Record, Swings]:
+    """Return a record less a line, and its swings, of which the residue of the line is none."""
+    rest = record.model_copy(update={"force": record.force - line.values})
+    found = _swings(rest)._replace(lines=(line,))
+    if is_residue(line, found.table):
+        found = found._replace(table=found.table.isel(cycle=slice(0)), dying=False, turns=0)
+    return rest, found
 
 
 def _swings(record: Record) -> Swings:
@@ -231,7 +223,7 @@ def _swings(record: Record) -> Swings:
     table["hesitation_depth"].attrs["least"] = points.least
     rest = record.time[-1] - columns["trough_time"][-1] if len(columns["trough_time"]) else 0.0
     dying = dies_out(columns["drop"], columns["period"], rest)
-    return Swings(table, dying, len(points.index), points.noise, points.clearness)
+    return Swings(table, dying, len(points.index), points.noise, points.clearness, record.force)
 
 
 def _corners(record: Record, points: TurningPoints) -> tuple[Vertices, Vertices]:

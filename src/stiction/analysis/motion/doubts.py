@@ -80,6 +80,13 @@ def _doubt_times(record: Record) -> Iterator[str]:
             "of a quarter of their period are left out."
         )
         return
+    if grid.coarse:
+        yield (
+            "The samples stand at random times: for spectra, and to find hum, the force is "
+            f"interpolated by straight lines at even times, {in_words(grid.step, 's')} apart. An "
+            f"oscillation of more than {in_words(0.25 / grid.step, 'Hz')} may not be seen."
+        )
+        return
     filled = "For spectra, and to find hum, straight lines lead over them"
     missing, off = int(np.count_nonzero(grid.missing)), int(np.count_nonzero(grid.off_grid))
     if missing:

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.motion.band import EIGHTHS, SUSPECTED, highest_hump, remaining
+from stiction.analysis.motion.band import EIGHTHS, SUSPECTED, WIDE, highest_hump, remaining
 from stiction.analysis.motion.course import MANY, ORDERED, PARTS, course, order
-from stiction.analysis.motion.cycles import Swings, swings
-from stiction.analysis.motion.rest import STICKING, rest_share, rise_share
+from stiction.analysis.motion.cycles import Swings, swings, swings_without
+from stiction.analysis.motion.disturbance import RESIDUE
+from stiction.analysis.motion.rest import STICKING, rest_share, rise_share, still_shares
 from stiction.analysis.record import Record, as_record
-from stiction.analysis.signals.hum import samples_per_period
+from stiction.analysis.signals.hum import narrow_lines, of_mains, samples_per_period
 from stiction.analysis.signals.turning_points import CLEAR
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
@@ -34,6 +35,9 @@ UNDETERMINED = "undetermined"
 
 # Bounds of the share of a cycle for which the mass rests, or creeps, by the cycle's shape
 SHAPES = ((STICKING, STICK_SLIP), (0.5, TRANSITIONAL), (0.0, HARMONIC))
+# Share of a cycle for which the mass rests or creeps, in one piece, where its slip speed is known:
+# from there on it sticks and slips, whatever the shape says
+RESTS = 0.5
 BACKWARD = 0.4  # share of the rise, below which the force falls slowly and rises fast
 # A vibration is irregular beyond either: the standard deviation of the periods over their mean,
 # which noise through a wide filter brings to 0.37 and more; and the span of the drops over their
@@ -59,6 +63,9 @@ CERTAIN = 0.995  # a confidence that is written as 1.00: it leaves no room for a
 # Of the period of the mass on the softer spring alone: a vibration of a lesser one has the stiffer
 # spring swing as well, as friction that turns couples them. On one spring friction only prolongs it
 COUPLED = 0.9
+OWN = 1.2  # times that period: up to there a vibration is that of the mass on its spring
+MAY_BE_HUM = (TRANSITIONAL, HARMONIC, IRREGULAR, UNDETERMINED)
+SAME = 0.01  # of a period: by so much that of a line and that of the cycles differ
 GROWN = 0.1  # of a force drop: less is not worth a word
 NO_MORE = 1e-6  # a ratio that is less is nothing, up to rounding
 NOISE_SHOWS = 1e-3  # of a force drop; what is less is no noise of a load cell
@@ -92,12 +99,17 @@ WORDS = {
         "it falls slowly and rises fast, in {} of the cycles: is its sign right?",
         _percent,
     ),
+    "still_share": (
+        "the slip speed stays below a tenth of the drive velocity for {} of it",
+        _percent,
+    ),
     "cycles_alike": ("{} of the cycles have this shape themselves", _percent),
     "period_spread": ("periods differ by {} of their mean", _percent),
     "drop_spread": ("four fifths of the force drops differ by up to {} of their median", _percent),
     "natural_period": ("a period is {} times the mass's own on its spring", _three_digits),
     "drop_over_noise": ("force drops are {} times as high as noise reaches", _three_digits),
     "line_taken_off": ("a line at {} was subtracted from the force", _frequency),
+    "mains": ("it swings at {} as the mains do: it may be hum over another motion", _frequency),
     "swings": ("{} swings, each smaller than the last but for noise", _whole),
     "last_over_first": ("the last force drop is {} times the first", _three_digits),
     "turns": ("{} peaks and troughs make no complete cycle", _whole),
@@ -131,12 +143,12 @@ class Regime(NamedTuple):
     Parameters
     ----------
     kind : str
-        "stick-slip" (at rest, or in creep, for three quarters of a cycle or more),
-        "transitional oscillation" (for half of it or more), "harmonic vibration" (for less or
-        not at all), "irregular vibration" (swings that stand out, of changing period), "settling"
-        (a transient that decays), "steady sliding" (no swings stand
-        apart from the noise: what is smaller is not seen), "stuck" (it loads and never slips)
-        or "undetermined".
+        "stick-slip" (at rest, or in creep, for three quarters of a cycle or more, by the shape of
+        the cycle; or for half of it or more where the slip speed is known),
+        "transitional oscillation" (for half of it or more by the shape), "harmonic vibration" (for
+        less or not at all), "irregular vibration" (swings that stand out, of changing period),
+        "settling" (a transient that decays), "steady sliding" (no swings stand apart from the
+        noise: what is smaller is not seen), "stuck" (it loads and never slips) or "undetermined".
     confidence : float
         0 to 1. With cycles, the likelihood that another one has the kind's shape, from their
         scatter, or from the number of those with another shape. Thus it is higher for cycles
@@ -180,6 +192,8 @@ def regime_of(record: Record, found: Swings) -> Regime:
     """Classify the motion in a record with known swings: see `classify`."""
     if len(record) < PARTS:
         return Regime(UNDETERMINED, 0.0, {"samples": len(record)})
+    if found.lines:
+        record = record.model_copy(update={"force": found.force})
     per_cycle = 2.0 * len(record) / max(found.turns, 1)
     if not found.table.sizes["cycle"] or per_cycle < MANY_SAMPLES:
         per_cycle = min(per_cycle, samples_per_period(record.force))
@@ -191,8 +205,31 @@ def regime_of(record: Record, found: Swings) -> Regime:
         sure = (len(drop) + 1) / (len(drop) + 3)
         return Regime(SETTLING, sure, {"swings": len(drop), "last_over_first": drop[-1] / drop[0]})
     if found.table.sizes["cycle"]:
-        return _by_shape(record, found)
-    return _by_course(record, found)
+        period = float(found.cycles["period"].mean())
+        return _or_hum(record, period, SAME, _by_shape(record, found))
+    seen = _by_course(record, found)
+    frequency = seen.evidence.get("hump")
+    return _or_hum(record, 1.0 / frequency, WIDE - 1.0, seen) if frequency else seen
+
+
+def _or_hum(record: Record, period: float, differs: float, seen: Regime) -> Regime:
+    """Return a kind of motion, as likely another one if its swings are a line of the mains.
+
+    Nothing distinguishes hum over another motion from a vibration at that frequency, unless the
+    slip speed is known, or the mass swings with that period on its spring.
+    """
+    own = seen.evidence.get("natural_period", 0.0)
+    free = seen.kind in MAY_BE_HUM and not COUPLED <= own <= OWN
+    if not free or record.slip_speed is not None:
+        return seen
+    for line in narrow_lines(record.time, record.force):
+        if of_mains(line.frequency) and abs(line.frequency * period - 1.0) < differs:
+            without, left = swings_without(line, record)
+            other = regime_of(without, left).kind
+            evidence = {name: seen.evidence[name] for name in seen.evidence if name != "backward"}
+            evidence["mains"] = line.frequency
+            return Regime(seen.kind, 0.5 * seen.confidence, evidence, other)
+    return seen
 
 
 def _by_shape(record: Record, found: Swings) -> Regime:
@@ -204,15 +241,18 @@ def _by_shape(record: Record, found: Swings) -> Regime:
         share, as_well = _coarse_shares(table, step)
         shares = np.full(count, share)
         other = shape(as_well) if shape(as_well) != shape(share) else ""
-    kinds = [shape(share) for share in shares]
-    typical = float(np.median(shares))
-    kind = shape(typical)
+    still = _still(record, table)
+    kinds = [shape(*each) for each in zip(shares, still, strict=True)]
+    typical, stands = float(np.median(shares)), float(np.median(still))
+    kind = shape(typical, stands)
     alike = kinds.count(kind)
     evidence = {"cycles": count, "rise_share": typical}
     if kind == UNDETERMINED:
         evidence["backward"] = alike / count
     else:
         evidence["rest_share"] = float(rest_share(typical))
+    if kind != shape(typical):
+        evidence["still_share"] = stands
     period_spread = float(table["period"].std() / table["period"].mean())
     if count > 1:
         evidence |= {"cycles_alike": alike / count, "period_spread": period_spread}
@@ -229,7 +269,10 @@ def _by_shape(record: Record, found: Swings) -> Regime:
         evidence["line_taken_off"] = found.lines[0].frequency
     others = sorted(set(kinds) - {kind, UNDETERMINED}, key=kinds.count)
     counted = (alike + 1) / (count + 3)
-    confidence = max(counted, _chance(shares, kind, step / float(table["period"].mean())))
+    decisive = (shares, *_bounds(kind))
+    if kind != shape(typical):
+        decisive = (still, RESTS, np.inf)
+    confidence = max(counted, _chance(*decisive, step / float(table["period"].mean())))
     if other:  # as likely
         return Regime(kind, 0.5 * confidence, evidence, other)
     irregular = irregularity(period_spread, drop) if kind == HARMONIC else 0.0
@@ -241,8 +284,17 @@ def _by_shape(record: Record, found: Swings) -> Regime:
     return Regime(kind, confidence, evidence, others[-1] if others else "")
 
 
-def _chance(shares: Floats, kind: str, resolution: float) -> float:
-    """Return the likelihood that one more cycle has a kind's shape, if all share one shape.
+def _still(record: Record, table: xr.Dataset) -> Floats:
+    """Return for which share of each cycle the mass is known to rest or creep."""
+    if record.slip_speed is None or record.drive_velocity is None:
+        return np.zeros(table.sizes["cycle"])
+    speed = record.slip_speed / record.drive_velocity
+    ends = (table[name].values for name in ("start", "peak_time", "period"))
+    return still_shares(record.time, speed, *ends)
+
+
+def _chance(shares: Floats, low: float, high: float, resolution: float) -> float:
+    """Return the likelihood that a share of one more cycle lies within bounds, if all have one.
 
     Student's distribution of the next of n values, about their median, whose standard deviation
     is seen with n - 1 degrees of freedom and is no less than the resolution, one sample.
@@ -252,7 +304,6 @@ def _chance(shares: Floats, kind: str, resolution: float) -> float:
     count = len(shares)
     if count < 2:
         return 0.0
-    low, high = _bounds(kind)
     scale = np.hypot(shares.std(ddof=1), resolution) * sqrt(1.0 + 1.0 / count)
     below = stdtr(count - 1, (np.array([low, high]) - np.median(shares)) / scale)
     return float(below[1] - below[0])
@@ -313,8 +364,10 @@ def _coarse_shares(table: xr.Dataset, step: float) -> tuple[float, float]:
     return slow, quick if fall < SLOWEST * step else slow
 
 
-def shape(rise_share: float) -> str:
-    """Return the kind of cycles with a given rise share."""
+def shape(rise_share: float, still: float = 0.0) -> str:
+    """Return the kind of cycles from the shares of rise, and of rest where it is seen."""
+    if still >= RESTS:
+        return STICK_SLIP
     if rise_share < BACKWARD:
         return UNDETERMINED
     rests = rest_share(rise_share)
@@ -332,6 +385,8 @@ def _by_course(record: Record, found: Swings) -> Regime:
     way = course(record.time, record.force)
     drive = (record.stiffness or 0.0) * (record.drive_velocity or 0.0)
     evidence = {"change": way.change, "span": way.span, "scatter": way.scatter}
+    if found.lines:
+        evidence["line_taken_off"] = found.lines[0].frequency
     if drive:
         evidence["rate_over_drive"] = way.late_rate / drive
     late = way.late_span / way.span if way.span > 0.0 else 1.0
@@ -342,7 +397,8 @@ def _by_course(record: Record, found: Swings) -> Regime:
     # a transient ends, and a load goes on, in the later half; what vibrates then does not end
     begin = 0 if late > SETTLED and slides else len(record) // 2
     hump = highest_hump(record.time[begin:], record.force[begin:])
-    vibrates = hump.likelihood if hump.rms > RIPPLE * way.span else 0.0
+    least = max([RIPPLE * way.span, *(RESIDUE * line.height for line in found.lines)])
+    vibrates = hump.likelihood if hump.rms > least else 0.0
     if vibrates > 0.5:
         left = remaining(record.time, record.force, hump.frequency)
         if left < 1.0:
@@ -357,7 +413,7 @@ def _by_course(record: Record, found: Swings) -> Regime:
         # the nearer to cycles it came, the less sure it is that there are none
         sure = (1.0 - 0.5 * found.clearness / CLEAR) * (1.0 - vibrates)
         few = highest_hump(record.time, record.force, SUSPECTED)
-        vibrates = few.likelihood if few.rms > RIPPLE * way.span else 0.0
+        vibrates = few.likelihood if few.rms > least else 0.0
         if vibrates > 0.5:
             return Regime(UNDETERMINED, 0.0, evidence | {"few_periods": few.frequency})
         return Regime(STEADY, sure * (1.0 - vibrates), evidence)

@@ -9,6 +9,7 @@ Floats = NDArray[np.float64]
 
 STICKING = 0.75  # of a cycle at rest, or in creep: stick-slip; a vibration rests for less
 ANGLES = np.geomspace(1e-4, np.pi / 2, 2000)[::-1]  # beta; linear between them, to 1e-5 in share
+STILL = 0.1  # of the drive velocity: a mass that slips more slowly rests, or creeps
 _GAINED = 2.0 / np.tan(ANGLES)
 _CYCLE = np.pi + 2.0 * ANGLES + _GAINED  # omega times the period
 RISES, RESTS = np.append(1.0 - np.pi / _CYCLE, 1.0), np.append(_GAINED / _CYCLE, 1.0)
@@ -40,3 +41,28 @@ def rest_share(rise_share: ArrayLike) -> Floats:
 def rise_share(rest_share: ArrayLike) -> Floats:
     """Return the share of a cycle in which the force rises from the share of rest."""
     return np.asarray(np.interp(np.asarray(rest_share, float), RESTS, RISES))
+
+
+def still_shares(
+    time: Floats, speed: Floats, start: Floats, peak_time: Floats, period: Floats
+) -> Floats:
+    """Return the share of each cycle for which the mass rests or creeps, in one piece.
+
+    That of the loading counts, from trough to peak: a mass also rests while its drive does.
+
+    Parameters
+    ----------
+    time, speed : ndarray
+        (n,), s, and slip speed over drive velocity.
+    start, peak_time, period : ndarray
+        (cycles,), s.
+    """
+    still = np.concatenate([[False], speed < STILL, [False]])
+    ends = np.flatnonzero(np.diff(still.astype(np.int8)))
+    begin, end = time[ends[::2]], time[ends[1::2] - 1]
+    longest = np.zeros(len(start))
+    for k, (low, high) in enumerate(zip(start, peak_time, strict=True)):
+        those = slice(int(np.searchsorted(end, low)), int(np.searchsorted(begin, high)))
+        lasts = np.minimum(end[those], high) - np.maximum(begin[those], low)
+        longest[k] = lasts.max(initial=0.0)
+    return longest / period

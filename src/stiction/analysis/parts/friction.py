@@ -33,6 +33,7 @@ FRICTION = {
     "coefficient_spread": "1",
 }
 SLIGHT = 1e-3  # of a velocity: an error that is less is not worth a word
+OVERSHOOT = 0.01  # of the peaks: a smaller one is not worth a word
 
 
 def section(found: Analysis) -> Section:
@@ -57,11 +58,32 @@ def section(found: Analysis) -> Section:
             "The first break-away is the first peak of a vibration: the mass moves before it, so "
             "that static friction is less."
         )
+    lines += _overshoot(found)
     if not rows:
         return Section("Friction", lines)
     if not isinstance(found.source, Trajectory) and found.record.zero is None:
         lines.append("The zero of the force is assumed: no reading without load is given.")
     return Section("Friction", lines, Table(("friction", "µ", "force", "spread"), rows))
+
+
+def _overshoot(found: Analysis) -> list[str]:
+    """Return by how much peaks may lie above static friction, if that is worth a word.
+
+    At the end of a stick the mass gains the drive's speed V while the force goes on rising. Against
+    constant friction it swings on its spring, and the force rises by V sqrt(k m); against friction
+    that falls it gains that speed sooner.
+    """
+    peak, record = found.friction.static, found.record
+    if peak is None or None in (known := (record.mass, record.stiffness, record.drive_velocity)):
+        return []
+    mass, stiffness, velocity = (each or 0.0 for each in known)
+    most = velocity * (mass * stiffness) ** 0.5
+    if most < OVERSHOOT * abs(peak.force):
+        return []
+    return [
+        f"The peaks lie above static friction, by {in_words(most, 'N')} at most: the force goes on "
+        "rising until the mass is as fast as the drive."
+    ]
 
 
 def tables(found: Analysis) -> dict[str, xr.Dataset | None]:

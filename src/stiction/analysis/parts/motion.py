@@ -48,6 +48,11 @@ def numbers(found: Analysis) -> dict[str, Any]:
 def plainly(found: Analysis) -> str:
     """Describe the motion in a sentence that needs no theory."""
     count, kind = found.cycles.sizes["cycle"], found.regime.kind
+    if (mains := found.regime.evidence.get("mains")) is not None:
+        return (
+            f"The force swings at {in_words(mains, 'Hz')}, as the mains do: either the mass "
+            f"swings, or this is hum, and without it the motion is {found.regime.runner_up}."
+        )
     if count:
         drop, period = (float(found.cycles[name].mean()) for name in ("drop", "period"))
         times = "once" if count == 1 else f"{count} times"

@@ -21,6 +21,7 @@ GAP = 1.75  # steps between two samples: in a longer interval a sample is missin
 MOST_MISSING = 0.1  # of the grid's points, without a spectrum beyond
 CROWDED = 0.5  # of a step: so close to the sample before, a sample is one too many
 MOST_CROWDED = 0.25  # of the samples: a clock that jitters by a third of a step has 15 %
+COARSER = 3  # mean intervals: a step in which 1 of 20 has no sample, if their times are random
 FEWEST = 16  # samples with which the step is first refined
 
 
@@ -78,6 +79,11 @@ class EvenGrid:
         return float(np.mean(np.diff(self.places) < CROWDED))
 
     @property
+    def coarse(self) -> bool:
+        """Whether there are several samples for each time, which stand at random."""
+        return self.size < len(self.time) / (1.0 + MOST_MISSING)
+
+    @property
     def off_grid(self) -> NDArray[np.bool_]:
         """(n,) which samples do not lie on the grid."""
         return np.asarray(np.abs(self._off) > EVEN)
@@ -85,7 +91,8 @@ class EvenGrid:
     @property
     def serves(self) -> bool:
         """Whether a spectrum can be computed on the grid."""
-        return bool(self.missing.mean() <= MOST_MISSING and self.crowded <= MOST_CROWDED)
+        even = self.coarse or self.crowded <= MOST_CROWDED
+        return bool(even and self.missing.mean() <= MOST_MISSING)
 
     def on(self, values: Floats) -> Floats:
         """Return values at the times of the grid, from those at the record's own times."""
@@ -124,7 +131,12 @@ def even_grid(time: Floats) -> EvenGrid | None:
     size = int(np.floor((time[-1] - start) / step + 0.5)) + 1
     if size > n / (1.0 - MOST_MISSING) + 2:  # so many are missing that it is of no use
         size = min(size, 4 * n)
-    return EvenGrid(time, float(start), step, size)
+    found = EvenGrid(time, float(start), step, size)
+    if found.serves or n < COARSER * FEWEST:
+        return found
+    size = (n - 1) // COARSER + 1
+    coarse = EvenGrid(time, float(time[0]), plain.step * (n - 1) / (size - 1), size)
+    return coarse if coarse.serves else found
 
 
 def _fit_grid(time: Floats) -> tuple[float, float]:

@@ -64,8 +64,7 @@ def narrow_lines(time: Floats, force: Floats) -> list[Line]:
     grid = even_grid(time)
     if grid is None or not grid.serves or grid.size < 4 * PERIODS or np.ptp(force) == 0.0:
         return []
-    force = grid.on(force)
-    power, bin_width = spectrum(force)
+    power, bin_width = spectrum(grid.on(force))
     floor = beside(power)
     return [_measure_line(force, grid, power, floor, bin_width, at) for at in _alone(power, floor)]
 
@@ -78,8 +77,10 @@ def _measure_line(
 
     cycles = _middle(power, at) * width  # per sample
     length = round(1.0 / cycles)
-    quick = force - uniform_filter1d(force, length, mode="nearest")
-    turn = np.exp(2j * np.pi * cycles * np.arange(len(force)))
+    even = grid.on(force)
+    slow = uniform_filter1d(even, length, mode="nearest")
+    quick, left = even - slow, force - _between(grid, slow)
+    turn = np.exp(2j * np.pi * cycles * np.arange(len(even)))
     for _ in range(2):  # as it wanders
         phase = _envelope(quick * turn.conj(), cycles)
         turn *= phase / np.maximum(np.abs(phase), 1e-300)
@@ -96,9 +97,18 @@ def _measure_line(
             if not grid.exact:
                 envelope = _between(grid, envelope)
                 own = np.exp(1j * k * _between(grid, turned))
-            values += 2.0 / passed * (envelope * own).real
+            harmonic = 2.0 / passed * (envelope * own).real
+            if not grid.exact:  # on the grid it is smaller
+                harmonic *= _gain(left - values, harmonic)
+            values += harmonic
     height = float(np.subtract(*np.percentile(values, (99.0, 1.0))))
     return Line(cycles / grid.step, height, values)
+
+
+def _gain(force: Floats, line: Floats) -> float:
+    """Return by which factor a line fits a force best."""
+    size = float(line @ line)
+    return float(force @ line) / size if size > 0.0 else 1.0
 
 
 def _between(grid: EvenGrid, values: NDArray[Any]) -> NDArray[Any]:

@@ -7,6 +7,7 @@ one more rule holds: a motion is over, even after only two swings, if no other f
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -61,6 +62,11 @@ class Swings(NamedTuple):
     rise_share: Floats
     end: float
 
+    @property
+    def start(self) -> Floats:
+        """Time of the trough before each, s."""
+        return np.asarray(self.end - np.cumsum(self.period[::-1])[::-1])
+
     def some(self, which: slice) -> Swings:
         """Return a subset."""
         end = self.end - float(self.period[which.stop :].sum())
@@ -87,6 +93,7 @@ def kind_of(
     drive: float,
     oscillation: float,
     own: float,
+    still: Callable[[Swings], Floats],
 ) -> str:
     """Return the kind of motion.
 
@@ -104,10 +111,12 @@ def kind_of(
         Rate amplitude of the final fast oscillation over the drive's velocity along it.
     own : float
         Period of the mass on the softer spring alone, s.
+    still : callable
+        Returns for which share of each of some swings the mass rests or creeps.
     """
     lasting = cycles_among(cycles, end)
     if len(lasting.drop) >= FEWEST:
-        return by_shape(lasting, own)
+        return by_shape(lasting, own, still)
     dying = die_out(cycles, end)
     kind = regime.SETTLING if dying else course(found, start, end, drive)
     calm = kind in (regime.SETTLING, regime.STEADY)
@@ -133,15 +142,15 @@ def die_out(cycles: Swings, end: float) -> bool:
     return dying and dies_out(drop, cycles.period, end - cycles.end)
 
 
-def by_shape(cycles: Swings, own: float) -> str:
-    """Return the kind of cycles from their shape, size and period."""
+def by_shape(cycles: Swings, own: float, still: Callable[[Swings], Floats]) -> str:
+    """Return the kind of cycles from their shape, size and period, and the rest in them."""
     count = len(cycles.drop)
-    kind = regime.shape(float(np.sort(cycles.rise_share)[count // 2]))
-    if (
-        kind in (regime.TRANSITIONAL, regime.HARMONIC)
-        and cycles.period.mean() < regime.COUPLED * own
-    ):
-        return TRANSVERSE
+    rise = float(np.sort(cycles.rise_share)[count // 2])
+    kind = regime.shape(rise)
+    if kind in (regime.TRANSITIONAL, regime.HARMONIC):
+        if cycles.period.mean() < regime.COUPLED * own:
+            return TRANSVERSE
+        kind = regime.shape(rise, float(np.median(still(cycles))))
     return regime.IRREGULAR if kind == regime.HARMONIC and irregular(cycles) else kind
 
 

@@ -11,13 +11,17 @@ from benchmarks.explore.records import (
     Labelled,
     brief_vibration,
     filter_noise,
+    hum_over_loading,
     judge,
     long,
+    mains,
+    random_times,
     settling,
     short,
     wandering,
 )
 from scipy.signal import lfilter
+from tests.drawn import inside
 from tests.measured import bare, read_measured
 
 import stiction as st
@@ -314,3 +318,75 @@ def test_a_ratio_that_is_only_rounding_is_nothing() -> None:
     force = np.minimum(time, 1.0) + 1e-15 * np.sin(time)
     record = st.Record(time=time, force=force, stiffness=1e3, drive_velocity=1e-3)
     assert "its rate is 0 times stiffness" in str(st.analysis.classify(record))
+
+
+@pytest.mark.parametrize("make", [hum_over_loading, random_times])
+def test_hum_is_no_motion(make: Callable[[np.random.Generator], Labelled]) -> None:
+    """Over a first loading that then slides; and over stick-slip, sampled at random times."""
+    found = [judge(make, 3, number) for number in range(25)]
+    assert all(each.right and each.counted for each in found)
+
+
+def test_a_vibration_that_begins_with_sliding_is_no_hum() -> None:
+    """Of the same amplitude and frequency as hum, but not while the spring is loaded."""
+    random = np.random.default_rng(4)
+    time = np.arange(0.0, 8.0, 5e-4)
+    vibration = 0.1 * np.sin(2 * pi * 50.03 * time) * (time > 3.0)
+    force = np.minimum(time, 3.0) + vibration + 0.002 * random.normal(size=len(time))
+    found = st.analyse(st.Record(time=time, force=force))
+    assert found.regime.kind == "harmonic vibration"
+    assert "was subtracted" not in " ".join(found.warnings)
+
+
+def test_a_line_of_the_mains_without_a_loading_may_be_hum() -> None:
+    """Nothing tells it from a vibration, but the frequency of the mass on its spring."""
+    random = np.random.default_rng(5)
+    time = np.arange(0.0, 5.0, 5e-4)
+    record = st.Record(time=time, force=2.0 + 0.2 * mains(random, time))
+    found = st.analyse(record)
+    assert found.regime.confidence <= 0.5
+    assert found.regime.runner_up == "steady sliding"
+    assert "or this is hum" in str(found)
+    own = record.model_copy(update={"mass": 1.0, "stiffness": (2 * pi * 61.0) ** 2})
+    assert st.analysis.classify(own).confidence > 0.9
+
+
+BELTS = [  # sticks for 50 to 75 % of a cycle, as all but the last are published
+    st.presets.leine_belt,
+    st.presets.leine_arctan,
+    st.presets.leine_lugre,
+    st.presets.lugre_stick_slip,
+    st.presets.rosin_power_law,
+]
+
+
+@pytest.mark.parametrize("preset", BELTS)
+def test_a_block_that_rests_for_half_of_a_cycle_sticks_and_slips(
+    preset: Callable[[], st.Description],
+) -> None:
+    found = st.analyse(st.run(preset()))
+    assert found.regime.kind == "stick-slip"
+    assert found.regime.confidence > 0.9
+    assert "The mass sticks and slips" in str(found)
+    assert "The peaks lie above static friction, by" in str(found)
+    assert "the slip speed stays below a tenth of the drive velocity for" in str(found.regime)
+
+
+def test_rest_is_read_from_sticks_and_not_from_the_shape_alone() -> None:
+    """Random blocks whose friction is larger at rest: the share of exact sticks decides."""
+    stuck, kinds = [], []
+    for mu, V in inside(12, (1.2, 2.5), (0.02, 0.2)):
+        slider = st.Slider(
+            mass=1.0, k_x=1.0, k_y=100.0, phi="0 deg", normal_load=1.0,
+            friction=st.Coulomb(mu_0=1.0, mu_static=mu), drive=st.ConstantVelocity(V),
+        )  # fmt: skip
+        run = st.simulate(slider, 12.0 * (mu / V + 6.0), sample_rate=40.0)
+        cycles = st.analysis.find_cycles(run)
+        begin, end = float(cycles["start"][0]), float(cycles["trough_time"][-1])
+        rests = np.diff(np.clip(run.stick_intervals, begin, end), axis=1).sum()
+        stuck.append(rests / (end - begin))
+        kinds.append(st.analysis.classify(run).kind)
+    assert all(
+        kind == "stick-slip" for kind, share in zip(kinds, stuck, strict=True) if share > 0.5
+    )
+    assert sum(0.5 < share < 0.75 for share in stuck) >= 3  # which the shape alone misjudges

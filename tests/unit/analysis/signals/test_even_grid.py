@@ -86,12 +86,29 @@ def test_words_say_how_uneven_samples_are(sampled, said):
     assert said is None or said in told
 
 
-def test_samples_at_random_times_get_none_and_are_told_why():
-    time = np.sort(np.random.default_rng(5).uniform(0.0, 1.0, N))
+def test_samples_in_bursts_get_none_and_are_told_why():
+    time = np.concatenate([STEP * (np.arange(N // 10) + 3 * burst * N // 10) for burst in range(5)])
     grid = even_grid(time)
     assert grid is not None
     assert "of the time lies in gaps between samples" in why_not(grid)
     assert narrow_lines(time, np.sin(300.0 * time)) == []
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_line_is_taken_off_from_samples_at_random_times(seed):
+    """Straight lines between samples weaken it; it is fitted to the samples themselves."""
+    random = np.random.default_rng([9, seed])
+    time = np.sort(random.uniform(0.0, 4.0, N))
+    grid = even_grid(time)
+    assert grid is not None
+    assert grid.coarse
+    assert not grid.exact
+    frequency = random.uniform(50.0, 120.0)  # of 3.5 to 8 times on the grid a period
+    line = 0.3 * np.sin(2 * np.pi * frequency * time + 1.0)
+    force = np.minimum(time, 1.0) + line + 0.01 * random.normal(size=N)
+    (found, *_) = narrow_lines(time, force)
+    assert found.frequency == pytest.approx(frequency, rel=1e-4)
+    assert np.std(found.values - line) < 0.1 * np.std(line)
 
 
 def test_a_window_within_a_gap_shows_no_line():
