@@ -39,6 +39,7 @@ from stiction.system.description import Description as Description
 from stiction.system.description import Settings as Settings
 from stiction.system.initial import Initial as Initial
 from stiction.system.slider import Slider as Slider
+from stiction.system.springs import Spring as Spring
 from stiction.trajectory import Trajectory as Trajectory
 from stiction.trajectory import export as export
 from stiction.trajectory import load as load

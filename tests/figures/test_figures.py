@@ -25,7 +25,7 @@ from stiction.plotting.apparatus.schematic import draw_schematic
 from stiction.plotting.apparatus.shapes import Points
 from stiction.plotting.page.canvas import figure_of
 from stiction.plotting.page.save import save, write
-from stiction.plotting.page.style import BLACK, BLUE, PURPLE, new_figure, style
+from stiction.plotting.page.style import BLACK, BLUE, GREY, PURPLE, new_figure, style
 from stiction.plotting.page.words import plain
 from stiction.plotting.run.overview import plot_run
 from stiction.plotting.run.time_series import cut_open, draw_line, envelope, swings
@@ -219,6 +219,34 @@ def test_schematic_draws_any_drive(slider: st.Slider, velocity: float) -> None:
     assert ("V = 0" in words(top)) == (velocity == 0) == ("V = 0" in words(side))
     assert "leaf spring" in words(apparatus)
     assert r"\dot{u}_x" in words(triangle)
+
+
+@pytest.mark.parametrize("phi", [8, -8])
+def test_schematic_draws_springs_in_series_and_the_axes_of_masses(
+    slider: st.Slider, phi: float
+) -> None:
+    cell = st.Spring("load cell", k_x="20 kN/m", k_y="rigid")
+    leaf = st.Spring("leaf springs", k_x="1 kN/m", k_y="5 MN/m")
+    chain = slider.replace(
+        springs=[cell, leaf], mass_y="0.4 kg", mass_angle="20 deg", phi=f"{phi} deg"
+    )
+    with style():
+        fig = new_figure(2.4, 2.4)
+        ax = draw_schematic(fig.subplots(), chain)
+    draw(fig)
+    assert "1  load cell\n2  leaf springs" in words(ax)
+    assert "$m_x$ 20° to $x$" in words(ax)
+    assert [text.get_text() for text in ax.texts].count("2") == 2  # along x and along y
+    zigzags = [line for line in ax.lines if len(line.get_xdata()) == 12]
+    bars = [line for line in ax.lines if line.get_linewidth() == 2.4]
+    assert (len(zigzags), len(bars)) == (3, 1)
+    # the block's own line leans by 20 deg from x towards y
+    look = (GREY, 1.0, "-")
+    lines = ((each.get_color(), each.get_linewidth(), each.get_linestyle()) for each in ax.lines)
+    (solid,) = [line for line, its in zip(ax.lines, lines, strict=True) if its == look]
+    (x, y) = (np.diff(values)[0] for values in solid.get_data())
+    drawn = degrees(drawn_misalignment(chain.misalignment))
+    assert np.degrees(np.arctan2(y, x)) == pytest.approx(20.0 - drawn)
 
 
 # --- overview ---

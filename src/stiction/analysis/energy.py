@@ -148,7 +148,8 @@ def _powers(run: Trajectory, t: Floats, rows: Floats) -> Floats:
         a_x, a_y = _on_axes(s, changes)
         p_x, p_y = M @ v
         work = work - (p_x * a_x + p_y * a_y)
-    cos_d, sin_d = cos(s.damping_angle), sin(s.damping_angle)
+    angle = s.damping_angle - s.turn
+    cos_d, sin_d = cos(angle), sin(angle)
     along, across = cos_d * v_x + sin_d * v_y, cos_d * v_y - sin_d * v_x
     return np.stack([work, f_x * s_x, f_y * s_y, s.c_x * along**2, s.c_y * across**2])
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from math import copysign, inf, isfinite, nan, radians, sqrt
 from typing import Any, NamedTuple
 
+from stiction.auditing.chain import softest_path
 from stiction.auditing.observation import SLIDES, Observation, Progress, coarse_rate, observe
 from stiction.auditing.prediction import predict
 from stiction.linear_stability import Critical, critical, growth_rate
@@ -23,7 +24,7 @@ MORE = {
     "c_x": (0.02, 0.05, 0.1, 0.25, 0.6, 1.5),
     "k_x": (2.0, 4.0, 8.0, 16.0, 32.0),
 }
-LEVERS = ("phi", "drive.velocity", "c_x", "k_x")
+LEVERS = ("phi", "drive.velocity", "c_x", "k_x")  # of springs in series, the softest one's
 NOT_TRIED = (nan, nan, nan, None)  # fields of an `Advice` without a better value so far
 MOST_TURNED = 80.0  # degrees: near a right angle the soft spring no longer acts along the drive
 LEAST_WORK = 20_000  # steps: a trial with fewer would be cut
@@ -81,7 +82,8 @@ def advise(slider: Slider, stable: bool, work: int, progress: Progress = None) -
     of its share on to the next. `progress` receives the fraction of parameters done.
     """
     told = progress or (lambda fraction: None)
-    for number, path in enumerate(LEVERS):
+    paths = [softest_path(slider) if path == "k_x" else path for path in LEVERS]
+    for number, path in enumerate(paths):
 
         def report(fraction: float, before: int = number) -> None:
             told((before + fraction) / len(LEVERS))
@@ -127,7 +129,7 @@ def advise_one(
 def further(slider: Slider, path: str) -> Iterator[float]:
     """Yield ever larger values of a parameter."""
     now = read(slider, path)
-    for more in MORE[path]:
+    for more in MORE[lever(path)]:
         if path == "phi":
             then = copysign(abs(now) + radians(more), now)
             if abs(then) <= radians(MOST_TURNED):
@@ -136,6 +138,11 @@ def further(slider: Slider, path: str) -> Iterator[float]:
             yield now + more * 2.0 * sqrt(slider.k_x * slider.masses[0])
         else:
             yield now * more
+
+
+def lever(path: str) -> str:
+    """Return which of the levers a path is."""
+    return "k_x" if path.startswith("springs.") else path
 
 
 def try_change(slider: Slider, most_steps: int, progress: Progress) -> dict[str, Any]:

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from stiction.analysis.creep.curve import creep_curves, mean_creep
-from stiction.auditing.words import HARDLY, NAMES, VIBRATES
+from stiction.auditing.words import HARDLY, VIBRATES, name_of
 from stiction.friction import has_state
 from stiction.linear_stability import boundary
 from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep
@@ -35,9 +35,9 @@ def creep(found: Audit) -> Figure | None:
     if seen.motion in VIBRATES or seen.shares.creep < HARDLY or not seen.cycles.sizes["cycle"]:
         return None
     curves = creep_curves(seen.run, seen.cycles)
-    if slider.phi == 0.0 or not np.isfinite(curves["velocity"].values).any():
+    if slider.misalignment == 0.0 or not np.isfinite(curves["velocity"].values).any():
         return None
-    V, phi = hypot(*slider.motion.rate(0.0)), abs(slider.phi)
+    V, phi = hypot(*slider.motion.rate(0.0)), abs(slider.misalignment)
     lines = creep_theory(V, phi, slider.F_0 / slider.k_x)
     return figure_of(plot_creep, curves, mean_creep(curves), V, lines)
 
@@ -47,9 +47,10 @@ def damping(found: Audit) -> Figure | None:
 
     None for friction with internal state, to which Eq. (10) does not apply.
     """
-    if found.slider.phi == 0.0 or has_state(found.slider.law):
+    if found.slider.misalignment == 0.0 or has_state(found.slider.law):
         return None
-    advised = (each.then for each in found.advices if each.path == "phi" and each.works)
+    turn = found.slider.turn
+    advised = (each.then - turn for each in found.advices if each.path == "phi" and each.works)
     return figure5(found.slider, next(advised, None))
 
 
@@ -57,7 +58,7 @@ def trials(found: Audit) -> Figure | None:
     """Draw the force of the test, now and with each change."""
     tried = [
         Trial(
-            f"{NAMES[each.path]} = {in_words(each.then, each.unit)}: {each.tried.motion}",
+            f"{name_of(found, each.path)} = {in_words(each.then, each.unit)}: {each.tried.motion}",
             each.tried.record,
         )
         for each in found.advices

@@ -12,7 +12,6 @@ from matplotlib.figure import Figure
 
 import stiction
 from stiction.auditing import figures
-from stiction.auditing.words import sections
 from stiction.errors import ResultError
 from stiction.plotting.page.save import png
 from stiction.storage.files import placeable, whole
@@ -81,7 +80,7 @@ def page(found: Audit, name: str) -> str:
     return environment.get_template("page.html.jinja").render(
         name=name,
         version=stiction.__version__,
-        parts=sections(found),
+        parts=found.tables(),
         figures={title: illustrations(found, drawn) for title, drawn in DRAWN.items()},
         description=describe_apparatus(found),
     )

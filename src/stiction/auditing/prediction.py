@@ -93,7 +93,7 @@ def predict(slider: Slider) -> Prediction:
     The paper's theory supposes friction that is set-valued at zero slip; for other laws F_0 is that
     at the drive's speed. Only the magnitude of the misalignment counts.
     """
-    s, phi = slider, abs(slider.phi)
+    s, phi = slider, abs(slider.misalignment)
     V = hypot(*s.motion.rate(0.0))
     F_0, l_x = s.F_0, s.F_0 / s.k_x
     F_static = F_0 if has_state(s.law) else static_coefficient(s.law) * s.normal_load
@@ -142,7 +142,7 @@ def predict(slider: Slider) -> Prediction:
 
 def suppositions(slider: Slider, p: Prediction) -> list[str]:
     """Return the assumptions of Eqs. (7) and (10) that the apparatus violates, a clause each."""
-    s, phi, V = slider, abs(slider.phi), hypot(*slider.motion.rate(0.0))
+    s, phi, V = slider, abs(slider.misalignment), hypot(*slider.motion.rate(0.0))
     law: Any = s.law
     if has_state(law):
         return [f"friction has no internal state (here F_0 is that at {in_words(V, 'm/s')})"]

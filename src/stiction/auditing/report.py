@@ -6,7 +6,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from stiction.auditing import chain
 from stiction.auditing.advice import LEVERS, Advice, advise, limits
+from stiction.auditing.chain_words import chain_sections
 from stiction.auditing.observation import (
     MOST_WORK,
     OSCILLATES,
@@ -24,7 +26,8 @@ from stiction.system.description import Description
 from stiction.system.slider import Slider, slider_of
 from stiction.text.sections import Section, as_html, as_text
 
-PARTS = 3 + len(LEVERS)  # of the work: two tests, the advices, critical misalignments
+# parts of the work: two tests, the advices, critical misalignments, and springs replaced
+PARTS = 4 + len(LEVERS)
 
 
 class Audit(NamedTuple):
@@ -46,6 +49,8 @@ class Audit(NamedTuple):
         The simulated test, from steady sliding with a small disturbance.
     advices : tuple of Advice
         Changes that would make it slide steadily, each tried from rest; empty if it does.
+    chain : Chain or None
+        The springs in series, and each replaced; None for a single spring.
     """
 
     slider: Slider
@@ -55,6 +60,7 @@ class Audit(NamedTuple):
     observation: Observation
     sliding_on: Observation
     advices: tuple[Advice, ...]
+    chain: chain.Chain | None = None
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
@@ -78,12 +84,14 @@ class Audit(NamedTuple):
     def ok(self) -> bool:
         """Whether every simulation reached its end."""
         tried = (each.tried for each in self.advices if each.tried)
-        runs = [self.observation, self.sliding_on, *tried]
+        replaced = self.chain.replacements if self.chain else ()
+        stiffer = (each.tried for each in replaced if each.tried)
+        runs = [self.observation, self.sliding_on, *tried, *stiffer]
         return all(each.run.status.ok for each in runs)
 
     def tables(self) -> list[Section]:
         """Return the report as sections of sentences and tables."""
-        return sections(self)
+        return [*sections(self), *chain_sections(self)]
 
     def plot(self, axes: Any = None) -> Any:
         """Draw the simulated test as a load cell records it; see `stiction.plotting`."""
@@ -148,14 +156,18 @@ def audit(
     rate = max(prediction.sample_rate, coarse_rate(prediction))
     observation = observe(system, prediction, growth, sample_rate=rate, progress=part(0))
     sliding_on = from_sliding(sliding, prediction, part(1))
+    work = MOST_WORK - observation.work - sliding_on.work
+    springs = None
+    if system.springs:
+        springs = chain.examine(system, work // 2, part(2))
+        work -= sum(each.tried.work for each in springs.replacements if each.tried)
     advices: tuple[Advice, ...] = ()
     if not sliding.stable or observation.comes_to != SLIDES:
-        work = MOST_WORK - observation.work - sliding_on.work
-        advices = tuple(advise(system, sliding.stable, work, part(2, len(LEVERS))))
+        advices = tuple(advise(system, sliding.stable, work, part(3, len(LEVERS))))
     misalignment = critical(system, "phi", limits(system, "phi"))
     report(1.0)
     both = observation, sliding_on
-    return Audit(system, prediction, sliding, misalignment, *both, advices)
+    return Audit(system, prediction, sliding, misalignment, *both, advices, springs)
 
 
 FORMER = {"Audit": "stiction.auditing.Audit", "examine": "stiction.audit"}

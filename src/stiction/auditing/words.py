@@ -29,6 +29,7 @@ from stiction.auditing.observation import (
 from stiction.auditing.prediction import suppositions
 from stiction.friction import has_state
 from stiction.linear_stability.linear import STABLE, UNSTABLE
+from stiction.system.slider import Slider
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words
 
@@ -159,7 +160,8 @@ def stability(found: Audit) -> str:
 
 def margin(found: Audit) -> str:
     """Return the margin of phi to its critical values in a sentence."""
-    phi, values = found.slider.phi, found.misalignment.values
+    phi, turn = found.slider.misalignment, found.slider.turn
+    values = found.misalignment.values - turn
     closed = found.prediction.phi_c
     if not len(values):
         always = "stable" if all(found.misalignment.stable) else "unstable"
@@ -217,11 +219,11 @@ def numbers(found: Audit) -> Table:
         ("creep velocity at first, V sin² φ", p.creep_at_start, None, "m/s", True),
         ("creep velocity when it slips, Eq. (7)", creep_at_slip, None, "m/s", True),
         ("creep before the first slip", creep_distance, creep_before_slip(found, slip), "m", True),
-        ("apparent static friction", p.mu_static, peak(found), "", True),
+        ("apparent static friction", p.mu_static, peak(seen), "", True),
         ("apparent kinetic friction", p.mu_kinetic, kinetic(seen), "", True),
         ("force drop", p.drop, seen.mean("drop"), "N", True),
         ("period", p.period, seen.mean("period"), "s", True),
-        ("apparent stiffness", s.k_x * cos(s.phi) ** 2, loading(seen), "N/m", True),
+        ("apparent stiffness", apparent_stiffness(s), loading(seen), "N/m", True),
     ]
     mark = "~ " if suppositions(s, p) else ""
     lines = [
@@ -253,10 +255,15 @@ def loading(seen: Observation) -> float:
     return seen.mean("stiffness") if seen.motion in (STICK_SLIP, TRANSITIONAL) else nan
 
 
-def peak(found: Audit) -> float:
+def apparent_stiffness(slider: Slider) -> float:
+    """Return the stiffness along the drive that a load cell shows, by theory, N/m."""
+    return slider.k_x * cos(slider.misalignment) ** 2
+
+
+def peak(seen: Observation) -> float:
     """Return the apparent coefficient of static friction."""
-    largest = float(np.max(found.observation.record.force, initial=0.0))
-    return largest / found.slider.normal_load
+    largest = float(np.max(seen.record.force, initial=0.0))
+    return largest / seen.run.slider.normal_load
 
 
 def stick(found: Audit) -> list[str]:
@@ -265,13 +272,13 @@ def stick(found: Audit) -> list[str]:
     rest, creep, slip = (f"{100.0 * share:.3g} %" for share in seen.shares)
     whole = "of each cycle" if seen.cycles.sizes["cycle"] else "of the time until it slides"
     vibrates, state = seen.motion in VIBRATES, has_state(s.law)
-    slowly = "sliding" if vibrates else "creeping" if s.phi or state else "sliding slowly"
+    slowly = "sliding" if vibrates else "creeping" if s.misalignment or state else "sliding slowly"
     lines = [
         f"Moving slower than the drive, which a load cell shows as a rising force, takes "
         f"{100.0 * (seen.shares.rest + seen.shares.creep):.3g} % {whole}: at rest {rest}, "
         f"{slowly} {creep}. Moving faster than the drive takes {slip}."
     ]
-    if s.phi == 0.0:
+    if s.misalignment == 0.0:
         lines.append("There is no misalignment, so friction does not turn.")
     if vibrates:
         lines.append("The mass vibrates about steady sliding; there is no stick in it.")
@@ -279,10 +286,10 @@ def stick(found: Audit) -> list[str]:
         lines.append(
             "Friction with internal state creeps by itself. An audit of the same apparatus with "
             "phi = 0 shows how much the misalignment adds."
-            if s.phi
+            if s.misalignment
             else "The creep is due to the law of friction."
         )
-    elif s.phi and seen.shares.creep > seen.shares.rest:
+    elif s.misalignment and seen.shares.creep > seen.shares.rest:
         distance = seen.mean("creep_distance")
         far = (
             f"{in_words(distance, 'm')} before each slip"
@@ -341,13 +348,13 @@ def changes(found: Audit) -> tuple[list[str], Table | None]:
     rows = [_change(found, advice) for advice in found.advices]
     goal = "take away the oscillation from rest" if found.bistable else "slide steadily"
     remedies = [
-        f"{NAMES[each.path]} of {in_words(each.then, each.unit)}"
+        f"{name_of(found, each.path)} of {in_words(each.then, each.unit)}"
         for each in found.advices
         if each.works
     ]
     what = f"To {goal}: {', or '.join(remedies)}" if remedies else f"None of these makes it {goal}"
     lines = [f"{what}. Each was simulated from rest; the last column shows the result."]
-    cut = [NAMES[each.path] for each in found.advices if each.cut]
+    cut = [name_of(found, each.path) for each in found.advices if each.cut]
     if cut:
         lines.append(
             f"Values farther from the present one were not tried of {', or '.join(cut)}: all "
@@ -362,8 +369,19 @@ def changes(found: Audit) -> tuple[list[str], Table | None]:
     return lines, Table(("change", "now", "stable", "tried", "simulated from rest"), rows)
 
 
+def name_of(found: Audit, path: str) -> str:
+    """Return a parameter in words."""
+    slider = found.slider
+    if path == "phi" and slider.turn:
+        return "phi in [slider]"
+    for each in slider.springs:
+        if path.startswith(f"springs.{each.slug}."):
+            return f"stiffness {path.rpartition('.')[2]} of the {each.name}"
+    return NAMES[path]
+
+
 def _change(found: Audit, advice: Advice) -> tuple[str, ...]:
-    name, now = NAMES[advice.path], in_words(advice.now, advice.unit)
+    name, now = name_of(found, advice.path), in_words(advice.now, advice.unit)
     if advice.tried is None:
         low, high = (in_words(end, advice.unit) for end in advice.between)
         tried = f"{low} to {high}" if isfinite(advice.between[0]) else "none"

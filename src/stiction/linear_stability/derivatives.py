@@ -45,7 +45,7 @@ def surface(slider: Slider) -> Floats:
     law: Any = slider.law
     if not isinstance(law, Anisotropic):
         return np.eye(2)
-    c, s = cos(slider.phi + law.angle), sin(slider.phi + law.angle)
+    c, s = cos(slider.misalignment + law.angle), sin(slider.misalignment + law.angle)
     axes = np.array([[c, -s], [s, c]])
     tensor: Floats = axes @ np.diag([1.0, law.ratio**2]) @ axes.T
     return tensor

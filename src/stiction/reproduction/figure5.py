@@ -39,11 +39,11 @@ def figure5(slider: Slider, other_phi: float | None = radians(10)) -> Figure:
     with style():
         fig = new_figure(COLUMN, 2.9)
         ax = fig.subplots()
-        angles = [slider.phi] if other_phi is None else [slider.phi, other_phi]
+        angles = [slider.misalignment] if other_phi is None else [slider.misalignment, other_phi]
         paths = [(damping_number(slider, phi), phi) for phi in angles]
         low = min(1e-1, *(A / 10 for A, _ in paths))
         high = max(1e5, *(A * 10 for A, _ in paths))
-        lowest = min(0.5, degrees(abs(slider.phi)) / 2)
+        lowest = min(0.5, degrees(abs(slider.misalignment)) / 2)
         draw_damping_map(ax, (low, high), (lowest, 90.0))
         for (A, phi), color in zip(paths, (RED, BLUE), strict=False):
             draw_force_path(ax, A, phi, color, _label(A, phi))

@@ -87,7 +87,7 @@ def sample_table(
         "spring_y": slider.k_y * u_y,
         "friction": friction,
         "theta": theta,
-        "psi": theta - np.degrees(slider.phi),
+        "psi": theta - np.degrees(slider.misalignment),
         "X": travel_X - u_x * c - u_y * s,
         "Y": travel_Y + u_x * s - u_y * c,
         "V_X": slip_x * c + slip_y * s,

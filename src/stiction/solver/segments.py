@@ -100,7 +100,7 @@ def surface_of(slider: Slider) -> Isotropic | Elliptic:
     law: Any = slider.law
     if not isinstance(law, Anisotropic):
         return Isotropic()
-    c, s = cos(slider.phi + law.angle), sin(slider.phi + law.angle)
+    c, s = cos(slider.misalignment + law.angle), sin(slider.misalignment + law.angle)
     square = law.ratio**2
     return Elliptic(c * c + square * s * s, (1 - square) * c * s, s * s + square * c * c)
 

@@ -156,7 +156,7 @@ class Description(NamedTuple):
     def to_dict(self) -> dict[str, dict[str, Any]]:
         """Return nested tables of SI numbers, which `from_dict` reads."""
         return {
-            "slider": self.slider.model_dump(mode="json", exclude={"friction", "drive", "load"}),
+            "slider": mechanical_table(self.slider),
             "friction": law_table(self.slider.law),
             "drive": table(self.slider.motion),
             **({} if self.slider.load is None else {"load": table(self.slider.load)}),
@@ -167,6 +167,18 @@ class Description(NamedTuple):
     def to_json(self) -> str:
         """Return the description as one JSON string."""
         return json.dumps(self.to_dict())
+
+
+def mechanical_table(slider: Slider) -> dict[str, Any]:
+    """Return the table [slider] of a description, with SI numbers."""
+    names = {*slider.own_fields()} - {
+        "friction",
+        "drive",
+        "load",
+        *(() if slider.springs else ("springs",)),
+    }
+    table: dict[str, Any] = slider.model_dump(mode="json", include=names)
+    return table
 
 
 def with_duration(raw: Mapping[str, Any]) -> Mapping[str, Any]:

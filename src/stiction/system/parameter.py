@@ -4,7 +4,8 @@ A path is a field of `Slider` (``phi``, ``c_x``), or of its drive, load or frict
 (``drive.velocity``, ``load.program.1.to``, ``friction.mu_inf``); in a description also of the
 initial state or the settings (``initial.u_x``, ``run.rtol``). Commas join several that share one
 value: ``"k_x, k_y"`` for a spring that is equally stiff in all directions. Elements of a list count
-from 1. ``V`` is short for ``drive.velocity``, ``W`` for ``normal_load``, ``m`` for ``mass``.
+from 1, and springs in series are known by their names too: ``springs.load-cell.k_x``. ``V`` is
+short for ``drive.velocity``, ``W`` for ``normal_load``, ``m`` for ``mass``.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from stiction.drive.pieces import LEVELS
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import Anisotropic
 from stiction.system.description import Description
-from stiction.system.slider import Slider
+from stiction.system.slider import FROM_SPRINGS, Slider
 from stiction.text.paths import canonical
 from stiction.text.units import hints_of, unit_of
 from stiction.text.validation import make, unknown_name
@@ -133,7 +134,7 @@ def change_unchecked(slider: Slider, path: str, value: float) -> Slider:
     The path must exist, and the value lie between two that `change_parameter` accepts.
     """
     for name in names(path):
-        slider = _place(slider, name.split("."), value)
+        slider = _place(slider, _keys(slider, name), value)
     return slider
 
 
@@ -145,6 +146,14 @@ def names(path: str) -> list[str]:
 def _keys(owner: Slider | Description, name: str) -> list[str]:
     """Return the fields that lead to a parameter."""
     keys = name.split(".")
+    springs = (owner if isinstance(owner, Slider) else owner.slider).springs
+    if (
+        keys[0] == "springs"
+        and len(keys) > 1
+        and keys[1].isdigit()
+        and 0 < int(keys[1]) <= len(springs)
+    ):
+        keys[1] = springs[int(keys[1]) - 1].slug
     return keys if isinstance(owner, Slider) or keys[0] in ("initial", "run") else ["slider", *keys]
 
 
@@ -169,6 +178,10 @@ def _unit_of(part: Any, rooms: list[str], field: str) -> str:
 
 def _member(owner: Slider | Description, part: Any, key: str, name: str) -> Any:
     """Return a member of a part by its key; a list's elements count from 1."""
+    if isinstance(part, Slider) and part.springs and key in FROM_SPRINGS:
+        own = ", ".join(f"springs.{each.slug}.{key}" for each in part.springs)
+        message = f"follows from springs in series; change one of them: {own}"
+        raise DescriptionError([Fault(name, message)])
     if key not in _fields(part):
         raise DescriptionError([Fault(name, unknown_name("parameter", name, units(owner)))])
     return _part(part, key)
@@ -208,12 +221,14 @@ def _fields(part: Any) -> tuple[str, ...]:
     if hasattr(part, "_fields"):
         return tuple(part._fields)
     if isinstance(part, tuple):
-        return tuple(str(count) for count in range(1, len(part) + 1))
-    return tuple(getattr(type(part), "model_fields", ()))
+        return tuple(getattr(each, "slug", str(count)) for count, each in enumerate(part, 1))
+    return part.own_fields() if hasattr(part, "own_fields") else ()
 
 
 def _part(part: Any, key: str) -> Any:
-    return part[int(key) - 1] if key.isdigit() else getattr(_holder(part, key), key)
+    if isinstance(part, tuple) and key in (keys := _fields(part)) and not hasattr(part, "_fields"):
+        return part[keys.index(key)]
+    return getattr(_holder(part, key), key)
 
 
 def _holder(part: Any, key: str) -> Any:
@@ -235,7 +250,7 @@ def _remake(part: Any, changes: Mapping[str, Any]) -> Any:
     if hasattr(part, "replace"):
         return part.replace(**new)
     if isinstance(part, tuple) and not hasattr(part, "_fields"):
-        return [new.get(str(count), each) for count, each in enumerate(part, 1)]
+        return [new.get(key, each) for key, each in zip(_fields(part), part, strict=True)]
     if isinstance(part, tuple):
         return make(type(part), {**_field_values(part), **new})
     return type(part)(**{**_field_values(part), **new})
@@ -243,11 +258,14 @@ def _remake(part: Any, changes: Mapping[str, Any]) -> Any:
 
 def _place(part: Any, keys: list[str], value: float) -> Any:
     key, *rest = keys
+    if isinstance(part, tuple) and not hasattr(part, "_fields"):
+        new: Any = {key: _place(_part(part, key), rest, value) if rest else value}
+        return tuple(new.get(its, each) for its, each in zip(_fields(part), part, strict=True))
     if _holder(part, key) is not part:
         return part._replace(law=_place(part.law, keys, value))
-    new: Any = _place(_part(part, key), rest, value) if rest else value
-    if key.isdigit():
-        return tuple(new if str(count) == key else each for count, each in enumerate(part, 1))
+    new = _place(_part(part, key), rest, value) if rest else value
+    if key == "springs":  # the stiffnesses follow
+        return part.replace(springs=new)
     replace = getattr(part, "_replace", None)
     return part.model_copy(update={key: new}) if replace is None else replace(**{key: new})
 

@@ -19,7 +19,8 @@ from stiction.drive.pieces import DRIVE_PIECES, LEVELS, LOAD_PIECES, Modulation
 from stiction.friction import LAWS, Anisotropic
 from stiction.system.description import Settings
 from stiction.system.initial import Initial
-from stiction.system.slider import Apparatus, Slider
+from stiction.system.slider import FROM_SPRINGS, Apparatus, Slider
+from stiction.system.springs import Spring
 from stiction.text.units import FORCE, VELOCITY, Kind
 from stiction.text.validation import Described, fields
 
@@ -39,7 +40,7 @@ def schema() -> Schema:
     ['drive', 'friction', 'initial', 'load', 'run', 'slider']
     """
     tables = {
-        "slider": table(Apparatus, Slider),
+        "slider": slider(),
         "friction": friction(),
         "drive": program(DriveProgram, DRIVE_PIECES, VELOCITY, ("along", "across")),
         "load": program(LoadProgram, LOAD_PIECES, FORCE, ("modulation",)),
@@ -62,14 +63,17 @@ class Generator(GenerateJsonSchema):
     def function_before_schema(self, schema: BeforeValidatorFunctionSchema) -> Schema:
         """Return the schema of a field that is read by a function of ours."""
         number = super().function_before_schema(schema)
-        kind = getattr(schema["function"]["function"], "keywords", {}).get("kind")
-        return number if kind is None else quantity(number, kind)
+        keywords = getattr(schema["function"]["function"], "keywords", {})
+        kind, words = keywords.get("kind"), keywords.get("words", ())
+        return number if kind is None else quantity(number, kind, words)
 
 
-def quantity(number: Schema, kind: Kind) -> Schema:
-    """Return the schema of a quantity: a number in SI, except for angles, or a text."""
+def quantity(number: Schema, kind: Kind, words: Iterable[str] = ()) -> Schema:
+    """Return the schema of a quantity: a number in SI, except for angles, or a text, or a word."""
     text = {"type": "string", "pattern": WITH_UNIT if kind.unit else rf"{NUMBER}\s*$"}
-    return text if kind.unit == "rad" else {"anyOf": [number, text]}
+    if kind.unit == "rad":
+        return text
+    return {"anyOf": [number, text, *({"const": word} for word in words)]}
 
 
 def table(model: type[Described], told: Any = None, without: Iterable[str] = ()) -> Schema:
@@ -119,6 +123,19 @@ def schema_by_choice(key: str, kinds: Mapping[str, Schema], other: Schema | None
             for name, each in kinds.items()
         ],
     }
+
+
+def slider() -> Schema:
+    """Return the schema of the table [slider], with one spring or several in series."""
+    found = table(Apparatus, Slider)
+    found["properties"]["springs"]["items"] = table(fields(Spring), Spring)
+    found["required"] = [name for name in found["required"] if name not in FROM_SPRINGS]
+    series: Schema = {**dict.fromkeys(FROM_SPRINGS, False), "springs": {"minItems": 1}}
+    found["anyOf"] = [
+        {"required": [*FROM_SPRINGS], "properties": {"springs": {"maxItems": 0}}},
+        {"required": ["springs"], "properties": series},
+    ]
+    return found
 
 
 def friction() -> Schema:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from math import cos, pi, sin, sqrt
+from math import cos, degrees, pi, sin, sqrt
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator
+from pydantic import AfterValidator, model_validator
+from pydantic_core import PydanticCustomError
 
 from stiction.deprecation import warn_renamed
 from stiction.drive import (
@@ -20,16 +21,17 @@ from stiction.drive import (
     read_drive,
     read_load,
 )
-from stiction.errors import DescriptionError
+from stiction.errors import DescriptionError, Fault
 from stiction.friction import Law, has_state, read_law
 from stiction.friction.user.loading import finder_for_descriptions, is_own
 from stiction.friction.user.validation import is_law
+from stiction.system.springs import ROUND, Springs, read_springs, whole
 from stiction.system.tensors import is_aligned, solver_axes
 from stiction.system.writing import parameter_table, slider_tables
 from stiction.text.sections import Section, as_html
 from stiction.text.toml import Reader, folder_of, gather, read_toml, toml_text
 from stiction.text.units import Angle, Damping, Force, Mass, Stiffness
-from stiction.text.validation import Described
+from stiction.text.validation import Described, faulty
 
 
 def _within_a_right_angle(phi: float) -> float:
@@ -69,6 +71,7 @@ def _is_load(value: Any) -> Any:
 
 
 ANGLES = ("phi", "mass_angle", "damping_angle", "cell_angle")
+FROM_SPRINGS = ("k_x", "k_y")  # follow from the springs in series, where there are several
 DRIVE = "ConstantVelocity | DriveProgram"
 
 
@@ -87,6 +90,55 @@ class Apparatus(Described):
     damping_angle: Angle = 0.0
     cell_angle: Angle | None = None
     driven: Literal["plate", "spring"] = "plate"
+    springs: Springs = ()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _make_one_spring(cls, values: Any) -> Any:
+        """Fill in the stiffnesses of springs in series; their own faults come with the rest."""
+        if not isinstance(values, Mapping) or not values.get("springs"):
+            return values
+        try:
+            along, across, _ = whole(read_springs(values["springs"]))
+        except PydanticCustomError:
+            along, across = 1.0, 1.0
+        return {"k_x": along, "k_y": across, **values}
+
+    @model_validator(mode="after")
+    def _agree_with_springs(self) -> Self:
+        """Refuse stiffnesses beside springs in series, and a whole that is pulled sideways."""
+        if not self.springs:
+            return self
+        message = "follows from springs; leave it out, or change one of them: springs.NAME.k_x"
+        made = dict(zip(FROM_SPRINGS, whole(self.springs)[:2], strict=True))
+        found = [Fault(name, message) for name in FROM_SPRINGS if getattr(self, name) != made[name]]
+        try:
+            _within_a_right_angle(self.misalignment)
+        except ValueError as error:
+            found.append(
+                Fault("phi", f"less {degrees(self.turn):g} deg to the springs' x, {error}")
+            )
+        if found:
+            raise faulty(found)
+        return self
+
+    @property
+    def turn(self) -> float:
+        """From the line that angles count from to the axis x of the springs, rad: zero, unless
+        springs in series have axes of their own."""
+        return whole(self.springs).angle if self.springs else 0.0
+
+    @property
+    def misalignment(self) -> float:
+        """From the axis x of the springs to the drive direction X, rad: `phi`, unless springs in
+        series have axes of their own."""
+        angle = self.phi - self.turn
+        return 0.0 if self.springs and abs(angle) < ROUND else angle
+
+    def own_fields(self) -> tuple[str, ...]:
+        """Return the names of the fields that a description states; others follow from them."""
+        names = tuple(type(self).model_fields)
+        return tuple(name for name in names if not (self.springs and name in FROM_SPRINGS))
 
 
 class Slider(Apparatus):
@@ -130,6 +182,11 @@ class Slider(Apparatus):
         velocity both are equivalent. When a driven plate accelerates, friction must also carry
         the inertia m dv_d/dt; when its velocity jumps, the slip velocity jumps with it. With a
         driven spring end, neither happens.
+    springs : sequence of Spring, optional
+        Springs in series from the slider to the drive, in place of `k_x` and `k_y`, which follow:
+        compliances add. Where they have axes of their own, all angles count from one line x of the
+        apparatus, and the axes x and y of results are the principal axes of the whole, at
+        ``slider.turn`` to it; ``slider.misalignment`` is theirs to the drive.
 
     Raises
     ------
@@ -191,7 +248,7 @@ class Slider(Apparatus):
     @property
     def direction(self) -> tuple[float, float]:
         """Unit vector of X in the axes (x, y): (cos phi, sin phi), exact at a right angle."""
-        c, s = cos(self.phi), sin(self.phi)
+        c, s = cos(self.misalignment), sin(self.misalignment)
         return (0.0, s) if abs(c) < 1e-15 else (c, s)
 
     @property
@@ -225,7 +282,7 @@ class Slider(Apparatus):
         """Unit vector of the load cell's axis, along (x, y); that of X by default."""
         if self.cell_angle is None:
             return self.direction
-        angle = self.phi + self.cell_angle
+        angle = self.misalignment + self.cell_angle
         return cos(angle), sin(angle)
 
     @property
@@ -249,8 +306,10 @@ class Slider(Apparatus):
 
     def replace(self, **changes: Any) -> Self:
         """Return the same slider with some parameters changed, e.g. ``phi="3 deg"``."""
-        values = {name: getattr(self, name) for name in type(self).model_fields}
+        values = {name: getattr(self, name) for name in self.own_fields()}
         values |= {name: f"{values[name]!r} rad" for name in ANGLES if values[name] is not None}
+        if changes.get("springs"):
+            values = {name: each for name, each in values.items() if name not in FROM_SPRINGS}
         return type(self)(**(values | changes))
 
     @classmethod
@@ -318,7 +377,7 @@ class Slider(Apparatus):
         """Make a slider from the parts that the readers in `SLIDER_TABLES` returned."""
         apparatus: Apparatus = parts["slider"]
         return cls(
-            **apparatus.model_dump(mode="json"),
+            **apparatus.model_dump(mode="json", include={*apparatus.own_fields()}),
             friction=parts["friction"],
             drive=parts["drive"],
             load=parts.get("load"),

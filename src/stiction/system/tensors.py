@@ -27,7 +27,7 @@ def mass_tensor(slider: Slider) -> Matrix:
     """
     along = slider.mass
     across = along if slider.mass_y is None else slider.mass_y
-    return principal(along, across, slider.mass_angle)
+    return principal(along, across, slider.mass_angle - slider.turn)
 
 
 def stiffness_tensor(slider: Slider) -> Matrix:
@@ -37,7 +37,7 @@ def stiffness_tensor(slider: Slider) -> Matrix:
 
 def damping_tensor(slider: Slider) -> Matrix:
     """Return the damping tensor in the axes x and y, (2, 2), N s/m."""
-    return principal(slider.c_x, slider.c_y, slider.damping_angle)
+    return principal(slider.c_x, slider.c_y, slider.damping_angle - slider.turn)
 
 
 def principal(along: float, across: float, angle: float) -> Matrix:
@@ -52,7 +52,7 @@ def principal(along: float, across: float, angle: float) -> Matrix:
 def is_aligned(slider: Slider) -> bool:
     """Return whether a slider has one mass, and dampers along its springs."""
     one_mass = slider.mass_y is None or slider.mass_y == slider.mass
-    return one_mass and (slider.damping_angle == 0.0 or slider.c_x == slider.c_y)
+    return one_mass and (slider.damping_angle == slider.turn or slider.c_x == slider.c_y)
 
 
 class Axes(NamedTuple):

@@ -21,9 +21,10 @@ Table = dict[str, Any]
 def slider_tables(slider: Slider) -> dict[str, Table]:
     """Return the tables [slider], [friction], [drive] and [load] of a description."""
     parts = {"friction", "drive", "load"}
-    mechanical = [name for name in type(slider).model_fields if name not in parts]
+    mechanical = [name for name in slider.own_fields() if name not in parts]
+    springs = {"springs": [_describe_tuple(each) for each in slider.springs]}
     return {
-        "slider": describe(slider, mechanical),
+        "slider": describe(slider, mechanical) | (springs if slider.springs else {}),
         "friction": _law(slider.law),
         "drive": _drive(slider.motion),
         **({} if slider.load is None else {"load": _program(slider.load, LOAD_PIECES, FORCE)}),

@@ -2,11 +2,12 @@
 
 ``phi`` and ``slider.phi`` are the same, so are ``V`` and ``drive.velocity``; ``mu_0`` is a number
 of the friction law, ``duration`` a setting of the run. Elements of a list count from 1, as in
-``drive.program.2.duration``.
+``drive.program.2.duration``, or are known by their name, as in ``springs.load-cell.k_x``.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from copy import deepcopy
 from typing import Any
@@ -22,7 +23,7 @@ ALIASES = {
 }
 MECHANICAL = (
     *("mass", "mass_y", "mass_angle", "k_x", "k_y", "c_x", "c_y", "damping_angle"),
-    *("phi", "normal_load", "driven", "cell_angle"),
+    *("phi", "normal_load", "driven", "cell_angle", "springs"),
 )
 SETTINGS = ("duration", "sample_rate", "rtol", "regularisation", "smoothing", "multiscale")
 TABLES = ("slider", "friction", "drive", "load", "initial", "run", "study", "axes")
@@ -116,9 +117,22 @@ def member(owner: Any, key: str) -> Any:
 
 
 def place(owner: list[Any], key: str) -> int:
-    """Return the index of an element that is counted from 1."""
+    """Return the index of an element that is counted from 1, or known by its name."""
+    names = [slug(each["name"]) for each in owner if isinstance(each, dict) and "name" in each]
+    if key in names:
+        return names.index(key)
     if not key.isdigit() or not 1 <= int(key) <= len(owner):
+        known = f", known as {', '.join(names)}" if names else ""
         raise IndexError(
-            f"{key!r} is not an element of a list of {len(owner)}; elements count from 1"
+            f"{key!r} is not an element of a list of {len(owner)}; elements count from 1{known}"
         )
     return int(key) - 1
+
+
+def slug(name: Any) -> str:
+    """Return a name as it stands in a path.
+
+    >>> slug("Load cell (z)")
+    'load-cell-z'
+    """
+    return re.sub(r"[\W_]+", "-", str(name).lower()).strip("-")

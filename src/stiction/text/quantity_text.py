@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from decimal import Decimal
-from math import floor, log10, pi, radians
+from math import floor, isinf, log10, pi, radians
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 SI = dict(zip(range(-10, 11), [*"qryzafpnµm", "", *"kMGTPEZYRQ"], strict=True))  # of thousands
+RIGID = "rigid"  # of an infinite stiffness
 BARE = ("", "1", "%", "1/s", "deg")  # units that take no prefix
 DIGITS = 4  # of a number in a sentence
 MEASURABLE = 1e-12  # m, a hundredth of an atom: no instrument follows a mass so closely
@@ -37,6 +38,8 @@ def quantity_text(value: float, unit: str) -> str:
     """
     if unit == "rad":
         return angle_text(value)
+    if unit == "N/m" and isinf(value):
+        return RIGID
     if unit not in PREFIXED:
         return f"{value!r} {unit}".rstrip()
     if value == 0.0:

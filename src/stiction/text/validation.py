@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from difflib import get_close_matches
 from functools import cache
 from inspect import Parameter, Signature, signature
+from math import isinf
 from numbers import Real
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar, cast, get_args, get_type_hints
 
@@ -15,7 +16,7 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 
 from stiction.errors import DescriptionError, Fault
 from stiction.names import session_name
-from stiction.text.quantity_text import angle_text
+from stiction.text.quantity_text import RIGID, angle_text
 from stiction.text.units import as_float, hints_of, kind_of, unit_of
 
 if TYPE_CHECKING:
@@ -67,7 +68,11 @@ class Described(BaseModel, metaclass=_Presented):
         """Return the call that makes an equal object."""
         hints = hints_of(type(self))
         fields = type(self).model_fields
-        return _call(self, {name: hints.get(name) for name in fields}, _defaults(fields))
+        return _call(self, {name: hints.get(name) for name in self.own_fields()}, _defaults(fields))
+
+    def own_fields(self) -> tuple[str, ...]:
+        """Return the names of the fields that a description states; others follow from them."""
+        return tuple(type(self).model_fields)
 
     def __str__(self) -> str:
         """Return the same as `repr`; the library would give angles without units."""
@@ -102,6 +107,8 @@ def quote(value: Any, hint: Any) -> str:
     """Return a field's value as Python code; angles have units, arrays show their size."""
     if isinstance(value, float) and unit_of(hint) == "rad":
         return repr(angle_text(value))
+    if isinstance(value, float) and isinf(value) and unit_of(hint) == "N/m":
+        return repr(RIGID)
     if getattr(value, "shape", None) == ():  # a number of NumPy
         value = value.tolist()
     return f"<{value.size} values>" if hasattr(value, "size") else repr(value)

@@ -15,12 +15,18 @@ ROOT = Path(__file__).parents[3]
 RIGS = sorted((ROOT.parent / "shared" / "rigs").glob("*.toml"))
 VALIDATOR = Draft7Validator(schema())
 PAPER = st.presets.nakano_popov_2020()
+SPRINGS = [
+    st.Spring("load cell", k_x="20 kN/m", k_y="rigid", angle="2 deg", mass="20 g"),
+    st.Spring("leaf springs", k_x="1 kN/m", k_y="5 MN/m"),
+]
 # faults between values, which are not the schema's
 BETWEEN = (
     "missing; only the last piece may have no end",
     "must have a value for each v",
     "must be at least two points",
     "give either by or to",
+    "are rigid together along some axis",
+    "follows from springs",
 )
 WRONG = (True, [], {}, "", "fast", "1 , 2")  # of no table, quantity, name or number
 
@@ -50,6 +56,7 @@ def laws():
     rough = st.laws.Anisotropic(st.Coulomb(mu_0=0.2), 0.8, "10 deg")
     yield "anisotropic", describe(friction=rough)
     yield "programs", describe(**programs())
+    yield "springs", describe(springs=SPRINGS)
 
 
 CASES = dict(laws())

@@ -104,7 +104,7 @@ def test_each_number_of_a_general_rig_can_be_varied():
 
 @pytest.mark.parametrize("share", [0.05, 0.1, 0.3])
 def test_what_a_mass_between_two_springs_changes(share):
-    """(M75), by the dynamic stiffness of the two springs with the mass between them."""
+    """(M77), by the dynamic stiffness of the two springs with the mass between them."""
     k_1, k_2, m = 3e4, 8e4, 0.2
     omega = share * np.sqrt(k_2 / m)
     without = 1.0 / k_1 + 1.0 / k_2

@@ -68,7 +68,7 @@ def find_creep(
     known = calibrate(record, cycles, by_force)
     curves = attempt(missing, "creep", lambda: creep_curves(run or known, cycles, width))
     mean = attempt(missing, "creep", lambda: _mean(curves, known)) if curves is not None else None
-    if run is not None and run.slider.phi == 0.0:
+    if run is not None and run.slider.misalignment == 0.0:
         return CreepFound(curves, mean, None, None, missing)
     V, stiffness = drive_speed(source, known), known.stiffness
     if mean is None or V is None or stiffness is None:

@@ -42,7 +42,7 @@ def section(found: Analysis) -> Section:
     d, phi = found.divergence, found.misalignment
     if found.record.position is None and phi is None:
         lines.append("Counted from the even loading in the first half of each rise.")
-    if isinstance(found.source, Trajectory) and found.source.slider.phi == 0.0:
+    if isinstance(found.source, Trajectory) and found.source.slider.misalignment == 0.0:
         lines.append("There is no misalignment, so friction does not turn.")
         if not states(found.source.slider.law):
             lines.append("A motion in the last moments is the slip itself, which begins.")
@@ -68,7 +68,7 @@ def _true(found: Analysis) -> str:
     """Return the true misalignment of a run, for comparison, in words."""
     if not isinstance(found.source, Trajectory):
         return ""
-    return f" (the run has {degrees(abs(found.source.slider.phi)):.3g} deg)"
+    return f" (the run has {degrees(abs(found.source.slider.misalignment)):.3g} deg)"
 
 
 def _end(found: Analysis) -> str:

@@ -22,7 +22,8 @@ def audit(
     Prints theoretical predictions beside the results of a simulated test: damping number, critical
     misalignment and the margin to it, true rest and creep in apparent stick, apparent friction
     coefficients, period, the frequency of the transverse oscillation and the sampling rate that
-    shows it; and, if it does not slide steadily, advice, each tried in a simulation.
+    shows it; and, if it does not slide steadily, advice, each tried in a simulation. Of springs in
+    series: which is the softest, and what each replaced by a stiffer one changes.
 
     For example, with what `stiction init my.toml` writes:
 

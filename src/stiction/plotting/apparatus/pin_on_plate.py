@@ -28,7 +28,7 @@ def draw_apparatus(ax: Axes, slider: Slider) -> Axes:
     slider : Slider
         The system; only its misalignment matters.
     """
-    phi = drawn_misalignment(slider.phi)
+    phi = drawn_misalignment(slider.misalignment)
     turn = np.array([[np.cos(phi), -np.sin(phi), 0], [np.sin(phi), np.cos(phi), 0], [0, 0, 1]])
     _draw_plate(ax)
     _draw_cantilever(ax, turn)
@@ -47,7 +47,7 @@ def draw_apparatus(ax: Axes, slider: Slider) -> Axes:
         shapes.line(ax, _project(arc))
         middle = np.array([np.cos(phi / 2), -np.sin(phi / 2), 0])
         shapes.name(ax, _project(2.45 * middle), r"$\varphi$")
-    note = misalignment_note(slider.phi)
+    note = misalignment_note(slider.misalignment)
     ax.text(0.98, 0.0, note, transform=ax.transAxes, ha="right", va="bottom", fontsize=7)
     ax.update_datalim([(0.0, -2.0)])
     ax.margins(0.03)

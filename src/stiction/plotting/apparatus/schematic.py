@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import copysign, cos, pi, sin
+from math import copysign, cos, degrees, pi, sin
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,11 +17,14 @@ from stiction.plotting.apparatus.misalignment import (
 )
 from stiction.plotting.apparatus.shapes import Points, polar
 from stiction.plotting.page.canvas import panel
-from stiction.plotting.page.style import BLUE, COLUMN, FLOOR, GREEN, GREY, PURPLE, RED, style
+from stiction.plotting.page.style import BLACK, BLUE, COLUMN, FLOOR, GREEN, GREY, PURPLE, RED, style
 from stiction.system.slider import Slider
+from stiction.system.springs import compliance
 
 # half side of the block; position of the bracket along x and y; its overhang
 BLOCK, WALL_X, WALL_Y, OVERHANG = 0.6, 3.0, 2.7, 0.75
+SEEN = 1e-3  # of the compliance along an axis: a spring with less is drawn as rigid
+LINE = 0.55  # height of a line of the legend
 BACK = 3.0  # extent of F and the axes behind the block
 
 
@@ -45,8 +48,9 @@ def draw_schematic(ax: Axes, slider: Slider) -> Axes:
     Blue is the drive direction X, red are the principal axes x and y of the spring; the far
     end of the spring is a bracket that moves with the drive. The friction F on the block is
     opposite to its slip velocity; psi and theta are the angles of the slip to X and x, and so
-    those of F to -X and -x, where they are drawn. Lengths are
-    not to scale; the misalignment is, where it is large enough to be seen.
+    those of F to -X and -x, where they are drawn. Springs in series are numbered from the block
+    to the bracket, a bar where one does not yield. Two masses have their axes in the block.
+    Lengths are not to scale; the misalignment is, where it is large enough to be seen.
 
     Parameters
     ----------
@@ -55,7 +59,7 @@ def draw_schematic(ax: Axes, slider: Slider) -> Axes:
     slider : Slider
         The system, with or without dampers, pulled either way or not at all.
     """
-    drawn = drawn_misalignment(slider.phi)
+    drawn = drawn_misalignment(slider.misalignment)
     side = copysign(1.0, drawn)
     phi, theta = abs(drawn), abs(drawn_slip_angle(drawn))
     velocity = slider.motion.rate(0.0)[0]
@@ -66,7 +70,11 @@ def draw_schematic(ax: Axes, slider: Slider) -> Axes:
         *_draw_drive(ax, lab, phi, velocity),
         *_draw_slip(ax, lab, phi, theta, backward=velocity < 0),
     ]
-    _frame(ax, np.vstack(ends), misalignment_note(slider.phi))
+    _draw_masses(ax, lab, slider, side)
+    legend = _legend(slider)
+    room = LINE * len(legend.splitlines())
+    _frame(ax, np.vstack(ends), misalignment_note(slider.misalignment), room)
+    ax.text(0.02, 0.98, legend, transform=ax.transAxes, ha="left", va="top", fontsize=7)
     return ax
 
 
@@ -97,21 +105,67 @@ def _draw_spring(ax: Axes, lab: Placement, slider: Slider) -> list[Points]:
     corners = BLOCK * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
     bracket = lab([(WALL_X, -OVERHANG), (WALL_X, WALL_Y), (-OVERHANG, WALL_Y)])
     shapes.polygon(ax, lab(corners), face="#D5D5D5")
-    shapes.name(ax, (0, 0), "$m$")
     shapes.line(ax, bracket, GREY, 3.0)
     ex, ey = np.eye(2)
-    for axis, along, across, length, c in (
-        ("x", ex, ey, WALL_X, slider.c_x),
-        ("y", ey, ex, WALL_Y, slider.c_y),
+    for place, (axis, along, across, length, c) in enumerate(
+        (("x", ex, ey, WALL_X, slider.c_x), ("y", ey, ex, WALL_Y, slider.c_y))
     ):
         ends, offset = np.outer([BLOCK, length], along), (0.3 if c > 0 else 0.0) * across
-        shapes.line(ax, lab(shapes.spring_path(*(ends + offset))))
-        text, edge = f"$k_{axis}$", 0.3
+        if slider.springs:
+            side = (1.0 if c > 0 else -1.0) * across
+            _draw_series(ax, lab, ends + offset, side, _yields(slider, place))
+        else:
+            shapes.line(ax, lab(shapes.spring_path(*(ends + offset))))
+        text, edge = "" if slider.springs else f"$k_{axis}$", 0.3
         if c > 0:
             shapes.dashpot(ax, *lab(ends - offset))
-            text, edge = f"{text}, $c_{axis}$", 0.6
+            text, edge = f"{text}, $c_{axis}$".removeprefix(", "), 0.6
         shapes.beside(ax, lab(ends.mean(axis=0) - edge * across), -lab(across), text)
     return [bracket]
+
+
+def _yields(slider: Slider, place: int) -> list[bool]:
+    """Return which springs in series yield along x, or along y."""
+    angle = slider.turn + 0.5 * pi * place
+    e = polar(1.0, angle)
+    own = [float(e @ compliance(each) @ e) for each in slider.springs]
+    return [each > SEEN * sum(own) for each in own]
+
+
+def _draw_series(ax: Axes, lab: Placement, ends: Points, side: Points, yields: list[bool]) -> None:
+    """Draw springs one behind the other, with numbers beside them, and bars for what is rigid."""
+    sizes = np.where(yields, 1.0, 0.4)
+    joints = ends[0] + np.outer(np.r_[0.0, np.cumsum(sizes) / sizes.sum()], ends[1] - ends[0])
+    turns = max(2, 6 - len(yields))
+    for number, (start, end, soft) in enumerate(zip(joints, joints[1:], yields, strict=False), 1):
+        if soft:
+            shapes.line(ax, lab(shapes.spring_path(start, end, 0.18, turns)))
+        else:
+            shapes.line(ax, lab([start, end]), width=2.4)
+        middle = lab((start + end) / 2 + 0.42 * side)
+        shapes.name(ax, middle, str(number), size=6)
+    x, y = lab(joints[1:-1]).T
+    ax.plot(x, y, "o", color=BLACK, markersize=2.2, zorder=4)
+
+
+def _draw_masses(ax: Axes, lab: Placement, slider: Slider, side: float) -> None:
+    """Write the mass into the block; where two differ, draw their axes, that of m_x longer."""
+    if slider.mass_y is None or slider.mass_y == slider.mass:
+        shapes.name(ax, (0, 0), "$m$")
+        return
+    angle = side * (slider.mass_angle - slider.turn)
+    for at, length, dashes in ((angle, 0.5, "-"), (angle + pi / 2, 0.3, ":")):
+        shapes.line(ax, lab([polar(-length, at), polar(length, at)]), GREY, 1.0, dashes, zorder=4)
+
+
+def _legend(slider: Slider) -> str:
+    """Return the names of springs in series, and the axis of the first of two masses."""
+    lines = [f"{number}  {each.name}" for number, each in enumerate(slider.springs, 1)]
+    if slider.mass_y is not None and slider.mass_y != slider.mass:
+        angle = degrees(slider.mass_angle - slider.turn)
+        where = f"{angle:.4g}° to $x$".replace("-", "−") if abs(angle) > 1e-9 else "along $x$"
+        lines.append(f"$m_x$ {where}, $m_y$ across")
+    return "\n".join(lines)
 
 
 def _draw_drive(ax: Axes, lab: Placement, phi: float, velocity: float) -> list[Points]:
@@ -170,11 +224,11 @@ def _unit(ends: Points) -> Points:
     return way
 
 
-def _frame(ax: Axes, points: Points, note: str) -> None:
-    """Make the axes the floor, with room for labels at the ends."""
+def _frame(ax: Axes, points: Points, note: str, above: float) -> None:
+    """Make the axes the floor, with room for labels at the ends, and for a legend above."""
     (left, bottom), (right, top) = points.min(axis=0) - 0.9, points.max(axis=0) + 0.9
     ax.margins(0)
-    ax.update_datalim([(left, bottom - 0.6), (right, top)])
+    ax.update_datalim([(left, bottom - 0.6), (right, top + above)])
     ax.autoscale_view()
     ax.set(xticks=[], yticks=[], facecolor=FLOOR)
     ax.set_aspect("equal", adjustable="datalim")

@@ -32,7 +32,7 @@ def draw_velocity_triangle(ax: Axes, slider: Slider) -> Axes:
     slider : Slider
         The system; only its misalignment matters.
     """
-    drawn = drawn_misalignment(slider.phi)
+    drawn = drawn_misalignment(slider.misalignment)
     phi, theta, lab = abs(drawn), abs(drawn_slip_angle(drawn)), placement(drawn)
     drive, slip = polar(1.0, phi), polar(0.32, theta)
     foot, knee = np.array([drive[0] - slip[0], 0.0]), drive - slip

@@ -33,7 +33,7 @@ def symbol(name: str) -> str:
 
 def system_in_words(slider: Slider) -> list[str]:
     """Return the mechanical parameters of a slider and its drive, in a few lines."""
-    misalignment = f"{degrees(slider.phi):.4g}°".replace("-", "−")
+    misalignment = f"{degrees(slider.misalignment):.4g}°".replace("-", "−")
     lines = [
         f"{_masses(slider)}, $W$ = {in_words(slider.normal_load, 'N')}",
         f"$k_x$ = {in_words(slider.k_x, 'N/m')}, $k_y$ = {in_words(slider.k_y, 'N/m')}",
@@ -41,7 +41,7 @@ def system_in_words(slider: Slider) -> list[str]:
     ]
     if slider.c_x > 0 or slider.c_y > 0:
         c_x, c_y = (in_words(c, "N s/m") for c in (slider.c_x, slider.c_y))
-        lines.insert(2, f"$c_x$ = {c_x}, $c_y$ = {c_y}{_askew(slider.damping_angle)}")
+        lines.insert(2, f"$c_x$ = {c_x}, $c_y$ = {c_y}{_askew(slider.damping_angle - slider.turn)}")
     return lines + protocol_in_words(slider)
 
 
@@ -51,7 +51,7 @@ def _masses(slider: Slider) -> str:
     if slider.mass_y is None:
         return f"$m$ = {along}"
     across = in_words(slider.mass_y, "kg")
-    return f"$m_x$ = {along}, $m_y$ = {across}{_askew(slider.mass_angle)}"
+    return f"$m_x$ = {along}, $m_y$ = {across}{_askew(slider.mass_angle - slider.turn)}"
 
 
 def _askew(angle: float) -> str:
@@ -145,7 +145,7 @@ def scales_in_words(slider: Slider) -> list[str]:
         rf"$F_0 = \mu_0 W$ = {in_words(slider.F_0, 'N')}",
         rf"$\omega_x/2\pi$ = {in_words(f_x, 'Hz')}, $\omega_y/2\pi$ = {in_words(f_y, 'Hz')}",
     ]
-    V, phi = abs(base_velocity(slider)), abs(slider.phi)
+    V, phi = abs(base_velocity(slider)), abs(slider.misalignment)
     if V > 0 and sin(phi) > 0:
         A = float(theory.damping_number(slider.F_0, V, phi, slider.masses[0], slider.k_x))
         zeta = plain(A * sin(phi) ** 3, 2)

@@ -91,7 +91,7 @@ def interpolate(values: Floats, places: Floats) -> Floats:
 
 def damping_ratio(slider: Slider) -> float:
     """Return zeta of Eq. (10) at theta = phi; NaN without a steady drive, or misalignment."""
-    motion, phi = slider.motion, abs(slider.phi)
+    motion, phi = slider.motion, abs(slider.misalignment)
     if not isinstance(motion, ConstantVelocity) or motion.velocity == 0.0 or sin(phi) == 0.0:
         return nan
     A = damping_number(slider)
@@ -100,5 +100,5 @@ def damping_ratio(slider: Slider) -> float:
 
 def damping_number(slider: Slider) -> float:
     """Return A of Eq. (10)."""
-    V, phi = abs(slider.motion.velocity), abs(slider.phi)
+    V, phi = abs(slider.motion.velocity), abs(slider.misalignment)
     return float(closed_forms.damping_number(slider.F_0, V, phi, slider.masses[0], slider.k_x))

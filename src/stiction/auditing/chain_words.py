@@ -1,0 +1,146 @@
+"""Springs in series in the report of an audit."""
+
+from __future__ import annotations
+
+from math import degrees, inf, isinf
+from typing import TYPE_CHECKING
+
+from stiction.auditing.chain import SMALL, Chain, Part, Replacement
+from stiction.auditing.observation import Observation
+from stiction.auditing.prediction import Prediction
+from stiction.auditing.words import apparent_stiffness, final_motion, peak
+from stiction.system.slider import Slider
+from stiction.text.sections import Section, Table
+from stiction.text.units import in_words
+
+if TYPE_CHECKING:
+    from stiction.auditing.report import Audit
+
+HEADINGS = ("spring", "k_x", "k_y", "compliance along x", "along y")
+CHANGES = ("spring", "stiffness", "A", "ζ", "f_y", "static friction", "simulated from rest")
+
+
+def chain_sections(found: Audit) -> list[Section]:
+    """Return the sections on springs in series; none for a single spring."""
+    if found.chain is None:
+        return []
+    lines = [*softest(found.chain), *axes(found.slider), *masses(found.slider, found.chain)]
+    return [
+        Section(
+            "Springs in series", lines, Table(HEADINGS, [*map(_describe_part, found.chain.parts)])
+        ),
+        Section("One spring replaced", outcomes(found), Table(CHANGES, _changes(found))),
+    ]
+
+
+def softest(chain: Chain) -> list[str]:
+    """Return the softest part along x, which is mostly the drive's way, and along y."""
+    x = max(chain.parts, key=lambda part: part.along_x)
+    y = max(chain.parts, key=lambda part: part.along_y)
+    of_x, of_y = percent(x.along_x), percent(y.along_y)
+    if x is y:
+        return [
+            f"The softest is: {x.spring.name}, with {of_x} of the compliance along x and {of_y} "
+            "along y."
+        ]
+    return [
+        f"The softest along x is: {x.spring.name}, with {of_x} of the compliance; along y: "
+        f"{y.spring.name}, with {of_y}."
+    ]
+
+
+def axes(slider: Slider) -> list[str]:
+    """Return where the axes of the whole lie, if parts have axes of their own."""
+    if not slider.turn:
+        return []
+    return [
+        f"The springs' axes differ. Together they have the axis x at {degrees(slider.turn):.4g} "
+        f"deg to the line that angles count from, so that their misalignment to the drive is "
+        f"{degrees(slider.misalignment):.4g} deg where phi is {degrees(slider.phi):.4g} deg."
+    ]
+
+
+def masses(slider: Slider, chain: Chain) -> list[str]:
+    """Return whether the masses of parts, which the model leaves out, matter."""
+    return [_mass(part, number) for number, part in enumerate(chain.parts) if part.spring.mass]
+
+
+def _mass(part: Part, number: int) -> str:
+    mass, name = in_words(part.spring.mass or 0.0, "kg"), part.spring.name
+    start = f"The mass of {mass} that moves with {name!r} is left out"
+    if part.more < SMALL:
+        more = percent(part.more)
+        return f"{start}: with it the springs would yield at most {more} more, which is little."
+    remedy = " It moves with the slider: add it to its mass." if number == 0 else ""
+    if isinf(part.more):
+        return (
+            f"{start}, which is wrong: on the springs beyond it, it resonates below a natural "
+            f"frequency of the slider.{remedy}"
+        )
+    return (
+        f"{start}: with it the springs would yield up to {percent(part.more)} more at a natural "
+        f"frequency of the slider, which would be lower by about {percent(0.5 * part.more)}."
+        f"{remedy}"
+    )
+
+
+def outcomes(found: Audit) -> list[str]:
+    """Return what the replacements change, in sentences."""
+    now, chain = final_motion(found.observation), found.chain
+    by = "Stiffness, A, ζ and f_y are by theory, friction and motion simulated from rest."
+    tried = [each for each in (chain.replacements if chain else ()) if each.tried]
+    other = [(each, final_motion(each.tried)) for each in tried if each.tried]
+    differing = [f"{_name(each)}: {then}" for each, then in other if then != now]
+    if not other:
+        return []
+    if not differing:
+        return [f"No replacement changes the motion from rest: it is {now} with each. {by}"]
+    return [
+        f"As it is, it comes to {now} from rest. That changes with {'; '.join(differing)}. {by}"
+    ]
+
+
+def _describe_part(part: Part) -> tuple[str, ...]:
+    spring = part.spring
+    k_x, k_y = (in_words(k, "N/m") if k < inf else "rigid" for k in (spring.k_x, spring.k_y))
+    angle = f" at {degrees(spring.angle):.3g} deg" if spring.angle else ""
+    return f"{spring.name}{angle}", k_x, k_y, percent(part.along_x), percent(part.along_y)
+
+
+def _changes(found: Audit) -> list[tuple[str, ...]]:
+    chain, seen = found.chain, found.observation
+    rows = [_row("all as they are", found.slider, found.prediction, seen)]
+    return rows + [_change(each) for each in (chain.replacements if chain else ())]
+
+
+def _change(each: Replacement) -> tuple[str, ...]:
+    if each.slider is None or each.prediction is None:
+        reason = "not possible: the others are rigid along some axis"
+        return (_name(each), *[""] * (len(CHANGES) - 2), reason)
+    return _row(_name(each), each.slider, each.prediction, each.tried)
+
+
+def _row(name: str, slider: Slider, p: Prediction, seen: Observation | None) -> tuple[str, ...]:
+    motion = "not tried"
+    if seen is not None:
+        status = seen.run.status
+        motion = final_motion(seen) if status.ok else f"not known: {status.value}"
+    return (
+        name,
+        in_words(apparent_stiffness(slider), "N/m"),
+        in_words(p.A, ""),
+        in_words(p.zeta, ""),
+        in_words(p.f_y, "Hz"),
+        "" if seen is None else in_words(peak(seen), ""),
+        motion,
+    )
+
+
+def _name(each: Replacement) -> str:
+    how = {2.0: "twice as stiff", inf: "rigid"}.get(each.factor, f"{each.factor:g} times as stiff")
+    return f"{each.spring.name} {how}"
+
+
+def percent(share: float) -> str:
+    """Return a share in per cent, as text."""
+    return f"{100.0 * share:.2g} %"
