@@ -6,7 +6,10 @@ each of which starts where the last one ended:
 - stick: the slip velocity s is zero, and the spring's end drags the elongation along;
 - take-off: the first moment of slip, by successive approximation;
 - slip: Eqs. (4) and (5) in polar form, by an explicit Runge-Kutta method;
-- landing: the last moment of slip, in closed form.
+- landing: the last moment of slip, in closed form where friction and mass are the same all around.
+
+Any planar rig is taken as it is, with its tensors in the axes x and y: the coordinates (M71) of the
+compiled solver, weighted by mass, do not occur here.
 
 Equation numbers are those of Nakano & Popov, arXiv:2008.01854.
 """
@@ -22,12 +25,14 @@ from scipy.integrate import solve_ivp  # type: ignore[attr-defined]
 from scipy.optimize import brentq
 
 from stiction.drive import ConstantVelocity
+from stiction.friction import Anisotropic
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
-from stiction.system.tensors import is_aligned
+from stiction.system.tensors import damping_tensor, mass_tensor, principal, stiffness_tensor
 
 TAKE_OFF = 0.1  # length of a take-off, in units of the shorter natural period over 2 pi
 DEGREE = 8  # of the polynomials in time that describe it; their error is near rounding
+NUDGE = 1e-4  # of w, for a slope by a difference; it changes the way to w, not w
 VANISHING = 1e-10  # slip speed at the start of a landing, relative to the motion's own
 
 State = tuple[np.ndarray, np.ndarray]  # elongation u (m) and slip velocity s (m/s)
@@ -55,24 +60,46 @@ class Phase(NamedTuple):
 
 
 class Equations(NamedTuple):
-    """Eq. (1) over the mass: ds/dt = a - F(|s|)/m s/|s|, with a = (K u + C du/dt)/m.
+    """Eq. (1): M ds/dt = g - F(|s|) n(s), with g = K u + C du/dt and n = N s/sqrt(s.N s).
 
-    Stiffness K/m (1/s^2), damping C/m (1/s) and drive velocity v_d (m/s) along x and y;
-    friction force over mass (m/s^2) as a function of the slip speed (m/s); a slip speed
-    (m/s) and a rate (1/s) typical of the motion, for tolerances.
+    The inverse of M (1/kg), K (N/m), C (N s/m) and N as matrices in the axes x and y, and the drive
+    velocity v_d (m/s) there; friction force (N) as a function of the slip speed (m/s); a slip
+    speed (m/s) and a rate (1/s) typical of the motion, for tolerances.
     """
 
+    mobility: np.ndarray
     stiffness: np.ndarray
     damping: np.ndarray
+    surface: np.ndarray
     drive: np.ndarray
     friction: Callable[[float], float]
     speed: float
     rate: float
 
     def pull(self, u: np.ndarray, s: np.ndarray) -> np.ndarray:
-        """Return the acceleration a of slip (m/s^2), Eq. (1), with du/dt = v_d - s, Eq. (2)."""
-        a: np.ndarray = self.stiffness * u + self.damping * (self.drive - s)
+        """Return the force g (N) that pulls, Eq. (1), with du/dt = v_d - s, Eq. (2)."""
+        g: np.ndarray = u @ self.stiffness + (self.drive - s) @ self.damping
+        return g
+
+    def toward(self, s: np.ndarray) -> np.ndarray:
+        """Return n(s): friction over F, which for an isotropic surface is the unit vector of s."""
+        size = np.sqrt(np.sum(s * (s @ self.surface), axis=-1, keepdims=True))
+        n: np.ndarray = s @ self.surface / size
+        return n
+
+    def acceleration(self, g: np.ndarray, s: np.ndarray, friction: Any) -> np.ndarray:
+        """Return ds/dt (m/s^2) under the forces g and friction, of slips in a direction s."""
+        a: np.ndarray = (g - friction * self.toward(s)) @ self.mobility
         return a
+
+    def use(self, g: np.ndarray, other: np.ndarray) -> float:
+        """Return g.N^-1 other, by which g.N^-1 g = F^2 is the friction limit."""
+        return float(g @ np.linalg.solve(self.surface, other))
+
+    @property
+    def uniform(self) -> bool:
+        """Whether friction and mass are the same in all directions."""
+        return all(np.array_equal(A, A[0, 0] * np.eye(2)) for A in (self.mobility, self.surface))
 
 
 def twin(
@@ -126,18 +153,23 @@ def equations_of(slider: Slider) -> Equations:
     """Return the equations of motion of a slider."""
     if not isinstance(slider.drive, ConstantVelocity) or slider.load is not None:
         raise ValueError(f"the twin knows a steady drive and load only, not {slider.drive!r}")
-    if not is_aligned(slider):
-        raise ValueError("the twin knows one mass and dampers along the springs only")
     drive = slider.drive.velocity * np.array(slider.direction)
-    force, law = slider.normal_load / slider.mass, slider.law
-    stiffness = np.array([slider.k_x, slider.k_y]) / slider.mass
-    rate = float(np.sqrt(stiffness.max()))
-    speeds = [*np.abs(drive), law.coefficient(0.0) * force / rate]
+    law: Any = slider.law
+    surface = np.eye(2)
+    if isinstance(law, Anisotropic):
+        surface = principal(1.0, law.ratio**2, slider.misalignment + law.angle)
+        law = law.law
+    mobility, stiffness = np.linalg.inv(mass_tensor(slider)), stiffness_tensor(slider)
+    rate = float(np.sqrt(np.linalg.eigvals(mobility @ stiffness).real.max()))
+    limit = law.coefficient(0.0) * slider.normal_load
+    speeds = [*np.abs(drive), limit * np.linalg.eigvalsh(mobility).max() / rate]
     return Equations(
+        mobility,
         stiffness,
-        np.array([slider.c_x, slider.c_y]) / slider.mass,
+        damping_tensor(slider),
+        surface,
         drive,
-        lambda v: law.coefficient(v) * force,
+        lambda v: law.coefficient(v) * slider.normal_load,
         min(speed for speed in speeds if speed > 0.0),
         rate,
     )
@@ -153,28 +185,29 @@ def next_phase(
         if held > 0.0:
             return stick(equations, t, min(t + held, end), u)
         return take_off(equations, t, end, u)
-    growing = equations.pull(u, s) @ s > equations.friction(r) * r
+    change = equations.acceleration(equations.pull(u, s), s, equations.friction(r))
+    growing = change @ s > 0.0
     if r > 2 * VANISHING * equations.speed or growing:
         return slip(equations, t, end, u, s, rtol)
     return landing(equations, t, end, u, s)
 
 
 def time_held(equations: Equations, u: np.ndarray) -> float:
-    """Return the time (s) that friction holds the mass: until |a| reaches f = mu_0 W/m.
+    """Return the time (s) that friction holds the mass: until g.N^-1 g reaches F_0^2, (M3).
 
-    While s = 0, a changes at the constant rate a' = K v_d/m, and |a + a' tau|^2 = f^2 is quadratic
-    in tau; the stick ends at the root at which |a| grows. If |a| equals f within rounding and
-    grows, the stick has just ended.
+    While s = 0, g changes at the constant rate g' = K v_d, so that this is quadratic in time; the
+    stick ends at the root at which it grows. If it is reached within rounding and grows, the stick
+    has just ended.
     """
-    a, change = equations.pull(u, np.zeros(2)), equations.stiffness * equations.drive
-    f = equations.friction(0.0)
-    excess = a @ a - f * f
-    rounding = 1e-13 * f * f
-    if excess > rounding or (excess > -rounding and a @ change > 0.0):
+    g, change = equations.pull(u, np.zeros(2)), equations.drive @ equations.stiffness
+    F_0 = equations.friction(0.0)
+    excess, growth = equations.use(g, g) - F_0 * F_0, equations.use(g, change)
+    rounding = 1e-13 * F_0 * F_0
+    if excess > rounding or (excess > -rounding and growth > 0.0):
         return 0.0
     if not change.any():
         return np.inf
-    return float(max(np.roots([change @ change, 2 * a @ change, excess]).real))
+    return float(max(np.roots([equations.use(change, change), 2 * growth, excess]).real))
 
 
 def stick(equations: Equations, t: float, end: float, u: np.ndarray) -> Phase:
@@ -182,21 +215,48 @@ def stick(equations: Equations, t: float, end: float, u: np.ndarray) -> Phase:
     return Phase(end, lambda at: (u + equations.drive * (at - t), np.zeros(2)))
 
 
-def take_off(equations: Equations, t: float, end: float, u: np.ndarray, part: float = 1.0) -> Phase:
-    """Take-off: slip begins along the force that held, and turns with it.
+def first_direction(equations: Equations, g: np.ndarray) -> np.ndarray:
+    """Return the unit vector along which slip begins under a force at the friction limit or beyond.
 
-    In axes along and across a(0) the slip velocity is written p (1, w); then Eqs. (4) and
-    (5) read p' = a_1 - F(|s|)/m/sqrt(1 + w^2), p w' = a_2 - w a_1, which is regular at
-    p = 0. Starting from p = w = 0, each pass computes a from the distance slid, solves the second
-    equation for w (it is linear), and integrates the first for p, at the nodes of a Chebyshev
-    polynomial in time. After a stick p begins as d|a|/dt tau^2/2; if the force exceeds the friction
-    limit, as (|a| - f) tau. If the polynomial is not accurate, because friction changes fast, half
-    the length is tried.
+    At the limit it is that of the slip whose friction g would be, n(s) = g/F_0. Beyond, the mass
+    accelerates along its slip: ds/dt is parallel to s.
+    """
+    e: np.ndarray = np.linalg.solve(equations.surface, g)
+    e /= np.hypot(*e)
+    F_0 = equations.friction(0.0)
+    if equations.use(g, g) <= F_0 * F_0 * (1.0 + 1e-13):
+        return e
+
+    def across(angle: float) -> float:
+        c, s = np.cos(angle), np.sin(angle)
+        turned = np.array([c * e[0] - s * e[1], s * e[0] + c * e[1]])
+        a = equations.acceleration(g, turned, F_0)
+        return float(turned[0] * a[1] - turned[1] * a[0])
+
+    search: Any = brentq  # its stubs are missing
+    angles = np.linspace(-np.pi / 2, np.pi / 2, 181)
+    values = [across(angle) for angle in angles]
+    falls = [k for k in range(180) if values[k] > 0.0 >= values[k + 1]]
+    k = min(falls, key=lambda k: abs(angles[k])) if falls else 90
+    angle = search(across, angles[k], angles[k + 1], xtol=1e-15) if falls else 0.0
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([c * e[0] - s * e[1], s * e[0] + c * e[1]])
+
+
+def take_off(equations: Equations, t: float, end: float, u: np.ndarray, part: float = 1.0) -> Phase:
+    """Take-off: slip begins along `first_direction`, and turns with the force.
+
+    In axes along and across that direction the slip velocity is written p (1, w). With the
+    acceleration R = M^-1 (g - F n) along both, Eqs. (4) and (5) read p' = R_1 and p w' = R_2 -
+    w R_1 = G(w), which is regular at p = 0. Starting from p = w = 0, each pass computes g from the
+    distance slid, solves the second equation for w, linearised about the last one, and integrates
+    the first for p, at the nodes of a Chebyshev polynomial in time. If the polynomial is not
+    accurate, because friction changes fast, half the length is tried.
     """
     length = min(t + part * TAKE_OFF / equations.rate, end) - t
-    e = equations.pull(u, np.zeros(2))
-    e /= np.hypot(*e)
+    e = first_direction(equations, equations.pull(u, np.zeros(2)))
     across = np.array([-e[1], e[0]])
+    axes = np.array([e, across]).T
     time = length * (1 - np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)) / 2
 
     def through(values: np.ndarray) -> Chebyshev:
@@ -210,11 +270,19 @@ def take_off(equations: Equations, t: float, end: float, u: np.ndarray, part: fl
     for _ in range(50):
         s = np.outer(p, e) + np.outer(p * w, across)
         gone = np.outer(slid(p), e) + np.outer(slid(p * w), across)
-        a = equations.pull(u + np.outer(time, equations.drive) - gone, s)
-        w = np.linalg.solve(p[:, None] * derivative + np.diag(a @ e), a @ across)
-        stretch = np.sqrt(1 + w * w)
-        friction = np.array([equations.friction(v) for v in np.abs(p) * stretch])
-        before, p = p, slid(a @ e - friction / stretch)
+        g = equations.pull(u + np.outer(time, equations.drive) - gone, s)
+        friction = np.array([equations.friction(v) for v in np.abs(p) * np.hypot(1.0, w)])[:, None]
+
+        def turns(
+            w: np.ndarray, g: np.ndarray = g, friction: np.ndarray = friction
+        ) -> tuple[np.ndarray, np.ndarray]:
+            """Return R_1 and G at the nodes."""
+            R = equations.acceleration(g, e + np.outer(w, across), friction) @ axes
+            return R[:, 0], R[:, 1] - w * R[:, 0]
+
+        G, slope = turns(w)[1], (turns(w + NUDGE)[1] - turns(w - NUDGE)[1]) / (2 * NUDGE)
+        w = np.linalg.solve(p[:, None] * derivative - np.diag(slope), G - slope * w)
+        before, p = p, slid(turns(w)[0])
         change = np.abs(p - before).max()
         if change <= 1e-11 * np.abs(p).max():
             break
@@ -237,12 +305,12 @@ def slip(
 ) -> Phase:
     """Slip: Eqs. (4) and (5) with s = r (cos theta, sin theta), until r almost vanishes.
 
-        dr/dt = a . (cos theta, sin theta) - F(r)/m
-        r dtheta/dt = a . (-sin theta, cos theta)
+        dr/dt = R . (cos theta, sin theta)
+        r dtheta/dt = R . (-sin theta, cos theta),    R = M^-1 (g - F(r) n)
 
-    Friction slows the slip down but cannot turn it. The direction follows a at the rate |a|/r,
-    which is unbounded as r vanishes. Hence the independent variable n with dt = r dn, and steps of
-    at most a few m/F in n: with longer ones an explicit method becomes noisy. The tolerance is
+    The direction changes at the rate |R|/r, which is unbounded as r vanishes. Hence the independent
+    variable n with dt = r dn, and steps of at most a few m/F in n: with longer ones an explicit
+    method becomes noisy. The tolerance is
     relative for the elapsed time, the distance slid in the phase (u hardly changes) and the slip
     speed, with a floor, and absolute for the direction.
     """
@@ -254,9 +322,9 @@ def slip(
 
     def change(_: float, y: np.ndarray) -> np.ndarray:
         now_u, now_s = state_of(y)
-        a, r, e = equations.pull(now_u, now_s), y[3], now_s / y[3]
-        along, across = a @ e, e[0] * a[1] - e[1] * a[0]
-        return np.array([r, *(r * now_s), r * (along - equations.friction(r)), across])
+        r, e = y[3], now_s / y[3]
+        R = equations.acceleration(equations.pull(now_u, now_s), e, equations.friction(r))
+        return np.array([r, *(r * now_s), r * (R @ e), e[0] * R[1] - e[1] * R[0]])
 
     def vanishing(_: float, y: np.ndarray) -> float:
         return float(y[3] / (VANISHING * equations.speed) - 1)
@@ -267,6 +335,8 @@ def slip(
     vanishing.terminal, vanishing.direction = True, -1  # type: ignore[attr-defined]
     over.terminal = True  # type: ignore[attr-defined]
     distance = equations.speed / equations.rate
+    hardest = float(np.sqrt(np.linalg.eigvalsh(equations.surface).max()))
+    quickest = equations.friction(0.0) * hardest * np.linalg.eigvalsh(equations.mobility).max()
     solution = solve_ivp(
         change,
         (0.0, np.inf),
@@ -274,7 +344,7 @@ def slip(
         method="DOP853",
         events=(vanishing, over),
         dense_output=True,
-        max_step=3.0 / equations.friction(0.0),
+        max_step=3.0 / quickest,
         rtol=rtol,
         atol=rtol * np.array([1e-3 / equations.rate, distance, distance, equations.speed, 1.0]),
     )
@@ -292,16 +362,21 @@ def slip(
 
 
 def landing(equations: Equations, t: float, end: float, u: np.ndarray, s: np.ndarray) -> Phase:
-    """Landing: s' = a - f s/|s| with constant a and f, the classical pursuit curve.
+    """Landing: slip under constant forces, so short that the distance slid is below rounding.
 
-    From d/dt (f r + a.s) = |a|^2 - f^2 zero slip follows after r (f + a.e)/(f^2 - |a|^2), e = s/r.
-    If f is smaller than |a|, the slip was (nearly) opposite to a, because otherwise it would not
-    have vanished, and the time is r/(f + |a|). The distance slid until then, about r/2 times this
-    time, is below rounding.
+    With one mass and isotropic friction it is the classical pursuit curve s' = a - f s/|s|. From
+    d/dt (f r + a.s) = |a|^2 - f^2 zero slip follows after r (f + a.e)/(f^2 - |a|^2), e = s/r. If f
+    is smaller than |a|, the slip was (nearly) opposite to a, because otherwise it would not have
+    vanished, and the time is r/(f + |a|). Otherwise the direction has settled by now, as r has
+    fallen by many decades, and r falls at a constant rate.
     """
-    a, f, r = equations.pull(u, s), equations.friction(0.0), float(np.hypot(*s))
-    size = float(np.hypot(*a))
-    duration = r * (f + a @ s / r) / (f * f - size * size) if size < f else r / (f + size)
+    g, F_0, r = equations.pull(u, s), equations.friction(0.0), float(np.hypot(*s))
+    if equations.uniform:
+        a, f = g * equations.mobility[0, 0], F_0 * equations.mobility[0, 0]
+        size = float(np.hypot(*a))
+        duration = r * (f + a @ s / r) / (f * f - size * size) if size < f else r / (f + size)
+    else:
+        duration = -r * r / float(equations.acceleration(g, s, F_0) @ s)
 
     def state(at: float) -> State:
         x = 1.0 if at >= t + duration else (at - t) / duration

@@ -57,6 +57,15 @@ RELEASED = PAPER.replace(k_y="2 kN/m", phi="0 deg", drive=st.ConstantVelocity(0.
 BLOCK = st.Slider(mass=1, k_x=1, k_y=1, phi="0 deg", normal_load=1, friction=st.Coulomb(mu_0=1.0))
 STRENGTHENING = st.ExponentialWeakening(mu_0=0.2, mu_inf=0.3, v_f="10 mm/s")
 
+STAGES = SOFTER.replace(mass_y="0.6 kg")
+ASKEW = SOFTER.replace(
+    mass_y="0.6 kg", mass_angle="35 deg", c_x=2.0, c_y=9.0, damping_angle="-50 deg", phi="12 deg"
+)
+GRAIN = st.laws.Anisotropic(SOFTER.law, 1.4, "25 deg")
+SERIES = ASKEW.replace(
+    springs=[st.Spring("cell", "4 kN/m", "rigid", "20 deg"), st.Spring("leaf", "1 kN/m", "50 kN/m")]
+)
+
 # slider, duration (s), initial state
 CASES = {
     "the paper's": (PAPER, 0.0185, None),
@@ -77,6 +86,11 @@ CASES = {
         15.0,
         st.Initial(u_x=-4.0, v_x=0.0, v_y=0.0),
     ),
+    "stages": (STAGES, 0.4, None),
+    "all askew": (ASKEW, 0.2, None),
+    "a loaded start, askew": (ASKEW, 0.4, st.Initial(u_x=0.02, u_y=0.004, v_x=0.0, v_y=0.0)),
+    "askew on a grain": (ASKEW.replace(friction=GRAIN), 0.2, None),
+    "springs in series": (SERIES, 0.2, None),
     "back and forth": (BLOCK, 30.0, st.Initial(u_x=12.0, v_x=6.0, v_y=0.0)),
 }
 
