@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from math import copysign, inf, isfinite, nan, radians, sqrt
+from math import copysign, inf, isfinite, nan, pi, radians, sqrt
 from typing import Any, NamedTuple
 
 from stiction.auditing.chain import softest_path
@@ -131,7 +131,7 @@ def further(slider: Slider, path: str) -> Iterator[float]:
     now = read(slider, path)
     for more in MORE[lever(path)]:
         if path == "phi":
-            then = copysign(abs(now) + radians(more), now)
+            then = now + copysign(radians(more), slider.misalignment)
             if abs(then) <= radians(MOST_TURNED):
                 yield then
         elif path == "c_x":
@@ -157,6 +157,10 @@ def try_change(slider: Slider, most_steps: int, progress: Progress) -> dict[str,
 
 def limits(slider: Slider, path: str) -> tuple[float | str, float | str] | None:
     """Return the range of a parameter; None for the default range of `critical`."""
+    if path == "phi" and slider.turn:
+        ends = (-0.5 * pi, slider.turn) if slider.misalignment < 0.0 else (slider.turn, 0.5 * pi)
+        low, high = (f"{each!r} rad" for each in ends)
+        return low, high
     if path == "phi":
         return ("-90 deg", "0 deg") if slider.phi < 0.0 else ("0 deg", "90 deg")
     if path == "c_x":

@@ -128,8 +128,10 @@ def observe(
     """
     load_up = prediction.load_up
     slips = CYCLES * prediction.period if prediction.slips else 0.0
+    if not prediction.slips and growth > 0.0:  # what grows swings, and may rest between swings
+        slips = CYCLES * 2.0 / prediction.f_x
     wait = DECAYS / abs(growth) if growth != 0.0 else 0.0
-    longest = LOAD_UPS * load_up + LONGEST / prediction.f_x
+    longest = LOAD_UPS * load_up + LONGEST / min(prediction.f_x, prediction.f_y)
     duration = min(max(LOAD_UPS * load_up, 1.2 * load_up + max(slips, wait)), longest)
     run = simulate(
         slider,

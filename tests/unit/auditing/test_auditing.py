@@ -415,3 +415,26 @@ def test_friction_that_creep_has_weakened_makes_theory_an_orientation() -> None:
     for slower in ("1 mm/s", "0.1 mm/s"):
         slow = rig.replace(drive=st.ConstantVelocity(slower))
         assert not [each for each in suppositions(slow, predict(slow)) if "still F_0" in each]
+
+
+def test_a_test_is_long_enough_for_cycles_that_theory_does_not_predict():
+    """Friction with state: the stick-slip of Leine's belt, whose period the preset states."""
+    slider = st.presets.leine_lugre().slider
+    growth = steady_sliding(slider).growth_rate
+    seen = observe(slider, predict(slider), growth, sample_rate=10.0)
+    assert growth > 0.0
+    assert seen.motion == STICK_SLIP
+    (period,) = (
+        each.value for each in st.presets.find("leine-lugre").published if each.what == "period"
+    )
+    assert seen.mean("period") == pytest.approx(period, rel=1e-3)
+
+
+def test_a_test_lasts_until_the_softer_spring_has_settled():
+    """A force microscope scans across its stiff axis: it decays as the soft one is dragged."""
+    slider = st.presets.friction_force_microscope().slider
+    growth = steady_sliding(slider).growth_rate
+    prediction = predict(slider)
+    seen = observe(slider, prediction, growth, sample_rate=coarse_rate(prediction))
+    assert prediction.f_y < prediction.f_x
+    assert seen.comes_to == SLIDES

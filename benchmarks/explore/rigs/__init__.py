@@ -1,0 +1,1 @@
+"""Random planar rigs against the readable twin."""

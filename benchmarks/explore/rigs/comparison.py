@@ -1,0 +1,48 @@
+"""One random rig by the solver and by the readable twin."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from benchmarks.explore.deviation import FINER, FINEST, deviation, forces, response
+from benchmarks.explore.rigs.drawing import rig
+from stiction.solver.integrate import tolerance
+from stiction.solver.reference import twin
+
+CLOSE = 1e-11  # local tolerance of the twin
+LEAST = 1e-10  # response that its global error could hide
+
+
+class Seen(NamedTuple):
+    """What was seen of one rig; `off` is the difference from the twin over the response.
+
+    `left_out` is why it does not count, empty if it does.
+    """
+
+    number: int
+    law: str
+    rtol: float
+    response: float
+    off: float
+    sticks: int
+    left_out: str
+
+
+def look(seed: int, number: int) -> Seen:
+    """Solve one rig by both, and as it would be if it were a little other."""
+    slider, duration, rtol = rig(seed, number)
+    found, run = forces(slider, duration, rtol)
+    finer = max(FINER * rtol, FINEST)
+    sharp, _ = forces(slider, duration, finer)
+    moved = max(response(slider, duration, tolerance(rtol), finer, sharp), LEAST)
+    left_out, off = "" if run.status.ok else run.status.value, 0.0
+    try:
+        other = twin(slider, duration, run.data["time"].values, rtol=CLOSE)
+        theirs = np.stack([slider.k_x * other.u_x, slider.k_y * other.u_y])
+        off = deviation(found, theirs[:, : found.shape[1]]) / moved
+    except ArithmeticError as error:
+        left_out = f"the twin: {str(error).split(' at ')[0]}"
+    name, sticks = type(slider.law).__name__, len(run.stick_intervals)
+    return Seen(number, name, rtol, moved, off, sticks, left_out)
