@@ -170,6 +170,8 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
         width = _free_of_hum(oscillation, sticking)
     clean = record.model_copy(update={"force": found.force}) if found.lines else record
     friction = find_friction(clean, regime.kind, cycles)
+    if "plateaus" in regime.evidence:
+        friction = friction.without_kinetic("the force goes back and forth between two levels")
     doubts = warnings(record, regime.kind, cycles, friction) if run is None else ()
     doubts += taken_off(found.lines)
     cycles = _blank_meaningless(cycles, regime.kind, missing)

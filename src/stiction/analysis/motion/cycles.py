@@ -54,6 +54,7 @@ UNSEEN = 0.25  # of a period without a sample: the cycle is not known
 JUMP = 1.5  # sampling steps: a shorter pause is not a gap
 LOADING = (0.1, 0.5)  # part of the rise that is straight: after the swing, before the creep
 LINES = 4  # taken off at most
+SAME = 0.01  # of a line's frequency: so far apart are two lines at least
 OWN = 10.0  # harmonics of the cycles below this can be lines as well; they make no cycles more
 QUARTER = 4  # of a fall, to each side: cubics through so much of half a sine are 0.2 % too flat
 
@@ -176,6 +177,8 @@ def swings(record: Record) -> Swings:
 def _without_line(record: Record, found: Swings) -> tuple[Record, Swings] | None:
     """Return record and swings without a line beside the motion, if there is one."""
     for line in narrow_lines(record.time, record.force):
+        if any(abs(line.frequency / each.frequency - 1.0) < SAME for each in found.lines):
+            continue  # what is left of a line
         rest, without = swings_without(line, record)
         without = without._replace(lines=(*found.lines, line))
         if is_beside(line, without.table):

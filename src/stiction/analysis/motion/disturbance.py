@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.analysis.motion.course import UNLOADED
 from stiction.analysis.motion.rest import STICKING, rest_share
 from stiction.analysis.signals.hum import Line
 
@@ -21,7 +22,6 @@ SLOWER, HIGHER = 2.0, 0.75
 # slips twice as long as a line's period, but irregular by 5 %, come to 0.95
 WHOLE = 0.98
 PARTS = 400  # means of a record in which its first loading is sought
-UNLOADED = 0.3  # of the largest force, below which a record begins with an unloaded spring
 LOADED = 0.5  # of its rise: until then the mass goes at half the drive's speed or less
 SLIDES = 0.5  # of the rate of loading: afterwards the force rises more slowly, if at all
 PERIODS = 5.0  # of the line while the spring is loaded, and afterwards

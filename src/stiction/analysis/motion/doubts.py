@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stiction.analysis.motion.course import QUIET, change_of_period
 from stiction.analysis.motion.drift import Drift, find_drift
 from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.regime import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
@@ -26,10 +27,10 @@ LIGHTER, HEAVIER = 1.4, 0.7  # k/m by the swing over that stated; a slip is slow
 SLOW_SLIP = 0.1
 THOUSAND = 0.2  # a ratio within a factor of 5 of a thousand, or its square, is a wrong unit
 FEW = 6  # samples in a slip
-UNLOADED = 0.02  # of the largest force
+ABOUT_ZERO = 0.05  # of half the drop: so far from zero the middle of a swing may lie
+AT_REST = 0.02  # of the largest force
 FLAT = 4  # times as many samples at the largest value as at any other, and so many at least
-FEW_CYCLES = 4  # before a change of period and after it
-CHANGED = 0.25  # logarithm of the ratio of the two periods: a quarter more or less
+QUIET_SHARE = 0.15  # of the record
 FEW_OFF = 0.05  # of the samples: interpolated, they hardly weaken an oscillation
 NOISE = 5.0  # standard deviations
 
@@ -40,6 +41,7 @@ def warnings(record: Record, kind: str, cycles: xr.Dataset, friction: Friction) 
         *_friction_too_large(record, friction),
         *_doubt_clipping(record),
         *_doubt_mean_period(cycles),
+        *_doubt_quiet(record, friction, cycles),
         *_loading_too_fast(record, kind, cycles),
         *_mass(record, kind, cycles),
         *_mains(kind, cycles),
@@ -140,29 +142,41 @@ def _doubt_clipping(record: Record) -> Iterator[str]:
     yield (
         f"The force stays at exactly {in_words(way * float(force.max()), 'N')} for up to {longest} "
         "samples, its largest value: if that is the end of the load cell's range, peaks are cut "
-        "off, and static coefficients and drops are too small."
+        "off, static coefficients and drops are too small, and what seems to creep there may rest."
     )
 
 
 def _doubt_mean_period(cycles: xr.Dataset) -> Iterator[str]:
     """Doubt one mean over cycles of which the later have another period than the earlier."""
-    size = np.log(np.maximum(cycles["period"].values, 1e-300))
-    places = np.arange(FEW_CYCLES, len(size) - FEW_CYCLES + 1)
-    if not len(places):
-        return
-    total = np.cumsum(size - size.mean())[places - 1]  # the split with the smallest sum of squares
-    k = int(places[np.argmax(total**2 * (1.0 / places + 1.0 / (len(size) - places)))])
-    before, after = size[:k], size[k:]
-    change = float(np.median(after) - np.median(before))
-    spread = max(float(np.ptp(np.percentile(part, (10.0, 90.0)))) for part in (before, after))
-    if abs(change) < CHANGED or spread > 0.5 * abs(change):
+    period = cycles["period"].values
+    k = change_of_period(period)
+    if k is None:
         return
     at = in_words(float(cycles["start"].values[k]), "s")
-    first, second = (in_words(float(np.exp(np.median(part))), "s") for part in (before, after))
+    first, second = (in_words(float(np.median(part)), "s") for part in (period[:k], period[k:]))
     yield (
         f"From {at} on the cycles take {second}, before {first}: if the drive or the load changed "
         "there, analyse the two parts by themselves; means over both mean little."
     )
+
+
+def _doubt_quiet(record: Record, friction: Friction, cycles: xr.Dataset) -> Iterator[str]:
+    """Name long parts of a record without cycles, before the first or after the last of them."""
+    if not cycles.sizes["cycle"]:
+        return
+    least = max(QUIET * float(cycles["period"].max()), QUIET_SHARE * record.duration)
+    first, last = float(cycles["start"][0]), float(cycles["trough_time"][-1])
+    parts = {}
+    if first - record.time[0] > least and friction.break_away is None:
+        parts[f"Before {in_words(first, 's')}"] = record.time <= first
+    if record.time[-1] - last > least:
+        parts[f"After {in_words(last, 's')}"] = record.time >= last
+    for when, inside in parts.items():
+        lasts = in_words(float(np.ptp(record.time[inside])), "s")
+        yield (
+            f"{when} the force has no such cycles, for {lasts}: the report is of the cycles. "
+            "Analyse that part by itself."
+        )
 
 
 def _friction_too_large(record: Record, friction: Friction) -> Iterator[str]:
@@ -266,7 +280,8 @@ def _drift(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:
 def _zero(record: Record, friction: Friction, cycles: xr.Dataset) -> Iterator[str]:
     """Doubt the zero if a record begins unloaded, or reaches impossible values."""
     largest = float(np.abs(record.force).max(initial=0.0))
-    if friction.kinetic is not None and friction.kinetic.force < 0.0:
+    swing = 0.5 * float(cycles["drop"].median()) if cycles.sizes["cycle"] else 0.0
+    if friction.kinetic is not None and friction.kinetic.force < -ABOUT_ZERO * swing:
         yield (
             f"The mean friction is {in_words(friction.kinetic.force, 'N')}, against the drive: the "
             "zero of the force is off, or its sign; give zero=, the reading without load."
@@ -279,7 +294,7 @@ def _zero(record: Record, friction: Friction, cycles: xr.Dataset) -> Iterator[st
     first = float(some[0])
     plateau = float(np.ptp(some)) < max(NOISE * noise, 1e-9 * largest) * 2.0
     read = float(np.median(some)) if plateau else first
-    if abs(read) > max(UNLOADED * largest, NOISE * noise):
+    if abs(read) > max(AT_REST * largest, NOISE * noise):
         yield (
             f"The record begins before the first loading, at {in_words(read, 'N')}: if the spring "
             f"was unloaded, give zero='{read:.4g} N'."

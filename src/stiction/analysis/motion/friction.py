@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.analysis.motion.course import UNLOADED
 from stiction.analysis.motion.regime import (
     HARMONIC,
     IRREGULAR,
@@ -28,7 +29,6 @@ PARTS = 400  # number of means of a record in which its break-away is sought
 FEWEST = 32  # least number of samples
 STANDS_OUT = 4.0  # standard deviations of the noise of a mean
 PEAK = 0.02  # of the rise: the fall after a maximum that makes it a peak
-LOADED = 0.3  # of the largest force: a record that begins above shows no loading from nothing
 SHARP = 2e-3  # of the range of force: noise that is averaged away at the peak
 BLOCKS = 20  # means, whose scatter gives the standard error for correlated samples
 
@@ -80,6 +80,10 @@ class Friction(NamedTuple):
     static: Measured | None
     kinetic: Measured | None
     missing: dict[str, str]
+
+    def without_kinetic(self, reason: str) -> Friction:
+        """Return the same without kinetic friction, for a reason."""
+        return self._replace(kinetic=None, missing=self.missing | {"kinetic": reason})
 
 
 def find_friction(record: Record, kind: str, cycles: xr.Dataset) -> Friction:
@@ -138,7 +142,7 @@ def _means(record: Record) -> tuple[Floats, Floats, float]:
 def _first_peak(forces: Floats, noise: float) -> tuple[int | None, str]:
     """Return the index of the first maximum of a loading; or None and the reason."""
     highest = np.maximum.accumulate(forces)
-    if forces[0] > LOADED * highest[-1]:
+    if forces[0] > UNLOADED * highest[-1]:
         return None, "the record does not begin with an unloaded spring"
     fall = np.maximum(STANDS_OUT * noise, PEAK * (highest - forces[0]))
     risen = highest - forces[0] > 0.5 * (highest[-1] - forces[0])

@@ -9,7 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.motion.band import EIGHTHS, SUSPECTED, WIDE, highest_hump, remaining
-from stiction.analysis.motion.course import MANY, ORDERED, PARTS, course, order
+from stiction.analysis.motion.course import (
+    MANY,
+    ORDERED,
+    PARTS,
+    UNLOADED,
+    change_of_period,
+    course,
+    order,
+)
 from stiction.analysis.motion.cycles import Swings, swings, swings_without
 from stiction.analysis.motion.disturbance import RESIDUE
 from stiction.analysis.motion.rest import STICKING, rest_share, rise_share, still_shares
@@ -63,6 +71,9 @@ CERTAIN = 0.995  # a confidence that is written as 1.00: it leaves no room for a
 # Of the period of the mass on the softer spring alone: a vibration of a lesser one has the stiffer
 # spring swing as well, as friction that turns couples them. On one spring friction only prolongs it
 COUPLED = 0.9
+# Of a swing from trough to peak, to each end, and share of time that is spent there: of a sine 0.2,
+# of a force between two levels nearly half
+NEAR, PLATEAU = 0.1, 0.35
 OWN = 1.2  # times that period: up to there a vibration is that of the mass on its spring
 MAY_BE_HUM = (TRANSITIONAL, HARMONIC, IRREGULAR, UNDETERMINED)
 SAME = 0.01  # of a period: by so much that of a line and that of the cycles differ
@@ -87,6 +98,10 @@ def _force(value: float) -> str:
     return in_words(value, "N")
 
 
+def _seconds(value: float) -> str:
+    return in_words(value, "s")
+
+
 def _frequency(value: float) -> str:
     return in_words(value, "Hz")
 
@@ -109,6 +124,12 @@ WORDS = {
     "natural_period": ("a period is {} times the mass's own on its spring", _three_digits),
     "drop_over_noise": ("force drops are {} times as high as noise reaches", _three_digits),
     "line_taken_off": ("a line at {} was subtracted from the force", _frequency),
+    "plateaus": (
+        "it stays near its largest or its smallest value for {} of the time, as no vibration does: "
+        "the drive goes back and forth, or the load changes in steps",
+        _percent,
+    ),
+    "changed_at": ("at {} the cycles change", _seconds),
     "mains": ("it swings at {} as the mains do: it may be hum over another motion", _frequency),
     "swings": ("{} swings, each smaller than the last but for noise", _whole),
     "last_over_first": ("the last force drop is {} times the first", _three_digits),
@@ -206,7 +227,7 @@ def regime_of(record: Record, found: Swings) -> Regime:
         return Regime(SETTLING, sure, {"swings": len(drop), "last_over_first": drop[-1] / drop[0]})
     if found.table.sizes["cycle"]:
         period = float(found.cycles["period"].mean())
-        return _or_hum(record, period, SAME, _by_shape(record, found))
+        return _or_hum(record, period, SAME, _by_parts(record, found))
     seen = _by_course(record, found)
     frequency = seen.evidence.get("hump")
     return _or_hum(record, 1.0 / frequency, WIDE - 1.0, seen) if frequency else seen
@@ -225,11 +246,42 @@ def _or_hum(record: Record, period: float, differs: float, seen: Regime) -> Regi
     for line in narrow_lines(record.time, record.force):
         if of_mains(line.frequency) and abs(line.frequency * period - 1.0) < differs:
             without, left = swings_without(line, record)
-            other = regime_of(without, left).kind
+            other = regime_of(without, left)
+            kind = STEADY if other.runner_up == STEADY else other.kind
             evidence = {name: seen.evidence[name] for name in seen.evidence if name != "backward"}
             evidence["mains"] = line.frequency
-            return Regime(seen.kind, 0.5 * seen.confidence, evidence, other)
+            return Regime(seen.kind, 0.5 * seen.confidence, evidence, kind)
     return seen
+
+
+def _by_parts(record: Record, found: Swings) -> Regime:
+    """Classify cycles whose period may change once: then each part has a kind of its own."""
+    seen, at = _by_shape(record, found), change_of_period(found.cycles["period"].values)
+    if at is None:
+        return seen
+    tables = [found.cycles.isel(cycle=part) for part in (slice(at), slice(at, None))]
+    early, late = (_by_shape(record, found._replace(table=table)) for table in tables)
+    lasts = [float(table["period"].sum()) for table in tables]
+    changed = {"changed_at": float(tables[1]["start"][0])}
+    if early.kind == late.kind:
+        sure = min(early.confidence, late.confidence)
+        return Regime(early.kind, sure, seen.evidence | changed, early.runner_up)
+    main, other = (early, late) if lasts[0] >= lasts[1] else (late, early)
+    share = max(lasts) / sum(lasts)
+    return Regime(main.kind, share * main.confidence, main.evidence | changed, other.kind)
+
+
+def _plateaus(record: Record, table: xr.Dataset) -> float:
+    """Return the share of time for which a force stays near its troughs, or its peaks, if less."""
+    start, peak, end = (table[name].values for name in ("start", "peak_time", "trough_time"))
+    inside = (record.time >= start[0]) & (record.time <= end[-1])
+    time, force = record.time[inside], record.force[inside]
+    low = np.interp(
+        time, [start[0], *end], [table["start_force"].values[0], *table["trough"].values]
+    )
+    high = np.interp(time, peak, table["peak"].values)
+    place = (force - low) / np.maximum(high - low, 1e-300)
+    return float(min(np.mean(place < NEAR), np.mean(place > 1.0 - NEAR)))
 
 
 def _by_shape(record: Record, found: Swings) -> Regime:
@@ -269,6 +321,8 @@ def _by_shape(record: Record, found: Swings) -> Regime:
         evidence["line_taken_off"] = found.lines[0].frequency
     others = sorted(set(kinds) - {kind, UNDETERMINED}, key=kinds.count)
     counted = (alike + 1) / (count + 3)
+    if kind in (TRANSITIONAL, HARMONIC) and (stays := _plateaus(record, table)) > PLATEAU:
+        return Regime(UNDETERMINED, 0.0, {"cycles": count, "plateaus": 2.0 * stays})
     decisive = (shares, *_bounds(kind))
     if kind != shape(typical):
         decisive = (still, RESTS, np.inf)
@@ -422,5 +476,7 @@ def _by_course(record: Record, found: Swings) -> Regime:
     loading = way.late_rate / drive if drive else kept
     if loading >= LOADING:
         sure = way.one_way * min(loading, 1.0) * (1.0 - vibrates)
+        if not drive and abs(record.force[0]) > UNLOADED * float(np.abs(record.force).max()):
+            return Regime(STUCK, 0.5 * sure, evidence, STEADY)  # as likely, it drifts
         return Regime(STUCK, sure, evidence)
     return Regime(UNDETERMINED, 0.0, evidence)

@@ -67,7 +67,7 @@ def section(found: Analysis) -> Section:
 
 
 def _overshoot(found: Analysis) -> list[str]:
-    """Return by how much peaks may lie above static friction, if that is worth a word.
+    """Return how much of the peaks may be inertia, if that is worth a word.
 
     At the end of a stick the mass gains the drive's speed V while the force goes on rising. Against
     constant friction it swings on its spring, and the force rises by V sqrt(k m); against friction
@@ -81,8 +81,8 @@ def _overshoot(found: Analysis) -> list[str]:
     if most < OVERSHOOT * abs(peak.force):
         return []
     return [
-        f"The peaks lie above static friction, by {in_words(most, 'N')} at most: the force goes on "
-        "rising until the mass is as fast as the drive."
+        f"Of the peaks, up to {in_words(most, 'N')} may be inertia: the force goes on rising until "
+        "the mass is as fast as the drive."
     ]
 
 

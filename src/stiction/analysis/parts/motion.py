@@ -48,10 +48,22 @@ def numbers(found: Analysis) -> dict[str, Any]:
 def plainly(found: Analysis) -> str:
     """Describe the motion in a sentence that needs no theory."""
     count, kind = found.cycles.sizes["cycle"], found.regime.kind
-    if (mains := found.regime.evidence.get("mains")) is not None:
+    evidence = found.regime.evidence
+    if (mains := evidence.get("mains")) is not None:
         return (
             f"The force swings at {in_words(mains, 'Hz')}, as the mains do: either the mass "
             f"swings, or this is hum, and without it the motion is {found.regime.runner_up}."
+        )
+    if (change := evidence.get("changed_at")) is not None and found.regime.runner_up:
+        return (
+            f"The motion changes at {in_words(change, 's')}: one part is {kind}, the other "
+            f"{found.regime.runner_up}. Analyse each by itself: means over both mean little."
+        )
+    if "plateaus" in evidence:
+        return (
+            "The force goes back and forth between two levels, as where the drive does so, or the "
+            "load changes in steps. Analyse the strokes by themselves; of a run, or with the "
+            "position, st.analysis.hysteresis gives the loops."
         )
     if count:
         drop, period = (float(found.cycles[name].mean()) for name in ("drop", "period"))
@@ -77,7 +89,9 @@ def plainly(found: Analysis) -> str:
     plain = {
         STEADY: f"The mass slides steadily{at}.",
         SETTLING: f"The motion dies down, and the mass comes to slide steadily{at}.",
-        STUCK: "The mass sticks for the whole record: the force only rises.",
+        STUCK: "The mass sticks for the whole record: the force only rises."
+        if found.regime.runner_up != STEADY
+        else "The force only rises: either the mass sticks, or it slides and the force drifts.",
         IRREGULAR: "The mass vibrates irregularly.",
     }
     return plain.get(kind, "This record does not show what the mass does.")
