@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import degrees, pi, radians
 from pathlib import Path
 
@@ -27,6 +28,7 @@ from stiction.plotting.page.canvas import figure_of
 from stiction.plotting.page.save import save, write
 from stiction.plotting.page.style import BLACK, BLUE, GREY, PURPLE, new_figure, style
 from stiction.plotting.page.words import plain
+from stiction.plotting.run.comparison import plot_comparison
 from stiction.plotting.run.overview import plot_run
 from stiction.plotting.run.time_series import cut_open, draw_line, envelope, swings
 from stiction.plotting.stability.damping import draw_damping_map
@@ -465,3 +467,41 @@ def test_large_numbers_have_a_power_of_ten() -> None:
     assert plain(25664.3) == "25660"
     assert plain(99.81, 2) == "100"
     assert plain(1.878e7) == r"$1.878\times 10^{7}$"
+
+
+def test_a_constant_force_has_no_axis_of_rounding() -> None:
+    """Vibration across the drive: friction is constant, to 1e-14, and its axis shows it so."""
+    panels = plot_run(st.run(st.presets.transverse_vibration()))
+    low, high = panels["friction"].get_ylim()
+    assert high - low > 1e-3 * high
+    words = " ".join(text.get_text() for text in panels["words"].texts)
+    assert "±-" not in words
+
+
+def test_beats_of_too_few_samples_are_named(slider: st.Slider) -> None:
+    """The mass sticks a thousand times a second: samples at 200 Hz show other, slower swings."""
+    for rate, named in (("200 Hz", True), ("20 kHz", False)):
+        run = st.simulate(slider, "0.5 s", sample_rate=rate)
+        words = " ".join(text.get_text() for text in plot_run(run)["words"].texts)
+        assert ("too few samples for so many" in words) == named
+
+
+def test_labels_of_slip_speed_within_a_decade_or_two_do_not_touch() -> None:
+    """Between 1.0 and 1.5 decades the ticks between are labelled at two and five only."""
+    slider = st.Slider(
+        mass="150 g", k_x="1.2 kN/m", k_y="3 MN/m", phi="1 deg", normal_load="8 N",
+        friction=st.Coulomb(mu_0=0.45, mu_static=0.6), drive=st.ConstantVelocity("1 mm/s"),
+    )  # fmt: skip
+    settings = st.Settings(duration="15 s", sample_rate="10 kHz")
+    described = st.Description(slider, st.Initial(), settings)
+    panels = plot_comparison(st.compare(described, ["stribeck"]))
+    fig = panels["speed"].figure
+    fig.draw_without_rendering()
+    low, high = panels["speed"].get_ylim()
+    assert 1.0 < np.log10(high / low) < 1.9  # with margins
+    ticks = panels["speed"].yaxis.get_minor_ticks()
+    boxes = [tick.label1.get_window_extent() for tick in ticks if tick.label1.get_text()]
+    boxes = sorted((box for box in boxes if box.height > 0.0), key=lambda box: box.y0)
+    assert all(below.y1 < above.y0 for below, above in pairwise(boxes))
+    hidden = panels["portrait"].yaxis.get_minor_ticks()
+    assert not any(tick.label1.get_visible() and tick.label1.get_text() for tick in hidden)

@@ -16,6 +16,7 @@ Floats = NDArray[np.float64]
 
 
 FINE = 8  # bins in each time that is averaged over
+SEEN = 4  # samples for each stick: with fewer, what lies between two sticks is not seen
 
 
 class Slip(NamedTuple):
@@ -61,6 +62,14 @@ def averaged_slip(run: Trajectory, parts: int) -> Slip:
         high = sliding_window_view(np.pad(high, half), 2 * half + 1).max(axis=1)
     time, force = np.add.reduceat(run.samples["time"], starts) / counts, mean("spring_x")
     return Slip(time, force, mean("slip_speed"), high, mean("sticking"))
+
+
+def is_undersampled(run: Trajectory) -> bool:
+    """Return whether a run sticks too often for its samples to show each motion between sticks.
+
+    Samples then show a slower beat of the oscillation with themselves.
+    """
+    return len(run.stick_intervals) * SEEN > len(run.samples["time"])
 
 
 class Outcome(NamedTuple):

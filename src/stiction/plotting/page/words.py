@@ -9,6 +9,7 @@ from textwrap import wrap
 from typing import Any
 
 from stiction import theory
+from stiction.analysis.slip import is_undersampled
 from stiction.drive import ConstantVelocity
 from stiction.drive.pieces import Modulation
 from stiction.friction import Anisotropic, name_of, states
@@ -91,7 +92,7 @@ def program_in_words(what: str, program: Sequence[Any], repeat: int) -> list[str
 
 def harmonic_in_words(harmonic: Modulation, unit: str) -> str:
     """Return amplitude and frequency of a modulation."""
-    return f"{in_words(harmonic.amplitude, unit)} at {in_words(harmonic.frequency, 'Hz')}"
+    return f"{in_words(abs(harmonic.amplitude), unit)} at {in_words(harmonic.frequency, 'Hz')}"
 
 
 def law_in_words(slider: Slider) -> list[str]:
@@ -161,6 +162,9 @@ def plain(value: float, digits: int = DIGITS) -> str:
     return rf"${mantissa}\times 10^{{{int(power)}}}$"
 
 
+BEATS = "too few samples for so many sticks: slip speed shows beats"
+
+
 def outcome_in_words(run: Trajectory, width: int = 38) -> list[str]:
     """Return how the run ended, in lines of at most `width` characters, and how it stuck."""
     times = run.samples["time"]
@@ -169,4 +173,5 @@ def outcome_in_words(run: Trajectory, width: int = 38) -> list[str]:
     count = f"{len(stuck)} stick{'s' * (len(stuck) != 1)}, {share:.3g} % of the time"
     simulated = f"{in_words(lasted, 's')} simulated"
     none = "no true rest: the law has a state" if states(run.slider.law) else "no stick"
-    return [*wrap(run.status.value, width), simulated, count if len(stuck) else none]
+    beats = wrap(BEATS, width) if is_undersampled(run) else []
+    return [*wrap(run.status.value, width), simulated, count if len(stuck) else none, *beats]

@@ -8,6 +8,7 @@ from textwrap import wrap
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from stiction.analysis.slip import is_undersampled
 from stiction.friction import name_of
 from stiction.plotting.page.canvas import canvas, find_drawing, fix_ticks
 from stiction.plotting.page.style import GREY, PAGE, style
@@ -29,6 +30,7 @@ NOTE = (
     "Slip speed: mean (line), up to the maximum (band);",
     "rows below: share of time at zero slip.",
 )
+BEATS = "Beats: too few samples for so many sticks."
 
 
 def plot_comparison(
@@ -95,7 +97,7 @@ def _align(ax: Mapping[str, Axes]) -> None:
         ax[name].set_xlim(ax["rest"].get_xlim())
         ax[name].tick_params(labelbottom=False)
     ax["portrait"].set_xlim(ax["held"].get_xlim())
-    ax["portrait"].tick_params(labelbottom=False, labelleft=False)
+    ax["portrait"].tick_params(which="both", labelbottom=False, labelleft=False)
     ax["force"].figure.align_ylabels([ax[name] for name in ("force", "X", "speed", "rest")])
 
 
@@ -128,6 +130,7 @@ def write_legend(ax: Axes, curves: list[Curve], texts: list[str]) -> None:
         fontsize=6.5,
     )
     legend.set_in_layout(False)
-    system = "\n".join([*system_in_words(curves[0].run.slider), "", *NOTE])
+    beats = [BEATS] if any(is_undersampled(curve.run) for curve in curves) else []
+    system = "\n".join([*system_in_words(curves[0].run.slider), "", *NOTE, *beats])
     note = ax.text(0.0, 0.0, system, transform=ax.transAxes, fontsize=6.5, color=GREY, va="bottom")
     note.set_in_layout(False)

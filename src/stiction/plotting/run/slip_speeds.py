@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from stiction.analysis.slip import stuck_until
-from stiction.plotting.page.parameter import PLAIN
+from stiction.plotting.page.parameter import SPARSE
 from stiction.plotting.page.style import GREY
 from stiction.plotting.run.curves import Curve, common, mark_early_end
 from stiction.plotting.run.time_series import fastest_drive
@@ -59,7 +59,7 @@ def set_speed_limits(ax: Axes, curves: Sequence[Curve]) -> None:
     ax.set_ylim(bottom / 10 ** max(0.3, 0.05 * decades), top * 10 ** (0.05 * decades))
     ax.yaxis.set_major_locator(LogLocator(numticks=8))
     ax.yaxis.set_minor_locator(LogLocator(subs="all" if decades < 8 else (1.0,), numticks=99))
-    ax.yaxis.set_minor_formatter(NullFormatter() if decades > 1.5 else PLAIN)
+    ax.yaxis.set_minor_formatter(NullFormatter() if decades > 1.5 else SPARSE)
 
 
 def draw_rests(ax: Axes, curves: Sequence[Curve], bins: int = 300) -> None:

@@ -26,6 +26,7 @@ THIN = 5e-3  # of a panel's height: a smaller range looks like a line
 SMOOTH = 13  # bins of the mean, two of them with weight zero
 BAND = 0.3  # opacity of the range
 LEAST = 1e-9  # of the drive's speed, or of its path: smaller values are rounding
+CONSTANT = 1e-9  # of a quantity: a smaller range is rounding
 STILL = 1.0  # deg: least range of the axis of an angle
 
 
@@ -123,6 +124,9 @@ def draw_values(
     array = np.asarray(values, dtype=np.float64)
     factor, prefix = metric_prefix(array)
     ax.set_ylabel(f"{symbol} ({prefix}{unit})")
+    low, high = (float(each.reduce(array, initial=np.nan)) for each in (np.fmin, np.fmax))
+    if high - low < CONSTANT * max(high, -low):
+        array = np.where(np.isfinite(array), 0.5 * (low + high), array)
     return draw_line(ax, run.samples["time"], array * factor, color)
 
 
