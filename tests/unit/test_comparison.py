@@ -22,6 +22,7 @@ from stiction.plotting.page.canvas import figure_of
 from stiction.plotting.page.words import wrap_words
 from stiction.plotting.run.comparison import legend_text, plot_comparison
 from stiction.plotting.run.curves import curves_of
+from stiction.result.table import as_table
 from stiction.simulation import automatic_times
 
 WEAKENING = st.ExponentialWeakening(mu_0=0.20, mu_inf=0.15, v_f=0.01)
@@ -289,6 +290,13 @@ def test_the_figure_has_units_on_every_axis(runs: dict[str, st.Trajectory]) -> N
     assert len(looks) == len(runs)
 
 
+def test_a_mass_that_rests_has_no_position_of_rounding(described: st.Description) -> None:
+    settings = st.Settings(duration=1e-3, sample_rate=1e5)
+    short = st.Description(described.slider, described.initial, settings)
+    ax = panels(figure_of(plot_comparison, st.compare(short, ["coulomb"])))
+    assert all(not line.get_ydata().any() for line in ax["X"].lines)
+
+
 def test_zero_slip_is_shown_as_such(runs: dict[str, st.Trajectory]) -> None:
     ax = panels(figure_of(plot_comparison, runs))
     heights = [patch.get_data() for patch in ax["rest"].patches]
@@ -305,7 +313,7 @@ def test_speeds_over_many_decades_have_a_readable_axis(runs: dict[str, st.Trajec
     run = runs["exponential-weakening"]
     data = run.data.copy(deep=True)
     data["slip_speed"].values[:] = np.geomspace(1e-20, 1e-1, data.sizes["time"])
-    wide = dataclasses.replace(run, arrays=lambda: data)
+    wide = dataclasses.replace(run, arrays=lambda: as_table(data))
     ax = panels(figure_of(plot_comparison, runs | {"wide": wide}))["speed"]
     low, high = ax.get_ylim()
     assert 1e-10 < low < 1e-9  # a millionth of the drive's speed: what is slower rests

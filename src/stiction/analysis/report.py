@@ -15,7 +15,7 @@ from stiction.analysis.export import export
 from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.motion.cycle_summary import summary
 from stiction.analysis.motion.cycles import swings
-from stiction.analysis.motion.doubts import taken_off, warnings
+from stiction.analysis.motion.doubts import taken_off, turns_round, unsteady, warnings
 from stiction.analysis.motion.friction import Friction, find_friction
 from stiction.analysis.motion.regime import STICK_SLIP, TRANSITIONAL, Regime, regime_of
 from stiction.analysis.oscillation import (
@@ -172,7 +172,9 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     friction = find_friction(clean, regime.kind, cycles)
     if "plateaus" in regime.evidence:
         friction = friction.without_kinetic("the force goes back and forth between two levels")
-    doubts = warnings(record, regime.kind, cycles, friction) if run is None else ()
+    if run is not None and turns_round(run):
+        friction = friction.without_kinetic("the drive goes back and forth")
+    doubts = warnings(record, regime.kind, cycles, friction) if run is None else unsteady(run)
     doubts += taken_off(found.lines)
     cycles = _blank_meaningless(cycles, regime.kind, missing)
     creep = find_creep(source, record, sticking, width)

@@ -16,6 +16,7 @@ from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import even_grid, why_not
 from stiction.analysis.signals.hum import Line, of_mains
 from stiction.text.units import in_words
+from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,6 +32,7 @@ ABOUT_ZERO = 0.05  # of half the drop: so far from zero the middle of a swing ma
 AT_REST = 0.02  # of the largest force
 FLAT = 4  # times as many samples at the largest value as at any other, and so many at least
 QUIET_SHARE = 0.15  # of the record
+IMPOSED = {"drive": ("drive_X", "drive_Y"), "load": ("normal_load",)}  # columns of a run
 FEW_OFF = 0.05  # of the samples: interpolated, they hardly weaken an oscillation
 NOISE = 5.0  # standard deviations
 
@@ -64,6 +66,30 @@ def taken_off(lines: tuple[Line, ...]) -> tuple[str, ...]:
             "search for cycles."
         )
     return tuple(found)
+
+
+def unsteady(run: Trajectory) -> tuple[str, ...]:
+    """Return a sentence if the drive or the load of a run varies, and which analysis suits it."""
+    varies = [name for name, of in IMPOSED.items() if _varies(run, of)]
+    if not varies:
+        return ()
+    remedy = "st.analysis.velocity_steps, healing or hysteresis suit such a test"
+    if turns_round(run):
+        remedy = "st.analysis.hysteresis gives the loops of force over travel"
+    return (
+        f"The {' and the '.join(varies)} {'varies' if len(varies) == 1 else 'vary'}: kind of "
+        f"motion, cycles and friction are those of a steady test, which this is not; {remedy}.",
+    )
+
+
+def turns_round(run: Trajectory) -> bool:
+    """Return whether the drive of a run goes both ways."""
+    along = run.samples["drive_X"]
+    return bool(along.min() < 0.0 < along.max())
+
+
+def _varies(run: Trajectory, columns: tuple[str, ...]) -> bool:
+    return any(bool(np.ptp(run.samples[name]) > 0.0) for name in columns)
 
 
 def _doubt_times(record: Record) -> Iterator[str]:

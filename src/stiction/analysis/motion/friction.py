@@ -17,6 +17,7 @@ from stiction.analysis.motion.regime import (
     TRANSITIONAL,
     UNDETERMINED,
 )
+from stiction.analysis.motion.rest import comes_to_rest
 from stiction.analysis.record import Record
 from stiction.analysis.signals.turning_points import without_spikes
 
@@ -119,6 +120,8 @@ def find_friction(record: Record, kind: str, cycles: xr.Dataset) -> Friction:
     kinetic = None
     if kind in (STICK_SLIP, TRANSITIONAL, HARMONIC, IRREGULAR) and count:
         kinetic = _over(0.5 * (cycles["peak"].values + cycles["trough"].values), load)
+    elif comes_to_rest(record.slip_speed):
+        missing["kinetic"] = "the mass comes to rest"
     elif kind in (STEADY, SETTLING, UNDETERMINED) and (at is not None or kind != UNDETERMINED):
         kinetic = _sliding(record, times, at, kind, load)
     else:

@@ -20,7 +20,13 @@ from stiction.analysis.motion.course import (
 )
 from stiction.analysis.motion.cycles import Swings, swings, swings_without
 from stiction.analysis.motion.disturbance import RESIDUE
-from stiction.analysis.motion.rest import STICKING, rest_share, rise_share, still_shares
+from stiction.analysis.motion.rest import (
+    STICKING,
+    comes_to_rest,
+    rest_share,
+    rise_share,
+    still_shares,
+)
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.hum import narrow_lines, of_mains, samples_per_period
 from stiction.analysis.signals.turning_points import CLEAR
@@ -221,7 +227,7 @@ def regime_of(record: Record, found: Swings) -> Regime:
     if per_cycle < FEWEST:
         needed = ENOUGH / per_cycle * record.sample_rate
         return Regime(UNDETERMINED, 0.0, {"samples_per_cycle": per_cycle, "rate_needed": needed})
-    if found.dying:
+    if found.dying or _is_over(record, found):
         drop = found.table["drop"].values
         sure = (len(drop) + 1) / (len(drop) + 3)
         return Regime(SETTLING, sure, {"swings": len(drop), "last_over_first": drop[-1] / drop[0]})
@@ -231,6 +237,13 @@ def regime_of(record: Record, found: Swings) -> Regime:
     seen = _by_course(record, found)
     frequency = seen.evidence.get("hump")
     return _or_hum(record, 1.0 / frequency, WIDE - 1.0, seen) if frequency else seen
+
+
+def _is_over(record: Record, found: Swings) -> bool:
+    """Return whether swings have ended for good: mass and drive are known to rest."""
+    drop = found.table["drop"].values
+    ended = record.drive_velocity is None and comes_to_rest(record.slip_speed)
+    return ended and len(drop) > 0 and bool(drop[-1] <= drop[0])
 
 
 def _or_hum(record: Record, period: float, differs: float, seen: Regime) -> Regime:

@@ -10,6 +10,7 @@ Floats = NDArray[np.float64]
 STICKING = 0.75  # of a cycle at rest, or in creep: stick-slip; a vibration rests for less
 ANGLES = np.geomspace(1e-4, np.pi / 2, 2000)[::-1]  # beta; linear between them, to 1e-5 in share
 STILL = 0.1  # of the drive velocity: a mass that slips more slowly rests, or creeps
+LAST, AT_REST = 20, 1e-6  # part of a record, and of its largest slip speed
 _GAINED = 2.0 / np.tan(ANGLES)
 _CYCLE = np.pi + 2.0 * ANGLES + _GAINED  # omega times the period
 RISES, RESTS = np.append(1.0 - np.pi / _CYCLE, 1.0), np.append(_GAINED / _CYCLE, 1.0)
@@ -66,3 +67,10 @@ def still_shares(
         lasts = np.minimum(end[those], high) - np.maximum(begin[those], low)
         longest[k] = lasts.max(initial=0.0)
     return longest / period
+
+
+def comes_to_rest(speed: Floats | None) -> bool:
+    """Return whether a mass is known to rest in the last part of a record, from its slip speed."""
+    if speed is None or not len(speed):
+        return False
+    return bool(speed[-max(len(speed) // LAST, 1) :].max() <= AT_REST * speed.max())

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from stiction.analysis.motion.doubts import turns_round
 from stiction.analysis.motion.regime import (
     COUPLED,
     HARMONIC,
@@ -16,6 +17,7 @@ from stiction.analysis.motion.regime import (
     STUCK,
     TRANSITIONAL,
 )
+from stiction.analysis.motion.rest import comes_to_rest
 from stiction.analysis.parts.wording import number
 from stiction.analysis.slip import stuck_until
 from stiction.text.sections import Section
@@ -48,6 +50,8 @@ def numbers(found: Analysis) -> dict[str, Any]:
 def plainly(found: Analysis) -> str:
     """Describe the motion in a sentence that needs no theory."""
     count, kind = found.cycles.sizes["cycle"], found.regime.kind
+    if isinstance(found.source, Trajectory) and turns_round(found.source):
+        return "The drive goes back and forth, and the force with it."
     evidence = found.regime.evidence
     if (mains := evidence.get("mains")) is not None:
         return (
@@ -88,7 +92,9 @@ def plainly(found: Analysis) -> str:
     at = f", at a force of {in_words(slides.force, 'N')}" if slides is not None else ""
     plain = {
         STEADY: f"The mass slides steadily{at}.",
-        SETTLING: f"The motion dies down, and the mass comes to slide steadily{at}.",
+        SETTLING: "The motion dies down, and the mass comes to rest."
+        if comes_to_rest(found.record.slip_speed)
+        else f"The motion dies down, and the mass comes to slide steadily{at}.",
         STUCK: "The mass sticks for the whole record: the force only rises."
         if found.regime.runner_up != STEADY
         else "The force only rises: either the mass sticks, or it slides and the force drifts.",

@@ -7,13 +7,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from stiction.analysis.slip import Slip
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY
-from stiction.plotting.run.time_series import average_slip, envelope
+from stiction.plotting.run.time_series import average_slip, envelope, stays
 from stiction.text.quantity_text import metric_prefix
 from stiction.trajectory import Trajectory
+
+Floats = NDArray[np.float64]
 
 COLOURS = (BLACK, RED, BLUE, GREEN, ORANGE, SKY, PURPLE)
 DASHES: tuple[Any, ...] = ("solid", (0, (5, 1.5)), (0, (7, 1.2, 1.2, 1.2)), (0, (1.4, 1.1)))
@@ -62,13 +64,19 @@ def common(values: Iterable[ArrayLike]) -> tuple[float, str]:
 
 def draw_over_time(ax: Axes, curves: Sequence[Curve], variable: str, symbol: str) -> None:
     """Draw a variable of every run over time, with a cross where a run ended early."""
-    factor, prefix = common(curve.run.samples[variable] for curve in curves)
+    factor, prefix = common(_without_rounding(curve.run, variable) for curve in curves)
     ax.set_ylabel(f"{symbol} ({prefix}{curves[0].run.data[variable].attrs['units']})")
     for curve in curves:
-        times, values = curve.run.samples["time"], curve.run.samples[variable] * factor
+        times, values = curve.run.samples["time"], _without_rounding(curve.run, variable) * factor
         ax.plot(*envelope(times, values), **curve.look)
         mark_early_end(ax, curve, times[-1], values[-1])
     ax.margins(y=0.08)
+
+
+def _without_rounding(run: Trajectory, variable: str) -> Floats:
+    """Return a variable of a run; a position without rounding errors where the mass rests."""
+    values = run.samples[variable]
+    return np.zeros(len(values)) if variable == "X" and stays(run) else values
 
 
 def mark_early_end(ax: Axes, curve: Curve, x: float, y: float) -> None:

@@ -205,12 +205,19 @@ def cut_open(angles: ArrayLike) -> Floats:
 
 def draw_position(ax: Axes, run: Trajectory) -> Line2D:
     """Draw the position X along the drive direction over time, without rounding errors."""
-    X, way = run.samples["X"], fastest_drive(run) * float(np.ptp(run.samples["time"]))
-    if np.ptp(X) > LEAST * way or not way > 0.0:
+    if not stays(run):
         return draw_quantity(ax, run, "X", "$X$", BLUE)
-    line = draw_values(ax, run, np.zeros(len(X)), "$X$", run.data["X"].attrs["units"], BLUE)
+    line = draw_values(
+        ax, run, np.zeros(len(run.samples["X"])), "$X$", run.data["X"].attrs["units"], BLUE
+    )
     _say_only(ax, "at rest")
     return line
+
+
+def stays(run: Trajectory) -> bool:
+    """Return whether the mass stays where it is, but for rounding, while the drive moves."""
+    way = fastest_drive(run) * float(np.ptp(run.samples["time"]))
+    return bool(way > 0.0 and np.ptp(run.samples["X"]) <= LEAST * way)
 
 
 def fastest_drive(run: Trajectory) -> float:

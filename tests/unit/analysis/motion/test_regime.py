@@ -443,6 +443,34 @@ def test_strokes_to_and_fro_are_no_vibration(share: float) -> None:
     assert "against the drive" not in str(found)
 
 
+@pytest.mark.parametrize(
+    ("preset", "dies"),
+    [(st.presets.free_vibration, True), (st.presets.modelica_spring, True)],
+)
+def test_a_mass_that_comes_to_rest_does_not_slide(
+    preset: Callable[[], st.Description], dies: bool
+) -> None:
+    found = st.analyse(st.run(preset()))
+    assert (found.regime.kind == "settling") == dies
+    assert "the mass comes to rest" in str(found)
+    assert found.friction.kinetic is None
+
+
+def test_two_swings_and_then_quiet_have_died_out() -> None:
+    assert dies_out([1.0, 0.5], [1.0, 1.0], 4.0)
+    assert not dies_out([1.0, 0.5], [1.0, 1.0], 2.0)  # it may go on
+    assert not dies_out([1.0, 0.95], [1.0, 1.0], 4.0)  # the drive may have stopped
+
+
+def test_a_drive_that_varies_is_named() -> None:
+    steps = st.analyse(st.run(st.presets.velocity_step_ageing()))
+    assert steps.regime.kind == "settling"
+    assert "The drive varies: kind of motion, cycles and friction" in steps.warnings[0]
+    conveyor = st.analyse(st.run(st.presets.conveyor()))
+    assert "st.analysis.hysteresis gives the loops" in conveyor.warnings[0]
+    assert conveyor.friction.kinetic is None
+
+
 def test_a_force_that_rises_from_a_load_may_be_drift() -> None:
     time = np.arange(4000) * 1e-3
     record = st.Record(time=time, force=3.0 + 0.3 * time)
