@@ -5,6 +5,9 @@ from stiction import presets as presets
 from stiction import results as results
 from stiction import testing as testing
 from stiction import theory as theory
+from stiction.analysis.measurement.reading import read_record as read_record
+from stiction.analysis.measurement.reading import read_records as read_records
+from stiction.analysis.measurement.synthesis import measure as measure
 from stiction.analysis.record import Record as Record
 from stiction.analysis.report import analyse as analyse
 from stiction.analysis.report import analyze as analyze
@@ -23,6 +26,7 @@ from stiction.friction.laws import ExponentialWeakening as ExponentialWeakening
 from stiction.linear_stability.examination import stability as stability
 from stiction.plotting.door import plot as plot
 from stiction.presets.report import init as init
+from stiction.recording.sensor import Sensor as Sensor
 from stiction.reproduction.reproduce import paper as paper
 from stiction.simulation import run as run
 from stiction.simulation import simulate as simulate

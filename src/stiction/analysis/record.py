@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Self
+from pathlib import Path
+from typing import Annotated, Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, PrivateAttr, model_validator
+from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
 from pydantic_core import PydanticCustomError
 
 from stiction.errors import Fault, ResultError
 from stiction.names import draw
+from stiction.recording.origin import Origin
+from stiction.recording.sensor import Sensor
+from stiction.recording.stored import KNOWN, write_stored
+from stiction.system.slider import Slider
 from stiction.text.units import Force, Kind, Mass, PositiveSpeed, Stiffness, reader, to_si
-from stiction.text.validation import Described, faulty
+from stiction.text.validation import Described, faulty, unknown_name
 from stiction.trajectory import Trajectory
 
 Floats = NDArray[np.float64]
@@ -20,7 +25,10 @@ Floats = NDArray[np.float64]
 
 LARGEST = 1e100  # of any sample, in SI: its square must not overflow
 SMALLEST = 1e-100  # smaller values are taken as zero, because their squares underflow
-UNITS = {name: f"{name}_unit" for name in ("time", "force", "position", "slip_speed")}
+CHANNELS = (  # (n,), beside the time
+    *("force", "force_across", "load", "position", "drive_position", "slip_speed"),
+)
+UNITS = {name: f"{name}_unit" for name in ("time", *CHANNELS)}
 
 
 def _samples(values: Any) -> Floats:
@@ -78,10 +86,14 @@ def _in_si(values: Any, unit: str, kind: Kind) -> Any:
     return plain * factor if isinstance(plain, np.ndarray) else np.asarray(plain) * factor
 
 
+A_FORCE, A_LENGTH = Kind("a force", "N", "mN"), Kind("a length", "m", "um")
 KINDS = {
     "time": Kind("a time", "s", "ms"),
-    "force": Kind("a force", "N", "mN"),
-    "position": Kind("a length", "m", "um"),
+    "force": A_FORCE,
+    "force_across": A_FORCE,
+    "load": A_FORCE,
+    "position": A_LENGTH,
+    "drive_position": A_LENGTH,
     "slip_speed": Kind("a velocity", "m/s", "mm/s"),
 }
 SignedForce = Annotated[float, reader("a force", "N", "3 mN")]
@@ -100,20 +112,30 @@ class Record(Described):
     force : array
         (n,), N: the spring force, positive where the spring pulls the mass along the drive.
     normal_load : float or str, optional
-        W, N; needed for friction coefficients.
+        W, N; needed for friction coefficients. By default the mean of `load`.
     stiffness : float or str, optional
         Of the spring along the force, N/m. With `drive_velocity` it yields the mass's position.
+    stiffness_across : float or str, optional
+        Of the spring across it, N/m. With `mass` it yields the transverse frequency.
     drive_velocity : float or str, optional
         Along the force, m/s.
     mass : float or str, optional
         kg.
     position, slip_speed : array, optional
         (n,), position along the drive, m, and slip speed, m/s, if they were measured.
+    force_across, load : array, optional
+        (n,), N: the force across the drive, and the normal load over time, if they were measured.
+    drive_position : array, optional
+        (n,), displacement of the drive, m, if it was measured.
     zero : float or str, optional
         N, reading of the load cell without load; it is subtracted from the force, then set to 0.
-    time_unit, force_unit, position_unit, slip_speed_unit : str, optional
-        Units of arrays that do not carry their own: ``time_unit="ms"``. The record converts them
-        to SI.
+    sensors : dict, optional
+        From a channel to its `stiction.Sensor`: what is known of noise, gain and zero.
+    origin : Origin, optional
+        Of which file it was read, and how (`stiction.read_record`).
+    time_unit, force_unit, ... : str, optional
+        Units of arrays that do not carry their own, one for each: ``time_unit="ms"``. The record
+        converts them to SI.
 
     Raises
     ------
@@ -138,10 +160,19 @@ class Record(Described):
     position: Samples = None
     slip_speed: Samples = None
     zero: SignedForce | None = None
+    stiffness_across: Stiffness | None = None
+    force_across: Samples = None
+    load: Samples = None
+    drive_position: Samples = None
+    sensors: dict[str, InstanceOf[Sensor]] | None = None
+    origin: InstanceOf[Origin] | None = None
     time_unit: str = "s"
     force_unit: str = "N"
     position_unit: str = "m"
     slip_speed_unit: str = "m/s"
+    force_across_unit: str = "N"
+    load_unit: str = "N"
+    drive_position_unit: str = "m"
     _same_time: int = PrivateAttr(0)
 
     @model_validator(mode="before")
@@ -178,7 +209,7 @@ class Record(Described):
 
     @model_validator(mode="after")
     def _of_one_length(self) -> Self:
-        for name in ("force", "position", "slip_speed"):
+        for name in CHANNELS:
             values = getattr(self, name)
             if values is not None and len(values) != len(self.time):
                 raise ValueError(
@@ -191,6 +222,29 @@ class Record(Described):
                 f"time must increase; sample {back[0] + 2}, at {self.time[back[0] + 1]:g} s, "
                 f"follows one at {self.time[back[0]]:g} s"
             )
+        return self
+
+    @model_validator(mode="after")
+    def _with_load(self) -> Self:
+        if self.load is None or not len(self.load):
+            return self
+        mean = float(self.load.mean())
+        if mean <= 0.0:
+            raise ValueError(f"load must press the bodies together, its mean is {mean:g} N")
+        if self.normal_load is None:
+            self.__dict__.update(normal_load=mean)
+        return self
+
+    @model_validator(mode="after")
+    def _with_sensors_of_channels(self) -> Self:
+        for name, sensor in (self.sensors or {}).items():
+            if name not in CHANNELS:
+                raise ValueError(f"sensors: {unknown_name('channel', name, CHANNELS)}")
+            if sensor.unit != KINDS[name].unit:
+                raise ValueError(
+                    f"sensors: that of {name} is in {sensor.unit}; make it with "
+                    f"unit={KINDS[name].unit!r}"
+                )
         return self
 
     @model_validator(mode="after")
@@ -226,6 +280,24 @@ class Record(Described):
         """Samples per second, on average if they are unequally spaced; 0 for a single one."""
         return (len(self) - 1) / self.duration if len(self) > 1 else 0.0
 
+    def channels(self) -> dict[str, Floats]:
+        """Return the measured channels by name, (n,) each, in SI; the force first."""
+        found = {name: getattr(self, name) for name in CHANNELS}
+        return {name: values for name, values in found.items() if values is not None}
+
+    def save(self, path: str | Path) -> Path:
+        """Write the record as NetCDF; `stiction.read_record` reads it back. Return the path.
+
+        Raises
+        ------
+        ResultError
+            If the file cannot be written there.
+        """
+        known = {name: getattr(self, name) for name in KNOWN}
+        numbers = {name: value for name, value in known.items() if value is not None}
+        channels = {"time": self.time, **self.channels()}
+        return write_stored(path, channels, numbers, self.sensors or {}, self.origin)
+
     def plot(self, axes: Any = None) -> Any:
         """Draw the force with its cycles; see `stiction.plotting.plot_cycles`."""
         return draw("plot_cycles", self, axes)
@@ -249,6 +321,26 @@ def as_record(source: Trajectory | Record) -> Record:
     )
 
 
+class CellAxis(NamedTuple):
+    """The axis of a load cell in the frame of the springs, and the drive's velocity along it, m/s.
+
+    `way` is -1 where the drive goes against it: forces and positions are turned round.
+    """
+
+    x: float
+    y: float
+    velocity: float
+    way: float
+
+
+def cell_axis(slider: Slider) -> CellAxis:
+    """Return the axis of a slider's load cell: the spring x, or that of its `cell_angle`."""
+    x, y = (1.0, 0.0) if slider.cell_angle is None else slider.cell
+    c, s = slider.direction
+    along = slider.motion.velocity * (x * c + y * s)
+    return CellAxis(x, y, along, -1.0 if along < 0.0 else 1.0)
+
+
 def record_of(run: Trajectory) -> Record:
     """Return a run as its load cell records it, with position and slip speed.
 
@@ -258,12 +350,11 @@ def record_of(run: Trajectory) -> Record:
     run are left out.
     """
     slider, samples = run.slider, run.samples
-    x, y = (1.0, 0.0) if slider.cell_angle is None else slider.cell
+    cell = cell_axis(slider)
     c, s = slider.direction
+    x, y, way, along = cell.x, cell.y, cell.way, cell.velocity
     share = x * c + y * s
-    along = slider.motion.velocity * share
     stiffness = slider.k_x if share == 0.0 else (x * slider.k_x * c + y * slider.k_y * s) / share
-    way = -1.0 if along < 0.0 else 1.0
     names = ("time", "spring_x", "spring_y", "X", "slip_speed")
     columns = np.stack([samples[name] for name in names])
     time, f_x, f_y, X, slip_speed = columns[:, np.isfinite(columns).all(axis=0)]

@@ -13,6 +13,7 @@ from stiction.analysis.creep.findings import attempt, find_creep
 from stiction.analysis.creep.misalignment import Misalignment
 from stiction.analysis.export import export
 from stiction.analysis.measured_line import strongest_line
+from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.motion.cycle_summary import summary
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.doubts import taken_off, turns_round, unsteady, warnings
@@ -28,7 +29,7 @@ from stiction.analysis.record import Record, as_record
 from stiction.deprecation import warn_renamed
 from stiction.names import draw
 from stiction.text.sections import Section, as_html, as_text
-from stiction.trajectory import Trajectory, load
+from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -133,9 +134,10 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
 
     Parameters
     ----------
-    source : Trajectory or Record
+    source : Trajectory, Record, str or Path
         A run, sampled several times per transverse period for creep and oscillation; a measured
-        force with the known parameters of its apparatus; or the file of a run.
+        force with the known parameters of its apparatus; or the file of either, which
+        `stiction.read_record` reads where it is not that of a run.
     trust : bool, optional
         For a file; see `stiction.load`.
 
@@ -150,7 +152,7 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     missing: dict[str, str] = {}
 
     if isinstance(source, str | Path):
-        source = load(source, trust=trust)
+        source = read_source(source, trust=trust)
     run = source if isinstance(source, Trajectory) else None
     record = as_record(source)
     found = swings(record)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from keyword import iskeyword
 from traceback import extract_tb
 from types import ModuleType
 from typing import NoReturn
@@ -26,7 +27,7 @@ app = cyclopts.App(
         "write a template with `stiction init my.toml` and edit it, predict its behaviour with "
         "`stiction audit my.toml`, simulate it with `stiction run my.toml --output my.nc`, draw "
         "the result with `stiction plot my.nc --output my.png`, and analyse it with `stiction "
-        "analyse my.nc`.\n\n"
+        "analyse my.nc`. A measured record is read by `stiction analyse data.csv`.\n\n"
         "Commands that read a description take other values: `--set phi=3deg --set V=2mm/s`. "
         "`stiction --install-completion` lets the shell complete commands and options. Each "
         "command is a function of that name in Python: `import stiction as st; st.run(...)`."
@@ -47,12 +48,14 @@ COMMANDS = (
     "stability",
     "sweep",
     "map",
+    "import",
     "check",
 )
-BESIDE = {"presets": "init"}  # commands in the file of another
+BESIDE = {"presets": "init", "import": "analyse"}  # commands in the file of another
 for _name in COMMANDS:  # light modules, which import heavy ones when called
     _file = BESIDE.get(_name, _name)
-    app.command(getattr(import_module(f"stiction.cli.commands.{_file}"), _name))
+    _module = import_module(f"stiction.cli.commands.{_file}")
+    app.command(getattr(_module, f"{_name}_" if iskeyword(_name) else _name), name=_name)
 app.register_install_completion_command(
     help="Let the shell (bash, zsh, fish or PowerShell) complete commands and options."
 )

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
@@ -38,6 +39,82 @@ Changes = Annotated[
         ),
     ),
 ]
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Measured:
+    """What the user says about the file of a measured record.
+
+    Parameters
+    ----------
+    time
+        Its column, its unit, or both: ms, "Zeit=ms", 1=ms.
+    force
+        Of the force along the drive, likewise: mN, Fx=mN, "CH1=2.5 N/V", "-1 N" to turn its sign.
+    force_across
+        Of the force across the drive.
+    load
+        Of the normal load over time.
+    position
+        Of the displacement of the mass.
+    drive_position
+        Of the displacement of the drive.
+    slip_speed
+        Of the slip speed.
+    normal_load
+        W, as a number and a unit: "10 N".
+    stiffness
+        Of the spring along the drive.
+    stiffness_across
+        Of the spring across it.
+    drive_velocity
+        V.
+    mass
+        m.
+    zero
+        Reading of the load cell without load; it is subtracted.
+    interval
+        Between two samples, for a file without times.
+    times
+        Whether the column of times holds the interval before each sample.
+    decimal
+        Decimal sign of a text file.
+    separator
+        Between the columns of a text file.
+    wrap
+        Length after which a displacement starts again, or none.
+    block
+        Which of several blocks or strokes, from 1.
+    sidecar
+        TOML file with all this, in place of data.toml beside data.csv.
+    """
+
+    time: str | None = None
+    force: str | None = None
+    force_across: str | None = None
+    load: str | None = None
+    position: str | None = None
+    drive_position: str | None = None
+    slip_speed: str | None = None
+    normal_load: str | None = None
+    stiffness: str | None = None
+    stiffness_across: str | None = None
+    drive_velocity: str | None = None
+    mass: str | None = None
+    zero: str | None = None
+    interval: str | None = None
+    times: Literal["clock", "intervals"] | None = None
+    decimal: Literal["point", "comma"] | None = None
+    separator: Literal["tab", "comma", "semicolon", "space", "bar"] | None = None
+    wrap: str | None = None
+    block: int | None = None
+    sidecar: Path | None = None
+
+    def arguments(self) -> dict[str, Any]:
+        """Return what is given, by name."""
+        return {name: value for name, value in vars(self).items() if value is not None}
+
 
 FromPreset = Annotated[
     str | None,

@@ -35,12 +35,12 @@ def write_result(samples: Table, sticks: Table, path: Path) -> None:
     h5netcdf: Any = import_module("h5netcdf")  # slow to import
     seal = seal_tables({"samples": samples, "sticks": sticks})
     with h5netcdf.File(path, "w") as file:
-        _write_table(file, Table(samples.columns, {**samples.attributes, SEAL: seal}))
-        _write_table(file.create_group(STICK_GROUP), sticks)
+        write_table(file, Table(samples.columns, {**samples.attributes, SEAL: seal}))
+        write_table(file.create_group(STICK_GROUP), sticks)
     sign(path)
 
 
-def _write_table(group: Any, table: Table) -> None:
+def write_table(group: Any, table: Table) -> None:
     """Write a table into a group of a file, with HDF5's checksum of each array."""
     group.attrs.update(table.attributes)
     for name, (dims, values, attributes) in table.columns.items():
@@ -116,7 +116,7 @@ def _refuse_what_is_no_netcdf(path: str | Path) -> None:
     """Refuse a file that is not NetCDF, such as a measured record."""
     with open(path, "rb") as file:
         if file.read(len(SIGNATURE)) != SIGNATURE:
-            record = "a measured record is analysed in Python: st.analyse(st.Record(...))"
+            record = "a measured record is read by 'stiction analyse' and st.read_record"
             raise ResultError(f"{path}: not a NetCDF file; write one with 'stiction run'; {record}")
 
 

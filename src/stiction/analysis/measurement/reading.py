@@ -1,0 +1,229 @@
+"""Records from files of any kind."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any, TypedDict, TypeVar, Unpack
+
+from stiction.analysis.record import Record
+from stiction.errors import DescriptionError, Fault, ResultError
+from stiction.recording.measurement import Measurement, read_measurements
+from stiction.recording.stored import is_stored, read_stored, root_attributes
+from stiction.recording.table import natural_key, number_of
+from stiction.trajectory import Trajectory, load
+
+T = TypeVar("T")
+
+
+class Said(TypedDict, total=False):
+    """What the user says about a file; see `read_record`."""
+
+    time: str | None
+    force: str | None
+    force_across: str | None
+    load: str | None
+    position: str | None
+    drive_position: str | None
+    slip_speed: str | None
+    interval: float | str | None
+    times: str | None
+    decimal: str | None
+    separator: str | None
+    wrap: str | None
+    block: int | None
+    normal_load: float | str | None
+    stiffness: float | str | None
+    stiffness_across: float | str | None
+    drive_velocity: float | str | None
+    mass: float | str | None
+    zero: float | str | None
+
+
+def read_record(
+    path: str | Path, *, sidecar: str | Path | None = None, **said: Unpack[Said]
+) -> Record:
+    """Read a measured record from a file.
+
+    CSV and other text, LabVIEW (.lvm), TDMS, MATLAB, HDF5, NetCDF, NumPy and Parquet are recognised
+    by their content. What is guessed stands in ``record.origin``: print it. What cannot be guessed
+    safely is an error with the choices.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file; text may be compressed with gzip.
+    sidecar : str or Path, optional
+        A TOML file with tables [columns], [reading], [record] and [sensors.force], which hold the
+        arguments below and sensors; by default ``data.toml`` beside ``data.csv``, if it is there.
+    time, force, force_across, load, position, drive_position, slip_speed : str, optional
+        The column of a channel, its unit, or both: ``"Fx"``, ``"mN"``, ``"Fx=mN"``, or with the
+        number of the column ``"3=mN"``. A number multiplies the unit: ``"-1 N"`` turns the sign,
+        ``"CH1=2.5 N/V"`` scales volts.
+    normal_load, stiffness, stiffness_across, drive_velocity, mass, zero : float or str, optional
+        Of the apparatus; see `stiction.Record`.
+    interval : float or str, optional
+        Between two samples, for a file without times.
+    times : {"clock", "intervals"}, optional
+        Whether the column of times holds the interval before each sample instead.
+    decimal, separator : str, optional
+        "point" or "comma"; "tab", "comma", "semicolon", "space" or "bar".
+    wrap : str, optional
+        The length after which a displacement starts again, or "none".
+    block : int, optional
+        Which of several blocks or strokes, from 1.
+
+    Raises
+    ------
+    ResultError
+        If the file cannot be read, with line and column, or what it holds is ambiguous.
+    DescriptionError
+        If an argument or the TOML file is wrong.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> from pathlib import Path
+    >>> text = "Zeit;Kraft\\ns;mN\\n0,0;1,5\\n0,5;2,5\\n1,0;0,5\\n"
+    >>> _ = Path("record.csv").write_text(text)
+    >>> record = st.read_record("record.csv", stiffness="200 N/m")
+    >>> record.force.tolist(), record.sample_rate
+    ([0.0015, 0.0025, 0.0005], 2.0)
+    """
+    found = _measurements(path, sidecar, dict(said))
+    if (number := said.get("block")) is not None:
+        return _record(path, block_of(path, found, number))
+    if len(found) > 1:
+        listed = "; ".join(_name(each) for each in found[:6]) + ("; ..." if len(found) > 6 else "")
+        raise ResultError(
+            f"{path}: holds {len(found)} blocks: {listed}. Say --block 1 for one of them; "
+            "st.read_records(path) reads all"
+        )
+    return _record(path, found[0])
+
+
+def read_records(
+    paths: str | Path | Iterable[str | Path],
+    *,
+    sidecar: str | Path | None = None,
+    **said: Unpack[Said],
+) -> tuple[Record, ...]:
+    """Read all records of one or several files: blocks, strokes, a file each.
+
+    Parameters
+    ----------
+    paths : str, Path or sequence of these
+        Files; of a folder all files in it, step 4 before step 10. Blocks stay in the order of
+        their file.
+    sidecar : str or Path, optional
+        As of `read_record`, whose other arguments this takes too.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> from pathlib import Path
+    >>> _ = Path("strokes.csv").write_text("t [s],F [N]\\n0,1\\n1,2\\n2,3\\n0,4\\n1,5\\n2,6\\n")
+    >>> [record.force.tolist() for record in st.read_records("strokes.csv")]
+    [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]
+    """
+    files = [Path(paths)] if isinstance(paths, str | Path) else [Path(each) for each in paths]
+    if not files:
+        raise ResultError("no file is given; name one or several")
+    listed = [each for file in files for each in (_files_of(file) if file.is_dir() else [file])]
+    found = [(path, each) for path in listed for each in _measurements(path, sidecar, dict(said))]
+    return tuple(_record(path, each) for path, each in found)
+
+
+def block_of(path: str | Path, found: Sequence[T], number: int) -> T:
+    """Return one of several blocks of a file, number_of from 1.
+
+    Raises
+    ------
+    ResultError
+        If there are not so many.
+    """
+    if not 1 <= number <= len(found):
+        raise ResultError(
+            f"{path}: has {number_of(len(found), 'block')}; there is no block {number}"
+        )
+    return found[number - 1]
+
+
+def read_source(
+    path: str | Path,
+    *,
+    trust: bool = False,
+    sidecar: str | Path | None = None,
+    **said: Unpack[Said],
+) -> Trajectory | Record:
+    """Return the run or the record of a file.
+
+    Raises
+    ------
+    ResultError
+        As of `stiction.load` or `read_record`; also if something is said about the file of a run.
+    """
+    if not is_run(Path(path)):
+        return read_record(path, sidecar=sidecar, **said)
+    given = [name for name, value in said.items() if value is not None]
+    if given:
+        raise ResultError(f"{path}: is the result of a run, in SI already: leave out {given[0]}")
+    return load(path, trust=trust)
+
+
+def is_run(path: Path) -> bool:
+    """Return whether a file is to be read as a run: it says so, or is called .nc and damaged."""
+    if path.is_dir() or not path.is_file():
+        return path.suffix in (".nc", ".zarr") or path.is_dir()
+    names = root_attributes(path)
+    if names is None:
+        return path.suffix == ".nc"
+    return "description" in names and bool({"stiction_version", "solver", "status"} & {*names})
+
+
+def _files_of(folder: Path) -> Sequence[Path]:
+    """Return the files of a folder in their natural order; TOML files describe the others."""
+    files = [x for x in folder.iterdir() if x.is_file() and not x.name.startswith(".")]
+    some = [x for x in files if x.suffix != ".toml"]
+    if not some:
+        raise ResultError(f"{folder}: holds no files; name the file of a record")
+    return sorted(some, key=lambda path: natural_key(path.name))
+
+
+def _measurements(
+    path: str | Path, sidecar: str | Path | None, said: dict[str, Any]
+) -> list[Measurement]:
+    """Return the measurements of one file; a stored record is one, whose numbers may be changed."""
+    file = Path(path)
+    if not is_stored(file):
+        return read_measurements(file, said, None if sidecar is None else Path(sidecar))
+    stored = read_stored(file)
+    changed = {name: value for name, value in said.items() if value is not None}
+    strange = [
+        name for name in changed if name not in Record.model_fields or name in stored.channels
+    ]
+    if strange or sidecar is not None:
+        what = ", ".join(strange) or "sidecar"
+        raise ResultError(
+            f"{path}: is a stored record, in SI already: leave out {what}, or read its source again"
+        )
+    return [stored._replace(known={**stored.known, **changed})]
+
+
+def _record(path: str | Path, found: Measurement) -> Record:
+    """Return the record of a measurement, with faults that name the file."""
+    try:
+        return Record(**found.channels, **found.known, sensors=found.sensors, origin=found.origin)
+    except DescriptionError as error:
+        faults = [
+            Fault(f"{path}: {x.path.removeprefix('Record.')}", x.message) for x in error.faults
+        ]
+        raise DescriptionError(faults) from None
+
+
+def _name(found: Measurement) -> str:
+    """Return a block's number, label and size."""
+    its = found.origin
+    named = f" {its.label}" if its.label else ""
+    begins = f" at {its.start}" if its.start else ""
+    return f"{its.block}{named}{begins}, {its.samples} samples"

@@ -1,0 +1,103 @@
+"""Synthetic measurements: a run as sensors would have recorded it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.analysis.record import Record, cell_axis, record_of
+from stiction.errors import ResultError
+from stiction.recording.sensor import Sensor
+from stiction.text.units import SampleRate
+from stiction.text.validation import Described
+from stiction.trajectory import Trajectory
+
+Floats = NDArray[np.float64]
+
+
+class Sampling(Described):
+    """The rate at which a record is sampled, Hz; 0 for that of the run."""
+
+    sample_rate: SampleRate = 0.0
+
+
+def measure(
+    run: Trajectory,
+    sensor: Sensor | Mapping[str, Sensor],
+    *,
+    sample_rate: float | str | None = None,
+    seed: int = 0,
+) -> Record:
+    """Return a run as its sensors record it: filtered, sampled, with noise, rounded.
+
+    Parameters
+    ----------
+    run : Trajectory
+        Sampled finely enough for the filters: 2.5 times the highest cut-off at least.
+    sensor : Sensor or dict
+        Of the force along the drive; or from a channel to its sensor: ``force``, ``force_across``,
+        ``load``, ``position``, ``drive_position``, ``slip_speed``. Other channels are not recorded.
+    sample_rate : float or str, optional
+        Of the record, Hz; by default that of the run. Between the run's samples, straight lines.
+    seed : int, optional
+        Of the noise: the same seed gives the same record.
+
+    Raises
+    ------
+    ResultError
+        If the run is too coarse for a filter or for the sample rate, or there is no such channel.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "20 ms", sample_rate="10 kHz")
+    >>> record = st.measure(run, st.Sensor(noise="2 mN"), sample_rate="2 kHz")
+    >>> len(record), record.sensors["force"].noise
+    (41, 0.002)
+    """
+    sensors = {"force": sensor} if isinstance(sensor, Sensor) else dict(sensor)
+    plain = record_of(run)
+    rate = Sampling(sample_rate=sample_rate or 0.0).sample_rate or plain.sample_rate
+    if rate > plain.sample_rate * (1.0 + 1e-9):
+        raise ResultError(
+            f"the run has {plain.sample_rate:g} samples a second, the record is to have {rate:g}; "
+            "simulate it with a higher sample_rate"
+        )
+    values = {"force": plain.force, **_others(run, plain)}
+    unknown = [name for name in sensors if name not in values]
+    if unknown or "force" not in sensors:
+        what = f"{unknown[0]!r} is not a channel" if unknown else "the force has no sensor"
+        raise ResultError(f"{what}; channels of a run: {', '.join(values)}")
+    count = int(np.floor(plain.duration * rate * (1.0 + 1e-12))) + 1
+    time = plain.time[0] + np.arange(count) / rate
+    streams = np.random.SeedSequence(seed).spawn(len(values))
+    found = {}
+    for name, stream in zip(values, streams, strict=True):
+        if name not in sensors:
+            continue
+        slow = sensors[name].response(values[name], plain.sample_rate)
+        found[name] = sensors[name].readings(np.interp(time, plain.time, slow), stream)
+    known = ("normal_load", "stiffness", "drive_velocity", "mass")
+    return Record(
+        time=time,
+        **found,
+        **{name: getattr(plain, name) for name in known},
+        stiffness_across=run.slider.k_y,
+        sensors={name: sensors[name].behind() for name in found},
+    )
+
+
+def _others(run: Trajectory, plain: Record) -> dict[str, Floats]:
+    """Return the channels of a run beside the force along the drive, at the record's times."""
+    data, cell = run.data.isel(time=slice(0, len(plain))), cell_axis(run.slider)
+    along, across = data["spring_x"].values, data["spring_y"].values
+    travel, _ = run.slider.motion.travel(0.0, plain.time)
+    return {
+        "force_across": cell.way * (cell.x * across - cell.y * along),
+        "load": data["normal_load"].values,
+        "position": plain.position,
+        "drive_position": cell.way * np.asarray(travel),
+        "slip_speed": plain.slip_speed,
+    }

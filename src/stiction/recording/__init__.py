@@ -1,0 +1,1 @@
+"""Files of measured records: their columns, and what each column is."""

@@ -1,0 +1,77 @@
+"""Readers of files: each has one file, and one line in `FORMATS`; all return tables of columns."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+from typing import NamedTuple
+
+from stiction.errors import ResultError
+from stiction.recording.table import Table
+from stiction.storage.foreign import opening
+
+HEAD = 512  # bytes by which a file is recognised
+
+
+class Layout(NamedTuple):
+    """How a text file is laid out, as far as the user says so."""
+
+    decimal: str | None = None
+    separator: str | None = None
+
+
+class Format(NamedTuple):
+    """A kind of file: its name, its file here, and how its first bytes are recognised."""
+
+    name: str
+    reader: str
+    matches: Callable[[bytes], bool]
+
+
+FORMATS = (
+    Format("HDF5", "hdf5", lambda head: head.startswith(b"\x89HDF\r\n\x1a\n")),
+    Format("MATLAB 7.3", "hdf5", lambda head: head.startswith(b"MATLAB 7.3")),
+    Format("MATLAB 5", "matlab", lambda head: head.startswith(b"MATLAB 5.0")),
+    Format("NetCDF 3", "netcdf3", lambda head: head.startswith((b"CDF\x01", b"CDF\x02"))),
+    Format("NumPy", "arrays", lambda head: head.startswith((b"\x93NUMPY", b"PK\x03\x04"))),
+    Format("Parquet", "parquet", lambda head: head.startswith(b"PAR1")),
+    Format("TDMS", "tdms", lambda head: head.startswith((b"TDSm", b"TDSh"))),
+    Format("LabVIEW measurement", "labview", lambda head: head[:64].find(b"LabVIEW Meas") >= 0),
+    Format("text", "text", lambda head: True),
+)
+OTHERS = {
+    b"\xd0\xcf\x11\xe0": "an Excel workbook; save it as CSV",
+    b"%PDF": "a PDF; export the numbers as CSV",
+    b"\x7fELF": "a program",
+    b"BZh": "compressed with bzip2; unpack it first",
+    b"\xfd7zXZ": "compressed with xz; unpack it first",
+}
+
+
+def read_tables(path: Path, layout: Layout) -> list[Table]:
+    """Return the tables of a file, by its content and not by its suffix.
+
+    Raises
+    ------
+    ResultError
+        If it cannot be read, with line and column where there are any.
+    """
+    if not os.path.isfile(path):
+        what = "is a folder; name its files" if os.path.isdir(path) else "no such file"
+        raise ResultError(f"{path}: {what}")
+    with open(path, "rb") as file:
+        head = file.read(HEAD)
+    if not head:
+        raise ResultError(f"{path}: is empty; record it again")
+    for magic, what in OTHERS.items():
+        if head.startswith(magic):
+            raise ResultError(f"{path}: is {what}")
+    kind = next(each for each in FORMATS if each.matches(head))
+    read = import_module(f"{__name__}.{kind.reader}").read
+    with opening(path, f"is not a file of {kind.name} that can be read"):
+        tables: list[Table] = read(path, layout)
+    if not any(len(table) for table in tables):
+        raise ResultError(f"{path}: no samples in it ({kind.name}); record it again")
+    return [table for table in tables if len(table)]

@@ -1,0 +1,208 @@
+"""Separator and decimal sign of a text file."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.errors import ResultError
+
+SAMPLE = 400  # lines by which they are found
+SEPARATORS = {"\t": "a tab", ";": "a semicolon", ",": "a comma", "|": "a bar", " ": "spaces"}
+DECIMALS = {".": "point", ",": "comma"}
+MISSING = {
+    "",
+    "-",
+    "--",
+    "nan",
+    "na",
+    "n/a",
+    "null",
+    "none",
+    "#n/a",
+    "1.#qnan",
+    "-1.#ind",
+    "1.#inf",
+}
+CLOCK = re.compile(r"(\d{1,4}[-./]\d{1,2}[-./]\d{1,4}[ T])?\d{1,2}:\d{2}(:\d{2}([.,]\d+)?)?Z?")
+DATE = re.compile(r"\d{4}-\d{2}-\d{2}|\d{1,2}[./]\d{1,2}[./]\d{2,4}")
+HALF_A_DAY = 43200.0  # s
+NUMBER = {
+    ".": re.compile(r"[+−-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?inf", re.I),
+    ",": re.compile(r"[+−-]?(\d+(,\d+)?|,\d+)([eE][+-]?\d+)?|[+-]?inf", re.I),
+}
+GROUPED = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")  # one and a half, or fifteen hundred?
+
+
+class Dialect(NamedTuple):
+    """Separator and decimal sign."""
+
+    separator: str
+    decimal: str
+
+    def __str__(self) -> str:
+        """Return them in words."""
+        return f"separated by {SEPARATORS[self.separator]}, decimal {DECIMALS[self.decimal]}"
+
+    def cells(self, line: str) -> list[str]:
+        """Return the cells of a line."""
+        if self.separator == " ":
+            return line.split()
+        if '"' not in line:
+            return [cell.strip() for cell in line.split(self.separator)]
+        return [cell.strip().strip('"') for cell in _split_quoted(line, self.separator)]
+
+    def is_number(self, cell: str) -> bool:
+        """Return whether a cell is a number."""
+        return NUMBER[self.decimal].fullmatch(cell) is not None
+
+    def is_value(self, cell: str) -> bool:
+        """Return whether a cell is a number, a time of day, or missing."""
+        return (
+            self.is_number(cell)
+            or cell.lower() in MISSING
+            or CLOCK.fullmatch(cell) is not None
+            or DATE.fullmatch(cell) is not None
+        )
+
+    def has_samples(self, line: str, labels: bool = False) -> bool:
+        """Return whether all cells of a line are values, words beside them allowed if `labels`."""
+        cells = self.cells(line)
+        if not any(self.is_number(cell) or CLOCK.fullmatch(cell) for cell in cells):
+            return False
+        return all(self.is_value(cell) or (labels and cell[:1].isalpha()) for cell in cells)
+
+
+def _split_quoted(line: str, separator: str) -> list[str]:
+    return re.split(f'{re.escape(separator)}(?=(?:[^"]*"[^"]*")*[^"]*$)', line)
+
+
+def find_dialect(
+    path: object, lines: Sequence[str], decimal: str | None = None, separator: str | None = None
+) -> Dialect:
+    """Return separator and decimal sign with which most lines are samples.
+
+    Raises
+    ------
+    ResultError
+        If no line has samples, or two readings differ and are equally good.
+    """
+    filled = [line for line in lines if line.strip()]
+    some = filled[: SAMPLE // 2] + filled[SAMPLE // 2 :][:: max(1, len(filled) // SAMPLE)][-SAMPLE:]
+    choices = [
+        Dialect(mark, sign)
+        for mark in ([separator] if separator else SEPARATORS)
+        for sign in ([decimal] if decimal else DECIMALS)
+        if mark != sign
+    ]
+    for labels in (False, True):
+        scores = {each: _score(each, some, labels) for each in choices}
+        best = max(scores.values(), default=(0.0, 0))
+        if best[0] > 0.0:
+            near = [each for each in choices if scores[each][0] > 0.9 * best[0]]
+            return _settle(path, near, some, labels, decimal)
+    raise ResultError(_no_samples(path, filled))
+
+
+def _score(dialect: Dialect, lines: Sequence[str], labels: bool) -> tuple[float, int]:
+    """Return the share of lines with samples of the usual number of cells, and that number."""
+    counts = Counter(
+        len(dialect.cells(line.rstrip(" \t,;")))
+        for line in lines
+        if dialect.has_samples(line, labels)
+    )
+    width, count = counts.most_common(1)[0] if counts else (0, 0)
+    return count / max(len(lines), 1), width
+
+
+def first_samples(lines: Sequence[str], dialect: Dialect) -> int:
+    """Return the number of the first line with samples, number_of from 0.
+
+    It has as many cells as most; a line of a word and an amount, as in a recipe, counts only where
+    each line of samples begins with a word.
+    """
+    filled = [line for line in lines if line.strip()]
+    some = filled[:: max(1, len(filled) // SAMPLE)]
+    plain, worded = (_score(dialect, some, labels) for labels in (False, True))
+    labels = plain[0] < 0.5 * worded[0]
+    width = worded[1] if labels else plain[1]
+    for exact in (True, False):
+        for at, line in enumerate(lines):
+            if dialect.has_samples(line, labels):
+                cells = dialect.cells(line.rstrip(" \t,;"))
+                if len(cells) == width or not exact:
+                    return at
+    return 0
+
+
+def _settle(
+    path: object, near: list[Dialect], lines: Sequence[str], labels: bool, decimal: str | None
+) -> Dialect:
+    """Return the one of several good readings that the file supports, or refuse to choose."""
+    width = {each: _score(each, lines, labels)[1] for each in near}
+    chosen = min(near, key=lambda each: (-width[each], each.decimal != "."))
+    headed = _header_width(chosen, lines, labels)
+    samples = next(line for line in lines if chosen.has_samples(line, labels)).strip()
+    # '0,5' is one number, or two integers: the first line tells how many columns there are
+    commas = [each for each in near if each.decimal == "," and width[each] < width[chosen]]
+    if chosen.separator == "," and decimal is None:
+        if commas and headed == width[commas[0]]:
+            return commas[0]
+        if (commas and headed != width[chosen]) or 2 * headed == width[chosen]:
+            raise ResultError(
+                f"{path}: in {samples[:60]!r} commas separate columns, or are decimal signs; say "
+                "--decimal point or --decimal comma, or write the file with semicolons"
+            )
+    if chosen.decimal == "," and decimal is None:
+        lines = [line for line in lines if chosen.has_samples(line, labels)]
+        cells = [x for line in lines for x in chosen.cells(line) if "," in x]
+        if cells and all(GROUPED.fullmatch(cell) for cell in cells):
+            raise ResultError(
+                f"{path}: in {cells[0]!r} the comma is a decimal sign, or groups thousands; say "
+                "--decimal comma, or write the numbers without groups"
+            )
+    return chosen
+
+
+def _header_width(dialect: Dialect, lines: Sequence[str], labels: bool) -> int:
+    """Return the number of cells in the line before the first samples; 0 if there is none."""
+    for before, line in pairwise(lines):
+        if dialect.has_samples(line, labels) and not dialect.has_samples(before, labels):
+            return len(dialect.cells(before.rstrip(" \t,;")))
+    return 0
+
+
+def _no_samples(path: object, filled: Sequence[str]) -> str:
+    if not filled:
+        return f"{path}: has only empty lines; record it again"
+    return f"{path}: no line has samples; the first is {filled[0].strip()[:60]!r}"
+
+
+def seconds_of(cells: Sequence[object]) -> NDArray[np.float64] | None:
+    """Return times of day, perhaps with dates, as seconds; NaN where a cell is missing.
+
+    None if some cell is neither. Only differences mean anything. The order of day and month in a
+    date does not matter: a change of date counts as midnight.
+    """
+    found = np.full(len(cells), np.nan)
+    days, last, day = 0.0, -np.inf, ""
+    for at, cell in enumerate(cells):
+        text = str(cell).strip()
+        if text.lower() in MISSING:
+            continue
+        if not CLOCK.fullmatch(text):
+            return None
+        date, _, clock = text.rstrip("Z").replace("T", " ").rpartition(" ")
+        parts = [float(each.replace(",", ".")) for each in clock.split(":")]
+        value = sum(x * y for x, y in zip(parts, (3600.0, 60.0, 1.0), strict=False))
+        midnight = date != day if date else value + days < last - HALF_A_DAY
+        days += 86400.0 if midnight and last > -np.inf else 0.0
+        last = found[at] = value + days
+        day = date
+    return found if np.isfinite(last) else None

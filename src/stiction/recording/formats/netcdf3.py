@@ -1,0 +1,30 @@
+"""NetCDF of the classic format."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from stiction.recording.formats import Layout
+from stiction.recording.formats.members import Member, tables_of
+from stiction.recording.table import Table
+from stiction.storage.foreign import refuse_size
+
+
+def read(path: Path, layout: Layout) -> list[Table]:
+    """Return the tables of a NetCDF 3 file."""
+    refuse_size(path, 3.0 * path.stat().st_size)
+    io: Any = import_module("scipy.io")  # slow to import
+    with io.netcdf_file(path, mmap=False) as file:
+        members = [
+            Member("", name, np.array(each.data), _text(getattr(each, "units", "")))
+            for name, each in file.variables.items()
+        ]
+    return tables_of(members, "NetCDF")
+
+
+def _text(value: Any) -> str:
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)

@@ -1,0 +1,32 @@
+"""Parquet, with units in the columns' metadata or names."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from stiction.errors import ResultError
+from stiction.recording.formats import Layout
+from stiction.recording.formats.members import Member, tables_of
+from stiction.recording.table import Table
+from stiction.storage.foreign import refuse_size
+
+
+def read(path: Path, layout: Layout) -> list[Table]:
+    """Return the table of a Parquet file."""
+    try:
+        from pyarrow import parquet, types
+    except ImportError:
+        message = "Parquet needs pyarrow; install it with: pip install 'stiction[parquet]'"
+        raise ResultError(f"{path}: {message}") from None
+    with parquet.ParquetFile(path) as file:
+        known = file.metadata
+        refuse_size(path, 24.0 * known.num_rows * known.num_columns)
+        content = file.read()
+    members = []
+    for number, field in enumerate(content.schema):
+        if not (types.is_integer(field.type) or types.is_floating(field.type)):
+            continue
+        unit = (field.metadata or {}).get(b"units", b"").decode("utf-8", "replace")
+        column = content.column(number).cast("float64").to_numpy()
+        members.append(Member("", field.name, column, unit))
+    return tables_of(members, "Parquet")

@@ -1,0 +1,330 @@
+"""Text files of columns: any separator, decimal comma, header lines, units, several blocks."""
+
+from __future__ import annotations
+
+import codecs
+import gzip
+import re
+import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.errors import ResultError
+from stiction.machine import largest_object
+from stiction.recording.formats import Layout
+from stiction.recording.formats.dialect import (
+    MISSING,
+    Dialect,
+    find_dialect,
+    first_samples,
+    seconds_of,
+)
+from stiction.recording.formats.heading import Heading, find_heading, repeats
+from stiction.recording.table import Column, Remark, Table, number_of
+from stiction.storage.foreign import refuse_size
+
+Floats = NDArray[np.float64]
+Rows = NDArray[np.intp]
+
+COPIES = 12  # of a file's bytes in memory: its text, its lines, its numbers
+WIDEST = 2000  # columns
+LINE_END = re.compile("\r\n|\n|\r")
+GZIP = b"\x1f\x8b"
+MARKS = {  # byte-order marks, the longer first
+    codecs.BOM_UTF8: "utf-8-sig",
+    codecs.BOM_UTF32_LE: "utf-32",
+    codecs.BOM_UTF32_BE: "utf-32",
+    codecs.BOM_UTF16_LE: "utf-16",
+    codecs.BOM_UTF16_BE: "utf-16",
+}
+NUMERIC = 0.5  # of a column's cells: with fewer numbers it is one of words
+
+
+def read(path: Path, layout: Layout) -> list[Table]:
+    """Return the tables of a text file."""
+    lines = lines_of(path)
+    dialect = find_dialect(path, lines, layout.decimal, layout.separator)
+    return read_lines(path, lines, dialect)
+
+
+def lines_of(path: Path) -> list[str]:
+    """Return the lines of a file of text, which may be compressed with gzip.
+
+    Raises
+    ------
+    ResultError
+        If it is not text, or too large for this machine.
+    """
+    refuse_size(path, COPIES * float(path.stat().st_size))
+    raw = path.read_bytes()
+    if raw.startswith(GZIP):
+        raw = _unpack(path, raw)
+    for mark, name in MARKS.items():
+        if raw.startswith(mark):
+            return _lines(path, raw, name)
+    try:
+        return _lines(path, raw, "utf-8")
+    except ResultError:
+        if b"\0" in raw[:4096]:
+            raise
+        return _lines(path, raw, "cp1252")  # Western instruments: µ and °
+
+
+def _lines(path: Path, raw: bytes, encoding: str) -> list[str]:
+    try:
+        text = raw.decode(encoding)
+    except UnicodeDecodeError as error:
+        line = len(LINE_END.findall(raw[: error.start].decode("latin-1"))) + 1
+        raise ResultError(
+            f"{path}: line {line} is not text in {encoding}; save it as UTF-8"
+        ) from None
+    if "\0" in text:
+        line = len(LINE_END.findall(text[: text.index("\0")])) + 1
+        raise ResultError(f"{path}: line {line} holds a zero byte: this is not a file of text")
+    return LINE_END.split(text)
+
+
+def _unpack(path: Path, raw: bytes) -> bytes:
+    most = int(largest_object() / COPIES)
+    try:
+        with gzip.open(path) as file:
+            raw = file.read(most + 1)
+    except (OSError, EOFError, zlib.error) as error:
+        raise ResultError(f"{path}: is damaged, gzip says: {error}; copy it again") from None
+    if len(raw) > most:
+        refuse_size(path, COPIES * float(len(raw)))
+    return raw
+
+
+@dataclass
+class _Cells:
+    """The cells of all lines from the first with samples on: numbers, and texts that are none."""
+
+    first: int
+    numbers: Floats  # (rows, columns), NaN for missing and for text
+    texts: dict[int, NDArray[Any]]  # of the columns that are not all numbers
+    wrong: NDArray[np.bool_]  # (rows, columns), cells with text
+
+
+def read_lines(path: Path, lines: Sequence[str], dialect: Dialect) -> list[Table]:
+    """Return the tables in lines of text.
+
+    Raises
+    ------
+    ResultError
+        If a cell among the samples is not a number, with line and column.
+    """
+    first = first_samples(lines, dialect)
+    cells = _read_cells(path, lines, dialect, first)
+    words = _word_columns(cells)
+    numeric = np.array([at not in words for at in range(cells.numbers.shape[1])])
+    kinds = _kinds(path, lines, dialect, cells, numeric)
+    remarks = [Remark(at + 1, x) for at, x in enumerate(lines[:first]) if x.strip()]
+    tables: list[Table] = []
+    heading: Heading | None = None
+    rows: list[Rows] = []
+    skipped: list[str] = []
+
+    def close() -> None:
+        if rows:
+            chosen = np.concatenate(rows)
+            tables.append(_table(path, cells, chosen, heading, words, remarks, skipped, dialect))
+
+    breaks = np.flatnonzero(np.diff(kinds.astype(np.int8)) != 0) + 1
+    for part in np.split(np.arange(len(kinds)), breaks):
+        if not len(part):
+            continue
+        if kinds[part[0]] == DATA:
+            if not rows and heading is None:
+                heading = find_heading([x.text for x in remarks], dialect, _width(cells, part))
+            rows.append(part)
+            continue
+        said = [Remark(first + at + 1, lines[first + at]) for at in part if kinds[at] == TEXT]
+        if not said:
+            continue
+        again = heading is not None and any(repeats(heading, x.text, dialect) for x in said)
+        after = part[-1] + 1
+        new = None
+        if after < len(kinds) and not again:
+            new = find_heading([x.text for x in said], dialect, _width(cells, np.array([after])))
+        if new is not None and new.trusted:
+            close()
+            rows, skipped, heading, remarks = [], [], new, said
+            continue
+        what = "a repeated header" if again else f"{said[0].text.strip()[:60]!r}"
+        many = f" and {number_of(len(said) - 1, 'more line')}" if len(said) > 1 else ""
+        skipped.append(f"line {said[0].line} skipped: {what}{many}")
+        remarks = [*remarks, *said]
+    close()
+    return tables
+
+
+DATA, TEXT, BLANK = 0, 1, 2  # kinds of lines
+
+
+def _read_cells(path: Path, lines: Sequence[str], dialect: Dialect, first: int) -> _Cells:
+    """Read all cells from a line on with pandas, and distinguish numbers from text."""
+    import pandas as pd
+
+    part = list(lines[first:])
+    while part and not part[-1].strip():
+        part.pop()
+    by_space = dialect.separator == " "
+    counts = [len(x.split()) if by_space else x.count(dialect.separator) + 1 for x in part]
+    width = max(counts, default=1)
+    if width > WIDEST:
+        line = first + counts.index(width) + 1
+        raise ResultError(f"{path}: line {line} has {width} columns; a record has {WIDEST} at most")
+    refuse_size(path, 8.0 * 3.0 * width * len(part))
+    for at, text in enumerate(part):
+        if '"' in text and text.count('"') % 2:
+            raise ResultError(f"{path}: line {first + at + 1} opens a quotation without end")
+    # a blank line must remain a row: the numbers of lines are those of rows
+    text = "\n".join(x.strip() or (dialect.separator * (not by_space) or "-") for x in part)
+    frame = pd.read_csv(
+        StringIO(text + "\n"),
+        sep=r"\s+" if by_space else dialect.separator,
+        decimal=dialect.decimal,
+        header=None,
+        names=list(range(width)),
+        index_col=False,
+        skipinitialspace=True,
+        skip_blank_lines=False,
+        na_values=sorted(MISSING - {""}),
+        low_memory=False,
+        dtype=None,
+    )
+    numbers = np.full((len(part), width), np.nan)
+    wrong = np.zeros((len(part), width), bool)
+    texts: dict[int, NDArray[Any]] = {}
+    for at in range(width):
+        column = frame[at]
+        if column.dtype.kind in "fiu":
+            numbers[:, at] = column.to_numpy(dtype=np.float64)
+            continue
+        raw = column.to_numpy(dtype=object)
+        known = np.asarray(column.notna())
+        plain = [
+            str(x).strip().replace("−", "-").replace(dialect.decimal, ".") if yes else "nan"
+            for x, yes in zip(raw, known, strict=True)
+        ]
+        right = np.array(pd.to_numeric(pd.Series(plain, dtype=object), errors="coerce"), float)
+        odd = [x.lower() in ("true", "false") or "_" in x or "x" in x for x in plain]
+        right[odd] = np.nan
+        numbers[:, at] = right
+        missing = np.array([x.lower() in MISSING for x in plain])
+        wrong[:, at] = known & np.isnan(right) & ~missing
+        texts[at] = raw
+    numbers[np.isinf(numbers)] = np.nan
+    return _Cells(first, numbers, texts, wrong)
+
+
+def _word_columns(cells: _Cells) -> set[int]:
+    """Return the columns in which most cells are words or times of day."""
+    filled = cells.wrong | np.isfinite(cells.numbers)
+    full = filled.sum(axis=0)
+    return {at for at in cells.texts if cells.wrong[:, at].sum() > NUMERIC * full[at] > 0}
+
+
+def _kinds(
+    path: Path,
+    lines: Sequence[str],
+    dialect: Dialect,
+    cells: _Cells,
+    numeric: NDArray[np.bool_],
+) -> NDArray[np.int8]:
+    """Return which lines hold samples; refuse one that has a wrong cell among numbers."""
+    wrong = cells.wrong & numeric
+    known = np.isfinite(cells.numbers)
+    kinds = np.where(known.any(axis=1), DATA, BLANK).astype(np.int8)
+    only_words = ~known.any(axis=1) & cells.wrong.any(axis=1)
+    kinds[only_words] = TEXT
+    last, lead = len(kinds) - 1, int(np.argmax(numeric))
+    for row in np.flatnonzero(wrong.any(axis=1)):
+        begins = "0" if known[row, lead] else str(cells.texts[lead][row]).lstrip("+−-.,")
+        cut_off = row == last
+        if not known[row].any() or not begins[:1].isdigit() or cut_off:
+            kinds[row] = TEXT
+            continue
+        at = int(np.flatnonzero(wrong[row])[0])
+        raise ResultError(
+            f"{path}: line {cells.first + row + 1}, column {at + 1}: "
+            f"{str(cells.texts[at][row]).strip()[:40]!r} is not a number; correct it, or take the "
+            "line out"
+        )
+    return kinds
+
+
+def _width(cells: _Cells, rows: Rows) -> int:
+    """Return the number of columns that have values in most of the rows."""
+    filled = np.isfinite(cells.numbers[rows]) | cells.wrong[rows]
+    used = np.flatnonzero(filled.any(axis=0))
+    return int(used[-1]) + 1 if len(used) else 0
+
+
+def _lines_above(above: Sequence[Remark], heading: Heading | None) -> list[str]:
+    """Return a note on the lines above the samples beside names and units."""
+    used = 0 if heading is None else 1 + bool(heading.units)
+    if len(above) <= used:
+        return []
+    first = above[0].text.strip()[:60]
+    many = number_of(len(above) - used, "line")
+    return [f"{many} above the samples beside names and units, first {first!r}"]
+
+
+def _table(
+    path: Path,
+    cells: _Cells,
+    rows: Rows,
+    heading: Heading | None,
+    words: set[int],
+    remarks: Sequence[Remark],
+    skipped: Sequence[str],
+    dialect: Dialect,
+) -> Table:
+    """Return the table of some rows."""
+    width = _width(cells, rows)
+    filled = np.isfinite(cells.numbers[rows, :width]) | cells.wrong[rows, :width]
+    count = width - np.argmax(filled[:, ::-1], axis=1) if width else np.zeros(len(rows))
+    usual = int(np.median(count)) if len(rows) else 0
+    extra = np.flatnonzero(count > usual)
+    named = len(heading.names) if heading is not None else 0
+    if len(extra) and len(extra) < 0.1 * len(rows) and usual >= named:
+        line = cells.first + rows[extra[0]] + 1
+        raise ResultError(
+            f"{path}: line {line}, column {usual + 1}: has {int(count[extra[0]])} values, the "
+            f"others have {usual}; correct it, or take the line out"
+        )
+    above = [x for x in remarks if x.line < cells.first + rows[0] + 1]
+    notes = [f"{dialect}", *_lines_above(above, heading), *skipped]
+    columns, labels, start = [], [], ""
+    for at in range(width):
+        name, unit = heading.of(at) if heading is not None else (f"column {at + 1}", "")
+        values = np.ascontiguousarray(cells.numbers[rows, at])
+        if at in words:
+            texts = np.asarray(cells.texts[at][rows], dtype=object)
+            seconds = seconds_of(texts.tolist())
+            if seconds is None:
+                labels.append((name, texts))
+                continue
+            start = next(
+                (str(x).strip() for x in texts if str(x).strip().lower() not in MISSING), ""
+            )
+            values, unit = seconds - seconds[np.isfinite(seconds)][0], "s"
+        columns.append(Column(name, values, at + 1, unit))
+    lines = np.asarray(cells.first + rows + 1, dtype=np.intp)
+    return Table(
+        tuple(columns),
+        "text",
+        remarks=tuple(remarks),
+        lines=lines,
+        notes=tuple(notes),
+        start=start,
+        labels=tuple(labels),
+    )

@@ -1,0 +1,1 @@
+"""What a file probably means: its columns, its times, its remarks."""

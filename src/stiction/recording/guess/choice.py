@@ -1,0 +1,315 @@
+"""Which column is which channel, in which unit: by the user's word, by its name, by its unit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple, NoReturn
+
+import numpy as np
+
+from stiction.errors import ResultError
+from stiction.recording.channels import CHANNELS, LENGTH, OWN, RATIO, plain
+from stiction.recording.table import Column, Table
+from stiction.recording.units import is_electric, is_ratio, size_of
+
+NEEDED = "time", "force"
+
+
+class Chosen(NamedTuple):
+    """A column for a channel: the size of its unit in SI, the unit as read, and a note.
+
+    The unit of a `ratio` is the normal load.
+    """
+
+    column: Column
+    size: float
+    unit: str
+    note: str = ""
+    ratio: bool = False
+
+
+class Choice(NamedTuple):
+    """The columns of all channels, and sentences on what was assumed."""
+
+    channels: dict[str, Chosen]
+    notes: tuple[str, ...]
+
+
+class _Wish(NamedTuple):
+    column: Column | None
+    unit: str
+
+
+def choose_columns(path: object, table: Table, said: dict[str, str], *, timed: bool) -> Choice:
+    """Return the columns of channels.
+
+    Parameters
+    ----------
+    path : object
+        Of the file, for messages.
+    table : Table
+        The columns of the file.
+    said : dict
+        From a channel to a column, a unit, or both, as the user gives them.
+    timed : bool
+        Whether the times of samples are known without a column.
+
+    Raises
+    ------
+    ResultError
+        If no column, or more than one, can be the time or the force; with the choices.
+    """
+    wishes = {name: _read_wish(path, table, name, text) for name, text in said.items()}
+    taken = [wish.column for wish in wishes.values() if wish.column is not None]
+    found: dict[str, Chosen] = {}
+    notes: list[str] = []
+    for name in ("load", "force_across", "force", "position", "drive_position", "slip_speed"):
+        wish = wishes.get(name, _Wish(None, ""))
+        column = wish.column or _by_name(path, table, name, wish, taken, said)
+        if column is None and (name == "force" or name in said):
+            column = _by_unit(path, table, name, wish, taken, found)
+        if column is not None:
+            found[name] = _with_size(path, table, name, column, wish.unit)
+            taken.append(column)
+        elif name in said:
+            _refuse(path, table, name, "no column is")
+    if "force" not in found:
+        found["force"] = _ratio(path, table, taken)
+    taken.append(found["force"].column)
+    timed = timed or found["force"].column.clock is not None
+    wish = wishes.get("time", _Wish(None, ""))
+    if not timed or "time" in said:
+        column = wish.column or _times(path, table, found, wish, taken, said)
+        found["time"] = _with_size(path, table, "time", column, wish.unit)
+        taken.append(column)
+    notes += [x.note for x in found.values() if x.note]
+    for column in table.columns:
+        if column not in taken and LENGTH.fullmatch(plain(column.name)):
+            notes.append(
+                f"column {column} is not used: is it the displacement of the mass (--position "
+                f"{column.number}) or of the drive (--drive-position {column.number})?"
+            )
+    return Choice(found, tuple(notes))
+
+
+def _read_wish(path: object, table: Table, name: str, text: str) -> _Wish:
+    """Return column and unit of ``Fx``, ``mN``, ``Fx=mN`` or ``3=mN``."""
+    head, equals, unit = text.rpartition("=")
+    if equals:
+        column = _find(path, table, name, head.strip()) if head.strip() else None
+        if head.strip() and column is None:
+            _refuse(path, table, name, f"no column is called {head.strip()!r}, for")
+        return _Wish(column, unit.strip())
+    column = _find(path, table, name, text.strip())
+    is_unit = size_of(text, CHANNELS[name].unit) is not None
+    if column is not None and is_unit and not text.strip().isdigit():
+        raise ResultError(
+            f"{path}: {text!r} is a column and a unit; say {_flag(name)} '{text}=' for the column, "
+            f"or '={text}' for the unit"
+        )
+    if column is not None:
+        return _Wish(column, "")
+    if not is_unit:
+        example = CHANNELS[name].example
+        _refuse(path, table, name, f"{text!r} is neither a column nor a unit such as {example} of")
+    return _Wish(None, text.strip())
+
+
+def _find(path: object, table: Table, name: str, text: str) -> Column | None:
+    """Return the column of a name, a heading or a number."""
+    columns, small = table.columns, text.lower()
+    for matches in (
+        [x for x in columns if text in (x.name, x.heading)],
+        [x for x in columns if small in (x.name.lower(), x.heading.lower())],
+        [x for x in columns if text == str(x.number)],
+    ):
+        if len(matches) > 1:
+            _ambiguous(path, name, matches)
+        if matches:
+            return matches[0]
+    return None
+
+
+def _fits(column: Column, name: str) -> bool:
+    """Return whether a column's unit allows that it is a channel."""
+    unit = column.unit
+    return not unit or is_electric(unit) or size_of(unit, CHANNELS[name].unit) is not None
+
+
+def _by_name(
+    path: object,
+    table: Table,
+    name: str,
+    wish: _Wish,
+    taken: Sequence[Column],
+    said: dict[str, str],
+) -> Column | None:
+    """Return the only free column with a usual name of a channel."""
+    pattern = CHANNELS[name].names
+    free = [each for each in table.columns if not any(each is one for one in taken)]
+    matches = [
+        x for x in free if pattern.fullmatch(plain(x.name)) and (wish.unit or _fits(x, name))
+    ]
+    if name == "load" and not said.get("force"):
+        # the only force of a testing machine is called its load, too
+        doubtful = [x for x in matches if plain(x.name) in ("load", "last", "w")]
+        others = [x for x in free if CHANNELS["force"].names.fullmatch(plain(x.name))]
+        ratios = [x for x in free if RATIO.fullmatch(plain(x.name))]
+        if doubtful and doubtful == matches and not (others or ratios or "load" in said):
+            at = doubtful[0].number
+            raise ResultError(
+                f"{path}: column {doubtful[0]} may be the force along the drive or the normal "
+                f"load; say --force {at} or --load {at}"
+            )
+    matches = [x for x in matches if plain(x.name) in OWN] or matches
+    if len(matches) > 1:
+        _ambiguous(path, name, matches)
+    return matches[0] if matches else None
+
+
+def _by_unit(
+    path: object,
+    table: Table,
+    name: str,
+    wish: _Wish,
+    taken: Sequence[Column],
+    found: dict[str, Chosen],
+) -> Column | None:
+    """Return the only free column in a unit of a channel, or the only one without any name."""
+    free = [each for each in table.columns if not any(each is one for one in taken)]
+    unit = CHANNELS[name].unit
+    matches = [x for x in free if x.unit and size_of(x.unit, unit) is not None]
+    matches = [x for x in matches if not _is_other(x, name)]
+    if not matches and wish.unit:
+        matches = [x for x in free if not x.unit and not _is_other(x, name)]
+        if _has_no_names(table) and len(matches) == len(table.columns):
+            matches = matches[1:]  # the first is the time
+    if not matches:
+        raw = [x for x in free if is_electric(x.unit) and not _is_other(x, name)]
+        matches = raw if len(raw) == 1 or wish.unit else []
+    if len(matches) > 1:
+        _ambiguous(path, name, matches)
+    return matches[0] if matches else None
+
+
+def _is_other(column: Column, name: str) -> bool:
+    """Return whether a column has the usual name of another channel."""
+    text = plain(column.name)
+    others = [each for key, each in CHANNELS.items() if key != name]
+    return any(each.names.fullmatch(text) for each in others) or bool(LENGTH.fullmatch(text))
+
+
+def _has_no_names(table: Table) -> bool:
+    return all(x.name == f"column {x.number}" for x in table.columns)
+
+
+def _ratio(path: object, table: Table, taken: Sequence[Column]) -> Chosen:
+    """Return a friction coefficient in place of the force."""
+    free = [each for each in table.columns if not any(each is one for one in taken)]
+    matches = [x for x in free if RATIO.fullmatch(plain(x.name)) and is_ratio(x.unit or "-")]
+    if len(matches) > 1:
+        _ambiguous(path, "force", matches)
+    if not matches:
+        _refuse(path, table, "force", "no column is")
+    column = matches[0]
+    size = 0.01 if column.unit == "%" else 1.0
+    note = f"column {column} is a friction coefficient: the force is that times the normal load"
+    return Chosen(column, size, "normal load", note, ratio=True)
+
+
+def _times(
+    path: object,
+    table: Table,
+    found: dict[str, Chosen],
+    wish: _Wish,
+    taken: Sequence[Column],
+    said: dict[str, str],
+) -> Column:
+    """Return the column of times; of several, that which stands left of the force."""
+    free = [each for each in table.columns if not any(each is one for one in taken)]
+    pattern = CHANNELS["time"].names
+    matches = [
+        x for x in free if pattern.fullmatch(plain(x.name)) and (wish.unit or _fits(x, "time"))
+    ]
+    if not matches:
+        matches = [x for x in free if x.unit and size_of(x.unit, "s") is not None]
+    if not matches and _has_no_names(table) and wish.unit:
+        matches = [x for x in free if x.number == 1]
+    if not matches:
+        _refuse(path, table, "time", "no column is", "; or give --interval, e.g. '0.5 ms'")
+    first = matches[0]
+    same = all(np.array_equal(x.values, first.values, equal_nan=True) for x in matches)
+    if len(matches) > 1 and not (same and len({x.unit for x in matches}) == 1):
+        return own_clock(path, table, found["force"].column, matches)
+    return first
+
+
+def own_clock(path: object, table: Table, column: Column, times: Sequence[Column]) -> Column:
+    """Return the column of times that belongs to a channel, where each channel has one.
+
+    Raises
+    ------
+    ResultError
+        If times do not stand before the channels that they belong to.
+    """
+    numbers = [x.number for x in times]
+    adjacent = any(number + 1 in numbers for number in numbers)
+    before = [x for x in times if x.number < column.number]
+    if adjacent or not before or numbers[0] != min(x.number for x in table.columns):
+        _ambiguous(path, "time", times)
+    return before[-1]
+
+
+def _with_size(path: object, table: Table, name: str, column: Column, unit: str) -> Chosen:
+    """Return a column with the size of its unit."""
+    channel = CHANNELS[name]
+    text = unit or column.unit
+    size = size_of(text, channel.unit, column.unit) if text else None
+    if size is not None:
+        note = f"in column {column} {size.note}" if size.note else ""
+        return Chosen(column, size.value, text, note)
+    example = f"{_flag(name)} '{column.number}={channel.example}'"
+    if not text or (is_ratio(text) and not unit):
+        raise ResultError(
+            f"{path}: column {column} states no unit of {_article(channel.meaning)}; say {example}"
+        )
+    if is_electric(text):
+        hints = [
+            x
+            for x in table.remarks
+            if "/V" in x.text or "V/" in x.text or "scale" in x.text.lower()
+        ]
+        hint = f"; line {hints[0].line} says {hints[0].text.strip()[:60]!r}" if hints else ""
+        raise ResultError(
+            f"{path}: column {column} is in {text}, and its scale is needed; say "
+            f"{_flag(name)} '{column.number}=2.5 {channel.unit}/{text}'{hint}"
+        )
+    raise ResultError(
+        f"{path}: column {column} is in {text!r}, not a unit of {_article(channel.meaning)}; say "
+        f"{example}"
+    )
+
+
+def _article(meaning: str) -> str:
+    return "time" if meaning == "time" else f"the {meaning}"
+
+
+def _flag(name: str) -> str:
+    return f"--{name.replace('_', '-')}"
+
+
+def _ambiguous(path: object, name: str, matches: Sequence[Column]) -> NoReturn:
+    choices = ", ".join(str(each) for each in matches)
+    raise ResultError(
+        f"{path}: {len(matches)} columns may be the {CHANNELS[name].meaning}: {choices}; say which "
+        f"by its number: {_flag(name)} {matches[0].number}"
+    )
+
+
+def _refuse(path: object, table: Table, name: str, why: str, remedy: str = "") -> NoReturn:
+    columns = ", ".join(str(each) for each in table.columns) or "none"
+    unit = CHANNELS[name].example
+    raise ResultError(
+        f"{path}: {why} the {CHANNELS[name].meaning}; columns: {columns}; say for example "
+        f"{_flag(name)} '2={unit}'{remedy}"
+    )

@@ -1,0 +1,114 @@
+"""Times of samples: restarts, intervals in place of times, a first interval unlike the others."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.errors import ResultError
+from stiction.recording.table import Table, number_of
+from stiction.text.units import in_words
+
+Floats = NDArray[np.float64]
+Rows = NDArray[np.intp]
+
+ALIKE = 1e-3  # relative: intervals, of which the file rounds one
+AGAIN = 0.05  # of a block's duration: a time so near its first begins the next block
+STEADY = 30.0  # largest of intervals over the smallest
+FEW = 0.02  # of the samples: with so few different values a column is a clock or a period
+FIRST = 0.01  # relative: how far the first interval may differ from the others
+TIED = 0.5  # of the samples with the time of the one before
+
+
+class Block(NamedTuple):
+    """Rows of one block, and their times, s, from the file's own zero."""
+
+    rows: Rows
+    time: Floats
+    notes: tuple[str, ...]
+
+
+def blocks(path: object, table: Table, time: Floats, said: str | None, name: str) -> list[Block]:
+    """Return the blocks of a table by its times (s): each restart begins another.
+
+    Raises
+    ------
+    ResultError
+        If times go back without beginning again, or may be periods as well.
+    """
+    rows = np.flatnonzero(np.isfinite(time))
+    if not len(rows):
+        raise ResultError(f"{path}: the column of times, {name}, has no numbers")
+    values, notes = time[rows], []
+    if len(rows) < len(time):
+        lost = np.flatnonzero(~np.isfinite(time))
+        place = table.line(int(lost[0]))
+        notes.append(f"{number_of(len(lost), 'sample')} without a time left out, first {place}")
+    if said != "clock" and len(values) > 2 and _are_periods(path, values, said, name):
+        values = np.cumsum(values) - values[0]
+        notes.append(f"{name} holds the interval before each sample: times are their sum")
+    back = np.flatnonzero(np.diff(values) < 0.0)
+    found, start = [], 0
+    for at in [*back.tolist(), len(values) - 1]:
+        first, last = float(values[start]), float(values[at])
+        if at < len(values) - 1 and values[at + 1] > first + AGAIN * (last - first):
+            raise ResultError(
+                f"{path}: {table.line(int(rows[at + 1]))}: the time goes back from {last:g} s to "
+                f"{values[at + 1]:g} s and does not begin again; put the lines in order"
+            )
+        its = values[start : at + 1]
+        found.append(Block(rows[start : at + 1], its, (*notes, *_first_interval(its))))
+        start = at + 1
+    return found
+
+
+def _are_periods(path: object, values: Floats, said: str | None, name: str) -> bool:
+    """Return whether a column of times holds the period of each sample instead."""
+    if said == "intervals":
+        return True
+    steps = np.diff(values)
+    positive = bool((values > 0.0).all())
+    steady = positive and float(values.max() / values.min()) < STEADY
+    falls = float(np.mean(steps < 0.0))
+    ties = float(np.mean(steps == 0.0))
+    if steady and (ties == 1.0 or falls > 0.05):
+        return True
+    # few values, each for many samples: a coarse clock, or a period that changes
+    distinct = len(np.unique(values))
+    if steady and falls == 0.0 and ties > TIED and distinct <= max(3.0, FEW * len(values)):
+        raise ResultError(
+            f"{path}: {name} has only {distinct} values, {values.min():g} to {values.max():g} s, "
+            "in ascending order: the times of a coarse clock, or the interval of each sample? say "
+            "--times clock or --times intervals"
+        )
+    return False
+
+
+def _first_interval(time: Floats) -> list[str]:
+    """Return a note if the first interval differs from all others."""
+    if len(time) < 5:
+        return []
+    steps = np.diff(time)
+    usual = float(np.median(steps[1:]))
+    others = np.abs(steps[1:] - usual).max()
+    odd = abs(steps[0] - usual)
+    if usual > 0.0 and odd > FIRST * usual and odd > 3.0 * others:
+        return [
+            f"the first interval is {in_words(steps[0], 's')}, the others {in_words(usual, 's')}"
+        ]
+    return []
+
+
+def check_stated(time: Floats, interval: float | None, stated: str) -> list[str]:
+    """Return a note on how the stated interval agrees with the times; rounding is not told."""
+    if interval is None or len(time) < 3:
+        return []
+    usual = float(np.median(np.diff(time)))
+    if usual <= 0.0 or abs(interval / usual - 1.0) <= ALIKE:
+        return []
+    return [
+        f"the file states an interval of {stated}, and its times are {in_words(usual, 's')} apart: "
+        "the times are used"
+    ]

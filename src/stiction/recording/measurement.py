@@ -1,0 +1,366 @@
+"""From a file to its measurements: channels in SI, what is known of the rig, and the guess."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.errors import ResultError
+from stiction.recording.channels import CHANNELS, plain
+from stiction.recording.formats import Layout, read_tables
+from stiction.recording.guess.choice import Choice, Chosen, choose_columns, own_clock
+from stiction.recording.guess.clock import Block, blocks, check_stated
+from stiction.recording.guess.displacement import unwrap
+from stiction.recording.guess.remarks import Said, what_is_said
+from stiction.recording.noise import noise_level
+from stiction.recording.origin import Origin, Use
+from stiction.recording.request import MARKS, SIGNS, Reading, Request, request
+from stiction.recording.sensor import Sensor
+from stiction.recording.table import Remark, Table, number_of
+from stiction.recording.units import size_of
+from stiction.text.units import Force, in_words
+from stiction.text.validation import Described
+
+Floats = NDArray[np.float64]
+DISPLACEMENTS = ("position", "drive_position")
+FEWEST = 2  # samples of a block
+STEPS = ("step", "stroke", "cycle", "block", "segment", "pass", "schritt", "zyklus", "hub")
+UNEVEN = 0.01  # relative: intervals that differ by more are told
+
+
+class Weight(Described):
+    """The normal load as the user gives it."""
+
+    normal_load: Force
+
+
+class Measurement(NamedTuple):
+    """The channels of one block in SI, by name, and what else the file and the user say."""
+
+    channels: dict[str, Floats]
+    known: dict[str, Any]
+    sensors: dict[str, Sensor]
+    origin: Origin
+
+
+def read_measurements(
+    path: Path, given: Mapping[str, Any], sidecar: Path | None = None
+) -> list[Measurement]:
+    """Return a measurement for each block of a file.
+
+    Parameters
+    ----------
+    path : Path
+        A file of any known format.
+    given : mapping
+        What the user says, by the names of `Reading` and of the apparatus.
+    sidecar : Path, optional
+        In place of the TOML file beside the file.
+
+    Raises
+    ------
+    ResultError
+        If it cannot be read, or what it holds is ambiguous; with the choices.
+    DescriptionError
+        If what the user says is wrong.
+    """
+    asked = request(path, given, sidecar)
+    reading = asked.reading
+    layout = Layout(SIGNS.get(reading.decimal or ""), MARKS.get(reading.separator or ""))
+    found: list[Measurement] = []
+    refused: list[ResultError] = []
+    for table in read_tables(path, layout):
+        try:
+            found += _measurements(path, table, asked)
+        except ResultError as error:
+            refused.append(error)
+    if not found:
+        raise refused[0]
+    if refused and not all("no column is the force" in str(error) for error in refused):
+        raise next(x for x in refused if "no column is the force" not in str(x))
+    return [
+        each._replace(origin=_place_among(each.origin, number, len(found)))
+        for number, each in enumerate(found, 1)
+    ]
+
+
+def _place_among(origin: Origin, number: int, count: int) -> Origin:
+    return Origin(**{**vars(origin), "block": number, "blocks": count})
+
+
+def _measurements(path: Path, table: Table, asked: Request) -> list[Measurement]:
+    """Return the measurements of one table."""
+    reading = asked.reading
+    said = what_is_said(table.remarks)
+    interval = reading.interval or table.interval or said.interval
+    by_interval = reading.interval is not None
+    if not by_interval and interval is not None:  # a column of times comes first
+        by_interval = not _has_times(path, table, reading)
+    choice = choose_columns(path, table, reading.columns, timed=by_interval)
+    clock, name = _clock(table, choice, interval)
+    parts = blocks(path, table, clock, reading.times, name)
+    short = [part for part in parts if len(part.rows) < FEWEST]
+    found = []
+    before = -1
+    for part in parts:
+        if part in short:
+            continue
+        its = _remarks(table, before, int(part.rows[0]))
+        before = int(part.rows[-1])
+        own = what_is_said(its) if len(parts) > 1 else said
+        found.append(_measurement(path, table, asked, choice, part, own, by_interval, len(parts)))
+    if not found:
+        raise ResultError(f"{path}: fewer than {FEWEST} samples; record it again")
+    return found
+
+
+def _has_times(path: Path, table: Table, reading: Reading) -> bool:
+    try:
+        return "time" in choose_columns(path, table, reading.columns, timed=False).channels
+    except ResultError as error:
+        return "no column is the time" not in str(error)
+
+
+def _clock(table: Table, choice: Choice, interval: float | None) -> tuple[Floats, str]:
+    """Return the times of all rows, s, and the name of their column."""
+    chosen = choice.channels.get("time")
+    if chosen is not None:
+        return chosen.column.values * chosen.size, f"column {chosen.column}"
+    force = choice.channels["force"].column
+    if force.clock is not None:
+        return force.clock, "the clock"
+    assert interval is not None
+    return np.arange(len(table), dtype=np.float64) * interval, "the clock"
+
+
+def _remarks(table: Table, before: int, first: int) -> Sequence[Remark]:
+    """Return the remarks between two rows."""
+    if table.lines is None:
+        return table.remarks
+    low = table.lines[before] if before >= 0 else 0
+    return [x for x in table.remarks if low < x.line < table.lines[first] or x.line == 0]
+
+
+def _measurement(
+    path: Path,
+    table: Table,
+    asked: Request,
+    choice: Choice,
+    part: Block,
+    said: Said,
+    by_interval: bool,
+    parts: int,
+) -> Measurement:
+    """Return the measurement of one block."""
+    notes = [*table.notes, *choice.notes, *part.notes]
+    if by_interval:
+        notes.append(f"times are the number of the sample times {said.stated or 'the interval'}")
+    else:
+        stated = table.stated or said.stated
+        notes += check_stated(part.time, table.interval or said.interval, stated)
+    promised = said.promised or table.promised
+    if promised is not None and promised > len(part.rows) and (parts == 1 or said.promised):
+        notes.append(
+            f"the file promises {promised} samples and has {len(part.rows)}: it is cut off"
+        )
+    time, channels = part.time, {}
+    raw = {
+        name: each.column.values[part.rows] * each.size
+        for name, each in choice.channels.items()
+        if name != "time"
+    }
+    whole = np.isfinite(raw["force"])
+    if not whole.all():
+        first = table.line(int(part.rows[np.argmin(whole)]))
+        lost = int(np.count_nonzero(~whole))
+        notes.append(f"{number_of(lost, 'sample')} without a force left out, the first at {first}")
+        time = time[whole]
+    if len(time) < FEWEST:
+        raise ResultError(f"{path}: {len(time)} samples with a force; a record needs two")
+    notes += _spacing(time)
+    sensors: dict[str, Sensor] = {}
+    for name, values in raw.items():
+        other = _other_clock(path, table, choice, name, part)
+        its = _on(values, part.time if other is None else other, time, name, notes, whole)
+        if its is None:
+            continue
+        sensor = asked.sensors.get(name)
+        channels[name] = its if sensor is None else sensor.value(its)
+        if name in DISPLACEMENTS:
+            channels[name] = _unwrap(path, channels[name], time, asked.reading.wrap, name, notes)
+        sensors[name] = _with_noise(sensor, channels[name], name)
+    known = dict(asked.known)
+    _weigh(path, choice.channels["force"], channels, known, notes, sensors)
+    notes += [_in_words(name, x) for name, x in sensors.items() if x.noise or x.quantisation]
+    origin = Origin(
+        path.name,
+        table.format,
+        _uses(table, choice, channels, time),
+        len(time),
+        (len(time) - 1) / float(time[-1] - time[0]) if time[-1] > time[0] else 0.0,
+        label=table.label or _label(table, part),
+        start=said.start or table.start,
+        notes=tuple(notes),
+    )
+    return Measurement({"time": time, **channels}, known, sensors, origin)
+
+
+def _other_clock(path: Path, table: Table, choice: Choice, name: str, part: Block) -> Floats | None:
+    """Return the times of a channel that has its own; None if they are those of the force."""
+    column, force = choice.channels[name].column, choice.channels["force"].column
+    if column.clock is not None and force.clock is not None:
+        own = column.clock[part.rows]
+        return None if np.array_equal(own, part.time) else own
+    chosen = choice.channels.get("time")
+    if chosen is None:
+        return None
+    times = [
+        x for x in table.columns if x.name == chosen.column.name and x.unit == chosen.column.unit
+    ]
+    if len(times) < 2:
+        return None
+    own_times = own_clock(path, table, column, times)
+    own = own_times.values[part.rows] * chosen.size
+    return None if np.array_equal(own, part.time, equal_nan=True) else own
+
+
+def _on(
+    values: Floats,
+    own: Floats,
+    time: Floats,
+    name: str,
+    notes: list[str],
+    whole: NDArray[np.bool_],
+) -> Floats | None:
+    """Return a channel at the times of the force; None if it has no values there."""
+    known = np.isfinite(values) & np.isfinite(own)
+    if len(own) == len(whole) and known[whole].all() and np.array_equal(own[whole], time):
+        return np.asarray(values[whole])
+    meaning = CHANNELS[name].meaning
+    if np.count_nonzero(known) < FEWEST:
+        notes.append(f"the {meaning} has no values and is left out")
+        return None
+    notes.append(f"the {meaning} is interpolated to the times of the force by straight lines")
+    order = np.argsort(own[known], kind="stable")
+    at, its = own[known][order], values[known][order]
+    outside = int(np.count_nonzero((time < at[0]) | (time > at[-1])))
+    if outside:
+        count = number_of(outside, "sample")
+        notes.append(f"{count} outside its times: its first and last value stand there")
+    return np.interp(time, at, its)
+
+
+def _spacing(time: Floats) -> list[str]:
+    """Return a note on intervals that differ."""
+    steps = np.diff(time)[1:]
+    usual = float(np.median(steps)) if len(steps) else 0.0
+    if usual <= 0.0 or float(np.abs(steps - usual).max()) <= UNEVEN * usual:
+        return []
+    least, most = (in_words(float(x), "s") for x in (steps.min(), steps.max()))
+    return [f"intervals differ: {least} to {most}, mostly {in_words(usual, 's')}"]
+
+
+def _unwrap(
+    path: Path, values: Floats, time: Floats, said: str | None, name: str, notes: list[str]
+) -> Floats:
+    """Return a displacement made continuous, with a note."""
+    period = None
+    if said is not None:
+        size = size_of(said, "m") if said != "none" else None
+        if said != "none" and (
+            size is None or size.value <= 0.0 or not any(map(str.isdigit, said))
+        ):
+            raise ResultError(f"{path}: --wrap {said!r} is not a length; say for example '10 mm'")
+        period = 0.0 if size is None else size.value
+    found, length, count = unwrap(values, time, period)
+    if count:
+        notes.append(
+            f"the {CHANNELS[name].meaning} starts again {number_of(count, 'time')}, every "
+            f"{in_words(length, 'm')}, and was made continuous (--wrap none leaves it)"
+        )
+    return found
+
+
+def _with_noise(sensor: Sensor | None, values: Floats, name: str) -> Sensor:
+    """Return what is known of a sensor, with noise and quantisation estimated if they are not."""
+    level = noise_level(values)
+    if sensor is None:
+        unit = CHANNELS[name].unit
+        return Sensor(unit=unit, noise=level.noise, quantisation=level.quantisation)
+    its = sensor.behind()
+    fields = {each: getattr(its, each) for each in type(its).model_fields}
+    for each in ("noise", "quantisation"):
+        if each not in sensor.model_fields_set:
+            fields[each] = getattr(level, each)
+    return Sensor(**fields)
+
+
+def _in_words(name: str, sensor: Sensor) -> str:
+    """Return noise and quantisation of a channel in a sentence."""
+    levels = (
+        in_words(x, sensor.unit) if x else "none seen" for x in (sensor.noise, sensor.quantisation)
+    )
+    return f"{CHANNELS[name].meaning}: noise {next(levels)}, quantisation {next(levels)}"
+
+
+def _weigh(
+    path: Path,
+    force: Chosen,
+    channels: dict[str, Floats],
+    known: dict[str, Any],
+    notes: list[str],
+    sensors: dict[str, Sensor],
+) -> None:
+    """Turn a negative normal load round, and a coefficient of friction into a force."""
+    load = channels.get("load")
+    if load is not None and float(np.median(load)) < 0.0:
+        channels["load"] = load = -load
+        notes.append(
+            "the normal load is negative, as compression is in many cells: its sign was turned"
+        )
+    if load is not None and float(load.min()) < 0.0 < float(load.max()):
+        share = 100.0 * float(np.mean(load < 0.0))
+        notes.append(f"the normal load changes its sign: {share:.2g} % of the samples pull")
+    if not force.ratio:
+        return
+    if load is None and "normal_load" not in known:
+        raise ResultError(
+            f"{path}: column {force.column} is a friction coefficient, and the force is that times "
+            "the normal load; say --normal-load, e.g. '10 N'"
+        )
+    weight = load if load is not None else Weight(normal_load=known["normal_load"]).normal_load
+    channels["force"] = channels["force"] * weight
+    sensors["force"] = _with_noise(None, channels["force"], "force")
+
+
+def _label(table: Table, part: Block) -> str:
+    """Return the words that a block has in a column of its own, such as the name of a step."""
+    for name, texts in table.labels:
+        its = {str(x).strip() for x in texts[part.rows]}
+        if len(its) == 1:
+            return f"{name} {its.pop()}"
+    for column in table.columns:
+        values = column.values[part.rows]
+        if plain(column.name) in STEPS and np.ptp(values) == 0.0:
+            return f"{column.name} {values[0]:g}"
+    return ""
+
+
+def _uses(
+    table: Table, choice: Choice, channels: dict[str, Floats], time: Floats
+) -> tuple[Use, ...]:
+    """Return what each column was taken for."""
+    known = {"time": time, **channels}
+    taken = {id(x.column): (name, x) for name, x in choice.channels.items() if name in known}
+    found = []
+    for column in table.columns:
+        name, chosen = taken.get(id(column), ("", None))
+        ends = (float(known[name].min()), float(known[name].max())) if name else (0.0, 0.0)
+        unit = chosen.unit if chosen is not None else column.unit
+        found.append(Use(column.number, column.heading, name, unit, *ends))
+    found += [Use(0, name, "", "", 0.0, 0.0) for name, _ in table.labels]
+    return tuple(found)

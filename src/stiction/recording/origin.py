@@ -1,0 +1,108 @@
+"""Where a record comes from: what was read as what, and what was skipped."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from stiction.recording.channels import CHANNELS
+from stiction.text.sections import Section, Table, as_html, as_text
+from stiction.text.units import in_words
+
+
+@dataclass(frozen=True)
+class Use:
+    """One column: its place and heading in the file, its channel ('' for none), its unit."""
+
+    column: int
+    heading: str
+    channel: str
+    unit: str
+    least: float
+    largest: float
+
+
+@dataclass(frozen=True, repr=False)
+class Origin:
+    """Where a record comes from.
+
+    Parameters
+    ----------
+    file, format : str
+        The file's name and kind.
+    uses : tuple of Use
+        What each column was taken for.
+    samples : int
+        Number of samples.
+    rate : float
+        Samples a second, on average.
+    block, blocks : int
+        Which of the file's blocks, from 1, and how many there are.
+    label, start : str
+        Name of the block, and wall-clock time of its beginning, as the file has them.
+    notes : tuple of str
+        What was skipped, turned round, or looks odd.
+    """
+
+    file: str
+    format: str
+    uses: tuple[Use, ...]
+    samples: int
+    rate: float
+    block: int = 1
+    blocks: int = 1
+    label: str = ""
+    start: str = ""
+    notes: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        """Return one line."""
+        part = f", block {self.block} of {self.blocks}" if self.blocks > 1 else ""
+        return f"<Origin {self.file}{part}, {self.samples} samples>"
+
+    def __str__(self) -> str:
+        """Return the guess as plain text."""
+        return as_text(self.tables())
+
+    def _repr_html_(self) -> str:
+        return as_html(self.tables())
+
+    def tables(self) -> list[Section]:
+        """Return the guess as a section: sentences, and a row for each column."""
+        part = f", block {self.block} of {self.blocks}" if self.blocks > 1 else ""
+        named = f" ({self.label})" if self.label else ""
+        begins = f" It began at {self.start}." if self.start else ""
+        said = [
+            f"{self.format}{part}{named}: {self.samples} samples at {in_words(self.rate, 'Hz')}."
+            f"{begins}"
+        ]
+        said += [sentence(note) for note in self.notes]
+        rows = [_row(use) for use in self.uses]
+        return [Section("Read as", said, Table(("column", "is", "in", "from", "to"), rows))]
+
+    def to_json(self) -> str:
+        """Return the guess as JSON."""
+        return json.dumps(asdict(self), ensure_ascii=False)
+
+    @classmethod
+    def from_json(cls, text: str) -> Origin:
+        """Return what `to_json` wrote; TypeError or ValueError if it did not."""
+        raw: dict[str, Any] = json.loads(text)
+        uses = tuple(Use(**each) for each in raw.pop("uses"))
+        return cls(**{**raw, "uses": uses, "notes": tuple(map(str, raw.pop("notes")))})
+
+
+def sentence(note: str) -> str:
+    """Return a note with a capital letter and an end."""
+    end = "" if note.endswith("?") else "."
+    return f"{note[:1].upper()}{note[1:]}{end}"
+
+
+def _row(use: Use) -> tuple[str, ...]:
+    name = f"{use.column} {use.heading}" if use.column else use.heading
+    if not use.channel:
+        return name, "not used", "", "", ""
+    channel = CHANNELS[use.channel]
+    ends = (in_words(use.least, channel.unit), in_words(use.largest, channel.unit))
+    return name, channel.meaning, use.unit, *ends

@@ -1,0 +1,140 @@
+"""What the user says about a file: arguments first, then the small TOML beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal, NamedTuple
+
+from pydantic import Field
+
+from stiction.errors import DescriptionError, Fault
+from stiction.recording.channels import CHANNELS
+from stiction.recording.sensor import Sensor
+from stiction.text.toml import read_toml
+from stiction.text.units import Duration
+from stiction.text.validation import Described, unknown_name
+
+KNOWN = (  # of the apparatus, for the record
+    *("normal_load", "stiffness", "stiffness_across", "drive_velocity", "mass", "zero"),
+)
+SECTIONS = ("columns", "reading", "record", "sensors")
+MARKS = {"tab": "\t", "comma": ",", "semicolon": ";", "space": " ", "bar": "|"}
+SIGNS = {"point": ".", "comma": ","}
+
+
+class Reading(Described):
+    """How to read a file, as far as the user says so.
+
+    Parameters
+    ----------
+    time, force, force_across, load, position, drive_position, slip_speed : str, optional
+        The column of a channel, its unit, or both: ``"Fx"``, ``"mN"``, ``"Fx=mN"``, ``"3=mN"``.
+        A number multiplies the unit: ``"-1 N"`` turns the sign, ``"CH1=2.5 N/V"`` scales volts.
+    interval : float or str, optional
+        Between two samples, s, for a file without times.
+    times : {"clock", "intervals"}, optional
+        Whether the time column holds times, or the interval before each sample.
+    decimal : {"point", "comma"}, optional
+        Decimal sign of a text file.
+    separator : {"tab", "comma", "semicolon", "space", "bar"}, optional
+        Between the columns of a text file.
+    wrap : str, optional
+        The length after which a displacement starts again, ``"10 mm"``, or ``"none"``.
+    block : int, optional
+        Which of several blocks or strokes, number_of from 1.
+    """
+
+    time: str | None = None
+    force: str | None = None
+    force_across: str | None = None
+    load: str | None = None
+    position: str | None = None
+    drive_position: str | None = None
+    slip_speed: str | None = None
+    interval: Duration | None = None
+    times: Literal["clock", "intervals"] | None = None
+    decimal: Literal["point", "comma"] | None = None
+    separator: Literal["tab", "comma", "semicolon", "space", "bar"] | None = None
+    wrap: str | None = None
+    block: Annotated[int, Field(ge=1)] | None = None
+
+    @property
+    def columns(self) -> dict[str, str]:
+        """What is said of each channel."""
+        said = {name: getattr(self, name) for name in CHANNELS}
+        return {name: text for name, text in said.items() if text is not None}
+
+
+class Request(NamedTuple):
+    """All that is said about a file: how to read it, numbers of the apparatus, sensors."""
+
+    reading: Reading
+    known: dict[str, Any]
+    sensors: dict[str, Sensor]
+    beside: Path | None = None
+
+
+def request(path: Path, given: Mapping[str, Any], sidecar: Path | None = None) -> Request:
+    """Return what arguments say about a file, and a TOML file beside it where they do not.
+
+    ``data.toml`` belongs to ``data.csv``, unless it describes a rig, with a table [slider].
+
+    Raises
+    ------
+    DescriptionError
+        With every fault of both.
+    """
+    said = {name: value for name, value in given.items() if value is not None}
+    own = _beside(path) if sidecar is None else sidecar
+    tables = {} if own is None else _tables(own)
+    read = {**tables.get("reading", {}), **tables.get("columns", {})}
+    known = dict(tables.get("record", {}))
+    for name, value in said.items():
+        (known if name in KNOWN else read)[name] = value
+    reading = Reading(**read)
+    sensors = {
+        name: Sensor(**{"unit": CHANNELS[name].unit, **table})
+        for name, table in tables.get("sensors", {}).items()
+    }
+    return Request(reading, known, sensors, own)
+
+
+def _beside(path: Path) -> Path | None:
+    """Return the TOML file beside a file, if it is one about a record."""
+    own = path.with_suffix("").with_suffix(".toml") if path.suffix == ".gz" else path
+    own = own.with_suffix(".toml")
+    if own == path or not own.is_file():
+        return None
+    return None if "slider" in read_toml(own) else own
+
+
+def _tables(own: Path) -> dict[str, dict[str, Any]]:
+    """Return the tables of such a file, all faults of their names at once."""
+    raw, wrong = read_toml(own), []
+    allowed = {
+        "columns": tuple(CHANNELS),
+        "reading": tuple(name for name in Reading.model_fields if name not in CHANNELS),
+        "record": KNOWN,
+        "sensors": tuple(name for name in CHANNELS if name != "time"),
+    }
+    for section, table in raw.items():
+        if section not in SECTIONS:
+            wrong.append(Fault(f"{own}: {section}", unknown_name("table", section, SECTIONS)))
+        elif not isinstance(table, Mapping):
+            wrong.append(Fault(f"{own}: {section}", f"must be a table [{section}], is {table!r}"))
+        else:
+            strange = [name for name in table if name not in allowed[section]]
+            wrong += [
+                Fault(f"{own}: {section}.{name}", unknown_name("key", name, allowed[section]))
+                for name in strange
+            ]
+            if section == "sensors":
+                wrong += [
+                    Fault(f"{own}: sensors.{name}", f"must be a table [sensors.{name}]")
+                    for name, each in table.items()
+                    if not isinstance(each, Mapping)
+                ]
+    if wrong:
+        raise DescriptionError(wrong)
+    return raw

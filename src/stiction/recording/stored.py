@@ -1,0 +1,146 @@
+"""Stored records: NetCDF with the channels, what is known of the rig, sensors and origin."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from importlib import import_module
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.errors import DescriptionError, ResultError
+from stiction.recording.channels import CHANNELS
+from stiction.recording.measurement import Measurement
+from stiction.recording.origin import Origin
+from stiction.recording.sensor import Sensor
+from stiction.result.checksums import SEAL, as_written, damaged_parts, seal_tables, sign
+from stiction.result.columns import cf_attributes
+from stiction.result.file import SIGNATURE, write_table
+from stiction.result.table import Column, Table, as_table
+from stiction.storage.files import placeable, whole
+from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files
+from stiction.storage.isolation import apart
+
+Floats = NDArray[np.float64]
+KIND = "stiction_record"  # attribute by which a stored record is recognised; its value: the layout
+KNOWN = {  # of the apparatus, stored as attributes with their units
+    "normal_load": "N",
+    "stiffness": "N/m",
+    "stiffness_across": "N/m",
+    "drive_velocity": "m/s",
+    "mass": "kg",
+    "zero": "N",
+}
+
+
+def write_stored(
+    path: str | Path,
+    channels: Mapping[str, Floats],
+    known: Mapping[str, float],
+    sensors: Mapping[str, Sensor],
+    origin: Origin | None,
+) -> Path:
+    """Write channels over time, and all that is known of them, as NetCDF; return the path.
+
+    Raises
+    ------
+    ResultError
+        If the file is not called .nc, or cannot be written there.
+    """
+    target = Path(path)
+    if target.suffix != ".nc":
+        raise ResultError(f"{target}: a record is NetCDF; name it {target.with_suffix('.nc')}")
+    placeable(target)
+    columns = {
+        name: Column(("time",), values, cf_attributes(CHANNELS[name].unit, CHANNELS[name].meaning))
+        for name, values in channels.items()
+    }
+    attributes: dict[str, Any] = {KIND: 1, "stiction_version": version("stiction")}
+    attributes |= {name: float(value) for name, value in known.items()}
+    attributes["units_of_attributes"] = ", ".join(f"{name}: {KNOWN[name]}" for name in known)
+    attributes["sensors"] = json.dumps({name: _fields(each) for name, each in sensors.items()})
+    attributes["origin"] = "" if origin is None else origin.to_json()
+    attributes[SEAL] = seal_tables({"record": Table(columns, attributes)})
+    h5netcdf: Any = import_module("h5netcdf")  # slow to import
+    with whole(target) as part:
+        with h5netcdf.File(part, "w") as file:
+            write_table(file, Table(columns, attributes))
+        sign(part)
+    return target
+
+
+def is_stored(path: Path) -> bool:
+    """Return whether a file is a record that `write_stored` wrote."""
+    return KIND in (root_attributes(path) or ())
+
+
+def root_attributes(path: Path) -> list[str] | None:
+    """Return the names of an HDF5 file's attributes; none of another file, None if damaged."""
+    try:
+        with open(path, "rb") as file:
+            if file.read(len(SIGNATURE)) != SIGNATURE:
+                return []
+        found = as_written(path)
+        names = list_attributes(str(path)) if found else apart(list_attributes, path)
+    except (OSError, ResultError):
+        return None
+    return names.split("\n")
+
+
+def list_attributes(path: str) -> str:
+    """Return the names of the attributes of an HDF5 file, a line each."""
+    h5py: Any = import_module("h5py")  # slow to import
+    with h5py.File(path) as file:
+        return "\n".join(map(str, file.attrs))
+
+
+def read_stored(path: Path) -> Measurement:
+    """Return what `write_stored` wrote.
+
+    Raises
+    ------
+    ResultError
+        If the file is damaged.
+    """
+    import xarray as xr
+
+    if as_written(path) is False:
+        raise ResultError(f"{path}: is damaged, its bytes have changed; import the record again")
+    if as_written(path) is None:
+        apart(read_through, path)
+    with opening(path, UNREADABLE):
+        refuse_other_files(path)
+        data = xr.load_dataset(path, engine="h5netcdf", decode_times=False)
+        lost = damaged_parts(data.attrs.get(SEAL), {"record": as_table(data)})
+    if lost:
+        raise ResultError(f"{path}: is damaged: {', '.join(lost[:3])}; import the record again")
+    strange = [str(name) for name in data.variables if name not in CHANNELS]
+    if strange or "force" not in data or "time" not in data:
+        raise ResultError(f"{path}: is not a stored record; it has {', '.join(map(str, data))}")
+    channels = {str(name): each.values.astype(np.float64) for name, each in data.variables.items()}
+    try:
+        known = {name: float(data.attrs[name]) for name in KNOWN if name in data.attrs}
+        sensors = {
+            name: Sensor(**fields) for name, fields in json.loads(data.attrs["sensors"]).items()
+        }
+        origin = (
+            Origin.from_json(data.attrs["origin"]) if data.attrs["origin"] else _origin(channels)
+        )
+    except (KeyError, TypeError, ValueError, AttributeError, DescriptionError) as error:
+        raise ResultError(f"{path}: its attributes cannot be read: {error}") from None
+    return Measurement(channels, known, sensors, origin)
+
+
+def _fields(sensor: Sensor) -> dict[str, Any]:
+    return {name: getattr(sensor, name) for name in type(sensor).model_fields}
+
+
+def _origin(channels: Mapping[str, Floats]) -> Origin:
+    """Return the origin of a record that was made in a session."""
+    time = channels["time"]
+    span = float(time[-1] - time[0]) if len(time) else 0.0
+    return Origin("a session", "record", (), len(time), (len(time) - 1) / span if span else 0.0)

@@ -1,0 +1,134 @@
+"""Units as instruments write them: gram-force, volts with a scale, signs, spelt-out names."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from stiction.text.unit_text import UnitError, factor
+
+GRAVITY = 9.80665  # m/s^2, the standard acceleration of gravity (CGPM 1901): gram-force
+SPELLED = {
+    "sec": "s", "secs": "s", "sek": "s", "sekunden": "s", "msec": "ms", "millisec": "ms",
+    "newton": "N", "newtons": "N", "volt": "V", "volts": "V", "gram": "g", "grams": "g",
+    "millinewton": "mN", "micrometer": "um", "mikrometer": "um", "microns": "um", "micron": "um",
+    "kp": "kgf", "pond": "gf", "gramm": "g", "gr": "g", "lbs": "lb",
+}  # fmt: skip
+COUNTS = {"count", "lsb", "digit", "bit", "step"}
+RATIOS = {"-", "1", "", "–", "--", "none", "n/a", "[-]", "ratio"}
+BRACKETS = re.compile(r"\s*[\[({<]\s*([^\[\](){}<>]*?)\s*[\])}>]\s*")
+QUANTITY = re.compile(r"\s*([+−-]?\s*(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+−-])\s*(.*)", re.S)
+NAMED = re.compile(r"(.*?)\s*[\[({]\s*([^\[\](){}]*?)\s*[\])}]\s*(.*)", re.S)
+
+
+class Size(NamedTuple):
+    """The size of one unit of a column in SI, and a note on how the unit was read."""
+
+    value: float
+    note: str = ""
+
+
+def size_of(text: str, unit: str, stated: str = "") -> Size | None:
+    """Return the size of the unit `text` in the SI unit `unit`; None if it does not fit.
+
+    A unit of mass stands for the weight of that mass. A number before the unit multiplies it:
+    ``-1 N`` turns the sign, ``2.5 N/V`` is the size of one volt, of a column stated in volts.
+
+    Examples
+    --------
+    >>> size_of("mN", "N"), size_of("g", "N").value, size_of("2.5 N/V", "N", "mV").value
+    (Size(value=0.001, note=''), 0.00980665, 0.0025)
+    >>> size_of("mN", "s") is None
+    True
+    """
+    found = QUANTITY.fullmatch(text)
+    number, name = (found[1], found[2]) if found else ("1", text)
+    number = re.sub(r"\s", "", number).replace("−", "-")
+    times = float(f"{number}1" if number in ("+", "-") else number)
+    name = spell(name)
+    if times == 0.0 or not abs(times) < 1e60:
+        return None
+    if "/" in name:
+        upper, lower = (spell(part) for part in name.rsplit("/", 1))
+        per = _raw_units(spell(stated) or lower, lower)
+        if per and (one := size_of(upper, unit)) is not None:
+            return Size(times * one.value * per, one.note)
+    size = _factor(name, unit)
+    if size is not None:
+        return Size(times * size)
+    mass = _factor(name, "kg") if unit == "N" else None
+    if mass is not None:
+        gram = "gram-force" if name == "g" else f"the weight of a mass in {name}"
+        return Size(times * mass * GRAVITY, f"{name} is read as {gram}")
+    return None
+
+
+def is_electric(text: str) -> bool:
+    """Return whether a unit is that of a raw signal: a voltage, a current, counts."""
+    return _raw_units(spell(text), spell(text)) is not None
+
+
+def is_ratio(text: str) -> bool:
+    """Return whether a unit says that a column has none: ``-``, ``1``, ``%``."""
+    return text.strip().lower() in RATIOS or text.strip() == "%"
+
+
+def is_unit(text: str) -> bool:
+    """Return whether a text is a unit, a ratio or a decibel-like scale that instruments write."""
+    inner = BRACKETS.fullmatch(text)
+    name = spell(inner[1] if inner else text)
+    if is_ratio(name):
+        return True
+    try:
+        factor(name, "s")
+    except UnitError:
+        return False
+    return True
+
+
+def spell(text: str) -> str:
+    """Return a unit by the name that the registry knows."""
+    text = text.strip().strip(".").replace("μ", "µ").replace("⋅", "*")
+    inner = BRACKETS.fullmatch(text)
+    text = inner[1] if inner else text
+    return SPELLED.get(text.lower(), text)
+
+
+def split_unit(heading: str) -> tuple[str, str]:
+    """Return name and unit of a heading; the unit is '' if there is none.
+
+    Examples
+    --------
+    >>> split_unit("Force [mN]"), split_unit("t/s"), split_unit("time_ms"), split_unit("F_N")
+    (('Force', 'mN'), ('t', 's'), ('time', 'ms'), ('F_N', ''))
+    """
+    heading = heading.strip().strip('"').strip()
+    found = NAMED.fullmatch(heading)
+    if found and found[1] and is_unit(found[2]):
+        name = f"{found[1]} {found[3]}".strip()
+        return name, spell(found[2]) if found[2].strip() else ""
+    for mark in ("/", "_", " in ", ";", ":", ","):
+        name, at, unit = heading.rpartition(mark)
+        name, unit = name.strip(), unit.strip()
+        weight = mark == "/" and unit in ("mg", "W", "g", "mN")  # F/mg is a coefficient
+        symbol = mark == "_" and len(name) == 1 and len(unit) == 1  # F_N is the normal force
+        plain = bool(at and name and unit) and not weight and not symbol and not is_ratio(unit)
+        if plain and (len(unit) <= 4 or unit.lower() in SPELLED) and is_unit(unit):
+            return name, spell(unit)
+    return heading, ""
+
+
+def _raw_units(stated: str, unit: str) -> float | None:
+    """Return how many of a unit of a raw signal one `stated` unit is; None if it is none."""
+    if unit.lower().rstrip("s") in COUNTS:
+        return 1.0 if stated.lower().rstrip("s") in COUNTS else None
+    if any(_factor(unit, one) is not None for one in ("V", "A")):
+        return _factor(stated, unit)
+    return None
+
+
+def _factor(text: str, unit: str) -> float | None:
+    try:
+        return factor(text, unit)
+    except UnitError:
+        return None

@@ -1,0 +1,95 @@
+"""``stiction import`` and ``stiction analyse`` on measured records."""
+
+import json
+
+import numpy as np
+import pytest
+from tests.measured import FOLDER
+
+import stiction as st
+from stiction.cli import main
+
+
+def inside(*arguments):
+    with pytest.raises(SystemExit) as end:
+        main([str(argument) for argument in arguments])
+    return int(end.value.code or 0)
+
+
+@pytest.fixture
+def data(tmp_path):
+    """A sawtooth in ms and mN, without units in its header."""
+    time = np.arange(0.0, 20.0, 0.01)
+    noise = 0.002 * np.random.default_rng(1).standard_normal(len(time))
+    force = 1.0 + 0.2 * (time % 2.0) / 2.0 + noise
+    rows = "".join(f"{1e3 * t:.1f},{1e3 * f:.2f}\n" for t, f in zip(time, force, strict=True))
+    path = tmp_path / "data.csv"
+    path.write_text(f"time,force\n{rows}")
+    return path
+
+
+def test_analyse_takes_a_record_with_its_units(data, capsys):
+    assert inside("analyse", data, "--time", "ms", "--force", "mN", "--normal-load", "5 N") == 0
+    said = capsys.readouterr().out
+    assert "Read as" in said
+    assert "force along the drive" in said
+    assert "sticks and slips" in said
+    numbers = json.loads((data.parent / "data-analysis" / "analysis.json").read_text())
+    assert numbers["friction"]["static"]["coefficient"] == pytest.approx(0.24, abs=0.001)
+
+
+def test_what_is_ambiguous_ends_with_status_2(data, capsys):
+    assert inside("analyse", data) == 2
+    said = capsys.readouterr().err
+    assert "states no unit of the force along the drive; say --force '2=mN'" in said
+    assert "Traceback" not in said
+    assert inside("import", data, "--time", "ms", "--force", "bar") == 2
+    assert inside("import", data.with_name("none.csv")) == 2
+    assert sorted(data.parent.iterdir()) == [data]
+
+
+def test_import_echoes_its_guess_and_stores_the_record(data, capsys):
+    target, guess = data.with_name("record.nc"), data.with_name("guess.json")
+    units = ("--time", "ms", "--force=-1 mN", "--mass", "30 g")
+    assert inside("import", data, *units) == 0
+    said = capsys.readouterr().out
+    assert "2000 samples at 100 Hz" in said
+    assert "nothing is stored" in said
+    assert inside("import", data, *units, "-o", target, "--json", guess) == 0
+    record = st.read_record(target)
+    assert record.mass == 0.03
+    assert record.force.max() < 0.0  # the sign was turned
+    told = json.loads(guess.read_text())
+    assert [use["channel"] for use in told[0]["uses"]] == ["time", "force"]
+    assert told[0]["samples"] == 2000
+    assert inside("analyse", target) == 0
+    assert inside("analyse", target, "--force", "mN") == 2
+    assert "in SI already: leave out force" in capsys.readouterr().err
+
+
+def test_blocks_become_a_file_each(tmp_path, capsys):
+    path = tmp_path / "strokes.csv"
+    path.write_text("t [s],F [N]\n0,1\n1,2\n2,3\n0,4\n1,5\n2,6\n")
+    assert inside("import", path, "-o", tmp_path / "a.nc") == 0
+    assert [each.name for each in sorted(tmp_path.glob("*.nc"))] == ["a-1.nc", "a-2.nc"]
+    assert inside("import", path, "--block", "2", "-o", tmp_path / "b.nc") == 0
+    assert st.read_record(tmp_path / "b.nc").force.tolist() == [4.0, 5.0, 6.0]
+    assert inside("analyse", path) == 2
+    assert "holds 2 blocks" in capsys.readouterr().err
+
+
+def test_the_result_of_a_run_knows_its_units(tmp_path, slider, capsys):
+    path = st.simulate(slider, "20 ms", sample_rate="1 kHz").save(tmp_path / "run.nc")
+    assert inside("analyse", path, "--force", "mN") == 2
+    assert "is the result of a run, in SI already: leave out force" in capsys.readouterr().err
+
+
+def test_a_measured_record_of_paper(tmp_path, capsys):
+    path = FOLDER / "k1002_v4300.csv.gz"
+    if not path.is_file():
+        pytest.skip(f"no {path.name} beside the repository")
+    known = ("--normal-load", "301.167 mN", "--mass", "30.7 g", "--stiffness", "1002 N/m")
+    assert inside("analyse", path, *known, "--drive-velocity", "4300 um/s", "-o", tmp_path) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "is a friction coefficient: the force is that times the normal load" in said
+    assert "stiffness over mass is 1.5 times" in said

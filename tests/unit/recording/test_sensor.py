@@ -1,0 +1,178 @@
+"""Sensors, synthetic measurements, and the estimates of noise and quantisation."""
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.recording.noise import lattice, noise_level
+
+RATE = 1e4
+
+
+@pytest.fixture(scope="module")
+def run():
+    return st.simulate(st.presets.nakano_popov_2020(), "0.2 s", sample_rate=RATE)
+
+
+def sawtooth(count=20000, drop=0.05, every=997):
+    """A force that rises evenly and drops at once."""
+    return drop * (np.arange(count) % every) / every
+
+
+# --- noise ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("noise", [1e-4, 1e-3, 1e-2])
+def test_noise_is_estimated_without_bias(noise):
+    """Against the known noise of 200 records; the mean of their estimates has 0.3 % of error."""
+    found = []
+    for seed in range(200):
+        random = np.random.default_rng(seed)
+        found.append(noise_level(sawtooth(5000) + noise * random.standard_normal(5000)).noise)
+    spread = np.std(found) / noise
+    assert spread < 0.04
+    # the median of |x| of a sample shared by few slips: 5 of 5000 differences are off
+    assert abs(np.mean(found) / noise - 1.0) < 3.0 * spread / 200**0.5 + 0.005
+
+
+@pytest.mark.parametrize("ratio", [0.5, 1.0, 3.0])
+def test_noise_beside_quantisation(ratio):
+    """The variance of rounding is subtracted; half a step of noise is resolved to 3 %."""
+    step, found = 2e-3, []
+    for seed in range(60):
+        random = np.random.default_rng(seed)
+        values = sawtooth() + ratio * step * random.standard_normal(20000)
+        level = noise_level(step * np.rint(values / step))
+        assert level.quantisation == pytest.approx(step, rel=1e-9)
+        found.append(level.noise)
+    assert np.mean(found) == pytest.approx(ratio * step, rel=0.03)
+
+
+def test_noise_that_is_less_than_the_steps_is_not_invented():
+    values = 2e-3 * np.rint(sawtooth() / 2e-3)
+    level = noise_level(values)
+    assert level.noise == 0.0
+    assert level.quantisation == pytest.approx(2e-3, rel=1e-12)
+
+
+def test_a_swing_is_no_noise():
+    """At a tenth of the sample rate fourth differences leave 0.146 of an amplitude, of 8.4."""
+    swing = 1e-2 * np.sin(0.02 * np.pi * np.arange(20000))  # a hundredth of the sample rate
+    noise = 1e-4 * np.random.default_rng(1).standard_normal(20000)
+    assert noise_level(swing + noise).noise == pytest.approx(1e-4, rel=0.03)
+
+
+@pytest.mark.parametrize("step", [1e-6, 0.25, 3.0])
+def test_a_lattice_is_found_through_the_rounding_of_a_file(step):
+    random = np.random.default_rng(2)
+    codes = np.rint(20.0 * random.standard_normal(5000))
+    written = np.array([float(f"{step * code + 0.7 * step:.6g}") for code in codes])
+    assert lattice(written) == pytest.approx(step, rel=1e-4)
+
+
+def test_values_at_random_are_no_lattice():
+    for seed in range(50):
+        random = np.random.default_rng(seed)
+        assert lattice(random.standard_normal(3000)) == 0.0
+        # few different values, each often, at random places
+        few = np.sort(random.random(40))
+        assert lattice(random.choice(few, 3000)) == 0.0
+
+
+# --- sensors --------------------------------------------------------------------------------------
+
+
+def test_a_perfect_sensor_records_what_its_load_cell_does(run):
+    record, plain = st.measure(run, st.Sensor()), st.analysis.record_of(run)
+    assert np.array_equal(record.force, plain.force)
+    assert np.allclose(record.time, plain.time, rtol=1e-13)
+    for name in ("stiffness", "mass", "normal_load", "drive_velocity"):
+        assert getattr(record, name) == getattr(plain, name)
+    assert record.position is None  # it has no sensor
+
+
+def test_the_same_seed_gives_the_same_record(run):
+    sensor = st.Sensor(noise="2 mN")
+    first, again, other = (st.measure(run, sensor, seed=seed).force for seed in (1, 1, 2))
+    assert np.array_equal(first, again)
+    assert not np.array_equal(first, other)
+    off = first - st.analysis.record_of(run).force
+    assert off.std() == pytest.approx(2e-3, rel=4.0 / (2 * len(off)) ** 0.5)
+
+
+def test_gain_zero_and_quantisation(run):
+    sensor = st.Sensor(gain=1.1, zero="-20 mN", quantisation="5 mN")
+    record, plain = st.measure(run, sensor), st.analysis.record_of(run)
+    readings = 1.1 * plain.force - 0.02
+    assert np.abs(record.force - readings).max() <= 2.5e-3 * (1.0 + 1e-12)
+    assert np.allclose(record.force / 5e-3, np.rint(record.force / 5e-3), atol=1e-9)
+    assert np.abs(sensor.value(record.force) - plain.force).max() <= 2.5e-3 / 1.1 * (1.0 + 1e-12)
+    known = record.sensors["force"]
+    assert (known.gain, known.zero) == (1.0, 0.0)  # the analyst does not know them
+
+
+@pytest.mark.parametrize(("cut", "order"), [("bandwidth", 1), ("filter", 4)])
+def test_a_filter_has_its_cut_off_where_it_is_stated(cut, order):
+    """|H| is 2^-1/2 at the cut-off, and falls as f^-order: closed forms of Butterworth."""
+    sensor = st.Sensor(**{cut: "100 Hz"})
+    time = np.arange(0.0, 2.0, 1.0 / RATE)
+    for frequency in (20.0, 100.0, 400.0):
+        out = sensor.response(np.sin(2.0 * np.pi * frequency * time), RATE)[len(time) // 2 :]
+        warped = np.tan(np.pi * frequency / RATE) / np.tan(np.pi * 100.0 / RATE)
+        gain = (1.0 + warped ** (2 * order)) ** -0.5
+        assert np.sqrt(2.0 * np.mean(out**2)) == pytest.approx(gain, rel=2e-3)
+
+
+def test_a_run_too_coarse_for_a_filter_or_a_rate_is_refused(run):
+    with pytest.raises(
+        st.ResultError, match="a filter at 6000 Hz needs samples at 15000 Hz or mor"
+    ):
+        st.measure(run, st.Sensor(bandwidth="6 kHz"))
+    with pytest.raises(st.ResultError, match="the record is to have 20000"):
+        st.measure(run, st.Sensor(), sample_rate="20 kHz")
+    with pytest.raises(st.ResultError, match="'forc' is not a channel"):
+        st.measure(run, {"forc": st.Sensor()})
+
+
+def test_every_channel_of_a_run_can_be_recorded(run):
+    length, force = st.Sensor(unit="m"), st.Sensor()
+    sensors = {
+        "force": force,
+        "force_across": force,
+        "load": force,
+        "position": length,
+        "drive_position": length,
+        "slip_speed": st.Sensor(unit="m/s"),
+    }
+    record = st.measure(run, sensors, sample_rate=2e3)
+    every = run.data.isel(time=slice(0, None, 5))
+    assert np.allclose(record.force_across, every["spring_y"], rtol=1e-9, atol=1e-12)
+    assert np.allclose(record.position, every["X"], rtol=1e-9, atol=1e-15)
+    assert np.allclose(record.drive_position, 1e-3 * every["time"], rtol=1e-9, atol=1e-15)
+    assert record.load.tolist() == [10.0] * len(record)
+    assert record.sample_rate == pytest.approx(2e3, rel=1e-9)
+
+
+def test_a_sensor_reads_levels_in_the_unit_of_its_channel():
+    assert st.Sensor(unit="m", noise="3 um").noise == 3e-6
+    with pytest.raises(st.DescriptionError) as error:
+        st.Sensor(noise="3 um", zero="2 mm", quantisation=-1.0)
+    assert "Sensor.noise: '3 um' is in µm, not a unit of a force" in str(error.value)
+    assert "Sensor.zero: '2 mm' is in mm" in str(error.value)
+    with pytest.raises(st.DescriptionError, match="gain is 0"):
+        st.Sensor(gain=0.0)
+    with pytest.raises(
+        st.DescriptionError, match="that of position is in N; make it with unit='m'"
+    ):
+        st.Record(time=[0, 1], force=[1, 2], sensors={"position": st.Sensor()})
+
+
+def test_estimates_return_what_a_measurement_was_made_with(run, tmp_path):
+    sensor = st.Sensor(noise="3 mN", quantisation="1 mN")
+    made = st.measure(run, sensor, seed=3)
+    rows = "".join(f"{t:.6f},{f:.4f}\n" for t, f in zip(made.time, made.force, strict=True))
+    (tmp_path / "a.csv").write_text(f"time [s],force [N]\n{rows}")
+    found = st.read_record(tmp_path / "a.csv").sensors["force"]
+    assert found.quantisation == pytest.approx(1e-3, rel=1e-9)
+    # standard error of the median of |x| over 2000 correlated differences: 4 %
+    assert found.noise == pytest.approx(3e-3, rel=0.12)

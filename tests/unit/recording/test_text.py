@@ -1,0 +1,522 @@
+"""Files of text with the quirks of instruments: one small file for each."""
+
+import codecs
+import gzip
+
+import numpy as np
+import pytest
+
+import stiction as st
+
+COUNT = 8
+TIME = 0.5 * np.arange(COUNT)
+FORCE = 1.0 + 0.1 * np.arange(COUNT)
+
+
+def lines(separator=",", decimal=".", end="\n", columns=(TIME, FORCE), digits=3):
+    """The lines of some columns."""
+    rows = zip(*columns, strict=True)
+    return "".join(
+        separator.join(f"{x:.{digits}f}".replace(".", decimal) for x in row) + end for row in rows
+    )
+
+
+@pytest.fixture
+def write(tmp_path):
+    """Write a file, and return its path."""
+
+    def put(content, name="data.csv"):
+        path = tmp_path / name
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return path
+
+    return put
+
+
+def notes(record):
+    return " | ".join(record.origin.notes)
+
+
+# --- layout ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("separator", ["\t", ";", ",", "|", " ", ";\t "])
+def test_any_separator(write, separator):
+    path = write(f"time [ms]{separator}force [mN]\n{lines(separator)}")
+    record = st.read_record(path)
+    assert np.allclose(record.time, 1e-3 * TIME, rtol=1e-15)
+    assert np.allclose(record.force, 1e-3 * FORCE, rtol=1e-15)
+
+
+@pytest.mark.parametrize("separator", ["\t", ";", " "])
+def test_a_decimal_comma(write, separator):
+    path = write(f"Zeit{separator}Kraft\nms{separator}mN\n{lines(separator, ',')}")
+    record = st.read_record(path)
+    assert np.allclose(record.force, 1e-3 * FORCE, rtol=1e-15)
+    assert "decimal comma" in notes(record)
+
+
+def test_commas_that_separate_and_are_decimal_signs_are_refused(write):
+    path = write(f"time [s],force [N]\n{lines(',', ',')}")
+    with pytest.raises(st.ResultError, match="say --decimal point or --decimal comma"):
+        st.read_record(path)
+
+
+def test_a_comma_that_may_group_thousands_is_refused(write):
+    path = write("time [s];force [N]\n1,000;1,500\n1,100;1,600\n1,200;1,700\n")
+    with pytest.raises(st.ResultError, match="or groups thousands; say --decimal comma"):
+        st.read_record(path)
+    assert st.read_record(path, decimal="comma").force.tolist() == [1.5, 1.6, 1.7]
+
+
+def test_trailing_commas(write):
+    path = write(f"time [s],force [N],,\n{lines(end=',,' + chr(10))}")
+    record = st.read_record(path)
+    assert np.allclose(record.force, FORCE, rtol=1e-15)
+    assert len(record.origin.uses) == 2
+
+
+def test_line_ends_of_all_kinds(write):
+    text = f"time [s],force [N]\r{lines(end=chr(13) + chr(10))}4.0,2.0\r4.5,2.1\n5.0,2.2"
+    record = st.read_record(write(text))
+    assert len(record) == COUNT + 3
+    assert record.force[-3:].tolist() == [2.0, 2.1, 2.2]
+
+
+@pytest.mark.parametrize(
+    "encode",
+    [
+        lambda text: codecs.BOM_UTF8 + text.encode(),
+        lambda text: text.encode("utf-16"),
+        lambda text: codecs.BOM_UTF16_BE + text.encode("utf-16-be"),
+        lambda text: text.encode("cp1252"),
+        lambda text: gzip.compress(text.encode()),
+    ],
+    ids=["utf-8 with mark", "utf-16", "utf-16 be", "cp1252", "gzip"],
+)
+def test_encodings(write, encode):
+    record = st.read_record(write(encode(f"time [s],force [µN]\n{lines()}")))
+    assert np.allclose(record.force, 1e-6 * FORCE, rtol=1e-14)
+
+
+def test_lines_before_the_header_are_told(write):
+    record = st.read_record(write(f"Test of 3 May\nOperator: X\n\ntime [s],force [N]\n{lines()}"))
+    assert "2 lines above the samples beside names and units, first 'Test of 3 May'" in notes(
+        record
+    )
+
+
+def test_a_recipe_line_with_as_many_commas_as_the_samples(write):
+    text = "Recipe: hold, 5 N, 10 mm/s\ntime [s],force [N],load [N]\nRecipe: slide, 5, 10\n"
+    columns = (TIME, FORCE, 5.0 + 0.0 * TIME)
+    record = st.read_record(write(text + lines(columns=columns) + "Recipe: hold, 5, 10\n9,9,9\n"))
+    assert np.allclose(record.force, [*FORCE, 9.0], rtol=1e-15)
+    assert record.load.tolist() == [5.0] * COUNT + [9.0]
+    assert "line 12 skipped: 'Recipe: hold, 5, 10'" in notes(record)
+
+
+def test_a_units_row_shorter_than_the_header(write):
+    text = "Zeit;Kraft;drive position;Kommentar\ns;mN;mm\n"
+    rows = "".join(
+        f"{t:.1f};{f:.1f};{i};7\n" for i, (t, f) in enumerate(zip(TIME, FORCE, strict=True))
+    )
+    record = st.read_record(write(text + rows))
+    assert np.allclose(record.force, 1e-3 * FORCE, rtol=1e-15)
+    assert np.allclose(record.drive_position, 1e-3 * np.arange(COUNT), rtol=1e-15)
+    assert [use.unit for use in record.origin.uses] == ["s", "mN", "mm", ""]
+
+
+def test_a_header_repeated_mid_file_is_skipped(write):
+    half = COUNT // 2
+    first = lines(columns=(TIME[:half], FORCE[:half]))
+    second = lines(columns=(TIME[half:], FORCE[half:]))
+    header = "time;force\ns;N\n".replace(";", ",")
+    record = st.read_record(write(header + first + header + second))
+    assert np.allclose(record.time, TIME, rtol=1e-15)
+    assert "line 7 skipped: a repeated header and 1 more line" in notes(record)
+
+
+def test_columns_of_the_same_name_are_refused_and_chosen_by_number(write):
+    path = write(f"time [s],force [N],force [N]\n{lines(columns=(TIME, FORCE, 2.0 * FORCE))}")
+    with pytest.raises(st.ResultError, match=r"2 'force \[N\]', 3 'force \[N\]'; say which"):
+        st.read_record(path)
+    assert np.allclose(st.read_record(path, force="3").force, 2.0 * FORCE, rtol=1e-15)
+
+
+# --- units ----------------------------------------------------------------------------------------
+
+
+def test_a_column_without_a_unit_is_refused(write):
+    path = write(f"time,force\n{lines()}")
+    with pytest.raises(st.ResultError, match="column 2 'force' states no unit of the force"):
+        st.read_record(path)
+    with pytest.raises(st.ResultError, match="column 1 'time' states no unit of time; say --time"):
+        st.read_record(path, force="mN")
+    record = st.read_record(path, time="ms", force="mN")
+    assert record.time[1] == 0.5e-3
+    assert record.force[0] == 1e-3
+
+
+def test_columns_without_names(write):
+    path = write(lines())
+    with pytest.raises(st.ResultError, match="columns: 1 'column 1', 2 'column 2'; say for"):
+        st.read_record(path)
+    assert st.read_record(path, time="ms", force="N").time[1] == 0.5e-3
+    assert st.read_record(path, time="2=ms", force="1=N").force[1] == 0.5
+
+
+@pytest.mark.parametrize(
+    ("unit", "size"),
+    [
+        ("g", 9.80665e-3),
+        ("kgf", 9.80665),
+        ("gf", 9.80665e-3),
+        ("cN", 0.01),
+        ("lbf", 4.4482216152605),
+    ],
+)
+def test_grams_of_force(write, unit, size):
+    record = st.read_record(write(f"time [s],force [{unit}]\n{lines()}"))
+    assert np.allclose(record.force, size * FORCE, rtol=1e-12)
+    assert ("read as gram-force" in notes(record)) == (unit == "g")
+
+
+def test_a_unit_that_is_a_time_is_none_of_a_force(write):
+    path = write(f"time [s],force [s]\n{lines()}")
+    with pytest.raises(st.ResultError, match="no column is the force along the drive"):
+        st.read_record(path)
+    with pytest.raises(st.ResultError, match="'bar' is neither a column nor a unit such as mN"):
+        st.read_record(path, force="bar")
+
+
+def test_a_negative_normal_load_is_turned_and_told(write):
+    record = st.read_record(
+        write(f"time [s],Fx [N],Fz [N]\n{lines(columns=(TIME, FORCE, -FORCE))}")
+    )
+    assert np.allclose(record.load, FORCE, rtol=1e-15)
+    assert record.normal_load == pytest.approx(FORCE.mean(), rel=1e-15)
+    assert "the normal load is negative" in notes(record)
+
+
+def test_volts_whose_scale_stands_elsewhere(write):
+    path = write(f"CH1 scale 2.5 N/V\ntime [s],CH1 [mV]\n{lines()}")
+    with pytest.raises(st.ResultError) as error:
+        st.read_record(path)
+    assert "column 2 'CH1 [mV]' is in mV, and its scale is needed; say --force '2=2.5 N/mV'" in str(
+        error.value
+    )
+    assert "line 1 says 'CH1 scale 2.5 N/V'" in str(error.value)
+    record = st.read_record(path, force="CH1=-2.5 N/V")
+    assert np.allclose(record.force, -2.5e-3 * FORCE, rtol=1e-15)
+
+
+def test_a_word_that_is_a_column_and_a_unit_is_refused(write):
+    path = write(f"t [s],N [N],F [N]\n{lines(columns=(TIME, FORCE, FORCE))}")
+    with pytest.raises(st.ResultError, match="'N' is a column and a unit; say --force 'N='"):
+        st.read_record(path, force="N")
+    assert np.allclose(st.read_record(path, force="N=").force, FORCE, rtol=1e-15)
+
+
+def test_a_load_alone_may_be_either_force(write):
+    path = write(f"time [s],load [N]\n{lines()}")
+    with pytest.raises(st.ResultError, match="say --force 2 or --load 2"):
+        st.read_record(path)
+    assert st.read_record(path, force="load").load is None
+
+
+def test_a_friction_coefficient_needs_the_normal_load(write):
+    path = write(f"time [s],F/mg [-]\n{lines()}")
+    with pytest.raises(st.ResultError, match="is a friction coefficient"):
+        st.read_record(path)
+    assert np.allclose(st.read_record(path, normal_load="2 N").force, 2.0 * FORCE, rtol=1e-15)
+
+
+def test_a_displacement_of_the_mass_or_of_the_drive_is_asked_for(write):
+    path = write(f"time [s],force [N],displacement [mm]\n{lines(columns=(TIME, FORCE, TIME))}")
+    plain = st.read_record(path)
+    assert plain.position is plain.drive_position is None
+    assert "of the mass (--position 3) or of the drive (--drive-position 3)?" in notes(plain)
+    assert np.allclose(st.read_record(path, position="3").position, 1e-3 * TIME, rtol=1e-15)
+
+
+# --- times ----------------------------------------------------------------------------------------
+
+
+def test_blocks_that_restart_with_the_wall_clock_in_the_header_only(write):
+    header = "# started 2024-05-03 12:0{}:07\ntime [s],force [N]\n"
+    text = "".join(
+        header.format(block) + lines(columns=(TIME, block + FORCE)) for block in range(3)
+    )
+    path = write(text)
+    records = st.read_records(path)
+    assert [record.origin.start for record in records] == [
+        f"2024-05-03 12:0{block}:07" for block in range(3)
+    ]
+    for block, record in enumerate(records):
+        assert np.allclose(record.force, block + FORCE, rtol=1e-15)
+        assert record.time[0] == 0.0
+    with pytest.raises(st.ResultError, match="holds 3 blocks: 1 at 2024-05-03 12:00:07, 8 samples"):
+        st.read_record(path)
+    assert st.read_record(path, block=2).origin.start == "2024-05-03 12:01:07"
+    with pytest.raises(st.ResultError, match="has 3 blocks; there is no block 4"):
+        st.read_record(path, block=4)
+
+
+def test_blocks_of_other_columns(write):
+    text = f"time [s],force [N]\n{lines()}\nTime [ms],load [N],Force [mN]\n"
+    first, second = st.read_records(write(text + lines(columns=(TIME, 5.0 + TIME, FORCE))))
+    assert np.allclose(first.force, FORCE, rtol=1e-15)
+    assert np.allclose(second.force, 1e-3 * FORCE, rtol=1e-15)
+    assert np.allclose(second.time, 1e-3 * TIME, rtol=1e-15)
+    assert first.load is None
+    assert np.allclose(second.load, 5.0 + TIME, rtol=1e-15)
+
+
+def test_one_file_a_stroke_in_the_order_of_their_numbers(tmp_path):
+    for number in (10, 13, 4, 7):
+        text = f"time [s],force [N]\n{lines(columns=(TIME, number + FORCE))}"
+        (tmp_path / f"stroke {number}.csv").write_text(text)
+    found = [round(float(each.force[0] - 1.0)) for each in st.read_records(tmp_path)]
+    assert found == [4, 7, 10, 13]
+
+
+def test_labels_of_steps_that_sort_as_texts_keep_the_order_of_the_file(write):
+    rows = "".join(f"{step};{t:.1f};{step}\n" for step in (10, 13, 4, 7) for t in TIME)
+    records = st.read_records(write(f"step;time [s];force [N]\n{rows}"))
+    assert [each.origin.label for each in records] == ["step 10", "step 13", "step 4", "step 7"]
+    assert [each.force[0] for each in records] == [10.0, 13.0, 4.0, 7.0]
+
+
+def test_labels_that_are_words(write):
+    rows = "".join(
+        f"{step};{t:.1f};2,5\n".replace(".", ",") for step in ("load", "hold") for t in TIME
+    )
+    records = st.read_records(write(f"phase;time [s];force [N]\n{rows}"))
+    assert [each.origin.label for each in records] == ["phase load", "phase hold"]
+
+
+def test_a_first_interval_unlike_the_others(write):
+    time = np.concatenate([[0.0], 13.0 + 10.0 * np.arange(COUNT - 1)])
+    record = st.read_record(write(f"time [ms],force [N]\n{lines(columns=(time, FORCE))}"))
+    assert np.allclose(record.time, 1e-3 * time, rtol=1e-15)
+    assert "the first interval is 13 ms, the others 10 ms" in notes(record)
+
+
+@pytest.mark.parametrize(("interval", "told"), [(0.666666, False), (0.7, True)])
+def test_a_stated_interval_is_rounded(write, interval, told):
+    time = interval * np.arange(COUNT)
+    text = lines(columns=(time, FORCE), digits=6)
+    header = "Sampling interval: 0.667 ms\ntime [ms],force [N]\n"
+    record = st.read_record(write(header + text))
+    assert record.time[-1] == pytest.approx(1e-3 * time[-1], rel=1e-6)
+    assert ("the file states an interval of 0.667 ms" in notes(record)) == told
+
+
+@pytest.mark.parametrize(
+    ("line", "interval"),
+    [
+        ("Sampling interval: 0.667 ms", 0.667e-3),
+        ("Sample rate [Hz]: 1500", 1.0 / 1500.0),
+        ("Abtastzeit = 0,5 ms", 0.5e-3),
+        ("dt;0.002;s", 0.002),
+    ],
+)
+def test_a_stated_interval_in_place_of_times(write, line, interval):
+    record = st.read_record(write(f"{line}\nforce [N]\n{lines(columns=(FORCE,))}"))
+    assert np.allclose(record.time, interval * np.arange(COUNT), rtol=1e-12)
+    assert "times are the number of the sample times" in notes(record)
+
+
+def test_no_times_and_no_interval_is_refused(write):
+    path = write(f"force [N]\n{lines(columns=(FORCE,))}")
+    with pytest.raises(st.ResultError, match=r"no column is the time.*or give --interval"):
+        st.read_record(path)
+    assert st.read_record(path, interval="2 ms").time[1] == 2e-3
+
+
+def test_a_time_column_that_holds_a_changing_sample_period(write):
+    period = np.array([1.0, 1.2, 1.1, 0.9, 1.0, 1.3, 1.0, 1.0])
+    record = st.read_record(write(f"time [ms],force [N]\n{lines(columns=(period, FORCE))}"))
+    assert np.allclose(record.time, 1e-3 * (np.cumsum(period) - 1.0), rtol=1e-12)
+    assert "holds the interval before each sample" in notes(record)
+
+
+def test_a_column_that_may_be_a_clock_or_a_period_is_refused(write):
+    values = np.repeat([1.0, 2.0], 100)
+    path = write(f"time [ms],force [N]\n{lines(columns=(values, np.arange(200.0)))}")
+    with pytest.raises(st.ResultError, match="say --times clock or --times intervals"):
+        st.read_record(path)
+    assert st.read_record(path, times="clock").duration < 3e-3
+    assert st.read_record(path, times="intervals").duration == pytest.approx(0.299, rel=1e-12)
+
+
+def test_time_repeated_for_each_channel(write):
+    header = "time [s],force [N],time [s],drive position [mm]\n"
+    same = st.read_record(write(header + lines(columns=(TIME, FORCE, TIME, 2.0 * TIME))))
+    assert np.allclose(same.drive_position, 2e-3 * TIME, rtol=1e-15)
+    shifted = (TIME, FORCE, TIME + 0.25, 2.0 * (TIME + 0.25))
+    record = st.read_record(write(header + lines(columns=shifted)))
+    inside = TIME >= 0.25
+    assert np.allclose(record.drive_position[inside], 2e-3 * TIME[inside], rtol=1e-12)
+    assert "is interpolated to the times of the force" in notes(record)
+    assert "1 sample outside its times" in notes(record)
+
+
+def test_times_of_day_past_midnight(write):
+    clock = [f"23:59:5{s}.5" for s in range(6, 10)] + [f"00:00:0{s}.5" for s in range(4)]
+    rows = "".join(f"{t},{f:.1f}\n" for t, f in zip(clock, FORCE, strict=True))
+    record = st.read_record(write(f"time,force [N]\n{rows}"))
+    assert np.allclose(record.time, np.arange(COUNT), atol=1e-9)
+    assert record.origin.start == "23:59:56.5"
+
+
+def test_time_that_goes_back_is_refused_by_line(write):
+    text = "time [s],force [N]\n0,1\n1,2\n2,3\n3,4\n2.5,5\n4,6\n"
+    with pytest.raises(st.ResultError, match=r"line 6: the time goes back from 3 s to 2\.5 s"):
+        st.read_record(write(text))
+
+
+# --- displacements --------------------------------------------------------------------------------
+
+
+def test_a_displacement_that_wraps_is_made_continuous(write):
+    time = 0.1 * np.arange(60)
+    true = 7.0 * time
+    columns = (time, 1.0 + time, true % 10.0)
+    path = write(f"time [s],force [N],drive position [mm]\n{lines(columns=columns)}")
+    record = st.read_record(path)
+    assert np.allclose(record.drive_position, 1e-3 * true, atol=1e-12)
+    assert "starts again 4 times, every 10 mm, and was made continuous" in notes(record)
+    given = st.read_record(path, wrap="10 mm")
+    assert np.allclose(given.drive_position, 1e-3 * true, atol=1e-12)
+    left = st.read_record(path, wrap="none")
+    assert np.allclose(left.drive_position, 1e-3 * (true % 10.0), atol=1e-12)
+
+
+def test_a_stage_that_drives_back_and_forth_does_not_wrap(write):
+    time = 0.1 * np.arange(60)
+    triangle = np.abs((time % 2.0) - 1.0)
+    columns = (time, 1.0 + time, triangle)
+    record = st.read_record(write(f"time [s],force [N],stage [mm]\n{lines(columns=columns)}"))
+    assert np.allclose(record.drive_position, 1e-3 * triangle, atol=1e-12)
+
+
+# --- what is missing or wrong ---------------------------------------------------------------------
+
+
+def test_fewer_values_than_the_header_promises(write):
+    record = st.read_record(write(f"Samples: 12\ntime [s],force [N]\n{lines()}4.0,1.2e"))
+    assert len(record) == COUNT
+    assert "the file promises 12 samples and has 8: it is cut off" in notes(record)
+    assert "line 11 skipped: '4.0,1.2e'" in notes(record)
+
+
+def test_missing_values(write):
+    text = "time [s],force [N],load [N]\n0,1,5\n1,,5\n2,3,\n3,NaN,7\n4,5,9\n"
+    record = st.read_record(write(text))
+    assert record.time.tolist() == [0.0, 2.0, 4.0]
+    assert record.load.tolist() == [5.0, 6.0, 9.0]  # between 5 N at 1 s and 7 N at 3 s
+    assert "2 samples without a force left out, the first at line 3" in notes(record)
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        ("0,1\n1,2\n2,1.x\n3,4\n", "line 4, column 2: '1.x' is not a number"),
+        ("0,1\n1,2\n0.0x3,3\n3,4\n", "line 4, column 1: '0.0x3' is not a number"),
+        ("0,1\n1,2\n2,1_0\n3,4\n", "line 4, column 2: '1_0' is not a number"),
+        (
+            "0,1\n" * 1 + "".join(f"{i},2\n" for i in range(1, 20)) + "20,1,5\n21,2\n",
+            "line 22, column 3",
+        ),
+        ('0,1\n1,"2\n2,3\n3,4\n', "line 3"),
+    ],
+)
+def test_a_bad_cell_is_named_by_line_and_column(write, rows, said):
+    with pytest.raises(st.ResultError) as error:
+        st.read_record(write(f"time [s],force [N]\n{rows}"))
+    assert said in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"", "is empty"),
+        (b"\n\n \n", "has only empty lines"),
+        (b"hello\nworld\n", "no line has samples; the first is 'hello'"),
+        (b"time [s],force [N]\n", "no line has samples"),
+        (b"time,force\n1,2\n\0\0\n", "line 3 holds a zero byte"),
+        (b"\x1f\x8b\x08\x00junk", "gzip says"),
+        (b"%PDF-1.4", "is a PDF"),
+        (b"\xd0\xcf\x11\xe0", "Excel"),
+        (b"PK\x03\x04" + bytes(60), "is not a file of NumPy"),
+    ],
+)
+def test_files_that_are_none(write, content, said):
+    with pytest.raises(st.ResultError, match=said):
+        st.read_record(write(content))
+
+
+def test_a_missing_file_and_a_folder(tmp_path):
+    with pytest.raises(st.ResultError, match="no such file"):
+        st.read_record(tmp_path / "a.csv")
+    with pytest.raises(st.ResultError, match="is a folder"):
+        st.read_record(tmp_path)
+    with pytest.raises(st.ResultError, match="holds no files"):
+        st.read_records(tmp_path)
+
+
+def test_a_file_too_large_for_memory_is_refused(write, monkeypatch):
+    path = write(f"time [s],force [N]\n{lines()}")
+    monkeypatch.setattr("stiction.machine.largest_object", lambda: 1000.0)
+    with pytest.raises(st.ResultError, match="of memory, and this machine lends"):
+        st.read_record(path)
+
+
+def test_a_gzip_that_unpacks_to_more_than_memory_is_refused(write, monkeypatch):
+    path = write(gzip.compress(b"time [s],force [N]\n" + b"0,1\n" * 1_000_000), "a.csv.gz")
+    for place in ("stiction.machine", "stiction.recording.formats.text"):
+        monkeypatch.setattr(f"{place}.largest_object", lambda: 1e6)
+    with pytest.raises(st.ResultError, match="of memory, and this machine lends"):
+        st.read_record(path)
+
+
+# --- the file beside ------------------------------------------------------------------------------
+
+
+def test_a_toml_file_beside_the_data_says_what_it_holds(write):
+    path = write(f"t,CH1\n{lines()}")
+    sidecar = write(
+        '[columns]\ntime = "ms"\nforce = "CH1=2 N/V"\n'
+        '[record]\nnormal_load = "10 N"\nmass = "30 g"\n'
+        '[sensors.force]\ngain = 0.5\nzero = "100 mN"\nnoise = "2 mN"\n',
+        "data.toml",
+    )
+    record = st.read_record(path)
+    assert np.allclose(record.force, (2.0 * FORCE - 0.1) / 0.5, rtol=1e-14)
+    assert (record.normal_load, record.mass) == (10.0, 0.03)
+    assert record.sensors["force"] == st.Sensor(noise=0.004)
+    assert st.read_record(path, normal_load="20 N").normal_load == 20.0  # arguments come first
+    sidecar.rename(path.with_name("other.toml"))
+    with pytest.raises(st.ResultError, match="no column is the force"):
+        st.read_record(path)
+    assert st.read_record(path, sidecar=path.with_name("other.toml")).mass == 0.03
+
+
+def test_all_faults_of_the_file_beside_are_told(write):
+    path = write(f"t,F\n{lines()}")
+    write('[columns]\ntim = "ms"\n[rig]\nmass = 1\n[sensors]\nforce = 3\n', "data.toml")
+    with pytest.raises(st.DescriptionError) as error:
+        st.read_record(path)
+    for said in (
+        "columns.tim: unknown key 'tim'; did you mean 'time'?",
+        "rig: unknown table",
+        "[sens",
+    ):
+        assert said in str(error.value)
+
+
+def test_the_description_of_a_rig_beside_the_data_is_left_alone(write):
+    path = write(f"t [s],F [N]\n{lines()}")
+    write(st.presets.nakano_popov_2020().to_toml(), "data.toml")
+    assert len(st.read_record(path)) == COUNT
