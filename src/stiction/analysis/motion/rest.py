@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
 
 STICKING = 0.75  # of a cycle at rest, or in creep: stick-slip; a vibration rests for less
 ANGLES = np.geomspace(1e-4, np.pi / 2, 2000)[::-1]  # beta; linear between them, to 1e-5 in share
@@ -60,13 +61,22 @@ def still_shares(
     """
     still = np.concatenate([[False], speed < STILL, [False]])
     ends = np.flatnonzero(np.diff(still.astype(np.int8)))
-    begin, end = time[ends[::2]], time[ends[1::2] - 1]
+    first, last = ends[::2], ends[1::2] - 1
+    begin, end = (_crossing(time, speed, *each) for each in ((first, first - 1), (last, last + 1)))
     longest = np.zeros(len(start))
     for k, (low, high) in enumerate(zip(start, peak_time, strict=True)):
         those = slice(int(np.searchsorted(end, low)), int(np.searchsorted(begin, high)))
         lasts = np.minimum(end[those], high) - np.maximum(begin[those], low)
         longest[k] = lasts.max(initial=0.0)
     return longest / period
+
+
+def _crossing(time: Floats, speed: Floats, inside: Indices, outside: Indices) -> Floats:
+    """Return when a speed passes `STILL` between samples below it and their neighbours above."""
+    beyond = np.clip(outside, 0, len(time) - 1)
+    rise = np.maximum(speed[beyond] - speed[inside], 1e-300)
+    share = np.clip((STILL - speed[inside]) / rise, 0.0, 1.0)
+    return np.asarray(time[inside] + share * (time[beyond] - time[inside]))
 
 
 def comes_to_rest(speed: Floats | None) -> bool:
