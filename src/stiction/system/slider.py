@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from math import cos, degrees, pi, sin, sqrt
+from math import cos, pi, sin, sqrt
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -106,18 +106,12 @@ class Apparatus(Described):
 
     @model_validator(mode="after")
     def _agree_with_springs(self) -> Self:
-        """Refuse stiffnesses beside springs in series, and a whole that is pulled sideways."""
+        """Refuse stiffnesses beside springs in series."""
         if not self.springs:
             return self
         message = "follows from springs; leave it out, or change one of them: springs.NAME.k_x"
         made = dict(zip(FROM_SPRINGS, whole(self.springs)[:2], strict=True))
         found = [Fault(name, message) for name in FROM_SPRINGS if getattr(self, name) != made[name]]
-        try:
-            _within_a_right_angle(self.misalignment)
-        except ValueError as error:
-            found.append(
-                Fault("phi", f"less {degrees(self.turn):g} deg to the springs' x, {error}")
-            )
         if found:
             raise faulty(found)
         return self

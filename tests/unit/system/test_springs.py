@@ -7,6 +7,7 @@ import pytest
 from tests.drawn import inside
 
 import stiction as st
+from stiction.auditing.advice import limits
 from stiction.system.parameter import change_parameter, change_unchecked, read, unit, units
 from stiction.system.springs import compliance, whole
 from stiction.system.tensors import damping_tensor, mass_tensor, principal
@@ -223,7 +224,7 @@ def test_the_drive_stays_where_it_is_when_a_spring_changes():
         ({"springs": [{"name": "a", "k_x": -1, "k_y": "5 kg"}]}, r"k_x: must be greater than 0"),
         ({"springs": ["cell"]}, r"'cell' is not a spring; write st\.Spring"),
         ({"springs": ()}, r"k_x: missing"),
-        ({"phi": "85 deg", "springs": [st.Spring("a", 1, 2, "-9 deg")]}, r"phi: less -9 deg"),
+        ({"phi": "95 deg"}, r"phi: must lie between -90 deg and 90 deg"),
         ({"springs": [LEAF._replace(k_x=-1)], "mass": -1}, r"mass: must be greater"),
     ],
 )
@@ -239,3 +240,19 @@ def test_faults_of_paths():
         change_parameter(CHAIN, "springs.cell.k_x", 1.0)
     with pytest.raises(st.DescriptionError, match=r"known as load-cell, drive, leaf-springs"):
         st.Slider.from_toml(CHAIN.to_toml(), {"springs.cell.k_x": 1.0})
+
+
+@pytest.mark.parametrize("angle", ["3 deg", "-3 deg"])
+def test_every_misalignment_is_looked_at_whichever_way_the_springs_turn(angle):
+    turned = [CELL._replace(angle=float(np.radians(float(angle.split()[0])))), LEAF]
+    slider = PAPER.replace(springs=turned, phi="0 deg")
+    assert slider.turn * slider.misalignment < 0.0
+    found = st.linear_stability.critical(slider, "phi")
+    single = PAPER.replace(k_x=slider.k_x, k_y=slider.k_y)
+    expected = st.linear_stability.critical(single, "phi").values
+    np.testing.assert_allclose(found.values - slider.turn, expected, rtol=1e-9)
+    low, high = (float(each.split()[0]) for each in limits(slider, "phi"))
+    way = np.sign(slider.misalignment)
+    assert sorted((low, high)) == sorted((slider.turn, way * np.pi / 2))
+    audited = st.linear_stability.critical(slider, "phi", limits(slider, "phi"))
+    np.testing.assert_allclose(np.sort(abs(audited.values - slider.turn)), expected, rtol=1e-9)
