@@ -73,7 +73,8 @@ def simulate(
     initial : Initial, optional
         The state to start from; by default the paper's.
     regularisation : float or str, optional
-        delta (m/s, 1e-11 at least): replace the set-valued law by F s/sqrt(|s|^2 + delta^2).
+        delta (m/s, 1e-11 at least): replace the set-valued law by
+        ``F s/sqrt(|s|^2 + delta^2)``.
         For comparison; choose it far below the creep velocity V sin^2 phi. Not for laws with
         internal state, which are smooth by themselves.
     multiscale : bool, optional

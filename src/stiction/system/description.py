@@ -40,10 +40,10 @@ class Settings(Described):
     rtol : float, optional
         Relative tolerance; see `stiction.simulate`.
     regularisation : float or str, optional
-        delta of the regularised law s/sqrt(|s|^2 + delta^2), m/s, at least 1e-11; by default
+        delta of the regularised law ``s/sqrt(|s|^2 + delta^2)``, m/s, at least 1e-11; by default
         the law is set-valued.
     smoothing : {"root", "arctan"}, optional
-        The shape of the regularised law: as above, or F (2/pi) atan(|s|/delta), for comparison
+        The shape of the regularised law: as above, or ``F (2/pi) atan(|s|/delta)``, for comparison
         with other programs.
     multiscale : bool, optional
         Whether to interpolate between cycles of stick and slip; see `stiction.simulate`.

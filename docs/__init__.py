@@ -1,0 +1,1 @@
+"""The site: pages in Markdown, figures from scripts, reference from docstrings."""

@@ -1,0 +1,24 @@
+"""
+From one period to chaos
+========================
+
+The two-state slip law on a spring of falling stiffness: slips of one size, then two, four, eight
+sizes, then no order. Slip speed over force, for two stiffnesses.
+"""
+
+import matplotlib.pyplot as plt
+
+import stiction as st
+
+figure, ax = plt.subplots(figsize=(6, 3.6), layout="constrained")
+runs = {
+    "chaos": ("0.6", 0.4, st.presets.two_state_chaos()),
+    "a period of a few slips": ("#D55E00", 1.6, st.presets.period_doubling()),
+}
+for name, (colour, width, preset) in runs.items():
+    run = st.run(preset)
+    half = run.samples["time"] > 0.7 * run.samples["time"][-1]
+    speed = 1e6 * run.samples["slip_speed"][half]
+    ax.plot(run.samples["mu"][half], speed, color=colour, linewidth=width, label=name)
+ax.set(xlabel="spring force over load", ylabel="slip speed (µm/s)", yscale="log")
+ax.legend()

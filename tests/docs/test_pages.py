@@ -1,0 +1,39 @@
+"""Commands and Python of the how-to pages, run as a reader would, page by page."""
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+from stiction.cli import main
+
+ROOT = Path(__file__).parents[2]
+PAGES = sorted((ROOT / "docs" / "how-to").glob("*.md"))
+BLOCK = re.compile(r"^```(sh|python)\n(.*?)^```$", re.M | re.S)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_what_a_page_says_works(page, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, object] = {}
+    for kind, text in BLOCK.findall(page.read_text("utf-8")):
+        if kind == "python":
+            exec(compile(text, page.name, "exec"), names)
+            continue
+        for line in text.splitlines():
+            program, *arguments = shlex.split(line, comments=True)
+            assert program == "stiction"
+            with pytest.raises(SystemExit) as ended:
+                main(arguments)
+            assert ended.value.code == 0, capsys.readouterr().err
+
+
+def test_pages_have_something_to_run():
+    assert sum(len(BLOCK.findall(page.read_text("utf-8"))) for page in PAGES) > 10
+
+
+def test_scripts_of_the_gallery_are_short():
+    scripts = sorted((ROOT / "docs" / "gallery").glob("plot_*.py"))
+    assert len(scripts) >= 20
+    assert [p.name for p in scripts if len(p.read_text("utf-8").splitlines()) > 40] == []
