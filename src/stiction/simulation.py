@@ -56,7 +56,7 @@ def simulate(
         faster natural oscillation, or of what shakes drive or load if that is faster still,
         while these are no more than 200 000; then so many, but 32 in each period of the slower
         natural oscillation at least, up to a million in all; and 1000 in the shortest run. With
-        `multiscale`, which samples would slow down a hundred times, the first and last state
+        `multiscale`, where so many samples would take most of the time, the first and last state
         only. Samples never influence the steps, and stick intervals are all recorded anyway.
     rtol : float, optional
         Relative tolerance, 1e-13 to 1e-2; for the paper's Fig. 3 over 5 s the relative error
@@ -84,8 +84,8 @@ def simulate(
         0.03 rtol, and what does not agree is solved in steps, as is everything else. What is
         promised of the error, as at `rtol`, is 2 times in place of 30 for a run with cycles that
         were interpolated: its steps are held to 0.3 of the tolerance. Of 10 400 random systems
-        the worst is off by 1.1 times. Every stick is recorded. Samples inside a cycle
-        are solved for: it does not pay for a run sampled faster than it sticks.
+        the worst is off by 1.1 times. Every stick is recorded. Samples inside such cycles are
+        interpolated too, to 0.3 rtol or to what the steps of the cycles solved are held to.
     max_steps : int, optional
         Give up after so many steps.
     progress : callable, optional

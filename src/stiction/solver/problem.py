@@ -209,7 +209,7 @@ def cross_damping(rig: Aligned | General) -> float:
 EVERYWHERE = inf  # friction is smooth at any slip speed
 
 
-def _by_type(function: Callable[..., Any]) -> None:
+def by_type(function: Callable[..., Any]) -> None:
     """Make compiled code call the method of the first argument's type instead of `function`."""
     name = function.__name__
 
@@ -241,7 +241,7 @@ for _function in (
     into_axes,
     cross_damping,
 ):
-    _by_type(_function)
+    by_type(_function)
 for _piece in (*SIGNAL_FUNCTIONS, *LAW_FUNCTIONS):
     register_jitable(_piece)
 

@@ -810,7 +810,14 @@ def test_a_printed_constant_is_the_code_s(file, name, value):
 def test_every_constant_is_printed():
     """Plain numbers with a name of their own; codes of how a run ends are none."""
     printed = {(file, name) for file, name, _ in printed_constants()}
-    apart = {"machine_code.py", "refusal.py", "reference.py", "sampling.py", "workspace.py"}
+    apart = {
+        "machine_code.py",
+        "refusal.py",
+        "reference.py",
+        "record.py",
+        "sampling.py",
+        "workspace.py",
+    }
     for path in SOLVER.rglob("*.py"):
         file = path.relative_to(SOLVER).as_posix()
         if path.name in apart:

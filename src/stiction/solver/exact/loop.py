@@ -11,6 +11,7 @@ from stiction.solver.compilation.jit import compiled, inlined
 from stiction.solver.control import GROWTH, ease, step_factor, trend
 from stiction.solver.exact.newton import products
 from stiction.solver.exact.pursuit import land, pursuit
+from stiction.solver.exact.record import NoRecord, Record, keep_step
 from stiction.solver.exact.sampling import sample_slip, sample_stick
 from stiction.solver.exact.slip_frame import (
     Frame,
@@ -121,6 +122,7 @@ def slip(
     times: np.ndarray,
     samples: np.ndarray,
     k: int,
+    record: NoRecord | Record,
 ) -> tuple[bool, State, int]:
     """Take one step of slip and plan the next."""
     motion, memory, counts = state
@@ -132,6 +134,7 @@ def slip(
     if not done:
         return False, State(motion, memory, counts), k
     k = sample_slip(problem, frame, start, swing, h, p, w, accuracy, times, samples, k)
+    keep_step(record, frame, start, swing, h, p, w)
     slid_1, slid_2 = h * (dot(A[2], p) + swing.slid[2]), h * dot(A[2], products(p, w))
     u_x, u_y = elongation(problem, frame, h, slid_1, slid_2)
     e_x, e_y = turned_direction(frame, w[2])
@@ -189,6 +192,7 @@ def advance(
     samples: np.ndarray,
     k: int,
     sticks: np.ndarray,
+    record: NoRecord | Record,
 ) -> tuple[int, State, int, int]:
     """Advance until `t_end`, until the budget of steps is used up, or until `sticks` is full.
 
@@ -208,6 +212,8 @@ def advance(
         The next row to fill.
     sticks : ndarray
         Rows (start, end) of stick intervals to fill, from ``state.counts.sticks`` on.
+    record : NoRecord or Record
+        What keeps the steps for later.
 
     Returns
     -------
@@ -235,9 +241,11 @@ def advance(
         if motion.r > 0.0:
             closed = pursuit(problem, frame, start, accuracy)
             if t + closed[0] < t_end:
-                state, k = land(problem, frame, start, state, closed, times, samples, k)
+                state, k = land(problem, frame, start, state, closed, times, samples, k, record)
                 continue
-        done, state, k = slip(problem, frame, start, state, t_end, accuracy, times, samples, k)
+        done, state, k = slip(
+            problem, frame, start, state, t_end, accuracy, times, samples, k, record
+        )
         if not done:
             return STEP_UNDERFLOW, state, k, turn
     code = COMPLETED if state.motion.t >= t_end else RUNNING
@@ -258,6 +266,6 @@ def steps(
 ) -> tuple[int, Plain, int, int]:
     """Advance, and return the state as plain tuples for Python."""
     code, state, k, turns = advance(
-        problem, state, t_end, accuracy, budget, times, samples, k, sticks
+        problem, state, t_end, accuracy, budget, times, samples, k, sticks, NoRecord()
     )
     return code, plain(state), k, turns

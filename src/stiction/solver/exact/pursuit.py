@@ -19,6 +19,7 @@ from math import atan2, cos, inf, sin, sqrt, tan
 import numpy as np
 
 from stiction.solver.compilation.jit import inlined
+from stiction.solver.exact.record import NoRecord, Record, keep_landing
 from stiction.solver.exact.sampling import fill
 from stiction.solver.exact.slip_frame import Frame, Outset, elongation
 from stiction.solver.problem import Problem, at, constant, drift, isotropic
@@ -132,18 +133,39 @@ def land(
     times: np.ndarray,
     samples: np.ndarray,
     k: int,
+    record: NoRecord | Record,
 ) -> tuple[State, int]:
     """End the slip by the pursuit curve."""
     motion, memory, counts = state
-    t, r, a_1, a_2 = motion.t, frame.r, start.a_1, start.a_2
+    t, a_1, a_2 = motion.t, start.a_1, start.a_2
     T, slid_1, slid_2 = closed
-    force = start.f * problem.system.mass
     while k < len(times) and times[k] < t + T:
-        speed, n_1, n_2 = slip_before_landing(r, a_1, a_2, start.f, t + T - times[k])
-        d_1, d_2 = landing_slip(speed, a_1 * n_1 + a_2 * n_2, a_2 * n_1 - a_1 * n_2, start.f)
-        z_1, z_2 = slid_1 - (d_1 * n_1 - d_2 * n_2), slid_2 - (d_1 * n_2 + d_2 * n_1)
-        u_x, u_y = elongation(problem, frame, times[k] - t, z_1, z_2)
-        k = fill(problem, frame, u_x, u_y, speed, n_1, n_2, force, samples, k)
+        left, gone = t + T - times[k], times[k] - t
+        k = write_landing(problem, frame, a_1, a_2, start.f, closed, left, gone, samples, k)
+    keep_landing(record, frame, T, a_1, a_2, start.f)
     u_x, u_y = elongation(problem, frame, T, slid_1, slid_2)
     landed = Motion(t + T, u_x, u_y, 0.0, frame.e_x, frame.e_y)
     return State(landed, at_takeoff(memory), counts), k
+
+
+@inlined
+def write_landing(
+    problem: Problem,
+    frame: Frame | Motion,
+    a_1: float,
+    a_2: float,
+    f: float,
+    closed: tuple[float, float, float],
+    left: float,
+    gone: float,
+    samples: np.ndarray,
+    k: int,
+) -> int:
+    """Write the sample `left` s before the landing, `gone` s after `frame`; return the next row."""
+    _, slid_1, slid_2 = closed
+    speed, n_1, n_2 = slip_before_landing(frame.r, a_1, a_2, f, left)
+    d_1, d_2 = landing_slip(speed, a_1 * n_1 + a_2 * n_2, a_2 * n_1 - a_1 * n_2, f)
+    z_1, z_2 = slid_1 - (d_1 * n_1 - d_2 * n_2), slid_2 - (d_1 * n_2 + d_2 * n_1)
+    u_x, u_y = elongation(problem, frame, gone, z_1, z_2)
+    force = f * problem.system.mass
+    return fill(problem, frame, u_x, u_y, speed, n_1, n_2, force, samples, k)

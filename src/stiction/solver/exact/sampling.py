@@ -22,9 +22,9 @@ from stiction.solver.exact.oscillation import NO_LANDING, Swing, after, oscillat
 from stiction.solver.exact.slip_frame import Frame, Outset, elongation, friction
 from stiction.solver.problem import Problem, in_principal_axes, travel
 from stiction.solver.radau import A, C, cubic, integral
-from stiction.solver.state import Accuracy
+from stiction.solver.state import Accuracy, Motion
 from stiction.solver.stick import holding
-from stiction.solver.surface import friction_along, speed_ratio
+from stiction.solver.surface import Tensor, friction_along, speed_ratio
 
 COLUMNS = 7
 
@@ -163,19 +163,39 @@ def sample_step(
     while k < len(times) and times[k] <= t + h:
         dt = min(times[k] - t, h)
         z_1, z_2, v, turn = within(problem, frame, start, swing, h, p, w, dt, accuracy, motion)
-        u_x, u_y = elongation(problem, frame, dt, z_1, z_2)
-        stretch = sqrt(1.0 + turn * turn)
-        g, speed = 1.0 / stretch, v * stretch
-        true = v * speed_ratio(problem, frame.metric, turn)
-        force = friction(problem, times[k], true)[0] * problem.system.mass
-        k = fill(problem, frame, u_x, u_y, speed, g, turn * g, force, samples, k)
+        slip = z_1, z_2, v, turn
+        k = write_slip(problem, frame, frame.metric, times[k], dt, slip, samples, k)
     return k
+
+
+@inlined
+def write_slip(
+    problem: Problem,
+    frame: Frame | Motion,
+    metric: Tensor,
+    t: float,
+    dt: float,
+    slip: tuple[float, float, float, float],
+    samples: np.ndarray,
+    k: int,
+) -> int:
+    """Write the row at `t`, `dt` after a step's start; return the next index.
+
+    `slip` is what `within` returns, `metric` the rig's tensor in the step's axes.
+    """
+    z_1, z_2, v, turn = slip
+    u_x, u_y = elongation(problem, frame, dt, z_1, z_2)
+    stretch = sqrt(1.0 + turn * turn)
+    g, speed = 1.0 / stretch, v * stretch
+    true = v * speed_ratio(problem, metric, turn)
+    force = friction(problem, t, true)[0] * problem.system.mass
+    return fill(problem, frame, u_x, u_y, speed, g, turn * g, force, samples, k)
 
 
 @inlined
 def fill(
     problem: Problem,
-    frame: Frame,
+    frame: Frame | Motion,
     u_x: float,
     u_y: float,
     speed: float,

@@ -202,7 +202,7 @@ def friction(problem: Problem, t: float, r: float) -> tuple[float, float]:
 
 @inlined
 def elongation(
-    problem: Problem, frame: Frame, dt: float, slid_1: float, slid_2: float
+    problem: Problem, frame: Frame | Motion, dt: float, slid_1: float, slid_2: float
 ) -> tuple[float, float]:
     """Return the elongation after `dt`, having slid (slid_1, slid_2) in the step's axes (M30)."""
     d_x, d_y = in_principal_axes(problem, travel(problem.drive, frame.t, dt))

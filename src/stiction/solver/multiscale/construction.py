@@ -8,6 +8,15 @@ import numpy as np
 
 from stiction.solver.compilation.jit import inlined, piece, python_of
 from stiction.solver.exact import loop
+from stiction.solver.multiscale.inside import (
+    Window,
+    add_motion,
+    add_node,
+    begin_at_edge,
+    finish_motion,
+    in_progress,
+    place_of_root,
+)
 from stiction.solver.multiscale.interpolant import POINTS, interpolate
 from stiction.solver.multiscale.return_map import NEAR, NODES, Cycle, Returns
 from stiction.solver.multiscale.section import angle, elongation_held, lead, wrap_angle
@@ -60,10 +69,10 @@ def solve_cycle(
     theta: float,
     longest: float,
 ) -> tuple[bool, Cycle, float, State]:
-    """Solve the cycle from an angle.
+    """Solve the cycle from an angle, from time zero inside a stick on.
 
     Returns whether it ends within `longest` (s), the cycle, the turn during the stick at its end,
-    and the final state.
+    and the final state. The record keeps its steps.
     """
     fine, early = finer(accuracy), lead(problem, theta)
     u_x, u_y = elongation_held(problem, theta)
@@ -71,8 +80,10 @@ def solve_cycle(
     motion = Motion(0.0, u_x - v_x * early, u_y - v_y * early, 0.0, 1.0, 0.0)
     state = State(motion, at_takeoff(memory), NOTHING)
     times, samples, stick = known.never, known.nowhere, known.stick
+    record = known.record
+    record.used[0] = 0
     code, state, _, _ = advance(
-        problem, state, early + longest, fine, NODE_STEPS, times, samples, 0, stick
+        problem, state, early + longest, fine, NODE_STEPS, times, samples, 0, stick, record
     )
     end = state.motion
     held, _ = stick_duration(problem, end.t, end.u_x, end.u_y, inf)
@@ -136,8 +147,14 @@ def chart(
             patch[0] = theta if n > 0 else nan
             return State(motion, memory, counts)
         miss = added_node(c, n, cycle, swing)
+        if len(known.record.rows) > 0:
+            add_motion(problem, finer(accuracy), known, n, window_of(known, cycle), cycle.held)
         if miss < known.closing and missed < 10.0 * known.closing:
             patch[1], patch[2] = 2.0 / reach, n + 1
+            if len(known.record.rows) > 0:
+                counts = resolve_motion(
+                    problem, accuracy, State(motion, memory, counts), known, n + 1, reach, longest
+                )
             known.sizes[0] += 1
             known.sizes[3] -= n + 1
             return State(motion, memory, counts)
@@ -146,3 +163,43 @@ def chart(
         missed = miss
     known.width[0] *= 0.5
     return State(motion, memory, counts)
+
+
+@inlined
+def window_of(known: Returns, cycle: Cycle) -> Window:
+    """Return the slip of a cycle that has just been solved."""
+    return Window(float(known.stick[0, 1]), cycle.time - cycle.held)
+
+
+@inlined
+def resolve_motion(
+    problem: Problem,
+    accuracy: Accuracy,
+    state: State,
+    known: Returns,
+    n: int,
+    reach: float,
+    longest: float,
+) -> Counts:
+    """Solve more nodes until the motion inside the cycles of a patch is known too, or give up.
+
+    Nothing but the samples depends on these nodes. Near an edge they are others than those of the
+    patch (see `add_motion`).
+    """
+    _, memory, counts = state
+    row = known.sizes[0]
+    theta, at_edge = known.patches[row, 0], known.inside.shapes[row, 3] == 1
+    if at_edge:
+        begin_at_edge(known)
+        n = 0
+    while n < NODES and in_progress(known):
+        x = place_of_root(known, row, POINTS[n]) if at_edge else POINTS[n]
+        there = theta + 0.5 * (x + 1.0) * reach
+        returns, cycle, _, end = solve_cycle(problem, accuracy, memory, known, there, longest)
+        memory, counts = end.memory, add_counts(counts, end.counts)
+        if not returns:
+            break
+        add_node(problem, finer(accuracy), known, n, window_of(known, cycle))
+        n += 1
+    finish_motion(known)
+    return counts

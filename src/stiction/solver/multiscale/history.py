@@ -9,15 +9,35 @@ from __future__ import annotations
 from math import inf
 
 from stiction.solver.compilation.jit import inlined
+from stiction.solver.exact.record import WIDTH
 from stiction.solver.multiscale.return_map import FAR, NEAR, PAST, Cycle, Returns
 
 
 @inlined
 def remember(known: Returns, theta: float, cycle: Cycle) -> None:
     """Store a solved cycle in the place of the oldest one."""
-    row = known.past[known.sizes[2] % PAST]
+    place = known.sizes[2] % PAST
+    row = known.past[place]
     row[0], row[1], row[2], row[3] = theta, cycle.turn, cycle.time, cycle.held
     known.sizes[2] += 1
+    keep_steps(known, place)
+
+
+@inlined
+def keep_steps(known: Returns, place: int) -> None:
+    """Keep the steps of the last cycle for its place, if there is room; all others go if not."""
+    rows, kept, spans = known.record.rows, known.inside.kept, known.inside.spans
+    count = known.record.used[0]
+    spans[place, 1] = 0
+    if count > len(kept):
+        return
+    if spans[PAST, 0] + count > len(kept):
+        spans[:] = 0
+    first = spans[PAST, 0]
+    for i in range(count):
+        for j in range(WIDTH):
+            kept[first + i, j] = rows[i, j]
+    spans[place, 0], spans[place, 1], spans[PAST, 0] = first, count, first + count
 
 
 @inlined
@@ -61,8 +81,10 @@ def under_way(known: Returns, row: int, theta: float, last: Cycle) -> bool:
 
 
 @inlined
-def same_end(known: Returns, theta: float, last: Cycle) -> tuple[bool, Cycle]:
+def same_end(known: Returns, theta: float, last: Cycle) -> tuple[int, Cycle]:
     """Return the cycle from an angle, if it ends like the two nearest long ones (M59).
+
+    It is told by the row of the nearest; below zero if there is none.
 
     One of the two must have begun earlier: then the edge, up to which cycles are short, has been
     passed. The nearest cycle is used, minus the turn since its start; a line through both would
@@ -70,28 +92,29 @@ def same_end(known: Returns, theta: float, last: Cycle) -> tuple[bool, Cycle]:
     """
     i, j = nearest(known, theta, True, FAR * last.time)
     if j < 0 or not (under_way(known, i, theta, last) or under_way(known, j, theta, last)):
-        return False, last
+        return -1, last
     a = known.past[i]
     off = theta - a[0]
     later = off * last.time / last.turn
     by, bound = change(known, i, j, off), NEAR * known.closing
     ends = abs(by.turn + off) <= bound * abs(a[1]) and abs(by.time + later) <= bound * a[2]
-    return ends, Cycle(a[1] - off, a[2] - later, a[3])
+    return i if ends else -1, Cycle(a[1] - off, a[2] - later, a[3])
 
 
 @inlined
-def recall(known: Returns, theta: float, last: Cycle) -> tuple[bool, Cycle]:
+def recall(known: Returns, theta: float, last: Cycle) -> tuple[int, Cycle]:
     """Return the cycle from an angle, predicted from the two nearest solved ones.
 
-    A long cycle follows from their common end. Any other lies on a line through both, and is
-    accepted if it hardly differs from the nearest.
+    It comes with the row of the nearest, below zero if it cannot be predicted. A long cycle follows
+    from their common end. Any other lies on a line through both, and is accepted if it hardly
+    differs from the nearest.
     """
-    found, cycle = same_end(known, theta, last)
-    if found:
-        return found, cycle
+    row, cycle = same_end(known, theta, last)
+    if row >= 0:
+        return row, cycle
     i, j = nearest(known, theta, False, FAR * last.time)
     if j < 0:
-        return False, last
+        return -1, last
     a = known.past[i]
     by, bound = change(known, i, j, theta - a[0]), NEAR * known.closing
     close = (
@@ -99,4 +122,4 @@ def recall(known: Returns, theta: float, last: Cycle) -> tuple[bool, Cycle]:
         and abs(by.time) <= bound * a[2]
         and abs(by.held) <= bound * a[2]
     )
-    return close, Cycle(a[1] + by.turn, a[2] + by.time, a[3] + by.held)
+    return i if close else -1, Cycle(a[1] + by.turn, a[2] + by.time, a[3] + by.held)

@@ -15,9 +15,8 @@ from math import sqrt
 
 import numpy as np
 
-from stiction.solver.compilation.jit import inlined, piece
-from stiction.solver.multiscale.return_map import NODES, Cycle, Hold, Returns
-from stiction.solver.multiscale.section import wrap_angle
+from stiction.solver.compilation.jit import inlined
+from stiction.solver.multiscale.return_map import NODES, Cycle, Returns
 
 
 def leja(count: int) -> np.ndarray:
@@ -76,39 +75,3 @@ def cycle_from(known: Returns, row: int, x: float) -> Cycle:
     n = int(known.patches[row, 2])
     turn, time, square = interpolate(known.coefficients[row], n, x)
     return Cycle(turn, time, sqrt(max(square, 0.0)))
-
-
-@piece
-def follow_patches(
-    known: Returns, hold: Hold, cycle: Cycle, sticks: np.ndarray, count: int, until: float
-) -> tuple[Hold, Cycle, int, float]:
-    """Follow the patches from a stick until they end, time `until` (s) is reached, or room ends.
-
-    This is a separate function so that the loop has all registers: long runs spend most time here.
-
-    Returns
-    -------
-    hold, cycle
-        The last stick, and the cycle before it.
-    count : int
-        Number of sticks so far; those passed are written to `sticks`.
-    stuck : float
-        Their total duration, s.
-    """
-    (start, end, theta), stuck = hold, 0.0
-    row, x = place(known, theta)
-    while row >= 0 and count < len(sticks):
-        following = cycle_from(known, row, x)
-        turn, time, held = following
-        if not (0.0 < held < time and end + time < until):
-            break
-        sticks[count, 0] = start
-        sticks[count, 1] = end
-        stuck += end - start
-        count += 1
-        start, end, theta = end + (time - held), end + time, wrap_angle(theta + turn)
-        cycle = following
-        x = (theta - known.patches[row, 0]) * known.patches[row, 1] - 1.0
-        if not -1.0 <= x <= 1.0:
-            row, x = place(known, theta)
-    return Hold(start, end, theta), cycle, count, stuck

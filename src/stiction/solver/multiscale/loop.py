@@ -10,10 +10,17 @@ from stiction.solver.compilation.jit import compiled, inlined
 from stiction.solver.exact.loop import at_rest
 from stiction.solver.multiscale.construction import advance, chart
 from stiction.solver.multiscale.history import recall, remember
-from stiction.solver.multiscale.interpolant import cycle_from, follow_patches, place
-from stiction.solver.multiscale.replay import hold_of, sample_cycle, state_at_landing
+from stiction.solver.multiscale.interpolant import cycle_from, place
+from stiction.solver.multiscale.replay import (
+    alike,
+    hold_of,
+    sample_cycle,
+    sample_remembered,
+    state_at_landing,
+)
 from stiction.solver.multiscale.return_map import FAR, PATCHES, Cycle, Hold, Returns
 from stiction.solver.multiscale.section import wrap_angle
+from stiction.solver.multiscale.walk import follow_patches
 from stiction.solver.problem import Problem
 from stiction.solver.state import (
     COMPLETED,
@@ -81,12 +88,13 @@ def with_sticks(counts: Counts, sticks: int, stuck: float) -> Counts:
 
 
 @inlined
-def known_cycle(known: Returns, theta: float, last: Cycle) -> tuple[bool, Cycle]:
-    """Return the cycle from an angle, if it is known."""
+def known_cycle(known: Returns, theta: float, last: Cycle) -> tuple[bool, Cycle, int]:
+    """Return whether the cycle from an angle is known, the cycle, and the past one like it."""
     row, x = place(known, theta)
     if row >= 0:
-        return True, cycle_from(known, row, x)
-    return recall(known, theta, last)
+        return True, cycle_from(known, row, x), -1
+    row, cycle = recall(known, theta, last)
+    return row >= 0, cycle, row
 
 
 @inlined
@@ -109,13 +117,14 @@ def learn_and_follow(
     if cycle.turn < inf:  # a number: both ends are known
         remember(known, theta, cycle)
     while cycle.turn < inf and state.counts.sticks < len(sticks):
-        until = min(t_end, times[k]) if k < len(times) else t_end
         count = state.counts.sticks
-        hold, cycle, count, stuck = follow_patches(known, hold, cycle, sticks, count, until)
+        hold, cycle, count, stuck, k = follow_patches(
+            problem, known, hold, cycle, sticks, count, t_end, times, samples, k
+        )
         state = State(state.motion, state.memory, with_sticks(state.counts, count, stuck))
         if count == len(sticks):
             break
-        found, following = known_cycle(known, hold.theta, cycle)
+        found, following, like = known_cycle(known, hold.theta, cycle)
         if not found:
             over = reach(known, hold.theta, cycle.turn)
             if not pays(known, hold, cycle, over, t_end):
@@ -126,12 +135,15 @@ def learn_and_follow(
         landing, end = hold.end + (following.time - following.held), hold.end + following.time
         if not hold.end < landing < end < t_end:
             break
-        if k < len(times) and times[k] <= end:
-            code, state, k = sample_cycle(
-                problem, state, hold, landing, accuracy, times, samples, k, known.stick
-            )
-            if code > COMPLETED:
-                return code, state, k
+        if k < len(times) and times[k] <= landing:
+            if alike(known, like, hold.theta):
+                k = sample_remembered(problem, known, like, hold, landing, times, samples, k)
+            else:
+                code, state, k = sample_cycle(
+                    problem, state, hold, landing, accuracy, times, samples, k, known
+                )
+                if code > COMPLETED:
+                    return code, state, k
         sticks[count, 0], sticks[count, 1] = hold.start, hold.end
         counts = with_sticks(state.counts, count + 1, hold.end - hold.start)
         state = State(state.motion, state.memory, counts)
@@ -183,9 +195,11 @@ def stride(
                 return code, plain(state), k, turns
         if turns >= budget or state.counts.sticks == len(sticks):
             return RUNNING, plain(state), k, turns
+        if rests:
+            known.record.used[0] = 0
         room = sticks[: state.counts.sticks + (1 if rests else 0)]  # until the next landing
         code, state, k, used = advance(
-            problem, state, t_end, accuracy, budget - turns, times, samples, k, room
+            problem, state, t_end, accuracy, budget - turns, times, samples, k, room, known.record
         )
         turns += used
         if code != RUNNING:

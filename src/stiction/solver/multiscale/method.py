@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from math import nan
+from math import inf, nan
+
+import numpy as np
 
 from stiction.solver.exact.method import Exact, advance_compiled
 from stiction.solver.multiscale.loop import stride
 from stiction.solver.multiscale.return_map import Returns, empty_map
 from stiction.solver.problem import Problem, constant, steady
 from stiction.solver.state import Accuracy, Output, State
+from stiction.system.description import Description
 from stiction.system.slider import Slider
 
 STEP_SHARE = 0.3  # tolerance of steps for the return map, over that of others
@@ -21,8 +24,15 @@ class Multiscale(Exact):
         """Take the slider and the tolerance."""
         super().__init__(slider)
         self.rtol = rtol
+        self.span = -inf, inf  # s; start and end of the run
         self.problem: Problem | None = None
         self.known: Returns | None = None
+
+    def begin(self, description: Description) -> State:
+        """Return the initial state of a run."""
+        start = description.initial.time
+        self.span = start, start + description.run.duration
+        return super().begin(description)
 
     def enter_segment(self, state: State, x: float, y: float) -> State:
         """Return the state at the start of a stretch, where the slip velocity jumps by (x, y)."""
@@ -37,7 +47,9 @@ class Multiscale(Exact):
         if not (steady(problem.drive) and constant(problem.load)):
             return super().advance(problem, state, end, held, budget, out)
         if self.known is None or problem != self.problem:
-            self.problem, self.known = problem, empty_map(self.rtol)
+            first = int(np.searchsorted(out.times, self.span[0], "right"))
+            inside = first < len(out.times) and out.times[first] < self.span[1]
+            self.problem, self.known = problem, empty_map(self.rtol, bool(inside))
         fine = held._replace(
             tolerance=STEP_SHARE * held.tolerance,
             newton=STEP_SHARE * held.newton,

@@ -6,11 +6,12 @@ from math import inf, nan
 
 import numpy as np
 
-from stiction.solver.compilation.jit import inlined
-from stiction.solver.exact.sampling import sample_stick
+from stiction.solver.compilation.jit import inlined, piece
 from stiction.solver.multiscale.construction import add_counts, advance
-from stiction.solver.multiscale.return_map import Hold
-from stiction.solver.multiscale.section import angle, elongation_held
+from stiction.solver.multiscale.inside import following_step, write_kept
+from stiction.solver.multiscale.return_map import NEAR, Hold, Returns
+from stiction.solver.multiscale.section import angle
+from stiction.solver.multiscale.walk import elongation_at_landing, sample_hold
 from stiction.solver.problem import Problem, in_principal_axes, rate
 from stiction.solver.state import (
     COMPLETED,
@@ -42,10 +43,7 @@ def hold_of(problem: Problem, motion: Motion) -> Hold:
 def state_at_landing(problem: Problem, state: State, hold: Hold) -> State:
     """Return the state at the start of a stick."""
     motion, memory, counts = state
-    u_x, u_y = elongation_held(problem, hold.theta)
-    v_x, v_y = in_principal_axes(problem, rate(problem.drive, 0.0))
-    back = hold.end - hold.start
-    u_x, u_y = u_x - v_x * back, u_y - v_y * back
+    u_x, u_y = elongation_at_landing(problem, hold)
     landing = Motion(hold.start, u_x, u_y, 0.0, motion.e_x, motion.e_y)
     return State(landing, at_takeoff(memory), counts)
 
@@ -60,19 +58,17 @@ def sample_cycle(
     times: np.ndarray,
     samples: np.ndarray,
     k: int,
-    room: np.ndarray,
+    known: Returns,
 ) -> tuple[int, State, int]:
     """Fill the samples of a stick and the slip until `landing` (s), by steps.
 
     The steps find their own landing, which does not matter, because samples do not influence the
-    motion. `room` is for one of their sticks. Later samples are those of the next stick.
+    motion. Later samples are those of the next stick.
     """
-    start = state_at_landing(problem, state, hold)
-    motion, memory, counts = start
-    u_x, u_y = motion.u_x, motion.u_y
-    k = sample_stick(problem, hold.start, u_x, u_y, hold.end, True, times, samples, k)
+    k = sample_hold(problem, hold, times, samples, k)
     if k == len(times) or times[k] > landing:
         return COMPLETED, state, k
+    motion, memory, _ = state_at_landing(problem, state, hold)
     until = k
     while until < len(times) and times[until] <= landing:
         until += 1
@@ -82,7 +78,57 @@ def sample_cycle(
     while code == RUNNING and k < until and alone.motion.t < landing - SAME * slip:
         alone = State(alone.motion, alone.memory, NOTHING)
         code, alone, k, _ = advance(
-            problem, alone, landing + slip, accuracy, SLIP_STEPS, times[:until], samples, k, room
+            problem,
+            alone,
+            landing + slip,
+            accuracy,
+            SLIP_STEPS,
+            times[:until],
+            samples,
+            k,
+            known.stick,
+            known.record,
         )
         counts = add_counts(counts, alone.counts)
     return code, State(state.motion, state.memory, counts), k
+
+
+@inlined
+def alike(known: Returns, place: int, theta: float) -> bool:
+    """Return whether the steps of a remembered cycle tell the motion of one from an angle.
+
+    The angle of the force at the take-off differs by the patches' error at most.
+    """
+    return (
+        place >= 0
+        and known.inside.spans[place, 1] > 0
+        and abs(known.past[place, 0] - theta) <= NEAR * known.closing
+    )
+
+
+@piece
+def sample_remembered(
+    problem: Problem,
+    known: Returns,
+    place: int,
+    hold: Hold,
+    landing: float,
+    times: np.ndarray,
+    samples: np.ndarray,
+    k: int,
+) -> int:
+    """Fill the samples of a stick and the slip until `landing` (s), by the steps of another.
+
+    The phase is the time since take-off over the slip's duration.
+    """
+    k = sample_hold(problem, hold, times, samples, k)
+    rows, first = known.inside.kept, known.inside.spans[place, 0]
+    last = first + known.inside.spans[place, 1] - 1
+    begin = rows[first, 0]
+    ratio = (known.past[place, 2] - known.past[place, 3]) / (landing - hold.end)
+    i = first
+    while k < len(times) and times[k] <= landing:
+        t = begin + (times[k] - hold.end) * ratio
+        i = following_step(rows, i, last, t)
+        k = write_kept(problem, rows, i, t - rows[i, 0], samples, k)
+    return k

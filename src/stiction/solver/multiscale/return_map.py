@@ -18,6 +18,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.solver.exact.record import WIDTH, Record
+
 WIDEST = 1.0  # rad, of a patch
 NODES = 24  # of a patch at most
 PATCHES = 256
@@ -25,6 +27,11 @@ PAST = 256  # cycles remembered
 CLOSING = 0.03  # (M58): relative error of a patch's turn and time, over rtol; errors accumulate
 NEAR = 10.0  # over this: tolerance for remembered cycles, and for times of landing
 FAR = 2.0  # a cycle so many times longer than those before is beyond an edge
+PHASES = 8  # Chebyshev points of a piece of a slip
+PIECES = 16  # of a slip at most
+ROOMS = 256  # for pieces of all patches
+COLUMNS = 8  # of a sample, filled up to a power of two
+STEPS = 4096  # kept of one cycle, and of all that are remembered
 
 
 class Cycle(NamedTuple):
@@ -43,6 +50,32 @@ class Hold(NamedTuple):
     theta: float
 
 
+class Inside(NamedTuple):
+    """The motion inside cycles (see `inside`), and inside those that are remembered.
+
+    values : of pieces of patches, by node, and by phase and column of a sample; shapes : of each
+    patch the number of pieces, that of nodes, its first piece, or while it is made whether it is
+    resolved so far, and whether it is interpolated
+    in the root of the distance to an edge; ends : of each, the place of that edge and its side, at
+    first the times held at both ends; kept : steps of the cycles
+    of `past`; spans : first and number of the steps of each, and behind all the next
+    free row, and the next free piece;
+    points, bound, basis, block, row, missed : room for the work.
+    """
+
+    values: np.ndarray
+    shapes: np.ndarray
+    ends: np.ndarray
+    kept: np.ndarray
+    spans: np.ndarray
+    points: np.ndarray
+    bound: np.ndarray
+    basis: np.ndarray
+    block: np.ndarray
+    row: np.ndarray
+    missed: np.ndarray
+
+
 class Returns(NamedTuple):
     """The known part of the map.
 
@@ -51,7 +84,8 @@ class Returns(NamedTuple):
     angles beyond which there is no return; past : angle, turn, time and time held of cycles;
     width : of patches to try; sizes : of patches, edges and past, nodes in vain, cycles solved;
     last : angle and time (s) of the last take-off; stick, never, nowhere : room for the one stick
-    of a cycle that is solved, and for no samples of it; closing : relative error.
+    of a cycle that is solved, and for no samples of it; closing : relative error; record : the
+    steps of the last cycle that was solved; inside : the motion inside cycles.
     """
 
     patches: np.ndarray
@@ -65,10 +99,13 @@ class Returns(NamedTuple):
     never: np.ndarray
     nowhere: np.ndarray
     closing: float
+    record: Record
+    inside: Inside
 
 
-def empty_map(rtol: float) -> Returns:
-    """Return an empty map."""
+def empty_map(rtol: float, samples: bool = False) -> Returns:
+    """Return an empty map, with room for the motion inside cycles if there are samples."""
+    rooms, steps = (ROOMS, STEPS) if samples else (0, 0)
     return Returns(
         np.full((PATCHES, 3), nan),
         np.empty((PATCHES, NODES, 3)),
@@ -81,4 +118,18 @@ def empty_map(rtol: float) -> Returns:
         np.empty(0),
         np.empty((0, 0)),
         CLOSING * rtol,
+        Record(np.empty((steps, WIDTH)), np.zeros(1, dtype=np.int64)),
+        Inside(
+            np.empty((rooms, NODES, PHASES * COLUMNS)),
+            np.zeros((PATCHES, 4), dtype=np.int64),
+            np.empty((PATCHES, 2)),
+            np.empty((steps, WIDTH)),
+            np.zeros((PAST + 1, 2), dtype=np.int64),
+            np.empty((PIECES * PHASES + PIECES + 1, COLUMNS)),
+            np.empty(COLUMNS),
+            np.empty(NODES),
+            np.empty(PHASES * COLUMNS),
+            np.empty(COLUMNS),
+            np.empty(1),
+        ),
     )

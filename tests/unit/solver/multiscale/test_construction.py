@@ -10,6 +10,7 @@ from tests.unit.solver.exact.test_step import held_to
 
 import stiction as st
 from stiction.solver.exact import loop
+from stiction.solver.exact.record import NoRecord
 from stiction.solver.multiscale import construction, interpolant, section
 from stiction.solver.multiscale.return_map import WIDEST, empty_map
 from stiction.solver.segments import stretches
@@ -39,7 +40,7 @@ def step_through(problem, theta, count):
     """Return the stick intervals after a take-off, by steps, and the angles at their ends."""
     sticks, state = np.zeros((count, 2)), taking_off(problem, theta)
     advance, never = plain(loop.advance), (np.empty(0), np.empty((0, 7)))
-    advance(problem, state, 9.0, EXACT._replace(touch=0.0), 10**6, *never, 0, sticks)
+    advance(problem, state, 9.0, EXACT._replace(touch=0.0), 10**6, *never, 0, sticks, NoRecord())
     return sticks
 
 

@@ -7,7 +7,7 @@ from tests.entry import plain
 
 from stiction.solver.multiscale import construction, interpolant
 from stiction.solver.multiscale.interpolant import POINTS
-from stiction.solver.multiscale.return_map import NEAR, NODES, Cycle, Hold, empty_map
+from stiction.solver.multiscale.return_map import NEAR, NODES, Cycle, empty_map
 
 TURN, TIME = Polynomial([0.02, 0.004, -0.001, 0.0003]), Polynomial([2.0, -0.3, 0.05, 0.01])
 SQUARE = Polynomial([0.5, 0.2, -0.03, 0.02])  # of the time held, s^2
@@ -95,40 +95,8 @@ def test_the_patch_of_an_angle():
     assert place(known, np.nan)[0] == -1
 
 
-@pytest.mark.parametrize("until", [1e9, 7.0])
-@pytest.mark.parametrize("room", [100, 5])
-def test_the_map_is_followed_from_stick_to_stick(until, room):
-    """Each cycle begins where the last one has ended; to a time, a patch's end, or the room."""
-    known, sticks = known_of(0.3, 0.8)[0], np.zeros((room, 2))
-    hold, last = Hold(1.0, 1.5, 0.31), cycle(-1.0)
-    found = plain(interpolant.follow_patches)(known, hold, last, sticks, 2, until)
-    rows, (start, end, theta) = [], hold
-    while 0.3 <= theta <= 1.3 and 2 + len(rows) < room:
-        following = cycle((theta - (0.3 if theta <= 0.8 else 0.8)) * 4.0 - 1.0)
-        if end + following.time >= until:
-            break
-        rows.append((start, end))
-        last = following
-        start, end = end + last.time - last.held, end + last.time
-        theta += last.turn
-    assert len(rows) > 1
-    assert found[0] == pytest.approx((start, end, theta), rel=1e-12)
-    assert found[1] == pytest.approx(last, rel=1e-12)
-    assert found[2] == 2 + len(rows)
-    assert found[3] == pytest.approx(np.diff(rows).sum(), rel=1e-12)
-    assert sticks[2 : 2 + len(rows)] == pytest.approx(np.array(rows), rel=1e-12)
-    assert not sticks[:2].any()
-    assert not sticks[2 + len(rows) :].any()
-
-
-def test_where_the_polynomials_have_no_stick_the_map_ends():
-    """The time held must be more than nothing, and less than that of the cycle."""
+def test_a_square_below_zero_is_no_stick():
     known, _ = known_of(0.3)
-    hold, last, sticks = Hold(1.0, 1.5, 0.31), cycle(-1.0), np.zeros((9, 2))
-    for square in (-1.0, 100.0):
+    for square, held in ((100.0, 10.0), (-1.0, 0.0)):
         known.coefficients[0, :, 2] = [square, *[0.0] * (NODES - 1)]
-        found = plain(interpolant.follow_patches)(known, hold, last, sticks, 0, 1e9)
-        assert found == (hold, last, 0, 0.0)
-    assert plain(interpolant.cycle_from)(known, 0, 0.0).held == 10.0
-    known.coefficients[0, 0, 2] = -1.0
-    assert plain(interpolant.cycle_from)(known, 0, 0.0).held == 0.0
+        assert plain(interpolant.cycle_from)(known, 0, 0.0).held == held

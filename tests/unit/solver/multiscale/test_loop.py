@@ -9,6 +9,7 @@ from tests.unit.solver.multiscale.test_construction import problem_of as soft
 from tests.unit.solver.multiscale.test_construction import taking_off
 
 from stiction.solver.exact import loop as exact_loop
+from stiction.solver.exact.record import NoRecord
 from stiction.solver.multiscale import construction, loop, replay
 from stiction.solver.multiscale.return_map import (
     CLOSING,
@@ -140,7 +141,9 @@ def test_strides_lead_to_the_same_sticks_as_steps(name, until):
     problem, begun = soft(name), taking_off(soft(name), 1.0)
     times, known = np.array([0.05, 0.25, 0.251, 0.255, 0.262, 0.37]), empty_map(1e-6)
     (code, state, k, _), sticks, samples = run(loop.stride, problem, begun, until, times, known)
-    (_, wanted, _, _), exact, rows = run(exact_loop.advance, problem, begun, until, times)
+    (_, wanted, _, _), exact, rows = run(
+        exact_loop.advance, problem, begun, until, times, NoRecord()
+    )
     counts = Counts(*state[2])
     assert (code, k) == (COMPLETED, 6)
     assert counts.sticks == wanted[2][3] > 10
@@ -197,11 +200,11 @@ def test_a_stride_stops_with_its_budget_or_room_and_goes_on():
 
 def test_a_cycle_is_known_from_a_patch_or_from_the_past():
     known, cycle = empty_map(1e-6), Cycle(0.01, 2.0, 0.5)
-    found, _ = plain(loop.known_cycle)(known, 0.3, cycle)
+    found, _, _ = plain(loop.known_cycle)(known, 0.3, cycle)
     assert not found
     known.coefficients[0] = 0.0
     known.coefficients[0, 0] = cycle.turn, cycle.time, cycle.held**2
     known.patches[0] = 0.2, 2.0 / 0.4, 1
     known.sizes[0] = 1
-    assert plain(loop.known_cycle)(known, 0.3, cycle) == (True, cycle)
+    assert plain(loop.known_cycle)(known, 0.3, cycle) == (True, cycle, -1)
     assert not plain(loop.known_cycle)(known, 0.7, cycle)[0]

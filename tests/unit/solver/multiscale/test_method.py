@@ -6,6 +6,7 @@ from tests.systems import problem_of as other_problem
 from tests.unit.solver.exact.test_step import held_to
 from tests.unit.solver.multiscale.test_construction import SOFT, problem_of, taking_off
 
+import stiction as st
 from stiction.solver.multiscale import method
 from stiction.solver.multiscale.method import STEP_SHARE, Multiscale
 from stiction.solver.multiscale.return_map import CLOSING
@@ -84,3 +85,16 @@ def test_a_jump_ends_the_last_cycle():
     found = solver.enter_segment(state, 1e-3, 0.0)
     assert np.isnan(solver.known.last).all()
     assert found.motion.r == pytest.approx(1e-3)
+
+
+@pytest.mark.parametrize(
+    ("times", "room"), [([], 0), ([0.5, 9.0], 0), ([0.5, 8.9], 1), ([0.6], 1), ([0.5, 1.0, 9.0], 1)]
+)
+def test_there_is_room_for_the_motion_if_there_are_samples(calls, times, room):
+    """Between start and end of the run: these two are no samples inside a cycle."""
+    solver, problem = Multiscale(SOFT, 1e-5), problem_of("soft")
+    settings = st.Settings(duration=8.5, multiscale=True)
+    state = solver.begin(st.Description(SOFT, st.Initial(time=0.5), settings))
+    output = Output(np.array(times), np.empty((len(times), 7)), np.zeros((4, 2)))
+    solver.advance(problem, state, 2.0, HELD, 7, output)
+    assert bool(len(calls[0][-1].record.rows)) == bool(room)

@@ -11,6 +11,7 @@ from tests.unit.solver.multiscale.test_construction import (
 )
 
 from stiction.solver.exact import loop
+from stiction.solver.exact.record import NoRecord
 from stiction.solver.multiscale import construction, replay
 from stiction.solver.multiscale.return_map import Hold, empty_map
 from stiction.solver.state import COMPLETED, Counts, State
@@ -31,7 +32,7 @@ def test_samples_of_a_cycle(name):
     samples, state = np.full((len(times), 7), np.nan), taking_off(problem, 0.3, 1.0)
     state = State(state.motion, state.memory, COUNTS)
     code, found, k = plain(replay.sample_cycle)(
-        problem, state, hold, landing, EXACT, times, samples, 1, known.stick
+        problem, state, hold, landing, EXACT, times, samples, 1, known
     )
     assert (code <= COMPLETED, k) == (True, len(times) - 1)
     assert found.motion == state.motion
@@ -42,7 +43,7 @@ def test_samples_of_a_cycle(name):
     wanted = np.full((7, 7), np.nan)
     plain(loop.advance)(
         problem, taking_off(problem, THETA, T), landing, EXACT, 10**6,
-        times[2:-1], wanted, 0, np.zeros((2, 2)),
+        times[2:-1], wanted, 0, np.zeros((2, 2)), NoRecord(),
     )  # fmt: skip
     assert samples[3:-1, :6] == pytest.approx(wanted[1:6, :6], rel=1e-6, abs=1e-9)
     assert samples[1:-1, 6].tolist() == [1.0, 1.0, *[0.0] * 5]
@@ -59,7 +60,7 @@ def test_without_samples_of_the_slip_no_steps_are_taken(after):
     times = np.array([T - 1e-3] if after is None else [T - 1e-3, landing + after])
     samples, state = np.full((2, 7), np.nan), State(taking_off(problem, 0.3).motion, MEMORY, COUNTS)
     code, found, k = plain(replay.sample_cycle)(
-        problem, state, hold, landing, EXACT, times, samples, 0, known.stick
+        problem, state, hold, landing, EXACT, times, samples, 0, known
     )
     assert (code, found, k) == (COMPLETED, state, 1)
     assert samples[0, 6] == 1.0

@@ -1,0 +1,133 @@
+"""Steps kept as rows of numbers, so that the motion inside them can be told later.
+
+A row holds what the step's own dense output needs (section 14 of the method): its start, its
+size, the oscillation under it, and its stages. The loop in steps keeps nothing; which of the two
+it does is known when it is compiled.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from stiction.solver.block_algebra import Triple, less
+from stiction.solver.compilation.jit import inlined
+from stiction.solver.exact.newton import products
+from stiction.solver.exact.oscillation import Oscillator, Swing, after, oscillator, swings
+from stiction.solver.exact.slip_frame import Frame, Outset
+from stiction.solver.problem import by_type
+from stiction.solver.radau import cubic, integral
+from stiction.solver.state import Motion
+
+WIDTH = 23
+SIZE, KIND, OSCILLATOR, REST, TURN, PRODUCTS = 6, 7, 8, 14, 17, 20  # columns, after the motion's
+CUBIC, SWUNG, LANDING = 0.0, 1.0, 2.0  # kinds of rows
+
+
+class NoRecord(NamedTuple):
+    """What keeps no steps."""
+
+    one: float = 1.0  # compiled code needs a field
+
+    def keep_step(
+        record, frame: Frame, start: Outset, swing: Swing, h: float, p: Triple, w: Triple
+    ) -> None:
+        """Do nothing."""
+
+    def keep_landing(record, frame: Frame, T: float, a_1: float, a_2: float, f: float) -> None:
+        """Do nothing."""
+
+
+class Record(NamedTuple):
+    """Room for steps: `rows`, and how many are in use, or would be if they fitted."""
+
+    rows: np.ndarray
+    used: np.ndarray
+
+    def keep_step(
+        record, frame: Frame, start: Outset, swing: Swing, h: float, p: Triple, w: Triple
+    ) -> None:
+        """Write a step of slip to the next row."""
+        if record.used[0] < len(record.rows):
+            write_step(record.rows[record.used[0]], frame, start, swing, h, p, w)
+        record.used[0] += 1
+
+    def keep_landing(record, frame: Frame, T: float, a_1: float, a_2: float, f: float) -> None:
+        """Write a slip that ends in closed form after `T` (s) to the next row."""
+        if record.used[0] < len(record.rows):
+            row = record.rows[record.used[0]]
+            write_start(row, frame, T, LANDING)
+            row[OSCILLATOR], row[OSCILLATOR + 1], row[OSCILLATOR + 2] = a_1, a_2, f
+        record.used[0] += 1
+
+
+def keep_step(
+    record: NoRecord | Record,
+    frame: Frame,
+    start: Outset,
+    swing: Swing,
+    h: float,
+    p: Triple,
+    w: Triple,
+) -> None:
+    """Keep a step of slip."""
+    record.keep_step(frame, start, swing, h, p, w)
+
+
+def keep_landing(
+    record: NoRecord | Record, frame: Frame, T: float, a_1: float, a_2: float, f: float
+) -> None:
+    """Keep the end of a slip in closed form."""
+    record.keep_landing(frame, T, a_1, a_2, f)
+
+
+by_type(keep_step)
+by_type(keep_landing)
+
+
+@inlined
+def write_start(row: np.ndarray, frame: Frame, h: float, kind: float) -> None:
+    """Write where a step starts, its size and its kind."""
+    row[0], row[1], row[2], row[3] = frame.t, frame.u_x, frame.u_y, frame.r
+    row[4], row[5], row[SIZE], row[KIND] = frame.e_x, frame.e_y, h, kind
+
+
+@inlined
+def write_step(
+    row: np.ndarray, frame: Frame, start: Outset, swing: Swing, h: float, p: Triple, w: Triple
+) -> None:
+    """Write a step."""
+    o = oscillator(frame, start)
+    write_start(row, frame, h, SWUNG if swings(o, h) else CUBIC)
+    rest, across = less(p, swing.p), products(p, w)
+    for i in range(6):
+        row[OSCILLATOR + i] = o[i]
+    for i in range(3):
+        row[REST + i], row[TURN + i], row[PRODUCTS + i] = rest[i], w[i], across[i]
+
+
+@inlined
+def start_of(row: np.ndarray) -> Motion:
+    """Return the motion at the start of a row's step."""
+    return Motion(row[0], row[1], row[2], row[3], row[4], row[5])
+
+
+@inlined
+def slip_within(row: np.ndarray, dt: float) -> tuple[float, float, float, float]:
+    """Return the distance slipped after `dt` along and across a step, and p and w then.
+
+    It is the collocation polynomial, laid over the oscillation.
+    """
+    x, h = dt / row[SIZE], row[SIZE]
+    rest = row[REST], row[REST + 1], row[REST + 2]
+    across = row[PRODUCTS], row[PRODUCTS + 1], row[PRODUCTS + 2]
+    way = 0.0, row[TURN], row[TURN + 1], row[TURN + 2]
+    p, slid = row[3], 0.0
+    if row[KIND] == SWUNG:
+        o = Oscillator(row[8], row[9], row[10], row[11], row[12], row[13])
+        under, _, slid = after(o, dt)
+        p = under + cubic((0.0, rest[0], rest[1], rest[2]), x)
+    else:
+        p = cubic((row[3], rest[0], rest[1], rest[2]), x)
+    return slid + h * integral(rest, x), h * integral(across, x), max(p, 0.0), cubic(way, x)

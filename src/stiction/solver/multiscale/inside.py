@@ -1,0 +1,382 @@
+"""The motion inside the cycles of a patch, by interpolation in the angle and in the phase.
+
+The phase is the time since the take-off over the slip's duration. It is divided into pieces, in
+each of which every column of a sample is a polynomial through Chebyshev points; their values are
+interpolated in the angle through the patch's own nodes, as its turn and time are (see
+`interpolant`). The steps of each node are kept while it is solved, and evaluated at these points.
+"""
+
+from __future__ import annotations
+
+from math import ceil, pi, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from stiction.solver.compilation.jit import inlined, piece
+from stiction.solver.exact.pursuit import landing_slip, write_landing
+from stiction.solver.exact.record import (
+    LANDING,
+    OSCILLATOR,
+    SIZE,
+    Record,
+    slip_within,
+    start_of,
+)
+from stiction.solver.exact.sampling import write_slip
+from stiction.solver.multiscale.interpolant import POINTS, interpolate
+from stiction.solver.multiscale.return_map import (
+    COLUMNS,
+    NEAR,
+    NODES,
+    PAST,
+    PHASES,
+    PIECES,
+    Inside,
+    Returns,
+)
+from stiction.solver.problem import Problem, at, static
+from stiction.solver.state import Accuracy
+from stiction.solver.surface import metric_into
+
+BLOCK = PHASES * COLUMNS
+STEEP = 2.0  # ratio of the times held at the ends of a patch that is near an edge
+NEWTON, NUDGE = 5, 1e-4  # iterations to find an edge, and difference of places for a slope
+FOLD = 4  # nodes summed side by side, for speed
+SPRINGS = 0.3  # error of the springs' forces over that of velocities and of friction
+
+
+class Window(NamedTuple):
+    """The slip of a cycle in a record: the time of its take-off (s), and its duration (s)."""
+
+    start: float
+    duration: float
+
+
+def chebyshev(count: int) -> np.ndarray:
+    """Return the Chebyshev points of the first kind on [-1, 1], ascending."""
+    points: np.ndarray = -np.cos(pi * (np.arange(count) + 0.5) / count)
+    return points
+
+
+PHASE = chebyshev(PHASES)
+MONOMIALS = np.linalg.inv(np.vander(PHASE, increasing=True))  # from values to coefficients
+ENDS = np.vander([-1.0, 1.0], PHASES, increasing=True) @ MONOMIALS  # from values to both ends
+
+
+@inlined
+def write_kept(
+    problem: Problem, rows: np.ndarray, i: int, dt: float, samples: np.ndarray, k: int
+) -> int:
+    """Write the sample `dt` after the start of the kept step `i`; return the next row."""
+    row, motion = rows[i], start_of(rows[i])
+    dt = min(max(dt, 0.0), row[SIZE])
+    if row[7] == LANDING:
+        a_1, a_2, f = row[OSCILLATOR], row[OSCILLATOR + 1], row[OSCILLATOR + 2]
+        closed = (row[SIZE], *landing_slip(motion.r, a_1, a_2, f))
+        return write_landing(problem, motion, a_1, a_2, f, closed, row[SIZE] - dt, dt, samples, k)
+    metric = metric_into(problem, motion.e_x, motion.e_y)
+    return write_slip(problem, motion, metric, motion.t + dt, dt, slip_within(row, dt), samples, k)
+
+
+@inlined
+def following_step(rows: np.ndarray, i: int, last: int, t: float) -> int:
+    """Return the kept step that contains a time, `i` or a later one."""
+    while i < last and t > rows[i, 0] + rows[i, SIZE]:
+        i += 1
+    return i
+
+
+@inlined
+def resolution(problem: Problem, duration: float, closing: float) -> int:
+    """Return how many pieces resolve a swing of the faster oscillation to the tolerance.
+
+    The remainder of cos(a x) on [-1, 1] behind n Chebyshev polynomials is 2 (a/2)^n/n!.
+    """
+    s = problem.system
+    angle = sqrt(max(s.k_x, s.k_y) * s.per_mass) * duration
+    half = 2.0 * (0.5 * FACTORIAL * NEAR * closing) ** (1.0 / PHASES)
+    pieces: int = ceil(0.5 * angle / half)
+    return pieces
+
+
+FACTORIAL = float(np.prod(np.arange(1, PHASES + 1)))
+
+
+@inlined
+def bounds(
+    problem: Problem, accuracy: Accuracy, inside: Inside, count: int, closing: float
+) -> None:
+    """Set the errors that each column of a sample may have: of the springs' forces the patch's.
+
+    Of velocities and of friction it is that of remembered cycles, or that of the node's steps.
+    """
+    fastest = 0.0
+    for m in range(count):
+        fastest = max(fastest, inside.points[m, 2] ** 2 + inside.points[m, 3] ** 2)
+    force = static(problem.law) * at(problem.load, 0.0)
+    share = max(NEAR * closing, accuracy.tolerance)
+    inside.bound[0] = SPRINGS * share * force / problem.system.k_x
+    inside.bound[1] = SPRINGS * share * force / problem.system.k_y
+    inside.bound[2] = inside.bound[3] = share * (sqrt(fastest) + accuracy.speed)
+    inside.bound[4] = inside.bound[5] = share * force
+    inside.bound[6] = inside.bound[7] = 1.0
+
+
+@inlined
+def phase_of(piece: int, pieces: int, y: float) -> float:
+    """Return the phase at a place in a piece, -1 to 1."""
+    return (piece + 0.5 * (y + 1.0)) / pieces
+
+
+@inlined
+def evaluate_record(
+    problem: Problem, record: Record, window: Window, inside: Inside, pieces: int
+) -> None:
+    """Evaluate a slip at the points of all pieces, and behind these at their ends."""
+    i, last = 0, record.used[0] - 1
+    for p in range(pieces):
+        for m in range(PHASES):
+            t = window.start + window.duration * phase_of(p, pieces, PHASE[m])
+            i = following_step(record.rows, i, last, t)
+            write_kept(
+                problem, record.rows, i, t - record.rows[i, 0], inside.points, p * PHASES + m
+            )
+    i = 0
+    for p in range(pieces + 1):
+        t = window.start + window.duration * p / pieces
+        i = following_step(record.rows, i, last, t)
+        write_kept(
+            problem, record.rows, i, t - record.rows[i, 0], inside.points, pieces * PHASES + p
+        )
+
+
+@inlined
+def error_of_phases(inside: Inside, pieces: int) -> float:
+    """Return the error of the pieces at their ends, over its bound: there it is largest."""
+    worst = 0.0
+    for p in range(pieces + 1):
+        own, end = (p - 1, 1) if p > 0 else (0, 0)
+        for c in range(COLUMNS - 1):
+            off = -inside.points[pieces * PHASES + p, c]
+            for m in range(PHASES):
+                off += ENDS[end, m] * inside.points[own * PHASES + m, c]
+            worst = max(worst, abs(off) / inside.bound[c])
+    return worst
+
+
+@inlined
+def add_motion(
+    problem: Problem,
+    accuracy: Accuracy,
+    known: Returns,
+    n: int,
+    window: Window,
+    held: float,
+) -> None:
+    """Add the motion of node `n`, with a stick of `held` (s) behind it, to the patch in the making.
+
+    Near an edge the time held goes with the root of the distance to it (M55), and so does the
+    slip's duration, to which the phase is relative. In that root the motion is smooth. There it
+    takes the place of the angle, and its own nodes are solved later.
+    """
+    inside, row = known.inside, known.sizes[0]
+    shape = inside.shapes[row]
+    if n == 0:
+        shape[3] = 0
+    if n < 2:
+        inside.ends[row, n] = held
+    if n == 1:
+        a, b = inside.ends[row]
+        shape[3] = 1 if max(a, b) > STEEP * min(a, b) else 0
+    if shape[3] == 0:
+        add_node(problem, accuracy, known, n, window)
+
+
+@inlined
+def begin_at_edge(known: Returns) -> None:
+    """Set the place of the edge for a patch that ends near one, for nodes in the root (M59b).
+
+    It is where the square of the time held would vanish, beyond the end where that is smaller.
+    """
+    row, inside = known.sizes[0], known.inside
+    c, n = known.coefficients[row], int(known.patches[row, 2])
+    side = 1.0 if inside.ends[row, 1] < inside.ends[row, 0] else -1.0
+    place = side
+    for _ in range(NEWTON):
+        _, _, square = interpolate(c, n, place)
+        _, _, before = interpolate(c, n, place - side * NUDGE)
+        place += side * NUDGE * square / max(before - square, 1e-300)
+    inside.ends[row, 0], inside.ends[row, 1] = place, side
+    inside.shapes[row, 1], inside.shapes[row, 2] = 0, 1 if 1.0 < side * place < 2.0 else 0
+
+
+@inlined
+def root_of_place(known: Returns, row: int, x: float) -> float:
+    """Return the root of the distance to the edge, from -1 to 1 over a patch, at a place in it."""
+    place, side = known.inside.ends[row]
+    far, near = sqrt(side * place + 1.0), sqrt(side * place - 1.0)
+    root = sqrt(max(side * (place - x), 0.0))
+    return float(side * (far + near - 2.0 * root) / (far - near))
+
+
+@inlined
+def place_of_root(known: Returns, row: int, z: float) -> float:
+    """Return the place in a patch that has a root of the distance to the edge."""
+    place, side = known.inside.ends[row]
+    far, near = sqrt(side * place + 1.0), sqrt(side * place - 1.0)
+    root = 0.5 * (far + near - side * z * (far - near))
+    return float(min(max(place - side * root * root, -1.0), 1.0))
+
+
+@piece
+def add_node(
+    problem: Problem,
+    accuracy: Accuracy,
+    known: Returns,
+    n: int,
+    window: Window,
+) -> None:
+    """Add the motion of node `n`, of the angle or of the time held.
+
+    The number of pieces is chosen at the first node. The nodes of the motion are enough when a
+    fresh one is predicted, and the one before it nearly so. Later ones are left out; a patch whose
+    motion is not resolved has none.
+    """
+    inside, record, row = known.inside, known.record, known.sizes[0]
+    shape = inside.shapes[row]
+    if n == 0:
+        shape[0], shape[1], shape[2] = resolution(problem, window.duration, known.closing), 0, 1
+    if shape[2] == 0 or shape[1] > 0:
+        return
+    shape[2] = 0
+    if record.used[0] == 0 or record.used[0] > len(record.rows) or not window.duration > 0.0:
+        return
+    while True:
+        pieces = shape[0]
+        if pieces > min(PIECES, len(inside.values) - inside.spans[PAST, 1]):
+            return
+        evaluate_record(problem, record, window, inside, pieces)
+        bounds(problem, accuracy, inside, pieces * PHASES, known.closing)
+        if error_of_phases(inside, pieces) < 1.0:
+            break
+        if n > 0:
+            return
+        shape[0] = 2 * pieces
+    miss = added_motion(inside, n, pieces)
+    shape[2] = 1
+    if miss < 1.0 and inside.missed[0] < 10.0:
+        shape[1] = n + 1
+    inside.missed[0] = miss
+
+
+@inlined
+def added_motion(inside: Inside, n: int, pieces: int) -> float:
+    """Add the points of node `n` to the polynomials in the angle, and return their error before."""
+    x, product, worst, first = POINTS[n], 1.0, 0.0, inside.spans[PAST, 1]
+    for i in range(n):
+        inside.basis[i] = product
+        product *= x - POINTS[i]
+    for p in range(pieces):
+        values = inside.values[first + p]
+        for m in range(PHASES):
+            for c in range(COLUMNS - 1):
+                off = inside.points[p * PHASES + m, c]
+                for i in range(n):
+                    off -= inside.basis[i] * values[i, m * COLUMNS + c]
+                worst = max(worst, abs(off) / inside.bound[c])
+                values[n, m * COLUMNS + c] = off / product
+            values[n, m * COLUMNS + COLUMNS - 1] = 0.0
+    return worst
+
+
+@inlined
+def in_progress(known: Returns) -> bool:
+    """Return whether more nodes may still tell the motion inside a patch."""
+    shape = known.inside.shapes[known.sizes[0]]
+    return bool(shape[1] == 0 and shape[2] == 1)
+
+
+@piece
+def finish_motion(known: Returns) -> None:
+    """Turn the values at the phases into coefficients, or leave the patch without motion."""
+    inside, row = known.inside, known.sizes[0]
+    shape = inside.shapes[row]
+    pieces, nodes, first = shape[0], shape[1], inside.spans[PAST, 1]
+    shape[2] = first
+    if nodes == 0:
+        return
+    inside.spans[PAST, 1] += pieces
+    for p in range(pieces):
+        for n in range(nodes, min(nodes + FOLD, NODES)):
+            inside.values[first + p, n] = 0.0
+        for n in range(nodes):
+            values = inside.values[first + p, n]
+            for j in range(BLOCK):
+                inside.block[j] = values[j]
+            for a in range(PHASES):
+                for c in range(COLUMNS):
+                    total = 0.0
+                    for m in range(PHASES):
+                        total += MONOMIALS[a, m] * inside.block[m * COLUMNS + c]
+                    values[a * COLUMNS + c] = total
+
+
+@inlined
+def at_angle(inside: Inside, row: int, p: int, x: float) -> None:
+    """Set the coefficients of a piece at a place in the patch, -1 to 1."""
+    shape, block = inside.shapes[row], inside.block
+    nodes, values = shape[1], inside.values[shape[2] + p]
+    for j in range(BLOCK):
+        block[j] = 0.0
+    a = 1.0
+    for n in range(0, nodes, FOLD):
+        b = a * (x - POINTS[n])
+        c = b * (x - POINTS[n + 1])
+        d = c * (x - POINTS[n + 2])
+        v0, v1, v2, v3 = values[n], values[n + 1], values[n + 2], values[n + 3]
+        for j in range(BLOCK):
+            block[j] += (a * v0[j] + b * v1[j]) + (c * v2[j] + d * v3[j])
+        a = d * (x - POINTS[n + 3])
+
+
+@inlined
+def write_at_phase(inside: Inside, y: float, samples: np.ndarray, k: int) -> None:
+    """Write the sample at a place in the piece whose coefficients are set."""
+    block, row = inside.block, inside.row
+    for c in range(COLUMNS):
+        total = block[(PHASES - 1) * COLUMNS + c]
+        for a in range(PHASES - 2, -1, -1):
+            total = total * y + block[a * COLUMNS + c]
+        row[c] = total
+    for c in range(COLUMNS - 2):
+        samples[k, c] = row[c]
+    samples[k, COLUMNS - 2] = 0.0
+
+
+@piece
+def write_cycle(
+    known: Returns,
+    row: int,
+    x: float,
+    start: float,
+    landing: float,
+    times: np.ndarray,
+    samples: np.ndarray,
+    k: int,
+) -> int:
+    """Fill the samples of a slip from a place in a patch; return the next row."""
+    inside = known.inside
+    if inside.shapes[row, 3] == 1:
+        x = root_of_place(known, row, x)
+    pieces, current = inside.shapes[row, 0], -1
+    per = pieces / (landing - start)
+    while k < len(times) and times[k] <= landing:
+        phase = (times[k] - start) * per
+        p = min(max(int(phase), 0), pieces - 1)
+        if p != current:
+            at_angle(inside, row, p, x)
+            current = p
+        write_at_phase(inside, 2.0 * (phase - p) - 1.0, samples, k)
+        k += 1
+    return k

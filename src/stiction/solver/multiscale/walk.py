@@ -1,0 +1,93 @@
+"""Steps along the patches of the return map, one cycle each."""
+
+from __future__ import annotations
+
+from math import inf
+
+import numpy as np
+
+from stiction.solver.compilation.jit import inlined, piece
+from stiction.solver.exact.sampling import sample_stick
+from stiction.solver.multiscale.inside import write_cycle
+from stiction.solver.multiscale.interpolant import cycle_from, place
+from stiction.solver.multiscale.return_map import Cycle, Hold, Returns
+from stiction.solver.multiscale.section import elongation_held, wrap_angle
+from stiction.solver.problem import Problem, in_principal_axes, rate
+
+
+@piece
+def follow_patches(
+    problem: Problem,
+    known: Returns,
+    hold: Hold,
+    cycle: Cycle,
+    sticks: np.ndarray,
+    count: int,
+    until: float,
+    times: np.ndarray,
+    samples: np.ndarray,
+    k: int,
+) -> tuple[Hold, Cycle, int, float, int]:
+    """Follow the patches from a stick until they end, time `until` (s) is reached, or room ends.
+
+    They end as well where samples are wanted of a cycle whose motion is not known. This is a
+    separate function so that the loop has all registers: long runs spend most time here.
+
+    Returns
+    -------
+    hold, cycle
+        The last stick, and the cycle before it.
+    count : int
+        Number of sticks so far; those passed are written to `sticks`.
+    stuck : float
+        Their total duration, s.
+    k : int
+        The next sample.
+    """
+    (start, end, theta), stuck = hold, 0.0
+    row, x = place(known, theta)
+    wanted = times[k] if k < len(times) else inf
+    while row >= 0 and count < len(sticks):
+        following = cycle_from(known, row, x)
+        turn, time, held = following
+        if not (0.0 < held < time and end + time < until):
+            break
+        landing = end + (time - held)
+        if wanted <= landing:
+            k = sample_hold(problem, Hold(start, end, theta), times, samples, k)
+            wanted = times[k] if k < len(times) else inf
+        if wanted <= landing:
+            if known.inside.shapes[row, 1] == 0:
+                break
+            k = write_cycle(known, row, x, end, landing, times, samples, k)
+            wanted = times[k] if k < len(times) else inf
+        sticks[count, 0] = start
+        sticks[count, 1] = end
+        stuck += end - start
+        count += 1
+        start, end, theta = landing, end + time, wrap_angle(theta + turn)
+        cycle = following
+        x = (theta - known.patches[row, 0]) * known.patches[row, 1] - 1.0
+        if not -1.0 <= x <= 1.0:
+            row, x = place(known, theta)
+    return Hold(start, end, theta), cycle, count, stuck, k
+
+
+@inlined
+def sample_hold(
+    problem: Problem, hold: Hold, times: np.ndarray, samples: np.ndarray, k: int
+) -> int:
+    """Fill the samples of a stick; return the next row."""
+    if not (k < len(times) and times[k] <= hold.end):
+        return k
+    u_x, u_y = elongation_at_landing(problem, hold)
+    return sample_stick(problem, hold.start, u_x, u_y, hold.end, True, times, samples, k)
+
+
+@inlined
+def elongation_at_landing(problem: Problem, hold: Hold) -> tuple[float, float]:
+    """Return the elongation (x, y) at the start of a stick."""
+    u_x, u_y = elongation_held(problem, hold.theta)
+    v_x, v_y = in_principal_axes(problem, rate(problem.drive, 0.0))
+    back = hold.end - hold.start
+    return u_x - v_x * back, u_y - v_y * back

@@ -1,0 +1,60 @@
+"""Steps kept as rows, and the motion inside them."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from tests.entry import plain
+from tests.systems import SLIDERS, problem_of
+from tests.unit.solver.exact.test_loop import MEMORY, NONE
+from tests.unit.solver.exact.test_newton import SLIDES, held_to
+from tests.unit.solver.exact.test_sampling import EXACT, step_of
+
+from stiction.solver.exact import error_estimate, loop, record, sampling, slip_frame
+from stiction.solver.state import NOTHING, Motion, State
+
+
+@pytest.mark.parametrize(("name", "drawn"), [(n, d) for n in SLIDERS for d in SLIDES])
+@pytest.mark.parametrize("size", [0.02, 0.5])
+def test_the_motion_inside_a_kept_step(name, drawn, size):
+    """At its end exactly, inside it up to what the cubic misses, which falls with the size."""
+    problem, frame, _, _, h, (swing, p, w) = step_of(name, drawn, size)
+    row, start = np.full(record.WIDTH, np.nan), plain(slip_frame.outset)(problem, frame)
+    plain(record.write_step)(row, frame, start, swing, h, p, w)
+    assert not np.isnan(row).any()
+    motion = Motion(frame.t, frame.u_x, frame.u_y, frame.r, frame.e_x, frame.e_y)
+    assert plain(record.start_of)(row) == motion
+    moving = plain(error_estimate.moving)(problem, frame, start, EXACT)
+    scale = np.array([h * max(p), h * max(p), max(p), 1.0])
+    for part, rel in ((0.0, 1e-14), (0.3, 1e-2 * size**2), (0.8, 1e-2 * size**2), (1.0, 1e-12)):
+        exact = plain(sampling.within)(
+            problem, frame, start, swing, h, p, w, part * h, EXACT, moving
+        )
+        found = np.array(plain(record.slip_within)(row, part * h))
+        assert found / scale == pytest.approx(np.array(exact) / scale, abs=rel)
+
+
+def test_the_loop_keeps_each_step():
+    """One behind the other; a run that keeps none is the same."""
+    problem, kept = problem_of("steady"), []
+    keeper = SimpleNamespace(
+        keep_step=lambda frame, start, swing, h, p, w: kept.append((frame.t, h)),
+        keep_landing=lambda frame, T, *_: kept.append((frame.t, T)),
+    )
+    begun = State(Motion(0.35, 1.9e-3, 1e-5, 0.0, 0.6, 0.8), MEMORY, NOTHING)
+    ends = []
+    for keeps in (keeper, record.NoRecord()):
+        sticks = np.zeros((50, 2))
+        advance = plain(loop.advance)
+        ends.append(advance(problem, begun, 0.45, held_to(1e-4), 1000, *NONE, sticks, keeps))
+    assert ends[0] == ends[1]
+    assert len(kept) >= ends[0][1].counts.steps > 5
+    landings = [k for k in range(1, len(kept)) if kept[k][0] != pytest.approx(sum(kept[k - 1]))]
+    assert len(landings) <= ends[0][1].counts.sticks
+
+
+def test_steps_beyond_the_room_are_counted_only():
+    room = record.Record(np.zeros((0, record.WIDTH)), np.zeros(1, np.int64))
+    record.keep_step(room, None, None, None, 0.1, None, None)
+    record.keep_landing(room, None, 0.1, 1.0, 2.0, 3.0)
+    assert room.used[0] == 2

@@ -1,0 +1,120 @@
+"""The motion inside cycles of a patch, interpolated in the angle and in the phase."""
+
+from math import factorial
+
+import numpy as np
+import pytest
+from numpy.polynomial import Chebyshev
+from tests.entry import plain
+from tests.unit.solver.multiscale.test_construction import EXACT, problem_of
+
+from stiction.solver.multiscale import inside
+from stiction.solver.multiscale.interpolant import POINTS
+from stiction.solver.multiscale.return_map import COLUMNS, NEAR, PAST, PHASES, empty_map
+
+PROBLEM = problem_of("soft")
+
+
+def motion(x, phase):
+    """Return a made-up motion: smooth in the angle and in the phase, another in each column."""
+    c = np.arange(1.0, COLUMNS + 1)
+    row = np.cos(c + 0.7 * x * phase) + 0.2 * np.exp(0.4 * x) * np.sin(2.0 * phase + c)
+    row[6:] = 0.0  # no stick
+    return row
+
+
+def known_of(pieces):
+    """Return a map with a patch of this motion, and the error at each node."""
+    known, errors = empty_map(1e-6, samples=True), []
+    known.inside.bound[:] = 1e-9
+    known.inside.shapes[0] = pieces, 0, 1, 0
+    for n in range(24):
+        for p in range(pieces):
+            for m in range(PHASES):
+                phase = plain(inside.phase_of)(p, pieces, inside.PHASE[m])
+                known.inside.points[p * PHASES + m] = motion(POINTS[n], phase)
+        errors.append(plain(inside.added_motion)(known.inside, n, pieces))
+        if errors[-1] < 1.0:
+            known.inside.shapes[0, 1] = n + 1
+            break
+    plain(inside.finish_motion)(known)
+    return known, errors
+
+
+@pytest.mark.parametrize(("pieces", "off"), [(1, 1e-5), (3, 2e-8)])
+def test_a_motion_is_interpolated_in_angle_and_phase(pieces, off):
+    known, errors = known_of(pieces)
+    assert 5 < len(errors) < 16
+    assert errors[0] > 1e6 * errors[-1]
+    assert known.inside.spans[PAST, 1] == pieces  # where the next patch begins
+    times = 4.0 + 2.0 * np.array([0.0, 0.1, 0.34, 0.5, 0.71, 1.0, 1.01])
+    samples = np.full((7, 7), np.nan)
+    assert plain(inside.write_cycle)(known, 0, 0.37, 4.0, 6.0, times, samples, 0) == 6
+    assert np.isnan(samples[6]).all()
+    wanted = np.array([motion(0.37, phase)[:7] for phase in (times[:6] - 4.0) / 2.0])
+    assert samples[:6] == pytest.approx(wanted, abs=off)
+
+
+def test_the_points_of_a_piece_and_its_ends():
+    """Polynomials of degree seven are exact, between the points and at both ends."""
+    basis = Chebyshev.basis(PHASES - 1)
+    values = basis(inside.PHASE)
+    assert inside.ENDS @ values == pytest.approx([-1.0, 1.0], abs=1e-12)
+    found = np.polyval((inside.MONOMIALS @ values)[::-1], 0.3)
+    assert found == pytest.approx(basis(0.3), abs=1e-12)
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 1e-6, 1e-9])
+def test_pieces_resolve_a_swing_to_the_tolerance(rtol):
+    """2 (a/2)^n/n! is left of cos(a x), behind n polynomials of Chebyshev."""
+    closing, s = empty_map(rtol).closing, PROBLEM.system
+    period = 2 * np.pi / np.sqrt(s.k_y / s.mass)
+    pieces = plain(inside.resolution)(PROBLEM, period, closing)
+    few = pieces, max(pieces - 1, 0.5)
+    left = [2 * (0.5 * np.pi / n) ** PHASES / factorial(PHASES) for n in few]
+    assert left[0] <= NEAR * closing < left[1]
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_the_root_of_the_distance_to_an_edge(side):
+    """(M59b): from -1 to 1 over the patch; the root of the distance is linear in it."""
+    known = empty_map(1e-6, samples=True)
+    known.inside.ends[0] = side * 1.1, side
+    there, back = plain(inside.root_of_place), plain(inside.place_of_root)
+    x = np.linspace(-1.0, 1.0, 21)
+    z = np.array([there(known, 0, each) for each in x])
+    assert z[[0, -1]] == pytest.approx([-1.0, 1.0])
+    assert [back(known, 0, each) for each in z] == pytest.approx(x)
+    roots = np.sqrt(side * (side * 1.1 - x))
+    assert np.polyval(np.polyfit(z, roots, 1), z) == pytest.approx(roots)
+
+
+def test_where_the_edge_is():
+    """Where the square of the time held would vanish."""
+    known = empty_map(1e-6, samples=True)
+    known.coefficients[0] = 0.0
+    known.patches[0, 2] = 2
+    known.coefficients[0, 0, 2], known.coefficients[0, 1, 2] = 2.1e-8, -1e-8  # over 1 + x
+    known.inside.ends[0] = np.sqrt(2.1e-8), np.sqrt(0.1e-8)
+    plain(inside.begin_at_edge)(known)
+    assert known.inside.ends[0] == pytest.approx([1.1, 1.0])
+    assert known.inside.shapes[0, 1:3].tolist() == [0, 1]
+    known.coefficients[0, 1, 2] = -0.5e-8  # far away
+    plain(inside.begin_at_edge)(known)
+    assert known.inside.shapes[0, 2] == 0
+
+
+def test_bounds_of_errors():
+    """Of the springs' forces a share of what friction can hold, of velocities one of the slip."""
+    known = empty_map(1e-6, samples=True)
+    known.inside.points[:9] = 0.0
+    known.inside.points[3, 2:4] = 3e-3, -4e-3
+    fine = EXACT._replace(tolerance=1e-9)
+    plain(inside.bounds)(PROBLEM, fine, known.inside, 9, known.closing)
+    share, force, s = NEAR * known.closing, 0.2 * 10.0, PROBLEM.system
+    found = known.inside.bound[:6]
+    assert found[:2] == pytest.approx(0.3 * share * force / np.array([s.k_x, s.k_y]))
+    assert found[2:4] == pytest.approx([share * (5e-3 + fine.speed)] * 2)
+    assert found[4:] == pytest.approx([share * force] * 2)
+    plain(inside.bounds)(PROBLEM, fine._replace(tolerance=1e-3), known.inside, 9, known.closing)
+    assert known.inside.bound[4] == pytest.approx(1e-3 * force)
