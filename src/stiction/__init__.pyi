@@ -20,6 +20,7 @@ from stiction.errors import DescriptionError as DescriptionError
 from stiction.errors import ResultError as ResultError
 from stiction.errors import Status as Status
 from stiction.errors import StictionError as StictionError
+from stiction.explorer.door import explore as explore
 from stiction.friction import laws as laws
 from stiction.friction.laws import Coulomb as Coulomb
 from stiction.friction.laws import ExponentialWeakening as ExponentialWeakening

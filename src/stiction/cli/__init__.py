@@ -41,6 +41,7 @@ COMMANDS = (
     "presets",
     "audit",
     "run",
+    "explore",
     "plot",
     "analyse",
     "export",
@@ -51,7 +52,8 @@ COMMANDS = (
     "import",
     "check",
 )
-BESIDE = {"presets": "init", "import": "analyse"}  # commands in the file of another
+# commands in the file of another, or in a room
+BESIDE = {"presets": "init", "import": "analyse", "explore": "live.explore"}
 for _name in COMMANDS:  # light modules, which import heavy ones when called
     _file = BESIDE.get(_name, _name)
     _module = import_module(f"stiction.cli.commands.{_file}")

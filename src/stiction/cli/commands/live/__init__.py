@@ -1,0 +1,1 @@
+"""Commands with which one sees and hears a motion: each has one file."""

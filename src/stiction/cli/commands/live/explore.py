@@ -1,0 +1,50 @@
+"""``stiction explore``: play with an apparatus in the browser."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from stiction.cli.options import Measured, Trust
+
+
+def explore(
+    *source: Path,
+    port: int = 0,
+    browser: Annotated[bool, Parameter(negative="--no-browser")] = True,
+    trust: Trust = False,
+    measured: Measured | None = None,
+) -> None:
+    """Open the explorer: sliders for every parameter, and the whole motion at once.
+
+    The page is served on this machine only (127.0.0.1), and needs no network. Ctrl-C ends it, or
+    closing its last page.
+
+    For example, with the paper's case, then with your own, then with a measured force over it:
+
+        stiction explore
+
+        stiction explore my.toml
+
+        stiction explore my.toml force.csv --time ms --force mN
+
+    Parameters
+    ----------
+    source
+        A description (.toml), a result (.nc), a study (.zarr), or a measured record, as `stiction
+        import` reads it. A record may go with one of the others.
+    port
+        The port that it listens on; any free one by default.
+    browser
+        Open the browser; otherwise the address is printed, and it serves until Ctrl-C.
+    """
+    from stiction.analysis.measurement.reading import is_run, read_source
+    from stiction.explorer.door import explore as open_explorer
+
+    said = (measured or Measured()).arguments()
+    records = [each for each in source if said and each.suffix != ".toml" and not is_run(each)]
+    read = {each: read_source(each, **said) for each in records}
+    opened = [read.get(each, each) for each in source]
+    open_explorer(opened, port=port, browser=browser, trust=trust)

@@ -1,0 +1,233 @@
+"""What a page may ask for, by name, and the answers: heads and arrays.
+
+An answer comes in parts, each better than the one before; ``check`` ends it when nobody waits for
+it any more. A new request is a function here and a line in `ANSWERS`.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+import stiction
+from stiction.comparison import comparable, exchange_law
+from stiction.errors import StictionError
+from stiction.explorer import motion
+from stiction.explorer.decimation import columns_of, extremes
+from stiction.explorer.exports import NAMES, export
+from stiction.explorer.form import form
+from stiction.explorer.motion import Check, Reply
+from stiction.explorer.protocols import names, protocol
+from stiction.explorer.source import Opened
+from stiction.explorer.stability_map import stability_map
+from stiction.friction import LAWS
+from stiction.presets import PRESETS, find
+from stiction.system.description import Description
+
+Request = Mapping[str, Any]
+WIDEST = 8192  # columns of a screen
+AUDIBLE = 48_000.0  # samples of sound a second
+LOUDEST = 60.0  # s of sound
+
+
+def answer(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
+    """Yield the answers to a request.
+
+    Raises
+    ------
+    StictionError
+        If it cannot be answered; a `DescriptionError` has every fault.
+    """
+    known = ANSWERS.get(str(request.get("do")))
+    if known is None:
+        raise StictionError(f"{request.get('do')!r} is unknown; known: {', '.join(ANSWERS)}")
+    yield from known(opened, request, check)
+
+
+def start(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
+    """Yield what the page needs once: its form, its menus, and the system that it opens."""
+    study = None if opened.study is None else study_map(opened)
+    head = {
+        "version": stiction.__version__,
+        "name": opened.name,
+        "form": form(),
+        "protocols": names(),
+        "presets": [{"name": name, "shows": each.shows} for name, each in PRESETS.items()],
+        "tables": tables_of(opened.description),
+        "origin": opened.origin if opened.measured is not None else "",
+        "study": None if study is None else study[0],
+    }
+    yield head, {} if study is None else study[1]
+
+
+def tables_of(description: Description) -> dict[str, Any]:
+    """Return the tables of a description as its file has them, each quantity with its unit."""
+    return tomllib.loads(description.to_toml())
+
+
+def description_in(opened: Opened, request: Request) -> Description:
+    """Return the description in a request."""
+    tables = request.get("tables")
+    return opened.read(tables if isinstance(tables, Mapping) else {})
+
+
+def columns(request: Request) -> int:
+    """Return how many columns of pixels a page has."""
+    return min(max(int(request.get("columns", 600)), 16), WIDEST)
+
+
+def run(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
+    """Yield the whole run, and the parameters in SI, by which the page sets its sliders."""
+    description = description_in(opened, request)
+    for head, arrays in motion.run(description, columns(request), check):
+        yield {**head, "values": description.to_dict()}, arrays
+
+
+def zoom(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
+    """Yield the curves of a window of a run."""
+    description = description_in(opened, request)
+    window = motion.window_of(description, request.get("window"))
+    yield from motion.zoom(description, window, columns(request), check)
+
+
+def fine(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
+    """Yield the samples about a time."""
+    time, width = float(request["time"]), float(request["width"])
+    yield from motion.fine(description_in(opened, request), time, width, check)
+
+
+def measured_curves(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
+    """Yield the measured curves in a window, s."""
+    if opened.measured is None:
+        return
+    low, high = (float(each) for each in request["window"])
+    times = opened.measured["time"]
+    places, starts = columns_of(times, (low, high), columns(request))
+    drawn = {
+        name: extremes(values, starts) for name, values in opened.measured.items() if name != "time"
+    }
+    head = {"window": (low, high), "origin": opened.origin, "columns": columns(request)}
+    yield head, {"column": places.astype(np.float32), **drawn}
+
+
+def stability(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
+    """Yield maps of the stability of steady sliding."""
+    yield from stability_map(description_in(opened, request), check)
+
+
+def spectrogram(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
+    """Yield the spectrogram of the transverse rate: amplitudes (m/s), frequency by time."""
+    from stiction.analysis.signals.spectrum import spectrogram as transform
+
+    description = description_in(opened, request)
+    low, high = motion.span(description)
+    _, fast = description.slider.natural_frequencies
+    count = min(max(8.0 * fast * (high - low), 2_000.0), 150_000.0)
+    times = np.linspace(low, high, int(count) + 1)
+    _, table = motion.simulate(description, times, check)
+    values = table["v_y"][np.isfinite(table["v_y"])]
+    rate, width = count / (high - low), max((high - low) / 50.0, 64 * (high - low) / count)
+    found = transform(values, rate, width=width, step=width / 6.0, start=low)
+    top = int(np.searchsorted(found["frequency"].values, min(2.0 * fast, 0.5 * rate)))
+    part = found.values[: max(top, 8)]
+    head = {
+        "frequency": (0.0, float(found["frequency"][len(part) - 1])),
+        "times": (float(found["time"][0]), float(found["time"][-1])),
+    }
+    yield head, {"amplitude": part.astype(np.float32)}
+
+
+def sound(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
+    """Yield the transverse rate v_y (m/s) as sound, at its true pitch."""
+    description = description_in(opened, request)
+    low, high = motion.span(description)
+    high = min(high, low + LOUDEST)
+    times = low + np.arange(int((high - low) * AUDIBLE)) / AUDIBLE
+    _, table = motion.simulate(description, times, check)
+    yield {"rate": AUDIBLE, "start": low}, {"sound": table["v_y"].astype(np.float32)}
+
+
+def preset(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
+    """Yield the tables of a published system."""
+    yield {"tables": tables_of(find(str(request["name"])).make())}, {}
+
+
+def law(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
+    """Yield the tables with another friction law, comparable with the present one."""
+    description, name = description_in(opened, request), str(request["name"])
+    if name not in LAWS:
+        raise StictionError(f"no law {name!r}; known: {', '.join(LAWS)}")
+    yield {"tables": tables_of(exchange_law(description, comparable(LAWS[name], description)))}, {}
+
+
+def test(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
+    """Yield the tables with a friction test by its name."""
+    table, name = str(request["table"]), str(request["name"])
+    yield {"tables": tables_of(protocol(description_in(opened, request), table, name))}, {}
+
+
+def pick(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
+    """Yield the tables of one run of the study."""
+    if opened.study is None:
+        raise StictionError("no study was opened; stiction explore STUDY.zarr opens one")
+    study, cut = opened.study.study, opened.study.at
+    place = {str(dim): int(index) for dim, index in dict(request["at"]).items()} | dict(cut)
+    dims, shape = study.layout.dims, study.layout.shape
+    index = tuple(
+        min(max(place.get(dim, 0), 0), size - 1) for dim, size in zip(dims, shape, strict=True)
+    )
+    yield {"tables": tables_of(study.description(index))}, {}
+
+
+def file(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
+    """Yield a file to keep."""
+    kind = str(request.get("kind"))
+    if kind not in NAMES:
+        raise StictionError(f"no export {kind!r}; known: {', '.join(NAMES)}")
+    name, content = export(description_in(opened, request), kind, check)
+    yield {"name": name}, {"content": np.frombuffer(content, np.uint8)}
+
+
+def study_map(opened: Opened) -> Reply:
+    """Return the map of a study: a measure over its dimensions, rows of the second."""
+    from stiction.study.view.view import choose_measures, kinds
+
+    view = opened.study
+    assert view is not None
+    (name,) = choose_measures(view, ())[:1]
+    dims = [str(dim) for dim in view.data["status"].dims]
+    axes = []
+    for dim in dims:
+        known = view.study.coordinates.get(dim)
+        values = np.arange(view.data.sizes[dim]) if known is None else known.values
+        axes.append({"dim": dim, "values": values, "unit": "" if known is None else known.unit})
+    head: dict[str, Any] = {"measure": name, "axes": axes, "kinds": None}
+    if name == "regime":
+        named = kinds(view.data)
+        words = sorted(set(named.ravel().tolist()) - {""})
+        values = np.array([[words.index(x) if x in words else -1 for x in named.ravel()]])
+        head["kinds"] = words
+    else:
+        values = view.data[name].values
+    head["axes"] = [{**each, "values": np.asarray(each["values"]).tolist()} for each in axes]
+    return head, {"map": np.asarray(values, np.float32).reshape(view.data["status"].shape)}
+
+
+ANSWERS: dict[str, Callable[[Opened, Request, Check], Iterator[Reply]]] = {
+    "start": start,
+    "run": run,
+    "zoom": zoom,
+    "fine": fine,
+    "measured": measured_curves,
+    "stability": stability,
+    "spectrogram": spectrogram,
+    "sound": sound,
+    "preset": preset,
+    "law": law,
+    "protocol": test,
+    "pick": pick,
+    "export": file,
+}

@@ -1,0 +1,214 @@
+"""The motion that a page draws: curves of the whole run or a window, and samples to animate."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from math import isfinite, nan
+from typing import Any
+
+import numpy as np
+
+from stiction import theory
+from stiction.errors import STATUSES
+from stiction.explorer.decimation import columns_of, extremes, share_stuck
+from stiction.friction import Anisotropic, has_state
+from stiction.friction.law import static_coefficient
+from stiction.result.columns import sample_table
+from stiction.result.table import Table
+from stiction.simulation import automatic_times, solve
+from stiction.solver.integrate import Solution
+from stiction.system.description import Description
+from stiction.text.units import in_words
+
+CURVES = ("spring_x", "spring_y", "friction", "psi", "X", "V_X", "slip_speed", "v_y", "normal_load")
+TRACK = ("u_x", "u_y", "slip_x", "slip_y", "friction", "theta", "X", "V_X", "normal_load")
+PER_COLUMN = 16  # samples in a column of pixels while a slider moves
+FEWEST, MOST = 4_000, 24_000  # samples of the whole run then
+FINE = 4_001  # samples under the microscope
+DIGITS = 6  # of a number on the page
+Window = tuple[float, float]
+Check = Callable[[], None]  # raises if nobody waits for the answer any more
+Arrays = dict[str, np.ndarray]
+Reply = tuple[dict[str, Any], Arrays]
+
+
+def simulate(description: Description, times: np.ndarray, check: Check) -> tuple[Solution, Table]:
+    """Return a run sampled at `times` (s); `check` may end it."""
+    solution = solve(description, times, progress=lambda _: check())
+    return solution, sample_table(description, solution.times, solution.samples, {})
+
+
+def span(description: Description) -> Window:
+    """Return start and end of a run, s."""
+    start = description.initial.time
+    return start, start + description.run.duration
+
+
+def window_of(description: Description, wanted: Any) -> Window:
+    """Return the part of a run that a page shows, s: all of it, unless it asks for less."""
+    start, end = span(description)
+    if not wanted:
+        return start, end
+    low, high = (min(max(float(each), start), end) for each in wanted)
+    return (low, high) if high - low > 1e-12 * (end - start) else (start, end)
+
+
+def pictures(whole: np.ndarray, window: Window, columns: int) -> list[np.ndarray]:
+    """Return the times of two pictures of a window, s: a quick one, then one that misses no peak.
+
+    The second has the samples that `stiction.simulate` chooses by itself, `whole`; if the first has
+    more, it has these too, and is the only one.
+    """
+    low, high = window
+    there = whole[(whole >= low) & (whole <= high)]
+    quick = min(max(PER_COLUMN * columns, FEWEST), MOST)
+    if len(there) > quick:
+        return [np.linspace(low, high, quick), there]
+    return [np.union1d(there, np.linspace(low, high, quick))]
+
+
+def run(description: Description, columns: int, check: Check) -> Iterator[Reply]:
+    """Yield the whole run twice: at once as far as the page needs it, then with every peak."""
+    window, whole = span(description), automatic_times(description)
+    parts = pictures(whole, window, columns)
+    for number, times in enumerate(parts, 1):
+        solution, table = simulate(description, times, check)
+        quick = number < len(parts)
+        head = {
+            **about(description, solution, table),
+            "facts": facts(description, solution, table, None if quick else whole),
+            "window": window,
+            "quick": quick,
+        }
+        drawn = curves(table, solution.sticks, window, columns)
+        yield head, drawn | track(table) if number == 1 else drawn
+
+
+def zoom(description: Description, window: Window, columns: int, check: Check) -> Iterator[Reply]:
+    """Yield the curves of a window."""
+    parts = pictures(automatic_times(description), window, columns)
+    for number, times in enumerate(parts, 1):
+        solution, table = simulate(description, times, check)
+        drawn = curves(table, solution.sticks, window, columns)
+        yield {"window": window, "quick": number < len(parts)}, drawn
+
+
+def fine(description: Description, time: float, width: float, check: Check) -> Iterator[Reply]:
+    """Yield the samples under the microscope: a window about a time, and the sample at the time."""
+    start, end = span(description)
+    time, width = min(max(time, start), end), min(width, end - start)
+    low = min(max(time - 0.5 * width, start), end - width)
+    grid = np.linspace(low, low + width, FINE)
+    _, table = simulate(description, np.unique(np.append(grid, time)), check)
+    at = int(np.searchsorted(table["time"], time).clip(0, len(table["time"]) - 1))
+    names = ("time", *TRACK, "sticking", "v_x", "v_y", "psi", "spring_x", "spring_y")
+    values = {name: float(table[name][at]) for name in names}
+    yield {"at": values, "window": (low, low + width)}, as_track(table)
+
+
+def curves(table: Table, sticks: np.ndarray, window: Window, columns: int) -> Arrays:
+    """Return each curve as first, lowest, highest and last value of each column of pixels."""
+    places, starts = columns_of(table["time"], window, columns)
+    found: Arrays = {name: extremes(table[name], starts) for name in CURVES}
+    return {
+        "column": places.astype(np.float32),
+        **found,
+        "stuck": share_stuck(sticks, window, columns),
+    }
+
+
+def track(table: Table) -> Arrays:
+    """Return the samples that the apparatus is animated with."""
+    return {f"track_{name}": values for name, values in as_track(table).items()}
+
+
+def as_track(table: Table) -> Arrays:
+    """Return time, motion and forces sample by sample."""
+    samples = {name: table[name].astype(np.float32) for name in (*TRACK, "v_x", "v_y")}
+    return {"time": table["time"], **samples, "sticking": table["sticking"].astype(np.float32)}
+
+
+def about(description: Description, solution: Solution, table: Table) -> dict[str, Any]:
+    """Return what is to be read beside the curves, and what the drawing needs to know."""
+    slider = description.slider
+    status = STATUSES[solution.code]
+    return {
+        "ok": status.ok,
+        "status": status.value,
+        "scene": {
+            "phi": slider.phi,
+            "limit": limit(description, table),
+            "ellipse": ellipse(description),
+            "k": (slider.k_x, slider.k_y),
+            "velocity": slider.motion.velocity,
+            "damping": damping_number(description),
+            "frequencies": slider.natural_frequencies,
+            "damped": (slider.c_x > 0.0, slider.c_y > 0.0),
+            "driven": slider.driven,
+        },
+    }
+
+
+def facts(
+    description: Description, solution: Solution, table: Table, times: np.ndarray | None
+) -> list[dict[str, Any]]:
+    """Return the numbers of a run: name, value in SI and as text; extremes are those at `times`."""
+    reached = table["time"]
+    counted = np.full(len(reached), True) if times is None else np.isin(reached, times)
+    counted[-1] = True  # where it ended
+    force, counts = table["spring_x"][counted], solution.counts
+    peak = int(np.nanargmax(force)) if np.isfinite(force).any() else 0
+    slow, fast = description.slider.natural_frequencies
+    duration = float(solution.times[-1] - solution.times[0]) or 1.0
+    listed: list[tuple[str, float, str]] = [
+        ("largest k_x u_x", float(force[peak]), "N"),
+        ("  at", float(reached[counted][peak]), "s"),
+        ("largest slip speed", float(np.nanmax(table["slip_speed"][counted])), "m/s"),
+        ("u_x at the end", float(table["u_x"][-1]), "m"),
+        ("u_y at the end", float(table["u_y"][-1]), "m"),
+        ("stick intervals", float(counts.sticks), "1"),
+        ("time at rest", float(counts.stuck), "s"),
+        ("share at rest", 100.0 * float(counts.stuck) / duration, "%"),
+        ("damping number A", damping_number(description), "1"),
+        ("slow, natural", slow, "Hz"),
+        ("fast, natural", fast, "Hz"),
+        ("solver's steps", float(counts.steps), "1"),
+    ]
+    return [
+        {"name": name, "value": value, "unit": unit, "text": text_of(value, unit)}
+        for name, value, unit in listed
+    ]
+
+
+def text_of(value: float, unit: str) -> str:
+    """Return a number as text; a count in full."""
+    if unit == "1" and value == int(value if isfinite(value) else 0) and isfinite(value):
+        return f"{int(value)}"
+    if unit == "%":
+        return f"{value:.4g} %"
+    return in_words(value, unit, DIGITS)
+
+
+def limit(description: Description, table: Table) -> float:
+    """Return the limit of friction over the load; of a law with state, the largest there was."""
+    law = description.slider.law
+    if has_state(law):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = table["friction"] / table["normal_load"]
+        found = ratio[np.isfinite(ratio)]
+        return float(found.max()) if len(found) else nan
+    return static_coefficient(law)
+
+
+def ellipse(description: Description) -> tuple[float, float]:
+    """Return the ratio and the angle (rad, from X) of the ellipse of friction; a circle has 1."""
+    law: Any = description.slider.law
+    return (law.ratio, law.angle) if isinstance(law, Anisotropic) else (1.0, 0.0)
+
+
+def damping_number(description: Description) -> float:
+    """Return the damping number A of Eq. (10) at the drive's base velocity."""
+    slider = description.slider
+    speed = abs(slider.motion.velocity)
+    found = theory.damping_number(slider.F_0, speed, abs(slider.phi), slider.masses[0], slider.k_x)
+    return float(found)

@@ -1,0 +1,38 @@
+// Axes of plots: linear and logarithmic, with their ticks.
+
+import { plain, prefixed, tickText, ticks } from "./quantity.js";
+
+// Linear axis from low to high (SI), shown with the prefix that suits it.
+export function linearAxis(low, high, count, unit = "") {
+  if (!(high > low)) [low, high] = [low - 0.5 * (Math.abs(low) || 1), low + 0.5 * (Math.abs(low) || 1)];
+  const [factor, prefix] = unit && unit !== "deg" && unit !== "1" ? prefixed(Math.max(Math.abs(low), Math.abs(high))) : [1, ""];
+  const values = ticks(low * factor, high * factor, count);
+  return {
+    low, high, factor, unit: prefix + unit,
+    place: (value) => (value - low) / (high - low),
+    ticks: values.map((value) => [value / factor, tickText(value, values)]),
+  };
+}
+
+const UPPER = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
+
+export function power(exponent) {
+  return "10" + [...String(exponent)].map((letter) => UPPER[letter]).join("");
+}
+
+// Logarithmic axis between positive values, with a tick at decades.
+export function logAxis(low, high, unit = "", most = 6, show = null) {
+  const range = Math.log10(high / low), every = Math.max(1, Math.ceil(range / most));
+  const found = [];
+  for (let n = Math.ceil(Math.log10(low) - 1e-9); n <= Math.log10(high) + 1e-9; n++) {
+    if (n % every === 0) found.push([10 ** n, show ? show(10 ** n) : power(n)]);
+  }
+  return {
+    low, high, unit, factor: 1,
+    place: (value) => Math.log10(Math.max(value, low * 1e-3) / low) / range,
+    value: (place) => low * (high / low) ** place,
+    ticks: found,
+  };
+}
+
+export const asPlain = (value) => plain(value);

@@ -1,0 +1,320 @@
+// The form: a slider and a number with a unit for each parameter, made from the server's schema.
+
+import { SYMBOLS, quantity, symbol } from "./quantity.js";
+import { scaleOf } from "./scale.js";
+
+const TITLES = { slider: "Apparatus", friction: "Friction", drive: "Drive", load: "Load", initial: "Start", run: "Run" };
+const MAIN = new Set(["duration", "velocity"]); // optional ones that everybody needs
+
+export function element(name, properties = {}, ...children) {
+  const made = Object.assign(document.createElement(name), properties);
+  made.append(...children);
+  return made;
+}
+
+export class Form {
+  constructor(place, form, hooks) {
+    Object.assign(this, { place, form, hooks, rows: new Map(), open: new Set(), bases: {} });
+    this.values = {};
+  }
+
+  // Build the form for tables; it stays as it is if only values have changed.
+  show(tables) {
+    const shape = JSON.stringify(tables, (key, value) =>
+      typeof value === "object" || key === "law" || key === "piece" ? value : 0);
+    this.tables = tables;
+    if (shape !== this.shape) {
+      this.shape = shape;
+      const focus = document.activeElement?.id, top = this.place.scrollTop;
+      this.rows.clear();
+      this.place.replaceChildren(this.general(), ...this.groups(tables));
+      this.place.scrollTop = top;
+      if (focus) document.getElementById(focus)?.focus();
+    }
+    for (const row of this.rows.values()) row.write();
+  }
+
+  general() {
+    this.message = element("p", { className: "fault", id: "faults" });
+    this.message.setAttribute("role", "alert");
+    return this.message;
+  }
+
+  groups(tables) {
+    const { form } = this, made = [];
+    made.push(this.group("slider", form.tables.slider, tables.slider, ["slider"]));
+    made.push(this.friction(tables.friction));
+    for (const name of ["drive", "load"]) made.push(this.program(name, tables));
+    made.push(this.group("run", form.tables.run, tables.run, ["run"]));
+    const start = form.tables.initial.filter((field) => field.kind !== "object");
+    made.push(this.group("initial", start, tables.initial ?? {}, ["initial"]));
+    return made;
+  }
+
+  group(name, fields, table, path, ...before) {
+    const set = element("fieldset", {}, element("legend", { textContent: TITLES[name] ?? name }), ...before);
+    const usual = fields.filter((each) => each.required || MAIN.has(each.key));
+    const rare = fields.filter((each) => !usual.includes(each));
+    set.append(...usual.map((field) => this.row(field, [...path, field.key])));
+    if (rare.length) {
+      const more = element("details", {}, element("summary", { textContent: "more" }));
+      more.open = this.open.has(name) || rare.some((field) => table && field.key in table);
+      more.ontoggle = () => this.open[more.open ? "add" : "delete"](name);
+      more.append(...rare.map((field) => this.row(field, [...path, field.key])));
+      set.append(more);
+    }
+    return set;
+  }
+
+  friction(table) {
+    const { laws } = this.form, known = table.law in laws;
+    const menu = choice("law", known ? Object.keys(laws) : [table.law, ...Object.keys(laws)], table.law, "Friction law");
+    menu.onchange = () => this.hooks.law(menu.value);
+    if (known) menu.title = laws[table.law].meaning;
+    const fields = known ? laws[table.law].fields : ownFields(table);
+    const set = this.group("friction", fields, table, ["friction"], element("div", { className: "choose" }, menu));
+    const details = set.querySelector("details") ?? set.appendChild(
+      element("details", {}, element("summary", { textContent: "more" })));
+    for (const field of this.form.anisotropy) {
+      const named = { ...field, required: false, label: `grain ${field.key}` };
+      details.append(this.row(named, ["friction", "anisotropy", field.key]));
+    }
+    if (table.anisotropy) details.open = true;
+    return set;
+  }
+
+  program(name, tables) {
+    const table = tables[name] ?? {}, pieces = table.program ?? [];
+    const fields = this.form.tables[name].filter((field) => !["program", "wave"].includes(field.kind));
+    const waves = this.form.tables[name].filter((field) => field.kind === "wave");
+    const tests = this.hooks.protocols[name];
+    const menu = choice(`${name}-protocol`, ["", ...tests], "", `${TITLES[name]}: protocol`);
+    menu.options[0].textContent = pieces.length ? `program of ${pieces.length} pieces` : name === "drive" ? "constant velocity" : "constant";
+    menu.onchange = () => menu.value && this.hooks.protocol(name, menu.value);
+    const set = this.group(name, fields, table, [name], element("div", { className: "choose" }, menu));
+    pieces.forEach((piece, index) => set.append(this.piece(name, piece, index)));
+    const add = element("button", { type: "button", textContent: "add a piece", id: `${name}-add` });
+    add.onclick = () => this.change((all) => {
+      const own = (all[name] ??= {});
+      const last = own.program?.at(-1);
+      if (last && last.duration === undefined && last.piece !== "free") last.duration = "1 s";
+      own.program = [...(own.program ?? []), { piece: "constant", duration: "1 s" }];
+    });
+    const details = set.querySelector("details") ?? set.appendChild(
+      element("details", {}, element("summary", { textContent: "more" })));
+    for (const wave of waves) {
+      for (const field of wave.fields) {
+        const named = { ...field, required: false, label: `${wave.key} ${field.key}` };
+        details.append(this.row(named, [name, wave.key, field.key]));
+      }
+      if (table[wave.key]) details.open = true;
+    }
+    details.append(add);
+    return set;
+  }
+
+  piece(name, piece, index) {
+    const kinds = this.form.pieces[name];
+    const menu = choice(`${name}-${index}`, Object.keys(kinds), piece.piece, `Piece ${index + 1}`);
+    menu.onchange = () => this.change((all) => {
+      const next = { piece: menu.value };
+      for (const field of kinds[menu.value] ?? []) {
+        if (field.key in piece) next[field.key] = piece[field.key];
+        else if (field.required) next[field.key] = usual(field, name, this.tables);
+      }
+      all[name].program[index] = next;
+    });
+    const away = element("button", { type: "button", textContent: "×", title: "Remove this piece" });
+    away.setAttribute("aria-label", `Remove piece ${index + 1}`);
+    away.onclick = () => this.change((all) => {
+      all[name].program.splice(index, 1);
+      if (!all[name].program.length) delete all[name].program;
+      if (name === "load" && !Object.keys(all.load).length) delete all.load;
+    });
+    const box = element("div", { className: "piece" }, element("div", { className: "choose" }, menu, away));
+    for (const field of kinds[piece.piece] ?? []) {
+      if (field.key === "duration" && piece.piece === "free") continue;
+      box.append(this.row(field, [name, "program", index, field.key]));
+    }
+    return box;
+  }
+
+  row(field, path) {
+    const id = `field-${path.join("-")}`, named = serverPath(path);
+    const label = labelOf(field, id);
+    const box = element("div", { className: "row" }, label);
+    box.dataset.path = named;
+    const fault = element("p", { className: "fault", id: `${id}-fault` });
+    const write = this.control(field, path, id, box);
+    box.append(fault);
+    this.rows.set(named, { box, fault, write });
+    return box;
+  }
+
+  // Add what a parameter is changed with; return what shows its value.
+  control(field, path, id, box) {
+    const value = () => read(this.tables, path);
+    if (field.kind === "choice" || field.kind === "boolean") {
+      const options = field.options ?? ["false", "true"];
+      const menu = choice(id, options, String(field.default ?? options[0]), field.meaning);
+      menu.onchange = () => this.put(path, field.kind === "boolean" ? menu.value === "true" : menu.value);
+      box.append(menu);
+      return () => { menu.value = String(value() ?? field.default ?? options[0]); };
+    }
+    const text = element("input", { type: "text", id, spellcheck: false, placeholder: placeholder(field) });
+    text.setAttribute("aria-describedby", `${id}-fault`);
+    text.onchange = () => this.put(path, entered(field, text.value));
+    text.onkeydown = (event) => {
+      if (event.key === "Enter") { event.preventDefault(); text.onchange(); }
+    };
+    box.append(text);
+    const slides = field.kind === "number";
+    const slider = slides && element("input", { type: "range", min: 0, max: 1000, step: 1 });
+    if (slider) {
+      slider.setAttribute("aria-label", `${field.label ?? field.key}, slider`);
+      slider.dataset.slider = serverPath(path);
+      slider.oninput = () => this.slide(field, path, slider, text, false);
+      slider.onchange = () => this.slide(field, path, slider, text, true);
+      box.append(slider);
+    }
+    return () => {
+      const its = value(), words = shown(its);
+      if (text.value !== words && (document.activeElement !== text || its !== undefined)) text.value = words;
+      const number = this.numberAt(path) ?? (typeof field.default === "number" ? field.default : 0);
+      const key = serverPath(path);
+      if (!slider) return;
+      if (!this.bases[key] || !this.bases[key].holds(number)) this.bases[key] = scaleOf(field, number);
+      const at = this.bases[key].place(number);
+      if (at !== slider.at && (document.activeElement !== slider || !this.sliding)) slider.value = slider.at = at;
+      const spoken = text.value || placeholder(field);
+      if (slider.ariaValueText !== spoken) slider.ariaValueText = spoken;
+    };
+  }
+
+  slide(field, path, slider, text, done) {
+    const scale = this.bases[serverPath(path)];
+    const value = scale.value(Number(slider.value));
+    text.value = quantity(value, field.unit, 3);
+    slider.ariaValueText = text.value;
+    slider.at = undefined;
+    this.sliding = !done;
+    this.put(path, text.value, done);
+  }
+
+  put(path, value, done = true) {
+    this.change((all) => write(all, path, value), done);
+  }
+
+  change(edit, done = true) {
+    const tables = structuredClone(this.tables);
+    edit(tables);
+    this.tables = tables;
+    this.hooks.change(tables, done);
+  }
+
+  // The value of a parameter in SI, as the server last read it.
+  numberAt(path) {
+    const found = read(this.values, path);
+    if (typeof found === "number") return found;
+    const angle = /^([-\d.e+]+) (deg|rad)$/.exec(found ?? "");
+    return angle ? Number(angle[1]) * (angle[2] === "deg" ? Math.PI / 180 : 1) : null;
+  }
+
+  setValues(values) {
+    this.values = values;
+    for (const row of this.rows.values()) row.write();
+  }
+
+  setFaults(faults) {
+    if (!faults.length && !this.faulty) return;
+    this.faulty = faults.length > 0;
+    for (const { box, fault } of this.rows.values()) {
+      box.classList.remove("faulty");
+      fault.textContent = "";
+    }
+    const rest = [];
+    for (const { path, message } of faults) {
+      const row = this.rows.get(path);
+      if (!row) { rest.push(path ? `${path}: ${message}` : message); continue; }
+      row.box.classList.add("faulty");
+      row.fault.textContent = message;
+      const details = row.box.closest("details");
+      if (details) details.open = true;
+    }
+    if (this.message) this.message.textContent = rest.join("; ");
+  }
+}
+
+function labelOf(field, id) {
+  const label = element("label", { htmlFor: id, title: field.meaning });
+  const own = field.label ? null : symbol(SYMBOLS[field.key] ?? field.key);
+  if (own) {
+    label.append(element("i", { textContent: own.head }));
+    if (own.index) label.append(element("sub", { textContent: own.index }));
+  } else {
+    label.className = "word";
+    label.textContent = field.label ?? field.key.replaceAll("_", " ");
+  }
+  return label;
+}
+
+function choice(id, options, value, label) {
+  const menu = element("select", { id });
+  menu.append(...options.map((each) => element("option", { value: each, textContent: each })));
+  menu.value = value;
+  menu.setAttribute("aria-label", label);
+  menu.title = label;
+  return menu;
+}
+
+// The path of a parameter as the server names it in a fault; lists count from 1.
+function serverPath(path) {
+  return path.map((key) => (typeof key === "number" ? key + 1 : key)).join(".");
+}
+
+function read(tables, path) {
+  return path.reduce((part, key) => part?.[key], tables);
+}
+
+function write(tables, path, value) {
+  const keys = [...path], last = keys.pop();
+  let part = tables;
+  for (const key of keys) part = part[key] ??= {};
+  if (value === undefined) delete part[last];
+  else part[last] = value;
+  const [table, inner] = path; // an empty table is left out
+  if (keys.length > 1 && !Object.keys(part).length && !Array.isArray(tables[table][inner])) delete tables[table][inner];
+  if (["load", "initial"].includes(table) && !Object.keys(tables[table]).length) delete tables[table];
+}
+
+function entered(field, text) {
+  const clean = text.trim();
+  if (!clean) return undefined;
+  if (field.kind === "integer") return Number.isInteger(Number(clean)) ? Number(clean) : clean;
+  if (field.kind === "array") return clean.replace(/^\[|\]$/g, "").split(",").map((each) => each.trim());
+  if (!field.unit && Number.isFinite(Number(clean))) return Number(clean);
+  return clean;
+}
+
+function shown(value) {
+  if (value === undefined || value === null) return "";
+  if (Array.isArray(value)) return value.join(", ");
+  return String(value);
+}
+
+function placeholder(field) {
+  if (field.default === 0 || typeof field.default === "number") return quantity(field.default, field.unit);
+  return field.default === null ? "none" : "";
+}
+
+function usual(field, name, tables) {
+  if (field.key === "duration") return "1 s";
+  if (field.key === "frequency") return "10 Hz";
+  return name === "drive" ? tables.drive?.velocity ?? "1 mm/s" : tables.slider?.normal_load ?? "10 N";
+}
+
+function ownFields(table) {
+  return Object.keys(table).filter((key) => !["law", "anisotropy", "source"].includes(key)).map((key) => ({
+    key, unit: "", kind: "number", required: true, meaning: "", default: undefined,
+  }));
+}

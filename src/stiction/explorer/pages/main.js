@@ -1,0 +1,364 @@
+// The page: it asks for a run when a parameter changes, and draws the answers frame by frame.
+
+import { Form, element } from "./form.js";
+import { Link } from "./link.js";
+import { Microscope, spanText } from "./microscope.js";
+import { Player, SPEEDS } from "./player.js";
+import { quantity } from "./quantity.js";
+import { Scene } from "./scene.js";
+import { Series } from "./series.js";
+import { Sound } from "./sound.js";
+import { State, decodeState } from "./state.js";
+import { Track } from "./track.js";
+import { Panel } from "./views.js";
+
+const $ = (id) => document.getElementById(id);
+const data = {}; // of the run that is shown, for the views
+const page = { micro: null, wide: null, drawn: 0 };
+window.stictionPage = page; // what is shown, for tests and measurements
+let state, form, series, scene, microscope, panels = [], view = null;
+
+const player = new Player((what) => {
+  $("play").textContent = player.playing ? "❚❚" : "▶";
+  $("play").setAttribute("aria-label", player.playing ? "Pause" : "Play");
+  if (player.playing) sound.play(player.t, player.slow);
+  else sound.stop();
+  if (what !== "again") lookCloser();
+});
+const sound = new Sound();
+const link = new Link((now) => {
+  if (now === "open") link.ask({ do: "start" }, begin, failed);
+  else say("the explorer was closed; start it again with: stiction explore", true);
+});
+Object.assign(page, { sound, link, window: null });
+
+function say(words, bad = false) {
+  $("status").textContent = words;
+  $("status").classList.toggle("bad", bad);
+}
+
+function failed(answer) {
+  if (answer.faults) form?.setFaults(answer.faults);
+  const first = answer.faults?.[0];
+  say(first ? `${first.path}: ${first.message}` : answer.error, true);
+}
+
+function begin(answer) {
+  $("name").textContent = answer.name;
+  document.title = `${answer.name} · stiction explorer`;
+  data.study = answer.study ? { ...answer.study, arrays: answer.arrays } : null;
+  data.origin = answer.origin;
+  for (const { name, shows } of answer.presets) $("preset").append(element("option", { value: name, textContent: name, title: shows }));
+  for (const slow of SPEEDS) $("speed").append(element("option", { value: slow, textContent: slow === 1 ? "real time" : `1 : ${slow.toLocaleString("en")}` }));
+  const linked = decodeState(location.hash);
+  state = new State(answer.tables, changed);
+  if (linked?.tables) state.tables = linked.tables;
+  player.slow = SPEEDS.includes(linked?.slow) ? linked.slow : 10;
+  player.t = Number(linked?.t) || NaN;
+  view = Array.isArray(linked?.window) ? linked.window : null;
+  page.wide = Number(linked?.wide) || null;
+  $("speed").value = player.slow;
+  form = new Form($("parameters"), answer.form, {
+    change: (tables, done) => state.set(tables, done),
+    law: (name) => replace({ do: "law", name, tables: state.tables }),
+    protocol: (table, name) => replace({ do: "protocol", table, name, tables: state.tables }),
+    protocols: answer.protocols,
+  });
+  scene = new Scene($("scene"));
+  microscope = new Microscope($("microscope").querySelector("canvas"), { seek: (t) => player.seek(t) });
+  series = new Series($("series"), { seek: (t) => player.seek(t), now: () => player.t, window: zoom, resized: () => state && later() });
+  const hooks = { needs: () => panels.length && askViews(), place, pick: (at) => replace({ do: "pick", at }) };
+  const first = linked?.views ?? (data.study ? ["study", "phase"] : ["stability", "phase"]);
+  panels = [new Panel($("panel-a"), data, first[0], hooks), new Panel($("panel-b"), data, first[1], hooks)];
+  listen();
+  changed();
+  requestAnimationFrame(frame);
+}
+
+function replace(request) {
+  link.ask(request, (answer) => state.set(answer.tables), (answer) => {
+    failed(answer);
+    form.shape = "";
+    form.show(state.tables);
+  });
+}
+
+// Something of the description has changed: compute it anew.
+function changed() {
+  form.show(state.tables);
+  $("undo").disabled = !state.past.length;
+  $("redo").disabled = !state.future.length;
+  ask();
+}
+
+let patience;
+function later() {
+  clearTimeout(patience);
+  patience = setTimeout(ask, 150);
+}
+
+function ask() {
+  page.asked = performance.now();
+  const asked = page.asked;
+  link.ask({ do: "run", tables: state.tables, columns: series.columns }, (answer) => show(answer, asked), failed);
+  if (!page.shown) say("computing; the first run of a law may compile it, which takes some seconds");
+}
+
+function show(answer, asked) {
+  form.setFaults([]);
+  form.setValues(answer.values);
+  Object.assign(data, { facts: answer.facts, scene: answer.scene, own: { phi: form.numberAt(["slider", "phi"]), V: form.numberAt(["drive", "velocity"]) ?? 0 } });
+  if (answer.arrays.track_time) {
+    data.track = new Track(answer.arrays, "track_");
+    scene.show(answer.scene, data.track);
+    if (!(player.t === player.t)) player.t = data.track.start + 0.35 * (data.track.end - data.track.start);
+    player.span(data.track.start, data.track.end);
+    page.wide ??= usualWidth();
+    page.micro = null; // of the run before
+  }
+  whole = answer;
+  if (!view) series.show("b", answer);
+  for (const panel of panels) panel.refresh();
+  const sticks = answer.facts.find((each) => each.name === "stick intervals"), rest = answer.facts.find((each) => each.name === "time at rest");
+  say(answer.ok ? `${sticks.text} stick intervals, ${rest.text} at rest` : `ended early: ${answer.status}`, !answer.ok);
+  page.shown = { asked, quick: answer.quick, arrived: performance.now() };
+  page.redraw = asked;
+  if (view) zoom(view, false);
+  if (answer.quick) return; // a slider may still be on its way
+  compare();
+  lookCloser(true);
+  askViews();
+  if (sound.on) askSound();
+}
+let whole;
+
+function usualWidth() { return Math.min(4 / data.scene.frequencies[1], player.end - player.start); }
+
+// Show a part of the run; null is all of it.
+function zoom(window, write = true) {
+  const [start, end] = whole.window;
+  if (window) {
+    const span = Math.min(Math.max(window[1] - window[0], 1e-9 * (end - start), 1e-7), end - start);
+    const low = Math.min(Math.max(window[0], start), end - span);
+    view = span > 0.999 * (end - start) ? null : [low, low + span];
+  } else view = null;
+  page.window = view;
+  if (!view) series.show("b", whole);
+  else link.ask({ do: "zoom", tables: state.tables, window: view, columns: series.columns }, (answer) => {
+    series.show("b", answer);
+    compare();
+  }, failed);
+  if (write) remember();
+  compare();
+}
+
+// Draw the pinned run and the measured one over the same time.
+function compare() {
+  const window = view ?? whole.window, columns = series.columns;
+  const clear = (part) => series[part] && series.show(part, undefined);
+  if (data.pinned) link.ask({ do: "zoom", lane: 1, tables: data.pinned.tables, window, columns }, (answer) => series.show("a", answer), () => clear("a"));
+  else clear("a");
+  if (data.origin) link.ask({ do: "measured", window, columns }, (answer) => series.show("measured", answer));
+}
+
+// What the views at the side need beyond the run; the map, only if something else than its axes changed.
+function askViews() {
+  if (!state) return;
+  const wanted = panels.map((panel) => panel.asks);
+  const all = JSON.stringify(state.tables);
+  if (wanted.includes("spectrogram") && page.spectrum !== all) {
+    page.spectrum = all;
+    link.ask({ do: "spectrogram", tables: state.tables }, (answer) => { data.spectrogram = answer; refresh(); }, () => {});
+  }
+  const rest = structuredClone(state.tables), V = data.own?.V ?? 0;
+  delete rest.slider.phi;
+  delete rest.run;
+  rest.drive.velocity = Math.round(Math.log10(Math.abs(V) || 1e-3)) * Math.sign(V);
+  if (data.stability) { // the range stays while the point is inside it
+    const [low, high] = data.stability.speeds;
+    if (Math.abs(V) >= low && Math.abs(V) <= high) rest.drive.velocity = page.decade;
+  }
+  const key = JSON.stringify(rest);
+  if (wanted.includes("stability") && page.map !== key) {
+    page.map = key;
+    page.decade = rest.drive.velocity;
+    data.stabilityError = null;
+    link.ask({ do: "stability", tables: state.tables }, (answer) => { data.stability = answer; page.mapped = answer.arrays.growth.shape[0]; refresh(); }, (answer) => {
+      data.stabilityError = answer.error ?? answer.faults[0].message;
+      page.map = null;
+      refresh();
+    });
+  }
+}
+
+function refresh() { for (const panel of panels) panel.refresh(); }
+
+function place({ phi, V }, done) {
+  const tables = structuredClone(state.tables);
+  tables.slider.phi = (data.own.phi < 0 ? "-" : "") + phi;
+  tables.drive.velocity = (data.own.V < 0 ? "-" : "") + V;
+  state.set(tables, done);
+}
+
+// Ask for the samples about the present time, unless those at hand will do.
+function lookCloser(anew = false) {
+  if (!data.track || !page.wide) return;
+  $("micro-span").textContent = spanText(page.wide);
+  const micro = page.micro, t = player.t;
+  const inside = micro && !anew && micro.holds(t) && Math.abs(micro.end - micro.start - page.wide) < 1e-3 * page.wide;
+  if (inside && !(player.playing && ahead(micro) < 0.2 * page.wide)) return;
+  if (player.playing && page.wide * player.slow < 0.3) return; // it passes too fast to be seen
+  if (page.looking && !anew && performance.now() - page.looking < 3000 && player.playing) return;
+  page.looking = performance.now();
+  const about = player.playing ? Math.min(t + 0.4 * page.wide, player.end) : t;
+  link.ask({ do: "fine", tables: state.tables, time: about, width: page.wide }, (answer) => {
+    page.looking = 0;
+    page.micro = new Track(answer.arrays);
+    page.at = answer.at;
+    microscope.show(page.micro);
+  }, () => {});
+}
+
+const ahead = (micro) => (micro.end >= player.end - 1e-12 ? Infinity : micro.end - player.t);
+
+function frame(time) {
+  player.frame(time, player.playing ? sound.now() : null);
+  if (player.playing) lookCloser();
+  const { t } = player, fine = page.micro?.holds(t) ? page.micro : data.track;
+  const now = { t, own: data.own, state: fine?.at(t), micro: page.micro && [page.micro.start, page.micro.end] };
+  const key = `${t} ${now.own?.phi} ${now.own?.V} ${now.micro} ${page.shown?.arrived}`;
+  for (const each of [scene, series, microscope, ...panels]) if (each.view !== null) each.layers.draw(now, key);
+  if (document.activeElement !== $("macro") || player.playing) $("macro").value = Math.round((1e5 * (t - player.start)) / (player.end - player.start || 1));
+  if (page.micro) $("micro").value = Math.round((4000 * (t - page.micro.start)) / (page.micro.end - page.micro.start || 1));
+  $("clock").textContent = `t = ${t.toFixed(player.slow >= 100 ? 6 : 4)} s`;
+  page.frames = player.frames.length;
+  page.t = t;
+  page.drawn = (page.drawn ?? 0) + 1;
+  if (page.redraw) { // when the curves of a request have been drawn
+    page.latency = { asked: page.redraw, drawn: performance.now() };
+    page.redraw = 0;
+  }
+  requestAnimationFrame(frame);
+}
+
+function remember() {
+  state.extra = { slow: player.slow, t: Number(player.t.toPrecision(9)), window: view, wide: page.wide, views: panels.map((panel) => panel.name) };
+  state.write();
+}
+
+function listen() {
+  $("undo").onclick = () => state.undo();
+  $("redo").onclick = () => state.redo();
+  $("reset").onclick = () => state.reset();
+  $("preset").onchange = () => {
+    if ($("preset").value) replace({ do: "preset", name: $("preset").value });
+    $("preset").value = "";
+  };
+  $("export").onchange = () => {
+    takeAway($("export").value);
+    $("export").value = "";
+  };
+  $("pin").onclick = pin;
+  $("swap").onclick = () => {
+    const pinned = data.pinned.tables;
+    pin(true);
+    state.set(pinned);
+  };
+  $("play").onclick = () => player.toggle();
+  $("speed").onchange = () => {
+    player.slow = Number($("speed").value);
+    player.toggle(player.playing);
+    remember();
+  };
+  $("macro").oninput = () => player.seek(player.start + (Number($("macro").value) / 1e5) * (player.end - player.start));
+  $("micro").oninput = () => page.micro && player.seek(page.micro.start + (Number($("micro").value) / 4000) * (page.micro.end - page.micro.start));
+  $("macro").onchange = $("micro").onchange = remember;
+  $("micro-wider").onclick = () => widen(2);
+  $("micro-closer").onclick = () => widen(0.5);
+  $("sound").onclick = listenTo;
+  addEventListener("keydown", key);
+  addEventListener("hashchange", () => {
+    const linked = decodeState(location.hash);
+    if (linked?.tables && location.hash.slice(1) !== state.address) state.set(linked.tables);
+  });
+}
+
+function widen(factor) {
+  page.wide = Math.min(Math.max(page.wide * factor, 1e-7), player.end - player.start);
+  lookCloser(true);
+  remember();
+}
+
+function pin(keep = false) {
+  const on = keep === true || !data.pinned;
+  data.pinned = on ? { tables: structuredClone(state.tables), track: data.track, scene: data.scene, facts: data.facts, own: data.own } : null;
+  $("pin").setAttribute("aria-pressed", String(on));
+  $("pin").textContent = on ? "A pinned" : "Pin as A";
+  $("swap").hidden = !on;
+  compare();
+  refresh();
+  series.layers.refresh();
+}
+
+function listenTo() {
+  sound.on = !sound.on;
+  $("sound").setAttribute("aria-pressed", String(sound.on));
+  if (sound.on) askSound();
+  else sound.stop();
+}
+
+function askSound() {
+  link.ask({ do: "sound", tables: state.tables }, (answer) => {
+    sound.load(answer);
+    if (player.playing) sound.play(player.t, player.slow);
+  }, failed);
+}
+
+function takeAway(kind) {
+  if (!kind) return;
+  say(`writing ${kind} …`);
+  link.ask({ do: "export", kind, tables: state.tables }, ({ name, arrays }) => {
+    say(`wrote ${name}`);
+    if (kind === "python" || kind === "toml") return tell(name, new TextDecoder().decode(arrays.content));
+    keep(name, arrays.content);
+  }, failed);
+}
+
+function keep(name, content) {
+  const address = URL.createObjectURL(new Blob([content]));
+  const away = element("a", { href: address, download: name });
+  document.body.append(away);
+  away.click();
+  away.remove();
+  setTimeout(() => URL.revokeObjectURL(address), 10000);
+}
+
+function tell(name, words) {
+  const box = element("dialog", {}, element("h2", { textContent: name }), element("pre", { textContent: words }));
+  const copy = element("button", { textContent: "Copy" }), save = element("button", { textContent: "Save" }), close = element("button", { textContent: "Close" });
+  copy.onclick = () => navigator.clipboard.writeText(words);
+  save.onclick = () => keep(name, new TextEncoder().encode(words));
+  close.onclick = () => box.close();
+  box.onclose = () => box.remove();
+  box.append(copy, " ", save, " ", close);
+  document.body.append(box);
+  box.showModal();
+}
+
+function key(event) {
+  const inField = /^(INPUT|SELECT|TEXTAREA)$/.test(event.target.tagName) && event.target.type !== "range";
+  if (event.ctrlKey || event.metaKey) {
+    const undo = event.key === "z" && !event.shiftKey, redo = event.key === "y" || (event.key.toLowerCase() === "z" && event.shiftKey);
+    if ((undo || redo) && !inField) {
+      state[undo ? "undo" : "redo"]();
+      event.preventDefault();
+    }
+    return;
+  }
+  if (inField || event.altKey) return;
+  if (event.key === " " && event.target.tagName !== "BUTTON" && event.target.tagName !== "SUMMARY") player.toggle();
+  else if (event.key === "p") pin();
+  else if (event.key === "s") listenTo();
+  else return;
+  event.preventDefault();
+}

@@ -1,0 +1,78 @@
+// A few periods of the fast oscillation about the present time: slip speed and direction of friction.
+
+import { linearAxis } from "./axis.js";
+import { BLUE, GREEN, INK, Layers, SOFT, curve, frame, line, text } from "./drawing.js";
+import { quantity } from "./quantity.js";
+
+const LEFT = 52, RIGHT = 10, TOP = 4, BOTTOM = 22, GAP = 4;
+
+export class Microscope {
+  constructor(canvas, hooks) {
+    this.layers = new Layers(canvas, (...a) => this.still(...a), (...a) => this.moving(...a));
+    canvas.onpointerdown = canvas.onpointermove = (event) => {
+      if (!this.track || (event.type === "pointermove" && !event.buttons)) return;
+      const { left } = canvas.getBoundingClientRect();
+      const place = (event.clientX - left - 1 - LEFT) / (this.layers.width - LEFT - RIGHT);
+      hooks.seek(this.track.start + Math.min(Math.max(place, 0), 1) * (this.track.end - this.track.start));
+    };
+  }
+
+  show(track) {
+    this.track = track;
+    this.layers.refresh();
+  }
+
+  still(context, width, height) {
+    if (!this.track) return;
+    const { time, columns } = this.track, inner = width - LEFT - RIGHT;
+    const middle = 0.5 * (this.track.start + this.track.end);
+    const room = (height - TOP - BOTTOM - GAP) / 2;
+    const speeds = columns.slip_x.map((x, i) => Math.hypot(x, columns.slip_y[i]));
+    const rows = [["slip", speeds, GREEN, "m/s", 0], ["θ", columns.theta, BLUE, "deg", null]];
+    const t = linearAxis(this.track.start - middle, this.track.end - middle, 5, "s");
+    rows.forEach(([name, values, color, unit, least], i) => {
+      const box = { left: LEFT, top: TOP + i * (room + GAP), width: inner, height: room };
+      let low = Infinity, high = -Infinity;
+      for (const value of values) { if (value < low) low = value; if (value > high) high = value; }
+      if (least !== null) low = least;
+      const margin = 0.07 * (high - low) || 1e-3 * Math.abs(high) || 1;
+      const axis = linearAxis(least === null ? low - margin : low, high + margin, room / 24, unit);
+      this.rests(context, box);
+      const { x, y } = frame(context, box, i ? t : { ...t, ticks: t.ticks.map(([at]) => [at, ""]) }, axis);
+      curve(context, time.length, (k) => [x(time[k] - middle), y(values[k])], color, 1.4);
+      context.save();
+      context.translate(9, box.top + room / 2);
+      context.rotate(-Math.PI / 2);
+      text(context, `${name} (${axis.unit})`, 0, 0, { color, align: "center" });
+      context.restore();
+    });
+    text(context, `${t.unit}`, width - RIGHT, height - 8, { color: SOFT, align: "right", halo: true });
+  }
+
+  // Shade the rests.
+  rests(context, box) {
+    const { time, columns } = this.track, span = this.track.end - this.track.start;
+    const x = (t) => box.left + (box.width * (t - this.track.start)) / span;
+    context.fillStyle = "rgba(110,110,110,.25)";
+    let from = -1;
+    for (let k = 0; k <= time.length; k++) {
+      const rest = k < time.length && columns.sticking[k] > 0;
+      if (rest && from < 0) from = k;
+      if (!rest && from >= 0) {
+        context.fillRect(x(time[from]), box.top, Math.max(x(time[k - 1]) - x(time[from]), 1), box.height);
+        from = -1;
+      }
+    }
+  }
+
+  moving(context, width, height, now) {
+    if (!this.track?.holds(now.t)) return;
+    const place = (now.t - this.track.start) / (this.track.end - this.track.start);
+    const at = LEFT + place * (width - LEFT - RIGHT);
+    line(context, [[at, TOP], [at, height - BOTTOM]], INK, 1.2);
+  }
+}
+
+export function spanText(width) {
+  return `${quantity(width, "s", 3)} wide`;
+}

@@ -1,0 +1,71 @@
+// Numbers with units: texts as descriptions have them, symbols, ticks.
+
+const PREFIX = { "-12": "p", "-9": "n", "-6": "µ", "-3": "m", 0: "", 3: "k", 6: "M", 9: "G" };
+const RANGES = {
+  kg: [-12, 3], m: [-9, 0], s: [-9, 0], "m/s": [-9, 0], N: [-9, 9], "N/m": [-9, 9],
+  "N*s/m": [-3, 6], Hz: [0, 9],
+};
+const BARE = new Set(["", "1", "%", "s/m", "1/s"]);
+
+// Plain digits without an exponent or trailing zeros, where that is short.
+export function plain(value, digits = 4) {
+  const rounded = Number(value.toPrecision(digits));
+  const text = String(rounded);
+  return text.includes("e") ? text.replace("e+", "e") : text;
+}
+
+export function quantity(value, unit, digits = 4) {
+  if (unit === "rad") return `${plain((value * 180) / Math.PI, digits)} deg`;
+  if (BARE.has(unit) || !(unit in RANGES)) return `${plain(value, digits)} ${unit}`.trim();
+  const name = unit === "kg" ? "g" : unit.replace("*", " ");
+  let size = unit === "kg" ? value * 1e3 : value;
+  if (size === 0) return `0 ${name}`;
+  const [low, high] = RANGES[unit];
+  let power = Math.floor(Math.log10(Math.abs(Number(size.toPrecision(digits)))) / 3 + 1e-9) * 3;
+  power = Math.min(Math.max(power, low), high);
+  size /= 10 ** power;
+  return `${plain(size, digits)} ${PREFIX[power]}${name}`;
+}
+
+const GREEK = {
+  mu: "μ", phi: "φ", epsilon: "ε", theta: "θ", psi: "ψ", sigma: "σ", alpha: "α", beta: "β",
+  gamma: "γ", eta: "η", inf: "∞",
+};
+
+// The parts of a symbol: "mu_inf" is μ with the index ∞; null for a word.
+export function symbol(key) {
+  const parts = key.split("_");
+  const head = GREEK[parts[0]] ?? parts[0];
+  if (head.length > 2 || parts.length > 2) return null;
+  const index = parts.length > 1 ? GREEK[parts[1]] ?? parts[1] : "";
+  if (index.length > 6) return null;
+  return { head, index };
+}
+
+export const SYMBOLS = { mass: "m", normal_load: "W", velocity: "V", duration: "duration" };
+
+// Values at which an axis has ticks, and how many digits they need.
+export function ticks(low, high, count) {
+  const rough = (high - low) / Math.max(count, 1);
+  if (!(rough > 0) || !isFinite(rough)) return [];
+  const unit = 10 ** Math.floor(Math.log10(rough));
+  const far = (each) => Math.abs(Math.log(each / rough));
+  const step = [1, 2, 5, 10].map((each) => each * unit).reduce((a, b) => (far(b) < far(a) ? b : a));
+  const found = [];
+  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i++) found.push(i * step);
+  return found;
+}
+
+export function tickText(value, among) {
+  const step = among.length > 1 ? among[1] - among[0] : Math.abs(value) || 1;
+  const places = Math.max(0, Math.min(9, -Math.floor(Math.log10(step) + 1e-9)));
+  const text = value.toFixed(places);
+  return (Number(text) === 0 ? (0).toFixed(places) : text).replace("-", "−");
+}
+
+// The factor and the prefix that bring values of a size to 0.2 to 200.
+export function prefixed(size) {
+  if (!(size > 0) || !isFinite(size)) return [1, ""];
+  const power = Math.min(Math.max(Math.floor(Math.log10(5 * size) / 3) * 3, -12), 6);
+  return [10 ** -power, PREFIX[power]];
+}

@@ -1,0 +1,190 @@
+// The apparatus from above: plate, springs, mass, slip velocity, friction force inside its limit.
+//
+// Drawn in the frame of the spring's far end. X, the drive direction, points to the right; the axes
+// x and y of the spring lie at -phi to it. Elongations are magnified, each axis by a round factor
+// that the picture states.
+
+import { BLUE, FLOOR, GREEN, GREY, INK, Layers, ORANGE, PURPLE, RED, SERIF, SOFT, arrow, line, symbols, text } from "./drawing.js";
+import { plain, quantity } from "./quantity.js";
+
+const BLOCK = 27; // half side of the mass, px
+const PIXEL = 0.0254 / 96; // m, of CSS
+
+export class Scene {
+  constructor(canvas) {
+    this.layers = new Layers(canvas, () => {}, (...a) => this.moving(...a));
+  }
+
+  show(scene, track) {
+    this.scene = scene;
+    this.track = track;
+    const { width, height } = this.layers;
+    this.lengths = { x: track.largest("u_x"), y: track.largest("u_y") };
+    this.size = { width, height };
+    this.largestSlip = track.largest("slip_x") + track.largest("slip_y");
+  }
+
+  // Magnifications, so that the largest elongations fit; nearly equal ones are made equal.
+  magnification(width, height) {
+    const room = { x: 0.2 * width, y: 0.17 * height }, found = {};
+    for (const axis of ["x", "y"]) found[axis] = rounded((room[axis] / (this.lengths[axis] || room[axis])) * PIXEL) / PIXEL;
+    if (Math.max(found.x, found.y) < 12 * Math.min(found.x, found.y)) found.x = found.y = Math.min(found.x, found.y);
+    return found;
+  }
+
+  moving(context, width, height, now) {
+    if (!this.scene || !now.state) return;
+    const s = now.state, { scene } = this, M = this.magnification(width, height);
+    const c = Math.cos(scene.phi), n = Math.sin(scene.phi);
+    const turn = (x, y) => [x * c + y * n, -(-x * n + y * c)]; // to the screen, y downwards
+    const home = [0.43 * width, 0.56 * height];
+    const [dx, dy] = turn(-M.x * s.u_x, -M.y * s.u_y);
+    const mass = [home[0] + dx, home[1] + dy];
+    this.floor(context, width, height, s, M);
+    this.springs(context, width, height, home, mass, turn, M);
+    this.forces(context, height, mass, s, turn);
+    this.block(context, mass, turn, s);
+    this.words(context, width, height, s, M);
+  }
+
+  // The plate below the mass: it moves against X.
+  floor(context, width, height, s, M) {
+    context.fillStyle = FLOOR;
+    context.fillRect(0, 0, width, height);
+    const travel = this.travel(s), step = 46;
+    const shift = ((-M.x * travel) % step + step) % step;
+    context.fillStyle = "#d9d5c8";
+    for (let x = shift - step, i = 0; x < width + step; x += step, i++) {
+      for (let y = 12; y < height; y += step) {
+        context.beginPath();
+        context.arc(x, y, 2, 0, 2 * Math.PI);
+        context.fill();
+      }
+    }
+    const base = height - 16;
+    arrow(context, [206, base], [160, base], GREY, 1.6);
+    text(context, "plate", 212, base, { color: GREY });
+    arrow(context, [14, base], [60, base], BLUE, 1.6);
+    text(context, "X, drive", 66, base, { color: BLUE });
+  }
+
+  travel(s) { // of the drive: X plus the elongation along it
+    const c = Math.cos(this.scene.phi), n = Math.sin(this.scene.phi);
+    return s.X + s.u_x * c + s.u_y * n;
+  }
+
+  springs(context, width, height, home, mass, turn, M) {
+    const far = { x: width * 0.94 - home[0], y: home[1] - 16 };
+    const ends = { x: add(home, turn(far.x, 0)), y: add(home, turn(0, far.y)) };
+    const across = { x: turn(0, 1), y: turn(1, 0) };
+    for (const axis of ["x", "y"]) {
+      const wall = ends[axis], way = across[axis];
+      const start = add(mass, axis === "x" ? turn(BLOCK, 0) : turn(0, BLOCK));
+      // the far end slides along its wall: a spring pulls along its own axis alone
+      const offset = project(sub(mass, home), way);
+      const end = add(wall, [way[0] * offset, way[1] * offset]);
+      const reach = axis === "x" ? [-0.2 * height, 0.2 * height] : [-0.2 * width - 34, 0.2 * width + 34];
+      line(context, reach.map((far) => add(wall, [way[0] * far, way[1] * far])), GREY, 5);
+      zigzag(context, start, end, axis === "x" ? 11 : 8, axis === "x" ? RED : ORANGE, axis === "x" ? 2 : 3.5);
+      const label = mix(start, end, 0.5);
+      const beside = axis === "x" ? add(label, [0, -22]) : add(label, [22, 0]);
+      symbols(context, `k_${axis}`, ...beside, { size: 15, color: axis === "x" ? RED : ORANGE, halo: true });
+    }
+    context.setLineDash([3, 4]);
+    context.strokeStyle = GREY;
+    context.strokeRect(home[0] - BLOCK, home[1] - BLOCK, 2 * BLOCK, 2 * BLOCK);
+    context.setLineDash([]);
+  }
+
+  block(context, mass, turn, s) {
+    const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([x, y]) => add(mass, turn(BLOCK * x, BLOCK * y)));
+    context.beginPath();
+    corners.forEach((p, i) => (i ? context.lineTo(...p) : context.moveTo(...p)));
+    context.closePath();
+    context.fillStyle = s.sticking ? "rgba(70,74,80,.62)" : "rgba(205,208,212,.62)";
+    context.fill();
+    context.strokeStyle = INK;
+    context.lineWidth = 1.4;
+    context.stroke();
+  }
+
+  // The limit of friction about the mass, the force in it, the slip velocity.
+  forces(context, height, mass, s, turn) {
+    const { limit, ellipse: [ratio, angle] } = this.scene;
+    const load = s.normal_load, radius = 0.3 * height;
+    const largest = limit * this.track.largest("normal_load") * Math.max(ratio, 1) || 1;
+    const scale = radius / largest;
+    context.beginPath();
+    for (let i = 0; i <= 90; i++) {
+      const a = (i / 90) * 2 * Math.PI;
+      const [p, q] = [limit * load * Math.cos(a), ratio * limit * load * Math.sin(a)];
+      const X = p * Math.cos(angle) - q * Math.sin(angle), Y = p * Math.sin(angle) + q * Math.cos(angle);
+      const at = add(mass, [scale * X, -scale * Y]);
+      if (i) context.lineTo(...at);
+      else context.moveTo(...at);
+    }
+    context.fillStyle = "rgba(176,90,138,.09)";
+    context.fill();
+    context.strokeStyle = PURPLE;
+    context.lineWidth = 1.3;
+    context.stroke();
+    if (s.theta === s.theta) {
+      const theta = (s.theta * Math.PI) / 180;
+      const tip = turn(-scale * s.friction * Math.cos(theta), -scale * s.friction * Math.sin(theta));
+      const end = add(mass, tip);
+      arrow(context, mass, end, PURPLE, 4);
+      text(context, "F", ...add(mass, [1.13 * tip[0], 1.13 * tip[1]]), { font: SERIF, color: PURPLE, align: "center", halo: true });
+    }
+    const speed = Math.hypot(s.slip_x, s.slip_y);
+    if (speed > 0 && !s.sticking) {
+      const long = BLOCK + (0.24 * height) * Math.min(1, 0.25 * Math.max(0, Math.log10(speed / (this.largestSlip || speed)) + 4));
+      const way = turn(s.slip_x / speed, s.slip_y / speed), end = add(mass, [long * way[0], long * way[1]]);
+      arrow(context, mass, end, GREEN, 3);
+      text(context, "slip", ...add(end, [14 * way[0], 14 * way[1] - 3]), { color: GREEN, align: "center", halo: true });
+    }
+  }
+
+  words(context, width, height, s, M) {
+    const speed = Math.hypot(s.slip_x, s.slip_y), psi = s.theta - (this.scene.phi * 180) / Math.PI;
+    const rows = [
+      ["slip speed", s.sticking ? "0 (at rest)" : quantity(speed, "m/s"), GREEN],
+      ["friction F", `${quantity(s.friction, "N")}, ψ = ${plain(psi, 4)}°`, PURPLE],
+      ["k_x u_x", quantity(this.scene.k[0] * s.u_x, "N"), RED],
+    ];
+    rows.forEach(([name, value, color], i) => {
+      symbols(context, name, 12, 15 + 18 * i, { color, halo: true });
+      text(context, value, 88, 15 + 18 * i, { color: INK, halo: true });
+    });
+    const factors = M.x === M.y ? `elongations × ${count(M.x * PIXEL)}` : `u_x × ${count(M.x * PIXEL)},  u_y × ${count(M.y * PIXEL)}`;
+    symbols(context, `${factors};  slip arrow: logarithmic`, width - 10, height - 16, { color: SOFT, align: "right", halo: true });
+    text(context, `φ = ${plain((this.scene.phi * 180) / Math.PI, 4)}°`, width - 10, 15, { color: INK, align: "right", halo: true });
+  }
+}
+
+function count(value) {
+  return value >= 1e6 ? `${plain(value / 1e6)} million` : Number(value.toPrecision(3)).toLocaleString("en");
+}
+
+// A magnification as a round number, not above it.
+function rounded(value) {
+  const unit = 10 ** Math.floor(Math.log10(value));
+  const best = [5, 2, 1].find((each) => each * unit <= value) ?? 1;
+  return best * unit;
+}
+
+function zigzag(context, from, to, wide, color, width) {
+  const way = sub(to, from), length = Math.hypot(...way) || 1, normal = [-way[1] / length, way[0] / length];
+  const turns = 7, points = [from];
+  for (let i = 0; i < 2 * turns; i++) {
+    const along = 0.12 + (0.76 * (i + 0.5)) / (2 * turns), side = wide * (i % 2 ? 1 : -1);
+    points.push([from[0] + way[0] * along + normal[0] * side, from[1] + way[1] * along + normal[1] * side]);
+  }
+  points.splice(1, 0, mix(from, to, 0.12));
+  points.push(mix(from, to, 0.88), to);
+  line(context, points, color, width);
+}
+
+const add = ([a, b], [c, d]) => [a + c, b + d];
+const sub = ([a, b], [c, d]) => [a - c, b - d];
+const mix = (a, b, share) => [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])];
+const project = ([a, b], [c, d]) => a * c + b * d;

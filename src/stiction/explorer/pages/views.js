@@ -1,0 +1,390 @@
+// The views at the side: numbers, phase portrait, damping diagram, spectrogram, stability map, study.
+
+import { linearAxis, logAxis, power } from "./axis.js";
+import { GREEN, INK, Layers, PURPLE, RED, SOFT, UNSTABLE, curve, frame, line, symbols, text } from "./drawing.js";
+import { element } from "./form.js";
+import { plain, quantity } from "./quantity.js";
+
+const BOX = (width, height) => ({ left: 56, top: 8, width: width - 68, height: height - 44 });
+
+function below(context, width, height, words) {
+  symbols(context, words, 56 + (width - 68) / 2, height - 10, { align: "center", color: SOFT });
+}
+
+function beside(context, height, words) {
+  context.save();
+  context.translate(9, height / 2 - 14);
+  context.rotate(-Math.PI / 2);
+  symbols(context, words, 0, 0, { align: "center", color: SOFT });
+  context.restore();
+}
+
+function dot(context, x, y, color = INK, radius = 5) {
+  context.beginPath();
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+  context.fillStyle = color;
+  context.fill();
+  context.strokeStyle = "#fff";
+  context.lineWidth = 1.5;
+  context.stroke();
+}
+
+// One that waits, or has nothing to show, says so.
+function note(context, width, height, words) {
+  const parts = words.split("\n");
+  parts.forEach((each, i) => text(context, each, width / 2, height / 2 + 18 * (i - (parts.length - 1) / 2), { align: "center", color: SOFT }));
+}
+
+class PhasePortrait {
+  static title = "Phase";
+
+  still(context, width, height, data) {
+    if (!data.track) return;
+    const box = BOX(width, height), k = data.scene.k[0];
+    const parts = [[data.pinned, "#444b53", 0.5], [data, GREEN, 1]].filter(([each]) => each?.track);
+    const ends = parts.flatMap(([each]) => [extent(each.track.columns.u_x).map((u) => u * each.scene.k[0]), extent(each.track.columns.V_X)]);
+    const xs = [0, 2].flatMap((i) => ends[i] ?? []), ys = [1, 3].flatMap((i) => ends[i] ?? []);
+    const pad = (low, high) => [low - 0.05 * (high - low || 1e-9), high + 0.05 * (high - low || 1e-9)];
+    this.axes = { xs: linearAxis(...pad(Math.min(...xs), Math.max(...xs)), 5, "N"), ys: linearAxis(...pad(Math.min(...ys), Math.max(...ys)), 5, "m/s") };
+    this.to = frame(context, box, this.axes.xs, this.axes.ys);
+    for (const [each, color, alpha] of parts) {
+      const { u_x: u, V_X: v } = each.track.columns, stiff = each.scene.k[0];
+      context.globalAlpha = alpha;
+      curve(context, u.length, (i) => [this.to.x(stiff * u[i]), this.to.y(v[i])], color);
+      context.globalAlpha = 1;
+    }
+    below(context, width, height, `spring force k_x u_x (${this.axes.xs.unit})`);
+    beside(context, height, `velocity X′ (${this.axes.ys.unit})`);
+    this.k = k;
+  }
+
+  moving(context, width, height, now) {
+    if (this.to && now.state) dot(context, this.to.x(this.k * now.state.u_x), this.to.y(now.state.V_X), RED);
+  }
+}
+
+class Damping {
+  static title = "Damping";
+
+  still(context, width, height, data) {
+    if (!data.scene) return;
+    const A = data.scene.damping;
+    this.A = A;
+    this.to = null;
+    if (!(A > 0)) return note(context, width, height, "A is not finite:\nno misalignment, or no steady drive");
+    const box = BOX(width, height), middle = Math.log10(A);
+    const low = 10 ** Math.min(-1, Math.floor(middle - 1)), high = 10 ** Math.max(5, Math.ceil(middle + 1));
+    const show = (value) => plain(value);
+    const xs = logAxis(low, high, "", 6), ys = logAxis(0.5, 90, "", 9, show);
+    ys.ticks = [0.5, 1, 2, 5, 10, 20, 45, 90].map((value) => [value, `${value}`]);
+    this.shade(context, box, low, high);
+    this.to = frame(context, box, xs, ys);
+    for (let n = -7; n <= 6; n++) this.contour(context, box, n);
+    const path = [90, Math.max((Math.abs(data.scene.phi) * 180) / Math.PI, 0.5)];
+    line(context, path.map((angle) => [this.to.x(A), this.to.y(angle)]), PURPLE, 2, [5, 3]);
+    below(context, width, height, "damping number A (1)");
+    beside(context, height, "friction angle θ (deg)");
+  }
+
+  // Pale orange where the slow motion is underdamped, pale blue where it creeps.
+  shade(context, box, low, high) {
+    for (let i = 0; i < box.width; i += 2) {
+      const A = low * (high / low) ** (i / box.width);
+      const edge = A > 1 ? (Math.asin(A ** (-1 / 3)) * 180) / Math.PI : 90;
+      const place = 1 - Math.log(Math.max(edge, 0.5) / 0.5) / Math.log(180);
+      context.fillStyle = "#dbe8f1";
+      context.fillRect(box.left + i, box.top, 2, box.height * place);
+      context.fillStyle = UNSTABLE;
+      context.fillRect(box.left + i, box.top + box.height * place, 2, box.height * (1 - place));
+    }
+  }
+
+  contour(context, box, n) {
+    const points = [];
+    for (let degrees = 0.5; degrees <= 90; degrees *= 1.03) {
+      const A = 10 ** n / Math.sin((degrees * Math.PI) / 180) ** 3, x = this.to.x(A);
+      if (x >= box.left && x <= box.left + box.width) points.push([x, this.to.y(degrees)]);
+    }
+    if (points.length < 2) return;
+    line(context, points, n ? "#8f979e" : GREEN, n ? 0.7 : 2.2);
+    const [x, y] = points[Math.floor(points.length * 0.62)];
+    text(context, n ? power(n) : "ζ = 1", x + 3, y, { color: n ? SOFT : GREEN, halo: true });
+  }
+
+  moving(context, width, height, now) {
+    if (!this.to || !now.state) return;
+    let theta = Math.abs(now.state.theta) % 180;
+    theta = theta > 90 ? 180 - theta : theta;
+    if (theta === theta) dot(context, this.to.x(this.A), this.to.y(Math.max(theta, 0.5)), RED);
+  }
+}
+
+class Spectrogram {
+  static title = "Spectrum";
+  static asks = "spectrogram";
+
+  still(context, width, height, data) {
+    const found = data.spectrogram;
+    this.to = null;
+    if (!found) return note(context, width, height, "computing …");
+    const box = BOX(width, height), { amplitude } = found.arrays, [rows, columns] = amplitude.shape;
+    context.drawImage(shaded(amplitude, rows, columns), box.left, box.top, box.width, box.height);
+    const xs = linearAxis(...found.times, 4), ys = linearAxis(...found.frequency, 4, "Hz");
+    this.to = frame(context, box, xs, ys);
+    this.times = found.times;
+    below(context, width, height, "time t (s), transverse rate v_y");
+    beside(context, height, `frequency (${ys.unit})`);
+  }
+
+  moving(context, width, height, now) {
+    if (!this.to || now.t < this.times[0] || now.t > this.times[1]) return;
+    const x = this.to.x(now.t);
+    line(context, [[x, 8], [x, height - 36]], "#fff", 2);
+    line(context, [[x, 8], [x, height - 36]], INK, 1);
+  }
+}
+
+class StabilityMap {
+  static title = "Stability";
+  static asks = "stability";
+
+  still(context, width, height, data) {
+    const found = data.stability, box = BOX(width, height);
+    this.axes = null;
+    if (data.stabilityError) return note(context, width, height, wrapped(data.stabilityError));
+    if (!found) return note(context, width, height, "computing …");
+    const { growth } = found.arrays, [rows, columns] = growth.shape;
+    for (let i = 0; i < rows; i++) {
+      for (let j = 0; j < columns; j++) {
+        const rate = growth[i * columns + j];
+        context.fillStyle = !(rate === rate) ? "#eee" : rate > 0 ? UNSTABLE : "#cfe3f0";
+        context.fillRect(box.left + (j * box.width) / columns, box.top + box.height * (1 - (i + 1) / rows), box.width / columns + 0.6, box.height / rows + 0.6);
+      }
+    }
+    const xs = logAxis(...found.angles, "", 6, (value) => plain(value)), ys = logAxis(...found.speeds, "", 7);
+    this.axes = { xs, ys };
+    this.box = { ...box };
+    this.to = frame(context, box, xs, ys);
+    if (growth.some((rate) => rate > 0)) text(context, "steady sliding unstable", box.left + 10, box.top + box.height - 14, { color: "#8a5a00", halo: true });
+    if (growth.some((rate) => rate <= 0)) text(context, "stable", box.left + box.width - 10, box.top + 14, { color: "#0a567f", align: "right", halo: true });
+    below(context, width, height, "misalignment φ (deg): drag the point");
+    beside(context, height, "drive velocity V (m/s)");
+    this.own = data.own;
+    if (data.pinned?.own) {
+      const { x, y } = this.place(data.pinned.own);
+      dot(context, x, y, "#8a9097");
+      text(context, "A", x + 8, y, { color: "#444b53", halo: true });
+    }
+  }
+
+  place({ phi, V }) {
+    return { x: this.to.x((Math.abs(phi) * 180) / Math.PI), y: this.to.y(Math.abs(V)) };
+  }
+
+  moving(context, width, height, now) {
+    if (!this.axes || !now.own) return;
+    const { x, y } = this.place(now.own);
+    dot(context, Math.min(Math.max(x, this.box.left), this.box.left + this.box.width), Math.min(Math.max(y, this.box.top), this.box.top + this.box.height), RED, 7);
+  }
+
+  // The parameters under the pointer.
+  pick(x, y) {
+    if (!this.axes) return null;
+    const place = (value, start, size) => Math.min(Math.max((value - start) / size, 0), 1);
+    return {
+      phi: `${plain(this.axes.xs.value(place(x, this.box.left, this.box.width)), 3)} deg`,
+      V: quantity(this.axes.ys.value(1 - place(y, this.box.top, this.box.height)), "m/s", 3),
+    };
+  }
+}
+
+class StudyMap {
+  static title = "Study";
+
+  still(context, width, height, data) {
+    const study = data.study, box = BOX(width, height);
+    if (!study) return note(context, width, height, "no study: stiction explore STUDY.zarr");
+    const { axes, kinds, measure } = study, map = study.arrays.map;
+    const [across, up] = axes.length > 1 ? [axes[0], axes[1]] : [axes[0], null];
+    const columns = across.values.length, rows = up ? up.values.length : 1;
+    let low = Infinity, high = -Infinity;
+    for (const value of map) { if (value < low) low = value; if (value > high) high = value; }
+    const palette = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442", "#555"];
+    for (let i = 0; i < columns; i++) {
+      for (let j = 0; j < rows; j++) {
+        const value = map[up ? i * rows + j : i];
+        context.fillStyle = !(value === value) || (kinds && value < 0) ? "#eee" : kinds ? palette[value % 8] : cividis((value - low) / (high - low || 1));
+        context.fillRect(box.left + (i * box.width) / columns, box.top + box.height * (1 - (j + 1) / rows), box.width / columns + 0.6, box.height / rows + 0.6);
+      }
+    }
+    frame(context, box, cells(across), up ? cells(up) : { place: (v) => v, ticks: [] });
+    (kinds ?? []).forEach((word, i) => {
+      context.fillStyle = palette[i % 8];
+      context.fillRect(box.left + 8, box.top + 7 + 17 * i, 11, 11);
+      text(context, word, box.left + 24, box.top + 13 + 17 * i, { halo: true });
+    });
+    below(context, width, height, `${nameOf(across)}: click a run${kinds ? "" : ` (${measure})`}`);
+    if (up) beside(context, height, nameOf(up));
+    this.shape = { box, columns, rows, across, up };
+    if (this.at) {
+      const [i, j] = this.at;
+      context.strokeStyle = INK;
+      context.lineWidth = 2.5;
+      context.strokeRect(box.left + (i * box.width) / columns, box.top + box.height * (1 - (j + 1) / rows), box.width / columns, box.height / rows);
+    }
+  }
+
+  moving() {}
+
+  cell(x, y) {
+    if (!this.shape) return null;
+    const { box, columns, rows, across, up } = this.shape;
+    const i = Math.min(Math.max(Math.floor(((x - box.left) / box.width) * columns), 0), columns - 1);
+    const j = Math.min(Math.max(Math.floor((1 - (y - box.top) / box.height) * rows), 0), rows - 1);
+    this.at = [i, j];
+    return up ? { [across.dim]: i, [up.dim]: j } : { [across.dim]: i };
+  }
+}
+
+function cells(axis) {
+  const count = axis.values.length, every = Math.max(1, Math.ceil(count / 5)), found = [];
+  for (let i = 0; i < count; i += every) found.push([i, plain(axis.values[i], 3)]);
+  return { place: (i) => (i + 0.5) / count, ticks: found };
+}
+
+const nameOf = (axis) => `${axis.dim}${axis.unit ? ` (${axis.unit})` : ""}`;
+
+export const VIEWS = { stability: StabilityMap, phase: PhasePortrait, damping: Damping, spectrogram: Spectrogram, numbers: null, study: StudyMap };
+
+// A place at the side with tabs, of which one view is shown.
+export class Panel {
+  constructor(place, data, first, hooks) {
+    Object.assign(this, { place, data, hooks, tabs: {} });
+    const list = element("div", { role: "tablist" });
+    list.setAttribute("role", "tablist");
+    for (const [name, View] of Object.entries(VIEWS)) {
+      if (name === "study" && !data.study) continue;
+      const tab = element("button", { type: "button", textContent: View?.title ?? "Numbers" });
+      tab.setAttribute("role", "tab");
+      tab.dataset.view = name;
+      tab.onclick = () => this.choose(name);
+      this.tabs[name] = tab;
+      list.append(tab);
+    }
+    list.onkeydown = (event) => this.key(event);
+    this.canvas = element("canvas", { tabIndex: 0 });
+    this.canvas.setAttribute("role", "img");
+    this.numbers = element("div", { className: "numbers" });
+    this.room = element("div", {}, this.canvas, this.numbers);
+    place.append(list, this.room);
+    this.layers = new Layers(this.canvas, (c, w, h) => this.view?.still(c, w, h, this.data), (c, w, h, now) => this.view?.moving(c, w, h, now));
+    this.canvas.onpointerdown = this.canvas.onpointermove = this.canvas.onpointerup = (event) => this.point(event);
+    this.canvas.onkeydown = (event) => this.steer(event);
+    this.choose(first);
+  }
+
+  choose(name) {
+    this.name = name;
+    this.view = VIEWS[name] ? new VIEWS[name]() : null;
+    this.numbers.hidden = Boolean(this.view);
+    this.layers.place.hidden = !this.view;
+    this.canvas.setAttribute("aria-label", VIEWS[name]?.title ?? "Numbers");
+    for (const [each, tab] of Object.entries(this.tabs)) {
+      tab.setAttribute("aria-selected", String(each === name));
+      tab.tabIndex = each === name ? 0 : -1;
+    }
+    this.layers.resize();
+    this.refresh();
+    this.hooks.needs();
+  }
+
+  key(event) {
+    const names = Object.keys(this.tabs), step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+    if (!step) return;
+    const next = names[(names.indexOf(this.name) + step + names.length) % names.length];
+    this.choose(next);
+    this.tabs[next].focus();
+    event.preventDefault();
+  }
+
+  get asks() { return VIEWS[this.name]?.asks; }
+
+  refresh() {
+    if (this.view) this.layers.refresh();
+    else this.list();
+  }
+
+  list() {
+    const rows = (this.data.facts ?? []).map(({ name, text: words, value }) => {
+      const cell = element("td", { textContent: words });
+      cell.dataset.value = String(value);
+      cell.dataset.name = name.trim();
+      const before = this.data.pinned?.facts?.find((each) => each.name === name);
+      return element("tr", {}, element("th", { textContent: name }), ...(before ? [element("td", { textContent: before.text })] : []), cell);
+    });
+    const head = this.data.pinned ? [element("tr", {}, element("th"), element("td", { textContent: "A" }), element("td", { textContent: "B, now" }))] : [];
+    this.numbers.replaceChildren(element("table", {}, ...head, ...rows));
+  }
+
+  point(event) {
+    const box = this.canvas.getBoundingClientRect(), x = event.clientX - box.left - 1, y = event.clientY - box.top - 1;
+    if (event.type === "pointerdown") this.canvas.setPointerCapture(event.pointerId);
+    if (this.view instanceof StabilityMap && (event.buttons || event.type === "pointerup")) {
+      const found = this.view.pick(x, y);
+      if (found) this.hooks.place(found, event.type === "pointerup");
+    }
+    if (this.view instanceof StudyMap && event.type === "pointerdown") {
+      const at = this.view.cell(x, y);
+      if (at) this.hooks.pick(at);
+      this.refresh();
+    }
+  }
+
+  // The arrow keys move the point of the stability map.
+  steer(event) {
+    const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
+    if (!way || !(this.view instanceof StabilityMap) || !this.view.axes || !this.data.own) return;
+    const { x, y } = this.view.place(this.data.own), step = event.shiftKey ? 12 : 3;
+    this.hooks.place(this.view.pick(x + step * way[0], y + step * way[1]), true);
+    event.preventDefault();
+  }
+}
+
+function extent(values) {
+  let low = Infinity, high = -Infinity;
+  for (const value of values) { if (value < low) low = value; if (value > high) high = value; }
+  return [low, high];
+}
+
+// cividis (Nunez et al., PLOS ONE 13 (2018), e0199239), sampled at nine points
+const CIVIDIS = [[0, 34, 78], [18, 53, 112], [59, 73, 108], [87, 93, 109], [112, 113, 115], [138, 134, 120], [165, 156, 116], [196, 181, 104], [253, 231, 55]];
+
+function cividis(share) {
+  const place = Math.min(Math.max(share, 0), 1) * (CIVIDIS.length - 1), i = Math.min(Math.floor(place), CIVIDIS.length - 2);
+  const mix = CIVIDIS[i].map((a, k) => Math.round(a + (place - i) * (CIVIDIS[i + 1][k] - a)));
+  return `rgb(${mix.join(",")})`;
+}
+
+// Amplitudes as an image: 60 dB from the strongest down.
+function shaded(amplitude, rows, columns) {
+  const image = document.createElement("canvas");
+  image.width = columns;
+  image.height = rows;
+  const context = image.getContext("2d"), pixels = context.createImageData(columns, rows);
+  let most = 0;
+  for (const value of amplitude) if (value > most) most = value;
+  const colors = Array.from({ length: 256 }, (_, i) => cividis(i / 255).match(/\d+/g).map(Number));
+  for (let i = 0; i < rows; i++) {
+    for (let j = 0; j < columns; j++) {
+      const level = 1 + Math.log10(Math.max(amplitude[i * columns + j], 1e-30) / (most || 1)) / 3;
+      const color = colors[Math.round(255 * Math.min(Math.max(level, 0), 1))];
+      pixels.data.set([...color, 255], 4 * ((rows - 1 - i) * columns + j));
+    }
+  }
+  context.putImageData(pixels, 0, 0);
+  return image;
+}
+
+function wrapped(words) {
+  return words.replace(/(.{1,42})(\s|$)/g, "$1\n").trim();
+}

@@ -1,0 +1,109 @@
+"""Friction tests by name, scaled to a description: the menus of drive and load.
+
+A new test is a function here and a line in `TESTS`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from stiction.drive import ConstantVelocity, Drive, DriveProgram, LoadProgram
+from stiction.drive.pieces import Harmonic, Modulation
+from stiction.drive.procedures import load_ramp, reversal_loops, slide_hold_slide, velocity_steps
+from stiction.errors import StictionError
+from stiction.system.description import Description
+
+SPEED = 1e-3  # m/s, where the drive stands
+
+
+def protocol(description: Description, table: str, name: str) -> Description:
+    """Return a description with another test in its table ``drive`` or ``load``.
+
+    Raises
+    ------
+    StictionError
+        If there is no such test.
+    """
+    if name not in TESTS.get(table, {}):
+        raise StictionError(f"no protocol {name!r} of {table!r}; known: {names()}")
+    slider = description.slider.replace(**{table: TESTS[table][name](description)})
+    return description._replace(slider=slider)
+
+
+def names() -> dict[str, list[str]]:
+    """Return the names of the tests of drive and load."""
+    return {table: [*tests] for table, tests in TESTS.items()}
+
+
+def speed(description: Description) -> float:
+    """Return the drive's base velocity, m/s."""
+    return float(description.slider.motion.velocity) or SPEED
+
+
+def steps(description: Description) -> DriveProgram:
+    """Return a step to ten times the velocity, and back."""
+    V, third = speed(description), description.run.duration / 3
+    return velocity_steps([V, 10 * V, V], duration=third)
+
+
+def holds(description: Description) -> DriveProgram:
+    """Return sliding, with two holds."""
+    part = description.run.duration / 9
+    return slide_hold_slide(speed(description), [part, 2 * part], slide=2 * part)
+
+
+def loops(description: Description) -> DriveProgram:
+    """Return two loops to and fro."""
+    V = abs(speed(description))
+    return reversal_loops(V, V * description.run.duration / 4.5, loops=2)
+
+
+def swings(description: Description) -> DriveProgram:
+    """Return an oscillation about the velocity, ten times in the run."""
+    V = speed(description)
+    swing: Any = Harmonic(0.5 * V, 10 / description.run.duration)
+    return DriveProgram(velocity=V, program=(swing,))
+
+
+def vibrates(description: Description) -> DriveProgram:
+    """Return a constant velocity with a harmonic across it, of the fast natural frequency."""
+    V = speed(description)
+    _, fast = description.slider.natural_frequencies
+    return DriveProgram(velocity=V, across=Modulation(0.5 * V, 0.1 * fast))
+
+
+def constant(description: Description) -> Drive:
+    """Return the base velocity."""
+    return ConstantVelocity(speed(description))
+
+
+def steady(description: Description) -> None:
+    """Return no program: the load is the slider's."""
+    return None
+
+
+def ramp(description: Description) -> LoadProgram:
+    """Return a ramp to twice the load, and back."""
+    load, half = description.slider.normal_load, description.run.duration / 2
+    return load_ramp([2 * load, load], ramp=half)
+
+
+def breathing(description: Description) -> LoadProgram:
+    """Return a load that swings by a fifth, ten times in the run."""
+    load = description.slider.normal_load
+    swing: Any = Modulation(0.2 * load, 10 / description.run.duration)
+    return LoadProgram(modulation=swing)
+
+
+TESTS: dict[str, dict[str, Callable[[Description], Any]]] = {
+    "drive": {
+        "constant velocity": constant,
+        "velocity steps": steps,
+        "slide-hold-slide": holds,
+        "reversal loops": loops,
+        "harmonic": swings,
+        "vibration across": vibrates,
+    },
+    "load": {"constant load": steady, "load ramp": ramp, "harmonic load": breathing},
+}

@@ -1,0 +1,123 @@
+"""One page and its computations: of each kind of request the newest wins.
+
+Each kind has a lane. A lane computes one thing at a time, in a thread (the solver releases the
+interpreter); a newer request replaces one that waits, and interrupts one that is computed.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import sys
+from collections.abc import Awaitable, Callable, Iterator
+from contextlib import suppress
+from traceback import print_exc
+from typing import Any
+
+from stiction.errors import DescriptionError, StictionError, one_line
+from stiction.explorer.answers import ANSWERS, Request, answer
+from stiction.explorer.encoding import encode
+from stiction.explorer.motion import Reply
+from stiction.explorer.source import Opened
+
+Send = Callable[[bytes], Awaitable[None]]
+STILL = 0.12  # s without a newer request before the slower part of an answer is computed
+LANES = 2  # of each kind: the run that is shown, and the one that it is compared with
+
+
+class Superseded(Exception):
+    """Nobody waits for an answer any more."""
+
+
+class Lane:
+    """A line of requests of one kind, of which the newest is answered."""
+
+    def __init__(self, opened: Opened, send: Send) -> None:
+        """Take what is explored, and where the answers go."""
+        self._opened, self._send = opened, send
+        self._waiting: Request | None = None
+        self._current = -1
+        self._newer = asyncio.Event()
+        self._work: asyncio.Task[None] | None = None
+
+    def submit(self, request: Request) -> None:
+        """Answer a request next, and none that came before it."""
+        self._waiting = request
+        self._current = -1  # what is computed now has no reader any more
+        self._newer.set()
+        if self._work is None or self._work.done():
+            self._work = asyncio.create_task(self._answer_all())
+
+    async def close(self) -> None:
+        """End what is computed, and wait for that."""
+        self._waiting, self._current = None, -1
+        self._newer.set()
+        if self._work is not None:
+            await asyncio.gather(self._work, return_exceptions=True)
+
+    async def _answer_all(self) -> None:
+        while (request := self._waiting) is not None:
+            self._waiting, self._current = None, int(request["id"])
+            self._newer.clear()
+            await self._answer(request)
+
+    async def _answer(self, request: Request) -> None:
+        number = self._current
+        about = {"id": number, "do": request["do"], "lane": request.get("lane", 0)}
+
+        def check() -> None:
+            if self._current != number:
+                raise Superseded
+
+        try:
+            replies = answer(self._opened, request, check)
+            while (reply := await asyncio.to_thread(following, replies, check)) is not None:
+                check()
+                await self._send(encode({**about, **reply[0]}, reply[1]))
+                if reply[0].get("quick"):  # a slider may be on its way
+                    with suppress(TimeoutError):
+                        await asyncio.wait_for(self._newer.wait(), STILL)
+            await self._send(encode({**about, "end": True}, {}))
+        except Superseded:
+            return
+        except DescriptionError as error:
+            faults = [{"path": fault.path, "message": fault.message} for fault in error.faults]
+            await self._send(encode({**about, "faults": faults}, {}))
+        except StictionError as error:
+            await self._send(encode({**about, "error": str(error)}, {}))
+        except Exception as error:  # the page stays as it is, and says so
+            print_exc(file=sys.stderr)
+            await self._send(encode({**about, "error": one_line(error)}, {}))
+
+
+def following(replies: Iterator[Reply], check: Callable[[], None]) -> Reply | None:
+    """Return the next part of an answer; None if there is none."""
+    check()
+    return next(replies, None)
+
+
+class Session:
+    """What one page asks for."""
+
+    def __init__(self, opened: Opened, send: Send) -> None:
+        """Take what is explored, and where the answers go."""
+        self._opened, self._send = opened, send
+        self._lanes: dict[tuple[str, int], Lane] = {}
+
+    def receive(self, text: str | bytes) -> None:
+        """Take a request of the page: JSON with ``do``, ``id`` and what it needs.
+
+        Anything else is ignored: it is not from our page.
+        """
+        try:
+            request: Any = json.loads(text)
+            kind, lane, _ = request["do"], int(request.get("lane", 0)), int(request["id"])
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+            return
+        if kind in ANSWERS and 0 <= lane < LANES:
+            known = self._lanes.setdefault((kind, lane), Lane(self._opened, self._send))
+            known.submit(request)
+
+    async def close(self) -> None:
+        """End every computation of the page."""
+        await asyncio.gather(*(lane.close() for lane in self._lanes.values()))

@@ -1,0 +1,137 @@
+"""What the explorer is opened with: a description, a result, a study, a measured record."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stiction.analysis.measurement.reading import read_source
+from stiction.analysis.record import Record
+from stiction.errors import DescriptionError, Fault, ResultError
+from stiction.explorer.motion import CURVES
+from stiction.friction.user.loading import Find, is_own
+from stiction.presets import nakano_popov_2020
+from stiction.system.description import Description, Settings
+from stiction.system.initial import Initial
+from stiction.system.slider import Slider
+from stiction.text.toml import tame
+from stiction.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from stiction.study.view.view import View
+
+
+@dataclass(frozen=True)
+class Opened:
+    """What a page starts with.
+
+    Attributes
+    ----------
+    name : str
+        The title of the page.
+    description : Description
+        The system at first.
+    measured : mapping of str to ndarray, optional
+        Curves to lay under the simulated ones: ``time`` (s), and any of the page's curves.
+    origin : str
+        What these are: "measured", "stored".
+    study : View, optional
+        A study, whose runs can be opened.
+    """
+
+    name: str
+    description: Description
+    measured: Mapping[str, np.ndarray] | None = None
+    origin: str = ""
+    study: View | None = None
+
+    def read(self, tables: Mapping[str, Any]) -> Description:
+        """Return the description of a page's tables.
+
+        The page names no file: a user's law is that which was opened, by its name.
+
+        Raises
+        ------
+        DescriptionError
+            With every fault.
+        """
+        raw = tame({str(key): value for key, value in tables.items()}, "description")
+        return Description.from_dict(raw, find=self.find)
+
+    @property
+    def find(self) -> Find:
+        """The finder of a user's law: it loads nothing."""
+        law = self.description.slider.law
+        own = is_own(self.description.to_dict()["friction"])
+        known = self.description.to_dict()["friction"]["law"] if own else None
+
+        def find(name: str, text: str | None) -> type[Any]:
+            if name == known and text is None:
+                return type(law)
+            message = (
+                f"{name!r} is a law from a file, and the page loads none; name it on the command "
+                "line: stiction explore my.toml"
+            )
+            raise DescriptionError([Fault("friction.law", message)])
+
+        return find
+
+
+def open_sources(sources: Iterable[Any], *, trust: bool = False) -> Opened:
+    """Return what sources hold together: one description, result or study, and perhaps a record.
+
+    Raises
+    ------
+    StictionError
+        If a file cannot be read, or two describe a system.
+    """
+    name, described = "", ""
+    found: dict[str, Any] = {"description": the_papers()}
+    for source in sources:
+        part = open_source(source, trust)
+        own = Path(source).name if isinstance(source, str | Path) else f"a {type(source).__name__}"
+        if "description" in part:
+            if described:
+                message = f"{described} and {own} both describe a system; give one of them"
+                raise ResultError(message)
+            described = own
+        name = described or own
+        found |= part
+    return Opened(name or "Nakano & Popov 2020, Fig. 3", **found)
+
+
+def open_source(source: Any, trust: bool) -> dict[str, Any]:
+    """Return the fields of `Opened` that one source gives: a file, or an object of a session."""
+    if isinstance(source, str | Path):
+        path = Path(source)
+        if path.suffix.lower() == ".toml":
+            return {"description": Description.from_toml(path, trust=trust)}
+        if path.is_dir():
+            from stiction.study.view.view import view_study
+
+            view = view_study(path, {}, trust)
+            first = view.study.description((0,) * len(view.study.layout.dims))
+            return {"description": first, "study": view}
+        source = read_source(path, trust=trust)
+    if isinstance(source, Description):
+        return {"description": source}
+    if isinstance(source, Slider):
+        return {"description": the_papers()._replace(slider=source)}
+    if isinstance(source, Trajectory):
+        stored = {name: source.samples[name] for name in ("time", *CURVES)}
+        return {"description": source.description, "measured": stored, "origin": "stored"}
+    if isinstance(source, Record):
+        channels = {"spring_x": source.force, "X": source.position, "slip_speed": source.slip_speed}
+        known = {name: values for name, values in channels.items() if values is not None}
+        return {"measured": {"time": source.time, **known}, "origin": "measured"}
+    message = f"a {type(source).__name__} cannot be explored; give a file, a description or a run"
+    raise ResultError(message)
+
+
+def the_papers() -> Description:
+    """Return the paper's case over 5 s."""
+    return Description(nakano_popov_2020(), Initial(), Settings(duration=5.0))

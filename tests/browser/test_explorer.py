@@ -1,0 +1,315 @@
+"""The explorer's page in a real browser: Debian's Chromium, driven by Playwright."""
+
+import math
+import os
+import shutil
+import time
+
+import pytest
+from tests.explored import an_opened, serving
+from tests.waiting import PATIENCE
+
+import stiction as st
+from stiction.explorer.answers import tables_of
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+if CHROMIUM is None:
+    pytest.skip("there is no Chromium: apt-get install chromium", allow_module_level=True)
+sync_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
+
+QUIET = ["background-networking", "component-update", "sync", "gpu", "dev-shm-usage"]
+ARGUMENTS = ["--no-sandbox", "--no-first-run", "--mute-audio"]
+ARGUMENTS += [
+    "--autoplay-policy=no-user-gesture-required",
+    *(f"--disable-{each}" for each in QUIET),
+]
+SHOWN = "Boolean(window.stictionPage?.shown) && !stictionPage.shown.quick"
+
+
+class Page:
+    """A page of the explorer, and what the browser said of it."""
+
+    def __init__(self, tab, explorer):
+        self.tab, self.explorer = tab, explorer
+        self.said, self.asked = [], []
+        tab.on("console", lambda message: self.said.append(f"{message.type}: {message.text}"))
+        tab.on("pageerror", lambda error: self.said.append(str(error)))
+        tab.on("request", lambda request: self.asked.append(request.url))
+        tab.on("websocket", lambda socket: self.asked.append(socket.url))
+        self.visit("")
+
+    def visit(self, state):
+        self.tab.goto(self.explorer.address + state)
+        self.until(SHOWN)
+
+    def value(self, expression):
+        return self.tab.evaluate(expression)
+
+    def until(self, expression):
+        """Wait for something to be so; the page's own policy forbids the driver to poll inside."""
+        end = time.monotonic() + PATIENCE
+        while not self.value(expression):
+            assert time.monotonic() < end, f"never: {expression}"
+            time.sleep(0.02)
+
+    def done_after(self, act):
+        """Do something, and wait until what it asks for is shown, with every peak."""
+        before = self.value("stictionPage.asked")
+        act()
+        self.until(f"{SHOWN} && stictionPage.shown.asked > {before}")
+
+    def number(self, name):
+        return float(self.value(f"document.querySelector('[data-name=\"{name}\"]').dataset.value"))
+
+    def picture(self, canvas):
+        return self.value(f"document.querySelector('{canvas}').toDataURL()")
+
+    def row(self, path):
+        return self.tab.locator(f'[data-path="{path}"]')
+
+
+@pytest.fixture(scope="module")
+def browser():
+    os.environ.setdefault("PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD", "1")
+    with sync_api.sync_playwright() as driver:
+        made = driver.chromium.launch(executable_path=CHROMIUM, headless=True, args=ARGUMENTS)
+        yield made
+        made.close()
+
+
+@pytest.fixture(scope="module")
+def explorer():
+    with serving(an_opened(duration=0.25)) as made:
+        yield made
+
+
+@pytest.fixture
+def page(browser, explorer):
+    tab = browser.new_page(viewport={"width": 1280, "height": 720})
+    tab.set_default_timeout(PATIENCE * 1e3)
+    made = Page(tab, explorer)
+    yield made
+    assert made.said == []  # no error, no warning, in any of these tests
+    away = [
+        url for url in made.asked if f"//127.0.0.1:{explorer.port}/{explorer.token}/" not in url
+    ]
+    assert [url for url in away if not url.startswith(("blob:", "data:"))] == []
+    tab.close()
+
+
+def test_numbers_are_those_of_simulate(page):
+    page.tab.click("#panel-b [data-view=numbers]")
+    run = st.simulate(an_opened().description.slider, 0.25)
+    assert page.number("largest k_x u_x") == float(run.data["spring_x"].max())
+    assert page.number("stick intervals") == run.sticks.sizes["stick"]
+    assert page.number("time at rest") == run.statistics.time_stuck
+    assert page.number("u_x at the end") == float(run.final["u_x"])
+
+
+def test_a_slider_moves_the_curves_and_can_be_undone(page):
+    page.tab.click("#panel-b [data-view=numbers]")
+    before, picture = page.number("u_x at the end"), page.picture("#series-still")
+    slider = page.row("drive.velocity").locator("input[type=range]")
+    page.done_after(lambda: slider.press("PageUp"))
+    velocity = page.row("drive.velocity").locator("input[type=text]").input_value()
+    assert velocity != "1 mm/s"
+    wanted = st.simulate(
+        an_opened().description.slider.replace(drive=st.ConstantVelocity(velocity)), 0.25
+    )
+    assert page.number("u_x at the end") == float(wanted.final["u_x"])
+    assert page.picture("#series-still") != picture
+    page.done_after(lambda: page.tab.keyboard.press("Control+z"))
+    assert page.number("u_x at the end") == before
+    page.done_after(lambda: page.tab.click("#redo"))
+    page.done_after(lambda: page.tab.click("#reset"))
+    assert page.number("u_x at the end") == before
+
+
+def test_a_fault_stands_beside_its_field_and_the_picture_stays(page):
+    mass = page.row("slider.mass")
+    picture = page.picture("#series-still")
+    mass.locator("input[type=text]").fill("-1 kg")
+    mass.locator("input[type=text]").press("Enter")
+    page.until("document.querySelector('[data-path=\"slider.mass\"]').className.includes('faulty')")
+    assert "greater than 0" in mass.locator(".fault").inner_text()
+    assert "slider.mass" in page.tab.inner_text("#status")
+    assert page.picture("#series-still") == picture
+    mass.locator("input[type=text]").fill("300 g")
+    page.done_after(lambda: mass.locator("input[type=text]").press("Enter"))
+    assert mass.locator(".fault").inner_text() == ""
+    assert page.picture("#series-still") != picture
+
+
+def test_the_animation_runs_and_stands(page):
+    start, scene = page.value("stictionPage.t"), page.picture("#scene")
+    page.tab.focus("#scene")
+    page.tab.keyboard.press("Space")
+    page.until(f"stictionPage.t !== {start}")
+    page.tab.keyboard.press("Space")
+    page.until("document.querySelector('#play').ariaLabel === 'Play'")
+    stands = page.value("stictionPage.t")
+    drawn = page.value("stictionPage.drawn")
+    page.until(f"stictionPage.drawn > {drawn + 3}")
+    assert page.value("stictionPage.t") == stands
+    assert page.picture("#scene") != scene
+
+
+def test_the_scrubbers_move_time_at_both_scales(page):
+    page.tab.focus("#macro")
+    page.tab.keyboard.press("Home")
+    page.until("stictionPage.t === 0")
+    page.tab.keyboard.press("End")
+    page.until("Math.abs(stictionPage.t - 0.25) < 1e-9")
+    page.tab.focus("#series")
+    page.tab.keyboard.press("ArrowLeft")
+    t = page.value("stictionPage.t")
+    page.until(f"stictionPage.micro?.holds({t})")
+    page.tab.focus("#micro")
+    page.tab.keyboard.press("ArrowLeft")
+    page.until(f"stictionPage.t !== {t}")
+    assert abs(page.value("stictionPage.t") - t) < 4e-3  # microseconds, inside four periods
+
+
+def test_the_state_under_the_microscope_is_that_of_simulate(page):
+    page.tab.focus("#macro")
+    page.tab.keyboard.press("Home")
+    page.tab.keyboard.press("PageUp")
+    t = page.value("stictionPage.t")
+    page.until(f"stictionPage.at?.time === {t}")
+    wanted = st.simulate(an_opened().description.slider, t, sample_rate=0).final
+    for name in ("u_x", "u_y", "friction"):
+        found = page.value(f"stictionPage.at.{name}")
+        # the last step ends elsewhere; all before are the same
+        assert math.isclose(found, float(wanted[name]), rel_tol=1e-6), name
+
+
+def test_laws_and_protocols_come_from_menus(page):
+    page.done_after(lambda: page.tab.select_option("#law", "coulomb"))
+    assert page.row("friction.mu_0").count() == 1
+    assert page.row("friction.v_f").count() == 0
+    page.done_after(lambda: page.tab.select_option("#drive-protocol", "slide-hold-slide"))
+    assert page.row("drive.program.2.duration").locator("input[type=text]").input_value()
+    page.done_after(lambda: page.tab.select_option("#preset", "den-hartog"))
+    assert page.row("drive.program.2.duration").count() == 0
+    page.done_after(lambda: page.tab.click("#undo"))
+    assert page.row("drive.program.2.duration").count() == 1
+
+
+def test_the_address_restores_the_state(page):
+    phi = page.row("slider.phi").locator("input[type=text]")
+    phi.fill("3 deg")
+    page.done_after(lambda: phi.press("Enter"))
+    page.until("location.hash.length > 10")
+    state = page.value("location.hash")
+    page.tab.goto("about:blank")
+    page.visit(state)
+    assert page.row("slider.phi").locator("input[type=text]").input_value() == "3 deg"
+
+
+def test_two_runs_are_compared(page):
+    picture = page.picture("#series-still")
+    page.tab.click("#pin")
+    phi = page.row("slider.phi").locator("input[type=text]")
+    phi.fill("8 deg")
+    page.done_after(lambda: phi.press("Enter"))
+    page.tab.click("#panel-b [data-view=numbers]")
+    assert page.tab.locator("#panel-b tr").nth(1).locator("td").count() == 2
+    page.done_after(lambda: page.tab.click("#swap"))
+    assert phi.input_value() == "1 deg"
+    assert page.picture("#series-still") != picture
+
+
+def test_the_point_of_the_map_is_moved_by_mouse_and_keyboard(page):
+    page.until("document.querySelector('#panel-a canvas') && stictionPage.mapped === 48")
+    box = page.tab.locator("#panel-a canvas[role=img]").bounding_box()
+    place = box["x"] + 0.8 * box["width"], box["y"] + 0.4 * box["height"]
+    page.done_after(lambda: page.tab.mouse.click(*place))
+    phi = page.row("slider.phi").locator("input[type=text]")
+    angle = float(phi.input_value().removesuffix(" deg"))
+    assert angle > 5.0
+    page.tab.focus("#panel-a canvas[role=img]")
+    page.done_after(lambda: page.tab.keyboard.press("ArrowRight"))
+    assert float(phi.input_value().removesuffix(" deg")) > angle
+
+
+def test_zooming_asks_for_the_window(page):
+    page.tab.focus("#series")
+    page.tab.keyboard.press("+")
+    page.until("stictionPage.window?.length === 2")
+    low, high = page.value("stictionPage.window")
+    assert math.isclose(high - low, 0.125, rel_tol=1e-6)
+    page.tab.keyboard.press("Home")
+    page.until("stictionPage.window === null")
+
+
+def test_the_oscillation_is_heard(page):
+    page.tab.select_option("#speed", "10")
+    page.tab.click("#sound")
+    page.until("stictionPage.sound.buffer?.length > 0")
+    assert page.value("stictionPage.sound.buffer.sampleRate") == 48000
+    assert page.value("stictionPage.sound.buffer.length") == 12000
+    page.tab.click("#play")
+    page.until("stictionPage.sound.source !== undefined")
+    page.tab.click("#play")
+    page.until("stictionPage.sound.source === undefined")
+
+
+def test_everything_is_exported(page):
+    page.tab.select_option("#export", "python")
+    page.tab.wait_for_selector("dialog pre")
+    assert "st.Slider(mass=0.25" in page.tab.inner_text("dialog pre")
+    page.tab.keyboard.press("Escape")
+    for kind, name in (("nc", "run.nc"), ("png", "run.png")):
+        with page.tab.expect_download() as kept:
+            page.tab.select_option("#export", kind)
+        assert kept.value.suggested_filename == name
+        assert os.path.getsize(kept.value.path()) > 1000
+
+
+def test_all_is_reached_by_the_keyboard_and_named(page):
+    bare = page.value(
+        """[...document.querySelectorAll('button, select, input, canvas')].filter((each) =>
+        !each.ariaHidden && !each.ariaLabel && !each.labels?.length && !each.textContent.trim()
+        && !each.title).map((each) => each.outerHTML)"""
+    )
+    assert bare == []
+    hidden = page.value(
+        "[...document.querySelectorAll('button, select, input')].filter((each) =>"
+        " each.tabIndex < 0 && each.getAttribute('role') !== 'tab').length"
+    )
+    assert hidden == 0
+    page.tab.focus("#panel-a [role=tab][aria-selected=true]")
+    page.tab.keyboard.press("ArrowRight")
+    assert page.value("document.activeElement.dataset.view") == "phase"
+    ring = "getComputedStyle(document.activeElement).outlineStyle"
+    assert page.value(ring) == "solid"  # one sees where one is
+
+
+def test_it_fits_a_small_projector(page):
+    """Nothing is cut off at 1280 x 720, and no text is smaller than 11 px."""
+    assert page.value("document.documentElement.scrollWidth") <= 1280
+    cut = page.value(
+        """[...document.querySelectorAll('header *, #transport *, #side button, canvas')]
+        .filter((each) => { const b = each.getBoundingClientRect();
+          return b.width && (b.right > 1281 || b.bottom > 721); }).map((each) => each.outerHTML)"""
+    )
+    assert cut == []
+    small = page.value(
+        """[...document.querySelectorAll('body *')].filter((each) => each.textContent.trim()
+        && parseFloat(getComputedStyle(each).fontSize) < 11).map((each) => each.outerHTML)"""
+    )
+    assert [each for each in small if not each.startswith("<sub")] == []
+
+
+def test_closing_the_page_ends_its_computation(browser, explorer):
+    tab = browser.new_page()
+    made = Page(tab, explorer)
+    assert len(explorer._pages) >= 1
+    tables = tables_of(an_opened().description)
+    tables["run"]["duration"] = "100000 s"
+    made.value(f"stictionPage.link.ask({{do: 'zoom', tables: {tables}, window: [0, 1]}}, () => 0)")
+    tab.close()
+    end = time.monotonic() + PATIENCE
+    while explorer._pages and time.monotonic() < end:
+        time.sleep(0.02)
+    assert not explorer._pages  # which waits for what was computed

@@ -1,0 +1,238 @@
+"""What a page is given: curves, forms, exports, sources."""
+
+import tomllib
+import zipfile
+from io import BytesIO
+
+import numpy as np
+import pytest
+from tests.explored import an_opened
+
+import stiction as st
+from stiction.explorer.answers import ANSWERS, tables_of
+from stiction.explorer.decimation import columns_of, extremes, share_stuck
+from stiction.explorer.door import explore
+from stiction.explorer.exports import NAMES, export, python_lines
+from stiction.explorer.form import form
+from stiction.explorer.protocols import TESTS, names, protocol
+from stiction.explorer.source import open_sources
+from stiction.friction import LAWS
+from stiction.presets import PRESETS
+
+
+def free():
+    """Nobody interrupts."""
+
+
+@pytest.fixture(scope="module")
+def description():
+    return an_opened().description
+
+
+def answers(request, what=None):
+    what = what or an_opened()
+    return list(ANSWERS[request["do"]](what, request, free))
+
+
+def test_no_peak_is_lost():
+    rng = np.random.default_rng(7)
+    times = np.sort(rng.uniform(0.0, 1.0, 5000))
+    values = rng.normal(size=5000)
+    values[rng.integers(5000, size=40)] = np.nan
+    places, starts = columns_of(times, (0.2, 0.9), 37)
+    found = extremes(values, starts)
+    column = np.floor((times - 0.2) * 37 / 0.7)
+    inside = (times >= 0.2) & (times <= 0.9)
+    for place, row in zip(places, found, strict=True):
+        mine = values[inside & (np.clip(column, 0, 36) == place)]
+        assert row[1] == np.float32(np.nanmin(mine))
+        assert row[2] == np.float32(np.nanmax(mine))
+        np.testing.assert_array_equal(row[[0, 3]], mine[[0, -1]].astype(np.float32))
+    assert len(places) == 37
+
+
+def test_columns_without_samples_are_left_out():
+    places, starts = columns_of(np.array([0.05, 0.95]), (0.0, 1.0), 10)
+    assert places.tolist() == [0, 9]
+    assert starts.tolist() == [0, 1, 2]
+    places, starts = columns_of(np.array([2.0]), (0.0, 1.0), 10)
+    assert extremes(np.array([1.0]), starts).shape == (0, 4)
+
+
+def test_the_share_of_rest_counts_every_interval():
+    rng = np.random.default_rng(3)
+    ends = np.sort(rng.uniform(0.0, 1.0, 400)).reshape(-1, 2)
+    found = share_stuck(ends, (0.1, 0.8), 21)
+    fine = np.linspace(0.1, 0.8, 21 * 20000 + 1)
+    middles = 0.5 * (fine[1:] + fine[:-1])
+    which = np.searchsorted(ends[:, 0], middles, side="right") - 1
+    stuck = (which >= 0) & (middles < ends[which, 1])
+    # each end of an interval is off by at most one of 20000 points of a column
+    np.testing.assert_allclose(found, stuck.reshape(21, -1).mean(axis=1), atol=40 / 20000)
+    assert not share_stuck(np.empty((0, 2)), (0.0, 1.0), 5).any()
+
+
+def test_the_form_has_what_the_registries_have(monkeypatch):
+    found = form()
+    assert set(found["laws"]) == set(LAWS)
+    units = {each["key"]: each["unit"] for each in found["laws"]["exponential-weakening"]["fields"]}
+    assert units == {"mu_0": "", "mu_inf": "", "v_f": "m/s", "mu_static": ""}
+    mass = found["tables"]["slider"][0]
+    assert (mass["low"], mass["low_allowed"], mass["required"]) == (0, False, True)
+    assert {"ramp", "hold", "free"} <= set(found["pieces"]["drive"])
+    level = {each["key"]: each["unit"] for each in found["pieces"]["load"]["ramp"]}
+    assert level == {"to": "N", "duration": "s"}
+    monkeypatch.setitem(LAWS, "brand-new", LAWS["coulomb"])
+    assert "brand-new" in form()["laws"]
+
+
+def test_every_law_and_protocol_can_be_chosen(description):
+    tables = tables_of(description)
+    for name in LAWS:
+        ((head, _),) = answers({"do": "law", "name": name, "tables": tables})
+        assert an_opened().read(head["tables"]).slider.law is not None
+        assert head["tables"]["friction"]["law"] == name
+    for table, tests in names().items():
+        for name in tests:
+            ((head, _),) = answers(
+                {"do": "protocol", "table": table, "name": name, "tables": tables}
+            )
+            assert an_opened().read(head["tables"]) is not None
+    assert names().keys() == TESTS.keys()
+    with pytest.raises(st.StictionError, match="known:"):
+        protocol(description, "drive", "nothing")
+
+
+def test_every_preset_can_be_chosen():
+    for name in PRESETS:
+        ((head, _),) = answers({"do": "preset", "name": name})
+        assert an_opened().read(head["tables"]).slider.normal_load > 0.0
+
+
+def test_a_state_restores_the_description(description):
+    assert an_opened().read(tables_of(description)) == description
+
+
+@pytest.mark.parametrize("kind", NAMES)
+def test_exports(description, kind, tmp_path):
+    name, content = export(description, kind, free)
+    assert name == NAMES[kind]
+    if kind == "toml":
+        assert st.Description.from_dict(tomllib.loads(content.decode())) == description
+    elif kind == "python":
+        scope = {}
+        exec(content.decode().replace("run.plot()", ""), scope)
+        assert scope["run"].description == description
+    elif kind == "csv":
+        assert sorted(zipfile.ZipFile(BytesIO(content)).namelist()) == ["run-sticks.csv", "run.csv"]
+    elif kind == "nc":
+        (tmp_path / name).write_bytes(content)
+        assert st.load(tmp_path / name).description == description
+    else:
+        assert content.startswith({"png": b"\x89PNG", "pdf": b"%PDF", "svg": b"<?xml"}[kind])
+    assert python_lines(description).startswith("import stiction as st\n")
+
+
+def test_what_is_heard_is_the_transverse_rate(description):
+    ((head, arrays),) = answers({"do": "sound", "tables": tables_of(description)})
+    run = st.simulate(description.slider, description.run.duration, sample_rate=head["rate"])
+    count = len(arrays["sound"])
+    assert count == int(description.run.duration * head["rate"])
+    # the times differ by rounding
+    np.testing.assert_allclose(arrays["sound"], run.samples["v_y"][:count], rtol=1e-5, atol=1e-12)
+
+
+def test_the_spectrogram_shows_the_transverse_oscillation(description):
+    what = an_opened(duration=0.5)
+    ((head, arrays),) = answers({"do": "spectrogram", "tables": tables_of(what.description)}, what)
+    amplitude = arrays["amplitude"]
+    frequency = np.linspace(*head["frequency"], len(amplitude))
+    _, fast = description.slider.natural_frequencies
+    above = frequency > 0.5 * fast  # the turn of friction is slow, and stronger
+    strongest = frequency[above][amplitude[above].mean(axis=1).argmax()]
+    line = frequency[1] - frequency[0]
+    assert abs(strongest - fast) < line  # sin(theta) > 0.98 until 0.5 s
+
+
+def test_the_map_agrees_with_the_critical_misalignment(description):
+    found = answers({"do": "stability", "tables": tables_of(description)})
+    head, arrays = found[-1]
+    growth = arrays["growth"]
+    speeds = np.geomspace(*head["speeds"], len(growth) + 1)
+    row = int(np.searchsorted(speeds, 1e-3) - 1)
+    edges = np.geomspace(*head["angles"], growth.shape[1] + 1)
+    middle = np.sqrt(speeds[row] * speeds[row + 1])
+    slider = description.slider.replace(drive=st.ConstantVelocity(middle))
+    critical = np.degrees(st.stability(slider, "phi", ("0.1 deg", "90 deg")).criticals[0].values)
+    stable = growth[row] < 0.0
+    wanted = [int(np.searchsorted(critical, x)) % 2 == 1 for x in np.sqrt(edges[1:] * edges[:-1])]
+    assert stable.tolist() == wanted
+    assert [arrays["growth"].shape for _, arrays in found][-1] == (48, 48)
+
+
+def test_a_record_lies_over_a_description(tmp_path):
+    rig = st.init(tmp_path / "my.toml")
+    record = tmp_path / "force.csv"
+    record.write_text("time [ms],force [mN]\n0,0\n1,5\n2,7\n")
+    what = open_sources([rig, record])
+    assert what.name == "my.toml"
+    np.testing.assert_allclose(what.measured["time"], [0.0, 1e-3, 2e-3])
+    ((head, arrays),) = answers({"do": "measured", "window": [0.0, 2e-3], "columns": 16}, what)
+    assert head["origin"] == "measured"
+    assert arrays["spring_x"].max() == np.float32(7e-3)
+    assert open_sources([record]).description.slider == st.presets.nakano_popov_2020()
+
+
+def test_a_result_is_opened_with_its_curves(tmp_path, description):
+    path = st.run(description).save(tmp_path / "run.nc")
+    what = open_sources([path])
+    assert what.description == description
+    assert what.origin == "stored"
+    with pytest.raises(st.ResultError, match="both describe a system"):
+        open_sources([path, path])
+
+
+def test_what_cannot_be_explored_is_refused(tmp_path):
+    path = tmp_path / "x.csv"
+    path.write_text("")
+    for what in (path, tmp_path / "none.csv", tmp_path / "none.toml", 3.0):
+        with pytest.raises(st.StictionError):
+            open_sources([what])
+
+
+def test_objects_of_a_session_are_explored(description):
+    run = st.run(description)
+    record = st.Record(time=[0.0, 1.0], force=[1.0, 2.0], position=[0.0, 1e-3])
+    what = open_sources([run.slider, record])
+    assert what.description.slider == run.slider
+    assert set(what.measured) == {"time", "spring_x", "X"}
+    assert open_sources([run]).origin == "stored"
+    assert open_sources([description]).description is description
+
+
+def test_a_study_is_a_map_whose_runs_open(tmp_path):
+    study = st.Study(
+        base=an_opened(duration=2e-3).description,
+        axes={"phi": st.Values(["1 deg", "2 deg"]), "V": st.Values(["1 mm/s", "3 mm/s", "5 mm/s"])},
+        measures=["peak_force"],
+    )
+    st.sweep(study, tmp_path / "a.zarr")
+    what = open_sources([tmp_path / "a.zarr"])
+    ((head, arrays),) = answers({"do": "start"}, what)
+    axes = {each["dim"]: each["values"] for each in head["study"]["axes"]}
+    assert axes["phi"] == [1.0, 2.0]
+    assert arrays["map"].shape == (2, 3)
+    ((head, _),) = answers({"do": "pick", "at": {"phi": 1, "drive.velocity": 2}}, what)
+    picked = what.read(head["tables"]).slider
+    assert (np.degrees(picked.phi), picked.motion.velocity) == (pytest.approx(2.0), 5e-3)
+    with pytest.raises(st.StictionError, match="no study"):
+        answers({"do": "pick", "at": {}})
+
+
+def test_without_the_extra_the_command_is_named(monkeypatch):
+    monkeypatch.setattr("stiction.explorer.door.find_spec", lambda name: None)
+    with pytest.raises(st.StictionError, match="uv run --extra explorer stiction explore"):
+        explore()
+    monkeypatch.undo()
+    with pytest.raises(st.StictionError, match="port must lie"):
+        explore(port=70000)
