@@ -25,6 +25,7 @@ import h5py
 import numpy as np
 
 import stiction as st
+from benchmarks.cases.record_files import read_damaged
 from benchmarks.explore.draw import Draw
 from stiction.cli import main as main_line
 from stiction.cli.options import value as option
@@ -255,6 +256,11 @@ def record(draw: Draw, folder: Path) -> None:
     str(st.analyse(st.Record(time=time, force=force, **more)))
 
 
+def record_file(draw: Draw, folder: Path) -> None:
+    """The file of a measured record, in any format."""
+    read_damaged(draw, folder, damage_bytes)
+
+
 def _spoil_array(draw: Draw, values: Any) -> Any:
     """Return an array that is not what it was."""
     odd = draw.among([0.0, np.nan, np.inf, -1.0, 1e300, 1e99, 5e-324, 1.0])
@@ -446,7 +452,7 @@ READERS: dict[str, Callable[[Draw, Path], None]] = {
     each.__name__: each
     for each in (
         description_text, description_json, study_text, change_values,
-        record, result, store, quantity, laws, command,
+        record, record_file, result, store, quantity, laws, command,
     )
 }  # fmt: skip
 

@@ -18,7 +18,13 @@ from stiction.simulation import run
 from stiction.text.toml import read_json
 
 SEED = 20  # any will do
-COUNTS = {"store": 12, "result": 25, "record": 60, "command": 25}  # of those that take longer
+COUNTS = {
+    "store": 12,
+    "result": 25,
+    "record": 60,
+    "record_file": 120,
+    "command": 25,
+}  # of those that take longer
 
 
 @pytest.fixture(scope="module")

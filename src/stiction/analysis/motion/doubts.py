@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import isfinite, log10, pi
+from math import log10, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from stiction.analysis.motion.course import QUIET, change_of_period
 from stiction.analysis.motion.drift import Drift, find_drift
 from stiction.analysis.motion.friction import Friction
+from stiction.analysis.motion.metadata import FEW, loading_rate, stiffness_over_mass
 from stiction.analysis.motion.regime import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import even_grid, why_not
@@ -23,11 +24,7 @@ if TYPE_CHECKING:
 
 LARGEST_MU = 3.0
 LEAST_MU = 0.01  # of dry friction: superlubricity aside
-FASTER, SLOWER = 1.1, 0.5  # rate of loading over stiffness times drive velocity
-LIGHTER, HEAVIER = 1.4, 0.7  # k/m by the swing over that stated; a slip is slower than a swing
-SLOW_SLIP = 0.1
 THOUSAND = 0.2  # a ratio within a factor of 5 of a thousand, or its square, is a wrong unit
-FEW = 6  # samples in a slip
 ABOUT_ZERO = 0.05  # of half the drop: so far from zero the middle of a swing may lie
 AT_REST = 0.02  # of the largest force
 FLAT = 4  # times as many samples at the largest value as at any other, and so many at least
@@ -219,16 +216,12 @@ def _friction_too_large(record: Record, friction: Friction) -> Iterator[str]:
 
 
 def _loading_too_fast(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:
-    if kind not in (STICK_SLIP, TRANSITIONAL) or not record.stiffness or not record.drive_velocity:
-        return
-    stated = record.stiffness * record.drive_velocity
-    seen = float(np.median(cycles["stick_slope"].values))
-    ratio = seen / stated
-    if not isfinite(ratio) or SLOWER <= ratio <= FASTER:
+    its = loading_rate(record, kind, cycles)
+    if its is None or its.agrees is not False:
         return
     yield (
-        f"The force rises at {in_words(seen, 'N/s')}, {ratio:.3g} times stiffness times drive "
-        f"velocity as stated, {in_words(stated, 'N/s')}: {_remedy(ratio)}."
+        f"The force rises at {in_words(its.found, 'N/s')}, {its.ratio:.3g} times stiffness times "
+        f"drive velocity as stated, {in_words(its.stated, 'N/s')}: {_remedy(its.ratio)}."
     )
 
 
@@ -250,25 +243,14 @@ def _remedy(ratio: float) -> str:
 
 def _mass(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:
     """Doubt k/m if the period of a swing, or the duration of a slip, contradicts it."""
-    if not record.mass or not record.stiffness or not cycles.sizes["cycle"]:
+    its = stiffness_over_mass(record, kind, cycles)
+    if its is None or its.agrees is not False:
         return
-    fall = float(np.median(cycles["trough_time"].values - cycles["peak_time"].values))
-    swing = 2.0 * fall
-    lightest, heaviest = LIGHTER, SLOW_SLIP
-    if kind == HARMONIC:
-        swing, heaviest = float(np.median(cycles["period"].values)), HEAVIER
-    elif kind not in (STICK_SLIP, TRANSITIONAL):
-        return
-    if fall * record.sample_rate < FEW:
-        return
-    seen, stated = (2.0 * pi / swing) ** 2, record.stiffness / record.mass
-    if heaviest <= seen / stated <= lightest:
-        return
-    what = "swings" if kind == HARMONIC else "slips"
+    what, lasts = ("swings", 2.0) if kind == HARMONIC else ("slips", 1.0)
     yield (
-        f"By the time of its {what} ({in_words(swing if kind == HARMONIC else fall, 's')}) "
-        f"stiffness over mass is {seen / stated:.2g} times {stated:.3g} 1/s², as stated: "
-        f"{_remedy_of_mass(seen / stated)}."
+        f"By the time of its {what} ({in_words(lasts * pi / its.found**0.5, 's')}) "
+        f"stiffness over mass is {its.ratio:.2g} times {its.stated:.3g} 1/s², as stated: "
+        f"{_remedy_of_mass(its.ratio)}."
     )
 
 

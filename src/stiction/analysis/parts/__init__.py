@@ -20,6 +20,7 @@ PARTS = (
     "creep",
     "oscillation",
     "energy",
+    "metadata",
 )
 
 

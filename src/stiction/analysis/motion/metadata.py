@@ -1,0 +1,173 @@
+"""What a record says by itself, beside what is stated of its apparatus."""
+
+from __future__ import annotations
+
+from math import isfinite, nan, pi
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from stiction.analysis.motion.drift import find_drift
+from stiction.analysis.motion.regime import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
+from stiction.analysis.record import Record
+from stiction.analysis.signals.robust import trimmed_mean
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FASTER, SLOWER = 1.1, 0.5  # rate of loading over stiffness times drive velocity
+LIGHTER, HEAVIER = 1.4, 0.7  # k/m by the swing over that stated; a slip is slower than a swing
+SLOW_SLIP = 0.1
+FEW = 6  # samples in a slip
+ALIKE = 0.1  # relative: a mean that was measured agrees so far with its stated value
+SEEN = 0.4  # of the sample rate: a faster oscillation is lost, or seen at another frequency
+AT_REST = 0.02  # of the largest force
+
+
+class Comparison(NamedTuple):
+    """A quantity as the record shows it, with its standard error, and as it is stated.
+
+    NaN where it is not known. `low` and `high` bound the ratio of both where they agree.
+    """
+
+    quantity: str
+    unit: str
+    found: float
+    error: float
+    stated: float
+    low: float
+    high: float
+    how: str
+
+    @property
+    def ratio(self) -> float:
+        """Found over stated."""
+        return self.found / self.stated if self.stated else nan
+
+    @property
+    def agrees(self) -> bool | None:
+        """Whether both agree; None if one is not known."""
+        return self.low <= self.ratio <= self.high if isfinite(self.ratio) else None
+
+
+def compare_metadata(record: Record, kind: str, cycles: xr.Dataset) -> tuple[Comparison, ...]:
+    """Return all that a record shows of its apparatus, beside what is stated.
+
+    Parameters
+    ----------
+    record : Record
+        With what is stated.
+    kind : str
+        The kind of motion.
+    cycles : Dataset
+        From `stiction.analysis.find_cycles`.
+    """
+    found = (
+        stiffness_over_mass(record, kind, cycles),
+        loading_rate(record, kind, cycles),
+        _drive_velocity(record),
+        _normal_load(record),
+        _transverse_frequency(record),
+        _zero(record),
+        _drift(record, kind, cycles),
+    )
+    return tuple(each for each in found if each is not None)
+
+
+def loading_rate(record: Record, kind: str, cycles: xr.Dataset) -> Comparison | None:
+    """Compare the rate of loading while the mass sticks with stiffness times drive velocity."""
+    if kind not in (STICK_SLIP, TRANSITIONAL):
+        return None
+    slopes = cycles["stick_slope"].values
+    stated = (record.stiffness or nan) * (record.drive_velocity or nan)
+    how = "rate at which the force rises"
+    seen, error = float(np.median(slopes)), _error(slopes)
+    name = "stiffness times drive velocity"
+    return Comparison(name, "N/s", seen, error, stated, SLOWER, FASTER, how)
+
+
+def stiffness_over_mass(record: Record, kind: str, cycles: xr.Dataset) -> Comparison | None:
+    """Compare k/m by the period of a swing, or the duration of a slip, with that stated.
+
+    A mass on its spring swings with the period T = 2 pi (m/k)^1/2; a slip under constant friction
+    takes half of it, and one under friction that weakens takes longer.
+    """
+    if not cycles.sizes["cycle"] or kind not in (HARMONIC, STICK_SLIP, TRANSITIONAL):
+        return None
+    falls = cycles["trough_time"].values - cycles["peak_time"].values
+    if float(np.median(falls)) * record.sample_rate < FEW:
+        return None
+    swings = cycles["period"].values if kind == HARMONIC else 2.0 * falls
+    swing = float(np.median(swings))
+    how = "period of its swings" if kind == HARMONIC else "duration of its slips"
+    lowest = HEAVIER if kind == HARMONIC else SLOW_SLIP
+    found = (2.0 * pi / swing) ** 2
+    stated = (record.stiffness or nan) / (record.mass or nan)
+    error = 2.0 * found * _error(swings) / swing
+    return Comparison("stiffness over mass", "1/s²", found, error, stated, lowest, LIGHTER, how)
+
+
+def _error(values: np.ndarray) -> float:
+    return trimmed_mean(np.asarray(values, dtype=np.float64)).error
+
+
+def _drive_velocity(record: Record) -> Comparison | None:
+    """Compare the slope of the drive's displacement with the stated velocity."""
+    if record.drive_position is None or len(record) < FEW:
+        return None
+    line, square = np.polyfit(record.time, record.drive_position, 1, cov=True)
+    found, error = abs(float(line[0])), float(np.sqrt(max(square[0, 0], 0.0)))
+    stated = record.drive_velocity or nan
+    how = "slope of the drive's displacement"
+    return Comparison("drive velocity", "m/s", found, error, stated, 1 - ALIKE, 1 + ALIKE, how)
+
+
+def _normal_load(record: Record) -> Comparison | None:
+    """Compare the mean of the measured normal load with the stated one."""
+    if record.load is None or not len(record):
+        return None
+    found, spread = float(record.load.mean()), float(record.load.std())
+    stated = record.normal_load or nan
+    how = "mean of its channel, with its spread"
+    return Comparison("normal load", "N", found, spread, stated, 1 - ALIKE, 1 + ALIKE, how)
+
+
+def _transverse_frequency(record: Record) -> Comparison | None:
+    """Compare the highest frequency that the record shows with the transverse one.
+
+    That is (k_across/m)^1/2 / 2 pi; near the first slip the oscillation is slower.
+    """
+    if not record.stiffness_across or not record.mass or len(record) < FEW:
+        return None
+    frequency = (record.stiffness_across / record.mass) ** 0.5 / (2.0 * pi)
+    highest = SEEN * record.sample_rate
+    sensor = (record.sensors or {}).get("force")
+    cuts = [x for x in (sensor.bandwidth, sensor.filter) if x] if sensor is not None else []
+    how = "0.4 of the sample rate, or the sensor's cut-off"
+    shown = min([highest, *cuts])
+    name = "frequencies up to, and the transverse one"
+    return Comparison(name, "Hz", shown, nan, frequency, 1.0, float("inf"), how)
+
+
+def _zero(record: Record) -> Comparison | None:
+    """Return the reading with which a record begins, where that is constant: a zero perhaps."""
+    some = record.force[: max(8, len(record) // 400)]
+    if not len(some) or len(record) < 4 * len(some):
+        return None
+    largest = float(np.abs(record.force).max(initial=0.0))
+    read, spread = float(np.median(some)), float(np.std(some))
+    if not abs(read) < AT_REST * largest or spread > AT_REST * largest:
+        return None
+    stated = 0.0 if record.zero is not None else nan
+    return Comparison("zero", "N", read, spread, stated, nan, nan, "reading at its beginning")
+
+
+def _drift(record: Record, kind: str, cycles: xr.Dataset) -> Comparison | None:
+    """Return the steady change of the force."""
+    if kind not in (STICK_SLIP, TRANSITIONAL, HARMONIC, STEADY):
+        return None
+    drift = find_drift(record, cycles)
+    if not isfinite(drift.error):
+        return None
+    how = "line through the middles of cycles" if cycles.sizes["cycle"] else "its second half"
+    return Comparison("drift of the force", "N/s", drift.rate, drift.error, nan, nan, nan, how)

@@ -1,0 +1,97 @@
+"""What a measured record says of its own apparatus, beside what is stated."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+from stiction.analysis.motion.metadata import Comparison, compare_metadata
+from stiction.analysis.parts.wording import number
+from stiction.text.sections import Section, Table
+from stiction.text.units import in_words
+from stiction.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from stiction.analysis.report import Analysis
+
+VERDICTS = {True: "agrees", False: "contradicts", None: ""}
+NUMBERS = ("found", "error", "stated", "ratio")
+TOLD = ("stiffness over mass", "stiffness times drive velocity")  # among the warnings
+HEADINGS = ("quantity", "shown", "stated", "", "by the")
+
+
+def find(found: Analysis) -> tuple[Comparison, ...]:
+    """Return the comparisons of a record; none of a run, which is what it states."""
+    if isinstance(found.source, Trajectory):
+        return ()
+    return compare_metadata(found.record, found.regime.kind, found.cycles)
+
+
+def section(found: Analysis) -> Section | None:
+    """Return them as a table, with a sentence on those that contradict each other."""
+    its: tuple[Comparison, ...] = found.parts["metadata"] or ()
+    if all(each.agrees is None for each in its):  # nothing is stated
+        return None
+    known = [each.agrees for each in its if each.agrees is not None]
+    lines = [f"{known.count(False)} of {len(known)} stated values contradict the record."]
+    lines += [_sentence(x) for x in its if x.agrees is False and x.quantity not in TOLD]
+    return Section("What the record says of its apparatus", lines, Table(HEADINGS, _rows(its)))
+
+
+def _sentence(each: Comparison) -> str:
+    """Return a contradiction in words."""
+    if each.unit == "Hz":
+        return (
+            f"The transverse oscillation, at {_words(each.stated, each.unit)}, is not in this "
+            f"record, which shows {_words(each.found, each.unit)} at most: the stiffness across "
+            "cannot be found from it."
+        )
+    name = f"{each.quantity[0].upper()}{each.quantity[1:]}"
+    return f"{name}: by the {each.how} it is {each.ratio:.2g} times what is stated."
+
+
+def _words(value: float, unit: str) -> str:
+    return f"{value:.4g} {unit}" if unit == "1/s²" else in_words(value, unit)
+
+
+def _rows(its: tuple[Comparison, ...]) -> list[tuple[str, ...]]:
+    return [
+        (
+            each.quantity,
+            _cell(each),
+            _words(each.stated, each.unit) if isfinite(each.stated) else "",
+            VERDICTS[each.agrees],
+            each.how,
+        )
+        for each in its
+    ]
+
+
+def _cell(each: Comparison) -> str:
+    error = f" ± {_words(float(f'{each.error:.1g}'), each.unit)}" if each.error > 0.0 else ""
+    return _words(each.found, each.unit) + error
+
+
+def tables(found: Analysis) -> dict[str, xr.Dataset | None]:
+    """Return a row for each quantity, in SI."""
+    import xarray as xr
+
+    its: tuple[Comparison, ...] = found.parts["metadata"] or ()
+    columns = {name: ("quantity", [getattr(each, name) for each in its]) for name in NUMBERS}
+    texts = {name: ("quantity", [getattr(each, name) for each in its]) for name in ("unit", "how")}
+    rows = {"quantity": ("quantity", [each.quantity for each in its])}
+    return {"metadata": xr.Dataset({**columns, **texts}, rows) if its else None}
+
+
+def numbers(found: Analysis) -> dict[str, Any]:
+    """Return them for JSON."""
+    its: tuple[Comparison, ...] = found.parts["metadata"] or ()
+    return {
+        "metadata": {
+            each.quantity: {name: number(getattr(each, name)) for name in NUMBERS}
+            | {"unit": each.unit, "agrees": each.agrees, "by": each.how}
+            for each in its
+        }
+    }

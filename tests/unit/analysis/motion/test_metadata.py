@@ -1,0 +1,111 @@
+"""What a record says of its apparatus, on records whose answer is known."""
+
+import numpy as np
+import pytest
+from tests.measured import read_measured
+
+import stiction as st
+from stiction.analysis.motion.metadata import compare_metadata
+
+RATE = 2000.0
+TIME = np.arange(0.0, 20.0, 1.0 / RATE)
+STIFFNESS, VELOCITY, MASS = 200.0, 1e-3, 0.05  # k/m = 4000 1/s^2
+
+
+def sawtooth(scale=1.0):
+    """Stick-slip that loads with k V, and slips in half a period of the mass on its spring."""
+    slip = np.pi * (MASS / STIFFNESS) ** 0.5
+    rise = 0.5
+    phase = TIME % (rise + slip)
+    drop = STIFFNESS * VELOCITY * rise
+    falling = 0.5 * drop * (1.0 + np.cos(np.pi * (phase - rise) / slip))
+    force = 1.0 + np.where(phase < rise, STIFFNESS * VELOCITY * phase, falling)
+    noise = 1e-4 * np.random.default_rng(1).standard_normal(len(TIME))
+    return scale * force + noise
+
+
+def compare(force, **known):
+    """The comparisons of a record by name."""
+    found = st.analyse(st.Record(time=TIME, force=force, **known))
+    return {each.quantity: each for each in found.parts["metadata"]}, str(found)
+
+
+def test_a_true_description_is_not_contradicted():
+    its, said = compare(
+        sawtooth(), stiffness=STIFFNESS, drive_velocity=VELOCITY, mass=MASS, normal_load=5.0
+    )
+    loading, swing = its["stiffness times drive velocity"], its["stiffness over mass"]
+    assert loading.found == pytest.approx(STIFFNESS * VELOCITY, rel=0.01)
+    assert loading.agrees
+    # peaks and troughs of a cosine are flat: a slip of 0.05 s is found to some percent
+    assert swing.found == pytest.approx(STIFFNESS / MASS, rel=0.2)
+    assert swing.agrees
+    assert "contradicts" not in said
+
+
+@pytest.mark.parametrize(
+    ("wrong", "quantity", "ratio"),
+    [
+        ({"mass": 3.0 * MASS}, "stiffness over mass", 3.0),
+        ({"drive_velocity": 0.5 * VELOCITY}, "stiffness times drive velocity", 2.0),
+    ],
+)
+def test_a_wrong_description_is_contradicted(wrong, quantity, ratio):
+    true = {"stiffness": STIFFNESS, "drive_velocity": VELOCITY, "mass": MASS}
+    its, said = compare(sawtooth(), **(true | wrong))
+    assert its[quantity].agrees is False
+    assert its[quantity].ratio == pytest.approx(ratio, rel=0.2)
+    assert "contradicts" in said
+
+
+def test_the_drive_and_the_load_are_compared_with_their_channels():
+    noise = 1e-6 * np.random.default_rng(2).standard_normal(len(TIME))
+    its, said = compare(
+        sawtooth(),
+        drive_velocity=2.0 * VELOCITY,
+        drive_position=VELOCITY * TIME + noise,
+        load=5.0 + 0.01 * np.sin(TIME),
+        normal_load=5.0,
+    )
+    drive = its["drive velocity"]
+    assert abs(drive.found - VELOCITY) < 4.0 * drive.error
+    assert drive.agrees is False
+    assert its["normal load"].agrees
+    assert "Drive velocity: by the slope of the drive's displacement it is 0.5 times" in said
+
+
+@pytest.mark.parametrize(("across", "shown"), [(1e4, True), (1e7, False)])
+def test_a_transverse_oscillation_above_half_the_sample_rate_is_not_in_the_record(across, shown):
+    its, said = compare(sawtooth(), mass=MASS, stiffness_across=across)
+    each = its["frequencies up to, and the transverse one"]
+    assert each.stated == pytest.approx((across / MASS) ** 0.5 / (2.0 * np.pi), rel=1e-12)
+    assert each.agrees == shown
+    assert ("The transverse oscillation, at 2.251 kHz, is not in this record" in said) != shown
+
+
+def test_the_cut_off_of_a_sensor_counts_too():
+    record = st.Record(
+        time=TIME,
+        force=sawtooth(),
+        mass=MASS,
+        stiffness_across=1e5,  # 225 Hz
+        sensors={"force": st.Sensor(bandwidth="100 Hz")},
+    )
+    its = compare_metadata(record, "none", st.analysis.find_cycles(record))
+    (each,) = (x for x in its if x.agrees is False)
+    assert each.found == 100.0
+
+
+def test_a_run_is_what_it_states(paper_run):
+    found = st.analyse(paper_run)
+    assert found.parts["metadata"] == ()
+    assert "What the record says" not in str(found)
+
+
+@pytest.mark.parametrize(
+    ("name", "low", "high"), [("k1002_v4300", 1.4, 1.75), ("k168_v42", 0.8, 1.2)]
+)
+def test_the_measured_records(name, low, high):
+    """At V = 4300 um/s k/m comes out 1.5 to 1.7 times as stated, at 42 um/s as stated."""
+    its = {each.quantity: each for each in st.analyse(read_measured(name)).parts["metadata"]}
+    assert low < its["stiffness over mass"].ratio < high
