@@ -22,7 +22,7 @@ from stiction.friction.laws.rate_and_state.common import (
     steady,
     steady_log_theta,
 )
-from stiction.friction.registry import register
+from stiction.friction.registry import called_by_laws, register
 from stiction.text.units import Coefficient, PositiveLength, PositiveNumber, PositiveSpeed
 from stiction.text.validation import validate
 
@@ -102,13 +102,8 @@ class RateStateAgeing(OneState):
         law, slip: Vector, load: float, state: tuple[float, ...]
     ) -> tuple[tuple[float, ...], ...]:
         """Return the derivatives of force and change by slip x, y and the state."""
-        psi = law.mu_star + law.b * state[0]
-        xx, xy, yy, x, y = friction_gradient(law.a, law.V_star, psi, slip, load)
-        return (
-            (xx, xy, law.b * x),
-            (xy, yy, law.b * y),
-            ageing_gradient(state[0], slip, law.V_star, law.D_c),
-        )
+        own = ageing_gradient(state[0], slip, law.V_star, law.D_c)
+        return gradient_of(law, slip, load, state, own)
 
 
 @register("rate-and-state-slip")
@@ -145,13 +140,8 @@ class RateStateSlip(OneState):
         law, slip: Vector, load: float, state: tuple[float, ...]
     ) -> tuple[tuple[float, ...], ...]:
         """Return the derivatives of force and change by slip x, y and the state."""
-        psi = law.mu_star + law.b * state[0]
-        xx, xy, yy, x, y = friction_gradient(law.a, law.V_star, psi, slip, load)
-        return (
-            (xx, xy, law.b * x),
-            (xy, yy, law.b * y),
-            slipping_gradient(state[0], slip, law.V_star, law.D_c),
-        )
+        own = slipping_gradient(state[0], slip, law.V_star, law.D_c)
+        return gradient_of(law, slip, load, state, own)
 
 
 @register("rate-and-state-perrin")
@@ -190,10 +180,19 @@ class RateStatePerrin(OneState):
         law, slip: Vector, load: float, state: tuple[float, ...]
     ) -> tuple[tuple[float, ...], ...]:
         """Return the derivatives of force and change by slip x, y and the state."""
-        psi = law.mu_star + law.b * state[0]
-        xx, xy, yy, x, y = friction_gradient(law.a, law.V_star, psi, slip, load)
-        return (
-            (xx, xy, law.b * x),
-            (xy, yy, law.b * y),
-            squaring_gradient(state[0], slip, law.V_star, law.D_c),
-        )
+        own = squaring_gradient(state[0], slip, law.V_star, law.D_c)
+        return gradient_of(law, slip, load, state, own)
+
+
+@called_by_laws
+def gradient_of(
+    law: OneState,
+    slip: Vector,
+    load: float,
+    state: tuple[float, ...],
+    own: tuple[float, float, float],
+) -> tuple[tuple[float, ...], ...]:
+    """Return a law's `gradient` from that of its state, by slip x, y and itself."""
+    psi = law.mu_star + law.b * state[0]
+    xx, xy, yy, x, y = friction_gradient(law.a, law.V_star, psi, slip, load)
+    return ((xx, xy, law.b * x), (xy, yy, law.b * y), own)
