@@ -144,7 +144,7 @@ def test_save_and_load_refuse(run, tmp_path):
     with pytest.raises(st.ResultError, match="no such file"):
         st.load(tmp_path / "none.nc")
     (tmp_path / "text.nc").write_text("not netcdf")
-    with pytest.raises(st.ResultError, match=r"not a NetCDF file; .*st\.Record"):
+    with pytest.raises(st.ResultError, match=r"not a NetCDF file; .*st\.read_record"):
         st.load(tmp_path / "text.nc")
     run.data.drop_vars("psi").to_netcdf(tmp_path / "half.nc", engine="h5netcdf")
     with pytest.raises(st.ResultError, match="lacks psi"):

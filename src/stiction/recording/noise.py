@@ -39,9 +39,10 @@ def noise_level(values: Floats) -> NoiseLevel:
 
     Examples
     --------
+    >>> import numpy as np
     >>> random = np.random.default_rng(1)
     >>> smooth = np.sin(np.linspace(0.0, 20.0, 20000))
-    >>> round(noise_level(smooth + 0.01 * random.standard_normal(20000)).noise, 4)
+    >>> round(noise_level(smooth + 0.01 * random.standard_normal(20000)).noise, 3)
     0.01
     """
     if len(values) < FEWEST:
@@ -72,8 +73,9 @@ def lattice(values: Floats) -> float:
 
     Examples
     --------
+    >>> import numpy as np
     >>> smooth = np.sin(np.arange(2000.0))
-    >>> lattice(0.25 * np.rint(40.0 * smooth)), lattice(smooth)
+    >>> round(lattice(0.25 * np.rint(40.0 * smooth)), 9), lattice(smooth)
     (0.25, 0.0)
     """
     codes = np.unique(values)

@@ -1,4 +1,4 @@
-"""Springs in series, against the stiffness matrix of all nodes with the inner ones eliminated."""
+"""Springs in series, (M75) to (M76), against the stiffness matrix with inner nodes eliminated."""
 
 from math import inf
 
