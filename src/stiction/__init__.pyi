@@ -25,6 +25,8 @@ from stiction.friction import laws as laws
 from stiction.friction.laws import Coulomb as Coulomb
 from stiction.friction.laws import ExponentialWeakening as ExponentialWeakening
 from stiction.linear_stability.examination import stability as stability
+from stiction.media.film import animate as animate
+from stiction.media.sound import listen as listen
 from stiction.plotting.door import plot as plot
 from stiction.presets.report import init as init
 from stiction.recording.sensor import Sensor as Sensor

@@ -42,6 +42,8 @@ COMMANDS = (
     "audit",
     "run",
     "explore",
+    "animate",
+    "listen",
     "plot",
     "analyse",
     "export",
@@ -53,7 +55,8 @@ COMMANDS = (
     "check",
 )
 # commands in the file of another, or in a room
-BESIDE = {"presets": "init", "import": "analyse", "explore": "live.explore"}
+BESIDE = {"presets": "init", "import": "analyse"}
+BESIDE |= {name: f"live.{name}" for name in ("explore", "animate", "listen")}
 for _name in COMMANDS:  # light modules, which import heavy ones when called
     _file = BESIDE.get(_name, _name)
     _module = import_module(f"stiction.cli.commands.{_file}")

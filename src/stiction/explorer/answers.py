@@ -24,12 +24,12 @@ from stiction.explorer.protocols import names, protocol
 from stiction.explorer.source import Opened
 from stiction.explorer.stability_map import stability_map
 from stiction.friction import LAWS
+from stiction.media.sound import RATE, rate_at
 from stiction.presets import PRESETS, find
 from stiction.system.description import Description
 
 Request = Mapping[str, Any]
 WIDEST = 8192  # columns of a screen
-AUDIBLE = 48_000.0  # samples of sound a second
 LOUDEST = 60.0  # s of sound
 
 
@@ -145,9 +145,9 @@ def sound(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
     description = description_in(opened, request)
     low, high = motion.span(description)
     high = min(high, low + LOUDEST)
-    times = low + np.arange(int((high - low) * AUDIBLE)) / AUDIBLE
-    _, table = motion.simulate(description, times, check)
-    yield {"rate": AUDIBLE, "start": low}, {"sound": table["v_y"].astype(np.float32)}
+    times = low + np.arange(int((high - low) * RATE)) / RATE
+    values = rate_at(description, times, progress=lambda _: check())
+    yield {"rate": RATE, "start": low}, {"sound": values.astype(np.float32)}
 
 
 def preset(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:

@@ -111,6 +111,8 @@ def kind_of_field(part: Mapping[str, Any], key: str) -> str:
         return "program"
     if "amplitude" in part.get("properties", {}):
         return "wave"
+    if any("properties" in each.get("items", {}) for each in alternatives(part)):
+        return "tables"
     for kind in ("boolean", "integer", "array", "object"):
         if kind in kinds:
             return kind

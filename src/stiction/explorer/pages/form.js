@@ -4,7 +4,7 @@ import { SYMBOLS, quantity, symbol } from "./quantity.js";
 import { scaleOf } from "./scale.js";
 
 const TITLES = { slider: "Apparatus", friction: "Friction", drive: "Drive", load: "Load", initial: "Start", run: "Run" };
-const MAIN = new Set(["duration", "velocity"]); // optional ones that everybody needs
+const MAIN = new Set(["duration", "velocity", "k_x", "k_y"]); // optional ones that everybody needs
 
 export function element(name, properties = {}, ...children) {
   const made = Object.assign(document.createElement(name), properties);
@@ -53,6 +53,7 @@ export class Form {
 
   group(name, fields, table, path, ...before) {
     const set = element("fieldset", {}, element("legend", { textContent: TITLES[name] ?? name }), ...before);
+    fields = fields.filter((each) => each.kind !== "tables"); // written in the file alone
     const usual = fields.filter((each) => each.required || MAIN.has(each.key));
     const rare = fields.filter((each) => !usual.includes(each));
     set.append(...usual.map((field) => this.row(field, [...path, field.key])));

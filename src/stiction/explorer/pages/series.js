@@ -4,7 +4,7 @@ import { linearAxis, logAxis } from "./axis.js";
 import { BLUE, GREEN, GREY, INK, Layers, ORANGE, PURPLE, RED, SKY, SOFT, curve, frame, line, symbols, text } from "./drawing.js";
 import { quantity } from "./quantity.js";
 
-const LEFT = 62, RIGHT = 12, TOP = 22, BOTTOM = 26, GAP = 5;
+const LEFT = 62, RIGHT = 12, TOP = 22, BOTTOM = 34, GAP = 5;
 const STRIPS = [
   { name: "force", unit: "N", share: 1.5, curves: [["spring_y", ORANGE, "k_y u_y"], ["spring_x", RED, "k_x u_x"]] },
   { name: "F", unit: "N", share: 0.8, curves: [["friction", PURPLE, "F"]] },
@@ -59,7 +59,7 @@ export class Series {
       top += box.height + GAP;
     });
     this.legend(context);
-    text(context, "time t (s)", LEFT + inner / 2, height - 6, { align: "center", color: SOFT });
+    text(context, "time t (s)", LEFT + inner / 2, height - 8, { align: "center", color: SOFT });
   }
 
   strips() {

@@ -1,0 +1,59 @@
+"""``stiction animate``: the motion as a film."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from stiction.cli.options import Output, Trust
+from stiction.cli.terminal import say
+
+
+def animate(
+    result: Path,
+    /,
+    *,
+    output: Output,
+    window: tuple[str, str] | None = None,
+    length: float = 10.0,
+    at: str | None = None,
+    trust: Trust = False,
+) -> None:
+    """Film a run: the apparatus from above, its time series, and the fast oscillation beside them.
+
+    It needs `stiction[film]`. For example, after `stiction run my.toml -o my.nc`; then one slip,
+    slowly:
+
+        stiction animate my.nc -o lecture.mp4
+
+        stiction animate my.nc -o slip.mp4 --window 1.9s 2.2s --length 15
+
+    Parameters
+    ----------
+    result
+        A file written by `stiction run`.
+    output
+        The film to write: .mp4, .webm or .gif.
+    window
+        Start and end in the run; all of it by default.
+    length
+        Of the film, s: it decides how slowly the window passes.
+    at
+        The time whose surroundings are shown under the microscope: a few periods of the fast
+        oscillation; by default a third into the window.
+    """
+    from stiction.cli.progress import progress
+    from stiction.media.film import animate as film_of
+    from stiction.media.film import filmable
+
+    target = filmable(output)
+    with progress("filming") as report:
+        film = film_of(
+            result,
+            window=window,
+            length=length,
+            at=at,
+            kind=target.suffix[1:].lower(),
+            trust=trust,
+            progress=report,
+        )
+    say(f"wrote {film.save(target)}")

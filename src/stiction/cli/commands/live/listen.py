@@ -1,0 +1,54 @@
+"""``stiction listen``: the transverse oscillation as sound."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+from stiction.cli.options import Output, Trust
+from stiction.cli.terminal import say
+
+
+def listen(
+    result: Path,
+    /,
+    *,
+    output: Output,
+    speed: float | None = None,
+    window: tuple[str, str] | None = None,
+    axis: Literal["x", "y"] = "y",
+    trust: Trust = False,
+) -> None:
+    """Write the transverse oscillation of a run as sound.
+
+    For example, after `stiction run my.toml -o my.nc`; then ten times slower and deeper:
+
+        stiction listen my.nc -o oscillation.wav
+
+        stiction listen my.nc -o slow.wav --speed 0.1 --window 1.8s 2.1s
+
+    Parameters
+    ----------
+    result
+        A file written by `stiction run`.
+    output
+        The file to write: .wav, 48 kHz.
+    speed
+        1 for the true pitch, 0.1 for a tenth; by default 1 where the natural frequency can be
+        heard, else the power of ten by which it can.
+    window
+        Start and end in the run; all of it by default.
+    axis
+        Whose elongation rate is heard: that of the transverse spring, y, or of x.
+    """
+    from stiction.cli.progress import progress
+    from stiction.media.sound import listen as sound_of
+    from stiction.media.sound import writable
+
+    target = writable(output)
+    with progress("listening") as report:
+        sound = sound_of(
+            result, speed=speed, window=window, axis=axis, trust=trust, progress=report
+        )
+    pitch = "at its true pitch" if sound.speed == 1.0 else f"at {sound.speed:g} of its pitch"
+    say(f"wrote {sound.save(target)}: {sound.duration:.3g} s {pitch}")

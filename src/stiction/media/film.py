@@ -1,0 +1,258 @@
+"""The motion as a film: the apparatus, its time series, and a few periods under the microscope."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from math import ceil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from stiction.errors import ResultError
+from stiction.media.encoder import KINDS, encode
+from stiction.media.scene import Scene
+from stiction.media.sound import window_of
+from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, RED, style
+from stiction.plotting.run.time_series import envelope
+from stiction.result.columns import sample_table
+from stiction.result.table import Table
+from stiction.simulation import automatic_times, solve
+from stiction.storage.files import placeable, whole
+from stiction.system.description import Description
+from stiction.text.quantity_text import metric_prefix
+from stiction.text.units import in_words
+from stiction.trajectory import Trajectory, load
+
+SIZE, DPI = (12.8, 7.2), 100  # in: 1280 x 720
+RATE = 25  # frames a second
+LENGTH, LONGEST = 10.0, 300.0  # s of film
+PERIODS = 4  # of the fast oscillation under the microscope
+FINE = 2_000  # samples of these
+NAMES = ("u_x", "u_y", "slip_x", "slip_y", "slip_speed", "friction", "psi", "X", "normal_load",
+         "spring_x", "sticking")  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Film:
+    """A film, which a notebook shows.
+
+    Attributes
+    ----------
+    content : bytes
+        The file.
+    kind : str
+        "mp4", "webm" or "gif".
+    """
+
+    content: bytes = field(repr=False)
+    kind: str
+
+    def save(self, path: str | Path) -> Path:
+        """Write the film, whole or not at all; return the path."""
+        target = filmable(path)
+        if target.suffix[1:].lower() != self.kind:
+            raise ResultError(f"{target}: this film is {self.kind}; name it so, or make another")
+        with whole(target) as part:
+            part.write_bytes(self.content)
+        return target
+
+    def _repr_html_(self) -> str:
+        content = b64encode(self.content).decode("ascii")
+        if self.kind == "gif":
+            return f'<img src="data:image/gif;base64,{content}">'
+        return f'<video controls loop src="data:video/{self.kind};base64,{content}"></video>'
+
+
+def filmable(path: str | Path) -> Path:
+    """Return a path, if a film can be written there.
+
+    Raises
+    ------
+    ResultError
+        If its suffix is of no film, or it cannot be written.
+    """
+    target = Path(path)
+    if target.suffix[1:].lower() not in KINDS:
+        listed = ", ".join(f".{kind}" for kind in KINDS)
+        raise ResultError(f"{target}: unknown format {target.suffix!r}; use {listed}")
+    return placeable(target)
+
+
+def animate(
+    run: Trajectory | str | Path,
+    *,
+    window: Sequence[float | str] | None = None,
+    length: float = LENGTH,
+    at: float | str | None = None,
+    kind: str = "mp4",
+    trust: bool = False,
+    progress: Callable[[float], None] | None = None,
+) -> Film:
+    """Film a run: the apparatus from above, its time series, and the fast oscillation beside them.
+
+    Parameters
+    ----------
+    run : Trajectory, str or Path
+        A run, or its file; it is solved again, with a sample for each frame.
+    window : pair of float or str, optional
+        Start and end in the run, s; all of it by default.
+    length : float, optional
+        Of the film, s: how slowly the window passes.
+    at : float or str, optional
+        The time, s, whose surroundings are shown under the microscope: a few periods of the fast
+        oscillation, as slowly as the film lasts; by default a third into the window.
+    kind : {"mp4", "webm", "gif"}, optional
+        The format.
+    trust : bool, optional
+        For a file; see `stiction.load`.
+    progress : callable, optional
+        Called with the fraction done.
+
+    Returns
+    -------
+    Film
+        A notebook shows it; ``save("lecture.mp4")`` writes it.
+
+    Raises
+    ------
+    ResultError
+        If there is no such window or format, or the package av is missing (install
+        ``stiction[film]``).
+    """
+    found = run if isinstance(run, Trajectory) else load(run, trust=trust)
+    if not 1.0 / RATE <= length <= LONGEST:
+        raise ResultError(
+            f"length must lie between {1 / RATE:g} s and {LONGEST:g} s, is {length:g}"
+        )
+    if kind not in KINDS:
+        raise ResultError(f"kind must be one of {', '.join(KINDS)}, is {kind!r}")
+    start, end = window_of(found.description, window)
+    middle = (
+        start + (end - start) / 3.0 if at is None else window_of(found.description, (at, end))[0]
+    )
+    times = np.linspace(start, end, ceil(length * RATE))
+    frames = draw(found.description, times, middle, length)
+    return Film(encode(_count(frames, len(times), progress), RATE, kind), kind)
+
+
+def _count(
+    frames: Iterator[NDArray[np.uint8]], total: int, progress: Callable[[float], None] | None
+) -> Iterator[NDArray[np.uint8]]:
+    for number, frame in enumerate(frames, 1):
+        yield frame
+        if progress is not None:
+            progress(number / total)
+
+
+def draw(
+    description: Description, times: NDArray[np.float64], middle: float, length: float
+) -> Iterator[NDArray[np.uint8]]:
+    """Yield the frames at `times` (s), (height, width, 3)."""
+    whole_run = sample(description, automatic_times(description))
+    shown = sample(description, times)
+    fine = sample(description, fine_times(description, middle))
+    slow = length / (times[-1] - times[0])
+    with style():
+        figure = Figure(figsize=SIZE, dpi=DPI)
+        canvas: Any = FigureCanvasAgg(figure)
+        scene = Scene(figure.add_axes((0.02, 0.4, 0.62, 0.58)), description.slider, whole_run)
+        cursor, mark = series(figure, whole_run, times), microscope(figure, fine, length)
+        moving: list[Any] = [*scene.artists, *cursor, mark]
+        for artist in moving:
+            artist.set_animated(True)
+        canvas.draw()
+        still = canvas.copy_from_bbox(figure.bbox)
+        for number, time in enumerate(shown["time"]):
+            canvas.restore_region(still)
+            state = {name: float(shown[name][number]) for name in NAMES}
+            scene.show(state, f"t = {time:.3f} s, {slowness(slow)}")
+            for line in cursor:
+                line.set_xdata([time, time])
+            here = int(number / max(len(times) - 1, 1) * (len(fine["time"]) - 1))
+            mark.set_xdata([mark_at(fine, here)] * 2)
+            for artist in moving:
+                artist.axes.draw_artist(artist)
+            yield np.asarray(canvas.buffer_rgba())[..., :3]
+
+
+def sample(description: Description, times: NDArray[np.float64]) -> Table:
+    """Return a run sampled at `times` (s)."""
+    solution = solve(description, times)
+    return sample_table(description, solution.times, solution.samples, {})
+
+
+def fine_times(description: Description, middle: float) -> NDArray[np.float64]:
+    """Return the times under the microscope, s."""
+    start, end = window_of(description, None)
+    width = min(PERIODS / description.slider.natural_frequencies[1], end - start)
+    low = min(max(middle - 0.5 * width, start), end - width)
+    return np.linspace(low, low + width, FINE)
+
+
+def slowness(slow: float) -> str:
+    """Return how much slower than life something is shown."""
+    if 0.95 < slow < 1.05:
+        return "in real time"
+    word, times = ("slower", slow) if slow > 1.0 else ("faster", 1.0 / slow)
+    return f"{float(f'{times:.3g}'):,.15g} times {word}"
+
+
+def series(figure: Figure, run: Table, times: NDArray[np.float64]) -> list[Line2D]:
+    """Draw spring forces, direction and slip speed over time; return the cursors."""
+    rows = (
+        ("spring force (N)", (("spring_y", ORANGE), ("spring_x", RED))),
+        ("ψ (deg)", (("psi", BLUE),)),
+        ("slip speed (m/s)", (("slip_speed", GREEN),)),
+    )
+    cursors = []
+    for number, (label, curves) in enumerate(rows):
+        ax = figure.add_axes((0.06 + 0.32 * number, 0.08, 0.265, 0.27))
+        for name, color in curves:
+            ax.plot(*envelope(run["time"], run[name]), color=color, linewidth=0.8)
+        if name == "slip_speed":
+            top = float(np.nanmax(run[name]))
+            ax.set_yscale("log", nonpositive="clip")
+            ax.set_ylim(1e-7 * top, 3.0 * top)
+        ax.set_xlim(times[0], times[-1])
+        label_axes(ax, "time $t$ (s)", label)
+        cursors.append(ax.axvline(times[0], color=BLACK, linewidth=1.0))
+    return cursors
+
+
+def microscope(figure: Figure, fine: Table, length: float) -> Line2D:
+    """Draw the slip speed over a few fast periods; return the cursor."""
+    ax = figure.add_axes((0.72, 0.47, 0.26, 0.44))
+    factor, prefix = metric_prefix(fine["slip_speed"])
+    places = np.array([mark_at(fine, i) for i in range(len(fine["time"]))])
+    ax.plot(places, fine["slip_speed"] * factor, color=GREEN, linewidth=1.2)
+    rest = fine["sticking"] > 0
+    ax.fill_between(places, 0, 1, where=rest, transform=ax.get_xaxis_transform(), color="#D9D9D9")
+    ax.set_xlim(places[0], places[-1])
+    ax.set_ylim(bottom=0.0)
+    span = fine["time"][-1] - fine["time"][0]
+    middle = 0.5 * (fine["time"][-1] + fine["time"][0])
+    label_axes(ax, f"time from {middle:.4f} s (ms)", f"slip speed ({prefix}m/s), grey: at rest")
+    words = f"Microscope: {in_words(span, 's', 3)}, {slowness(length / span)}"
+    ax.set_title(words, fontsize=10)
+    return ax.axvline(places[0], color=BLACK, linewidth=1.0)
+
+
+def mark_at(fine: Table, index: int) -> float:
+    """Return the place of a sample under the microscope, ms from its middle."""
+    times = fine["time"]
+    return float(1e3 * (times[index] - 0.5 * (times[0] + times[-1])))
+
+
+def label_axes(ax: Axes, along: str, up: str) -> None:
+    """Name the axes, legibly on a screen."""
+    ax.set_xlabel(along, fontsize=10)
+    ax.set_ylabel(up, fontsize=10)
+    ax.tick_params(labelsize=9)

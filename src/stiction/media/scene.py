@@ -1,0 +1,197 @@
+"""The apparatus from above as it moves: the picture of a film.
+
+The frame of reference is that of the spring's far end. X, the drive direction, points to the right,
+the axes x and y of the spring lie at -phi to it. Elongations are magnified, each axis by a round
+factor, which the picture states.
+"""
+
+from __future__ import annotations
+
+from math import cos, floor, log10, sin
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.patches import FancyArrowPatch, Polygon
+from numpy.typing import NDArray
+
+from stiction.friction import Anisotropic
+from stiction.friction.law import static_coefficient
+from stiction.plotting.apparatus.shapes import spring_path
+from stiction.plotting.page.style import (
+    BLACK,
+    BLUE,
+    FLOOR,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    RED,
+)  # fmt: skip
+from stiction.result.table import Table
+from stiction.system.slider import Slider
+from stiction.text.units import in_words
+
+Floats = NDArray[np.float64]
+ROOM = (7.2, 4.2)  # of the picture: its unit is the side of the mass
+HOME = np.array([0.3, -0.45])  # of the mass, where the springs are relaxed
+WALLS = np.array([3.1, 2.2])  # along x and y from there
+LARGEST = np.array([1.2, 0.5])  # displacement of the mass in the picture
+RADIUS = 1.35  # of the friction limit
+SIDE = 0.42  # half of the mass
+GRID = 0.9  # between the marks on the plate
+DECADES = 4.0  # of the slip speed, over which its arrow grows
+INCH = 0.0254
+
+
+class Scene:
+    """Artists that show the state of a run at any time, on given axes."""
+
+    def __init__(self, ax: Axes, slider: Slider, samples: Table) -> None:
+        """Draw what stands, and make what moves."""
+        self.slider, self.samples = slider, samples
+        c, s = cos(slider.phi), sin(slider.phi)
+        self.turn = np.array([[c, s], [-s, c]])  # from x, y to X, Y
+        self.scale = magnification(samples)
+        self.load = float(np.max(samples["normal_load"]))
+        self.limit = largest_friction(slider, samples)
+        self.fastest = float(np.nanmax(samples["slip_speed"]))
+        self._prepare(ax)
+        self._draw_walls(ax)
+        self.artists = self._make(ax)
+
+    def _prepare(self, ax: Axes) -> None:
+        half_x, half_y = ROOM[0] / 2, ROOM[1] / 2
+        ax.set(xlim=(-half_x, half_x), ylim=(-half_y, half_y), aspect="equal")
+        ax.set_xticks([])
+        ax.set_yticks([])
+        ax.set_facecolor(FLOOR)
+        pixel = INCH * ax.get_window_extent().width / ax.figure.get_dpi() / ROOM[0]
+        factors = [float(f"{each * pixel:.2g}") for each in self.scale]
+        words = rf"$u_x \times$ {factors[0]:,.15g},  $u_y \times$ {factors[1]:,.15g}"
+        ax.text(half_x - 0.1, -half_y + 0.14, words, ha="right", fontsize=9, color=GREY)
+        ax.annotate(
+            "",
+            (-half_x + 0.9, -half_y + 0.2),
+            (-half_x + 0.2, -half_y + 0.2),
+            arrowprops={"arrowstyle": "-|>", "color": BLUE},
+        )
+        ax.text(-half_x + 1.0, -half_y + 0.14, "$X$, drive", fontsize=9, color=BLUE)
+
+    def _draw_walls(self, ax: Axes) -> None:
+        for axis, across in ((0, 1), (1, 0)):
+            along, side = np.eye(2)[axis], np.eye(2)[across]
+            reach = 0.45 + LARGEST[across]
+            ends = [HOME + self.turn @ (WALLS[axis] * along + r * side) for r in (-reach, 0.45)]
+            ax.plot(*np.transpose(ends), color=GREY, linewidth=4, solid_capstyle="butt")
+        corners = HOME + SIDE * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)])
+        ax.plot(*corners.T, color=GREY, linewidth=0.8, linestyle=":")
+
+    def _make(self, ax: Axes) -> list[Artist]:
+        (self.marks,) = ax.plot([], [], ".", color="#CFCABB", markersize=4, zorder=1)
+        (self.spring_x,) = ax.plot([], [], color=RED, linewidth=1.5, zorder=3)
+        (self.spring_y,) = ax.plot([], [], color=ORANGE, linewidth=2.5, zorder=3)
+        (self.circle,) = ax.plot([], [], color=PURPLE, linewidth=1.0, zorder=2)
+        self.block = Polygon(np.zeros((4, 2)), facecolor="#C9CCD0", edgecolor=BLACK, zorder=4)
+        ax.add_patch(self.block)
+        self.force, self.slip = (
+            FancyArrowPatch(
+                (0, 0), (1, 0), arrowstyle="-|>", mutation_scale=14, linewidth=width, color=color,
+                shrinkA=0, shrinkB=0, zorder=5,
+            )
+            for color, width in ((PURPLE, 2.5), (GREEN, 2.0))
+        )  # fmt: skip
+        for arrow in (self.force, self.slip):
+            ax.add_patch(arrow)
+        left, top = -ROOM[0] / 2 + 0.15, ROOM[1] / 2 - 0.3
+        self.words = [
+            ax.text(left, top - 0.28 * i, "", fontsize=10, color=color, zorder=6)
+            for i, color in enumerate((BLACK, GREEN, PURPLE, RED))
+        ]
+        moving = (self.marks, self.circle, self.spring_x, self.spring_y, self.block)
+        return [*moving, self.force, self.slip, *self.words]
+
+    def show(self, state: dict[str, float], words: str) -> None:
+        """Move everything to a state: the run's columns at a time; `words` tell the time."""
+        u = np.array([state["u_x"], state["u_y"]])
+        mass = HOME - self.turn @ (self.scale * u)
+        self._move_plate(state)
+        self._move_springs(mass)
+        corners = SIDE * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+        self.block.set_xy(mass + corners @ self.turn.T)
+        self.block.set_facecolor("#6B6F75" if state["sticking"] > 0.5 else "#C9CCD0")
+        outline, tip = self._forces(state)
+        self.circle.set_data(*(mass + outline).T)
+        self.force.set_positions(tuple(mass), tuple(mass + tip))
+        self.slip.set_positions(tuple(mass), tuple(mass + self._slip(state)))
+        self.slip.set_visible(state["sticking"] < 0.5 and state["slip_speed"] > 0.0)
+        at_rest = state["sticking"] > 0.5
+        lines = (
+            words,
+            f"slip speed: {'at rest' if at_rest else in_words(state['slip_speed'], 'm/s', 3)}",
+            f"friction: {in_words(state['friction'], 'N', 3)} at ψ = {state['psi']:.1f}°",
+            f"spring force $k_x u_x$: {in_words(state['spring_x'], 'N', 3)}",
+        )
+        for each, text in zip(self.words, lines, strict=True):
+            each.set_text(text)
+
+    def _move_plate(self, state: dict[str, float]) -> None:
+        u = np.array([state["u_x"], state["u_y"]])
+        travel = state["X"] + (self.turn @ u)[0]
+        half_x, half_y = ROOM[0] / 2, ROOM[1] / 2
+        shift = (-self.scale[0] * travel) % GRID
+        x, y = np.meshgrid(
+            np.arange(-half_x + shift, half_x, GRID), np.arange(-half_y, half_y, GRID)
+        )
+        self.marks.set_data(x.ravel(), y.ravel() + 0.2)
+
+    def _move_springs(self, mass: Floats) -> None:
+        away = self.turn.T @ (mass - HOME)
+        for axis, line, turns in ((0, self.spring_x, 7), (1, self.spring_y, 6)):
+            side = 1 - axis
+            unit = np.eye(2)
+            start = mass + self.turn @ (SIDE * unit[axis])
+            end = HOME + self.turn @ (WALLS[axis] * unit[axis] + away[side] * unit[side])
+            line.set_data(*spring_path(start, end, 0.16, turns).T)
+
+    def _forces(self, state: dict[str, float]) -> tuple[Floats, Floats]:
+        """Return the outline of the friction limit and the tip of the force, from the mass."""
+        law: Any = self.slider.law
+        ratio, angle = (law.ratio, law.angle) if isinstance(law, Anisotropic) else (1.0, 0.0)
+        radius = RADIUS / max(ratio, 1.0) * state["normal_load"] / self.load
+        around = np.linspace(0.0, 2.0 * np.pi, 73)
+        axes = radius * np.column_stack([np.cos(around), ratio * np.sin(around)])
+        c, s = cos(angle), sin(angle)
+        outline = axes @ np.array([[c, s], [-s, c]])
+        unit = RADIUS / max(ratio, 1.0) / (self.limit * self.load)
+        psi = np.radians(np.nan_to_num(state["psi"]))
+        tip = -unit * state["friction"] * np.array([np.cos(psi), np.sin(psi)])
+        return outline, tip
+
+    def _slip(self, state: dict[str, float]) -> Floats:
+        """Return the arrow of the slip velocity: its length is logarithmic."""
+        speed = state["slip_speed"]
+        if not speed > 0.0:
+            return np.array([0.0, 0.0])
+        size = np.log10(speed / self.fastest) / DECADES + 1.0
+        length = SIDE + 1.1 * min(max(size, 0.0), 1.0)
+        way = self.turn @ np.array([state["slip_x"], state["slip_y"]]) / speed
+        found: Floats = length * way
+        return found
+
+
+def magnification(samples: Table) -> Floats:
+    """Return the factors of elongations (per metre) along x and y; nearly equal ones are one."""
+    largest = np.array([np.nanmax(np.abs(samples[name])) for name in ("u_x", "u_y")])
+    found = LARGEST / np.where(largest > 0.0, largest, 1.0)
+    found = np.array([10.0 ** floor(log10(x)) * floor(x / 10.0 ** floor(log10(x))) for x in found])
+    return np.full(2, found.min()) if found.max() < 12.0 * found.min() else found
+
+
+def largest_friction(slider: Slider, samples: Table) -> float:
+    """Return the friction limit over the load; of a law with state, the largest there was."""
+    ratio = samples["friction"] / samples["normal_load"]
+    found = float(np.max(ratio[np.isfinite(ratio)], initial=0.0))
+    law: Any = slider.law
+    return found if hasattr(law, "states") else max(static_coefficient(law), found, 1e-12)

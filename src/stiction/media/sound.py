@@ -1,0 +1,197 @@
+"""The transverse oscillation as sound."""
+
+from __future__ import annotations
+
+import wave
+from base64 import b64encode
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from io import BytesIO
+from math import floor, log10
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.errors import ResultError
+from stiction.result.columns import sample_table
+from stiction.simulation import solve
+from stiction.storage.files import placeable, whole
+from stiction.system.description import Description
+from stiction.system.initial import Initial
+from stiction.text.units import in_words
+from stiction.trajectory import Trajectory, load
+
+RATE = 48_000  # samples of sound a second
+LOUD = 0.8  # of full scale
+LONGEST = 600.0  # s of sound
+HEARD = (50.0, 8_000.0)  # Hz: a pitch that small loudspeakers give
+LARGEST = 2**15 - 1  # of 16 bits
+
+
+@dataclass(frozen=True)
+class Sound:
+    """A sound, which a notebook plays.
+
+    Attributes
+    ----------
+    samples : ndarray
+        (n,), -1 to 1, at 48 kHz.
+    speed : float
+        Time in the run over time in the sound: below 1 it is slower, and deeper.
+    """
+
+    samples: NDArray[np.float32] = field(repr=False)
+    speed: float
+
+    @property
+    def duration(self) -> float:
+        """Length, s."""
+        return len(self.samples) / RATE
+
+    def save(self, path: str | Path) -> Path:
+        """Write the sound as a .wav file of 16 bits, whole or not at all; return the path."""
+        target = writable(path)
+        with whole(target) as part:
+            part.write_bytes(self._content())
+        return target
+
+    def _content(self) -> bytes:
+        packed = BytesIO()
+        with wave.open(packed, "wb") as file:
+            file.setnchannels(1)
+            file.setsampwidth(2)
+            file.setframerate(RATE)
+            file.writeframes(np.round(self.samples * LARGEST).astype("<i2").tobytes())
+        return packed.getvalue()
+
+    def _repr_html_(self) -> str:
+        content = b64encode(self._content()).decode("ascii")
+        return f'<audio controls src="data:audio/wav;base64,{content}"></audio>'
+
+
+def writable(path: str | Path) -> Path:
+    """Return a path, if sound can be written there.
+
+    Raises
+    ------
+    ResultError
+        If its suffix is not .wav, or it cannot be written.
+    """
+    target = Path(path)
+    if target.suffix.lower() != ".wav":
+        raise ResultError(f"{target}: sound is WAV; name it {target.with_suffix('.wav')}")
+    return placeable(target)
+
+
+def listen(
+    run: Trajectory | str | Path,
+    *,
+    speed: float | None = None,
+    window: Sequence[float | str] | None = None,
+    axis: Literal["x", "y"] = "y",
+    trust: bool = False,
+    progress: Callable[[float], None] | None = None,
+) -> Sound:
+    """Return the elongation rate of the transverse spring as sound.
+
+    The run is solved again, with a sample for each of the sound: nothing is interpolated.
+
+    Parameters
+    ----------
+    run : Trajectory, str or Path
+        A run, or its file.
+    speed : float, optional
+        1 for the true pitch; 0.1 is ten times slower and deeper. By default 1 where the natural
+        frequency can be heard, else the power of ten by which it can.
+    window : pair of float or str, optional
+        Start and end in the run, s; all of it by default.
+    axis : {"x", "y"}, optional
+        Of the spring: y is the transverse one.
+    trust : bool, optional
+        For a file; see `stiction.load`.
+    progress : callable, optional
+        Called with the fraction done.
+
+    Returns
+    -------
+    Sound
+        A notebook plays it; ``save("oscillation.wav")`` writes it.
+
+    Raises
+    ------
+    ResultError
+        If it would be longer than ten minutes, or there is nothing to hear.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "0.1 s")
+    >>> st.listen(run)
+    Sound(speed=1.0)
+    """
+    found = run if isinstance(run, Trajectory) else load(run, trust=trust)
+    description = found.description
+    start, end = window_of(description, window)
+    chosen = audible_speed(description, axis) if speed is None else float(speed)
+    length = (end - start) / chosen if chosen > 0.0 else 0.0
+    if not 0.0 < length <= LONGEST:
+        raise ResultError(
+            f"at speed {chosen:g} the sound lasts {in_words(length, 's')}; it may last up to "
+            f"{LONGEST:g} s: choose a window or another speed above 0"
+        )
+    count = floor(length * RATE)
+    times = start + np.arange(count, dtype=np.float64) * (chosen / RATE)
+    values = rate_at(description, times, axis, progress)
+    loudest = float(np.max(np.abs(values), initial=0.0))
+    if loudest == 0.0:
+        raise ResultError(f"nothing moves along {axis} from {start:g} s to {end:g} s")
+    return Sound((values * (LOUD / loudest)).astype(np.float32), chosen)
+
+
+def rate_at(
+    description: Description,
+    times: NDArray[np.float64],
+    axis: str = "y",
+    progress: Callable[[float], None] | None = None,
+) -> NDArray[np.float64]:
+    """Return the elongation rate (m/s) of a run at `times` (s), without its mean."""
+    solution = solve(description, times, progress=progress)
+    values = sample_table(description, solution.times, solution.samples, {})[f"v_{axis}"]
+    values = values[: len(times)]
+    found: NDArray[np.float64] = np.nan_to_num(values - np.mean(values[np.isfinite(values)]))
+    return found
+
+
+def audible_speed(description: Description, axis: str = "y") -> float:
+    """Return 1, or the power of ten that makes the natural frequency of an axis audible."""
+    slow, fast = description.slider.natural_frequencies
+    stiff_y = description.slider.k_y >= description.slider.k_x
+    pitch = fast if (axis == "y") == stiff_y else slow
+    low, high = HEARD
+    if pitch > high:
+        return float(10.0 ** floor(log10(high / pitch)))
+    return float(10.0 ** -floor(log10(pitch / low))) if pitch < low else 1.0
+
+
+def window_of(
+    description: Description, window: Sequence[float | str] | None
+) -> tuple[float, float]:
+    """Return start and end of a part of a run, s.
+
+    Raises
+    ------
+    ResultError
+        If it is not a part of it.
+    """
+    first = description.initial.time
+    last = first + description.run.duration
+    if window is None:
+        return first, last
+    start, end = (Initial(time=each).time for each in window)
+    if not first <= start < end <= last * (1 + 1e-12):
+        raise ResultError(
+            f"{start:g} s to {end:g} s is not a part of the run, {first:g} s to {last:g} s"
+        )
+    return start, min(end, last)

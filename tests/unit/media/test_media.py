@@ -1,0 +1,143 @@
+"""Sound and film of a run."""
+
+import wave
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.cli import main
+from stiction.media.film import RATE as FRAMES
+from stiction.media.film import draw, sample, slowness
+from stiction.media.scene import ROOM, Scene, magnification
+from stiction.media.sound import LOUD, RATE, audible_speed
+
+PAPER = st.presets.nakano_popov_2020()
+
+
+@pytest.fixture(scope="module")
+def run():
+    return st.simulate(PAPER, 0.05)
+
+
+def test_sound_is_the_transverse_rate_at_its_true_pitch(run, tmp_path):
+    sound = st.listen(run)
+    assert (sound.speed, len(sound.samples)) == (1.0, int(0.05 * RATE))
+    values = st.simulate(PAPER, 0.05, sample_rate=RATE).samples["v_y"][: len(sound.samples)]
+    values = values - values.mean()
+    wanted = LOUD * values / np.abs(values).max()
+    np.testing.assert_allclose(sound.samples, wanted, atol=1e-5)  # its times differ by rounding
+    path = sound.save(tmp_path / "a.wav")
+    with wave.open(str(path)) as file:
+        assert (file.getframerate(), file.getnchannels(), file.getsampwidth()) == (RATE, 1, 2)
+        read = np.frombuffer(file.readframes(file.getnframes()), "<i2")
+    np.testing.assert_allclose(read / 32767, sound.samples, atol=1.0 / 32767)
+    assert "<audio" in sound._repr_html_()
+
+
+def test_the_pitch_is_that_of_the_oscillation(run):
+    for speed, window in ((1.0, None), (0.5, ("10 ms", "40 ms"))):
+        sound = st.listen(run, speed=speed, window=window)
+        spectrum = np.abs(np.fft.rfft(sound.samples * np.hanning(len(sound.samples))))
+        line = RATE / len(sound.samples)
+        heard = np.argmax(spectrum[int(300 / line) :]) * line + int(300 / line) * line
+        # omega_y sin(theta), theta above 88 degrees: within half a line of the spectrum and a bit
+        assert abs(heard - speed * PAPER.natural_frequencies[1]) < line
+
+
+def test_what_cannot_be_heard_is_slowed_down():
+    slow = st.Description(PAPER, st.Initial(), st.Settings(duration=1.0))
+    fast = slow._replace(slider=PAPER.replace(mass="1 mg"))
+    assert audible_speed(slow) == 1.0
+    pitch = fast.slider.natural_frequencies[1] * audible_speed(fast)
+    assert 800.0 < pitch <= 8000.0
+    assert audible_speed(slow, "x") == 10.0  # 10 Hz is not heard
+    deep = slow._replace(slider=PAPER.replace(k_x="1 mN/m"))
+    assert audible_speed(deep, "x") > 100.0
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"speed": 1e-9}, "may last up to"),
+        ({"speed": -1.0}, "above 0"),
+        ({"window": ("1 s", "2 s")}, "not a part of the run"),
+    ],
+)
+def test_sound_that_cannot_be(run, options, said, tmp_path):
+    with pytest.raises(st.ResultError, match=said):
+        st.listen(run, **options)
+    with pytest.raises(st.ResultError, match=r"name it .*a\.wav"):
+        st.listen(run).save(tmp_path / "a.mp3")
+
+
+def test_the_scene_shows_the_state(run):
+    from matplotlib.figure import Figure
+
+    samples = run.samples
+    scene = Scene(Figure().add_subplot(), PAPER, samples)
+    at = int(np.argmax(samples["spring_x"]))
+    names = ("u_x", "u_y", "slip_x", "slip_y", "slip_speed", "friction", "psi", "X", "spring_x")
+    state = {name: float(samples[name][at]) for name in (*names, "normal_load", "sticking")}
+    scene.show(state, "now")
+    tip = np.subtract(*reversed(scene.force._posA_posB))
+    psi = np.radians(state["psi"])
+    # the force lies on its circle, against the slip
+    np.testing.assert_allclose(tip / np.hypot(*tip), [-np.cos(psi), -np.sin(psi)], atol=1e-9)
+    outline = np.subtract(np.transpose(scene.circle.get_data()), scene.force._posA_posB[0])
+    radius = np.hypot(*outline.T)
+    assert np.hypot(*tip) == pytest.approx(radius[0] * state["friction"] / 2.0, rel=1e-9)
+    corners = scene.block.get_xy()[:4]
+    assert (np.abs(corners) < np.divide(ROOM, 2)).all()
+    away = corners.mean(axis=0) - np.array([0.3, -0.45])
+    u = np.array([state["u_x"], state["u_y"]]) * magnification(samples)
+    assert np.hypot(*away) == pytest.approx(np.hypot(*u), rel=1e-6)
+
+
+def test_frames_follow_the_time(run):
+    frames = list(draw(run.description, np.linspace(0.0, 0.05, 3), 0.02, 1.0))
+    assert [frame.shape for frame in (frames[0].copy(), *frames[1:])] == [(720, 1280, 3)] * 3
+    first, second = (f.copy() for f in draw(run.description, np.array([0.0, 0.05]), 0.02, 1.0))
+    assert (first != second).any()
+    assert len(sample(run.description, np.array([0.0, 0.05]))["time"]) == 2
+    assert slowness(2520.0) == "2,520 times slower"
+    assert slowness(0.1) == "10 times faster"
+    assert slowness(1.0) == "in real time"
+
+
+@pytest.mark.parametrize("kind", ["mp4", "webm", "gif"])
+def test_a_film_has_its_frames(run, kind, tmp_path):
+    av = pytest.importorskip("av")
+    film = st.animate(run, length=0.2, window=("10 ms", "40 ms"), kind=kind)
+    path = film.save(tmp_path / f"a.{kind}")
+    with av.open(str(path)) as file:
+        frames = [frame.to_ndarray(format="rgb24") for frame in file.decode(video=0)]
+    count = round(0.2 * FRAMES)
+    assert len(frames) == (count if kind != "gif" else (count + 1) // 2)
+    assert frames[0].shape == ((720, 1280, 3) if kind != "gif" else (360, 640, 3))
+    assert f"base64,{'R0lG' if kind == 'gif' else ''}" in film._repr_html_()
+    with pytest.raises(st.ResultError, match="this film is"):
+        film.save(tmp_path / ("a.mp4" if kind == "gif" else "a.gif"))
+
+
+def test_films_that_cannot_be(run, tmp_path):
+    with pytest.raises(st.ResultError, match=r"unknown format '.avi'; use .mp4, .webm, .gif"):
+        st.animate(run, length=0.1).save(tmp_path / "a.avi")
+    with pytest.raises(st.ResultError, match="length must lie"):
+        st.animate(run, length=1e4)
+    with pytest.raises(st.ResultError, match="kind must be one of"):
+        st.animate(run, kind="avi")
+
+
+def test_both_commands(run, tmp_path, capsys):
+    path = run.save(tmp_path / "run.nc")
+    for arguments in (
+        ("listen", path, "-o", tmp_path / "a.wav", "--window", "10 ms", "40 ms", "--speed", "0.1"),
+        ("animate", path, "-o", tmp_path / "a.gif", "--length", "0.1"),
+    ):
+        with pytest.raises(SystemExit) as end:
+            main([str(each) for each in arguments])
+        assert not end.value.code
+    text = capsys.readouterr().out
+    assert "a.wav: 0.3 s at 0.1 of its pitch" in text
+    assert "a.gif" in text
