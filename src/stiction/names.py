@@ -62,6 +62,12 @@ def draw(figure: str, *what: Any) -> Any:
     return getattr(import_module("stiction.plotting"), figure)(*what)
 
 
+def picture(figure: str, *what: Any) -> str:
+    """Return what a public figure draws as an image in HTML, for a notebook."""
+    shown = import_module("stiction.plotting.page.picture")
+    return str(shown.picture(getattr(import_module("stiction.plotting"), figure), *what))
+
+
 def session_name(kind: type) -> str:
     """Return a class as one writes it in a session: ``st.laws.LuGre``; others by their name.
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from stiction.errors import DescriptionError, ResultError, Status
 from stiction.friction import states
-from stiction.names import draw
+from stiction.names import draw, picture
 from stiction.result.columns import VARIABLES, apparent_friction, cf_attributes, stick_table
 from stiction.result.file import ENDS, age, read_tables, write_result
 from stiction.result.table import Column, Table, as_dataset, as_table
@@ -23,6 +23,8 @@ from stiction.system.initial import Initial
 from stiction.system.slider import Slider
 from stiction.system.writing import parameter_table, slider_tables
 from stiction.text.sections import Section, as_html
+from stiction.text.sections import Table as Rows
+from stiction.text.units import in_words
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -86,8 +88,22 @@ class Trajectory:
         return f"<Trajectory to {end:g} s, {n} samples, {sticks} sticks, {self.status.name}>"
 
     def _repr_html_(self) -> str:
-        head = Section("Run", [str(self), f"Status: {self.status.value}."])
-        return as_html([head, Section("Slider", [], parameter_table(slider_tables(self.slider)))])
+        head = Section("Run", [str(self), f"Status: {self.status.value}."], self._facts())
+        slider = Section("Slider", [], parameter_table(slider_tables(self.slider)))
+        return as_html([head]) + picture("plot_glance", self) + as_html([slider])
+
+    def _facts(self) -> Rows:
+        """Return the numbers that one looks for first."""
+        force = self.samples["spring_x"]
+        peak = int(np.nanargmax(force)) if np.isfinite(force).any() else 0
+        rows = [
+            ("largest k_x u_x", in_words(float(force[peak]), "N")),
+            ("at", in_words(float(self.samples["time"][peak]), "s")),
+            ("largest slip speed", in_words(float(np.nanmax(self.samples["slip_speed"])), "m/s")),
+            ("stick intervals", str(self.statistics.stick_count)),
+            ("time at rest", in_words(self.statistics.time_stuck, "s")),
+        ]
+        return Rows(("number", "value"), rows)
 
     @cached_property
     def samples(self) -> Table:

@@ -118,6 +118,8 @@ def test_a_study_from_sweep_to_map(config, tmp_path):
     study = st.Study(base=base, axes={"V": st.Grid("1 mm/s", "2 mm/s", 2)}, measures=["peak_force"])
     done = st.sweep(study, tmp_path / "a.zarr")
     assert repr(done).endswith("a.zarr: 2 of 2, 0 failed>")
+    for each in (done, st.map(tmp_path / "a.zarr")):  # in a notebook
+        assert 'src="data:image/png;base64,iVBOR' in each._repr_html_()
     (ax,) = figure_of(done.plot).axes
     assert ax.get_xlabel() == "$V$ (mm/s)"
     found = st.map(tmp_path / "a.zarr", of="peak_force")

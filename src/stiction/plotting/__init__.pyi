@@ -11,6 +11,7 @@ from stiction.plotting.protocols.hysteresis import plot_hysteresis as plot_hyste
 from stiction.plotting.protocols.velocity_steps import plot_velocity_steps as plot_velocity_steps
 from stiction.plotting.protocols.yaw import plot_apparent_friction as plot_apparent_friction
 from stiction.plotting.run.comparison import plot_comparison as plot_comparison
+from stiction.plotting.run.glance import plot_glance as plot_glance
 from stiction.plotting.run.law import plot_law as plot_law
 from stiction.plotting.run.overview import plot_run as plot_run
 from stiction.plotting.stability.boundary import plot_boundary as plot_boundary

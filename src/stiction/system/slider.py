@@ -25,6 +25,7 @@ from stiction.errors import DescriptionError, Fault
 from stiction.friction import Law, has_state, read_law
 from stiction.friction.user.loading import finder_for_descriptions, is_own
 from stiction.friction.user.validation import is_law
+from stiction.names import picture
 from stiction.system.springs import ROUND, Springs, read_springs, whole
 from stiction.system.tensors import is_aligned, solver_axes
 from stiction.system.writing import parameter_table, slider_tables
@@ -336,7 +337,8 @@ class Slider(Apparatus):
         )
 
     def _repr_html_(self) -> str:
-        return as_html([Section("Slider", [], parameter_table(slider_tables(self)))])
+        table = as_html([Section("Slider", [], parameter_table(slider_tables(self)))])
+        return table + picture("plot_slider", self)
 
     def to_toml(self) -> str:
         """Return the slider as TOML with units, which `from_toml` reads back.

@@ -83,8 +83,8 @@ export class Scene {
       // the far end slides along its wall: a spring pulls along its own axis alone
       const offset = project(sub(mass, home), way);
       const end = add(wall, [way[0] * offset, way[1] * offset]);
-      const reach = axis === "x" ? [-0.2 * height, 0.2 * height] : [-0.2 * width - 34, 0.2 * width + 34];
-      line(context, reach.map((far) => add(wall, [way[0] * far, way[1] * far])), GREY, 5);
+      const other = axis === "x" ? "y" : "x", reach = M[other] * this.lengths[other] + 22;
+      line(context, [-reach, 0.6 * reach].map((far) => add(wall, [way[0] * far, way[1] * far])), GREY, 5);
       zigzag(context, start, end, axis === "x" ? 11 : 8, axis === "x" ? RED : ORANGE, axis === "x" ? 2 : 3.5);
       const label = mix(start, end, 0.5);
       const beside = axis === "x" ? add(label, [0, -22]) : add(label, [22, 0]);

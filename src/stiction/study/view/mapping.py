@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -22,6 +23,7 @@ from stiction.plotting.maps import (
 )
 from stiction.plotting.page.canvas import as_list, canvas, fix_ticks, panel
 from stiction.plotting.page.parameter import Scale, in_unit, parameter_symbol
+from stiction.plotting.page.picture import picture
 from stiction.plotting.page.style import COLUMN, PAGE, style
 from stiction.plotting.stability.damping import draw_damping_map
 from stiction.study.plan.layout import Index
@@ -52,6 +54,9 @@ class Map(NamedTuple):
     def __repr__(self) -> str:
         """Return a one-line summary."""
         return f"<Map of {', '.join(self.measures)} over {', '.join(self.dims)}>"
+
+    def _repr_html_(self) -> str:
+        return f"<h4>{escape(repr(self))}</h4>" + picture(plot_map, self)
 
     @property
     def data(self) -> xr.Dataset:

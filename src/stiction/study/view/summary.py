@@ -10,7 +10,7 @@ import numpy as np
 
 from stiction.study.plan.study import Study
 from stiction.study.store.store import COMPLETED, ENDS, PENDING, Store
-from stiction.text.sections import Section, as_text
+from stiction.text.sections import Section, as_html, as_text
 
 
 class Failure(NamedTuple):
@@ -66,6 +66,11 @@ class Summary(NamedTuple):
             many = sum(self.failed.values())
             lines.append(f"{many} failed ({', '.join(counts)}); the first at {self.first}")
         return [Section(str(self.store), lines)]
+
+    def _repr_html_(self) -> str:
+        from stiction.plotting.page.picture import picture
+
+        return as_html(self.tables()) + picture(self.plot)
 
     def plot(self, axes: Any = None) -> Any:
         """Draw the results; see `stiction.map`."""
