@@ -46,6 +46,7 @@ COMMANDS = (
     "listen",
     "plot",
     "analyse",
+    "fit",
     "export",
     "compare",
     "stability",
@@ -55,7 +56,7 @@ COMMANDS = (
     "check",
 )
 # commands in the file of another, or in a room
-BESIDE = {"presets": "init", "import": "analyse"}
+BESIDE = {"presets": "init", "import": "analyse", "fit": "inference.fit"}
 BESIDE |= {name: f"live.{name}" for name in ("explore", "animate", "listen")}
 for _name in COMMANDS:  # light modules, which import heavy ones when called
     _file = BESIDE.get(_name, _name)

@@ -6,6 +6,8 @@ from stiction.plotting.analysis.overview import plot_analysis as plot_analysis
 from stiction.plotting.analysis.spectrogram import plot_spectrogram as plot_spectrogram
 from stiction.plotting.analysis.trials import plot_trials as plot_trials
 from stiction.plotting.apparatus.schematic import plot_slider as plot_slider
+from stiction.plotting.inference.posterior import plot_corner as plot_corner
+from stiction.plotting.inference.posterior import plot_posterior as plot_posterior
 from stiction.plotting.protocols.healing import plot_healing as plot_healing
 from stiction.plotting.protocols.hysteresis import plot_hysteresis as plot_hysteresis
 from stiction.plotting.protocols.velocity_steps import plot_velocity_steps as plot_velocity_steps

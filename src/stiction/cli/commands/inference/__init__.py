@@ -1,0 +1,1 @@
+"""Commands that infer from records: fit."""

@@ -1,0 +1,106 @@
+"""``stiction fit``: what measured records say about the parameters of a rig."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+from cyclopts import Parameter
+
+from stiction.cli.options import Changes, Measured, Output, Trust, changes
+from stiction.cli.terminal import say
+
+
+def fit(
+    records: list[Path],
+    /,
+    *,
+    rig: Path,
+    output: Output,
+    figures: Path | None = None,
+    simulations: Annotated[int, Parameter(name=("--simulations", "-n"))] = 2000,
+    library: Path | None = None,
+    seed: int = 0,
+    trust: Trust = False,
+    set: Changes = None,
+    measured: Measured | None = None,
+) -> None:
+    """Estimate a rig's parameters from RECORDS. Experimental.
+
+    Many records are simulated, each with parameters drawn from the priors that the rig's
+    description states, with friction that differs from cycle to cycle, sampled and with noise as
+    the measured ones are. They are compared by their features. What the records do not say is
+    reported "not identifiable", with the prior beside it. Nothing promises the coverage of the
+    intervals on your rig: each fit measures it on simulated records that it holds out.
+
+    In the description a value may be uncertain:
+
+        phi = "2 +- 1 deg"
+
+        k_x = {value = "2.3 kN/m", uncertainty = "5 %"}
+
+        mu_0 = {low = 0.5, high = 0.7}
+
+    For example, two records of one rig together:
+
+        stiction fit slow.nc fast.nc --rig rig.toml -o fit.nc --figures fit
+
+        stiction fit data.csv --time ms --force mN --rig rig.toml -o fit.nc
+
+    Parameters
+    ----------
+    records
+        Measured records with stick-slip, of any format that `stiction import` reads; results of
+        `stiction run` are taken as if measured.
+    rig
+        A description in TOML with uncertain values; [run] is not used.
+    output
+        The posterior: NetCDF, a variable for each parameter, with the prior in the group "prior".
+    figures
+        A folder for figures: prior against posterior, and all pairs. Made if it does not exist.
+    simulations
+        Simulated records in the library; more sharpen the posterior, and take longer.
+    library
+        A folder for libraries; by default in the user's cache. An interrupted fit continues there,
+        and another record under the same conditions needs no new simulations.
+    seed
+        Of the simulations.
+    """
+    from stiction.analysis.measurement.reading import read_source
+    from stiction.analysis.record import Record, record_of
+    from stiction.cli.progress import progress
+    from stiction.cli.tables import print_sections
+    from stiction.inference.fit import fit as infer
+    from stiction.inference.library import cache_folder
+    from stiction.inference.priors import Rig
+    from stiction.storage.files import placeable, usable_folder
+
+    placeable(output)
+    if figures is not None:
+        usable_folder(figures)
+    known = Rig.from_toml(rig, changes(set), trust=trust)
+    said = (measured or Measured()).arguments()
+    sources = [read_source(path, trust=trust, **said) for path in records]
+    given = [each if isinstance(each, Record) else record_of(each) for each in sources]
+    with progress("simulating") as report:
+        found = infer(
+            given,
+            known,
+            simulations=simulations,
+            library=cache_folder() if library is None else library,
+            seed=seed,
+            progress=report,
+        )
+    origins = [part for each in given if each.origin is not None for part in each.origin.tables()]
+    print_sections(", ".join(map(str, records)), [*origins, *found.tables()])
+    say(f"wrote {found.save(output)}")
+    if figures is not None:
+        from stiction.plotting.inference.posterior import plot_corner, plot_posterior
+        from stiction.plotting.page.canvas import figure_of
+        from stiction.plotting.page.save import write
+        from stiction.storage.files import make_folder
+
+        make_folder(figures)
+        plots: dict[str, Any] = {"posterior": plot_posterior, "corner": plot_corner}
+        for name in plots:
+            say(f"wrote {write(figure_of(plots[name], found), figures / f'{name}.png')}")

@@ -1,0 +1,1 @@
+"""Inference: what records say about the parameters of a rig, and how surely."""

@@ -1,0 +1,248 @@
+"""Features of a record with cycles: some dimensionless numbers in place of thousands of samples."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.study.variables.features import zigzag
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+# shares of a loading, narrow where creep accelerates towards the slip
+EDGES = np.array([0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.86, 0.91, 0.95, 0.98, 1.0])
+DROP = 0.3  # of the span of the force: a smaller fall is not a slip
+TAILS = (2.0, 98.0)  # percentiles that bound the span, so that a spike does not
+USED = ("force", "force_across", "position")  # channels, in the order of their features
+LEAST_CYCLES = 6
+CREEP = (0.1, 0.95)  # shares of a loading in which the misalignment is sought
+ABOVE = 1.003  # the friction force at rest over the largest force along the spring
+SMALL = 1e-9  # of the scale: replaces zero in a logarithm
+
+
+class Scale(NamedTuple):
+    """What features are relative to, from the middle of the priors.
+
+    Parameters
+    ----------
+    force : float
+        Friction force at rest, N.
+    loading : float
+        Rate of the force while the mass is at rest, N/s.
+    period : float
+        Of the mass on the spring along the drive, s.
+    velocity : float
+        Of the drive, m/s.
+    """
+
+    force: float
+    loading: float
+    period: float
+    velocity: float
+
+
+class Cycles(NamedTuple):
+    """Cycles of a sampled force: indices of the trough before, the peak, and the trough after."""
+
+    before: Indices
+    peak: Indices
+    after: Indices
+
+
+def find_cycles(force: Floats) -> Cycles:
+    """Return the whole cycles of a force, from trough over peak to trough.
+
+    >>> saw = np.tile(np.r_[0.0:1.0:10j, 0.6, 0.3], 4)
+    >>> find_cycles(saw).peak
+    array([21, 33])
+    """
+    low, high = np.percentile(force, TAILS)
+    turns = zigzag(force, DROP * float(high - low))
+    if len(turns) > 1 and force[turns[0]] > force[turns[1]]:
+        turns = turns[1:]
+    count = max((len(turns) - 1) // 2, 0)
+    whole = turns[: 2 * count + 1]
+    return Cycles(whole[:-1:2], whole[1::2], whole[2::2])
+
+
+def features(step: float, channels: dict[str, Floats], scale: Scale, cycles: Cycles) -> Floats:
+    """Return the features of equally spaced samples.
+
+    Parameters
+    ----------
+    step : float
+        Time between samples, s.
+    channels : dict of str to ndarray
+        (n,) each: ``force``, and where measured ``force_across`` and ``position``.
+    scale : Scale
+        What they are relative to.
+    cycles : Cycles
+        Of the force.
+    """
+    loadings = Loadings(cycles)
+    found = [*of_cycles(step, channels["force"], scale, cycles)]
+    found += of_loading(step, channels["force"], scale, loadings)
+    if "force_across" in channels:
+        found += of_force_across(step, channels, scale, loadings)
+    if "position" in channels:
+        found += of_position(step, channels, scale, loadings)
+    if "force_across" in channels and "position" in channels:
+        found += of_both(step, channels, scale, loadings)
+    return np.array(found)
+
+
+class Loadings:
+    """The samples of all loadings, from trough to peak, end to end."""
+
+    def __init__(self, cycles: Cycles) -> None:
+        """Find the samples of each loading and their shares of its time."""
+        count = cycles.peak - cycles.before
+        self.count = count + 1
+        self.first = np.concatenate([[0], np.cumsum(self.count)[:-1]])
+        self.cycle = np.repeat(np.arange(len(count)), self.count)
+        self.number = np.arange(int(self.count.sum())) - self.first[self.cycle]
+        self.index = cycles.before[self.cycle] + self.number
+        self.share = self.number / count[self.cycle]
+        part = np.searchsorted(EDGES, self.share, side="right") - 1
+        self.part = np.minimum(part, len(EDGES) - 2)
+        self.filling = np.bincount(self.part, minlength=len(EDGES) - 1)
+
+    def averages(self, values: Floats) -> Floats:
+        """Return the average over all loadings in each part."""
+        total = np.bincount(self.part, values, minlength=len(EDGES) - 1)
+        held = self.filling > 0
+        middle = 0.5 * (EDGES[1:] + EDGES[:-1])
+        return np.asarray(np.interp(middle, middle[held], total[held] / self.filling[held]))
+
+    def integral(self, values: Floats, step: float) -> Floats:
+        """Return the integral of values from the beginning of each loading."""
+        total = np.cumsum(values) - 0.5 * values
+        return np.asarray(step * (total - total[self.first][self.cycle]))
+
+    def regression(self, values: Floats, *columns: Floats) -> Floats:
+        """Return the slopes of values over columns, with a constant of its own for each loading."""
+        within = (self.share > CREEP[0]) & (self.share < CREEP[1])
+        cycle = self.cycle[within]
+        filling = np.maximum(np.bincount(cycle, minlength=len(self.count)), 1)
+
+        def centred(each: Floats) -> Floats:
+            inside = each[within]
+            means = np.bincount(cycle, inside, minlength=len(self.count)) / filling
+            return np.asarray(inside - means[cycle])
+
+        matrix = np.stack([centred(each) for each in columns], axis=1)
+        slopes = np.linalg.lstsq(matrix, centred(values), rcond=None)[0]
+        return np.asarray(slopes, dtype=np.float64)
+
+
+def of_cycles(step: float, force: Floats, scale: Scale, cycles: Cycles) -> list[float]:
+    """Return size, length and scatter of the cycles, and how these hang together."""
+    peak, trough = force[cycles.peak], force[cycles.after]
+    rise, fall = cycles.peak - cycles.before, cycles.after - cycles.peak
+    drop = peak - trough
+    loading = rise * step * scale.loading / scale.force
+    return [
+        peak.mean() / scale.force,
+        logarithm(drop.mean() / scale.force),
+        logarithm(loading.mean()),
+        logarithm(fall.mean() * step / scale.period),
+        logarithm(peak.std() / scale.force),
+        logarithm(trough.std() / scale.force),
+        logarithm(drop.std() / scale.force),
+        logarithm(loading.std()),
+        correlation(peak, trough),
+        correlation(peak[1:] - trough[:-1], rise[1:].astype(np.float64)),
+        correlation(trough[:-1], peak[1:]),
+    ]
+
+
+def of_loading(step: float, force: Floats, scale: Scale, loadings: Loadings) -> list[float]:
+    """Return the loading rate, and how the loading curve departs from a straight line."""
+    f = force[loadings.index]
+    first, last = f[loadings.first], f[loadings.first + loadings.count - 1]
+    height = (f - first[loadings.cycle]) / (last - first)[loadings.cycle]
+    residual = loadings.averages(height - loadings.share)
+    time = step * loadings.number
+    peak = last[loadings.cycle]
+    lean = np.clip(f / (ABOVE * peak), 0.0, 1.0 / ABOVE)
+    way = loadings.integral(lean / np.sqrt(1.0 - lean * lean), step)
+    rate, slowed = loadings.regression(f, time, way)
+    return [logarithm(rate / scale.loading), -slowed / scale.loading, *residual]
+
+
+def of_force_across(
+    step: float, channels: dict[str, Floats], scale: Scale, loadings: Loadings
+) -> list[float]:
+    """Return the course of the force across in a loading, and the misalignment from both forces.
+
+    In creep the force's rate along the spring is k_x V (cos phi - sin phi cot theta) while the
+    force leans by theta, the stiff spring hardly moving (Eq. (7) of Nakano & Popov): two slopes,
+    of which the quotient is tan phi.
+    """
+    along, across = (channels[name][loadings.index] for name in ("force", "force_across"))
+    least = 0.02 * scale.force
+    aside = np.where(np.abs(across) < least, np.copysign(least, across), across)
+    way = loadings.integral(along / aside, step)
+    rate, slowed = loadings.regression(along, step * loadings.number, way)
+    tangent = -slowed / rate
+    course = loadings.averages(across / scale.force)
+    ends = across[loadings.first + loadings.count - 1] / scale.force
+    return [
+        logarithm(abs(tangent)), np.sign(tangent), logarithm(ends.std()), *course,
+    ]  # fmt: skip
+
+
+def of_position(
+    step: float, channels: dict[str, Floats], scale: Scale, loadings: Loadings
+) -> list[float]:
+    """Return the creep in a loading, the stiffness, and the misalignment from both.
+
+    With the friction force at rest a little above the largest force along the spring, the mass
+    creeps by V tan(phi) cot(theta), theta being the force's lean.
+    """
+    force, position = (channels[name][loadings.index] for name in ("force", "position"))
+    first = position[loadings.first][loadings.cycle]
+    moved = (position - first) / (scale.velocity * step * (loadings.count - 1)[loadings.cycle])
+    time = step * loadings.number
+    stiffness = loadings.regression(force, scale.velocity * time - position)[0]
+    peak = force[loadings.first + loadings.count - 1][loadings.cycle]
+    lean = np.clip(force / (ABOVE * peak), 0.0, 1.0 / ABOVE)
+    way = loadings.integral(lean / np.sqrt(1.0 - lean * lean), step)
+    creep = loadings.regression(position, way)[0] / scale.velocity
+    return [
+        logarithm(stiffness * scale.velocity / scale.loading),
+        logarithm(abs(creep)),
+        *(np.sign(each) * abs(each) ** 0.5 for each in loadings.averages(moved)),
+    ]
+
+
+def of_both(
+    step: float, channels: dict[str, Floats], scale: Scale, loadings: Loadings
+) -> list[float]:
+    """Return the misalignment from the creep and the measured lean of the force.
+
+    X' = V sin(phi) cos(theta - phi)/sin(theta) = V (sin(phi) cos(phi) cot(theta) + sin(phi)^2), by
+    Eq. (7) of Nakano & Popov; theta from both forces, whatever stiffness and friction are.
+    """
+    along, across, position = (channels[name][loadings.index] for name in USED)
+    least = 0.02 * scale.force
+    aside = np.where(np.abs(across) < least, np.copysign(least, across), across)
+    way = loadings.integral(along / aside, step)
+    alone = loadings.regression(position, way)[0] / scale.velocity
+    with_time = loadings.regression(position, way, step * loadings.number)[0] / scale.velocity
+    return [logarithm(abs(alone)), logarithm(abs(with_time))]
+
+
+def logarithm(value: float) -> float:
+    """Return a logarithm that is finite for zero and below."""
+    return float(np.log(max(value, SMALL)))
+
+
+def correlation(a: Floats, b: Floats) -> float:
+    """Return the correlation coefficient; 0 where one of both is constant."""
+    a, b = a - a.mean(), b - b.mean()
+    size = float(np.sqrt((a @ a) * (b @ b)))
+    return float(a @ b) / size if size > 0.0 else 0.0

@@ -1,0 +1,160 @@
+"""st.fit(records, rig): what records say about the parameters of a rig."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.analysis.record import Record
+from stiction.drive import ConstantVelocity
+from stiction.errors import DescriptionError, Fault, ResultError
+from stiction.friction import has_state
+from stiction.inference.library import Library, Plan, build, plan
+from stiction.inference.observation import Observation, observe
+from stiction.inference.posterior import INTERVAL, Fit
+from stiction.inference.priors import Normal, Prior, Rig
+from stiction.inference.regression_abc import Sample, posterior, quantiles
+from stiction.inference.summary import learn
+
+Floats = NDArray[np.float64]
+
+SIMULATIONS = 2000
+FEWEST = 300  # simulations with cycles, below which nothing is learned
+HELD_OUT = 100  # of them, on which the coverage of the intervals is measured
+
+
+def fit(
+    records: Record | Sequence[Record],
+    rig: Rig | str | Path,
+    *,
+    simulations: int = SIMULATIONS,
+    library: str | Path | None = None,
+    seed: int = 0,
+    progress: Callable[[float], None] | None = None,
+) -> Fit:
+    """Estimate the parameters of a rig from one or several measured records.
+
+    Each of many simulated records has parameters drawn from the rig's priors, friction that differs
+    from cycle to cycle, and the record's own sampling and noise. Their features are compared with
+    those of the measured ones (regression-adjusted approximate Bayesian computation).
+
+    Experimental: nothing promises the coverage of the intervals on your rig. Each fit measures it
+    on simulated records that it holds out, and reports it: ``fit["phi"].coverage``.
+
+    Parameters
+    ----------
+    records : Record or sequence of Record
+        Of one rig, at the same or at other velocities and loads, with at least six whole cycles of
+        stick and slip each. ``drive_velocity`` and ``normal_load`` of a record replace those of the
+        rig.
+    rig : Rig, str or Path
+        The description with its priors; see `stiction.inference.priors`.
+    simulations : int, optional
+        In the library; more sharpen the posterior.
+    library : str or Path, optional
+        A folder in which libraries are kept: an interrupted fit continues, and a record under
+        the same conditions needs no new simulation.
+    seed : int, optional
+        Of the simulations.
+    progress : callable, optional
+        Called with the fraction done.
+
+    Returns
+    -------
+    Fit
+        Posterior and prior of each parameter.
+
+    Raises
+    ------
+    ResultError
+        If a record cannot be used, or the priors lead to too few records with cycles.
+    DescriptionError
+        If nothing is uncertain, or the rig is not of a kind that can be fitted.
+    """
+    known = rig if isinstance(rig, Rig) else Rig.from_toml(rig)
+    given = [records] if isinstance(records, Record) else [*records]
+    if not given:
+        raise ResultError("no record is given; name one or several")
+    check(known)
+    seen = [observe(each, known.slider, f"record {number}") for number, each in enumerate(given, 1)]
+    plan_of = plan_for(known, seen)
+    folder = None if library is None else Path(library) / plan_of.key
+    simulated = build(plan_of, simulations, folder, seed=seed, progress=progress)
+    return compare(simulated, seen)
+
+
+def check(rig: Rig) -> None:
+    """Refuse a rig without priors, or whose simulation has no cycles to jitter."""
+    faults = []
+    if not rig.priors:
+        message = 'nothing is uncertain; write for example phi = "2 +- 1 deg"'
+        faults.append(Fault("slider", message))
+    if has_state(rig.slider.law) or "mu_0" not in getattr(rig.slider.law, "_fields", ()):
+        message = "must have a coefficient mu_0 and no internal state for a fit"
+        faults.append(Fault("friction.law", message))
+    if not isinstance(rig.slider.motion, ConstantVelocity) or rig.slider.load is not None:
+        faults.append(Fault("drive", "must be steady, and the load constant, for a fit"))
+    if faults:
+        raise DescriptionError(faults)
+
+
+def plan_for(rig: Rig, seen: Sequence[Observation]) -> Plan:
+    """Return the plan of a library for what was observed."""
+    across = any("force_across" in each.conditions.noise for each in seen)
+    priors = {**rig.priors}
+    if not across and "phi" in priors:
+        priors["phi"] = one_sided(priors["phi"])
+    return plan(rig.slider, priors, [each.conditions for each in seen])
+
+
+def one_sided(prior: Prior) -> Prior:
+    """Return the prior of an angle whose sign is not seen, on the side of its middle."""
+    if not isinstance(prior, Normal):
+        return prior
+    if prior.mean < 0.0:
+        return Normal(prior.mean, prior.deviation, prior.low, 0.0)
+    return Normal(prior.mean, prior.deviation, 0.0, prior.high)
+
+
+def compare(library: Library, seen: Sequence[Observation]) -> Fit:
+    """Return what the features of records say, by comparison with a library.
+
+    Raises
+    ------
+    ResultError
+        If too few of its simulations have cycles.
+    """
+    if len(library.scores) < FEWEST:
+        raise ResultError(
+            f"only {len(library.scores)} of {library.wanted} simulated records have cycles of "
+            f"stick and slip, {FEWEST} are needed: check the priors, or simulate more"
+        )
+    observed = np.concatenate([each.features for each in seen])
+    (sample,) = posteriors(library.features, library.scores, observed[None])
+    return Fit.of(library, sample, observed, coverage(library))
+
+
+def posteriors(features: Floats, scores: Floats, observed: Floats) -> list[Sample]:
+    """Return the posteriors of records with these features (m, f), by all simulated ones."""
+    summary = learn(features, scores)
+    around, spreads = summary.library
+    pairs = zip(*summary(observed), strict=True)
+    return [posterior(around, scores, middle, (spreads, spread)) for middle, spread in pairs]
+
+
+def coverage(library: Library) -> Floats:
+    """Return how often intervals hold the truth, (p,), of records that no part has seen.
+
+    The last simulations of the library are compared with all others.
+    """
+    features, scores = library.features, library.scores
+    samples = posteriors(features[:-HELD_OUT], scores[:-HELD_OUT], features[-HELD_OUT:])
+    tails = np.array([0.5 - 0.5 * INTERVAL, 0.5 + 0.5 * INTERVAL])
+    held = np.zeros(scores.shape[1])
+    for sample, truth in zip(samples, scores[-HELD_OUT:], strict=True):
+        ends = [quantiles(column, sample.weights, tails) for column in sample.scores.T]
+        held += [low <= true <= high for (low, high), true in zip(ends, truth, strict=True)]
+    return held / HELD_OUT

@@ -1,0 +1,159 @@
+"""Simulated records whose friction differs from cycle to cycle.
+
+Friction between real surfaces differs from slip to slip, by tenths of a per cent to some per cent.
+That is more than the noise of a load cell, and it is what limits an estimate: a likelihood without
+it takes the scatter of the cycles for information. Here each cycle has a friction law of its own,
+whose coefficients are drawn about those of the rig; it holds from the trough after one rapid slip
+to the next, so that no motion is disturbed by the change.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.simulation import solve
+from stiction.study.variables.features import zigzag
+from stiction.system.description import Description, Settings
+from stiction.system.initial import Initial
+from stiction.system.slider import Slider
+
+Floats = NDArray[np.float64]
+
+RTOL = 1e-4  # of each cycle: a hundredth of a per cent, below any jitter that is seen
+LARGE = 0.15  # of the span in a cycle's window: a fall by so much, and a rise, make a trough
+REACH = 1.3  # lengths of the last cycle that are simulated at once in search of the next trough
+MORE = 0.4  # of them, if it is not among these
+LONGEST = 4.0  # of them without a trough: the motion has no cycles
+FEWEST = 8  # samples that are simulated at once
+MOST_STEPS = 2_000_000
+
+
+class Jitter(NamedTuple):
+    """How friction differs from cycle to cycle.
+
+    Parameters
+    ----------
+    spread : float
+        Standard deviation of the logarithm of each coefficient.
+    common : float
+        Correlation between both coefficients, 0 to 1.
+    """
+
+    spread: float
+    common: float
+
+
+class Motion(NamedTuple):
+    """A motion at `time` (n,), s: elongation and slip (n, 4), and the indices of its troughs."""
+
+    time: Floats
+    rows: Floats
+    troughs: NDArray[np.int64]
+    complete: bool
+
+
+def laws(law: Any, jitter: Jitter, random: np.random.Generator) -> Iterator[Any]:
+    """Yield the friction law of each cycle, its coefficients drawn about those of `law`."""
+    names = [name for name in ("mu_0", "mu_inf", "mu_static") if name in law._fields]
+    while True:
+        common, *own = random.standard_normal(1 + len(names))
+        share, rest = jitter.common**0.5, (1.0 - jitter.common) ** 0.5
+        factors = np.exp(jitter.spread * (share * common + rest * np.array(own)))
+        its = {name: getattr(law, name) * f for name, f in zip(names, factors, strict=True)}
+        yield law._replace(**its)
+
+
+def move(
+    slider: Slider,
+    times: Floats,
+    jitter: Jitter,
+    random: np.random.Generator,
+    *,
+    cycle: float,
+    multiscale: bool = False,
+    cycles: int | None = None,
+) -> Motion:
+    """Simulate a slider at equally spaced times, each cycle with friction of its own.
+
+    Parameters
+    ----------
+    slider : Slider
+        With a law that has coefficients ``mu_0`` (and ``mu_inf``), a steady drive and load.
+    times : ndarray
+        (n,), s, from 0 on.
+    jitter : Jitter
+        The spread of the coefficients.
+    random : Generator
+        Where they are drawn from.
+    cycle : float
+        First guess of a cycle's length, s.
+    multiscale : bool, optional
+        As of `stiction.simulate`, for drives so slow that transverse oscillations fill each cycle.
+    cycles : int, optional
+        End after so many troughs.
+    """
+    step = times[1] - times[0]
+    rows = np.empty((len(times), 4))  # elongation and slip
+    troughs: list[int] = []
+    origin, begin, initial = 0, 0, Initial(epsilon=0.0)  # where the cycle and its part begin
+    whole = max(int(REACH * cycle / step), FEWEST)
+    window = whole
+    own = laws(slider.friction, jitter, random)
+    law, last = next(own), len(times) - 1
+    while begin < last:
+        end = min(begin + window, last)
+        settings = Settings.model_construct(
+            duration=float(times[end] - times[begin]), sample_rate=None, rtol=RTOL,
+            regularisation=None, smoothing="root", multiscale=multiscale,
+        )  # fmt: skip
+        rig = slider.model_copy(update={"friction": law})
+        part = times[begin : end + 1]
+        found = solve(Description(rig, initial, settings), part, max_steps=MOST_STEPS)
+        if found.code != 0:
+            return Motion(times[: begin + 1], rows[: begin + 1], np.array(troughs, np.int64), False)
+        rows[begin : end + 1] = found.samples[:, :4]
+        trough = first_trough(rows[origin : end + 1, 0])
+        if trough >= 0:
+            begin = origin + trough
+            whole = max(int(REACH * trough), FEWEST) if troughs else whole
+            troughs.append(begin)
+            if len(troughs) == cycles:
+                break
+            origin, window, law = begin, whole, next(own)
+        elif end - origin > LONGEST * whole:  # no slip: sliding, or loading
+            begin = origin = end
+            window, law = whole, next(own)
+        else:  # a longer cycle
+            begin, window = end, max(int(MORE * whole), FEWEST)
+        initial = start(slider, rows[begin], float(times[begin]))
+    until = begin + 1
+    return Motion(times[:until], rows[:until], np.array(troughs, dtype=np.int64), True)
+
+
+def first_trough(values: Floats) -> int:
+    """Return the index of the first trough after a fall; -1 if there is none.
+
+    >>> first_trough(np.array([0.0, 1.0, 2.0, 0.5, 1.0])), first_trough(np.array([0.0, 1.0]))
+    (3, -1)
+    """
+    turns = zigzag(values, LARGE * float(np.ptp(values)))
+    for before, at in pairwise((0, *turns)):
+        if values[at] < values[before]:
+            return int(at)
+    return -1
+
+
+def start(slider: Slider, row: Floats, time: float) -> Initial:
+    """Return the state of a sample as the start of a run."""
+    (c, s), (X, Y) = slider.direction, slider.motion.rate(time)
+    v_x, v_y = X * c - Y * s - row[2], X * s + Y * c - row[3]
+    return Initial.model_construct(
+        {"u_x", "u_y", "v_x", "v_y", "time"},
+        epsilon=1e-6, u_x=float(row[0]), u_y=float(row[1]), v_x=float(v_x), v_y=float(v_y),
+        states=None, time=time,
+    )  # fmt: skip

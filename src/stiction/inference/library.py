@@ -1,0 +1,214 @@
+"""A library: records simulated with parameters drawn from the priors, jitter and sensor inside."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from hashlib import sha256
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtr
+
+from stiction.inference.features import Scale, features, find_cycles
+from stiction.inference.jitter import Jitter, Motion, move
+from stiction.inference.observation import Conditions
+from stiction.inference.priors import Normal, Prior, Uniform
+from stiction.storage.files import make_folders, whole
+from stiction.study.execution.engines import Threads
+from stiction.system.parameter import change_unchecked
+from stiction.system.slider import Slider
+
+Floats = NDArray[np.float64]
+Progress = Callable[[float], None] | None
+
+BLOCK = 32  # simulations that are stored together
+SPARE = 2  # cycles simulated beyond those that are used: the first begins from rest
+LONGEST = 4.0  # of the measured cycles: simulations with longer ones end without
+JITTER = Uniform(1e-3, 0.05, "log")  # of friction from cycle to cycle, unless the rig says
+FORMAT = 1
+
+
+class Plan(NamedTuple):
+    """What a library simulates.
+
+    Parameters
+    ----------
+    slider : Slider
+        The rig in the middle of its priors.
+    priors : dict of str to Prior
+        Of its parameters, by path; and of ``jitter``, ``gain`` and ``zero`` (N) of the force.
+    conditions : tuple of Conditions
+        Of each record.
+    """
+
+    slider: Slider
+    priors: dict[str, Prior]
+    conditions: tuple[Conditions, ...]
+
+    @property
+    def key(self) -> str:
+        """A hash of all that decides what is simulated."""
+        text = json.dumps([FORMAT, repr(self.slider), repr(self.priors), repr(self.conditions)])
+        return sha256(text.encode()).hexdigest()[:16]
+
+    def parameters(self, scores: Floats) -> dict[str, float]:
+        """Return the parameters with these normal scores, (p,)."""
+        shares = ndtr(scores)
+        pairs = zip(self.priors.items(), shares, strict=True)
+        return {name: float(prior.quantile(share)) for (name, prior), share in pairs}
+
+
+class Library(NamedTuple):
+    """Simulated records: normal scores (n, p) of their parameters, and their features (n, f).
+
+    `wanted` is the number of simulations; those without enough cycles are left out.
+    """
+
+    plan: Plan
+    scores: Floats
+    features: Floats
+    wanted: int
+
+
+def plan(slider: Slider, priors: Mapping[str, Prior], conditions: Sequence[Conditions]) -> Plan:
+    """Return the plan for records under these conditions."""
+    force = conditions[0].noise["force"]
+    own: dict[str, Prior] = {"jitter": JITTER}
+    if force.gain:
+        own["gain"] = Normal(1.0, force.gain, low=0.0)
+    if force.zero:
+        own["zero"] = Normal(0.0, force.zero)
+    return Plan(
+        slider, {**priors, **{k: v for k, v in own.items() if k not in priors}}, tuple(conditions)
+    )
+
+
+def build(
+    plan: Plan, count: int, folder: Path | None, *, seed: int = 0, progress: Progress = None
+) -> Library:
+    """Simulate a library of `count` records, or continue one that is stored in a folder.
+
+    Simulation number i is the same whatever the number of others, so that a library may grow.
+    """
+    blocks = range((count + BLOCK - 1) // BLOCK)
+    done = (
+        {}
+        if folder is None
+        else {each: rows for each in blocks if (rows := read_block(folder, each)) is not None}
+    )
+    missing = [each for each in blocks if each not in done]
+
+    def work(block: int, _: Callable[[], bool]) -> tuple[int, tuple[Floats, Floats]]:
+        rows = [simulate(plan, i, seed) for i in range(block * BLOCK, (block + 1) * BLOCK)]
+        found = np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
+        if folder is not None:
+            write_block(folder, block, *found)
+        return block, found
+
+    for ready, (block, rows) in enumerate(Threads().results(work, missing), 1):
+        done[block] = rows
+        if progress is not None:
+            progress(ready / len(missing))
+    scores, found = (np.concatenate([done[each][i] for each in blocks])[:count] for i in (0, 1))
+    complete = np.isfinite(found).all(axis=1)
+    return Library(plan, scores[complete], found[complete], count)
+
+
+def simulate(
+    plan: Plan, number: int, seed: int, scores: Floats | None = None
+) -> tuple[Floats, Floats]:
+    """Return the normal scores and features of one simulation; NaN where it has too few cycles."""
+    random = np.random.default_rng([seed, number])
+    drawn = random.standard_normal(len(plan.priors)) if scores is None else scores
+    values = plan.parameters(drawn)
+    slider = plan.slider
+    for path, value in values.items():
+        if path not in ("jitter", "gain", "zero"):
+            slider = change_unchecked(slider, path, value)
+    jitter = Jitter(values["jitter"], float(random.uniform()))
+    parts = []
+    for conditions in plan.conditions:
+        scale = conditions.scale(plan.slider)
+        parts.append(synthesise(conditions, slider, jitter, values, scale, random))
+    return drawn, np.concatenate(parts)
+
+
+def synthesise(
+    conditions: Conditions, slider: Slider, jitter: Jitter, values: Mapping[str, float],
+    scale: Scale, random: np.random.Generator,
+) -> Floats:  # fmt: skip
+    """Return the features of a synthetic record; NaN where it has too few cycles."""
+    rig = conditions.slider_of(slider)
+    wanted = conditions.cycles + SPARE
+    most = LONGEST * wanted * conditions.cycle
+    times: Floats = conditions.step * np.arange(int(most / conditions.step) + 1.0)
+    motion = move(rig, times, jitter, random, cycle=conditions.cycle, cycles=wanted)
+    channels = measure(conditions, rig, motion, values, random)
+    found = find_cycles(channels["force"])
+    if len(found.peak) < conditions.cycles:
+        blank = dummy(conditions)
+        return np.full(
+            len(features(conditions.step, blank, scale, find_cycles(blank["force"]))), np.nan
+        )
+    found = type(found)(*(each[-conditions.cycles :] for each in found))
+    return features(conditions.step, channels, scale, found)
+
+
+def measure(
+    conditions: Conditions, rig: Slider, motion: Motion, values: Mapping[str, float],
+    random: np.random.Generator,
+) -> dict[str, Floats]:  # fmt: skip
+    """Return the channels of a motion as their sensors show them, along the load cell's axis."""
+    u_x, u_y = motion.rows[:, 0], motion.rows[:, 1]
+    x, y = (1.0, 0.0) if rig.cell_angle is None else rig.cell
+    c, s = rig.direction
+    way = -1.0 if conditions.velocity < 0.0 else 1.0
+    along, across = rig.k_x * u_x, rig.k_y * u_y
+    exact = {
+        "force": way * (x * along + y * across),
+        "force_across": way * (x * across - y * along),
+        "position": way * (conditions.velocity * motion.time - c * u_x - s * u_y),
+    }
+    found = {}
+    for name, noise in conditions.noise.items():
+        gain, zero = random.standard_normal(2) * (noise.gain, noise.zero) + (1.0, 0.0)
+        if name == "force":
+            gain, zero = values.get("gain", 1.0), values.get("zero", 0.0)
+        values_of = gain * exact[name] + zero
+        found[name] = values_of + noise.level * random.standard_normal(len(values_of))
+    return found
+
+
+def dummy(conditions: Conditions) -> dict[str, Floats]:
+    """Return channels of a sawtooth, which has as many features as any record."""
+    saw = np.tile(np.concatenate([np.linspace(0.0, 1.0, 40), np.linspace(1.0, 0.0, 5)]), 8)
+    return dict.fromkeys(conditions.noise, saw + 0.01)
+
+
+def cache_folder() -> Path:
+    """Return the folder of libraries in the user's cache."""
+    from platformdirs import user_cache_path
+
+    return user_cache_path("stiction") / "libraries"
+
+
+def write_block(folder: Path, block: int, scores: Floats, found: Floats) -> None:
+    """Write a block of simulations, whole or not at all."""
+    make_folders(folder)
+    with whole(folder / f"{block:05d}.npz") as part:
+        np.savez(part, scores=scores, features=found)
+
+
+def read_block(folder: Path, block: int) -> tuple[Floats, Floats] | None:
+    """Return a stored block; None where there is none."""
+    path = folder / f"{block:05d}.npz"
+    if not path.is_file():
+        return None
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            return file["scores"], file["features"]
+    except (OSError, ValueError, KeyError, EOFError):
+        return None  # damaged: it is simulated again

@@ -1,0 +1,177 @@
+"""What a fit takes from a record: some whole cycles, thinned out, and how they were measured."""
+
+from __future__ import annotations
+
+from math import floor, log10
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.analysis.record import Record
+from stiction.drive import ConstantVelocity
+from stiction.errors import ResultError
+from stiction.inference.features import LEAST_CYCLES, USED, Scale, features, find_cycles
+from stiction.system.slider import Slider
+
+Floats = NDArray[np.float64]
+
+PER_CYCLE = 200  # samples: more are averaged
+LADDER = (
+    6,
+    7,
+    8,
+    10,
+    12,
+    14,
+    17,
+    20,
+    24,
+    28,
+    34,
+    40,
+)  # numbers of cycles, so that a library serves many records
+MANTISSAS = (1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.3, 4.0, 5.0, 6.0, 7.5, 9.0, 10.0)
+SAME = 0.02  # of the drive velocity: a record's differs by less if a cell lies 10 deg askew
+UNEVEN = 0.01  # of the sample interval, by which intervals may differ
+DIFFERENCES = 4  # order: leaves noise, cancels what is smooth over five samples
+WEIGHTS = 70.0**0.5  # of such a difference: root of the sum of their squares
+NORMAL = 0.6744897501960817  # median of |x| for a standard normal x
+
+
+class Noise(NamedTuple):
+    """Of one channel's samples: standard deviation, and uncertainty of gain and zero."""
+
+    level: float
+    gain: float = 0.0
+    zero: float = 0.0
+
+
+class Conditions(NamedTuple):
+    """How a record was taken, which its simulations repeat.
+
+    Parameters
+    ----------
+    velocity, normal_load, yaw : float
+        Of the drive (m/s), normal load (N), and by how much the rig was turned (rad).
+    step : float
+        Between samples, s.
+    cycles : int
+        Number of whole cycles.
+    cycle : float
+        Their mean length, s.
+    noise : dict of str to Noise
+        Of each channel.
+    """
+
+    velocity: float
+    normal_load: float
+    yaw: float
+    step: float
+    cycles: int
+    cycle: float
+    noise: dict[str, Noise]
+
+    def slider_of(self, slider: Slider) -> Slider:
+        """Return a slider under these conditions."""
+        drive = ConstantVelocity._make([self.velocity])
+        its = {"drive": drive, "normal_load": self.normal_load, "phi": slider.phi + self.yaw}
+        return slider.model_copy(update=its)
+
+    def scale(self, slider: Slider) -> Scale:
+        """Return what features are relative to."""
+        rig = self.slider_of(slider)
+        return Scale(
+            rig.F_0, rig.k_x * abs(self.velocity), 1.0 / rig.natural_frequencies[0],
+            abs(self.velocity),
+        )  # fmt: skip
+
+
+class Observation(NamedTuple):
+    """A record's cycles as a fit uses them: conditions and features."""
+
+    conditions: Conditions
+    features: Floats
+
+
+def observe(record: Record, slider: Slider, name: str = "the record") -> Observation:
+    """Return the cycles of a record, under the conditions that it or else the rig states.
+
+    Raises
+    ------
+    ResultError
+        If it has too few cycles, or is not equally spaced.
+    """
+    channels = {
+        each: values for each in USED if (values := getattr(record, each, None)) is not None
+    }
+    interval = np.diff(record.time)
+    step = float(np.median(interval))
+    if np.abs(interval - step).max() > UNEVEN * step:
+        raise ResultError(f"{name}: must be equally spaced for a fit; interpolate it first")
+    found = find_cycles(channels["force"])
+    count = len(found.peak)
+    if count < LEAST_CYCLES:
+        raise ResultError(
+            f"{name}: has {count} whole cycles of stick and slip, a fit needs {LEAST_CYCLES}; "
+            "record for longer, or slower"
+        )
+    cycle = float(np.mean(found.after - found.before)) * step
+    block = max(round(cycle / step / PER_CYCLE), 1)
+    noise = {each: noise_of(record, each, values) for each, values in channels.items()}
+    thin = {each: block_means(values, block) for each, values in channels.items()}
+    thin_noise = {
+        each: its._replace(level=round_up(its.level / block**0.5)) for each, its in noise.items()
+    }
+    found = find_cycles(thin["force"])
+    number = max(each for each in LADDER if each <= max(len(found.peak), LADDER[0]))
+    found = type(found)(*(each[:number] for each in found))
+    velocity = slider.motion.rate(0.0)[0]
+    stated = record.drive_velocity
+    if stated is not None and abs(stated / abs(velocity) - 1.0) > SAME:
+        velocity = np.copysign(stated, velocity)
+    conditions = Conditions(
+        float(velocity), float(record.normal_load or slider.normal_load), 0.0,
+        step * block, number, cycle, thin_noise,
+    )  # fmt: skip
+    return Observation(conditions, features(step * block, thin, conditions.scale(slider), found))
+
+
+def noise_of(record: Record, channel: str, values: Floats) -> Noise:
+    """Return the noise of a channel, as its sensor states it or as its samples show it."""
+    sensor: Any = (getattr(record, "sensors", None) or {}).get(channel)
+    level = 0.0 if sensor is None else float(np.hypot(sensor.noise, sensor.quantisation / 12**0.5))
+    gain, zero = (
+        (0.0, 0.0) if sensor is None else (sensor.gain_uncertainty, sensor.zero_uncertainty)
+    )
+    return Noise(level or white_noise(values), gain, zero)
+
+
+def white_noise(values: Floats) -> float:
+    """Return the standard deviation of white noise on something smooth.
+
+    From differences of fourth order, by their median size, which slips do not move (T. Gasser,
+    L. Sroka & C. Jennen-Steinmetz, Biometrika 73, 625 (1986)).
+    """
+    typical = float(np.median(np.abs(np.diff(values, DIFFERENCES))))
+    return typical / (NORMAL * WEIGHTS)
+
+
+def block_means(values: Floats, block: int) -> Floats:
+    """Return the means of blocks of samples, the last incomplete one left out."""
+    whole = len(values) // block * block
+    means: Floats = values[:whole].reshape(-1, block).mean(axis=1)
+    return means
+
+
+def round_up(value: float) -> float:
+    """Return a positive value rounded up by a quarter at most: noise that many records share.
+
+    >>> round_up(0.0123), round_up(0.0)
+    (0.015, 0.0)
+    """
+    if value <= 0.0:
+        return 0.0
+    power = floor(log10(value))
+    mantissa = value / 10.0**power
+    return float(f"{next(each for each in MANTISSAS if each >= mantissa - 1e-9)}e{power}")

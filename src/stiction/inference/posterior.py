@@ -1,0 +1,216 @@
+"""The result of a fit: a posterior beside its prior."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtr
+
+from stiction.errors import ResultError
+from stiction.inference.library import Library, Plan
+from stiction.inference.regression_abc import Sample, quantiles
+from stiction.names import draw
+from stiction.storage.files import placeable, whole
+from stiction.system.parameter import unit
+from stiction.text.sections import Section, Table, as_html
+from stiction.text.units import in_words
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+
+DRAWS = 4000  # equally weighted, of the posterior and of the prior
+INTERVAL = 0.95
+NARROWER = 0.75  # of the prior's standard deviation, as normal scores: what counts as identified
+OWN_UNITS = {"jitter": "", "gain": "", "zero": "N"}
+MEANINGS = {
+    "jitter": "spread of friction from cycle to cycle",
+    "gain": "gain of the load cell",
+    "zero": "zero of the load cell",
+}
+
+
+class Estimate(NamedTuple):
+    """What is known of one parameter: medians and 95 % intervals after and before, in SI.
+
+    `narrower` is the posterior's standard deviation over the prior's, both as normal scores;
+    `identified` whether that is below 0.75. `coverage` is how often such intervals hold the truth
+    of simulated records that were held out; it should be 0.95.
+    """
+
+    name: str
+    unit: str
+    median: float
+    low: float
+    high: float
+    prior_median: float
+    prior_low: float
+    prior_high: float
+    narrower: float
+    coverage: float
+
+    @property
+    def identified(self) -> bool:
+        """Whether the records say clearly more than the prior."""
+        return self.narrower < NARROWER
+
+
+@dataclass(frozen=True, repr=False)
+class Fit:
+    """What records say about a rig's parameters.
+
+    Parameters
+    ----------
+    plan : Plan
+        Rig, priors, and conditions of the records.
+    data : Dataset
+        Equally weighted draws of the posterior over ``draw``, a variable for each parameter.
+    prior : Dataset
+        Draws of the prior.
+    estimates : tuple of Estimate
+        Of each parameter.
+    simulations : int
+        Simulated records with cycles that were compared.
+    """
+
+    plan: Plan
+    data: xr.Dataset
+    prior: xr.Dataset
+    estimates: tuple[Estimate, ...]
+    simulations: int
+    observed: Floats = field(compare=False)
+
+    @classmethod
+    def of(cls, library: Library, sample: Sample, observed: Floats, coverage: Floats) -> Self:
+        """Return the fit of a weighted sample of normal scores; (p,) coverage of its intervals."""
+        plan = library.plan
+        scores = resample(sample)
+        before = np.random.default_rng(0).standard_normal((DRAWS, len(plan.priors)))
+        estimates = tuple(
+            estimate(plan, name, sample.scores[:, i], sample.weights, float(coverage[i]))
+            for i, name in enumerate(plan.priors)
+        )
+        after, prior = dataset(plan, scores), dataset(plan, before)
+        for its in estimates:
+            after[its.name.split(".")[-1]].attrs["coverage_of_95_percent_intervals"] = its.coverage
+        return cls(plan, after, prior, estimates, len(library.scores), observed)
+
+    def __repr__(self) -> str:
+        """Return a one-line summary."""
+        said = ", ".join(f"{x.name} {words(x)}" for x in self.estimates if x.identified)
+        return f"<Fit: {said or 'nothing is identified'}>"
+
+    def __getitem__(self, name: str) -> Estimate:
+        """Return the estimate of a parameter by its name: ``fit["phi"]``."""
+        found = [x for x in self.estimates if name in (x.name, x.name.split(".")[-1])]
+        if not found:
+            known = ", ".join(x.name for x in self.estimates)
+            raise ResultError(f"no parameter {name!r} was fitted; known: {known}")
+        return found[0]
+
+    def tables(self) -> list[Section]:
+        """Return the report: what is known, and what the records do not say."""
+        known = [x for x in self.estimates if x.identified]
+        others = [x for x in self.estimates if not x.identified]
+        sentences = [
+            f"{x.name} is {in_words(x.median, x.unit)}, 95 % interval {in_words(x.low, x.unit)} to "
+            f"{in_words(x.high, x.unit)}."
+            for x in known
+        ]
+        if others:
+            names = ", ".join(x.name for x in others)
+            sentences.append(
+                f"Not identifiable from these records: {names}. Their posterior is more than "
+                f"{NARROWER:.0%} as wide as their prior."
+            )
+        if "phi" in self.plan.priors and self.sign_unseen:
+            sentences.append(
+                "The sign of phi is not in these channels; that of its prior is taken."
+            )
+        sentences.append(f"Compared with {self.simulations} simulated records.")
+        sentences.append(
+            "Experimental: the coverage is how many of such 95 % intervals hold the truth of "
+            "simulated records held out, which says nothing of what the simulations leave out."
+        )
+        rows = [row(x) for x in self.estimates]
+        headings = ("parameter", "posterior", "95 %", "prior", "95 %", "width", "coverage")
+        return [Section("Fit", sentences, Table(headings, rows))]
+
+    @property
+    def sign_unseen(self) -> bool:
+        """Whether no channel shows the sign of phi."""
+        return not any("force_across" in each.noise for each in self.plan.conditions)
+
+    def _repr_html_(self) -> str:
+        return as_html(self.tables())
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draw prior against posterior; see `stiction.plotting.plot_posterior`."""
+        return draw("plot_posterior", self, axes)
+
+    def save(self, path: str | Path) -> Path:
+        """Write the posterior as NetCDF, the prior in its group ``prior``; return the path."""
+        target = placeable(path)
+        with whole(target) as part:
+            self.data.to_netcdf(part, engine="h5netcdf")
+            self.prior.to_netcdf(part, mode="a", group="prior", engine="h5netcdf")
+        return target
+
+
+def estimate(plan: Plan, name: str, scores: Floats, weights: Floats, coverage: float) -> Estimate:
+    """Return the estimate of a parameter from the weighted normal scores of its posterior."""
+    prior = plan.priors[name]
+    tails = np.array([0.5, 0.5 - 0.5 * INTERVAL, 0.5 + 0.5 * INTERVAL])
+    middle, low, high = prior.quantile(ndtr(quantiles(scores, weights, tails))).tolist()
+    mid, bottom, top = prior.quantile(tails).tolist()
+    mean = weights @ scores
+    deviation = float(np.sqrt(weights @ (scores - mean) ** 2))
+    return Estimate(
+        name, unit_of(plan, name), middle, low, high, mid, bottom, top, deviation, coverage
+    )
+
+
+def unit_of(plan: Plan, name: str) -> str:
+    """Return the SI unit of a parameter of a fit."""
+    return OWN_UNITS[name] if name in OWN_UNITS else unit(plan.slider, name)
+
+
+def resample(sample: Sample) -> Floats:
+    """Return equally weighted scores, by systematic resampling in a fixed random order."""
+    at = (np.arange(DRAWS) + 0.5) / DRAWS
+    chosen = np.searchsorted(np.cumsum(sample.weights), at).clip(max=len(sample.weights) - 1)
+    found: Floats = sample.scores[np.random.default_rng(0).permutation(chosen)]
+    return found
+
+
+def dataset(plan: Plan, scores: Floats) -> xr.Dataset:
+    """Return draws as a dataset: angles in degrees, as everywhere in data."""
+    import xarray as xr
+
+    columns: dict[str, Any] = {}
+    for i, (name, prior) in enumerate(plan.priors.items()):
+        values, its = prior.quantile(ndtr(scores[:, i])), unit_of(plan, name)
+        if its == "rad":
+            values, its = np.degrees(values), "deg"
+        labels = {"units": its or "1", "long_name": MEANINGS.get(name, name)}
+        columns[name.split(".")[-1]] = ("draw", values, labels)
+    return xr.Dataset(columns)
+
+
+def words(x: Estimate) -> str:
+    """Return an estimate in a few words."""
+    return f"{in_words(x.median, x.unit)} ({in_words(x.low, x.unit)} to {in_words(x.high, x.unit)})"
+
+
+def row(x: Estimate) -> tuple[str, ...]:
+    """Return a row of the report."""
+    after = in_words(x.median, x.unit) if x.identified else "not identifiable"
+    between = f"{in_words(x.low, x.unit)} to {in_words(x.high, x.unit)}"
+    before = f"{in_words(x.prior_low, x.unit)} to {in_words(x.prior_high, x.unit)}"
+    shares = f"{x.narrower:.0%}", f"{x.coverage:.0%}"
+    return (x.name, after, between, in_words(x.prior_median, x.unit), before, *shares)

@@ -1,0 +1,1 @@
+"""Figures of fits: what is known before and after a measurement."""

@@ -1,0 +1,74 @@
+"""``stiction fit``, on a run that is taken as a record."""
+
+import pytest
+import xarray as xr
+
+import stiction as st
+from stiction.cli import main
+
+RIG = """
+[slider]
+mass = "80 g"
+k_x = "2.3 kN/m"
+k_y = "0.9 MN/m"
+phi = {low = "0.5 deg", high = "5 deg", scale = "log"}
+normal_load = "4 N"
+
+[friction]
+law = "exponential-weakening"
+mu_0 = 0.6
+mu_inf = {low = 0.3, high = 0.5}
+v_f = "10 mm/s"
+
+[drive]
+velocity = "0.5 mm/s"
+"""
+
+
+def inside(*arguments):
+    with pytest.raises(SystemExit) as end:
+        main([str(argument) for argument in arguments])
+    return int(end.value.code or 0)
+
+
+def test_a_fit_writes_its_posterior_and_figures(tmp_path, capsys):
+    rig, run = tmp_path / "rig.toml", tmp_path / "run.nc"
+    rig.write_text(RIG)
+    slider = st.Rig.from_toml(rig).slider.replace(phi="2 deg")
+    st.simulate(slider, duration="14 s", sample_rate="100 Hz").save(run)
+    output, figures = tmp_path / "fit.nc", tmp_path / "figures"
+    library = ("-n", 400, "--library", tmp_path / "libraries")
+    command = ("fit", run, "--rig", rig, "-o", output, "--figures", figures, *library)
+    assert inside(*command) == 0
+    said = capsys.readouterr().out
+    assert "phi is" in said
+    assert "Experimental" in said
+    assert "Compared with" in said
+    assert {path.name for path in figures.iterdir()} == {"posterior.png", "corner.png"}
+    assert {"phi", "mu_inf", "jitter"} == set(xr.open_dataset(output))
+
+
+def test_records_of_any_format_are_read_and_their_guess_is_shown(tmp_path, capsys):
+    """Force alone, as text."""
+    rig, data = tmp_path / "rig.toml", tmp_path / "data.csv"
+    rig.write_text(RIG)
+    slider = st.Rig.from_toml(rig).slider.replace(phi="2 deg")
+    run = st.simulate(slider, duration="14 s", sample_rate="100 Hz")
+    force = 1e3 * slider.k_x * run.samples["u_x"]
+    rows = zip(1e3 * run.samples["time"], force, strict=True)
+    data.write_text("t,F\n" + "".join(f"{t:.1f},{f:.3f}\n" for t, f in rows))
+    options = ("--rig", rig, "-o", tmp_path / "fit.nc", "-n", 400, "--library", tmp_path / "store")
+    assert inside("fit", data, *options) == 2  # no units: nothing ambiguous passes silently
+    assert "states no unit" in capsys.readouterr().err
+    assert inside("fit", data, *options, "--time", "ms", "--force", "mN") == 0
+    said = capsys.readouterr().out
+    assert "F" in said
+    assert "mN" in said
+    assert "Compared with" in said
+
+
+def test_a_wrong_prior_is_one_message(tmp_path, capsys):
+    rig = tmp_path / "rig.toml"
+    rig.write_text(RIG.replace('high = "5 deg"', 'high = "0.1 deg"'))
+    assert inside("fit", tmp_path / "no.nc", "--rig", rig, "-o", tmp_path / "fit.nc") == 2
+    assert "phi: low must be below high" in capsys.readouterr().err

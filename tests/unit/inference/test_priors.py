@@ -1,0 +1,62 @@
+"""Uncertain values of a description."""
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.errors import DescriptionError
+from stiction.inference.priors import Normal, Uniform
+
+PLAIN = st.presets.nakano_popov_2020().to_toml()
+
+
+def rig(phi='"1 deg"', k_x='"1 kN/m"', mu_0="0.2"):
+    text = PLAIN.replace('"1 deg"', phi).replace('"1 kN/m"', k_x)
+    return st.Rig.from_toml(text.replace("mu_0 = 0.2", f"mu_0 = {mu_0}"))
+
+
+@pytest.mark.parametrize(
+    "text",
+    ['"2 +- 1 deg"', '"2 ± 1 deg"', '"(2 ± 1) deg"', '{value = "2 deg", uncertainty = "1 deg"}'],
+)
+def test_a_normal_prior_is_written_in_four_ways(text):
+    found = rig(phi=text)
+    assert found.priors["phi"] == Normal(np.radians(2.0), np.radians(1.0))
+    assert np.degrees(found.slider.phi) == pytest.approx(2.0)
+
+
+def test_a_share_is_relative_to_the_value_and_ends_at_zero():
+    assert rig(k_x='{value = "1 kN/m", uncertainty = "5 %"}').priors["k_x"] == Normal(
+        1000.0, 50.0, low=0.0
+    )
+
+
+def test_a_uniform_prior_may_be_of_the_logarithm():
+    found = rig(mu_0='{low = 0.16, high = 0.25, scale = "log"}')
+    assert found.priors["friction.mu_0"] == Uniform(0.16, 0.25, "log")
+    assert found.slider.friction.mu_0 == pytest.approx(0.2)
+
+
+def test_shares_and_quantiles_are_inverse():
+    shares = np.linspace(0.01, 0.99, 9)
+    for prior in (Normal(1.0, 2.0, low=0.0), Uniform(1.0, 5.0), Uniform(1.0, 5.0, "log")):
+        assert prior.share(prior.quantile(shares)) == pytest.approx(shares)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"phi": '"2 +- 0 deg"'}, "phi: uncertainty must be greater than 0"),
+        ({"phi": '{low = "5 deg", high = "1 deg"}'}, "phi: low must be below high"),
+        ({"phi": '{low = "5 deg", high = "100 deg"}'}, "must lie between -90 deg and 90 deg"),
+        ({"phi": '"2 +- 1"'}, "has no unit"),
+        ({"phi": "{low = 1, high = 2}"}, "degree or radian?"),
+        ({"mu_0": '{low = 0.0, high = 0.3, scale = "log"}'}, "low must be above 0"),
+        ({"mu_0": '{low = 0.1, high = 0.3, scale = "cubic"}'}, "write one of linear, log"),
+        ({"k_x": '{value = "1 kN/m", uncertainty = "5 s"}'}, "not a unit of"),
+    ],
+)
+def test_a_fault_names_its_parameter(given, said):
+    with pytest.raises(DescriptionError) as error:
+        rig(**given)
+    assert said in str(error.value)
