@@ -46,7 +46,7 @@ export class Microscope {
       text(context, `${name} (${axis.unit})`, 0, 0, { color, align: "center" });
       context.restore();
     });
-    text(context, `${t.unit}`, width - RIGHT, height - 8, { color: SOFT, align: "right", halo: true });
+    text(context, t.unit, LEFT - 6, height - 12, { color: SOFT, align: "right" });
   }
 
   // Shade the rests.

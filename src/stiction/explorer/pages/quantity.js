@@ -24,6 +24,7 @@ export function quantity(value, unit, digits = 4) {
   let power = Math.floor(Math.log10(Math.abs(Number(size.toPrecision(digits)))) / 3 + 1e-9) * 3;
   power = Math.min(Math.max(power, low), high);
   size /= 10 ** power;
+  if (Math.abs(size) < 1e-3) return `< 0.001 ${PREFIX[power]}${name}`; // rounding, mostly
   return `${plain(size, digits)} ${PREFIX[power]}${name}`;
 }
 
@@ -58,6 +59,7 @@ export function ticks(low, high, count) {
 
 export function tickText(value, among) {
   const step = among.length > 1 ? among[1] - among[0] : Math.abs(value) || 1;
+  if (step < 1e-9) return value === 0 ? "0" : value.toExponential(0).replace("-", "−");
   const places = Math.max(0, Math.min(9, -Math.floor(Math.log10(step) + 1e-9)));
   const text = value.toFixed(places);
   return (Number(text) === 0 ? (0).toFixed(places) : text).replace("-", "−");

@@ -10,6 +10,7 @@ export function scaleOf(field, base) {
   if (field.unit === "rad") return crossing((0.02 * Math.PI) / 180, Math.PI / 2);
   if (field.low > 0 && field.high > 0) return logarithmic(field.low, field.high, 1);
   const zero = field.low === 0 && field.low_allowed;
+  if (!field.unit && zero && base > 0 && base < 0.05) return fromZero(1e-4, 1);
   if (!field.unit && (zero || field.low === undefined) && Math.abs(base) <= 1) {
     return linear(zero ? 0 : -1, 1);
   }

@@ -204,6 +204,8 @@ class StudyMap {
   still(context, width, height, data) {
     const study = data.study, box = BOX(width, height);
     if (!study) return note(context, width, height, "no study: stiction explore STUDY.zarr");
+    const words = study.kinds ?? [], beyond = words.length ? 24 + Math.max(...words.map((word) => context.measureText(word).width)) : 0;
+    box.width -= beyond;
     const { axes, kinds, measure } = study, map = study.arrays.map;
     const [across, up] = axes.length > 1 ? [axes[0], axes[1]] : [axes[0], null];
     const columns = across.values.length, rows = up ? up.values.length : 1;
@@ -220,8 +222,8 @@ class StudyMap {
     frame(context, box, cells(across), up ? cells(up) : { place: (v) => v, ticks: [] });
     (kinds ?? []).forEach((word, i) => {
       context.fillStyle = palette[i % 8];
-      context.fillRect(box.left + 8, box.top + 7 + 17 * i, 11, 11);
-      text(context, word, box.left + 24, box.top + 13 + 17 * i, { halo: true });
+      context.fillRect(box.left + box.width + 8, box.top + 2 + 17 * i, 11, 11);
+      text(context, word, box.left + box.width + 23, box.top + 8 + 17 * i);
     });
     below(context, width, height, `${nameOf(across)}: click a run${kinds ? "" : ` (${measure})`}`);
     if (up) beside(context, height, nameOf(up));
@@ -248,7 +250,7 @@ class StudyMap {
 
 function cells(axis) {
   const count = axis.values.length, every = Math.max(1, Math.ceil(count / 5)), found = [];
-  for (let i = 0; i < count; i += every) found.push([i, plain(axis.values[i], 3)]);
+  for (let i = 0; i < count; i += every) found.push([i, plain(axis.values[i], 2)]);
   return { place: (i) => (i + 0.5) / count, ticks: found };
 }
 
