@@ -48,7 +48,7 @@ class Normal:
     """A normal distribution between two bounds.
 
     >>> Normal(2.0, 1.0, low=0.0).quantile(np.array([0.0, 0.5]))
-    array([0.        , 2.05...])
+    array([0.        , 2.028...])
     """
 
     mean: float
