@@ -74,7 +74,14 @@ export class Scene {
   }
 
   springs(context, width, height, home, mass, turn, M) {
-    const far = { x: width * 0.94 - home[0], y: home[1] - 16 };
+    // as long as the picture has room, however far the springs are turned
+    const far = {};
+    for (const axis of ["x", "y"]) {
+      const [dx, dy] = axis === "x" ? turn(1, 0) : turn(0, 1);
+      const right = dx > 0 ? width * 0.94 - home[0] : home[0] - width * 0.06;
+      const up = dy < 0 ? home[1] - 16 : height - 26 - home[1];
+      far[axis] = Math.min(right / Math.max(Math.abs(dx), 1e-9), up / Math.max(Math.abs(dy), 1e-9));
+    }
     const ends = { x: add(home, turn(far.x, 0)), y: add(home, turn(0, far.y)) };
     const across = { x: turn(0, 1), y: turn(1, 0) };
     for (const axis of ["x", "y"]) {
