@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Annotated, Any, NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
 from pydantic_core import PydanticCustomError
 
@@ -16,12 +15,10 @@ from stiction.recording.origin import Origin
 from stiction.recording.sensor import Sensor
 from stiction.recording.stored import KNOWN, write_stored
 from stiction.system.slider import Slider
-from stiction.text.units import Force, Kind, Mass, PositiveSpeed, Stiffness, reader, to_si
+from stiction.text.samples import Floats, as_numbers, samples_to_si, unit_on
+from stiction.text.units import Force, Kind, Mass, PositiveSpeed, Stiffness, reader
 from stiction.text.validation import Described, faulty, unknown_name
 from stiction.trajectory import Trajectory
-
-Floats = NDArray[np.float64]
-
 
 LARGEST = 1e100  # of any sample, in SI: its square must not overflow
 SMALLEST = 1e-100  # smaller values are taken as zero, because their squares underflow
@@ -32,18 +29,7 @@ UNITS = {name: f"{name}_unit" for name in ("time", *CHANNELS)}
 
 
 def _samples(values: Any) -> Floats:
-    try:
-        given = np.ma.asanyarray(values) if np.ma.isMaskedArray(values) else np.asarray(values)
-    except ValueError:  # ragged or nested lists
-        raise ValueError("must be numbers, one a sample, in SI") from None
-    if given.dtype.kind in "cmMSU":  # complex numbers, times of a calendar, text
-        raise ValueError(f"must be numbers, one a sample, in SI, not of type {given.dtype}")
-    try:
-        samples = np.array(np.ma.filled(given.astype(np.float64), np.nan))
-    except (TypeError, ValueError, OverflowError):
-        raise ValueError("must be numbers, one a sample, in SI") from None
-    if samples.ndim != 1:
-        raise ValueError(f"must have one dimension, has {samples.ndim}; give one number per sample")
+    samples = as_numbers(values)
     lost = np.flatnonzero(~np.isfinite(samples))
     if len(lost):
         raise ValueError(
@@ -66,24 +52,6 @@ def _spread(time: Floats) -> Floats:
     length = np.append(np.diff(ends), typical * count[-1])
     number = np.arange(len(time)) - np.repeat(first, count)
     return np.asarray(np.repeat(ends, count) + number * np.repeat(length / count, count))
-
-
-def _stated_unit(values: Any) -> str | None:
-    """Return the unit that a pint quantity or an xarray array carries."""
-    if hasattr(values, "magnitude") and hasattr(values, "units"):
-        return str(values.units)
-    stated = getattr(values, "attrs", {}).get("units")
-    return None if stated is None else str(stated)
-
-
-def _in_si(values: Any, unit: str, kind: Kind) -> Any:
-    """Convert samples from a unit to SI."""
-    plain = getattr(values, "magnitude", values)
-    plain = getattr(plain, "values", plain)
-    factor = to_si(f"1 {unit}", kind)
-    if factor == 1.0 or np.asarray(plain).dtype.kind not in "iuf":
-        return plain
-    return plain * factor if isinstance(plain, np.ndarray) else np.asarray(plain) * factor
 
 
 A_FORCE, A_LENGTH = Kind("a force", "N", "mN"), Kind("a length", "m", "um")
@@ -186,13 +154,13 @@ class Record(Described):
             if values is None:
                 read.pop(name, None)  # as if left out
                 continue
-            unit, kind = _stated_unit(values), KINDS[name]
+            unit, kind = unit_on(values), KINDS[name]
             said = given.get(key)
             if unit is not None and said is not None and said != unit:
                 wrong.append(Fault(key, f"is {said!r}, but {name} carries {unit!r}; give one"))
                 continue
             try:
-                read[name] = _in_si(values, unit or str(said or kind.unit), kind)
+                read[name] = samples_to_si(values, unit or str(said or kind.unit), kind)
             except PydanticCustomError as error:
                 wrong.append(Fault(name if unit else key, error.message()))
         if wrong:

@@ -12,6 +12,7 @@ from math import inf
 from typing import Any
 
 from stiction.drive.program import DriveProgram, LoadProgram, pick
+from stiction.drive.recorded.stretch import RecordedCourse, RecordedLoading
 from stiction.drive.signal import Course, Loading
 from stiction.drive.steady import ConstantLoad, ConstantVelocity
 
@@ -75,6 +76,8 @@ __all__ = [
     "DriveProgram",
     "LoadProgram",
     "Loading",
+    "RecordedCourse",
+    "RecordedLoading",
     "ahead",
     "drive_stretches",
     "jump",

@@ -3,7 +3,8 @@
 The method ``shape(base, present, still)`` returns the value over the piece's ``duration`` (s; None
 for ever). It is given, in SI, the program's base value, the final value of the preceding piece, and
 the value of a hold; jumps between pieces are instantaneous. A new piece is a class here and a line
-in `DRIVE_PIECES` or `LOAD_PIECES`.
+in `DRIVE_PIECES` or `LOAD_PIECES`. Those that follow a table have ``recording(start)`` in place of
+a shape.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import Annotated, Any, NamedTuple
 
 from pydantic import AfterValidator
 
+from stiction.drive.recorded.piece import Recorded, RecordedLoad
 from stiction.text.units import Duration, Rate, reader
 from stiction.text.validation import validate
 
@@ -206,8 +208,10 @@ DRIVE_PIECES: dict[str, type[Any]] = {
     "reversal": Reversal,
     "harmonic": Harmonic,
     "free": Free,
+    "recorded": Recorded,
 }
 LOAD_PIECES: dict[str, type[Any]] = {
-    name: DRIVE_PIECES[name] for name in ("constant", "step", "ramp", "hold", "harmonic")
+    **{name: DRIVE_PIECES[name] for name in ("constant", "step", "ramp", "hold", "harmonic")},
+    "recorded": RecordedLoad,
 }
 LEVELS = ("value", "by", "to", "amplitude")

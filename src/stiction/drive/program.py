@@ -12,13 +12,20 @@ from pydantic import Field, model_validator
 
 from stiction.drive.pieces import DRIVE_PIECES, LOAD_PIECES
 from stiction.drive.reading import Reading, as_modulation, as_pieces
+from stiction.drive.recorded.piece import RECORDS
+from stiction.drive.recorded.reading import checksum
+from stiction.drive.recorded.spline import Recording, recording_at
+from stiction.drive.recorded.stretch import RecordedCourse, RecordedLoading
 from stiction.drive.signal import Course, Loading, Signal, signal_at
 from stiction.drive.steady import ConstantLoad, ConstantVelocity
+from stiction.machine import shortage
+from stiction.text.samples import Column
 from stiction.text.units import FORCE, VELOCITY, Velocity
 from stiction.text.validation import Described
 
 Times = Any  # a float or an array
 Repeat = Annotated[int, Field(ge=1, le=100_000)]
+ROW = 40.0  # bytes of memory for a recorded row, each time it is gone through
 
 
 PIECES = "sequence of pieces"
@@ -34,7 +41,7 @@ class DriveProgram(Described):
         the first piece; without pieces, the velocity at all times.
     program : sequence, optional
         The pieces one after the other from t = 0 on: `Constant`, `Step`, `Ramp`, `Hold`,
-        `Reversal`, `Harmonic`, `Free`. After the last piece, its final velocity stays.
+        `Reversal`, `Harmonic`, `Free`, `Recorded`. After the last piece, its final velocity stays.
     repeat : int, optional
         How often the program is gone through.
     along, across : Modulation, optional
@@ -50,6 +57,7 @@ class DriveProgram(Described):
     @model_validator(mode="after")
     def _can_be_repeated(self) -> Self:
         must_end(self.program, self.repeat)
+        must_fit(self.program, self.repeat)
         return self
 
     @cached_property
@@ -104,7 +112,8 @@ class LoadProgram(Described):
     ----------
     program : sequence, optional
         The pieces one after the other from t = 0 on: `Constant`, `Step`, `Ramp`, `Hold`,
-        `Harmonic`; they start from the slider's ``normal_load``. The final value stays.
+        `Harmonic`, `RecordedLoad`; they start from the slider's ``normal_load``. The final value
+        stays.
     repeat : int, optional
         How often the program is gone through.
     modulation : Modulation, optional
@@ -118,6 +127,7 @@ class LoadProgram(Described):
     @model_validator(mode="after")
     def _can_be_repeated(self) -> Self:
         must_end(self.program, self.repeat)
+        must_fit(self.program, self.repeat)
         return self
 
     def stretches(self, base: float) -> tuple[tuple[float, Any], ...]:
@@ -142,15 +152,28 @@ def must_end(program: Sequence[Any], repeat: int) -> None:
         )
 
 
+def must_fit(program: Sequence[Any], repeat: int) -> None:
+    """Refuse to repeat more recorded rows than fit into memory."""
+    rows = repeat * sum(len(piece.time) for piece in program if isinstance(piece, RECORDS))
+    if short := shortage(ROW * rows):
+        raise ValueError(f"{repeat} times {rows // repeat} recorded rows {short}; thin the rows")
+
+
 def signals(
     program: Sequence[Any], repeat: int, base: float, still: float | None
-) -> Iterator[tuple[float, Signal]]:
+) -> Iterator[tuple[float, Signal | Recording]]:
     """Yield the stretches of a program: the end of each (s), and its signal.
 
     A hold has the value `still`, or the present one if that is None.
     """
     start, present = 0.0, base
     for piece in tuple(program) * repeat:
+        if isinstance(piece, RECORDS):
+            recording = piece.recording(start)
+            start = float(recording.rows[-1])
+            yield start, recording
+            present = float(recording_at(recording, start))
+            continue
         end = inf if piece.duration is None else start + piece.duration
         value, slope, amplitude, omega, phase = piece.shape(
             base, present, present if still is None else still
@@ -163,24 +186,30 @@ def signals(
     yield inf, Signal(start, present)
 
 
-def modulate(signal: Signal, modulation: Any) -> Signal:
-    """Return a signal with a modulation on top."""
+def modulate(signal: Any, modulation: Any) -> Any:
+    """Return a signal or a recording with a modulation on top."""
     if modulation is None:
         return signal
+    if isinstance(signal, Recording):
+        return signal._replace(wave=modulate(signal.wave, modulation))
     omega = 2 * pi * modulation.frequency
     return signal._replace(
         amplitude_2=modulation.amplitude, omega_2=omega, phase_2=modulation.phase
     )
 
 
-def _course(along: Signal, across: Signal) -> Any:
+def _course(along: Signal | Recording, across: Signal) -> Any:
     """Return the simplest type that describes a stretch, which computes fastest."""
+    if isinstance(along, Recording):
+        return RecordedCourse(along, across)
     if _flat(along) and _flat(across) and across.value == 0.0:
         return ConstantVelocity._make([along.value])  # not validated again
     return Course(along, across)
 
 
-def _loading(force: Signal) -> Any:
+def _loading(force: Signal | Recording) -> Any:
+    if isinstance(force, Recording):
+        return RecordedLoading(force)
     constant = _flat(force) and force.value > 0.0
     return ConstantLoad._make([force.value]) if constant else Loading(force)
 
@@ -230,8 +259,14 @@ def table_of(program: Described, known: Mapping[str, type[Any]]) -> dict[str, An
 
 
 def describe_piece(piece: Any) -> dict[str, Any]:
-    """Return a piece's parameters, ready to be read: angles with a unit, None left out."""
+    """Return a piece's parameters, ready to be read: angles with a unit, None left out.
+
+    Recorded rows are lists, with a checksum.
+    """
     values = {name: value for name, value in piece._asdict().items() if value is not None}
+    if isinstance(piece, RECORDS):
+        values = {n: v.tolist() if isinstance(v, Column) else v for n, v in values.items()}
+        values["checksum"] = checksum(values)
     if "phase" in values:
         values["phase"] = f"{values['phase']!r} rad"
     return values

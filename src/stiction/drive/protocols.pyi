@@ -13,5 +13,8 @@ from stiction.drive.procedures import slide_hold_slide as slide_hold_slide
 from stiction.drive.procedures import velocity_steps as velocity_steps
 from stiction.drive.program import DriveProgram as DriveProgram
 from stiction.drive.program import LoadProgram as LoadProgram
+from stiction.drive.recorded.piece import Recorded as Recorded
+from stiction.drive.recorded.piece import RecordedLoad as RecordedLoad
+from stiction.drive.recorded.reading import read_recorded as read_recorded
 from stiction.drive.steady import ConstantVelocity as ConstantVelocity
 from stiction.study.plan.yaw_sweep import yaw_sweep as yaw_sweep

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from stiction.drive import jump
+from stiction.drive.bounds import load_bounds
 from stiction.friction import has_state
 from stiction.solver.exact.method import Exact
 from stiction.solver.multiscale.method import Multiscale
@@ -18,7 +19,6 @@ from stiction.solver.segments import (
     Stretch,
     begin,
     fastest_swing,
-    load_bounds,
     rig_of,
     speeds,
     stretches,

@@ -1,8 +1,9 @@
 """The input of the compiled solver: numbers, a law, a drive and a load.
 
 Compiled code calls the functions below; at compile time, numba replaces each by the method of its
-first argument's type. Drives and loads have two types, constant and varying, for which the loop is
-specialised. A law is behind pointers (see `stiction.solver.law`), so that one loop serves all laws.
+first argument's type. Drives and loads have three types, constant, varying and recorded, for which
+the loop is specialised. A law is behind pointers (see `stiction.solver.law`), so that one loop
+serves all laws.
 """
 
 from __future__ import annotations
@@ -11,8 +12,11 @@ from collections.abc import Callable
 from math import inf
 from typing import Any, NamedTuple
 
+import numpy as np
 from numba.extending import overload, register_jitable
 
+from stiction.drive.recorded.spline import FUNCTIONS as RECORDING_FUNCTIONS
+from stiction.drive.recorded.spline import place, place_one
 from stiction.drive.signal import FUNCTIONS as SIGNAL_FUNCTIONS
 from stiction.friction import FUNCTIONS as LAW_FUNCTIONS
 from stiction.friction import FrictionLaw, StateLaw
@@ -60,12 +64,48 @@ class Elliptic(NamedTuple):
         return False
 
 
+class Bend(NamedTuple):
+    """A bound of the second derivative of a stick's margin |a|^2 - f^2, in m^2/s^6; see `stick`.
+
+    Drive and load are smooth all along the stretch.
+    """
+
+    value: float
+
+    def smooth_until(bend, t: float, stop: float) -> float:
+        """Return until when drive and load are smooth, at most `stop` (s)."""
+        return stop
+
+    def bend_after(bend, t: float) -> float:
+        """Return the bound that holds from time `t` until then."""
+        return bend.value
+
+
+class Bends(NamedTuple):
+    """Such bounds between the rows of recorded tables, where a derivative of drive or load jumps.
+
+    `rows` (n + 1,) are in s; `values` (n,) hold from each row to the next.
+    """
+
+    rows: Any
+    values: Any
+
+    def smooth_until(bend, t: float, stop: float) -> float:
+        """Return until when drive and load are smooth, at most `stop` (s)."""
+        i = int(np.searchsorted(bend.rows, t, side="right"))
+        return min(stop, bend.rows[i]) if i < len(bend.rows) else stop
+
+    def bend_after(bend, t: float) -> float:
+        """Return the bound that holds from time `t` until then."""
+        i = int(np.searchsorted(bend.rows, t, side="right"))
+        return float(bend.values[min(max(i, 1), len(bend.values)) - 1])
+
+
 class Problem(NamedTuple):
     """Everything that determines the motion in a stretch of time.
 
-    `drive` and `load` are stretches (see `stiction.drive.signal`). `bend` bounds the second
-    derivative of a stick's margin |a|^2 - f^2 (m^2/s^6); see `stiction.solver.stick`. On a
-    general `rig` the system and the surface are those in the solver's axes.
+    `drive` and `load` are stretches (see `stiction.drive.signal`), `bend` says how far they are
+    smooth. On a general `rig` the system and the surface are those in the solver's axes.
     """
 
     system: System
@@ -73,7 +113,7 @@ class Problem(NamedTuple):
     surface: Isotropic | Elliptic
     drive: Any
     load: Any
-    bend: float
+    bend: Bend | Bends
     rig: Aligned | General = Aligned()
 
 
@@ -171,6 +211,16 @@ def constant(load: Any) -> bool:
     return bool(load.constant())
 
 
+def smooth_until(bend: Bend | Bends, t: float, stop: float) -> float:
+    """Return until when drive and load are smooth, at most `stop` (s)."""
+    return bend.smooth_until(t, stop)
+
+
+def bend_after(bend: Bend | Bends, t: float) -> float:
+    """Return a bound of the second derivative of the margin from time `t` until then."""
+    return bend.bend_after(t)
+
+
 def isotropic(surface: Isotropic | Elliptic) -> bool:
     """Return whether friction is along the slip, as known at compile time."""
     return surface.isotropic()
@@ -233,6 +283,8 @@ for _function in (
     drift,
     steady,
     constant,
+    smooth_until,
+    bend_after,
     isotropic,
     is_aligned,
     outward,
@@ -242,8 +294,9 @@ for _function in (
     cross_damping,
 ):
     by_type(_function)
-for _piece in (*SIGNAL_FUNCTIONS, *LAW_FUNCTIONS):
+for _piece in (*SIGNAL_FUNCTIONS, *RECORDING_FUNCTIONS, *LAW_FUNCTIONS):
     register_jitable(_piece)
+overload(place, strict=False)(lambda *_: place_one)
 
 
 @overload(coefficient_and_slope, strict=False)

@@ -7,20 +7,25 @@ stops exactly there, so that it never steps over such an instant.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import cos, hypot, inf, sin
+from math import cos, hypot, sin
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from stiction.drive import Course, Loading, ahead, drive_stretches, load_stretches
-from stiction.drive.signal import Signal, signal_at, signal_bounds, signal_change
+from stiction.drive.bounds import drive_bounds, fastest, load_bounds, row_bounds, vanishes
+from stiction.drive.recorded.spline import silent
+from stiction.drive.recorded.stretch import RecordedCourse, RecordedLoading
+from stiction.drive.signal import Signal
 from stiction.friction import Anisotropic, has_state
 from stiction.friction.law import static_coefficient
-from stiction.solver.problem import Elliptic, Isotropic, Problem, System
+from stiction.solver.problem import Bend, Bends, Elliptic, Isotropic, Problem, System
 from stiction.solver.rig import Aligned, General
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
 from stiction.system.tensors import is_aligned, solver_axes
+
+VARYING = (Course, Loading, RecordedCourse, RecordedLoading)
 
 
 class Stretch(NamedTuple):
@@ -43,10 +48,8 @@ def stretches(slider: Slider, start: float, end: float) -> Iterator[Stretch]:
         drive, load = alike(drive, load)
         stop = min(end, until, until_load)
         lost = vanishes(load, t, stop)
-        curve = 0.0
-        if not (drive.steady() and load.constant()):  # otherwise a stick ends in closed form
-            curve = bend(slider, drive, load, t, stop)
-        problem = Problem(system, law, surface, drive, load, curve, rig)
+        bend = bend_of(slider, drive, load, t, stop)
+        problem = Problem(system, law, surface, drive, load, bend, rig)
         yield Stretch(min(stop, lost), problem, lost <= stop)
         if lost <= stop:
             return
@@ -54,15 +57,36 @@ def stretches(slider: Slider, start: float, end: float) -> Iterator[Stretch]:
 
 
 def alike(drive: Any, load: Any) -> tuple[Any, Any]:
-    """Return a drive and a load, both as constant or both as varying types.
+    """Return a drive and a load, both as constant, as varying or as recorded types.
 
-    The solver is then compiled for two cases instead of four; the results are the same.
+    The solver is then compiled for three cases instead of nine; the results are the same.
     """
+    if isinstance(drive, RecordedCourse) or isinstance(load, RecordedLoading):
+        return _as_recorded_drive(drive), _as_recorded_load(load)
     if drive.steady() == load.constant():
         return drive, load
-    if drive.steady():
-        return Course(Signal(0.0, drive.velocity), Signal(0.0, 0.0)), load
-    return drive, Loading(Signal(0.0, load.force))
+    return _as_varying_drive(drive), _as_varying_load(load)
+
+
+def _as_varying_drive(drive: Any) -> Any:
+    return Course(Signal(0.0, drive.velocity), Signal(0.0, 0.0)) if drive.steady() else drive
+
+
+def _as_varying_load(load: Any) -> Any:
+    return Loading(Signal(0.0, load.force)) if load.constant() else load
+
+
+def _as_recorded_drive(drive: Any) -> RecordedCourse:
+    if isinstance(drive, RecordedCourse):
+        return drive
+    course = _as_varying_drive(drive)
+    return RecordedCourse(silent(course.along), course.across)
+
+
+def _as_recorded_load(load: Any) -> RecordedLoading:
+    if isinstance(load, RecordedLoading):
+        return load
+    return RecordedLoading(silent(_as_varying_load(load).force))
 
 
 def system_of(slider: Slider) -> System:
@@ -128,57 +152,59 @@ def speeds(slider: Slider, drive: Any, start: float, end: float) -> tuple[float,
     return _in_axes(slider, drive_bounds(drive, start, end)[0])
 
 
-Bounds = tuple[tuple[float, float], ...]
-
-
-def drive_bounds(drive: Any, start: float, end: float) -> Bounds:
-    """Return bounds (X, Y) of the drive's velocity and of its first three derivatives."""
-    if not isinstance(drive, Course):
-        X, Y = drive.rate(start)
-        return (abs(X), abs(Y)), (0.0, 0.0), (0.0, 0.0), (0.0, 0.0)
-    along, across = (signal_bounds(s, start, end) for s in drive)
-    return tuple(zip(along, across, strict=True))
-
-
-def load_bounds(load: Any, start: float, end: float) -> tuple[float, float, float]:
-    """Return bounds of the normal load (N) and of its first two derivatives."""
-    if not isinstance(load, Loading):
-        return load.at(start), 0.0, 0.0
-    return signal_bounds(load.force, start, end)[:3]
-
-
 def fastest_swing(problem: Problem) -> float:
     """Return the largest angular frequency (rad/s) in drive and load, 0 if neither swings."""
-    signals = [s for part in (problem.drive, problem.load) for s in part if isinstance(s, Signal)]
-    harmonics = [(s.amplitude, s.omega) for s in signals]
-    harmonics += [(s.amplitude_2, s.omega_2) for s in signals]
-    return max((abs(omega) for amplitude, omega in harmonics if amplitude != 0.0), default=0.0)
+    parts = [part for part in (problem.drive, problem.load) if isinstance(part, VARYING)]
+    return max((fastest(each) for part in parts for each in part), default=0.0)
 
 
-def bend(slider: Slider, drive: Any, load: Any, start: float, end: float) -> float:
+def bend_of(slider: Slider, drive: Any, load: Any, start: float, end: float) -> Bend | Bends:
+    """Return bounds of the second derivative of a stick's margin, between the rows of tables."""
+    if drive.steady() and load.constant():  # a stick ends in closed form
+        return Bend(0.0)
+    if isinstance(drive, RecordedCourse):
+        found = row_bounds(drive, load, start, end)
+        values = bend(slider, found.drive, found.load)
+        return Bends(found.rows, np.broadcast_to(values, len(found.rows) - 1).astype(np.float64))
+    return Bend(bend(slider, drive_bounds(drive, start, end), load_bounds(load, start, end)))
+
+
+def bend(slider: Slider, of_drive: Any, of_load: Any) -> Any:
     """Return a bound of the second derivative of |a|^2 - f^2 while the slip is zero (M8).
 
     a is the friction over mass at zero slip, f its limit; |a| <= f.
     d^2/dt^2 = 2 |a'|^2 + 2 a.a'' - 2 f'^2 - 2 f f''. On an elliptic surface |a| is |M^-1 a|.
+
+    Parameters
+    ----------
+    slider : Slider
+        The system.
+    of_drive, of_load : tuple
+        Bounds as of `drive_bounds` and `load_bounds`: floats, or arrays over the rows of tables.
     """
     law: Any = slider.law
     if has_state(law):
         return 0.0
     s, inertia = (system := system_of(slider)), system.inertia
-    v, dv, ddv, dddv = (_in_axes(slider, pair) for pair in drive_bounds(drive, start, end))
+    v, dv, ddv, dddv = (_in_axes(slider, pair) for pair in of_drive)
     k, c = (s.k_x / s.mass, s.k_y / s.mass), (s.c_x / s.mass, s.c_y / s.mass)
     mixed = abs(rig_of(slider).cross_damping()) / s.mass
-    first = hypot(
+    first = _length(
         *(k[i] * v[i] + c[i] * dv[i] + mixed * dv[1 - i] + inertia * ddv[i] for i in (0, 1))
     )
-    second = hypot(
+    second = _length(
         *(k[i] * dv[i] + c[i] * ddv[i] + mixed * ddv[1 - i] + inertia * dddv[i] for i in (0, 1))
     )
     mu = static_coefficient(law) / s.mass
-    f, _, ddf = (mu * bound for bound in load_bounds(load, start, end))
+    f, _, ddf = (mu * bound for bound in of_load)
     weakest = weakest_share(solver_surface(slider))
     first, second = first / weakest, second / weakest
     return 2.0 * (first * first + f * second + f * ddf)
+
+
+def _length(x: Any, y: Any) -> Any:
+    """Return the length of a vector, or of many."""
+    return np.hypot(x, y) if isinstance(x, np.ndarray) else hypot(x, y)
 
 
 def weakest_share(surface: Isotropic | Elliptic) -> float:
@@ -189,31 +215,7 @@ def weakest_share(surface: Isotropic | Elliptic) -> float:
     return float(((surface.xx * surface.yy - surface.xy**2) / larger) ** 0.5)
 
 
-def vanishes(load: Any, start: float, end: float) -> float:
-    """Return the time at which the normal load vanishes; infinity if not before `end` (s).
-
-    As in a stick, steps are as long as the bounds of the load's derivatives allow.
-    """
-    if not isinstance(load, Loading):
-        return inf
-    force = load.force
-    curve = signal_bounds(force, start, end)[2]
-    t = start
-    while t < end:
-        now, change = signal_at(force, t), signal_change(force, t)
-        if now <= 0.0:
-            return t
-        # now + change dt - curve dt^2/2 > 0 before this
-        root = (change * change + 2.0 * curve * now) ** 0.5
-        dt = 2.0 * now / (root - change) if root > change else inf
-        following = t + dt
-        if following == t:
-            return t
-        t = following
-    return inf
-
-
-def _in_axes(slider: Slider, vector: tuple[float, float]) -> tuple[float, float]:
+def _in_axes(slider: Slider, vector: tuple[Any, Any]) -> tuple[Any, Any]:
     """Return bounds along the solver's axes of a vector with these bounds along X and Y."""
     rig, (c, s) = rig_of(slider), slider.direction
     (X_x, X_y), (Y_x, Y_y) = rig.into_axes(c, s, (1.0, 0.0)), rig.into_axes(c, s, (0.0, 1.0))

@@ -86,6 +86,7 @@ class Motion(NamedTuple):
     e_y: float
 
 
+CUT = 0.25  # of the size to try: a step so much shorter ends at a row of a table
 Plan = tuple[float, float, float, float, float, float, float, float]
 PLANNED = 8
 
@@ -172,6 +173,17 @@ def start(system: System, t: float, u: tuple[float, float], slip: tuple[float, f
 def drop_memory(memory: Memory, h: float) -> Memory:
     """Return the memory after a kink of the motion, with cubics that predict nothing."""
     return Memory(h, memory.plan, PLANNED, memory.h_last, memory.ease, False, memory.p, memory.w)
+
+
+@inlined
+def after_cut(memory: Memory) -> Memory:
+    """Return the memory after a step that ends at a row of a table.
+
+    The cubics of one much shorter than the next do not reach across that.
+    """
+    warm = memory.warm and memory.h_last > CUT * memory.h
+    h, plan, ease = memory.h, memory.plan, memory.ease
+    return Memory(h, plan, memory.place, memory.h_last, ease, warm, memory.p, memory.w)
 
 
 @inlined

@@ -8,6 +8,7 @@ from stiction.solver.compilation.jit import inlined
 from stiction.solver.problem import (
     Problem,
     at,
+    bend_after,
     constant,
     damping,
     drift,
@@ -15,6 +16,7 @@ from stiction.solver.problem import (
     rate,
     rate_change,
     rate_curve,
+    smooth_until,
     static,
     steady,
     travel,
@@ -77,7 +79,8 @@ def stick_duration(
 
     Zero if friction cannot hold it even now, infinite if it can until `t_stop`. The time has a
     closed form for a steady drive and load (M7). Otherwise steps (M9) lead to the first zero of the
-    margin, each so long that, by the bound of the margin's curvature, it contains no zero.
+    margin, each so long that, by the bound of the margin's curvature, it contains no zero. They end
+    where the drive or the load is not smooth, at the rows of a table.
     """
     excess, change, square = margin(problem, t, u_x, u_y)
     if excess > USED_UP * square or (excess >= 0.0 and change > 0.0):
@@ -85,19 +88,24 @@ def stick_duration(
     if steady(problem.drive) and constant(problem.load):
         j = holding_change(problem, t)
         return used_up(excess, change, held_product(problem, j, j)), True
-    gone = 0.0
+    gone, now = 0.0, t
     for _ in range(MARGIN_LOOKS):
         if excess > -USED_UP * square and change > 0.0:
             return gone, True
+        smooth = smooth_until(problem.bend, now, t_stop)
         # excess + 2 change x + bend x^2/2 < 0 before this
-        x = used_up(min(excess, 0.0), change, 0.5 * problem.bend)
-        if t + gone + x >= t_stop:
+        x = used_up(min(excess, 0.0), change, 0.5 * bend_after(problem.bend, now))
+        if now + x >= t_stop:
             return inf, True
-        if t + gone + x == t + gone:
+        if now + x >= smooth:
+            gone, now = smooth - t, smooth
+        elif now + x == now:
             return gone, True
-        gone += x
+        else:
+            gone += x
+            now = t + gone
         d_x, d_y = in_principal_axes(problem, travel(problem.drive, t, gone))
-        excess, change, square = margin(problem, t + gone, u_x + d_x, u_y + d_y)
+        excess, change, square = margin(problem, now, u_x + d_x, u_y + d_y)
     return gone, False
 
 

@@ -32,6 +32,11 @@ def opening(path: str | Path, what: str) -> Iterator[None]:
         raise ResultError(f"{path}: {what}: {one_line(error)}") from None
 
 
+def is_within(folder: str | Path, path: str | Path) -> bool:
+    """Return whether a path leads into a folder, links resolved."""
+    return Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder))
+
+
 def refuse_links(folder: str | Path) -> None:
     """Refuse a store that contains links, which redirect reading and writing.
 

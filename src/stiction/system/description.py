@@ -12,6 +12,7 @@ from pydantic import Field, StrictBool, model_validator
 
 from stiction.drive import read_drive, read_load
 from stiction.drive.procedures import end
+from stiction.drive.recorded.reading import Locate, locate_nothing, locator, with_rows
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import law_table, read_law
 from stiction.friction.user.loading import Find, finder_for_descriptions, finder_for_results, is_own
@@ -106,32 +107,39 @@ class Description(NamedTuple):
             Other values of some parameters, by their paths: ``{"drive.velocity": "2 mm/s"}``;
             see `stiction.text.paths`.
         trust : bool, optional
-            Whether the file of a law may lie outside the description's folder (for a text: the
-            working folder).
+            Whether the files of a law and of recorded tables may lie outside the description's
+            folder (for a text: the working folder).
 
         Raises
         ------
         DescriptionError
             With every fault and its path, or the reason why the file cannot be read.
         """
-        return cls.from_dict(
-            read_toml(path, changes), find=finder_for_descriptions(folder_of(path), trust)
-        )
+        folder = folder_of(path)
+        find, locate = finder_for_descriptions(folder, trust), locator(folder, trust)
+        return cls.from_dict(read_toml(path, changes), find=find, locate=locate)
 
     @classmethod
     def from_dict(
-        cls, raw: Mapping[str, Any], *, find: Find | None = None, known: Sequence[Fault] = ()
+        cls,
+        raw: Mapping[str, Any],
+        *,
+        find: Find | None = None,
+        locate: Locate | None = None,
+        known: Sequence[Fault] = (),
     ) -> Self:
         """Read a description from nested tables, as in the TOML file.
 
-        `find` locates the file of a user's law, see `stiction.friction.user.loading`; by default
-        in the working folder. The file is not run if there are other faults, including the
-        `known` ones, which are reported with the rest.
+        `find` locates the file of a user's law, see `stiction.friction.user.loading`, and `locate`
+        that of a recorded table, see `stiction.drive.recorded.reading`; by default in the working
+        folder. The law's file is not run if there are other faults, including the `known` ones,
+        which are reported with the rest.
         """
         tables: dict[str, Reader] = {**TABLES, "friction": partial(read_law, find=find)}
         last = ("friction",) if is_own(raw.get("friction")) else ()
         absent = OPTIONAL_TABLES
-        raw = with_duration(raw)
+        raw, lost = with_rows(raw, locate or locator(Path()))
+        raw, known = with_duration(raw), [*known, *lost]
         parts = gather(raw, tables, optional=("initial",), absent=absent, last=last, known=known)
         return cls(Slider.from_parts(parts), parts["initial"], parts["run"])
 
@@ -142,7 +150,7 @@ class Description(NamedTuple):
         A user's law must have been loaded by this process from the same text; otherwise `trust`
         permits running the text in the JSON.
         """
-        return cls.from_dict(read_json(text), find=finder_for_results(trust))
+        return cls.from_dict(read_json(text), find=finder_for_results(trust), locate=locate_nothing)
 
     def to_toml(self) -> str:
         """Return the description as TOML with units, which `from_toml` reads back."""

@@ -154,6 +154,11 @@ def program(
     of = {
         name: schema_of_levels(table(fields(piece), piece), kind) for name, piece in pieces.items()
     }
+    of["recorded"]["required"] = []  # a file may have them
+    of["recorded"]["properties"]["checksum"] = {
+        "type": "string",
+        "description": "Of the rows, as `to_toml` writes it: others are refused.",
+    }
     found["properties"]["program"]["items"] = schema_by_choice("piece", of)
     for wave in waves:
         found["properties"][wave] = schema_of_levels(table(fields(Modulation), Modulation), kind)

@@ -21,6 +21,7 @@ from stiction.drive import (
     read_drive,
     read_load,
 )
+from stiction.drive.recorded.reading import locator, with_rows
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import Law, has_state, read_law
 from stiction.friction.user.loading import finder_for_descriptions, is_own
@@ -282,7 +283,8 @@ class Slider(Apparatus):
 
     @property
     def modulation_frequencies(self) -> tuple[float, ...]:
-        """Frequencies of the harmonics in the programs of drive and load, in Hz."""
+        """Frequencies in the programs of drive and load, in Hz: of harmonics, and those that the
+        rows of a recorded table show well, with eight to a period."""
         drive, load = self.drive, self.load
         parts = [*getattr(drive, "program", ()), *getattr(load, "program", ())]
         parts += [getattr(drive, name, None) for name in ("along", "across")]
@@ -324,15 +326,19 @@ class Slider(Apparatus):
         changes : mapping, optional
             Other values of some parameters by their paths, as `Description.from_toml`.
         trust : bool, optional
-            Whether the file of a friction law may lie outside the description's folder.
+            Whether the files of a friction law and of recorded tables may lie outside the
+            description's folder.
         """
-        raw, find = read_toml(path, changes), finder_for_descriptions(folder_of(path), trust)
+        folder = folder_of(path)
+        find = finder_for_descriptions(folder, trust)
+        raw, lost = with_rows(read_toml(path, changes), locator(folder, trust))
         return cls.from_parts(
             gather(
                 {name: raw[name] for name in raw if name in SLIDER_TABLES},
                 {**SLIDER_TABLES, "friction": partial(read_law, find=find)},
                 absent=OPTIONAL_TABLES,
                 last=("friction",) if is_own(raw.get("friction")) else (),
+                known=lost,
             )
         )
 

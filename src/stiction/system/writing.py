@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from stiction.drive import ConstantVelocity
 from stiction.drive.pieces import DRIVE_PIECES, LEVELS, LOAD_PIECES
+from stiction.drive.recorded.piece import RECORDS
+from stiction.drive.recorded.reading import checksum
 from stiction.friction import Anisotropic, law_table
 from stiction.text.quantity_text import quantity_text
 from stiction.text.sections import Table as Rows
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
     from stiction.system.slider import Slider
 
 Table = dict[str, Any]
+LONGEST = 100  # numbers of a list that are shown
 
 
 def slider_tables(slider: Slider) -> dict[str, Table]:
@@ -34,11 +37,22 @@ def slider_tables(slider: Slider) -> dict[str, Table]:
 def parameter_table(tables: Mapping[str, Table]) -> Rows:
     """Return the parameters of all tables of a description as rows of path and text."""
     rows = [
-        (f"{name}.{key}", str(value))
+        (f"{name}.{key}", str(abbreviate(value)))
         for name, table in tables.items()
         for key, value in table.items()
     ]
     return Rows(("parameter", "value"), rows)
+
+
+def abbreviate(value: Any) -> Any:
+    """Return a value with long lists of numbers, as of recorded tables, told by their length."""
+    if isinstance(value, Mapping):
+        return {name: abbreviate(each) for name, each in value.items()}
+    if not isinstance(value, list | tuple):
+        return value
+    if len(value) > LONGEST and not any(isinstance(each, Mapping) for each in value):
+        return f"{len(value)} values"
+    return [abbreviate(each) for each in value]
 
 
 def describe(value: Any, names: Iterable[str]) -> Table:
@@ -98,4 +112,4 @@ def _piece(piece: Any, kind: Kind) -> Table:
     return {
         name: _write(value, kind) if name in LEVELS else value
         for name, value in _describe_tuple(piece).items()
-    }
+    } | ({"checksum": checksum(piece._asdict())} if isinstance(piece, RECORDS) else {})

@@ -60,6 +60,13 @@ class Described(BaseModel, metaclass=_Presented):
         """Validate, or raise every fault at once."""
         collect(type(self).__name__, super().__init__, type(self).model_fields, values)
 
+    def __eq__(self, other: object) -> bool:
+        """Compare the fields; the library would compare what was derived from them, too."""
+        names = type(self).model_fields
+        return type(self) is type(other) and all(
+            getattr(self, name) == getattr(other, name) for name in names
+        )
+
     def __dir__(self) -> list[str]:
         """List the fields and the members of this package."""
         return _own_names(type(self), super().__dir__())

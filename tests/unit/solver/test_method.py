@@ -451,7 +451,7 @@ def test_the_end_of_a_stick_under_any_drive(driven):
     )
     load = st.protocols.LoadProgram(modulation=st.protocols.Modulation("0.5 N", 70.0))
     s = DAMPED.replace(friction=st.Coulomb(0.2), drive=drive, load=load, driven=driven)
-    bound, v_d = next(stretches(s, 0.0, 1.0)).problem.bend, np.array(s.direction)
+    bound, v_d = next(stretches(s, 0.0, 1.0)).problem.bend.value, np.array(s.direction)
     K, damping = np.array([s.k_x, s.k_y]), np.array([s.c_x, s.c_y])
 
     def margin(t):

@@ -18,7 +18,7 @@ def test_a_steady_slider_is_one_segment():
     assert (only.end, only.lost) == (1.7, False)
     s, (c, _) = only.problem.system, STEADY.direction
     assert s == System(0.25, 1e3, 4e4, 3.0, 20.0, c, STEADY.direction[1], 4.0, 1.0)
-    assert only.problem.bend == 0.0
+    assert only.problem.bend.value == 0.0
     assert (only.problem.drive, only.problem.load.force) == (STEADY.drive, 10.0)
     assert segments.system_of(STEADY.replace(driven="spring")).inertia == 0.0
 
@@ -45,7 +45,7 @@ def test_segments_end_where_drive_or_load_bend():
     assert found[0].problem.drive.rate(0.2) == (1e-3, 0.0)
     assert found[1].problem.load.at(0.35) == 10.0
     assert found[1].problem.load.drift(0.35) == 0.0
-    assert found[2].problem.bend > 0.0
+    assert found[2].problem.bend.value > 0.0
 
 
 def test_a_steady_drive_beside_a_load_that_changes_is_a_course():
@@ -110,9 +110,9 @@ def test_bounds_hold(slider):
         for n in (0, 1)
     ]
     F, F_2 = 0.2 / 0.25 * 10.5, 0.2 / 0.25 * 0.5 * omega**2
-    assert problem.bend == pytest.approx(2 * (J[0] ** 2 + F * J[1] + F * F_2), rel=1e-9)
+    assert problem.bend.value == pytest.approx(2 * (J[0] ** 2 + F * J[1] + F * F_2), rel=1e-9)
     weak = slider.replace(friction=st.laws.Anisotropic(st.Coulomb(0.2), 0.5, "0 deg"))
-    weaker = next(segments.stretches(weak, start, end)).problem.bend
+    weaker = next(segments.stretches(weak, start, end)).problem.bend.value
     assert weaker == pytest.approx(2 * (4 * J[0] ** 2 + 2 * F * J[1] + F * F_2), rel=1e-9)
 
 

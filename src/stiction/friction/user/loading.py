@@ -19,6 +19,7 @@ from typing import Any
 from stiction.errors import DescriptionError, one_line
 from stiction.friction.user.source import Text, member, module_name, module_of, read, text_of
 from stiction.friction.user.validation import fault, is_law, law_in, try_law
+from stiction.storage.foreign import is_within
 from stiction.text.validation import make
 
 # from a law's name, and its text if stored, to the class
@@ -102,8 +103,8 @@ def split(name: str) -> tuple[str, str]:
 
 def _there(folder: Path, file: str, trust: bool) -> Path:
     """Return the file of a law, links resolved, if it exists and may be run."""
-    home, path = os.path.realpath(folder), os.path.realpath(folder / file)
-    if not trust and not Path(path).is_relative_to(home):
+    path = os.path.realpath(folder / file)
+    if not trust and not is_within(folder, path):
         raise fault(
             f"{file!r} lies outside the folder of the description, {folder}: put the law into it; "
             "or, if you trust who wrote this, allow it: trust=True, on the command line --trust"

@@ -11,7 +11,7 @@ from typing import Any
 from stiction import theory
 from stiction.analysis.slip import is_undersampled
 from stiction.drive import ConstantVelocity
-from stiction.drive.pieces import Modulation
+from stiction.drive.pieces import DRIVE_PIECES, LOAD_PIECES, Modulation
 from stiction.friction import Anisotropic, name_of, states
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import DIGITS
@@ -21,6 +21,7 @@ from stiction.trajectory import Trajectory
 LETTERS = {"mu": r"\mu", "sigma": r"\sigma", "omega": r"\omega", "theta": r"\theta"}
 SUBSCRIPTS = {"inf": r"\infty", "star": "*", "static": r"\mathrm{static}"}
 WIDTH = 40  # characters of a line
+NAMES = {kind: name for known in (DRIVE_PIECES, LOAD_PIECES) for name, kind in known.items()}
 
 
 def symbol(name: str) -> str:
@@ -85,7 +86,7 @@ def program_in_words(what: str, program: Sequence[Any], repeat: int) -> list[str
     """Return the pieces of a program by name."""
     if not program:
         return []
-    names = ", ".join(type(piece).__name__.lower() for piece in program)
+    names = ", ".join(NAMES[type(piece)] for piece in program)
     times = f" ({repeat} times)" if repeat > 1 else ""
     return wrap(f"{what}: {names}{times}", WIDTH, max_lines=3, placeholder=" …")
 

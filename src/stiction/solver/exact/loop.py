@@ -29,6 +29,7 @@ from stiction.solver.problem import (
     in_principal_axes,
     isotropic,
     rate,
+    smooth_until,
     travel,
 )
 from stiction.solver.radau import A
@@ -44,6 +45,7 @@ from stiction.solver.state import (
     Motion,
     Plain,
     State,
+    after_cut,
     at_takeoff,
     count_step,
     plain,
@@ -238,16 +240,19 @@ def advance(
                 continue
         frame = frame_of(problem, motion)
         start = outset(problem, frame)
+        smooth = smooth_until(problem.bend, motion.t, t_end)
         if motion.r > 0.0:
             closed = pursuit(problem, frame, start, accuracy)
-            if t + closed[0] < t_end:
+            if t + closed[0] < smooth:
                 state, k = land(problem, frame, start, state, closed, times, samples, k, record)
                 continue
         done, state, k = slip(
-            problem, frame, start, state, t_end, accuracy, times, samples, k, record
+            problem, frame, start, state, smooth, accuracy, times, samples, k, record
         )
         if not done:
             return STEP_UNDERFLOW, state, k, turn
+        if smooth < t_end and state.motion.t >= smooth:
+            state = State(state.motion, after_cut(state.memory), state.counts)
     code = COMPLETED if state.motion.t >= t_end else RUNNING
     return code, state, k, budget
 

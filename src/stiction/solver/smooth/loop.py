@@ -9,7 +9,7 @@ import numpy as np
 from stiction.solver.block_algebra import dot
 from stiction.solver.compilation.jit import compiled, piece
 from stiction.solver.control import GROWTH, step_factor
-from stiction.solver.problem import Problem, in_principal_axes, travel
+from stiction.solver.problem import Problem, in_principal_axes, smooth_until, travel
 from stiction.solver.radau import A
 from stiction.solver.smooth.coordinate import coordinate
 from stiction.solver.smooth.dispatch import grain_of
@@ -20,6 +20,7 @@ from stiction.solver.smooth.step import remember, step
 from stiction.solver.smooth.workspace import LAST, START, Workspace, workspace
 from stiction.solver.state import (
     COMPLETED,
+    CUT,
     NON_FINITE,
     RUNNING,
     STEP_UNDERFLOW,
@@ -106,8 +107,9 @@ def advance(
             break
         start, q_x, q_y = begin(problem, motion, z, w, accuracy)
         remember(w, past, start.eps)
+        smooth = smooth_until(problem.bend, motion.t, t_end)
         done, taken, error, rejected, iterations = step(
-            problem, start, q_x, q_y, t_end, h, h_last, warm, w, accuracy
+            problem, start, q_x, q_y, smooth, h, h_last, warm, w, accuracy
         )
         counts = count_step(counts, rejected, iterations)
         turns += 1
@@ -115,14 +117,15 @@ def advance(
             code = STEP_UNDERFLOW
             break
         k = sample(problem, start, taken, w, inner, accuracy, times, samples, k)
-        end = t_end if start.t + taken >= t_end else start.t + taken
+        end = smooth if start.t + taken >= smooth else start.t + taken
         motion = motion_at_end(problem, start, taken, end, w)
         for i in range(len(z)):
             z[i] = w.values[LAST, 2 + i]
         past[:, :] = w.values[:4, :]
         following = taken * step_factor(error, GROWTH if rejected == 0 else 1.0)
-        h = min(max(h, following) if end == t_end else following, accuracy.longest)
-        h_last, warm = taken, end < t_end
+        cut = end == smooth and taken < CUT * h  # its cubics do not reach across the next step
+        h = min(max(h, following) if end == smooth else following, accuracy.longest)
+        h_last, warm = taken, end < t_end and not cut
     if motion.t >= t_end:
         code = COMPLETED
     return code, SmoothState(motion, z, SmoothMemory(h, h_last, warm, past), counts), k, turns

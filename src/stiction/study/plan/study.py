@@ -12,6 +12,7 @@ from typing import Annotated, Any, ClassVar, Self
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from stiction.deprecation import old_method
+from stiction.drive.recorded.reading import Locate, locate_nothing, locator
 from stiction.errors import DescriptionError, Fault
 from stiction.friction.user.loading import Find, finder_for_descriptions, finder_for_results
 from stiction.study.plan.axes import axis_table
@@ -175,12 +176,14 @@ class Study(Described):
         DescriptionError
             With every fault and its path, or the reason why the file cannot be read.
         """
-        return cls.from_dict(
-            read_toml(path, changes), find=finder_for_descriptions(folder_of(path), trust)
-        )
+        folder = folder_of(path)
+        find, locate = finder_for_descriptions(folder, trust), locator(folder, trust)
+        return cls.from_dict(read_toml(path, changes), find=find, locate=locate)
 
     @classmethod
-    def from_dict(cls, raw: Mapping[str, Any], *, find: Find | None = None) -> Self:
+    def from_dict(
+        cls, raw: Mapping[str, Any], *, find: Find | None = None, locate: Locate | None = None
+    ) -> Self:
         """Read a study from nested tables, as in the TOML file."""
         found: list[Fault] = []
         own, axes = raw.get("study", {}), raw.get("axes")
@@ -195,7 +198,7 @@ class Study(Described):
         else:
             found += [each for each in cls._faults(own, axes, None) if each.path != "study.base"]
         rest = {key: value for key, value in raw.items() if key not in ("study", "axes")}
-        base = Description.from_dict(rest, find=find, known=found)
+        base = Description.from_dict(rest, find=find, locate=locate, known=found)
         return cls._make(own, axes, base)
 
     @classmethod
@@ -217,7 +220,7 @@ class Study(Described):
     @classmethod
     def from_json(cls, text: str, *, trust: bool = False) -> Self:
         """Read back what `to_json` wrote; `trust` is that of `Description.from_json`."""
-        return cls.from_dict(read_json(text), find=finder_for_results(trust))
+        return cls.from_dict(read_json(text), find=finder_for_results(trust), locate=locate_nothing)
 
     def to_dict(self) -> dict[str, Any]:
         """Return nested tables, which `from_dict` reads."""

@@ -1,0 +1,1 @@
+"""Drives and loads that follow a recorded table."""

@@ -1,0 +1,154 @@
+"""Pieces of a program that follow a recorded table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Any, NamedTuple
+
+import numpy as np
+from pydantic import BeforeValidator, WithJsonSchema
+
+from stiction.drive.recorded.rows import Table, row_faults
+from stiction.drive.recorded.spline import Recording, recording, spline
+from stiction.text.samples import Column, as_numbers, samples_to_si, unit_on
+from stiction.text.units import FORCE, VELOCITY, Kind, Number, fault
+from stiction.text.validation import validate
+
+TIME, LENGTH = Kind("a time", "s", "5 ms"), Kind("a length", "m", "0.1 mm")
+KINDS = {"time": TIME, "velocity": VELOCITY, "position": LENGTH, "load": FORCE}
+COLUMN = {"anyOf": [{"type": "array", "items": {"type": "number"}}, {"type": "string"}]}
+PERIOD = 8.0  # rows of a period that a table shows well
+
+
+def _read_column(values: Any, kind: Kind) -> Column:
+    """Return a column of numbers in SI, or with a unit of their own."""
+    if isinstance(values, Column):
+        return values
+    if isinstance(values, str):
+        raise fault(f"{values!r} names a column, and there is no file")
+    return Column(as_numbers(samples_to_si(values, unit_on(values) or kind.unit, kind)))
+
+
+def _reader(kind: Kind) -> BeforeValidator:
+    return BeforeValidator(lambda values: _read_column(values, kind))
+
+
+SCHEMA = WithJsonSchema(COLUMN)
+Times = Annotated[Any, _reader(TIME), SCHEMA, "sequence of float (s)"]
+Speeds = Annotated[Any, _reader(VELOCITY), SCHEMA, "sequence of float (m/s)"]
+Positions = Annotated[Any, _reader(LENGTH), SCHEMA, "sequence of float (m)"]
+Loads = Annotated[Any, _reader(FORCE), SCHEMA, "sequence of float (N)"]
+
+
+@validate
+class Recorded(NamedTuple):
+    """A recorded velocity of the drive: a smooth curve through the rows of a table.
+
+    Times count from the table's first row, with which the piece starts; it ends with the last.
+    `stiction.protocols.read_recorded` reads a file.
+
+    Parameters
+    ----------
+    time : array
+        (n,), s, increasing, of four rows or more; as a text in a description, the name of a
+        column of `file`.
+    velocity : array, optional
+        (n,), m/s.
+    position : array, optional
+        (n,), m, in place of `velocity`: its slope is that of the curve, no quotient of differences.
+    scale : float, optional
+        What the velocity is multiplied with.
+    file : str, optional
+        The file that the rows come from.
+    """
+
+    time: Times
+    velocity: Speeds | None = None
+    position: Positions | None = None
+    scale: Number = 1.0
+    file: str | None = None
+
+    def faults(piece) -> Iterator[tuple[str, str]]:
+        """Check the rows."""
+        if (piece.velocity is None) == (piece.position is None):
+            yield "velocity", "give either velocity or position"
+        else:
+            yield from row_faults(_table(piece))
+
+    @property
+    def duration(piece) -> float:
+        """How long the record is, s."""
+        return length(piece.time)
+
+    @property
+    def frequency(piece) -> float:
+        """A frequency that the rows show well, Hz."""
+        return highest_frequency(piece.time)
+
+    def recording(piece, start: float) -> Recording:
+        """Return the velocity from `start` (s) on."""
+        values = piece.position if piece.velocity is None else piece.velocity
+        return recording(spline(piece.time, values, piece.velocity is None, piece.scale), start)
+
+
+@validate
+class RecordedLoad(NamedTuple):
+    """A recorded normal load: a smooth curve through the rows of a table, as `Recorded`.
+
+    Parameters
+    ----------
+    time : array
+        (n,), s, increasing, of four rows or more; as a text in a description, the name of a
+        column of `file`.
+    load : array
+        (n,), N.
+    scale : float, optional
+        What the load is multiplied with.
+    file : str, optional
+        The file that the rows come from.
+    """
+
+    time: Times
+    load: Loads
+    scale: Number = 1.0
+    file: str | None = None
+
+    def faults(piece) -> Iterator[tuple[str, str]]:
+        """Check the rows."""
+        yield from row_faults(_table(piece))
+
+    @property
+    def duration(piece) -> float:
+        """How long the record is, s."""
+        return length(piece.time)
+
+    @property
+    def frequency(piece) -> float:
+        """A frequency that the rows show well, Hz."""
+        return highest_frequency(piece.time)
+
+    def recording(piece, start: float) -> Recording:
+        """Return the load from `start` (s) on."""
+        return recording(spline(piece.time, piece.load, False, piece.scale), start)
+
+
+RECORDS = (Recorded, RecordedLoad)
+
+
+def _table(piece: Any) -> Table:
+    """Return the rows of a piece for checking."""
+    given = (name for name in KINDS if name != "time" and getattr(piece, name, None) is not None)
+    name = next(given)
+    values = getattr(piece, name).values
+    unit = "N" if name == "load" else "m/s"
+    return Table(piece.time.values, values, name, unit, range(1, len(values) + 1))
+
+
+def length(time: Column) -> float:
+    """Return the time between the first and the last row, s."""
+    return float(time.values[-1] - time.values[0])
+
+
+def highest_frequency(time: Column) -> float:
+    """Return the frequency (Hz) of which a period has `PERIOD` rows."""
+    return 1.0 / (PERIOD * float(np.median(np.diff(time.values))))
