@@ -117,7 +117,9 @@ def _text_of(path: Path) -> str:
 
 def folder_of(path: str | Path) -> Path:
     """Return the folder of a file that `read_toml` reads; for a text, the working one."""
-    return Path() if isinstance(path, str) and "\n" in path else Path(path).parent
+    if not isinstance(path, str | Path) or "\n" in str(path):
+        return Path()  # of what is neither, `read_toml` says so
+    return Path(path).parent
 
 
 def toml_text(tables: Mapping[str, Mapping[str, Any]]) -> str:

@@ -85,7 +85,9 @@ def axis_unit(values: xr.DataArray) -> tuple[float, str]:
     return 1.0 / factor, f"{values.name} ({prefix}{unit})"
 
 
-def plot_corner(fit: Any, names: Sequence[str] | None = None) -> NDArray[np.object_]:
+def plot_corner(
+    fit: Any, names: Sequence[str] | None = None, axes: Any = None
+) -> NDArray[np.object_]:
     """Draw the posterior of all pairs of parameters: regions that hold 50 % and 95 % of it.
 
     Parameters
@@ -94,6 +96,8 @@ def plot_corner(fit: Any, names: Sequence[str] | None = None) -> NDArray[np.obje
         From `stiction.fit`.
     names : sequence of str, optional
         Of the parameters; by default those that are identified.
+    axes : ndarray of Axes, optional
+        As many rows and columns as parameters; a new figure by default.
 
     Returns
     -------
@@ -104,8 +108,10 @@ def plot_corner(fit: Any, names: Sequence[str] | None = None) -> NDArray[np.obje
     chosen = [*names] if names is not None else found or [*fit.data.data_vars]
     count = len(chosen)
     with style():
-        size = min(PAGE, 1.2 * count + 0.8)
-        grid: Any = canvas(size, size).subplots(count, count, squeeze=False, sharex="col")
+        grid: Any = axes
+        if axes is None:
+            size = min(PAGE, 1.2 * count + 0.8)
+            grid = canvas(size, size).subplots(count, count, squeeze=False, sharex="col")
         fix_ticks(list(grid.ravel()))
         for i, j in np.ndindex(count, count):
             ax = grid[i, j]

@@ -72,7 +72,7 @@ def test_noise_is_told_with_a_remedy():
 def test_sparse_rows_beside_dense_ones_are_no_gap():
     """Rows may lie close where much happens."""
     time = np.concatenate([np.linspace(0, 1, 6), 1 + np.linspace(0, 0.1, 21)[1:]])
-    st.protocols.Recorded(time=time, velocity=1e-3 + 1e-4 * time)
+    assert st.protocols.Recorded(time=time, velocity=1e-3 + 1e-4 * time).duration == 1.1
 
 
 def test_velocity_or_position():
