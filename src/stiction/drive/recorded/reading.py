@@ -138,7 +138,8 @@ def _with_own_rows(
                 columns, found = rows_of(locate(file), names, quantities)
             except DescriptionError as error:
                 columns, found = {}, list(error.faults)
-            piece |= columns
+            own = Path(file).name if Path(file).is_absolute() else file  # as of a law's file
+            piece |= {**columns, "file": own}
     if stated is not None and not found and checksum(piece) != stated:
         message = f"the rows have the checksum {checksum(piece)}, not {stated!r}: they have changed"
         found = [Fault("checksum", f"{message}; leave it out, if that is meant")]
