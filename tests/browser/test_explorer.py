@@ -196,10 +196,13 @@ def test_laws_and_protocols_come_from_menus(page):
 
 
 def test_the_address_restores_the_state(page):
+    page.done_after(lambda: page.tab.click("#reset"))
     phi = page.row("slider.phi").locator("input[type=text]")
+    page.until("location.hash.length > 10")  # the address follows a little later
+    first = page.value("location.hash")
     phi.fill("3 deg")
     page.done_after(lambda: phi.press("Enter"))
-    page.until("location.hash.length > 10")
+    page.until(f"location.hash !== {first!r}")
     state = page.value("location.hash")
     page.tab.goto("about:blank")
     page.visit(state)
