@@ -1,0 +1,173 @@
+"""Calibration of fits: how often intervals hold the truth, on records that no part has seen.
+
+``python -m benchmarks.accuracy.fits --simulations 2000 --records 400 --library FOLDER``: for two
+rigs and four sets of channels, coverage of 95 % intervals, the p-value of ranks against uniform
+ones (simulation-based calibration: S. Talts et al., arXiv:1804.06788), and widths of the posterior.
+Records have 20 cycles, friction that differs by 0.1 % to 3 % from cycle to cycle, noise of 0.2 % of
+the friction force at rest and, on the displacement, of 0.2 % of the slip length. FOLDER holds the
+simulations, so that a second call only compares.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from time import perf_counter
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtr
+from scipy.stats import kstest
+
+from stiction.inference.features import USED, features, find_cycles
+from stiction.inference.fit import posteriors
+from stiction.inference.library import Library, build, dummy, plan
+from stiction.inference.observation import Conditions, Noise
+from stiction.inference.priors import Rig, Uniform
+from stiction.inference.regression_abc import quantiles, rank
+
+Floats = NDArray[np.float64]
+
+TEXT = """
+[slider]
+mass = "{mass}"
+k_x = {{value = "{k_x}", uncertainty = "5 %"}}
+k_y = {{value = "{k_y}", uncertainty = "20 %"}}
+phi = {{low = "0.5 deg", high = "5 deg", scale = "log"}}
+normal_load = "{load}"
+c_x = {{low = 0.0, high = "{damping} N*s/m"}}
+
+[friction]
+law = "exponential-weakening"
+mu_0 = {{low = {mu_0[0]}, high = {mu_0[1]}}}
+mu_inf = {{low = {mu_inf[0]}, high = {mu_inf[1]}}}
+v_f = {{low = "3 mm/s", high = "30 mm/s", scale = "log"}}
+
+[drive]
+velocity = "{velocity}"
+"""
+RIGS = {  # two that differ in stiffness, friction and drive
+    "pin on plate": {
+        "mass": "80 g", "k_x": "2.3 kN/m", "k_y": "0.9 MN/m", "load": "4 N", "damping": 1.4,
+        "mu_0": (0.5, 0.7), "mu_inf": (0.3, 0.48), "velocity": "0.5 mm/s",
+    },
+    "Nakano & Popov": {
+        "mass": "250 g", "k_x": "1 kN/m", "k_y": "10 MN/m", "load": "10 N", "damping": 1.6,
+        "mu_0": (0.17, 0.24), "mu_inf": (0.1, 0.16), "velocity": "1 mm/s",
+    },
+}  # fmt: skip
+CYCLES, PER_CYCLE = 20, 200
+NOISE = 0.002
+SHOWN = ("phi", "friction.mu_0", "friction.mu_inf", "friction.v_f", "k_x", "k_y", "jitter")
+WIDTHS = ("phi", "friction.mu_0", "friction.mu_inf", "friction.v_f")
+
+
+class Trial(NamedTuple):
+    """Comparison of the held-out records with a library: (records, parameters) each."""
+
+    names: list[str]
+    inside: NDArray[np.bool_]
+    ranks: Floats
+    widths: Floats  # standard deviation of the logarithm of each parameter
+    seconds: float  # for all records, learning included
+
+
+def library_of(name: str, count: int, seed: int, folder: Path | None) -> Library:
+    """Simulate records of a rig, with all channels."""
+    rig = Rig.from_toml(TEXT.format(**RIGS[name]))
+    slider = rig.slider
+    velocity = slider.motion.rate(0.0)[0]
+    cycle = 0.6 * slider.F_0 / (slider.k_x * velocity)
+    level = float(f"{NOISE * slider.F_0:.2g}")
+    noise = {
+        "force": Noise(level, gain=0.01, zero=5 * level),
+        "force_across": Noise(level, gain=0.01),
+        "position": Noise(level / slider.k_x),
+    }
+    step = cycle / PER_CYCLE
+    conditions = Conditions(velocity, slider.normal_load, 0.0, step, CYCLES, cycle, noise)
+    jitter = {"jitter": Uniform(1e-3, 0.03, "log")}
+    of = plan(slider, {**rig.priors, **jitter}, [conditions])
+    place = None if folder is None else folder / f"{of.key}-{seed}"
+    return build(of, count, place, seed=seed)
+
+
+def columns_of(of: Library, channels: tuple[str, ...]) -> NDArray[np.int64]:
+    """Return which features of a library come from some of its channels."""
+    (conditions,) = of.plan.conditions
+    blank, scale = dummy(conditions), conditions.scale(of.plan.slider)
+    cycles = find_cycles(blank["force"])
+
+    def count(*some: str) -> int:
+        chosen = {each: blank[each] for each in some}
+        return len(features(conditions.step, chosen, scale, cycles))
+
+    alone, across, position = count("force"), count(*USED[:2]), count("force", "position")
+    if channels == USED:
+        return np.arange(count(*USED))
+    if "position" in channels:
+        return np.r_[0:alone, across : across + position - alone]
+    return np.arange(across if "force_across" in channels else alone)
+
+
+def compare(known: Library, unseen: Library, channels: tuple[str, ...]) -> Trial:
+    """Compare held-out records with a library by some of their channels."""
+    which = columns_of(known, channels)
+    start = perf_counter()
+    samples = posteriors(known.features[:, which], known.scores, unseen.features[:, which])
+    seconds = perf_counter() - start
+    names = [*known.plan.priors]
+    tails = np.array([0.025, 0.975])
+    inside, ranks, widths = [], [], []
+    for sample, truth in zip(samples, unseen.scores, strict=True):
+        ends = [quantiles(each, sample.weights, tails) for each in sample.scores.T]
+        inside.append([low <= its <= high for (low, high), its in zip(ends, truth, strict=True)])
+        pairs = zip(sample.scores.T, truth, strict=True)
+        ranks.append([rank(each, sample.weights, its) for each, its in pairs])
+        widths.append([spread(known, each, sample, i) for i, each in enumerate(names)])
+    return Trial(names, np.array(inside), np.array(ranks), np.array(widths), seconds)
+
+
+def spread(known: Library, name: str, sample: object, index: int) -> float:
+    """Return the standard deviation of a parameter's logarithm; NaN where it has none."""
+    if name not in WIDTHS:
+        return float("nan")
+    values = np.log(known.plan.priors[name].quantile(ndtr(sample.scores[:, index])))
+    mean = sample.weights @ values
+    return float(np.sqrt(sample.weights @ (values - mean) ** 2))
+
+
+def report(channels: tuple[str, ...], trial: Trial) -> None:
+    """Print a line for each parameter."""
+    print(f"  {' + '.join(channels)} ({trial.seconds:.1f} s for all)")
+    for i, name in enumerate(trial.names):
+        if name in SHOWN or name in ("gain", "zero"):
+            p = kstest(trial.ranks[:, i], "uniform").pvalue
+            width = trial.widths[:, i]
+            sd = f"{width.mean():.3f} (median {np.median(width):.3f})" if name in WIDTHS else ""
+            print(f"    {name:16s} {100 * trial.inside[:, i].mean():5.1f} %  p = {p:.3f}  {sd}")
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--simulations", type=int, default=2000)
+    parser.add_argument("--records", type=int, default=400)
+    parser.add_argument("--library", type=Path)
+    options = parser.parse_args()
+    for name in RIGS:
+        start = perf_counter()
+        known = library_of(name, options.simulations, 0, options.library)
+        took = perf_counter() - start
+        unseen = library_of(name, options.records, 1, options.library)
+        print(
+            f"{name}: {len(known.scores)} of {known.wanted} simulations with cycles, {took:.0f} s; "
+            f"{len(unseen.scores)} records held out"
+        )
+        for channels in (USED[:1], USED[:2], ("force", "position"), USED):
+            report(channels, compare(known, unseen, channels))
+
+
+if __name__ == "__main__":
+    main()
