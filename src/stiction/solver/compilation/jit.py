@@ -57,12 +57,15 @@ def inlined(function: F) -> F:
 
 def allocating(function: F) -> F:
     """Compile a part of the loop that makes arrays, with reference counts."""
-    return _part(function)
+    return _part(function, forceinline=False)
 
 
 def piece(function: F) -> F:
-    """Compile a part separately because it is large or called from several places."""
-    return _part(function, _nrt=False)
+    """Compile a part separately because it is large or called from several places.
+
+    numba would otherwise inline it wherever an `inlined` part calls it.
+    """
+    return _part(function, forceinline=False, _nrt=False)
 
 
 def python_of(function: F) -> F:

@@ -15,7 +15,7 @@ from math import sqrt
 import numpy as np
 
 from stiction.solver.block_algebra import Triple, dot, less
-from stiction.solver.compilation.jit import inlined, piece
+from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.error_estimate import moving
 from stiction.solver.exact.newton import products, solve
 from stiction.solver.exact.oscillation import NO_LANDING, Swing, after, oscillator, swing, swings
@@ -141,27 +141,9 @@ def sample_slip(
     """Fill the samples of an accepted slip step; return the next index."""
     if k >= len(times) or times[k] > frame.t + h:
         return k
-    return sample_step(problem, frame, start, swing, h, p, w, accuracy, times, samples, k)
-
-
-@piece
-def sample_step(
-    problem: Problem,
-    frame: Frame,
-    start: Outset,
-    swing: Swing,
-    h: float,
-    p: Triple,
-    w: Triple,
-    accuracy: Accuracy,
-    times: np.ndarray,
-    samples: np.ndarray,
-    k: int,
-) -> int:
-    """Fill the samples of a step, as a separate function: the loop is faster without it."""
-    t, motion = frame.t, moving(problem, frame, start, accuracy)
-    while k < len(times) and times[k] <= t + h:
-        dt = min(times[k] - t, h)
+    motion = moving(problem, frame, start, accuracy)
+    while k < len(times) and times[k] <= frame.t + h:
+        dt = min(times[k] - frame.t, h)
         z_1, z_2, v, turn = within(problem, frame, start, swing, h, p, w, dt, accuracy, motion)
         slip = z_1, z_2, v, turn
         k = write_slip(problem, frame, frame.metric, times[k], dt, slip, samples, k)

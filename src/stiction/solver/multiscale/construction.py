@@ -6,7 +6,7 @@ from math import inf, nan, sqrt
 
 import numpy as np
 
-from stiction.solver.compilation.jit import inlined, piece, python_of
+from stiction.solver.compilation.jit import inlined, number, piece, python_of
 from stiction.solver.exact import loop
 from stiction.solver.multiscale.inside import (
     Window,
@@ -33,7 +33,8 @@ from stiction.solver.state import (
 )
 from stiction.solver.stick import stick_duration
 
-NODE_STEPS = 10_000
+NODE_STEPS = number(10_000)
+FIRST = number(0)  # row of samples
 NODE_SHARE = 0.1  # tolerance of a node's steps over that of others; their noise is below `closing`
 
 # compiled as a part of its caller, so that a user's law is cached only with that
@@ -83,7 +84,7 @@ def solve_cycle(
     record = known.record
     record.used[0] = 0
     code, state, _, _ = advance(
-        problem, state, early + longest, fine, NODE_STEPS, times, samples, 0, stick, record
+        problem, state, early + longest, fine, NODE_STEPS, times, samples, FIRST, stick, record
     )
     end = state.motion
     held, _ = stick_duration(problem, end.t, end.u_x, end.u_y, inf)

@@ -6,7 +6,7 @@ from math import inf, nan
 
 import numpy as np
 
-from stiction.solver.compilation.jit import inlined, piece
+from stiction.solver.compilation.jit import inlined, number, piece
 from stiction.solver.multiscale.construction import add_counts, advance
 from stiction.solver.multiscale.inside import following_step, write_kept
 from stiction.solver.multiscale.return_map import NEAR, Hold, Returns
@@ -24,7 +24,7 @@ from stiction.solver.state import (
 )
 from stiction.solver.stick import stick_duration
 
-SLIP_STEPS = 1_000_000_000
+SLIP_STEPS = number(1_000_000_000)
 SAME = 1e-3  # of a slip: landings closer than this are the same
 
 

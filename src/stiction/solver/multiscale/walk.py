@@ -6,13 +6,15 @@ from math import inf
 
 import numpy as np
 
-from stiction.solver.compilation.jit import inlined, piece
+from stiction.solver.compilation.jit import inlined, piece, switch
 from stiction.solver.exact.sampling import sample_stick
 from stiction.solver.multiscale.inside import write_cycle
 from stiction.solver.multiscale.interpolant import cycle_from, place
 from stiction.solver.multiscale.return_map import Cycle, Hold, Returns
 from stiction.solver.multiscale.section import elongation_held, wrap_angle
 from stiction.solver.problem import Problem, in_principal_axes, rate
+
+HELD = switch(True)
 
 
 @piece
@@ -81,7 +83,7 @@ def sample_hold(
     if not (k < len(times) and times[k] <= hold.end):
         return k
     u_x, u_y = elongation_at_landing(problem, hold)
-    return sample_stick(problem, hold.start, u_x, u_y, hold.end, True, times, samples, k)
+    return sample_stick(problem, hold.start, u_x, u_y, hold.end, HELD, times, samples, k)
 
 
 @inlined
