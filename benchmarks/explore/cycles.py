@@ -58,7 +58,7 @@ class Counted(NamedTuple):
 
     `period` and `study_period` are the mean periods of the analysis and of the study over that of
     the half falls, in the time that all three have cycles in; `spread` is the standard deviation of
-    the falls found, over their mean.
+    the falls found, over their mean; `one_kind` is whether the study sees stick-slip as well.
     """
 
     falls: tuple[int, int, int]
@@ -68,6 +68,7 @@ class Counted(NamedTuple):
     study_period: float
     audit_period: float
     spread: float
+    one_kind: bool
 
     @property
     def sort(self) -> str:
@@ -134,7 +135,8 @@ def rigs(count: int, seed: int) -> Iterator[Counted]:
         swing = float(np.ptp(record.force[-len(record) // 3 :]))
         falls = [troughs(record.time, record.force, share * swing) for share in (0.4, 0.5, 0.6)]
         settings = st.Settings(duration=duration)
-        seen = observe(st.Description(slider, st.Initial(), settings), None).swings
+        observed = observe(st.Description(slider, st.Initial(), settings), None)
+        seen = observed.swings
         analysed = edges(found)
         studied = seen.end - np.append(np.cumsum(seen.period[::-1])[::-1], 0.0)
         half, *others = periods([falls[1], analysed, studied])
@@ -147,6 +149,7 @@ def rigs(count: int, seed: int) -> Iterator[Counted]:
             others[1] / half,
             audited / own,
             float(found["drop"].std() / found["drop"].mean()),
+            observed.regime == STICK_SLIP,
         )
 
 
@@ -158,22 +161,26 @@ def main() -> None:
     options = parser.parse_args()
     console = Console()
     found = list(rigs(options.rigs, options.seed))
-    table = Table("falls", "rigs", "count", "period", "study", "audit")
+    table = Table("falls", "rigs", "count", "period", "study", "audit", "kind")
     for kind in CLASSES:
         rows = [each for each in found if each.sort == kind]
         same = sum(abs(r.study_period / r.period - 1) < NEAR for r in rows)
         seen = [r.audit_period for r in rows if np.isfinite(r.audit_period)]
         audited = f"{sum(abs(each - 1) < NEAR for each in seen)} of {len(seen)}"
+        kinds = f"{sum(r.one_kind for r in rows)}"
         right = [f"{sum(r.counted for r in rows)}", f"{sum(r.timed for r in rows)}"]
         defined = kind != CLASSES[2]
-        table.add_row(kind, f"{len(rows)}", *(right if defined else "--"), f"{same}", audited)
+        table.add_row(
+            kind, f"{len(rows)}", *(right if defined else "--"), f"{same}", audited, kinds
+        )
     console.print(table)
     for each in found:
         if each.sort != CLASSES[2] and not (each.counted and each.timed):
             console.print(f"{each.sort}: {each}")
     console.print(
         "count: that of half the swing, but for one that an end cuts; period: to 1 %; study, "
-        "audit: their mean period is the analysis's to 1 % in the time that both see."
+        "audit: their mean period is the analysis's to 1 % in the time that both see; kind: the study "
+        "sees stick-slip as well."
     )
 
 

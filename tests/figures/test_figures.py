@@ -17,8 +17,8 @@ from matplotlib.patches import FancyArrowPatch
 import stiction as st
 from stiction import theory
 from stiction.analysis.creep.first_slip import first_slip_time, mean_creep_velocity
+from stiction.analysis.motion.rest import stuck_until
 from stiction.analysis.signals.spectrum import rate_spectrogram, ridge, spectrogram
-from stiction.analysis.slip import stuck_until
 from stiction.plotting.analysis.cycles import plot_cycles
 from stiction.plotting.analysis.trials import Trial, plot_trials
 from stiction.plotting.apparatus.misalignment import drawn_misalignment

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction import theory
+from stiction.analysis.motion.rest import sticks_until, stuck_until
 from stiction.analysis.signals.ridge import follow_ridge
 from stiction.analysis.signals.spectrum import spectrogram
-from stiction.analysis.slip import sticks_until, stuck_until
 from stiction.errors import ResultError
 from stiction.trajectory import Trajectory
 

@@ -142,6 +142,7 @@ class Record(Described):
     load_unit: str = "N"
     drive_position_unit: str = "m"
     _same_time: int = PrivateAttr(0)
+    _sticks: Floats | None = PrivateAttr(None)
 
     @model_validator(mode="before")
     @classmethod
@@ -234,6 +235,11 @@ class Record(Described):
         """Number of samples that were given the same time as the one before."""
         return self._same_time
 
+    @property
+    def sticks(self) -> Floats | None:
+        """(n, 2), s: all intervals in which the mass sticks, where the record is that of a run."""
+        return self._sticks
+
     def __len__(self) -> int:
         """Return the number of samples."""
         return len(self.time)
@@ -310,7 +316,7 @@ def cell_axis(slider: Slider) -> CellAxis:
 
 
 def record_of(run: Trajectory) -> Record:
-    """Return a run as its load cell records it, with position and slip speed.
+    """Return a run as its load cell records it, with position, slip speed and stick intervals.
 
     The force is k_x u_x, or that along the cell's own axis where the slider has a `cell_angle`.
 
@@ -328,7 +334,7 @@ def record_of(run: Trajectory) -> Record:
     time, f_x, f_y, X, slip_speed = columns[:, np.isfinite(columns).all(axis=0)]
     if not len(time):
         raise ResultError("no sample of the run is a number; simulate it again")
-    return Record(
+    record = Record(
         time=time,
         force=way * (f_x if y == 0.0 else x * f_x + y * f_y),
         normal_load=slider.normal_load,
@@ -338,3 +344,5 @@ def record_of(run: Trajectory) -> Record:
         position=way * X,
         slip_speed=slip_speed,
     )
+    record._sticks = run.stick_intervals
+    return record

@@ -17,8 +17,8 @@ from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.motion.cycle_summary import summary
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.doubts import taken_off, turns_round, unsteady, warnings
-from stiction.analysis.motion.friction import Friction, find_friction
-from stiction.analysis.motion.regime import STICK_SLIP, TRANSITIONAL, Regime, regime_of
+from stiction.analysis.motion.friction import Friction, find_friction, without_loading
+from stiction.analysis.motion.regime import Regime, regime_of
 from stiction.analysis.oscillation import (
     apart,
     oscillation_by_phase,
@@ -158,7 +158,7 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     record = as_record(source)
     found = swings(record)
     cycles, regime = found.cycles, regime_of(record, found)
-    sticking = cycles if regime.kind in (STICK_SLIP, TRANSITIONAL) else cycles.isel(cycle=slice(0))
+    sticking = cycles if regime.loads else cycles.isel(cycle=slice(0))
     if run is not None:
         oscillation = attempt(
             missing, "oscillation", lambda: apart(transverse_oscillation(run), cycles)
@@ -172,14 +172,14 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
         )
         width = _free_of_hum(oscillation, sticking)
     clean = record.model_copy(update={"force": found.force}) if found.lines else record
-    friction = find_friction(clean, regime.kind, cycles)
+    friction = find_friction(clean, regime, cycles)
     if "plateaus" in regime.evidence:
         friction = friction.without_kinetic("the force goes back and forth between two levels")
     if run is not None and turns_round(run):
         friction = friction.without_kinetic("the drive goes back and forth")
     doubts = warnings(record, regime.kind, cycles, friction) if run is None else unsteady(run)
     doubts += taken_off(found.lines)
-    cycles = _blank_meaningless(cycles, regime.kind, missing)
+    cycles = _blank_meaningless(cycles, regime, missing)
     creep = find_creep(source, record, sticking, width)
     missing |= creep.missing
     phases = None
@@ -210,18 +210,18 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
 analyze = analyse
 
 
-def _blank_meaningless(cycles: xr.Dataset, kind: str, missing: dict[str, str]) -> xr.Dataset:
+def _blank_meaningless(cycles: xr.Dataset, regime: Regime, missing: dict[str, str]) -> xr.Dataset:
     """Blank the columns of a table that are meaningless for a kind of motion."""
     if not cycles.sizes["cycle"]:
         return cycles
-    if kind in (STICK_SLIP, TRANSITIONAL):
+    if regime.loads:
         if not float(cycles["creep_distance"].median()) < 0.0:
             return cycles
         missing["creep_distance"] = (
             "the force rises faster than stiffness and drive velocity, as stated, allow"
         )
         return cycles.assign(creep_distance=cycles["creep_distance"].where(False))
-    why = f"they are of stick-slip, and this is {kind}"
+    why = f"they are of stick-slip, and {without_loading(regime)}"
     missing |= dict.fromkeys(OF_STICKING, why)
     return cycles.assign({name: cycles[name].where(False) for name in OF_STICKING})
 

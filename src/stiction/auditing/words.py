@@ -246,13 +246,13 @@ def creep_before_slip(found: Audit, slip: float) -> float:
 
 def kinetic(seen: Observation) -> float:
     """Return the apparent coefficient of kinetic friction."""
-    found = find_friction(seen.record, seen.motion, seen.cycles).kinetic
+    found = find_friction(seen.record, seen.regime._replace(kind=seen.motion), seen.cycles).kinetic
     return nan if found is None else found.coefficient
 
 
 def loading(seen: Observation) -> float:
     """Return the apparent stiffness, N/m; NaN if nothing sticks during loading."""
-    return seen.mean("stiffness") if seen.motion in (STICK_SLIP, TRANSITIONAL) else nan
+    return seen.mean("stiffness") if seen.motion == seen.regime.kind and seen.regime.loads else nan
 
 
 def apparent_stiffness(slider: Slider) -> float:

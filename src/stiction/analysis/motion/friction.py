@@ -16,6 +16,7 @@ from stiction.analysis.motion.regime import (
     STICK_SLIP,
     TRANSITIONAL,
     UNDETERMINED,
+    Regime,
 )
 from stiction.analysis.motion.rest import comes_to_rest
 from stiction.analysis.record import Record
@@ -87,20 +88,20 @@ class Friction(NamedTuple):
         return self._replace(kinetic=None, missing=self.missing | {"kinetic": reason})
 
 
-def find_friction(record: Record, kind: str, cycles: xr.Dataset) -> Friction:
+def find_friction(record: Record, regime: Regime, cycles: xr.Dataset) -> Friction:
     """Find the friction of a record.
 
     Parameters
     ----------
     record : Record
         The force.
-    kind : str
-        The kind of motion, see `stiction.analysis.classify`.
+    regime : Regime
+        The kind of motion, from `stiction.analysis.classify`.
     cycles : Dataset
         From `stiction.analysis.find_cycles`.
     """
     missing: dict[str, str] = {}
-    load = record.normal_load or np.nan
+    kind, load = regime.kind, record.normal_load or np.nan
     if len(record) < FEWEST:
         few = f"the record has {len(record)} samples and {FEWEST} are needed"
         return Friction(None, None, None, dict.fromkeys(("break_away", "static", "kinetic"), few))
@@ -113,10 +114,12 @@ def find_friction(record: Record, kind: str, cycles: xr.Dataset) -> Friction:
         break_away = _break_away(record, forces, at, noise)
     count = cycles.sizes["cycle"]
     static = None
-    if kind in (STICK_SLIP, TRANSITIONAL) and count:
+    if regime.loads and count:
         static = _over(cycles["peak"].values, load)
     else:
-        missing["static"] = f"it is the mean of the peaks of stick-slip, and this is {kind}"
+        missing["static"] = (
+            f"it is the mean of the peaks of stick-slip, and {without_loading(regime)}"
+        )
     kinetic = None
     if kind in (STICK_SLIP, TRANSITIONAL, HARMONIC, IRREGULAR) and count:
         kinetic = _over(0.5 * (cycles["peak"].values + cycles["trough"].values), load)
@@ -127,6 +130,13 @@ def find_friction(record: Record, kind: str, cycles: xr.Dataset) -> Friction:
     else:
         missing["kinetic"] = "the mass does not slide"
     return Friction(break_away, static, kinetic, missing)
+
+
+def without_loading(regime: Regime) -> str:
+    """Return why the loading of a motion shows neither static friction nor stiffness."""
+    if regime.kind == STICK_SLIP:
+        return "here the mass sticks too shortly, and inertia adds to the peaks"
+    return f"this is {regime.kind}"
 
 
 def _means(record: Record) -> tuple[Floats, Floats, float]:

@@ -22,9 +22,11 @@ from stiction.analysis.motion.cycles import Swings, swings, swings_without
 from stiction.analysis.motion.disturbance import RESIDUE
 from stiction.analysis.motion.rest import (
     STICKING,
+    TOUCHES,
     comes_to_rest,
     rest_share,
     rise_share,
+    stick_shares,
     still_shares,
 )
 from stiction.analysis.record import Record, as_record
@@ -52,6 +54,7 @@ SHAPES = ((STICKING, STICK_SLIP), (0.5, TRANSITIONAL), (0.0, HARMONIC))
 # Share of a cycle for which the mass rests or creeps, in one piece, where its slip speed is known:
 # from there on it sticks and slips, whatever the shape says
 RESTS = 0.5
+ROUNDING = 1e-9  # of a period: stick intervals are that accurate, and more
 BACKWARD = 0.4  # share of the rise, below which the force falls slowly and rises fast
 # A vibration is irregular beyond either: the standard deviation of the periods over their mean,
 # which noise through a wide filter brings to 0.37 and more; and the span of the drops over their
@@ -96,6 +99,10 @@ def _percent(value: float) -> str:
     return f"{value:.0%}"
 
 
+def _two_digits_of_percent(value: float) -> str:
+    return f"{float(f'{100.0 * value:.2g}'):g}%"
+
+
 def _three_digits(value: float) -> str:
     return f"{float(f'{value:.3g}'):g}" if abs(value) > NO_MORE else "0"
 
@@ -124,6 +131,7 @@ WORDS = {
         "the slip speed stays below a tenth of the drive velocity for {} of it",
         _percent,
     ),
+    "stick_share": ("the mass sticks for {} of it", _two_digits_of_percent),
     "cycles_alike": ("{} of the cycles have this shape themselves", _percent),
     "period_spread": ("periods differ by {} of their mean", _percent),
     "drop_spread": ("four fifths of the force drops differ by up to {} of their median", _percent),
@@ -171,7 +179,8 @@ class Regime(NamedTuple):
     ----------
     kind : str
         "stick-slip" (at rest, or in creep, for three quarters of a cycle or more, by the shape of
-        the cycle; or for half of it or more where the slip speed is known),
+        the cycle; or for half of it or more where the slip speed is known; in a run, if it sticks
+        in each cycle, however shortly),
         "transitional oscillation" (for half of it or more by the shape), "harmonic vibration" (for
         less or not at all), "irregular vibration" (swings that stand out, of changing period),
         "settling" (a transient that decays), "steady sliding" (no swings stand apart from the
@@ -190,6 +199,16 @@ class Regime(NamedTuple):
     confidence: float
     evidence: dict[str, float]
     runner_up: str = ""
+
+    @property
+    def loads(self) -> bool:
+        """Whether the mass rests, or creeps, for most of the time in which its spring is loaded.
+
+        Then the peaks show static friction, and the loading shows stiffness and creep. A mass that
+        sticks only shortly is still slower than the drive, or faster, for most of that time.
+        """
+        rests = max(self.evidence.get(name, 0.0) for name in ("rest_share", "still_share"))
+        return self.kind in (STICK_SLIP, TRANSITIONAL) and rests >= RESTS
 
     def __str__(self) -> str:
         """Return the kind, its confidence and the evidence in words."""
@@ -306,18 +325,20 @@ def _by_shape(record: Record, found: Swings) -> Regime:
         share, as_well = _coarse_shares(table, step)
         shares = np.full(count, share)
         other = shape(as_well) if shape(as_well) != shape(share) else ""
-    still = _still(record, table)
-    kinds = [shape(*each) for each in zip(shares, still, strict=True)]
-    typical, stands = float(np.median(shares)), float(np.median(still))
-    kind = shape(typical, stands)
+    still, sticks = _still(record, table), _sticking(record, table)
+    kinds = [shape(*each) for each in zip(shares, still, sticks, strict=True)]
+    typical, stands, stuck = (float(np.median(each)) for each in (shares, still, sticks))
+    kind, form = shape(typical, stands, stuck), shape(typical, stands)
     alike = kinds.count(kind)
     evidence = {"cycles": count, "rise_share": typical}
     if kind == UNDETERMINED:
         evidence["backward"] = alike / count
     else:
         evidence["rest_share"] = float(rest_share(typical))
-    if kind != shape(typical):
+    if form != shape(typical):
         evidence["still_share"] = stands
+    if kind != form:
+        evidence["stick_share"] = stuck
     period_spread = float(table["period"].std() / table["period"].mean())
     if count > 1:
         evidence |= {"cycles_alike": alike / count, "period_spread": period_spread}
@@ -334,12 +355,15 @@ def _by_shape(record: Record, found: Swings) -> Regime:
         evidence["line_taken_off"] = found.lines[0].frequency
     others = sorted(set(kinds) - {kind, UNDETERMINED}, key=kinds.count)
     counted = (alike + 1) / (count + 3)
-    if kind in (TRANSITIONAL, HARMONIC) and (stays := _plateaus(record, table)) > PLATEAU:
+    if form in (TRANSITIONAL, HARMONIC) and (stays := _plateaus(record, table)) > PLATEAU:
         return Regime(UNDETERMINED, 0.0, {"cycles": count, "plateaus": 2.0 * stays})
-    decisive = (shares, *_bounds(kind))
-    if kind != shape(typical):
-        decisive = (still, RESTS, np.inf)
-    confidence = max(counted, _chance(*decisive, step / float(table["period"].mean())))
+    resolution = step / float(table["period"].mean())
+    decisive = (shares, *_bounds(kind), resolution)
+    if form != shape(typical):
+        decisive = (still, RESTS, np.inf, resolution)
+    if kind != form:
+        decisive = (sticks, TOUCHES, np.inf, ROUNDING)
+    confidence = max(counted, _chance(*decisive))
     if other:  # as likely
         return Regime(kind, 0.5 * confidence, evidence, other)
     irregular = irregularity(period_spread, drop) if kind == HARMONIC else 0.0
@@ -360,11 +384,19 @@ def _still(record: Record, table: xr.Dataset) -> Floats:
     return still_shares(record.time, speed, *ends)
 
 
+def _sticking(record: Record, table: xr.Dataset) -> Floats:
+    """Return for which share of each cycle the mass is known to stick."""
+    if record.sticks is None:
+        return np.zeros(table.sizes["cycle"])
+    ends = (table[name].values for name in ("start", "peak_time", "period"))
+    return stick_shares(record.sticks, *ends)
+
+
 def _chance(shares: Floats, low: float, high: float, resolution: float) -> float:
     """Return the likelihood that a share of one more cycle lies within bounds, if all have one.
 
     Student's distribution of the next of n values, about their median, whose standard deviation
-    is seen with n - 1 degrees of freedom and is no less than the resolution, one sample.
+    is seen with n - 1 degrees of freedom and is no less than the resolution.
     """
     from scipy.special import stdtr
 
@@ -431,9 +463,9 @@ def _coarse_shares(table: xr.Dataset, step: float) -> tuple[float, float]:
     return slow, quick if fall < SLOWEST * step else slow
 
 
-def shape(rise_share: float, still: float = 0.0) -> str:
-    """Return the kind of cycles from the shares of rise, and of rest where it is seen."""
-    if still >= RESTS:
+def shape(rise_share: float, still: float = 0.0, sticks: float = 0.0) -> str:
+    """Return the kind of cycles from the shares of rise, and of rest and sticking where known."""
+    if still >= RESTS or sticks > TOUCHES:
         return STICK_SLIP
     if rise_share < BACKWARD:
         return UNDETERMINED

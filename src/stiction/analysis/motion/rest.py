@@ -1,4 +1,4 @@
-"""The duration of rest in each cycle of a force, from the shape of the cycle."""
+"""The duration of rest: in each cycle of a force, from its shape; in a run, from its sticks."""
 
 from __future__ import annotations
 
@@ -10,6 +10,10 @@ Indices = NDArray[np.intp]
 
 STICKING = 0.75  # of a cycle at rest, or in creep: stick-slip; a vibration rests for less
 ANGLES = np.geomspace(1e-4, np.pi / 2, 2000)[::-1]  # beta; linear between them, to 1e-5 in share
+# Of a cycle: a mass that sticks for more, sticks and slips. An error of the slip speed of a millionth
+# of its amplitude, the default tolerance, may end a slip early where the speed only touches zero, by
+# the root of that
+TOUCHES = 1e-3
 STILL = 0.1  # of the drive velocity: a mass that slips more slowly rests, or creeps
 LAST, AT_REST = 20, 1e-6  # part of a record, and of its largest slip speed
 _GAINED = 2.0 / np.tan(ANGLES)
@@ -71,6 +75,19 @@ def still_shares(
     return longest / period
 
 
+def stick_shares(sticks: Floats, start: Floats, peak_time: Floats, period: Floats) -> Floats:
+    """Return the share of each cycle for which the mass sticks while the spring is loaded.
+
+    Parameters
+    ----------
+    sticks : ndarray
+        (n, 2), s: all intervals of sticking, in order.
+    start, peak_time, period : ndarray
+        (cycles,), s.
+    """
+    return (stuck_until(peak_time, sticks) - stuck_until(start, sticks)) / period
+
+
 def _crossing(time: Floats, speed: Floats, inside: Indices, outside: Indices) -> Floats:
     """Return when a speed passes `STILL` between samples below it and their neighbours above."""
     beyond = np.clip(outside, 0, len(time) - 1)
@@ -84,3 +101,20 @@ def comes_to_rest(speed: Floats | None) -> bool:
     if speed is None or not len(speed):
         return False
     return bool(speed[-max(len(speed) // LAST, 1) :].max() <= AT_REST * speed.max())
+
+
+def stuck_until(time: ArrayLike, sticks: ArrayLike) -> Floats:
+    """Return the time (s) spent stuck up to each `time`, for stick intervals of shape (n, 2)."""
+    ends = np.asarray(sticks, dtype=np.float64).reshape(-1, 2)
+    if len(ends) == 0:
+        return np.zeros_like(np.asarray(time, dtype=np.float64))
+    total = np.cumsum(ends[:, 1] - ends[:, 0])
+    known = np.column_stack([total - (ends[:, 1] - ends[:, 0]), total]).ravel()
+    stuck: Floats = np.interp(np.asarray(time, dtype=np.float64), ends.ravel(), known)
+    return stuck
+
+
+def sticks_until(time: ArrayLike, sticks: ArrayLike) -> Indices:
+    """Return how many stick intervals, of shape (n, 2), have begun before each `time`."""
+    begins = np.asarray(sticks, dtype=np.float64).reshape(-1, 2)[:, 0]
+    return np.searchsorted(begins, np.asarray(time, dtype=np.float64))

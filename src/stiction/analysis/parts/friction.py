@@ -6,7 +6,6 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from stiction.analysis.motion.friction import Measured
-from stiction.analysis.motion.regime import HARMONIC
 from stiction.analysis.parts.wording import ALIKE, number, with_error, with_spread
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words
@@ -53,7 +52,11 @@ def section(found: Analysis) -> Section:
         if mu and each.coefficient_error > SLIGHT * abs(each.coefficient):
             mu += f" ± {each.coefficient_error:.1g}"
         rows.append((title, mu, force, spread))
-    if found.friction.break_away is not None and found.regime.kind == HARMONIC:
+    if (
+        found.friction.break_away is not None
+        and found.cycles.sizes["cycle"]
+        and not found.regime.loads
+    ):
         lines.append(
             "The first break-away is the first peak of a vibration: the mass moves before it, so "
             "that static friction is less."

@@ -17,9 +17,8 @@ from stiction.analysis.motion.regime import (
     STUCK,
     TRANSITIONAL,
 )
-from stiction.analysis.motion.rest import comes_to_rest
+from stiction.analysis.motion.rest import STICKING, comes_to_rest, stuck_until
 from stiction.analysis.parts.wording import number
-from stiction.analysis.slip import stuck_until
 from stiction.text.sections import Section
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
@@ -75,7 +74,7 @@ def plainly(found: Analysis) -> str:
         every = f", every {in_words(period, 's')}" if count > 1 else ""
         size = f"the force drops by {in_words(drop, 'N')}"
         plain = {
-            STICK_SLIP: f"The mass sticks and slips {times}{every}; {size}",
+            STICK_SLIP: f"The mass sticks and slips {times}{every}{_stick_share(found)}; {size}",
             TRANSITIONAL: f"The mass slips {times}{every}, between stick-slip and plain "
             f"vibration; {size}",
             HARMONIC: f"The mass swings {times}{every}{_stick_share(found)}; {size}",
@@ -104,9 +103,9 @@ def plainly(found: Analysis) -> str:
 
 
 def _stick_share(found: Analysis) -> str:
-    """Return how long a run sticks in its cycles, in words; '' for a record."""
+    """Return how long a run sticks in its cycles, in words; '' for a record, or if it creeps too."""
     run, ends = found.source, found.cycles
-    if not isinstance(run, Trajectory):
+    if not isinstance(run, Trajectory) or found.regime.loads:
         return ""
     time = np.array([ends["start"].values[0], ends["trough_time"].values[-1]])
     share = float(np.diff(stuck_until(time, run.stick_intervals))[0] / np.diff(time)[0])
@@ -115,7 +114,8 @@ def _stick_share(found: Analysis) -> str:
 
 def _note_fast_cycles(found: Analysis, period: float) -> str:
     """Note that the cycles of a run are too fast for the softer spring alone."""
-    if not isinstance(found.source, Trajectory) or found.regime.kind == STICK_SLIP:
+    shape = found.regime.evidence.get("rest_share", 0.0)
+    if not isinstance(found.source, Trajectory) or shape >= STICKING:
         return ""
     own = 1.0 / found.source.slider.natural_frequencies[0]
     if period >= COUPLED * own:

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from stiction.analysis.slip import stuck_until
+from stiction.analysis.motion.rest import stuck_until
 from stiction.plotting.page.parameter import SPARSE
 from stiction.plotting.page.style import GREY
 from stiction.plotting.run.curves import Curve, common, mark_early_end

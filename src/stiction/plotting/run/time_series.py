@@ -10,7 +10,8 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 
-from stiction.analysis.slip import Slip, averaged_slip, stuck_until
+from stiction.analysis.motion.rest import stuck_until
+from stiction.analysis.slip import Slip, averaged_slip
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED
 from stiction.text.quantity_text import metric_prefix
 from stiction.trajectory import Trajectory

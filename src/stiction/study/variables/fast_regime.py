@@ -73,6 +73,9 @@ class Swings(NamedTuple):
         return Swings(self.drop[which], self.period[which], self.rise_share[which], end)
 
 
+Shares = Callable[[Swings], Floats]
+
+
 def swings(found: Features) -> Swings:
     """Return the complete swings between turning points, without hesitations."""
     kept = take_out(np.concatenate([[found.first], found.turn_value, [found.last]])).kept - 1
@@ -93,7 +96,8 @@ def kind_of(
     drive: float,
     oscillation: float,
     own: float,
-    still: Callable[[Swings], Floats],
+    still: Shares,
+    sticks: Shares,
 ) -> str:
     """Return the kind of motion.
 
@@ -111,12 +115,12 @@ def kind_of(
         Rate amplitude of the final fast oscillation over the drive's velocity along it.
     own : float
         Period of the mass on the softer spring alone, s.
-    still : callable
-        Returns for which share of each of some swings the mass rests or creeps.
+    still, sticks : callable
+        Return for which share of each of some swings the mass rests or creeps, and sticks.
     """
     lasting = cycles_among(cycles, end)
     if len(lasting.drop) >= FEWEST:
-        return by_shape(lasting, own, still)
+        return by_shape(lasting, own, still, sticks)
     dying = die_out(cycles, end)
     kind = regime.SETTLING if dying else course(found, start, end, drive)
     calm = kind in (regime.SETTLING, regime.STEADY)
@@ -142,7 +146,7 @@ def die_out(cycles: Swings, end: float) -> bool:
     return dying and dies_out(drop, cycles.period, end - cycles.end)
 
 
-def by_shape(cycles: Swings, own: float, still: Callable[[Swings], Floats]) -> str:
+def by_shape(cycles: Swings, own: float, still: Shares, sticks: Shares) -> str:
     """Return the kind of cycles from their shape, size and period, and the rest in them."""
     count = len(cycles.drop)
     rise = float(np.sort(cycles.rise_share)[count // 2])
@@ -150,7 +154,8 @@ def by_shape(cycles: Swings, own: float, still: Callable[[Swings], Floats]) -> s
     if kind in (regime.TRANSITIONAL, regime.HARMONIC):
         if cycles.period.mean() < regime.COUPLED * own:
             return TRANSVERSE
-        kind = regime.shape(rise, float(np.median(still(cycles))))
+        known = (float(np.median(share(cycles))) for share in (still, sticks))
+        kind = regime.shape(rise, *known)
     return regime.IRREGULAR if kind == regime.HARMONIC and irregular(cycles) else kind
 
 

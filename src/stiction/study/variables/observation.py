@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from stiction.analysis.creep.first_slip import loading
 from stiction.analysis.motion.regime import STUCK
-from stiction.analysis.motion.rest import still_shares
+from stiction.analysis.motion.rest import stick_shares, still_shares
 from stiction.drive import ConstantVelocity
 from stiction.simulation import sample_times, solve
 from stiction.solver.integrate import Solution
@@ -167,8 +167,9 @@ class Observed:
         slider = self.description.slider
         drive = slider.k_x * abs(slider.motion.velocity * slider.direction[0])
         oscillation, own = self.transverse_oscillation, 1.0 / slider.natural_frequencies[0]
+        shares = self.rests, self.sticks
         return kind_of(
-            self.features, self.swings, self.start, self.end, drive, oscillation, own, self.rests
+            self.features, self.swings, self.start, self.end, drive, oscillation, own, *shares
         )
 
     def rests(self, cycles: Swings) -> Floats:
@@ -177,6 +178,11 @@ class Observed:
         slip = np.hypot(self.column(2), self.column(3))
         peak = cycles.start + cycles.rise_share * cycles.period
         return still_shares(self.time, slip / V if V else slip, cycles.start, peak, cycles.period)
+
+    def sticks(self, cycles: Swings) -> Floats:
+        """Return for which share of each cycle the mass sticks."""
+        peak = cycles.start + cycles.rise_share * cycles.period
+        return stick_shares(self.solution.sticks, cycles.start, peak, cycles.period)
 
 
 def observe(description: Description, report: Callable[[float], None] | None) -> Observed:

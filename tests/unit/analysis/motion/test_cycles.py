@@ -397,7 +397,7 @@ def test_irregular_vibration_beside_slow_motion_is_no_steady_sliding() -> None:
     noise = random.normal(size=len(time)) / 65.0
     record = st.Record(time=time, force=20.0 + height * np.sin(2 * pi * phase) + slow + noise)
     regime = st.analysis.classify(record)
-    sliding = find_friction(record, regime.kind, st.analysis.find_cycles(record)).kinetic
+    sliding = find_friction(record, regime, st.analysis.find_cycles(record)).kinetic
     assert sliding is not None
     assert sliding.force == pytest.approx(20.0, abs=0.5)  # about which it vibrates
     assert regime.kind == "irregular vibration"

@@ -110,7 +110,8 @@ def test_one_sample_of_sliding_has_a_mean_and_no_error() -> None:
     time = np.append(np.arange(0.0, 4.0, 0.1), 100.0)
     force = np.append(np.minimum(time[:-1], 6.9 - time[:-1]), 2.0)
     record = st.Record(time=time, force=force)
-    kinetic = find_friction(record, "steady sliding", st.analysis.find_cycles(record)).kinetic
+    steady = st.analysis.Regime("steady sliding", 1.0, {})
+    kinetic = find_friction(record, steady, st.analysis.find_cycles(record)).kinetic
     assert kinetic.force == 2.0
     assert np.isnan([kinetic.error, kinetic.spread]).all()
 
