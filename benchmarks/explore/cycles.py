@@ -179,8 +179,8 @@ def main() -> None:
             console.print(f"{each.sort}: {each}")
     console.print(
         "count: that of half the swing, but for one that an end cuts; period: to 1 %; study, "
-        "audit: their mean period is the analysis's to 1 % in the time that both see; kind: the study "
-        "sees stick-slip as well."
+        "audit: their mean period is the analysis's to 1 % in the time that both see; kind: the "
+        "study sees stick-slip as well."
     )
 
 

@@ -294,9 +294,11 @@ for _function in (
     cross_damping,
 ):
     by_type(_function)
-for _piece in (*SIGNAL_FUNCTIONS, *RECORDING_FUNCTIONS, *LAW_FUNCTIONS):
+for _piece in (*SIGNAL_FUNCTIONS, *LAW_FUNCTIONS):
     register_jitable(_piece)
-overload(place, strict=False)(lambda *_: place_one)
+for _piece in RECORDING_FUNCTIONS:  # large and called from many places
+    register_jitable(forceinline=False)(_piece)
+overload(place, strict=False, jit_options={"forceinline": False})(lambda *_: place_one)
 
 
 @overload(coefficient_and_slope, strict=False)

@@ -10,9 +10,9 @@ Indices = NDArray[np.intp]
 
 STICKING = 0.75  # of a cycle at rest, or in creep: stick-slip; a vibration rests for less
 ANGLES = np.geomspace(1e-4, np.pi / 2, 2000)[::-1]  # beta; linear between them, to 1e-5 in share
-# Of a cycle: a mass that sticks for more, sticks and slips. An error of the slip speed of a millionth
-# of its amplitude, the default tolerance, may end a slip early where the speed only touches zero, by
-# the root of that
+# Of a cycle: a mass that sticks for more, sticks and slips. An error of the slip speed of a
+# millionth of its amplitude, the default tolerance, may end a slip early where the speed only
+# touches zero, by the root of that
 TOUCHES = 1e-3
 STILL = 0.1  # of the drive velocity: a mass that slips more slowly rests, or creeps
 LAST, AT_REST = 20, 1e-6  # part of a record, and of its largest slip speed

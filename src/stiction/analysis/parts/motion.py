@@ -103,7 +103,7 @@ def plainly(found: Analysis) -> str:
 
 
 def _stick_share(found: Analysis) -> str:
-    """Return how long a run sticks in its cycles, in words; '' for a record, or if it creeps too."""
+    """Return how long a run sticks in its cycles, or '' for a record, and if it creeps too."""
     run, ends = found.source, found.cycles
     if not isinstance(run, Trajectory) or found.regime.loads:
         return ""

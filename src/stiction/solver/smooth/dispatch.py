@@ -321,7 +321,8 @@ def differences(
 ) -> None:
     """Do as `write_gradient` for any other."""
     at = values[TRIAL]
-    at[:] = values[i]
+    for k in range(len(size)):  # not at[:] = values[i]: see `smooth.loop.keep`
+        at[k] = values[i, k]
     at[0], at[1] = slip
     for k in range(len(size)):
         before = at[k]

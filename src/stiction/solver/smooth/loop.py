@@ -7,7 +7,7 @@ from math import hypot, inf, isfinite
 import numpy as np
 
 from stiction.solver.block_algebra import dot
-from stiction.solver.compilation.jit import compiled, piece
+from stiction.solver.compilation.jit import compiled, inlined, piece
 from stiction.solver.control import GROWTH, step_factor
 from stiction.solver.problem import Problem, in_principal_axes, smooth_until, travel
 from stiction.solver.radau import A
@@ -77,6 +77,19 @@ def finite(motion: SmoothMotion, z: np.ndarray) -> bool:
     return isfinite(total)
 
 
+@inlined
+def keep(w: Workspace, z: np.ndarray, past: np.ndarray) -> None:
+    """Keep the states at the end of a step, and the values that predict the next.
+
+    By number: an assignment of arrays takes 4 s to compile, for the words of its own errors.
+    """
+    for i in range(len(z)):
+        z[i] = w.values[LAST, 2 + i]
+    for k in range(len(past)):
+        for i in range(past.shape[1]):
+            past[k, i] = w.values[k, i]
+
+
 @compiled
 def advance(
     problem: Problem,
@@ -119,9 +132,7 @@ def advance(
         k = sample(problem, start, taken, w, inner, accuracy, times, samples, k)
         end = smooth if start.t + taken >= smooth else start.t + taken
         motion = motion_at_end(problem, start, taken, end, w)
-        for i in range(len(z)):
-            z[i] = w.values[LAST, 2 + i]
-        past[:, :] = w.values[:4, :]
+        keep(w, z, past)
         following = taken * step_factor(error, GROWTH if rejected == 0 else 1.0)
         cut = end == smooth and taken < CUT * h  # its cubics do not reach across the next step
         h = min(max(h, following) if end == smooth else following, accuracy.longest)
