@@ -170,9 +170,8 @@ def main() -> None:
         kinds = f"{sum(r.one_kind for r in rows)}"
         right = [f"{sum(r.counted for r in rows)}", f"{sum(r.timed for r in rows)}"]
         defined = kind != CLASSES[2]
-        table.add_row(
-            kind, f"{len(rows)}", *(right if defined else "--"), f"{same}", audited, kinds
-        )
+        judged = right if defined else "--"
+        table.add_row(kind, f"{len(rows)}", *judged, f"{same}", audited, kinds)
     console.print(table)
     for each in found:
         if each.sort != CLASSES[2] and not (each.counted and each.timed):
