@@ -31,6 +31,7 @@ HEADINGS = (
     "law", "sticks", "stuck (s)", "largest k_x u_x/W", "fastest slip (m/s)",
     "slowest in load-up (m/s)", "median in load-up (m/s)",
 )  # fmt: skip
+ROUNDED = 1.0 + 1e-9  # times the speed of the release, which is no slip
 REST = 1e-9  # of the drive's speed: slower motion counts as rest
 BRISTLES = 100.0  # of the stiffness along x: sigma_0 of Canudas de Wit et al. (1995) over 1 kN/m
 MEMORY = 200.0  # memory lengths in a slip length: 10 µm in the 2 mm of Nakano & Popov
@@ -77,7 +78,10 @@ class Comparison(dict[str, Trajectory]):
 def row(label: str, run: Trajectory) -> tuple[str, ...]:
     """Return the table row of one law."""
     o = outcome(run)
-    least = REST * float(np.hypot(run.data["drive_X"], run.data["drive_Y"]).max())
+    initial = run.description.initial
+    drive = float(np.hypot(run.data["drive_X"], run.data["drive_Y"]).max())
+    release = ROUNDED * initial.epsilon if initial.v_x is None else 0.0
+    least = drive * (REST if o.fastest > release * drive else release)  # it sticks at once
     speeds = (f"{v if v > least else 0.0:.3g}" for v in (o.fastest, o.slowest, o.creep))
     stuck = (str(o.sticks), f"{o.time_stuck:.3g}")
     return label, *stuck, f"{o.peak:.4f}", *speeds

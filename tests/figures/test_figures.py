@@ -483,7 +483,41 @@ def test_beats_of_too_few_samples_are_named(slider: st.Slider) -> None:
     for rate, named in (("200 Hz", True), ("20 kHz", False)):
         run = st.simulate(slider, "0.5 s", sample_rate=rate)
         words = " ".join(text.get_text() for text in plot_run(run)["words"].texts)
-        assert ("too few samples for so many" in words) == named
+        assert ("too few samples for such short slips" in words) == named
+
+
+def test_a_recorded_drive_is_named_for_what_it_is(slider: st.Slider, tmp_path: Path) -> None:
+    """A mean of 2 mm/s, and 1.5 mm/s more or less of it; a load of 10 N, and 0.5 N."""
+    time = np.linspace(0.0, 2.0, 401)
+    wave = np.sin(2.0 * pi * 4.0 * time)
+    table = tmp_path / "stage.csv"
+    rows = np.column_stack([time, 2.0 + 1.5 * wave])
+    np.savetxt(table, rows, delimiter=",", header="time [s],velocity [mm/s]", comments="")
+    program = [st.protocols.read_recorded(table)]
+    load = st.protocols.RecordedLoad(time=time, load=10.0 + 0.5 * wave)
+    driven = slider.replace(
+        drive=st.protocols.DriveProgram(program=program),
+        load=st.protocols.LoadProgram(program=[load]),
+    )
+    panels = st.simulate(driven, "20 ms", sample_rate="10 kHz").plot()
+    words = " ".join(text.get_text() for text in panels["words"].texts)
+    assert "stage.csv: 2 mm/s on average, off by up to 1.5 mm/s" in words
+    assert "recorded: 10 N on average, off by up to 500 mN" in words
+    assert "= 0 m/s" not in words
+
+
+def test_how_slow_the_last_sample_of_a_slip_is_does_not_stretch_its_axis() -> None:
+    """It depends on when it is taken: a block that sticks and slips at 0.1 m/s and more."""
+    slider = st.Slider(
+        mass="1 kg", k_x="1 kN/m", k_y="100 kN/m", phi="0 deg", normal_load="10 N",
+        friction=st.Coulomb(mu_0=0.2, mu_static=0.6), drive=st.ConstantVelocity("1 mm/s"),
+    )  # fmt: skip
+    lows = []
+    for rate in ("1 kHz", "1.37 kHz", "3.1 kHz"):
+        ax = st.simulate(slider, "30 s", sample_rate=rate).plot()["speed"]
+        lows.append(ax.get_ylim()[0])
+        assert lows[-1] > 1e-4
+    assert max(lows) < 5.0 * min(lows)
 
 
 def test_labels_of_slip_speed_within_a_decade_or_two_do_not_touch() -> None:

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 import stiction as st
 from stiction import comparison
-from stiction.analysis.slip import averaged_slip, outcome
+from stiction.analysis.slip import averaged_slip, is_undersampled, outcome
 from stiction.cli import main
 from stiction.comparison import exchange_law, read_laws, shared_traits
 from stiction.friction.equivalent import like, traits
@@ -266,6 +266,30 @@ def test_averages_keep_the_distance_and_the_peaks(runs: dict[str, st.Trajectory]
     np.testing.assert_array_equal(single.mean, speed)
 
 
+def test_too_few_samples_make_no_beats(described: st.Description) -> None:
+    """A mass that sticks 950 times a second, seen at rates that nearly divide that."""
+    for rate in (190.0, 237.0, 316.0):
+        fine = st.simulate(described.slider, "0.5 s", sample_rate=100.0 * rate).data
+        x, y = (fine[name].values[::100] for name in ("X", "Y"))
+        coarse = st.simulate(described.slider, "0.5 s", sample_rate=rate)
+        slip = averaged_slip(coarse, 500)
+        moved = np.hypot(x[2:] - x[:-2], y[2:] - y[:-2]) * rate / 2.0
+        np.testing.assert_allclose(slip.mean[1:-1], moved, rtol=1e-6)  # samples change no step
+        assert np.ptp(slip.mean[10:]) < 0.2 * slip.mean[10:].mean()
+        by_chance = coarse.data["slip_speed"].values[10:]
+        assert np.ptp(by_chance) > by_chance.mean()
+
+
+def test_slips_shorter_than_a_sample_are_not_seen() -> None:
+    """A slip lasts half a period of the mass on its spring at least, here 50 ms."""
+    slider = st.Slider(
+        mass="0.25 kg", k_x="1 kN/m", k_y="10 MN/m", phi="0 deg", normal_load="10 N",
+        friction=st.Coulomb(mu_0=0.15, mu_static=0.2), drive=st.ConstantVelocity("1 mm/s"),
+    )  # fmt: skip
+    for rate, unseen in ((10.0, True), (1e3, False)):
+        assert is_undersampled(st.simulate(slider, "20 s", sample_rate=rate)) == unseen
+
+
 # --- figure ---
 
 
@@ -295,6 +319,22 @@ def test_a_mass_that_rests_has_no_position_of_rounding(described: st.Description
     short = st.Description(described.slider, described.initial, settings)
     ax = panels(figure_of(plot_comparison, st.compare(short, ["coulomb"])))
     assert all(not line.get_ydata().any() for line in ax["X"].lines)
+
+
+def test_runs_that_never_slip_say_so_and_have_no_empty_axis(described: st.Description) -> None:
+    settings = st.Settings(duration=1e-3, sample_rate=1e5)
+    short = st.Description(described.slider, described.initial, settings)
+    found = st.compare(short, ["coulomb"])
+    ax = panels(figure_of(plot_comparison, found))
+    for name, said in (("X", "at rest"), ("speed", "no slip"), ("portrait", "no slip")):
+        assert [text.get_text() for text in ax[name].texts] == [said]
+        assert not len(ax[name].get_yticks()) + len(ax[name].get_yticks(minor=True))
+    for name in ("speed", "portrait"):
+        assert all(np.isnan(line.get_ydata()).all() for line in ax[name].lines)
+    legend = [text.get_text() for text in ax["words"].get_legend().get_texts()]
+    assert all(each.endswith("no slip") for each in legend)
+    fastest = found.tables()[0].table.rows[0][4]
+    assert fastest == "0"  # not the speed of the release, which a rest follows at once
 
 
 def test_zero_slip_is_shown_as_such(runs: dict[str, st.Trajectory]) -> None:

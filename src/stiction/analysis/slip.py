@@ -17,6 +17,7 @@ Floats = NDArray[np.float64]
 
 FINE = 8  # bins in each time that is averaged over
 SEEN = 4  # samples for each stick: with fewer, what lies between two sticks is not seen
+OF_A_SLIP = 2  # nor with fewer in each slip
 
 
 class Slip(NamedTuple):
@@ -27,7 +28,8 @@ class Slip(NamedTuple):
     time, force : ndarray
         Time (s) and spring force k_x u_x (N).
     mean, high : ndarray
-        Mean and largest slip speed.
+        Mean and largest slip speed; of a run that `is_undersampled`, the mean is that of its motion
+        from place to place, without the oscillation.
     rest : ndarray
         Share of the samples at zero slip, 0 to 1.
     """
@@ -42,7 +44,9 @@ class Slip(NamedTuple):
 def averaged_slip(run: Trajectory, parts: int) -> Slip:
     """Average a run over windows of a `parts`-th of its time, with tapering weights.
 
-    Samples that are farther apart stay as they are.
+    Samples that are farther apart stay as they are. Where there are too few samples for the slip
+    speed (`is_undersampled`), its mean would depend on chance: then the mean velocity between two
+    places is taken, which the positions give exactly.
     """
     size = len(run.samples["time"])
     starts = np.unique(np.linspace(0, size, FINE * parts, endpoint=False).astype(np.intp))
@@ -51,8 +55,7 @@ def averaged_slip(run: Trajectory, parts: int) -> Slip:
     window = np.hanning(2 * half + 1) if half > 1 else np.ones(1)
     weight = np.convolve(counts, window, "same")[: len(starts)]
 
-    def mean(name: str) -> Floats:
-        values = run.samples[name].astype(np.float64)
+    def mean(values: Floats) -> Floats:
         total = np.convolve(np.add.reduceat(values, starts), window, "same")
         result: Floats = total[: len(starts)] / weight
         return result
@@ -60,16 +63,27 @@ def averaged_slip(run: Trajectory, parts: int) -> Slip:
     high = np.maximum.reduceat(run.samples["slip_speed"], starts)
     if half > 1:
         high = sliding_window_view(np.pad(high, half), 2 * half + 1).max(axis=1)
-    time, force = np.add.reduceat(run.samples["time"], starts) / counts, mean("spring_x")
-    return Slip(time, force, mean("slip_speed"), high, mean("sticking"))
+    time = run.samples["time"]
+    if is_undersampled(run) and size > 1:
+        speed = np.hypot(*(mean(np.gradient(run.samples[name], time)) for name in ("X", "Y")))
+        high = np.maximum(high, speed)
+    else:
+        speed = mean(run.samples["slip_speed"])
+    at, sticking = np.add.reduceat(time, starts) / counts, run.samples["sticking"]
+    return Slip(at, mean(run.samples["spring_x"]), speed, high, mean(sticking.astype(np.float64)))
 
 
 def is_undersampled(run: Trajectory) -> bool:
-    """Return whether a run sticks too often for its samples to show each motion between sticks.
+    """Return whether a run has too few samples to show each motion between two sticks.
 
     Samples then show a slower beat of the oscillation with themselves.
     """
-    return len(run.stick_intervals) * SEEN > len(run.samples["time"])
+    time, sticks = run.samples["time"], run.stick_intervals
+    if len(sticks) * SEEN > len(time):
+        return True
+    lasts = float(time[-1] - time[0])
+    slips = (lasts - float(np.diff(sticks).sum())) * len(time)  # its samples, times the duration
+    return len(sticks) > 1 and slips < OF_A_SLIP * (len(sticks) - 1) * lasts
 
 
 class Outcome(NamedTuple):

@@ -94,7 +94,7 @@ def plainly(found: Analysis) -> str:
         SETTLING: "The motion dies down, and the mass comes to rest."
         if comes_to_rest(found.record.slip_speed)
         else f"The motion dies down, and the mass comes to slide steadily{at}.",
-        STUCK: "The mass sticks for the whole record: the force only rises."
+        STUCK: "The mass does not slip, it rests or creeps: the force only rises."
         if found.regime.runner_up != STEADY
         else "The force only rises: either the mass sticks, or it slides and the force drifts.",
         IRREGULAR: "The mass vibrates irregularly.",

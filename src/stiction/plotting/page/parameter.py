@@ -16,7 +16,16 @@ SYMBOLS = {"phi": r"$\varphi$", "drive.velocity": "$V$", "normal_load": "$W$", "
 PLAIN = FuncFormatter(lambda value, _: f"{value:g}")  # 0.1, 1, 10: the units suit the values
 
 # the same for close ticks within a decade: one, two and five only
-SPARSE = FuncFormatter(lambda value, _: f"{value:g}" if f"{value:.0e}"[0] in "125" else "")
+SPARSE = FuncFormatter(lambda value, _: _short(value) if f"{value:.0e}"[0] in "125" else "")
+SMALL = 1e-3  # below it with a power of ten
+
+
+def _short(value: float) -> str:
+    """Return a number of one digit."""
+    if value >= SMALL:
+        return f"{value:g}"
+    digit, power = f"{value:.0e}".split("e")
+    return rf"${digit}\times 10^{{{int(power)}}}$"
 
 
 def parameter_symbol(path: str) -> str:

@@ -12,6 +12,7 @@ from stiction import theory
 from stiction.analysis.slip import is_undersampled
 from stiction.drive import ConstantVelocity
 from stiction.drive.pieces import DRIVE_PIECES, LOAD_PIECES, Modulation
+from stiction.drive.recorded.piece import RECORDS, Recorded, RecordedLoad
 from stiction.friction import Anisotropic, name_of, states
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import DIGITS
@@ -20,6 +21,7 @@ from stiction.trajectory import Trajectory
 
 LETTERS = {"mu": r"\mu", "sigma": r"\sigma", "omega": r"\omega", "theta": r"\theta"}
 SUBSCRIPTS = {"inf": r"\infty", "star": "*", "static": r"\mathrm{static}"}
+MOST_RECORDS = 2  # of a program, told in words
 WIDTH = 40  # characters of a line
 NAMES = {kind: name for known in (DRIVE_PIECES, LOAD_PIECES) for name, kind in known.items()}
 
@@ -39,7 +41,7 @@ def system_in_words(slider: Slider) -> list[str]:
     lines = [
         f"{_masses(slider)}, $W$ = {in_words(slider.normal_load, 'N')}",
         f"$k_x$ = {in_words(slider.k_x, 'N/m')}, $k_y$ = {in_words(slider.k_y, 'N/m')}",
-        rf"$\varphi$ = {misalignment}, $V$ = {in_words(base_velocity(slider), 'm/s')}",
+        rf"$\varphi$ = {misalignment}{_base(slider)}",
     ]
     if slider.c_x > 0 or slider.c_y > 0:
         c_x, c_y = (in_words(c, "N s/m") for c in (slider.c_x, slider.c_y))
@@ -59,6 +61,14 @@ def _masses(slider: Slider) -> str:
 def _askew(angle: float) -> str:
     """Return at which angle to x a tensor's first axis lies, if at one."""
     return f" at {degrees(angle):.4g}°".replace("-", "−") if angle else ""
+
+
+def _base(slider: Slider) -> str:
+    """Return the drive's velocity; nothing if only the pieces of a program have one."""
+    V, drive = base_velocity(slider), slider.motion
+    if V == 0.0 and not isinstance(drive, ConstantVelocity) and drive.program:
+        return ""
+    return f", $V$ = {in_words(V, 'm/s')}"
 
 
 def base_velocity(slider: Slider) -> float:
@@ -88,7 +98,20 @@ def program_in_words(what: str, program: Sequence[Any], repeat: int) -> list[str
         return []
     names = ", ".join(NAMES[type(piece)] for piece in program)
     times = f" ({repeat} times)" if repeat > 1 else ""
-    return wrap(f"{what}: {names}{times}", WIDTH, max_lines=3, placeholder=" …")
+    recorded = [recorded_in_words(piece) for piece in program if isinstance(piece, RECORDS)]
+    lines = wrap(f"{what}: {names}{times}", WIDTH, max_lines=3, placeholder=" …")
+    return lines + [line for lines in recorded[:MOST_RECORDS] for line in lines]
+
+
+def recorded_in_words(piece: Recorded | RecordedLoad) -> list[str]:
+    """Return the file of a recorded piece, its mean, and its largest deviation from that."""
+    unit, made = ("N" if isinstance(piece, RecordedLoad) else "m/s"), piece.recording(0.0)
+    mean = float(made.sums[-1]) / piece.duration
+    off = max(float(made.bounds[:, 1].max()) - mean, mean - float(made.bounds[:, 0].min()))
+    return [
+        f"{piece.file or 'recorded'}: {in_words(mean, unit)} on average,",
+        f"off by up to {in_words(off, unit)}",
+    ]
 
 
 def harmonic_in_words(harmonic: Modulation, unit: str) -> str:
@@ -163,7 +186,7 @@ def plain(value: float, digits: int = DIGITS) -> str:
     return rf"${mantissa}\times 10^{{{int(power)}}}$"
 
 
-BEATS = "too few samples for so many sticks: slip speed shows beats"
+MEAN_MOTION = "too few samples for such short slips: the line of the slip speed is the mean motion"
 
 
 def outcome_in_words(run: Trajectory, width: int = 38) -> list[str]:
@@ -174,5 +197,5 @@ def outcome_in_words(run: Trajectory, width: int = 38) -> list[str]:
     count = f"{len(stuck)} stick{'s' * (len(stuck) != 1)}, {share:.3g} % of the time"
     simulated = f"{in_words(lasted, 's')} simulated"
     none = "no true rest: the law has a state" if states(run.slider.law) else "no stick"
-    beats = wrap(BEATS, width) if is_undersampled(run) else []
+    beats = wrap(MEAN_MOTION, width) if is_undersampled(run) else []
     return [*wrap(run.status.value, width), simulated, count if len(stuck) else none, *beats]

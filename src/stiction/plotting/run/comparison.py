@@ -12,15 +12,21 @@ from stiction.analysis.slip import is_undersampled
 from stiction.friction import name_of
 from stiction.plotting.page.canvas import canvas, find_drawing, fix_ticks
 from stiction.plotting.page.style import GREY, PAGE, style
-from stiction.plotting.page.words import parameters_in_words, system_in_words, wrap_words
+from stiction.plotting.page.words import (
+    MEAN_MOTION,
+    parameters_in_words,
+    system_in_words,
+    wrap_words,
+)
 from stiction.plotting.run.curves import Curve, curves_of, draw_over_time
 from stiction.plotting.run.slip_speeds import (
     draw_held,
     draw_portrait,
     draw_rests,
     draw_speeds,
-    set_speed_limits,
+    set_limits,
 )
+from stiction.plotting.run.time_series import fastest_drive, slipping
 from stiction.trajectory import Trajectory
 
 WIDTH = 44  # characters of a legend's line
@@ -30,7 +36,6 @@ NOTE = (
     "Slip speed: mean (line), up to the maximum (band);",
     "rows below: share of time at zero slip.",
 )
-BEATS = "Beats: too few samples for so many sticks."
 
 
 def plot_comparison(
@@ -72,7 +77,7 @@ def plot_comparison(
         for name, ax in panels.items():
             find_drawing(draw, name)(ax)
         for name in {"speed", "portrait"} & panels.keys():
-            set_speed_limits(panels[name], curves)
+            set_limits(panels[name], curves)
         if axes is None:
             _align(panels)
     return panels
@@ -112,6 +117,10 @@ def legend_text(curve: Curve) -> str:
         end = float(curve.run.samples["time"][-1])
         reason = curve.run.status.name.lower().replace("_", " ")
         lines.append(f"× ended early at {end:.4g} s: {reason}")
+    if slipping(curve.slip, fastest_drive(curve.run)) is None:
+        lines.append("no slip")
+    if is_undersampled(curve.run):
+        lines += wrap(MEAN_MOTION, WIDTH)
     return "\n".join(lines)
 
 
@@ -130,7 +139,6 @@ def write_legend(ax: Axes, curves: list[Curve], texts: list[str]) -> None:
         fontsize=6.5,
     )
     legend.set_in_layout(False)
-    beats = [BEATS] if any(is_undersampled(curve.run) for curve in curves) else []
-    system = "\n".join([*system_in_words(curves[0].run.slider), "", *NOTE, *beats])
+    system = "\n".join([*system_in_words(curves[0].run.slider), "", *NOTE])
     note = ax.text(0.0, 0.0, system, transform=ax.transAxes, fontsize=6.5, color=GREY, va="bottom")
     note.set_in_layout(False)

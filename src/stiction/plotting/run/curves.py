@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stiction.analysis.slip import Slip
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY
-from stiction.plotting.run.time_series import average_slip, envelope, stays
+from stiction.plotting.run.time_series import average_slip, envelope, say_only, stays
 from stiction.text.quantity_text import metric_prefix
 from stiction.trajectory import Trajectory
 
@@ -71,6 +71,8 @@ def draw_over_time(ax: Axes, curves: Sequence[Curve], variable: str, symbol: str
         ax.plot(*envelope(times, values), **curve.look)
         mark_early_end(ax, curve, times[-1], values[-1])
     ax.margins(y=0.08)
+    if variable == "X" and all(stays(curve.run) for curve in curves):
+        say_only(ax, "at rest")
 
 
 def _without_rounding(run: Trajectory, variable: str) -> Floats:

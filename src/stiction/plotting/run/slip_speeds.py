@@ -6,15 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import LogLocator, NullFormatter
 
 from stiction.analysis.motion.rest import stuck_until
-from stiction.plotting.page.parameter import SPARSE
 from stiction.plotting.page.style import GREY
 from stiction.plotting.run.curves import Curve, common, mark_early_end
-from stiction.plotting.run.time_series import fastest_drive
+from stiction.plotting.run.time_series import DEEPEST, fastest_drive, say_only, set_speed_limits
 
-DEEPEST = 1e-6  # of the drive's speed: slower motion counts as rest
 ROW = 0.8  # height of a filled row
 
 
@@ -27,7 +24,7 @@ def draw_speeds(ax: Axes, curves: Sequence[Curve]) -> None:
     ax.set_ylabel(r"$v_\mathrm{slip}$ (m/s)")
     for curve in curves:
         slip = curve.slip
-        mean = np.where(slip.mean > 0, slip.mean, np.nan)
+        mean = np.where(slip.mean > DEEPEST * fastest_drive(curve.run), slip.mean, np.nan)
         ax.fill_between(slip.time, mean, slip.high, color=curve.color, alpha=0.18, linewidth=0)
         ax.plot(slip.time, mean, **curve.look)
         mark_early_end(ax, curve, slip.time[-1], mean[-1])
@@ -39,27 +36,15 @@ def draw_portrait(ax: Axes, curves: Sequence[Curve]) -> None:
     factor, _ = common(curve.run.samples["spring_x"] for curve in curves)
     for curve in curves:
         slip = curve.slip
-        mean = np.where(slip.mean > 0, slip.mean, np.nan)
+        mean = np.where(slip.mean > DEEPEST * fastest_drive(curve.run), slip.mean, np.nan)
         ax.plot(slip.force * factor, mean, **curve.look)
         mark_early_end(ax, curve, slip.force[-1] * factor, mean[-1])
 
 
-def set_speed_limits(ax: Axes, curves: Sequence[Curve]) -> None:
-    """Fit the axis of slip speed to the lines, ignoring rest and the moments before it."""
-    spans = [curve.slip for curve in curves]
-    moving = [slip.mean[(slip.mean > 0) & (slip.rest < 0.5)] for slip in spans]
-    means = np.concatenate([each[np.isfinite(each)] for each in moving])
-    highs = np.concatenate([slip.high[np.isfinite(slip.high)] for slip in spans])
-    top = highs.max(initial=0.0)
-    if not top > 0:
-        top = 1.0  # no slip at all: an empty decade
-    slowest = DEEPEST * max(fastest_drive(curve.run) for curve in curves)
-    bottom = min(max(means.min(initial=top), slowest), top)
-    decades = max(np.log10(top / bottom), 1.0)
-    ax.set_ylim(bottom / 10 ** max(0.3, 0.05 * decades), top * 10 ** (0.05 * decades))
-    ax.yaxis.set_major_locator(LogLocator(numticks=8))
-    ax.yaxis.set_minor_locator(LogLocator(subs="all" if decades < 8 else (1.0,), numticks=99))
-    ax.yaxis.set_minor_formatter(NullFormatter() if decades > 1.5 else SPARSE)
+def set_limits(ax: Axes, curves: Sequence[Curve]) -> None:
+    """Fit the axis of slip speed to the lines; say so if nothing slips."""
+    if not set_speed_limits(ax, [(curve.slip, fastest_drive(curve.run)) for curve in curves]):
+        say_only(ax, "no slip")
 
 
 def draw_rests(ax: Axes, curves: Sequence[Curve], bins: int = 300) -> None:

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import StepPatch
-from matplotlib.ticker import FuncFormatter, MaxNLocator
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 
 from stiction.analysis.motion.rest import stuck_until
 from stiction.analysis.slip import Slip, averaged_slip
+from stiction.plotting.page.parameter import SPARSE
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED
 from stiction.text.quantity_text import metric_prefix
 from stiction.trajectory import Trajectory
@@ -26,6 +29,7 @@ TURNS = 5  # in these bins: a period below four bins cannot be resolved
 THIN = 5e-3  # of a panel's height: a smaller range looks like a line
 SMOOTH = 13  # bins of the mean, two of them with weight zero
 BAND = 0.3  # opacity of the range
+DEEPEST = 1e-6  # of the drive's speed: slower motion counts as rest
 LEAST = 1e-9  # of the drive's speed, or of its path: smaller values are rounding
 CONSTANT = 1e-9  # of a quantity: a smaller range is rounding
 STILL = 1.0  # deg: least range of the axis of an angle
@@ -211,7 +215,7 @@ def draw_position(ax: Axes, run: Trajectory) -> Line2D:
     line = draw_values(
         ax, run, np.zeros(len(run.samples["X"])), "$X$", run.data["X"].attrs["units"], BLUE
     )
-    _say_only(ax, "at rest")
+    say_only(ax, "at rest")
     return line
 
 
@@ -226,9 +230,10 @@ def fastest_drive(run: Trajectory) -> float:
     return float(np.hypot(run.samples["drive_X"], run.samples["drive_Y"]).max())
 
 
-def _say_only(ax: Axes, text: str) -> None:
+def say_only(ax: Axes, text: str) -> None:
     """Write the content of a panel that has no scale."""
     ax.set_yticks([])
+    ax.set_yticks([], minor=True)
     ax.text(0.5, 0.6, text, transform=ax.transAxes, ha="center", color=GREY, fontsize=7)
 
 
@@ -242,13 +247,14 @@ def draw_slip_speed(ax: Axes, run: Trajectory) -> Line2D:
 
     The line is the mean over short times, a pale band reaches to the maximum: where it comes to
     rest in each of many oscillations, how far it falls is no speed of the system. Speeds below
-    1e-7 of the largest are left out, so that a landing does not stretch the axis.
+    1e-7 of the largest are left out, so that a landing does not stretch the axis. Where samples are
+    too few for that, the line is the speed of the mean motion (`averaged_slip`).
     """
     speed = _after_start(run, "slip_speed")
     largest = np.fmax.reduce(speed, initial=0.0)
     ax.set_ylabel(r"$v_\mathrm{slip}$ (m/s)")
     if not largest > LEAST * fastest_drive(run):
-        _say_only(ax, "no slip")
+        say_only(ax, "no slip")
         return draw_line(ax, run.samples["time"], np.zeros(len(speed)), GREEN)
     ax.set_yscale("log")
     if len(speed) <= FEW:
@@ -257,7 +263,55 @@ def draw_slip_speed(ax: Axes, run: Trajectory) -> Line2D:
     slip = average_slip(run)
     mean = np.where(slip.mean > 1e-7 * largest, slip.mean, np.nan)
     ax.fill_between(slip.time, mean, slip.high, color=GREEN, alpha=BAND, linewidth=0)
-    return draw_line(ax, slip.time, mean, GREEN)
+    line = draw_line(ax, slip.time, mean, GREEN)
+    set_speed_limits(ax, [(slip, fastest_drive(run))])
+    return line
+
+
+def slipping(slip: Slip, drive: float) -> Floats | None:
+    """Return the mean speeds of slip, without the moments beside a rest; None if nothing slips.
+
+    How slow the last sample before a rest is depends on when it is taken.
+
+    Parameters
+    ----------
+    slip : Slip
+        Of a run.
+    drive : float
+        Largest speed of its drive, m/s.
+    """
+    moves = np.isfinite(slip.mean) & (slip.mean > DEEPEST * drive)
+    if not moves[1:].any() or not np.fmax.reduce(slip.high[1:]) > LEAST * drive:
+        return None  # but for the release of the mass
+    moving = moves & (slip.rest < 0.5)
+    rests = np.pad(slip.rest >= 1.0, 1, mode="edge")
+    inner = moving & ~(rests[:-2] | rests[2:])
+    return next(slip.mean[some] for some in (inner, moving, moves) if some.any())
+
+
+def set_speed_limits(ax: Axes, slips: Sequence[tuple[Slip, float]]) -> bool:
+    """Fit a logarithmic axis to slip speeds, ignoring rest and the moments beside it.
+
+    Return whether anything slips: nothing is done otherwise.
+
+    Parameters
+    ----------
+    ax : Axes
+        The axes.
+    slips : sequence of (Slip, float)
+        Of each run, with the largest speed of its drive, m/s.
+    """
+    means = [each for each in (slipping(*of) for of in slips) if each is not None]
+    if not means:
+        return False
+    top = max(float(np.fmax.reduce(slip.high)) for slip, _ in slips)
+    bottom = min(float(each.min()) for each in means)
+    decades = max(np.log10(top / bottom), 1.0)
+    ax.set_ylim(bottom / 10 ** max(0.3, 0.05 * decades), top * 10 ** (0.05 * decades))
+    ax.yaxis.set_major_locator(LogLocator(numticks=8))
+    ax.yaxis.set_minor_locator(LogLocator(subs="all" if decades < 8 else (1.0,), numticks=99))
+    ax.yaxis.set_minor_formatter(NullFormatter() if decades > 1.5 else SPARSE)
+    return True
 
 
 def average_slip(run: Trajectory) -> Slip:
@@ -278,5 +332,7 @@ def draw_time_stuck(ax: Axes, run: Trajectory, bins: int = 300) -> StepPatch:
     edges = np.linspace(times[0], max(times[-1], np.nextafter(times[0], np.inf)), bins + 1)
     share = 100.0 * np.diff(stuck_until(edges, run.stick_intervals)) / np.diff(edges)
     ax.set_ylabel("stuck (%)")
+    if not share.any():
+        ax.text(0.5, 0.4, "no stick", transform=ax.transAxes, ha="center", color=GREY, fontsize=7)
     ax.set_ylim(0, 105)
     return ax.stairs(share, edges, fill=True, color=GREY)
