@@ -86,8 +86,22 @@ def strongest_line(
         found = follow_ridge(lines.assign_attrs(units="N"), low, 0.5 * rate)
     except ValueError as error:  # too few samples in a window, or lines above `low`
         raise ResultError(str(error)) from None
-    found["frequency"] = found["frequency"].where(_missing_share(grid, found, chosen) <= LOST)
+    seen = _missing_share(grid, found, chosen) <= LOST
+    found["frequency"] = found["frequency"].where(seen)
+    found["frequency"] = found["frequency"].where(_lasting(found["frequency"].notnull().values))
     return found.assign(frequency_error=_frequency_error(found, lines))
+
+
+def _lasting(seen: np.ndarray) -> np.ndarray:
+    """Return where two windows without a common sample show a line, and not one event.
+
+    The bend at the end of a loading, or a jump, has lines of every frequency, in the windows that
+    contain it.
+    """
+    at = np.flatnonzero(seen)
+    groups = np.split(at, np.flatnonzero(np.diff(at) > STEPS) + 1)
+    lasting = [each for each in groups if len(each) and np.ptp(each) >= min(STEPS, len(seen) - 1)]
+    return np.isin(np.arange(len(seen)), np.concatenate([at[:0], *lasting]))
 
 
 def _missing_share(grid: EvenGrid, found: xr.Dataset, width: float) -> np.ndarray:

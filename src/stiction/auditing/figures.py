@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from stiction.analysis.creep.curve import creep_curves, mean_creep
-from stiction.auditing.words import HARDLY, VIBRATES, name_of
+from stiction.auditing.words import HARDLY, VIBRATES, final_motion, name_of
 from stiction.friction import has_state
 from stiction.linear_stability import boundary
 from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep
@@ -58,7 +58,8 @@ def trials(found: Audit) -> Figure | None:
     """Draw the force of the test, now and with each change."""
     tried = [
         Trial(
-            f"{name_of(found, each.path)} = {in_words(each.then, each.unit)}: {each.tried.motion}",
+            f"{name_of(found, each.path)} = {in_words(each.then, each.unit)}: "
+            f"{final_motion(each.tried)}",
             each.tried.record,
         )
         for each in found.advices

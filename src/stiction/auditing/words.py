@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, degrees, isfinite, nan
+from math import cos, degrees, isfinite, nan, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +18,7 @@ from stiction.analysis.motion.regime import (
     TRANSITIONAL,
     UNDETERMINED,
 )
+from stiction.analysis.parts.wording import with_error
 from stiction.auditing.advice import Advice
 from stiction.auditing.observation import (
     MOST_WORK,
@@ -36,6 +37,8 @@ from stiction.text.units import in_words
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit
 
+MEANS = ("period", "s"), ("drop", "N")  # over the cycles
+SHOWN = 1e-3  # of a mean: a smaller error is not worth a word
 VIBRATES = (HARMONIC, IRREGULAR)  # about steady sliding: nothing sticks or creeps
 HARDLY = 0.05  # of the time: a smaller share of creep or rest is negligible
 ALMOST = 0.1  # of the present force drop: a change that leaves less is nearly a remedy
@@ -83,7 +86,7 @@ def motions(found: Audit) -> list[str]:
             f"Two motions are possible (it is bistable): from rest it reaches {name}; once it "
             "slides steadily, it continues to slide steadily.",
             f"From rest, springs unloaded: {describe_motion(rest)}. From steady sliding, "
-            f"disturbed by 1 % of the drive's speed: {sliding.motion}.",
+            f"disturbed by 1 % of the drive's speed: {SEEN.get(sliding.motion, sliding.motion)}.",
         ]
     if rest.comes_to == SLIDES and sliding.comes_to == SLIDES:
         what = (
@@ -131,13 +134,20 @@ def final_motion(seen: Observation) -> str:
 def describe_motion(seen: Observation) -> str:
     """Return a kind of motion with its cycles, in one line."""
     count = seen.cycles.sizes["cycle"]
-    sure = f"{seen.motion} (confidence {seen.regime.confidence:.2f})"
-    if seen.motion != seen.regime.kind:
-        sure = seen.motion
+    sure = SEEN.get(seen.motion, seen.motion)
+    if seen.motion == seen.regime.kind:
+        sure += f" (confidence {seen.regime.confidence:.2f})"
     if not count or seen.comes_to == SLIDES:
         return sure
-    period, drop = in_words(seen.mean("period"), "s"), in_words(seen.mean("drop"), "N")
+    period, drop = (mean_in_words(seen.cycles[name].values, unit) for name, unit in MEANS)
     return f"{sure}, {count} cycles of {period} in which the force falls by {drop}"
+
+
+def mean_in_words(values: np.ndarray, unit: str) -> str:
+    """Return a mean over cycles, with its standard error where they differ."""
+    mean = float(values.mean())
+    error = float(values.std(ddof=1)) / sqrt(len(values)) if len(values) > 1 else 0.0
+    return with_error(in_words(mean, unit), error if error > SHOWN * mean else 0.0, unit)
 
 
 def stability(found: Audit) -> str:

@@ -234,3 +234,15 @@ def test_the_figure_says_what_is_drawn(paper_run, oscillation):
     axes = figure_of(plot_oscillation, paper_run, oscillation).axes
     assert [ax.get_ylabel() for ax in axes[:3]] == ["frequency (kHz)", "amplitude (1)", "stuck (%)"]
     assert axes[2].get_xlabel() == "time $t$ (s)"
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_bend_of_the_force_is_no_oscillation(seed):
+    """A single break-away has every frequency in the windows around it, and none elsewhere."""
+    time = np.arange(0.0, 10.0, 1e-3)
+    fall = 2.4 + 0.6 * np.exp(-(time - 3.0) / 0.05)
+    force = np.where(time < 3.0, time, fall)
+    force = force + 0.004 * np.random.default_rng(seed).normal(size=len(time))
+    assert "Seen in" not in str(st.analyse(st.Record(time=time, force=force)))
+    line = force + 0.004 * np.sin(2 * np.pi * 40.0 * time)  # as high as the noise: it goes on
+    assert "at 40 Hz" in str(st.analyse(st.Record(time=time, force=line)))

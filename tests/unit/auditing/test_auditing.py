@@ -322,6 +322,26 @@ def test_theory_knows_the_static_coefficient():
     assert tilted.first_stick == pytest.approx(9.165e-2, rel=1e-3)
 
 
+def test_means_of_cycles_that_differ_have_an_error_and_settling_is_told_in_words():
+    """The first of five cycles differs: analysis and sweep see more of them, and other means."""
+    rig = st.Slider(
+        mass="0.5 kg", k_x="5 kN/m", k_y="15 kN/m", phi="12 deg", normal_load="15 N",
+        friction=st.ExponentialWeakening(mu_0=0.3, mu_inf=0.2, v_f="20 mm/s"),
+        drive=st.ConstantVelocity("5 mm/s"),
+    )  # fmt: skip
+    found = st.audit(rig)
+    text = found.tables()[0].sentences[1]
+    cycles = found.observation.cycles
+    spread = float(cycles["period"].std(ddof=1)) / cycles.sizes["cycle"] ** 0.5
+    assert spread > 1e-3
+    (said,) = re.findall(r"cycles of ([\d.]+) ms ± (\d+) ms", text)
+    late = 1e3 * float(cycles["period"][-1])  # as all that follow
+    assert abs(float(said[0]) - late) < 2.0 * float(said[1])
+    calm = st.audit(rig.replace(friction=st.Coulomb(mu_0=0.3)))
+    assert "settling" not in str(calm)
+    assert "From rest the load cell sees: steady sliding, after a motion" in str(calm)
+
+
 def test_a_hard_onset_is_bistable():
     """Driven above the critical speed it slides on if it slides, and vibrates from rest."""
     fast = PAPER.replace(drive=st.ConstantVelocity("0.12 m/s"))
