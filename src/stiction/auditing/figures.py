@@ -14,6 +14,7 @@ from stiction.friction import has_state
 from stiction.linear_stability import boundary
 from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep
 from stiction.plotting.analysis.cycles import plot_cycles
+from stiction.plotting.analysis.tolerance import plot_tolerance
 from stiction.plotting.analysis.trials import Trial, plot_trials
 from stiction.plotting.page.canvas import figure_of
 from stiction.plotting.stability.boundary import plot_boundary
@@ -66,6 +67,11 @@ def trials(found: Audit) -> Figure | None:
         if each.tried is not None
     ]
     return figure_of(plot_trials, found.observation.record, tried) if tried else None
+
+
+def tolerance(found: Audit) -> Figure | None:
+    """Draw the tolerance budget; None where the misalignment is not uncertain."""
+    return figure_of(plot_tolerance, found.budget) if found.budget else None
 
 
 def stability(found: Audit) -> Figure | None:

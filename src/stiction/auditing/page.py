@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 import stiction
 from stiction.auditing import figures
+from stiction.auditing.tolerance import words as tolerance
 from stiction.errors import ResultError
 from stiction.plotting.page.save import png
 from stiction.storage.files import placeable, whole
@@ -36,6 +37,7 @@ DRAWN: dict[str, tuple[tuple[Callable[[Audit], Figure | None], str], ...]] = {
         (figures.creep, "Creep before slip, averaged over the transverse motion, and Eq. (7)."),
         (figures.damping, "How the friction force turns during creep, and where slow turns fast."),
     ),
+    tolerance.TITLE: ((figures.tolerance, "What tests read over the uncertain misalignment."),),
     "What to change": (
         (figures.trials, "Each advice tried: the force of the same test, now and then."),
         (figures.stability, "Where steady sliding is stable, and where this apparatus is."),

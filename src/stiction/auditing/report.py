@@ -19,15 +19,19 @@ from stiction.auditing.observation import (
     observe,
 )
 from stiction.auditing.prediction import Prediction, predict
+from stiction.auditing.tolerance.budget import Budget, budget
+from stiction.auditing.tolerance.words import section
 from stiction.auditing.words import sections
 from stiction.deprecation import old_attributes
+from stiction.inference.priors import Rig, rig_of
 from stiction.linear_stability import Critical, Linearisation, critical, steady_sliding
 from stiction.system.description import Description
-from stiction.system.slider import Slider, slider_of
+from stiction.system.slider import Slider
 from stiction.text.sections import Section, as_html, as_text
 
 # parts of the work: two tests, the advices, critical misalignments, and springs replaced
 PARTS = 4 + len(LEVERS)
+MORE = 12  # such parts of a tolerance budget
 
 
 class Audit(NamedTuple):
@@ -51,6 +55,8 @@ class Audit(NamedTuple):
         Changes that would make it slide steadily, each tried from rest; empty if it does.
     chain : Chain or None
         The springs in series, and each replaced; None for a single spring.
+    budget : Budget or None
+        The tolerance budget; None where the misalignment is not uncertain.
     """
 
     slider: Slider
@@ -61,6 +67,7 @@ class Audit(NamedTuple):
     sliding_on: Observation
     advices: tuple[Advice, ...]
     chain: chain.Chain | None = None
+    budget: Budget | None = None
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
@@ -91,7 +98,8 @@ class Audit(NamedTuple):
 
     def tables(self) -> list[Section]:
         """Return the report as sections of sentences and tables."""
-        return [*sections(self), *chain_sections(self)]
+        tolerance = [section(self.budget)] if self.budget else []
+        return [*sections(self), *chain_sections(self), *tolerance]
 
     def plot(self, axes: Any = None) -> Any:
         """Draw the simulated test as a load cell records it; see `stiction.plotting`."""
@@ -113,15 +121,17 @@ class Audit(NamedTuple):
 
 
 def audit(
-    slider: Slider | Description | str | Path, progress: Callable[[float], None] | None = None
+    slider: Slider | Description | Rig | str | Path,
+    progress: Callable[[float], None] | None = None,
 ) -> Audit:
     """Audit an apparatus: will it measure friction, or itself?
 
     Parameters
     ----------
-    slider : Slider, Description, str or Path
+    slider : Slider, Description, Rig, str or Path
         The apparatus, or the file of its description, with a steady drive and load. The initial
-        state and settings of a description are ignored.
+        state and settings of a description are ignored. Where its ``phi`` is uncertain, as in
+        ``phi = "2 +- 1 deg"``, the audit ends with a tolerance budget.
     progress : callable, optional
         Called with the fraction done.
 
@@ -144,12 +154,14 @@ def audit(
     >>> st.audit(st.presets.nakano_popov_2020().replace(phi="9.5 deg"))
     <Audit: settling; steady sliding is stable>
     """
-    system = slider_of(slider)
+    rig = rig_of(slider)
+    system = rig.slider
     report = progress or (lambda fraction: None)
+    parts = PARTS + (MORE if "phi" in rig.priors else 0)
 
     def part(number: int, of: int = 1) -> Callable[[float], None]:
         """Return the progress callback of some parts."""
-        return lambda fraction: report((number + of * fraction) / PARTS)
+        return lambda fraction: report((number + of * fraction) / parts)
 
     sliding, prediction = steady_sliding(system), predict(system)
     growth = sliding.growth_rate
@@ -165,9 +177,10 @@ def audit(
     if not sliding.stable or observation.comes_to != SLIDES:
         advices = tuple(advise(system, sliding.stable, work, part(3, len(LEVERS))))
     misalignment = critical(system, "phi", limits(system, "phi"))
+    tolerance = budget(rig, part(PARTS, MORE)) if "phi" in rig.priors else None
     report(1.0)
     both = observation, sliding_on
-    return Audit(system, prediction, sliding, misalignment, *both, advices, springs)
+    return Audit(system, prediction, sliding, misalignment, *both, advices, springs, tolerance)
 
 
 FORMER = {"Audit": "stiction.auditing.Audit", "examine": "stiction.audit"}

@@ -212,8 +212,7 @@ def numbers(found: Audit) -> Table:
     """Return the table of predicted and simulated quantities."""
     p, seen, s = found.prediction, found.observation, found.slider
     first = float(np.diff(seen.run.stick_intervals[:1]).sum())  # zero if it never sticks
-    slip = first_slip_time(seen.run)
-    slip = slip if slip < seen.record.time[-1] else nan
+    slip = slip_time(seen)
     creep_at_slip, creep_distance = (p.creep_at_slip, p.creep_distance) if p.slips else (nan, nan)
     held = [("friction that holds at rest", p.F_static, None, "N", False)]
     rows = [
@@ -228,7 +227,7 @@ def numbers(found: Audit) -> Table:
         ("time until the first slip", p.load_up if p.slips else nan, slip, "s", True),
         ("creep velocity at first, V sin² φ", p.creep_at_start, None, "m/s", True),
         ("creep velocity when it slips, Eq. (7)", creep_at_slip, None, "m/s", True),
-        ("creep before the first slip", creep_distance, creep_before_slip(found, slip), "m", True),
+        ("creep before the first slip", creep_distance, creep_before_slip(seen), "m", True),
         ("apparent static friction", p.mu_static, peak(seen), "", True),
         ("apparent kinetic friction", p.mu_kinetic, kinetic(seen), "", True),
         ("force drop", p.drop, seen.mean("drop"), "N", True),
@@ -247,9 +246,15 @@ def numbers(found: Audit) -> Table:
     return Table(("quantity", "theory", "simulated"), lines)
 
 
-def creep_before_slip(found: Audit, slip: float) -> float:
+def slip_time(seen: Observation) -> float:
+    """Return when the first slip begins, s; NaN if there is none."""
+    slip = first_slip_time(seen.run)
+    return slip if slip < seen.record.time[-1] else nan
+
+
+def creep_before_slip(seen: Observation) -> float:
     """Return the distance moved until the first slip, m; NaN if there is none."""
-    samples = found.observation.run.samples
+    samples, slip = seen.run.samples, slip_time(seen)
     along = np.abs(samples["X"] - samples["X"][0])
     return float(np.interp(slip, samples["time"], along)) if isfinite(slip) else nan
 

@@ -12,6 +12,7 @@ from cyclopts import Parameter
 from stiction.errors import StictionError
 
 if TYPE_CHECKING:
+    from stiction.inference.priors import Rig
     from stiction.presets import Preset
     from stiction.system.description import Description
     from stiction.system.slider import Slider
@@ -148,6 +149,17 @@ def slider_from(
     if choose(config, preset) is None:
         return Slider.from_toml(Path(str(config)), given, trust=trust)
     return description_from(config, preset, given, trust).slider
+
+
+def rig_from(config: Path | None, preset: str | None, given: dict[str, Any], trust: bool) -> Rig:
+    """Do as `slider_from` for a rig: values may be uncertain."""
+    from stiction.inference.priors import Rig, rig_of
+
+    found = choose(config, preset)
+    if found is None:
+        return Rig.from_toml(Path(str(config)), given, trust=trust)
+    slider = found.make().slider
+    return Rig.from_toml(slider.to_toml(), given) if given else rig_of(slider)
 
 
 def choose(config: Path | None, preset: str | None) -> Preset | None:

@@ -6,24 +6,19 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.analysis.record import Record
 from stiction.drive import ConstantVelocity
 from stiction.errors import DescriptionError, Fault, ResultError
 from stiction.friction import has_state
+from stiction.inference.calibration import study
 from stiction.inference.library import Library, Plan, build, plan
 from stiction.inference.observation import Observation, observe
-from stiction.inference.posterior import INTERVAL, Fit
+from stiction.inference.posterior import Fit
 from stiction.inference.priors import Normal, Prior, Rig
-from stiction.inference.regression_abc import Sample, posterior, quantiles
-from stiction.inference.summary import learn
 
-Floats = NDArray[np.float64]
-
-SIMULATIONS = 2000
+SIMULATIONS = 4000
 FEWEST = 300  # simulations with cycles, below which nothing is learned
-HELD_OUT = 100  # of them, on which the coverage of the intervals is measured
 
 
 def fit(
@@ -81,9 +76,9 @@ def fit(
     check(known)
     seen = [observe(each, known.slider, f"record {number}") for number, each in enumerate(given, 1)]
     plan_of = plan_for(known, seen)
-    folder = None if library is None else Path(library) / plan_of.key
+    folder = None if library is None else Path(library) / f"{plan_of.key}-{seed}"
     simulated = build(plan_of, simulations, folder, seed=seed, progress=progress)
-    return compare(simulated, seen)
+    return compare(simulated, seen, folder)
 
 
 def check(rig: Rig) -> None:
@@ -119,8 +114,10 @@ def one_sided(prior: Prior) -> Prior:
     return Normal(prior.mean, prior.deviation, 0.0, prior.high)
 
 
-def compare(library: Library, seen: Sequence[Observation]) -> Fit:
+def compare(library: Library, seen: Sequence[Observation], folder: Path | None = None) -> Fit:
     """Return what the features of records say, by comparison with a library.
+
+    What is learned from the library is kept in `folder`.
 
     Raises
     ------
@@ -133,28 +130,7 @@ def compare(library: Library, seen: Sequence[Observation]) -> Fit:
             f"stick and slip, {FEWEST} are needed: check the priors, or simulate more"
         )
     observed = np.concatenate([each.features for each in seen])
-    (sample,) = posteriors(library.features, library.scores, observed[None])
-    return Fit.of(library, sample, observed, coverage(library))
-
-
-def posteriors(features: Floats, scores: Floats, observed: Floats) -> list[Sample]:
-    """Return the posteriors of records with these features (m, f), by all simulated ones."""
-    summary = learn(features, scores)
-    around, spreads = summary.library
-    pairs = zip(*summary(observed), strict=True)
-    return [posterior(around, scores, middle, (spreads, spread)) for middle, spread in pairs]
-
-
-def coverage(library: Library) -> Floats:
-    """Return how often intervals hold the truth, (p,), of records that no part has seen.
-
-    The last simulations of the library are compared with all others.
-    """
-    features, scores = library.features, library.scores
-    samples = posteriors(features[:-HELD_OUT], scores[:-HELD_OUT], features[-HELD_OUT:])
-    tails = np.array([0.5 - 0.5 * INTERVAL, 0.5 + 0.5 * INTERVAL])
-    held = np.zeros(scores.shape[1])
-    for sample, truth in zip(samples, scores[-HELD_OUT:], strict=True):
-        ends = [quantiles(column, sample.weights, tails) for column in sample.scores.T]
-        held += [low <= true <= high for (low, high), true in zip(ends, truth, strict=True)]
-    return held / HELD_OUT
+    place = None if folder is None else folder / f"learned-{library.wanted}.npz"
+    learned = study(library.features, library.scores, place)
+    (sample,) = learned.posteriors(observed[None])
+    return Fit.of(library, sample, observed, learned)

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from hashlib import sha256
 from pathlib import Path
 from typing import NamedTuple
+from zipfile import BadZipFile
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +29,7 @@ BLOCK = 32  # simulations that are stored together
 SPARE = 2  # cycles simulated beyond those that are used: the first begins from rest
 LONGEST = 4.0  # of the measured cycles: simulations with longer ones end without
 JITTER = Uniform(1e-3, 0.05, "log")  # of friction from cycle to cycle, unless the rig says
-FORMAT = 1
+FORMAT = 2  # of stored simulations and of what is learned from them
 
 
 class Plan(NamedTuple):
@@ -208,7 +209,7 @@ def read_block(folder: Path, block: int) -> tuple[Floats, Floats] | None:
     if not path.is_file():
         return None
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
             return file["scores"], file["features"]
-    except (OSError, ValueError, KeyError, EOFError):
+    except (OSError, ValueError, KeyError, EOFError, BadZipFile):
         return None  # damaged: it is simulated again

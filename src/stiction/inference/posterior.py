@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from stiction.errors import ResultError
+from stiction.inference.calibration import Learned
 from stiction.inference.library import Library, Plan
 from stiction.inference.regression_abc import Sample, quantiles
 from stiction.names import draw
@@ -40,7 +41,7 @@ class Estimate(NamedTuple):
 
     `narrower` is the posterior's standard deviation over the prior's, both as normal scores;
     `identified` whether that is below 0.75. `coverage` is how often such intervals hold the truth
-    of simulated records that were held out; it should be 0.95.
+    of simulated records that were left out; it should be 0.95.
     """
 
     name: str
@@ -76,6 +77,11 @@ class Fit:
         Of each parameter.
     simulations : int
         Simulated records with cycles that were compared.
+    observed : ndarray
+        Features of the records.
+    ranks : ndarray
+        (m, p), of the truth in the posteriors of simulated records that were left out; uniform
+        where posteriors are calibrated.
     """
 
     plan: Plan
@@ -84,12 +90,13 @@ class Fit:
     estimates: tuple[Estimate, ...]
     simulations: int
     observed: Floats = field(compare=False)
+    ranks: Floats = field(compare=False)
 
     @classmethod
-    def of(cls, library: Library, sample: Sample, observed: Floats, coverage: Floats) -> Self:
-        """Return the fit of a weighted sample of normal scores; (p,) coverage of its intervals."""
+    def of(cls, library: Library, sample: Sample, observed: Floats, learned: Learned) -> Self:
+        """Return the fit of a weighted sample of normal scores, from what a library taught."""
         plan = library.plan
-        scores = resample(sample)
+        scores, coverage = resample(sample), learned.coverage(INTERVAL)
         before = np.random.default_rng(0).standard_normal((DRAWS, len(plan.priors)))
         estimates = tuple(
             estimate(plan, name, sample.scores[:, i], sample.weights, float(coverage[i]))
@@ -98,7 +105,7 @@ class Fit:
         after, prior = dataset(plan, scores), dataset(plan, before)
         for its in estimates:
             after[its.name.split(".")[-1]].attrs["coverage_of_95_percent_intervals"] = its.coverage
-        return cls(plan, after, prior, estimates, len(library.scores), observed)
+        return cls(plan, after, prior, estimates, len(library.scores), observed, learned.ranks)
 
     def __repr__(self) -> str:
         """Return a one-line summary."""

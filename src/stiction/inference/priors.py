@@ -24,11 +24,12 @@ from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 from scipy.special import ndtr, ndtri
 
+from stiction.drive.recorded.reading import locator, with_rows
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import read_law
 from stiction.friction.user.loading import finder_for_descriptions, is_own
 from stiction.system.parameter import change_parameter, change_parameters, unit
-from stiction.system.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider
+from stiction.system.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider, slider_of
 from stiction.text.paths import canonical
 from stiction.text.toml import folder_of, gather, read_toml
 from stiction.text.units import Kind, to_si
@@ -138,7 +139,8 @@ class Rig(NamedTuple):
         >>> Rig.from_toml(text).priors["phi"].mean * 180.0 / np.pi
         1.0
         """
-        raw = read_toml(path, changes)
+        folder = folder_of(path)
+        raw, lost = with_rows(read_toml(path, changes), locator(folder, trust))
         wanted = {name: raw[name] for name in raw if name in SLIDER_TABLES}
         stated: dict[str, Any] = {}
         certain = {
@@ -147,13 +149,14 @@ class Rig(NamedTuple):
             else table
             for name, table in wanted.items()
         }
-        find = finder_for_descriptions(folder_of(path), trust)
+        find = finder_for_descriptions(folder, trust)
         slider = Slider.from_parts(
             gather(
                 certain,
                 {**SLIDER_TABLES, "friction": partial(read_law, find=find)},
                 absent=OPTIONAL_TABLES,
                 last=("friction",) if is_own(certain.get("friction")) else (),
+                known=lost,
             )
         )
         priors = read_priors(slider, stated)
@@ -161,6 +164,21 @@ class Rig(NamedTuple):
         given = {name: quantity(slider, name, value) for name, value in middles.items()}
         slider = change_parameters(slider, given) if given else slider
         return cls(slider, priors, {name: raw[name] for name in KEPT if name in raw})
+
+
+def rig_of(source: Any) -> Rig:
+    """Return the rig that is given, that of a file or text, or a slider without priors.
+
+    Raises
+    ------
+    DescriptionError
+        If `source` is none of these.
+    """
+    if isinstance(source, Rig):
+        return source
+    return (
+        Rig.from_toml(source) if isinstance(source, str | Path) else Rig(slider_of(source), {}, {})
+    )
 
 
 def without_spread(

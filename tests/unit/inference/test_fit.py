@@ -7,9 +7,9 @@ import xarray as xr
 import stiction as st
 from stiction.errors import DescriptionError, ResultError
 from stiction.inference.features import find_cycles
-from stiction.inference.fit import coverage, plan_for
+from stiction.inference.fit import plan_for
 from stiction.inference.jitter import Jitter, move
-from stiction.inference.library import Library, build
+from stiction.inference.library import build
 from stiction.inference.observation import observe
 
 TEXT = """
@@ -73,24 +73,14 @@ def test_the_file_opens_with_xarray(found, tmp_path):
     assert set(after) == set(before) == {"phi", "k_x", "mu_0", "mu_inf", "jitter"}
 
 
-def test_coverage_is_measured_on_records_held_out_and_reported(found, tmp_path):
+def test_coverage_is_measured_on_records_left_out_and_reported(found, tmp_path):
     fit, _ = found
-    # binomial: 100 trials, standard deviation 2.2 %; four of them
-    assert all(x.coverage == pytest.approx(0.95, abs=0.088) for x in fit.estimates)
+    # binomial: at least 300 trials, standard deviation 1.3 %; four of them
+    assert len(fit.ranks) >= 300
+    assert all(x.coverage == pytest.approx(0.95, abs=0.05) for x in fit.estimates)
     stored = xr.open_dataset(fit.save(tmp_path / "fit.nc"))["phi"].attrs
     assert stored["coverage_of_95_percent_intervals"] == fit["phi"].coverage
     assert "Experimental" in str(fit.tables()[0])
-
-
-def test_intervals_learned_from_a_wrong_library_show_in_the_coverage(found, rig, record):
-    """The held-out records of another truth: parameters that do not belong to the features."""
-    _, folder = found
-    plan = plan_for(rig, [observe(record, rig.slider)])
-    whole = build(plan, SIMULATIONS, folder / plan.key)
-    scores = whole.scores.copy()
-    scores[-100:] += 3.0
-    wrong = Library(plan, scores, whole.features, SIMULATIONS)
-    assert coverage(wrong).max() < 0.85
 
 
 def test_a_stored_library_is_used_again(found, rig, record):
@@ -99,6 +89,10 @@ def test_a_stored_library_is_used_again(found, rig, record):
     again = st.fit(record, rig, simulations=SIMULATIONS, library=folder, progress=reports.append)
     assert reports == []
     assert again.estimates == fit.estimates
+    (own,) = folder.iterdir()
+    (learned,) = own.glob("learned-*.npz")
+    learned.write_bytes(learned.read_bytes()[:5000])  # damaged: it is learned again
+    assert st.fit(record, rig, simulations=SIMULATIONS, library=folder).estimates == fit.estimates
 
 
 def test_a_library_that_was_interrupted_is_completed(found, rig, record, tmp_path):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from stiction.cli.options import Changes, FromPreset, MaybeOutput, Trust, changes, slider_from
+from stiction.cli.options import Changes, FromPreset, MaybeOutput, Trust, changes, rig_from
 from stiction.cli.terminal import say
 
 
@@ -23,7 +23,8 @@ def audit(
     misalignment and the margin to it, true rest and creep in apparent stick, apparent friction
     coefficients, period, the frequency of the transverse oscillation and the sampling rate that
     shows it; and, if it does not slide steadily, advice, each tried in a simulation. Of springs in
-    series: which is the softest, and what each replaced by a stiffer one changes.
+    series: which is the softest, and what each replaced by a stiffer one changes. Where phi is
+    uncertain in CONFIG, as in phi = "2 +- 1 deg": how well to align.
 
     For example, with what `stiction init my.toml` writes:
 
@@ -45,14 +46,14 @@ def audit(
     from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
 
-    slider = slider_from(config, preset, changes(set), trust)
+    rig = rig_from(config, preset, changes(set), trust)
     title = str(config or preset)
     if output is not None:
         from stiction.auditing.page import writable
 
         writable(output)
     with progress("auditing") as report:
-        found = examine(slider, report)
+        found = examine(rig, report)
     print_sections(title, found.tables())
     if output is not None:
         say(f"wrote {found.write_html(output, title)}")

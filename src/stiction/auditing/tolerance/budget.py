@@ -1,0 +1,196 @@
+"""Tests of a rig over the range of its uncertain misalignment, and how well to align it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import copysign, isnan, nan, radians
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats.qmc import Sobol
+
+from stiction.auditing.observation import coarse_rate, observe
+from stiction.auditing.prediction import predict
+from stiction.auditing.words import creep_before_slip, kinetic, peak
+from stiction.errors import StictionError
+from stiction.inference.priors import Rig, quantity
+from stiction.linear_stability import growth_rate
+from stiction.study.execution.engines import Threads
+from stiction.system.parameter import change_parameters
+from stiction.system.slider import Slider
+
+Floats = NDArray[np.float64]
+Progress = Callable[[float], None]
+
+ALLOWED = 0.02  # error of the static coefficient
+DRAWS = 64  # of the priors, a power of 2 for Sobol's sequence
+TAILS = (0.025, 0.5, 0.975)
+MOST_STEPS = 400_000  # of each test
+SCAN = 14  # misalignments at which the error is looked at, in a geometric series
+STEPS = 10  # bisections after that: to a thousandth of a stretch of the scan
+FARTHEST = 30.0  # degrees up to which the error is looked at; farther, the soft spring is another
+NEAREST = 0.02  # degrees: the first of the scan
+
+
+class Reading(NamedTuple):
+    """What a test from rest reads: coefficients, and creep and transverse oscillation in m.
+
+    The oscillation is its bound V sin(phi)/omega_y, which the paper derives; the others come from
+    the simulated record. NaN where the test shows none.
+    """
+
+    static: float
+    kinetic: float
+    creep: float
+    oscillation: float
+
+
+class Alignment(NamedTuple):
+    """How well to align: beyond `angle` (rad), the error of the static coefficient is `allowed`.
+
+    NaN if that is not reached up to `until` (rad), or is exceeded at the smallest angle that was
+    tried, where the error is `least`.
+    """
+
+    angle: float
+    until: float
+    least: float
+    allowed: float = ALLOWED
+
+
+@dataclass(frozen=True)
+class Budget:
+    """What uncertain parameters of a rig, its misalignment above all, do to a test.
+
+    Parameters
+    ----------
+    angles : ndarray
+        (n,), misalignments drawn from the prior, rad.
+    drawn : ndarray
+        (n, 4), the readings with them and with the draws of all other uncertain parameters.
+    ends : ndarray
+        (3,), misalignments with 2.5, 50 and 97.5 % of the prior below them, rad.
+    at_ends : ndarray
+        (3, 4), readings there, all other parameters in the middle of their priors.
+    aligned : Reading
+        Without misalignment.
+    alignment : Alignment
+        How well to align.
+    others : tuple of str
+        The other uncertain parameters.
+    """
+
+    angles: Floats
+    drawn: Floats
+    ends: Floats
+    at_ends: Floats
+    aligned: Reading
+    alignment: Alignment
+    others: tuple[str, ...]
+
+    @property
+    def intervals(self) -> Floats:
+        """95 % intervals of the readings, (2, 4); NaN where no test has one."""
+        found = np.full((2, len(Reading._fields)), nan)
+        for i, column in enumerate(self.drawn.T):
+            values = column[np.isfinite(column)]
+            if len(values):
+                found[:, i] = np.quantile(values, [TAILS[0], TAILS[2]])
+        return found
+
+
+def read(slider: Slider) -> Reading:
+    """Return what a test from rest reads; NaN if it cannot be simulated to its end."""
+    prediction = predict(slider)
+    try:
+        rate, growth = coarse_rate(prediction), growth_rate(slider)
+        seen = observe(slider, prediction, growth, sample_rate=rate, most_steps=MOST_STEPS)
+    except StictionError:
+        return Reading(nan, nan, nan, prediction.amplitude)
+    if not seen.run.status.ok:
+        return Reading(nan, nan, nan, prediction.amplitude)
+    return Reading(peak(seen), kinetic(seen), creep_before_slip(seen), prediction.amplitude)
+
+
+def budget(rig: Rig, progress: Progress) -> Budget:
+    """Return the tolerance budget of a rig with an uncertain misalignment."""
+    names = [*rig.priors]
+    shares = Sobol(len(names), seed=0).random(DRAWS)
+    which = names.index("phi")
+    values = {name: rig.priors[name].quantile(shares[:, i]) for i, name in enumerate(names)}
+    ends = rig.priors["phi"].quantile(np.array(TAILS))
+    rigs = [
+        *(change(rig.slider, {name: values[name][i] for name in names}) for i in range(DRAWS)),
+        *(change(rig.slider, {"phi": end}) for end in ends),
+        turn_to(rig.slider, 0.0),
+    ]
+    found = read_all(rigs, lambda fraction: progress(0.7 * fraction))
+    limit = alignment(rig.slider, found[-1][0], max(abs(ends - rig.slider.turn)))
+    progress(1.0)
+    angles = values[names[which]] - rig.slider.turn
+    others = tuple(name for name in names if name != "phi")
+    at_ends = found[DRAWS : DRAWS + len(ends)]
+    return Budget(
+        angles, found[:DRAWS], ends - rig.slider.turn, at_ends, Reading(*found[-1]), limit, others
+    )
+
+
+def change(slider: Slider, values: dict[str, float]) -> Slider:
+    """Return a slider with other parameters, in SI."""
+    given = {name: quantity(slider, name, float(value)) for name, value in values.items()}
+    return change_parameters(slider, given)
+
+
+def turn_to(slider: Slider, misalignment: float) -> Slider:
+    """Return a slider with this misalignment, rad."""
+    return change(slider, {"phi": slider.turn + misalignment})
+
+
+def read_all(rigs: list[Slider], progress: Progress) -> Floats:
+    """Return the readings of several rigs, (n, 4)."""
+    found = np.empty((len(rigs), len(Reading._fields)))
+
+    def work(number: int, _: Callable[[], bool]) -> tuple[int, Reading]:
+        return number, read(rigs[number])
+
+    for done, (number, reading) in enumerate(Threads().results(work, range(len(rigs))), 1):
+        found[number] = reading
+        progress(done / len(rigs))
+    return found
+
+
+def alignment(slider: Slider, aligned: float, farthest: float) -> Alignment:
+    """Return the misalignment at which the static coefficient is wrong by the allowed error.
+
+    The error is relative to `aligned`, the coefficient that the rig reads without misalignment.
+    The first crossing of a scan is bisected.
+    """
+
+    def error(angle: float) -> float:
+        side = copysign(angle, slider.misalignment)
+        return abs(read(turn_to(slider, side)).static / aligned - 1.0)
+
+    last = min(max(farthest, radians(0.5 * FARTHEST)), radians(FARTHEST))
+    below, least = 0.0, nan
+    for angle in np.geomspace(radians(NEAREST), last, SCAN).tolist():
+        found = error(angle)
+        least = found if isnan(least) else least
+        if isnan(found):
+            return Alignment(nan, below, least)
+        if found > ALLOWED:
+            return Alignment(bisect(error, below, angle) if below else nan, angle, least)
+        below = angle
+    return Alignment(nan, last, least)
+
+
+def bisect(error: Callable[[float], float], below: float, above: float) -> float:
+    """Return the angle at which the error passes the allowed one, which it does in between."""
+    for _ in range(STEPS):
+        middle = 0.5 * (below + above)
+        if error(middle) > ALLOWED:
+            above = middle
+        else:
+            below = middle
+    return below

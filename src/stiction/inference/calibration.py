@@ -1,0 +1,121 @@
+"""What is learned once from a library, and how well it holds for records of the library itself.
+
+The ranks of the truth in posteriors of records that were left out are uniform where posteriors are
+calibrated (S. Talts et al., arXiv:1804.06788).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+from zipfile import BadZipFile
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.inference.regression_abc import (
+    Known,
+    Sample,
+    marginal,
+    posterior,
+    rank,
+    with_marginals,
+)
+from stiction.inference.summary import Regression, Standard, Summary, learn
+from stiction.storage.files import make_folders, whole
+
+Floats = NDArray[np.float64]
+
+RANKED = 500  # records of the library whose ranks are found
+
+
+class Learned(NamedTuple):
+    """What features say about parameters, and how truthfully.
+
+    Parameters
+    ----------
+    summary : Summary
+        Estimates from features.
+    truth : ndarray
+        (n, p), scores of the library.
+    ranks : ndarray
+        (m, p), of the truth in the posterior of each of some records, from all others.
+    """
+
+    summary: Summary
+    truth: Floats
+    ranks: Floats
+
+    def posteriors(self, features: Floats) -> Iterator[Sample]:
+        """Yield the posteriors of records with these features (m, f)."""
+        around, spreads = self.summary.library
+        each = [*estimates(self.summary, self.truth)]
+        for middle, spread in zip(*self.summary(features), strict=True):
+            joint = posterior(around, self.truth, middle, (spreads, spread))
+            pairs = zip(each, middle.tolist(), spread.tolist(), strict=True)
+            yield with_marginals(joint, [marginal(*arguments) for arguments in pairs])
+
+    def coverage(self, interval: float) -> Floats:
+        """Return how often intervals of this probability hold the truth, (p,)."""
+        inside = np.abs(self.ranks - 0.5) < 0.5 * interval
+        return np.asarray(inside.mean(axis=0))
+
+
+def estimates(summary: Summary, truth: Floats) -> Iterator[Known]:
+    """Yield what is known of each parameter of all records, each from all others."""
+    for middles, spreads, scores in zip(
+        *(each.T for each in summary.library), truth.T, strict=True
+    ):
+        yield Known(middles, spreads, scores)
+
+
+def study(features: Floats, truth: Floats, path: Path | None = None) -> Learned:
+    """Learn from features (n, f) and scores (n, p), or read from a file what was learned."""
+    stored = None if path is None else read(path, features)
+    if stored is not None:
+        return Learned(stored[0], truth, stored[1])
+    summary = learn(features, truth)
+    found = Learned(summary, truth, ranks(summary, truth))
+    if path is not None:
+        write(path, found)
+    return found
+
+
+def ranks(summary: Summary, truth: Floats) -> Floats:
+    """Return the ranks of the truth of the last records of the library, each from all others."""
+    last = range(max(len(truth) - RANKED, 0), len(truth))
+    columns = []
+    for its in estimates(summary, truth):
+        left_out = ((i, marginal(its, its.middles[i], its.spreads[i], i)) for i in last)
+        columns.append([rank(s.scores[:, 0], s.weights, its.scores[i]) for i, s in left_out])
+    return np.array(columns).T
+
+
+def write(path: Path, found: Learned) -> None:
+    """Write what was learned, whole or not at all."""
+    summary = found.summary
+    arrays = {"ranks": found.ranks, **summary.standard._asdict()}
+    for name in ("middle", "spread"):
+        its: Regression = getattr(summary, name)
+        arrays |= {f"{name}_{key}": value for key, value in its._asdict().items()}
+    make_folders(path.parent)
+    with whole(path) as part:
+        np.savez(part, allow_pickle=False, **arrays)
+
+
+def read(path: Path, features: Floats) -> tuple[Summary, Floats] | None:
+    """Return a stored summary and its ranks; None where there is none of these features."""
+    try:
+        with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
+            arrays = {key: file[key] for key in file.files}
+        standard = Standard(arrays["mean"], arrays["spread"])
+        both = [
+            Regression(*(arrays[f"{name}_{key}"] for key in Regression._fields))
+            for name in ("middle", "spread")
+        ]
+    except (OSError, ValueError, KeyError, EOFError, BadZipFile):
+        return None  # absent or damaged: it is learned again
+    if both[0].library.shape[0] != len(features) or len(standard.mean) != features.shape[1]:
+        return None
+    return Summary(standard, standard.scores(features), *both), arrays["ranks"]

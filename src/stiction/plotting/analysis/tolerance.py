@@ -1,0 +1,67 @@
+"""What a test of a rig reads, over its uncertain misalignment."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
+from stiction.plotting.page.parameter import in_unit
+from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PALE, style
+
+LABELS = (
+    "apparent static friction",
+    "apparent kinetic friction",
+    "creep before slip",
+    "transverse oscillation",
+)
+UNITS = ("1", "1", "m", "m")
+
+
+def plot_tolerance(budget: Any, axes: Sequence[Axes] | None = None) -> NDArray[np.object_]:
+    """Draw each reading of a rig's tests over the misalignments drawn from its prior.
+
+    Parameters
+    ----------
+    budget : Budget
+        Of `stiction.audit` of a rig with an uncertain misalignment: ``audit(rig).budget``.
+    axes : sequence of four Axes, optional
+        A new figure as wide as a page when left out.
+
+    Returns
+    -------
+    ndarray of Axes
+        Static and kinetic coefficient, with the allowed error of the former and the misalignment
+        where it is reached; creep and transverse oscillation.
+    """
+    with style():
+        if axes is None:
+            axes = fix_ticks(list(canvas(PAGE, 3.6).subplots(2, 2, sharex=True).ravel()))
+        panels = as_list(axes)
+        angles = np.degrees(budget.angles)
+        for i, ax in enumerate(panels):
+            factor, unit = in_unit(budget.drawn[np.isfinite(budget.drawn[:, i]), i], UNITS[i])
+            ax.plot(angles, factor * budget.drawn[:, i], "o", color=BLUE, markersize=2.2)
+            ends = factor * budget.at_ends[:, i]
+            ax.plot(np.degrees(budget.ends), ends, "_", color=BLACK, markersize=9.0)
+            ax.set_ylabel(LABELS[i] + ("" if unit == "1" else f" ({unit})"))
+        draw_limit(panels[0], budget)
+        for ax in panels[2:]:
+            ax.set_xlabel(r"misalignment $\varphi$ (deg)")
+    return np.array(panels, dtype=object)
+
+
+def draw_limit(ax: Axes, budget: Any) -> None:
+    """Draw the allowed error of the static coefficient, and where it is reached."""
+    static, limit = budget.aligned.static, budget.alignment
+    band = static * (1.0 - limit.allowed), static * (1.0 + limit.allowed)
+    ax.axhspan(*band, color=PALE, zorder=0, label=f"within {100.0 * limit.allowed:g} %")
+    reached = np.degrees(limit.angle)
+    if np.isfinite(reached):
+        side = np.sign(np.median(budget.angles)) or 1.0
+        ax.axvline(side * reached, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)))
+    ax.legend(loc="best")
