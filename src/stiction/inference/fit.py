@@ -37,7 +37,7 @@ def fit(
     those of the measured ones (regression-adjusted approximate Bayesian computation).
 
     Experimental: nothing promises the coverage of the intervals on your rig. Each fit measures it
-    on simulated records that it holds out, and reports it: ``fit["phi"].coverage``.
+    on simulated records that it leaves out, and reports it: ``fit["phi"].coverage``.
 
     Parameters
     ----------

@@ -142,7 +142,7 @@ class Fit:
         sentences.append(f"Compared with {self.simulations} simulated records.")
         sentences.append(
             "Experimental: the coverage is how many of such 95 % intervals hold the truth of "
-            "simulated records held out, which says nothing of what the simulations leave out."
+            "simulated records left out, which says nothing of what the simulations leave out."
         )
         rows = [row(x) for x in self.estimates]
         headings = ("parameter", "posterior", "95 %", "prior", "95 %", "width", "coverage")

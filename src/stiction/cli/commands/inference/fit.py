@@ -18,7 +18,7 @@ def fit(
     rig: Path,
     output: Output,
     figures: Path | None = None,
-    simulations: Annotated[int, Parameter(name=("--simulations", "-n"))] = 2000,
+    simulations: Annotated[int, Parameter(name=("--simulations", "-n"))] = 4000,
     library: Path | None = None,
     seed: int = 0,
     trust: Trust = False,
@@ -31,7 +31,7 @@ def fit(
     description states, with friction that differs from cycle to cycle, sampled and with noise as
     the measured ones are. They are compared by their features. What the records do not say is
     reported "not identifiable", with the prior beside it. Nothing promises the coverage of the
-    intervals on your rig: each fit measures it on simulated records that it holds out.
+    intervals on your rig: each fit measures it on simulated records that it leaves out.
 
     In the description a value may be uncertain:
 
