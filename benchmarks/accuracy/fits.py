@@ -3,8 +3,8 @@
 ``python -m benchmarks.accuracy.fits --seeds 1 2 --library FOLDER``: for two rigs, four sets of
 channels and each seed of held-out records, coverage of 95 % intervals, the p-value of ranks against
 uniform ones (simulation-based calibration: S. Talts et al., arXiv:1804.06788), and widths of the
-posterior. Records have 20 cycles, friction that differs by 0.1 % to 3 % from cycle to cycle, noise of
-0.2 % of the friction force at rest and, on the displacement, of 0.2 % of the slip length. FOLDER
+posterior. Records have 20 cycles, friction that differs by 0.1 % to 3 % from cycle to cycle, noise
+of 0.2 % of the friction force at rest and, on the displacement, of 0.2 % of the slip length. FOLDER
 holds the simulations, so that a second call only compares.
 """
 
