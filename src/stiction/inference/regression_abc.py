@@ -155,7 +155,7 @@ def local_regression(columns: Floats, values: Floats, weights: Floats) -> Floats
     """Return the coefficients of a weighted linear regression."""
     weighted = columns * weights[:, None]
     square = weighted.T @ columns
-    square += RIDGE * np.diag(np.diag(square))
+    square += RIDGE * np.diag(np.diag(square)) + LEAST * np.eye(len(square))
     return np.asarray(np.linalg.solve(square, weighted.T @ values), dtype=np.float64)
 
 
@@ -163,7 +163,7 @@ def leverage(columns: Floats, weights: Floats) -> Floats:
     """Return the share of each value in its own prediction by a weighted linear regression."""
     weighted = columns * weights[:, None]
     square = weighted.T @ columns
-    square += RIDGE * np.diag(np.diag(square))
+    square += RIDGE * np.diag(np.diag(square)) + LEAST * np.eye(len(square))
     return np.asarray(np.einsum("ij,ij->i", weighted, np.linalg.solve(square, columns.T).T))
 
 
