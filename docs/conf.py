@@ -25,7 +25,7 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "description_tables",
 ]
-exclude_patterns = ["_build", "gallery/*", "auto_gallery/*.ipynb"]
+exclude_patterns = ["_build", "gallery/**", "auto_gallery/**.ipynb"]
 nitpicky = True
 nitpick_ignore_regex = [("py:.*", r".*")]  # types in docstrings are words, not links
 suppress_warnings = ["config.cache", "mystnb.unknown_mime_type"]
@@ -72,9 +72,11 @@ def legible(_, __):
     )
 
 
+PARTS = ["paper", "friction", "protocols", "maps", "apparatus"]
 sphinx_gallery_conf = {
     "examples_dirs": "gallery",
     "gallery_dirs": "auto_gallery",
+    "subsection_order": [f"gallery/{part}" for part in PARTS],
     "within_subsection_order": "FileNameSortKey",
     "reset_modules": ("matplotlib", legible),
     "remove_config_comments": True,

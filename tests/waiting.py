@@ -8,9 +8,9 @@ INTERRUPTIBLE = "import signal; signal.signal(signal.SIGINT, signal.default_int_
 PATIENCE = 1800.0  # s; ends what would hang for ever, and decides nothing else
 
 
-def until(happened: Callable[[], bool]) -> None:
-    """Wait until something has happened."""
+def until(happened: Callable[[], bool], what: str = "it") -> None:
+    """Wait until something has happened; `what` is named if it never does."""
     end = time.monotonic() + PATIENCE
     while not happened():
-        assert time.monotonic() < end, "it hangs"
+        assert time.monotonic() < end, f"{what} hangs"
         time.sleep(0.01)

@@ -3,11 +3,10 @@
 import math
 import os
 import shutil
-import time
 
 import pytest
 from tests.explored import an_opened, serving
-from tests.waiting import PATIENCE
+from tests.waiting import PATIENCE, until
 
 import stiction as st
 from stiction.explorer.answers import tables_of
@@ -47,10 +46,7 @@ class Page:
 
     def until(self, expression):
         """Wait for something to be so; the page's own policy forbids the driver to poll inside."""
-        end = time.monotonic() + PATIENCE
-        while not self.value(expression):
-            assert time.monotonic() < end, f"never: {expression}"
-            time.sleep(0.02)
+        until(lambda: self.value(expression), expression)
 
     def done_after(self, act):
         """Do something, and wait until what it asks for is shown, with every peak."""
@@ -312,7 +308,4 @@ def test_closing_the_page_ends_its_computation(browser, explorer):
     tables["run"]["duration"] = "100000 s"
     made.value(f"stictionPage.link.ask({{do: 'zoom', tables: {tables}, window: [0, 1]}}, () => 0)")
     tab.close()
-    end = time.monotonic() + PATIENCE
-    while explorer._pages and time.monotonic() < end:
-        time.sleep(0.02)
-    assert not explorer._pages  # which waits for what was computed
+    until(lambda: not explorer._pages, "what was computed for the page")

@@ -34,6 +34,6 @@ def test_pages_have_something_to_run():
 
 
 def test_scripts_of_the_gallery_are_short():
-    scripts = sorted((ROOT / "docs" / "gallery").glob("plot_*.py"))
+    scripts = sorted((ROOT / "docs" / "gallery").rglob("plot_*.py"))
     assert len(scripts) >= 20
     assert [p.name for p in scripts if len(p.read_text("utf-8").splitlines()) > 40] == []

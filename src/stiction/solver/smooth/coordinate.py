@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from math import asinh, cosh, exp, hypot, inf, log, sinh, sqrt
 
-from stiction.solver.compilation.jit import inlined, piece
+from stiction.solver.compilation.jit import inlined
 
 SMALL = 1e-4  # below, sinh(x)/x = 1 + x^2/6 to the last digit
 LARGEST = 700.0  # sinh of more overflows
@@ -56,7 +56,7 @@ def slip_slope(eps: float, q_x: float, q_y: float) -> tuple[float, float, float]
     return f + outer * q_x * q_x, outer * q_x * q_y, f + outer * q_y * q_y
 
 
-@piece
+@inlined
 def damped_rise(q: float, rise: float, share: float) -> float:
     """Return |q| after a damped update by `rise` > 0 (M69); `share` is that of inertia.
 

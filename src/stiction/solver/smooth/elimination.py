@@ -8,7 +8,7 @@ states that decay add positive numbers to the diagonal of D, and Radau IIA leave
 from __future__ import annotations
 
 from stiction.solver.block_algebra import Matrix, Triple, inverse, less, product, times
-from stiction.solver.compilation.jit import inlined, piece
+from stiction.solver.compilation.jit import inlined
 from stiction.solver.radau import D
 from stiction.solver.smooth.right_hand_side import Point, Stages
 from stiction.solver.smooth.workspace import INSIDE, START, Workspace, X, Y
@@ -40,7 +40,7 @@ def put_diagonal(w: Workspace, i: int, j: int, d: Triple) -> None:
     put(w, i, j, ((d[0], 0.0, 0.0), (0.0, d[1], 0.0), (0.0, 0.0, d[2])))
 
 
-@piece
+@inlined
 def without_states(h: float, stages: Stages, slip: Blocks, w: Workspace) -> Blocks:
     """Return the blocks of slip x and y (xx, xy, yx, yy) after eliminating the states."""
     n, jacobian = w.size.shape[0], w.jacobian
@@ -100,7 +100,7 @@ def enter(w: Workspace, k: int, x: Triple) -> None:
     right[0], right[1], right[2] = x
 
 
-@piece
+@inlined
 def residuals_without(h: float, x: Triple, y: Triple, w: Workspace) -> tuple[Triple, Triple]:
     """Return the residuals of slip x and y after eliminating those of the states (M67)."""
     enter(w, X, x)
@@ -118,7 +118,7 @@ def residuals_without(h: float, x: Triple, y: Triple, w: Workspace) -> tuple[Tri
     return entry(w, X), entry(w, Y)
 
 
-@piece
+@inlined
 def correct_states(x: Triple, y: Triple, w: Workspace) -> float:
     """Correct the states at the stages for a correction of slip; return the largest correction.
 
@@ -139,7 +139,7 @@ def correct_states(x: Triple, y: Triple, w: Workspace) -> float:
     return size
 
 
-@piece
+@inlined
 def slip_without_states(
     g: float, weight: float, at: Point, slip: Equations, w: Workspace
 ) -> Equations:
@@ -169,7 +169,7 @@ def slip_without_states(
     return m[0, 0], m[0, 1], m[1, 0], m[1, 1], r[0, 0], r[1, 0]
 
 
-@piece
+@inlined
 def correct_states_inside(x: float, y: float, w: Workspace) -> float:
     """Correct the states inside a step as `correct_states` does at the stages."""
     r, size = w.right, 0.0

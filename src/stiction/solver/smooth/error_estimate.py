@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from numpy.polynomial import Polynomial
 
-from stiction.solver.compilation.jit import inlined, piece
+from stiction.solver.compilation.jit import inlined
 from stiction.solver.problem import Problem
 from stiction.solver.radau import DEFECT_WEIGHT, INTERIOR, C, cubic, cubic_slope, integral
 from stiction.solver.smooth.coordinate import coordinate
@@ -87,7 +87,7 @@ def less_error(w: Workspace, p: Within, c: float) -> Within:
     )
 
 
-@piece
+@inlined
 def balance(
     problem: Problem,
     start: SmoothOutset,
@@ -140,7 +140,7 @@ def balance(
     return False, at
 
 
-@piece
+@inlined
 def local_error(
     problem: Problem, start: SmoothOutset, h: float, w: Workspace, accuracy: Accuracy
 ) -> float:

@@ -7,7 +7,7 @@ from math import hypot, inf, isfinite
 import numpy as np
 
 from stiction.solver.block_algebra import dot
-from stiction.solver.compilation.jit import compiled, inlined, piece
+from stiction.solver.compilation.jit import compiled, inlined
 from stiction.solver.control import GROWTH, step_factor
 from stiction.solver.problem import Problem, in_principal_axes, smooth_until, travel
 from stiction.solver.radau import A
@@ -31,7 +31,7 @@ from stiction.solver.state import (
 COARSEST = 1e12  # of the slip speed that is resolved: a slip coordinate that is linear in effect
 
 
-@piece
+@inlined
 def begin(
     problem: Problem, motion: SmoothMotion, z: np.ndarray, w: Workspace, accuracy: Accuracy
 ) -> tuple[SmoothOutset, float, float]:
@@ -55,7 +55,7 @@ def begin(
     return SmoothOutset(t, u_x, u_y, eps, unit, share), q_x, q_y
 
 
-@piece
+@inlined
 def motion_at_end(
     problem: Problem, start: SmoothOutset, h: float, end: float, w: Workspace
 ) -> SmoothMotion:
@@ -68,7 +68,7 @@ def motion_at_end(
     return SmoothMotion(end, u_x, u_y, v[LAST, 0], v[LAST, 1])
 
 
-@piece
+@inlined
 def finite(motion: SmoothMotion, z: np.ndarray) -> bool:
     """Return whether all numbers are finite."""
     total = motion.u_x + motion.u_y + motion.s_x + motion.s_y

@@ -6,7 +6,7 @@ from math import inf, sqrt
 from typing import NamedTuple
 
 from stiction.solver.block_algebra import Factors, Matrix, Triple, eliminate, solve_blocks, times
-from stiction.solver.compilation.jit import inlined, piece
+from stiction.solver.compilation.jit import inlined
 from stiction.solver.control import CONTRACTS, diverging, settled
 from stiction.solver.problem import Problem
 from stiction.solver.radau import A, C, D
@@ -178,7 +178,7 @@ def larger(a: float, b: float) -> float:
     return a if not a <= b else b
 
 
-@piece
+@inlined
 def solve(
     problem: Problem,
     start: SmoothOutset,

@@ -10,7 +10,7 @@ import numpy as np
 
 from stiction.friction.law import Vector
 from stiction.solver.block_algebra import dot
-from stiction.solver.compilation.jit import inlined, piece
+from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.problem import Problem, at, cross_damping, in_principal_axes, travel
 from stiction.solver.radau import A, C, cubic
@@ -22,7 +22,7 @@ from stiction.solver.smooth.workspace import INSIDE, LAST, START, UNWANTED, Work
 from stiction.solver.state import Accuracy
 
 
-@piece
+@inlined
 def sample(
     problem: Problem,
     start: SmoothOutset,
@@ -59,7 +59,7 @@ def sample(
     return k
 
 
-@piece
+@inlined
 def shorter(
     problem: Problem,
     start: SmoothOutset,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from stiction.solver.block_algebra import Triple
-from stiction.solver.compilation.jit import inlined, piece
+from stiction.solver.compilation.jit import inlined
 from stiction.solver.control import ATTEMPTS, FAILED, RESOLUTION, step_factor
 from stiction.solver.problem import Problem
 from stiction.solver.radau import C, cubic
@@ -62,7 +62,7 @@ def remember(w: Workspace, past: np.ndarray, eps: float) -> None:
             w.past[i, k] = past[i, k]
 
 
-@piece
+@inlined
 def step(
     problem: Problem,
     start: SmoothOutset,
