@@ -25,7 +25,7 @@ Floats = NDArray[np.float64]
 Integrand = Callable[[Floats, Floats], Floats]
 
 PASSES = 6  # of splitting panels in four: down to a thousandth of the first
-MOST = 200_000  # panels that are split further at once, some 0.5 GB
+MOST = 200_000  # panels that are split further at once
 AGAIN = 100  # times the steps of a run it may take to make it once more, sampled
 PER_STEP = 4  # panels to each of the solver's steps at first
 STEPS_OF_A_CYCLE = 20  # that a return map has found
@@ -58,11 +58,15 @@ GAUSS[1::2] = 0.5 * np.polynomial.legendre.leggauss(7)[1]
 
 
 class Integral(NamedTuple):
-    """Integrals (quantity, interval), bounds of their error, and integrals of the magnitudes."""
+    """Integrals (quantity, interval), bounds of their error, and integrals of the magnitudes.
+
+    `states` are the rows of `states_at` at the edges.
+    """
 
     value: Floats
     error: Floats
     size: Floats
+    states: Floats
 
 
 def integrals(run: Trajectory, edges: Floats, integrand: Integrand, accuracy: float) -> Integral:
@@ -90,15 +94,15 @@ def integrals(run: Trajectory, edges: Floats, integrand: Integrand, accuracy: fl
         Of shape (q, n).
     """
     starts, lengths = panels(run, edges)
-    value = error = sizes = np.zeros((0, 0))
+    value = error = sizes = states = np.zeros((0, 0))
     left = 0.0
     for turn in range(PASSES):
-        t = starts[:, None] + lengths[:, None] * NODES
-        found = integrand(t.ravel(), states_at(run, t.ravel())).reshape(-1, *t.shape)
-        part, off = lengths * (found @ KRONROD), lengths * np.abs(found @ (KRONROD - GAUSS))
-        size = lengths * (np.abs(found) @ KRONROD)
+        (part, off, size), rows = _rules(
+            run, starts, lengths, integrand, edges if turn == 0 else edges[:0]
+        )
         if turn == 0:
-            value, error, sizes = np.zeros((3, len(found), len(edges) - 1))
+            states = rows
+            value, error, sizes = np.zeros((3, len(part), len(edges) - 1))
             left = max(accuracy, ROUNDING) * size.sum(axis=1).max()
         worst = off.max(axis=0)
         poor = worst > _threshold(worst, left if turn == 0 else 0.5 * left)
@@ -112,7 +116,40 @@ def integrals(run: Trajectory, edges: Floats, integrand: Integrand, accuracy: fl
             break
         left -= worst[~poor].sum()
         starts, lengths = split(starts[poor], lengths[poor], np.full(poor.sum(), 4))
-    return Integral(value, error, sizes)
+    return Integral(value, error, sizes, states)
+
+
+def _rules(
+    run: Trajectory, starts: Floats, lengths: Floats, integrand: Integrand, edges: Floats
+) -> tuple[Floats, Floats]:
+    """Return the rules of all panels, (3, q, panels), and the rows at edges between panels.
+
+    The rules: integrals, bounds of their error, and integrals of the magnitudes. The nodes are gone
+    through block by block: all states of a long run together take gigabytes.
+    """
+    inside = (starts[:, None] + lengths[:, None] * NODES).ravel()
+    at = np.searchsorted(inside, edges)
+    is_node = np.ones(len(inside) + len(edges), dtype=bool)
+    is_node[at + np.arange(len(edges))] = False
+    found, states, kept, seen, done = [], [], np.empty((0, 0)), 0, 0
+
+    def take(rows: Floats) -> None:
+        nonlocal kept, seen, done
+        among = is_node[seen : seen + len(rows)]
+        seen += len(rows)
+        states.append(rows[~among])
+        rows = np.concatenate([kept, rows[among]]) if len(kept) else rows[among]
+        whole = len(rows) // len(NODES)
+        kept = rows[whole * len(NODES) :].copy()
+        if whole:
+            times = inside[done * len(NODES) : (done + whole) * len(NODES)]
+            values = integrand(times, rows[: len(times)]).reshape(-1, whole, len(NODES))
+            off, size = np.abs(values @ (KRONROD - GAUSS)), np.abs(values) @ KRONROD
+            found.append(np.stack([values @ KRONROD, off, size]))
+            done += whole
+
+    go_through(run, np.insert(inside, at, edges), take)
+    return lengths * np.concatenate(found, axis=2), np.concatenate(states)
 
 
 def _threshold(errors: Floats, left: float) -> float:
@@ -166,12 +203,25 @@ def states_at(run: Trajectory, times: Floats) -> Floats:
     ResultError
         If the repeated run ends earlier: the run does not match its file.
     """
+    blocks: list[Floats] = []
+    go_through(run, times, lambda rows: blocks.append(rows.copy()))
+    return np.concatenate(blocks)
+
+
+def go_through(run: Trajectory, times: Floats, take: Callable[[Floats], None]) -> None:
+    """Repeat a run, and call `take` with the rows of `states_at`, block by block."""
     slider, initial, settings = run.description
     span = {"duration": max(float(times[-1]) - initial.time, 1e-300)}
     until = settings.model_copy(update=span)
     took = run.statistics
     budget = AGAIN * (max(took.steps, 0) + max(took.mapped, 0) + 1000)
-    rows = integrate(Description(slider, initial, until), times, budget, None).samples
-    if len(rows) < len(times):
+    count = 0
+
+    def count_and_take(rows: Floats) -> None:
+        nonlocal count
+        count += len(rows)
+        take(rows)
+
+    integrate(Description(slider, initial, until), times, budget, None, count_and_take)
+    if count < len(times):
         raise ResultError(f"the repeated run ends before {times[-1]:g} s; simulate it again")
-    return rows

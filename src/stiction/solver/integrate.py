@@ -43,6 +43,7 @@ LEAST_MOTION = 1e-13  # of velocities: error that any step may have, well above 
 TINY = float(np.finfo(np.float64).tiny)
 FACTOR = 0.8  # of (M39): measured by python -m benchmarks --only calibration
 BUDGET = 100_000  # turns of the loop between two progress reports: some 30 ms
+BLOCK = 5_000  # turns between two blocks of samples that are not kept: some MB at 60 a turn
 
 
 class Solution(NamedTuple):
@@ -160,9 +161,17 @@ def method_of(description: Description) -> Method:
 
 
 def integrate(
-    description: Description, times: np.ndarray, max_steps: int, progress: Report | None
+    description: Description,
+    times: np.ndarray,
+    max_steps: int,
+    progress: Report | None,
+    take: Callable[[np.ndarray], None] | None = None,
 ) -> Solution:
-    """Integrate a description, filling in the samples at `times` (ascending, s)."""
+    """Integrate a description, filling in the samples at `times` (ascending, s).
+
+    If `take` is given, it gets the samples block by block, to be used before it returns: they are
+    not kept, and the memory that they take does not grow with their number.
+    """
     slider, initial, settings = description
     t, end = initial.time, initial.time + settings.duration
     method = method_of(description)
@@ -179,11 +188,14 @@ def integrate(
         held = accuracy(slider, initial, stretch, t, settings.rtol)
         code = RUNNING
         while code == RUNNING:
-            budget = min(BUDGET, max_steps - out.used)
+            budget = min(BUDGET if take is None else BLOCK, max_steps - out.used)
             if budget <= 0:
                 code = TOO_MANY_STEPS
                 break
             code, state = method.advance(stretch.problem, state, stretch.end, held, budget, out)
+            if take is not None:
+                take(outward(slider, out.samples[: out.filled]))
+                out.times, out.filled = out.times[out.filled :], 0
             report(state.motion.t)
         t = stretch.end
         if code == COMPLETED and stretch.lost:
