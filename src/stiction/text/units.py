@@ -32,6 +32,7 @@ class Kind(NamedTuple):
 
 # the annotations of a class by field, with their quantities
 hints_of: Callable[[Any], dict[str, Any]] = cache(partial(get_type_hints, include_extras=True))
+LARGE = 1e6  # a number below it is written without a power of ten
 LONGEST = 200  # characters of a number and its unit
 LARGEST, SMALLEST = 1e60, 1e-60  # in SI; smaller ones are zero. Products of five stay finite
 VELOCITY = Kind("a velocity", "m/s", "1 mm/s")
@@ -236,4 +237,7 @@ def in_words(value: float, unit: str, digits: int = DIGITS) -> str:
         value, unit = 1e3 * value, "g"
     power = thousands(value, unit, digits)
     name = "" if unit == "1" else unit.replace("*", " ")
-    return f"{value / 1000.0**power:.{digits}g} {SI[power]}{name}".rstrip()
+    shown = f"{value / 1000.0**power:.{digits}g}"
+    if "e+" in shown and abs(value) < LARGE:
+        shown = f"{float(shown):.0f}"
+    return f"{shown} {SI[power]}{name}".rstrip()

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.errors import ResultError
+from stiction.text.units import in_words
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -27,7 +28,8 @@ def used_bins(curve: xr.Dataset, low: float, high: float) -> list[Floats]:
     inside = (end >= low) & (begin <= high) & np.isfinite(velocity)
     if inside.sum() < 5:
         raise ResultError(
-            f"{inside.sum()} bins of the creep curve lie between {low:g} s and {high:g} s before "
+            f"{inside.sum()} bins of the creep curve lie between {in_words(low, 's')} and "
+            f"{in_words(high, 's')} before "
             "slip and 5 are needed; widen the stretch, or make narrower bins (width)"
         )
     columns[3] = np.hypot(np.nan_to_num(error), THEORY * np.abs(velocity))
