@@ -42,7 +42,7 @@ class Reading(Described):
     wrap : str, optional
         The length after which a displacement starts again, ``"10 mm"``, or ``"none"``.
     block : int, optional
-        Which of several blocks or strokes, number_of from 1.
+        Which of several blocks or strokes, counted from 1.
     """
 
     time: str | None = None

@@ -135,7 +135,7 @@ def read_records(
 
 
 def block_of(path: str | Path, found: Sequence[T], number: int) -> T:
-    """Return one of several blocks of a file, number_of from 1.
+    """Return one of several blocks of a file, counted from 1.
 
     Raises
     ------

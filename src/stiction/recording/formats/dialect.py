@@ -122,7 +122,7 @@ def _score(dialect: Dialect, lines: Sequence[str], labels: bool) -> tuple[float,
 
 
 def first_samples(lines: Sequence[str], dialect: Dialect) -> int:
-    """Return the number of the first line with samples, number_of from 0.
+    """Return the number of the first line with samples, counted from 0.
 
     It has as many cells as most; a line of a word and an amount, as in a recipe, counts only where
     each line of samples begins with a word.

@@ -24,7 +24,7 @@ class Heading:
     trusted: bool
 
     def of(self, at: int) -> tuple[str, str]:
-        """Return name and unit of a column, number_of from 0."""
+        """Return name and unit of a column, counted from 0."""
         name = self.names[at] if at < len(self.names) else ""
         unit = self.units[at] if at < len(self.units) else ""
         own, inside = split_unit(name)
