@@ -1,10 +1,12 @@
 """``stiction fit``, on a run that is taken as a record."""
 
+import numpy as np
 import pytest
 import xarray as xr
 
 import stiction as st
 from stiction.cli import main
+from stiction.inference.jitter import Jitter, move
 
 RIG = """
 [slider]
@@ -72,3 +74,29 @@ def test_a_wrong_prior_is_one_message(tmp_path, capsys):
     rig.write_text(RIG.replace('high = "5 deg"', 'high = "0.1 deg"'))
     assert inside("fit", tmp_path / "no.nc", "--rig", rig, "-o", tmp_path / "fit.nc") == 2
     assert "phi: low must be below high" in capsys.readouterr().err
+
+
+def test_an_audit_of_a_record_begins_with_what_it_says(tmp_path, capsys):
+    rig, data = tmp_path / "rig.toml", tmp_path / "data.csv"
+    rig.write_text(RIG)
+    time = np.arange(0.0, 20.0, 0.01)
+    slider = st.Rig.from_toml(rig).slider.replace(phi="2 deg")
+    motion = move(slider, time, Jitter(0.005, 0.5), np.random.default_rng(3), cycle=1.4)
+    force = 1e3 * slider.k_x * motion.rows[:, 0]
+    rows = zip(1e3 * motion.time, force, strict=True)
+    data.write_text("t,F\n" + "".join(f"{t:.1f},{f:.3f}\n" for t, f in rows))
+    said = ("--time", "t=ms", "--force", "F=mN", "-n", 400, "--library", tmp_path / "store")
+    assert inside("audit", rig, "--record", data, *said, "-o", tmp_path / "rig.html") == 0
+    out = capsys.readouterr().out
+    assert out.index("What the record says") < out.index("Verdict")
+    assert "What would change it" in out
+    assert "simulated with the fitted" in (tmp_path / "rig.html").read_text()
+
+
+def test_an_audit_of_a_record_without_priors_is_refused(tmp_path, capsys):
+    rig, data = tmp_path / "rig.toml", tmp_path / "data.csv"
+    rig.write_text(st.presets.nakano_popov_2020().to_toml())
+    data.write_text("t,F\n" + "".join(f"{t},{t % 7}\n" for t in range(200)))
+    command = ("audit", rig, "--record", data, "--time", "t=ms", "--force", "F=mN")
+    assert inside(*command) == 2
+    assert "nothing is uncertain" in capsys.readouterr().err

@@ -16,6 +16,8 @@ from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep
 from stiction.plotting.analysis.cycles import plot_cycles
 from stiction.plotting.analysis.tolerance import plot_tolerance
 from stiction.plotting.analysis.trials import Trial, plot_trials
+from stiction.plotting.inference.posterior import plot_corner, plot_posterior
+from stiction.plotting.inference.predictive import plot_predictive, plot_ranks
 from stiction.plotting.page.canvas import figure_of
 from stiction.plotting.stability.boundary import plot_boundary
 from stiction.reproduction.figure5 import figure5
@@ -23,6 +25,7 @@ from stiction.text.units import in_words
 
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit
+    from stiction.inference.posterior import Fit
 
 
 def test(found: Audit) -> Figure | None:
@@ -67,6 +70,32 @@ def trials(found: Audit) -> Figure | None:
         if each.tried is not None
     ]
     return figure_of(plot_trials, found.observation.record, tried) if tried else None
+
+
+def record(found: Audit) -> Figure | None:
+    """Draw a measured record beside simulations; None where there is none that was fitted."""
+    seen = found.measured
+    return figure_of(plot_predictive, seen) if seen and seen.predictive else None
+
+
+def posterior(found: Audit) -> Figure | None:
+    """Draw prior against posterior of a measured record."""
+    return figure_of(plot_posterior, fit_of(found)) if fit_of(found) else None
+
+
+def corner(found: Audit) -> Figure | None:
+    """Draw all pairs of the posterior of a measured record."""
+    return figure_of(plot_corner, fit_of(found)) if fit_of(found) else None
+
+
+def ranks(found: Audit) -> Figure | None:
+    """Draw the calibration of the fit of a measured record."""
+    return figure_of(plot_ranks, fit_of(found)) if fit_of(found) else None
+
+
+def fit_of(found: Audit) -> Fit | None:
+    """Return the fit of a measured record; None without one."""
+    return found.measured.fit if found.measured else None
 
 
 def tolerance(found: Audit) -> Figure | None:

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 import stiction
 from stiction.auditing import figures
+from stiction.auditing.measured import words as measured
 from stiction.auditing.tolerance import words as tolerance
 from stiction.errors import ResultError
 from stiction.plotting.page.save import png
@@ -36,6 +37,16 @@ DRAWN: dict[str, tuple[tuple[Callable[[Audit], Figure | None], str], ...]] = {
     "Is it stick?": (
         (figures.creep, "Creep before slip, averaged over the transverse motion, and Eq. (7)."),
         (figures.damping, "How the friction force turns during creep, and where slow turns fast."),
+    ),
+    measured.TITLE: ((figures.record, "Measured, and simulated with the fitted parameters."),),
+    "Fit": (
+        (figures.posterior, "Prior (grey) and posterior (blue), with its 95 % interval."),
+        (figures.corner, "All pairs of what the record identifies: 50 % and 95 %."),
+        (
+            figures.ranks,
+            "Calibration: ranks of the truth of simulated records, each left out. Even ranks "
+            "mean true intervals; grey is where 95 % of the counts lie then.",
+        ),
     ),
     tolerance.TITLE: ((figures.tolerance, "What tests read over the uncertain misalignment."),),
     "What to change": (

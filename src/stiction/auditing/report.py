@@ -6,9 +6,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from stiction.analysis.measurement.reading import read_source
+from stiction.analysis.record import Record, record_of
 from stiction.auditing import chain
 from stiction.auditing.advice import LEVERS, Advice, advise, limits
 from stiction.auditing.chain_words import chain_sections
+from stiction.auditing.measured.comparison import Comparison, compare
+from stiction.auditing.measured.words import sections as record_sections
 from stiction.auditing.observation import (
     MOST_WORK,
     OSCILLATES,
@@ -23,6 +27,7 @@ from stiction.auditing.tolerance.budget import Budget, budget
 from stiction.auditing.tolerance.words import section
 from stiction.auditing.words import sections
 from stiction.deprecation import old_attributes
+from stiction.inference.fit import SIMULATIONS
 from stiction.inference.priors import Rig, rig_of
 from stiction.linear_stability import Critical, Linearisation, critical, steady_sliding
 from stiction.system.description import Description
@@ -31,6 +36,7 @@ from stiction.text.sections import Section, as_html, as_text
 
 # parts of the work: two tests, the advices, critical misalignments, and springs replaced
 PARTS = 4 + len(LEVERS)
+FITTING = 0.8  # of the time of an audit with a measured record
 MORE = 12  # such parts of a tolerance budget
 
 
@@ -57,6 +63,8 @@ class Audit(NamedTuple):
         The springs in series, and each replaced; None for a single spring.
     budget : Budget or None
         The tolerance budget; None where the misalignment is not uncertain.
+    measured : Comparison or None
+        A measured record beside simulations of the apparatus; None where none was given.
     """
 
     slider: Slider
@@ -68,6 +76,7 @@ class Audit(NamedTuple):
     advices: tuple[Advice, ...]
     chain: chain.Chain | None = None
     budget: Budget | None = None
+    measured: Comparison | None = None
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
@@ -99,7 +108,8 @@ class Audit(NamedTuple):
     def tables(self) -> list[Section]:
         """Return the report as sections of sentences and tables."""
         tolerance = [section(self.budget)] if self.budget else []
-        return [*sections(self), *chain_sections(self), *tolerance]
+        record = record_sections(self.measured) if self.measured else []
+        return [*record, *sections(self), *chain_sections(self), *tolerance]
 
     def plot(self, axes: Any = None) -> Any:
         """Draw the simulated test as a load cell records it; see `stiction.plotting`."""
@@ -123,6 +133,10 @@ class Audit(NamedTuple):
 def audit(
     slider: Slider | Description | Rig | str | Path,
     progress: Callable[[float], None] | None = None,
+    *,
+    record: Record | str | Path | None = None,
+    simulations: int = SIMULATIONS,
+    library: str | Path | None = None,
 ) -> Audit:
     """Audit an apparatus: will it measure friction, or itself?
 
@@ -134,6 +148,11 @@ def audit(
         ``phi = "2 +- 1 deg"``, the audit ends with a tolerance budget.
     progress : callable, optional
         Called with the fraction done.
+    record : Record, str or Path, optional
+        A measured record of the apparatus, whose description states what is uncertain: the audit
+        begins with what it says, by a fit (`stiction.fit`) and simulations with its parameters.
+    simulations, library
+        As of `stiction.fit`.
 
     Returns
     -------
@@ -156,7 +175,19 @@ def audit(
     """
     rig = rig_of(slider)
     system = rig.slider
-    report = progress or (lambda fraction: None)
+    told = progress or (lambda fraction: None)
+    before = FITTING if record is not None else 0.0
+
+    def report(fraction: float) -> None:
+        told(before + (1.0 - before) * fraction)
+
+    measured = None
+    if record is not None:
+        seen = record if isinstance(record, Record) else record_from(record)
+        measured = compare(
+            seen, rig, simulations=simulations, library=library,
+            progress=lambda fraction: told(before * fraction),
+        )  # fmt: skip
     parts = PARTS + (MORE if "phi" in rig.priors else 0)
 
     def part(number: int, of: int = 1) -> Callable[[float], None]:
@@ -180,7 +211,15 @@ def audit(
     tolerance = budget(rig, part(PARTS, MORE)) if "phi" in rig.priors else None
     report(1.0)
     both = observation, sliding_on
-    return Audit(system, prediction, sliding, misalignment, *both, advices, springs, tolerance)
+    return Audit(
+        system, prediction, sliding, misalignment, *both, advices, springs, tolerance, measured
+    )
+
+
+def record_from(path: str | Path) -> Record:
+    """Return the record in a file; a stored run is taken as if measured."""
+    source = read_source(path)
+    return source if isinstance(source, Record) else record_of(source)
 
 
 FORMER = {"Audit": "stiction.auditing.Audit", "examine": "stiction.audit"}

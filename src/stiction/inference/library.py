@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from hashlib import sha256
 from pathlib import Path
 from typing import NamedTuple
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from stiction.inference.features import Scale, features, find_cycles
+from stiction.inference.features import Cycles, features, find_cycles
 from stiction.inference.jitter import Jitter, Motion, move
 from stiction.inference.observation import Conditions
 from stiction.inference.priors import Normal, Prior, Uniform
@@ -118,44 +118,48 @@ def build(
     return Library(plan, scores[complete], found[complete], count)
 
 
-def simulate(
-    plan: Plan, number: int, seed: int, scores: Floats | None = None
-) -> tuple[Floats, Floats]:
+class Synthetic(NamedTuple):
+    """A synthetic record: channels of samples a step apart, and the cycles that are used."""
+
+    channels: dict[str, Floats]
+    cycles: Cycles
+
+
+def simulate(plan: Plan, number: int, seed: int) -> tuple[Floats, Floats]:
     """Return the normal scores and features of one simulation; NaN where it has too few cycles."""
     random = np.random.default_rng([seed, number])
-    drawn = random.standard_normal(len(plan.priors)) if scores is None else scores
-    values = plan.parameters(drawn)
+    drawn = random.standard_normal(len(plan.priors))
+    parts = []
+    for conditions, made in zip(plan.conditions, synthesise(plan, drawn, random), strict=True):
+        scale = conditions.scale(plan.slider)
+        blank = dummy(conditions)
+        channels, cycles = made or (blank, find_cycles(blank["force"]))
+        found = features(conditions.step, channels, scale, cycles)
+        parts.append(found if made else np.full_like(found, np.nan))
+    return drawn, np.concatenate(parts)
+
+
+def synthesise(
+    plan: Plan, scores: Floats, random: np.random.Generator
+) -> Iterator[Synthetic | None]:
+    """Yield a synthetic record under each of the conditions; None where it has too few cycles."""
+    values = plan.parameters(scores)
     slider = plan.slider
     for path, value in values.items():
         if path not in ("jitter", "gain", "zero"):
             slider = change_unchecked(slider, path, value)
     jitter = Jitter(values["jitter"], float(random.uniform()))
-    parts = []
     for conditions in plan.conditions:
-        scale = conditions.scale(plan.slider)
-        parts.append(synthesise(conditions, slider, jitter, values, scale, random))
-    return drawn, np.concatenate(parts)
-
-
-def synthesise(
-    conditions: Conditions, slider: Slider, jitter: Jitter, values: Mapping[str, float],
-    scale: Scale, random: np.random.Generator,
-) -> Floats:  # fmt: skip
-    """Return the features of a synthetic record; NaN where it has too few cycles."""
-    rig = conditions.slider_of(slider)
-    wanted = conditions.cycles + SPARE
-    most = LONGEST * wanted * conditions.cycle
-    times: Floats = conditions.step * np.arange(int(most / conditions.step) + 1.0)
-    motion = move(rig, times, jitter, random, cycle=conditions.cycle, cycles=wanted)
-    channels = measure(conditions, rig, motion, values, random)
-    found = find_cycles(channels["force"])
-    if len(found.peak) < conditions.cycles:
-        blank = dummy(conditions)
-        return np.full(
-            len(features(conditions.step, blank, scale, find_cycles(blank["force"]))), np.nan
-        )
-    found = type(found)(*(each[-conditions.cycles :] for each in found))
-    return features(conditions.step, channels, scale, found)
+        rig = conditions.slider_of(slider)
+        wanted = conditions.cycles + SPARE
+        most = LONGEST * wanted * conditions.cycle
+        times: Floats = conditions.step * np.arange(int(most / conditions.step) + 1.0)
+        motion = move(rig, times, jitter, random, cycle=conditions.cycle, cycles=wanted)
+        channels = measure(conditions, rig, motion, values, random)
+        found = find_cycles(channels["force"])
+        enough = len(found.peak) >= conditions.cycles
+        last = Cycles(*(each[-conditions.cycles :] for each in found))
+        yield Synthetic(channels, last) if enough else None
 
 
 def measure(

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from stiction.analysis.record import Record
 from stiction.drive import ConstantVelocity
 from stiction.errors import ResultError
-from stiction.inference.features import LEAST_CYCLES, USED, Scale, features, find_cycles
+from stiction.inference.features import LEAST_CYCLES, USED, Cycles, Scale, features, find_cycles
 from stiction.system.slider import Slider
 
 Floats = NDArray[np.float64]
@@ -88,10 +88,12 @@ class Conditions(NamedTuple):
 
 
 class Observation(NamedTuple):
-    """A record's cycles as a fit uses them: conditions and features."""
+    """A record's cycles as a fit uses them: conditions, features, thinned force and its cycles."""
 
     conditions: Conditions
     features: Floats
+    force: Floats
+    cycles: Cycles
 
 
 def observe(record: Record, slider: Slider, name: str = "the record") -> Observation:
@@ -134,7 +136,8 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
         float(velocity), float(record.normal_load or slider.normal_load), 0.0,
         step * block, number, cycle, thin_noise,
     )  # fmt: skip
-    return Observation(conditions, features(step * block, thin, conditions.scale(slider), found))
+    seen = features(step * block, thin, conditions.scale(slider), found)
+    return Observation(conditions, seen, thin["force"], found)
 
 
 def noise_of(record: Record, channel: str, values: Floats) -> Noise:

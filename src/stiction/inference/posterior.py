@@ -82,6 +82,10 @@ class Fit:
     ranks : ndarray
         (m, p), of the truth in the posteriors of simulated records that were left out; uniform
         where posteriors are calibrated.
+    scores : ndarray
+        (n, p), the draws of `data` as normal scores.
+    farther : float
+        Share of the simulated records that lie farther from the others than the measured one.
     """
 
     plan: Plan
@@ -91,6 +95,8 @@ class Fit:
     simulations: int
     observed: Floats = field(compare=False)
     ranks: Floats = field(compare=False)
+    scores: Floats = field(compare=False)
+    farther: float = field(compare=False)
 
     @classmethod
     def of(cls, library: Library, sample: Sample, observed: Floats, learned: Learned) -> Self:
@@ -105,7 +111,9 @@ class Fit:
         after, prior = dataset(plan, scores), dataset(plan, before)
         for its in estimates:
             after[its.name.split(".")[-1]].attrs["coverage_of_95_percent_intervals"] = its.coverage
-        return cls(plan, after, prior, estimates, len(library.scores), observed, learned.ranks)
+        farther = learned.summary.farther(observed)
+        count, ranks = len(library.scores), learned.ranks
+        return cls(plan, after, prior, estimates, count, observed, ranks, scores, farther)
 
     def __repr__(self) -> str:
         """Return a one-line summary."""

@@ -24,6 +24,7 @@ Floats = NDArray[np.float64]
 
 WIDTHS = (1.0, 3.0)  # of the kernel, over the typical distance between records
 FINER = 0.3  # ridge with the metric of a parameter, over that without
+OTHERS = 5  # records of the library whose distance says how usual a record is
 ROUND = 0.05  # share of the first metric that remains
 RIDGES = 10.0 ** np.arange(-6.0, 2.1, 0.5)
 STRAIGHT = 1.0  # share of the linear kernel beside the curved one
@@ -108,6 +109,14 @@ class Summary(NamedTuple):
         new = self.standard.scores(np.atleast_2d(features))
         spread = np.exp(0.5 * self.spread.predict(new, self.scores))
         return self.middle.predict(new, self.scores), spread
+
+    def farther(self, features: Floats) -> float:
+        """Return the share of the library farther from its nearest others than a record (f,) is."""
+        own, other = (
+            nearest(each, self.scores)
+            for each in (self.scores, self.standard.scores(features[None]))
+        )
+        return float((own > other).mean())
 
     @property
     def library(self) -> tuple[Floats, Floats]:
@@ -202,6 +211,14 @@ def gaussian(a: Floats, b: Floats, width: float) -> Floats:
     square = (a * a).mean(axis=1)[:, None] + (b * b).mean(axis=1)[None, :]
     square -= 2.0 / a.shape[1] * (a @ b.T)
     return np.asarray(np.exp(-0.5 * np.maximum(square, 0.0) / width**2))
+
+
+def nearest(some: Floats, scores: Floats) -> Floats:
+    """Return the mean squared distance of each record from its nearest others."""
+    square = (some * some).sum(axis=1)[:, None] + (scores * scores).sum(axis=1)[None, :]
+    square -= 2.0 * (some @ scores.T)
+    square[square < LEAST] = np.inf  # itself
+    return np.asarray(np.partition(square, OTHERS, axis=1)[:, :OTHERS].mean(axis=1))
 
 
 def decompose(matrix: Floats) -> tuple[Floats, Floats]:

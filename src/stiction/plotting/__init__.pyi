@@ -9,6 +9,8 @@ from stiction.plotting.analysis.trials import plot_trials as plot_trials
 from stiction.plotting.apparatus.schematic import plot_slider as plot_slider
 from stiction.plotting.inference.posterior import plot_corner as plot_corner
 from stiction.plotting.inference.posterior import plot_posterior as plot_posterior
+from stiction.plotting.inference.predictive import plot_predictive as plot_predictive
+from stiction.plotting.inference.predictive import plot_ranks as plot_ranks
 from stiction.plotting.protocols.healing import plot_healing as plot_healing
 from stiction.plotting.protocols.hysteresis import plot_hysteresis as plot_hysteresis
 from stiction.plotting.protocols.velocity_steps import plot_velocity_steps as plot_velocity_steps

@@ -3,8 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Annotated
 
-from stiction.cli.options import Changes, FromPreset, MaybeOutput, Trust, changes, rig_from
+from cyclopts import Parameter
+
+from stiction.cli.options import (
+    Changes,
+    FromPreset,
+    MaybeOutput,
+    Measured,
+    Trust,
+    changes,
+    rig_from,
+)
 from stiction.cli.terminal import say
 
 
@@ -16,6 +27,10 @@ def audit(
     preset: FromPreset = None,
     trust: Trust = False,
     set: Changes = None,
+    record: Path | None = None,
+    simulations: Annotated[int, Parameter(name=("--simulations", "-n"))] = 4000,
+    library: Path | None = None,
+    measured: Measured | None = None,
 ) -> int:
     """Audit the apparatus that CONFIG describes: will it measure friction, or itself?
 
@@ -32,6 +47,8 @@ def audit(
 
         stiction audit my.toml --set phi=3deg --set W=20N
 
+        stiction audit rig.toml --record data.csv --time ms --force mN -o rig.html
+
     The drive and the load must be steady; [run] is not used. Exit status: 0 if every simulation
     reached its end, 1 if one ended earlier, 2 if the description cannot be audited.
 
@@ -41,10 +58,19 @@ def audit(
         A description in TOML; `stiction init` writes one to start from.
     output
         An HTML page to write: the same report with figures, in one file.
+    record
+        A measured record of the apparatus, of any format that `stiction import` reads; CONFIG
+        states what is uncertain, as for `stiction fit`. The report begins with what it says:
+        verdict, grounds, prior against posterior, and what would change it.
+    simulations, library
+        As of `stiction fit`, for RECORD.
     """
+    from stiction.analysis.measurement.reading import read_source
+    from stiction.analysis.record import Record, record_of
     from stiction.auditing.report import audit as examine
     from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
+    from stiction.inference.library import cache_folder
 
     rig = rig_from(config, preset, changes(set), trust)
     title = str(config or preset)
@@ -52,8 +78,13 @@ def audit(
         from stiction.auditing.page import writable
 
         writable(output)
+    seen = None
+    if record is not None:
+        source = read_source(record, trust=trust, **(measured or Measured()).arguments())
+        seen = source if isinstance(source, Record) else record_of(source)
+    kept = cache_folder() if library is None else library
     with progress("auditing") as report:
-        found = examine(rig, report)
+        found = examine(rig, report, record=seen, simulations=simulations, library=kept)
     print_sections(title, found.tables())
     if output is not None:
         say(f"wrote {found.write_html(output, title)}")

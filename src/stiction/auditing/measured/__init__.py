@@ -1,0 +1,1 @@
+"""A measured record beside an audit: fit, predictive check, and a verdict."""

@@ -1,0 +1,97 @@
+"""A record of a rig compared with simulations of the rig."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from stiction.analysis.record import Record
+from stiction.errors import ResultError
+from stiction.inference.features import USED
+from stiction.inference.fit import SIMULATIONS, check, fit
+from stiction.inference.observation import Observation, observe
+from stiction.inference.posterior import Fit
+from stiction.inference.predictive import Predictive, predict
+from stiction.inference.priors import Rig
+
+RARE = 0.05  # share of simulations below which a record is not like them
+TAIL = 3.0  # normal score beyond which 0.27 % of a prior lie
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A record beside simulations of its rig.
+
+    Parameters
+    ----------
+    record : Record
+        As measured.
+    seen : Observation or None
+        What a fit takes from it; None where it cannot be fitted.
+    fit : Fit or None
+        Posterior beside prior.
+    predictive : Predictive or None
+        Simulations with parameters of the posterior; None if hardly any has cycles.
+    reason : str
+        Why there is no fit.
+    """
+
+    record: Record
+    seen: Observation | None = None
+    fit: Fit | None = None
+    predictive: Predictive | None = None
+    reason: str = ""
+
+    @property
+    def like(self) -> bool:
+        """Whether the record looks like the simulations: features, loading curve, priors."""
+        if self.fit is None or self.predictive is None:
+            return False
+        usual = self.fit.farther >= RARE and self.predictive.larger >= RARE
+        return usual and not self.beyond
+
+    @property
+    def beyond(self) -> list[str]:
+        """The parameters whose posterior lies in a tail of the prior, where it hardly can."""
+        if self.fit is None:
+            return []
+        middles = np.median(self.fit.scores, axis=0)
+        pairs = zip(self.fit.estimates, middles, strict=True)
+        return [each.name for each, middle in pairs if abs(middle) > TAIL]
+
+    @property
+    def absent(self) -> list[str]:
+        """The channels that a fit would use and the record does not have."""
+        return [name for name in USED if getattr(self.record, name) is None]
+
+
+def compare(
+    record: Record,
+    rig: Rig,
+    *,
+    simulations: int = SIMULATIONS,
+    library: str | Path | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Comparison:
+    """Fit a rig to a record and simulate the record again with what was found.
+
+    Raises
+    ------
+    DescriptionError
+        If nothing of the rig is uncertain, or it is not of a kind that can be fitted.
+    """
+    check(rig)
+    report = progress or (lambda fraction: None)
+    try:
+        seen = observe(record, rig.slider)
+        found = fit(
+            record, rig, simulations=simulations, library=library,
+            progress=lambda fraction: report(0.9 * fraction),
+        )  # fmt: skip
+    except ResultError as error:
+        return Comparison(record, reason=str(error))
+    made = predict(found, seen, lambda fraction: report(0.9 + 0.1 * fraction))
+    return Comparison(record, seen, found, made)

@@ -1,0 +1,124 @@
+"""A measured record in sentences: verdict, grounds, and what would change it."""
+
+from __future__ import annotations
+
+from stiction.auditing.measured.comparison import RARE, Comparison
+from stiction.inference.posterior import Estimate, Fit
+from stiction.inference.predictive import Predictive
+from stiction.text.sections import Section
+from stiction.text.units import in_words
+
+TITLE = "What the record says"
+GROUNDS, CHANGES = "What that rests on", "What would change it"
+NAMES = {"force_across": "force across the drive", "position": "displacement of the mass"}
+
+
+def sections(found: Comparison) -> list[Section]:
+    """Return the sections of a report."""
+    if found.fit is None:
+        return [Section(TITLE, [f"No verdict: {found.reason}."])]
+    parts = [
+        Section(TITLE, [verdict(found)]),
+        Section(GROUNDS, grounds(found, found.fit)),
+        Section(CHANGES, changes(found, found.fit)),
+    ]
+    return [*parts, *found.fit.tables()]
+
+
+def verdict(found: Comparison) -> str:
+    """Return the verdict in one sentence."""
+    if not found.like:
+        return (
+            "No verdict: this record is not like those of the rig as described, whatever the "
+            "uncertain values are; the fitted values below mean nothing until that is explained."
+        )
+    phi = angle(found)
+    if phi is None:
+        return (
+            "The rig as described explains this record without any coefficient of static friction "
+            "beyond its law; its misalignment is not fitted."
+        )
+    if not phi.identified:
+        return (
+            "The rig as described explains this record, but the record does not say how far it is "
+            "misaligned: static friction and apparatus cannot be told apart by it."
+        )
+    return (
+        f"The rig explains this record by itself: with a misalignment of {describe(phi)}, and the "
+        "friction law of its description, simulated records look like it; no static friction "
+        "beyond that law is needed, and none is excluded."
+    )
+
+
+def angle(found: Comparison) -> Estimate | None:
+    """Return the estimate of the misalignment; None where it was not fitted."""
+    known = [] if found.fit is None else [x for x in found.fit.estimates if x.name == "phi"]
+    return known[0] if known else None
+
+
+def describe(x: Estimate) -> str:
+    """Return an estimate with its interval."""
+    low, high = in_words(x.low, x.unit), in_words(x.high, x.unit)
+    return f"{in_words(x.median, x.unit)} (95 %: {low} to {high})"
+
+
+def grounds(found: Comparison, fit: Fit) -> list[str]:
+    """Return what the verdict rests on."""
+    conditions = fit.plan.conditions[0]
+    channels = " and ".join(NAMES.get(name, name) for name in conditions.noise)
+    lines = [
+        f"{conditions.cycles} cycles of {in_words(conditions.cycle, 's')}, with {channels}, beside "
+        f"{fit.simulations} simulated records.",
+        curve(found.predictive),
+        f"{fit.farther:.0%} of the simulated records lie farther from the others, by their "
+        f"features, than the measured one; below {RARE:.0%} it is unlike them.",
+    ]
+    if found.beyond:
+        lines.append(
+            f"At an end of its prior, beyond which the record points: {', '.join(found.beyond)}."
+        )
+    return lines
+
+
+def curve(found: Predictive | None) -> str:
+    """Return how the loading curve agrees with simulations."""
+    if found is None:
+        return "With the fitted values hardly any simulated record has cycles of stick and slip."
+    force, bend = (
+        ((values >= low) & (values <= high)).mean()
+        for values, (low, high) in zip(
+            (found.measured.force, found.measured.bend), found.bands, strict=True
+        )
+    )
+    return (
+        f"The measured loading curve lies within the 95 % band of simulated ones over "
+        f"{force:.0%} of its length, and its departure from a straight line over {bend:.0%}; "
+        f"{found.larger:.0%} of the simulations depart as far from their mean, and below "
+        f"{RARE:.0%} it is unlike them."
+    )
+
+
+def changes(found: Comparison, fit: Fit) -> list[str]:
+    """Return what would change the verdict."""
+    lines = []
+    if not found.like:
+        lines.append(
+            "Look at drift, hum and filters, which are not simulated; at the stated stiffness, "
+            "mass, load and velocity (stiction analyse); at the law of friction; and whether the "
+            "priors are too narrow."
+        )
+    if found.absent:
+        listed = " and ".join(NAMES.get(name, name) for name in found.absent)
+        lines.append(f"Measuring the {listed} too would tell more of the misalignment.")
+    open_ones = [x.name for x in fit.estimates if not x.identified]
+    if open_ones:
+        lines.append(
+            f"Not identifiable from this record: {', '.join(open_ones)}. Where the prior of one "
+            "of these is wrong, the verdict is."
+        )
+    lines.append(
+        "Other mechanisms (static friction in one dimension, rate and state, LuGre) were not "
+        "compared; a record of the same rig, turned by a known angle, would tell: the fitted "
+        "misalignment must turn with it."
+    )
+    return lines

@@ -1,0 +1,128 @@
+"""Posterior-predictive check: do simulations with the fitted parameters look like the record?
+
+The loading curve is the mean force at equal shares of the time from trough to peak. If that of the
+record departs from those of simulations with parameters drawn from the posterior, what is simulated
+is not what was measured (A. Gelman, X.-L. Meng & H. Stern, Stat. Sinica 6, 733 (1996)).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.inference.features import Cycles
+from stiction.inference.library import Plan, Synthetic, synthesise
+from stiction.inference.observation import Observation
+from stiction.inference.posterior import Fit
+from stiction.study.execution.engines import Threads
+
+Floats = NDArray[np.float64]
+
+DRAWS = 60  # simulations with parameters of the posterior
+TAILS = (0.025, 0.975)
+SHARES = np.linspace(0.0, 1.0, 41)
+
+
+class Curve(NamedTuple):
+    """A loading curve: mean time (s) and force (N) at equal shares of the loadings, (s,)."""
+
+    time: Floats
+    force: Floats
+
+    @property
+    def bend(self) -> Floats:
+        """How far the force is from a straight line between its ends, over its rise."""
+        first, last = self.force[..., :1], self.force[..., -1:]
+        return (self.force - first) / (last - first) - SHARES
+
+
+class Predictive(NamedTuple):
+    """A record beside simulations with the fitted parameters.
+
+    Parameters
+    ----------
+    measured : Curve
+        Of the record.
+    simulated : Curve
+        Of each simulation, (n, s).
+    larger : float
+        Share of simulations whose curve departs from their mean more than that of the record does,
+        in its force or in its bend.
+    example : Synthetic
+        The simulation with the curve nearest to the mean one.
+    """
+
+    measured: Curve
+    simulated: Curve
+    larger: float
+    example: Synthetic
+
+    @property
+    def bands(self) -> tuple[Floats, Floats]:
+        """The predictive intervals, 95 %, of force and bend, (2, s) each."""
+        force, bend = (
+            np.quantile(each, TAILS, axis=0) for each in (self.simulated.force, self.simulated.bend)
+        )
+        return force, bend
+
+
+def loading_curve(step: float, force: Floats, cycles: Cycles) -> Curve:
+    """Return the mean loading curve of samples `step` apart."""
+    pairs = [*zip(cycles.before.tolist(), cycles.peak.tolist(), strict=True)]
+    index = np.arange(len(force), dtype=np.float64)
+    each = [np.interp(low + SHARES * (high - low), index, force) for low, high in pairs]
+    length = step * float(np.mean([high - low for low, high in pairs]))
+    return Curve(length * SHARES, np.mean(each, axis=0))
+
+
+def predict(
+    fit: Fit, seen: Observation, progress: Callable[[float], None] | None = None
+) -> Predictive | None:
+    """Simulate a record with parameters of its posterior; None if hardly any has cycles."""
+    step = seen.conditions.step
+    made: list[Synthetic] = []
+    chosen = np.linspace(0, len(fit.scores) - 1, DRAWS).astype(int)
+    work = simulation(fit.plan, fit.scores[chosen])
+    for done, found in enumerate(Threads().results(work, range(DRAWS)), 1):
+        made += [found] if found else []
+        if progress is not None:
+            progress(done / DRAWS)
+    if 2 * len(made) < DRAWS:
+        return None
+    curves = [loading_curve(step, each.channels["force"], each.cycles) for each in made]
+    measured = loading_curve(step, seen.force, seen.cycles)
+    simulated = Curve(*(np.stack(each) for each in zip(*curves, strict=True)))
+    own, others = departures(
+        np.concatenate([measured.force, measured.bend]),
+        np.concatenate([simulated.force, simulated.bend], axis=1),
+    )
+    larger = (1.0 + float((others >= own).sum())) / (1.0 + len(others))
+    return Predictive(measured, simulated, larger, made[int(np.argmin(others))])
+
+
+def simulation(plan: Plan, scores: Floats) -> Callable[[int, Callable[[], bool]], Synthetic | None]:
+    """Return the task of one simulation under the first conditions."""
+
+    def work(number: int, _: Callable[[], bool]) -> Synthetic | None:
+        return next(synthesise(plan, scores[number], np.random.default_rng([1, number])))
+
+    return work
+
+
+def departures(measured: Floats, simulated: Floats) -> tuple[float, Floats]:
+    """Return how far curves depart from the mean simulated one, in standard deviations.
+
+    The largest at any share: of the measured (s,) and of each simulated one (n, s), from the mean
+    of the others.
+
+    >>> departures(np.array([3.0]), np.array([[1.0], [0.0], [-1.0]]))
+    (3.0, array([1.5, 0. , 1.5]))
+    """
+    count = len(simulated)
+    spread = np.maximum(simulated.std(axis=0, ddof=1), 1e-12)
+    apart = (simulated - simulated.mean(axis=0)) * count / (count - 1)
+    own = float((np.abs(measured - simulated.mean(axis=0)) / spread).max())
+    return own, (np.abs(apart) / spread).max(axis=1)

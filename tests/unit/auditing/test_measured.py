@@ -1,0 +1,135 @@
+"""An audit with a measured record: verdict, grounds, page. Records of known rigs."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.auditing.measured.comparison import compare
+from stiction.auditing.measured.words import sections, verdict
+from stiction.auditing.page import page
+from stiction.errors import DescriptionError
+from stiction.inference.features import find_cycles
+from stiction.inference.jitter import Jitter, move
+from stiction.inference.predictive import SHARES, loading_curve
+from stiction.plotting import plot_predictive, plot_ranks
+
+TEXT = """
+[slider]
+mass = "80 g"
+k_x = "2.3 +- 0.1 kN/m"
+k_y = "0.9 MN/m"
+phi = {low = "0.5 deg", high = "5 deg", scale = "log"}
+normal_load = "4 N"
+
+[friction]
+law = "exponential-weakening"
+mu_0 = {low = 0.5, high = 0.75}
+mu_inf = {low = 0.25, high = 0.5}
+v_f = "10 mm/s"
+
+[drive]
+velocity = "0.5 mm/s"
+"""
+SIMULATIONS = 420
+
+
+def record_of(slider, seed):
+    """Jittered cycles with noise of 0.2 % of the friction force."""
+    random = np.random.default_rng(seed)
+    motion = move(slider, np.arange(0.0, 20.0, 0.01), Jitter(0.005, 0.5), random, cycle=1.4)
+    force = slider.k_x * motion.rows[:, 0]
+    noisy = force + 0.005 * random.standard_normal(len(force))
+    return st.Record(time=motion.time, force=noisy, drive_velocity=0.5e-3, normal_load=4.0)
+
+
+@pytest.fixture(scope="module")
+def rig():
+    return st.Rig.from_toml(TEXT)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("libraries")
+
+
+@pytest.fixture(scope="module")
+def found(rig, folder):
+    record = record_of(rig.slider.replace(phi="2.5 deg"), 7)
+    return st.audit(rig, record=record, simulations=SIMULATIONS, library=folder)
+
+
+def test_a_record_of_the_rig_is_explained_and_its_misalignment_found(found):
+    phi = found.measured.fit["phi"]
+    assert phi.low < np.radians(2.5) < phi.high
+    first = found.tables()[0]
+    assert first.title == "What the record says"
+    (said,) = first.sentences
+    assert said.startswith("The rig explains this record by itself: with a misalignment of 2.")
+    assert "no static friction beyond that law is needed, and none is excluded" in said
+
+
+def test_the_report_says_what_it_rests_on_and_what_would_change_it(found):
+    parts = {part.title: " ".join(part.sentences) for part in found.tables()}
+    assert "simulated records" in parts["What that rests on"]
+    assert "force across the drive and displacement of the mass" in parts["What would change it"]
+    assert "Other mechanisms" in parts["What would change it"]
+    assert {"Fit", "Verdict", "How well to align"} <= set(parts)
+
+
+def test_the_page_has_the_figures_of_the_record(found):
+    text = page(found, "pin")
+    captions = ("Measured, and simulated", "Prior (grey)", "All pairs", "Calibration: ranks")
+    assert [each for each in captions if each not in text] == []
+
+
+def test_the_band_holds_the_measured_curve(found):
+    made = found.measured.predictive
+    (low, high), (lowest, highest) = made.bands
+    assert ((made.measured.force > low) & (made.measured.force < high)).mean() > 0.9
+    assert lowest[0] == highest[0] == pytest.approx(0.0)
+    record, loading, bend = plot_predictive(found.measured)
+    assert len(record.lines) == len(loading.lines) == len(bend.lines) == 2
+    assert len(plot_ranks(found.measured.fit)) == len(found.measured.fit.estimates)
+
+
+def test_a_record_with_static_friction_and_no_rotation_gets_no_verdict(rig, folder):
+    """Coulomb friction with a static coefficient, square on: no creep, steeper slips."""
+    slider = rig.slider.replace(phi="0 deg", friction=st.Coulomb(mu_0=0.45, mu_static=0.6))
+    seen = compare(record_of(slider, 8), rig, simulations=SIMULATIONS, library=folder)
+    assert not seen.like
+    assert verdict(seen).startswith("No verdict: this record is not like those of the rig")
+    assert "phi" in seen.beyond  # the prior excludes zero
+    assert "At an end of its prior" in str(sections(seen)[1])
+
+
+def test_a_record_without_cycles_gets_no_verdict_and_says_why(rig):
+    flat = st.Record(time=np.arange(100.0), force=np.ones(100))
+    seen = compare(flat, rig)
+    assert seen.fit is None
+    (part,) = sections(seen)
+    assert "No verdict: the record: has 0 whole cycles of stick and slip" in part.sentences[0]
+
+
+def test_a_rig_without_priors_cannot_be_held_against_a_record():
+    record = st.Record(time=np.arange(100.0), force=np.ones(100))
+    with pytest.raises(DescriptionError, match="nothing is uncertain"):
+        st.audit(st.presets.nakano_popov_2020(), record=record)
+
+
+def test_what_looks_unlike_the_library_is_no_ground_for_a_verdict(found):
+    """The same fit of a record farther from the library than 99 % of it."""
+    seen = found.measured
+    far = replace(seen, fit=replace(seen.fit, farther=0.01))
+    assert seen.like
+    assert not far.like
+    assert not replace(seen, predictive=None).like
+
+
+def test_the_loading_curve_of_a_sawtooth_is_straight():
+    saw = np.tile(np.r_[0.0:1.0:11j, 0.6, 0.3], 5)
+    curve = loading_curve(0.1, saw, find_cycles(saw))
+    assert curve.force == pytest.approx(SHARES)
+    assert curve.time == pytest.approx(SHARES)
+    assert curve.bend == pytest.approx(0.0 * SHARES, abs=1e-12)
