@@ -143,6 +143,7 @@ class Record(Described):
     drive_position_unit: str = "m"
     _same_time: int = PrivateAttr(0)
     _sticks: Floats | None = PrivateAttr(None)
+    _own_period: float | None = PrivateAttr(None)
 
     @model_validator(mode="before")
     @classmethod
@@ -239,6 +240,11 @@ class Record(Described):
     def sticks(self) -> Floats | None:
         """(n, 2), s: all intervals in which the mass sticks, where the record is that of a run."""
         return self._sticks
+
+    @property
+    def own_period(self) -> float | None:
+        """Period of the mass on the softer spring alone, s, where the record is that of a run."""
+        return self._own_period
 
     def __len__(self) -> int:
         """Return the number of samples."""
@@ -345,4 +351,5 @@ def record_of(run: Trajectory) -> Record:
         slip_speed=slip_speed,
     )
     record._sticks = run.stick_intervals
+    record._own_period = 1.0 / slider.natural_frequencies[0]
     return record

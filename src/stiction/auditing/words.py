@@ -16,6 +16,7 @@ from stiction.analysis.motion.regime import (
     STICK_SLIP,
     STUCK,
     TRANSITIONAL,
+    TRANSVERSE,
     UNDETERMINED,
 )
 from stiction.analysis.parts.wording import with_error
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
 
 MEANS = ("period", "s"), ("drop", "N")  # over the cycles
 SHOWN = 1e-3  # of a mean: a smaller error is not worth a word
-VIBRATES = (HARMONIC, IRREGULAR)  # about steady sliding: nothing sticks or creeps
+VIBRATES = (HARMONIC, TRANSVERSE, IRREGULAR)  # about steady sliding: nothing creeps
 HARDLY = 0.05  # of the time: a smaller share of creep or rest is negligible
 ALMOST = 0.1  # of the present force drop: a change that leaves less is nearly a remedy
 NAMES = {
@@ -296,7 +297,8 @@ def stick(found: Audit) -> list[str]:
     if s.misalignment == 0.0:
         lines.append("There is no misalignment, so friction does not turn.")
     if vibrates:
-        lines.append("The mass vibrates about steady sliding; there is no stick in it.")
+        rests = "it rests for a moment in each swing" if seen.shares.rest else "it never rests"
+        lines.append(f"The mass vibrates about steady sliding; {rests}.")
     elif state and seen.shares.creep > 0.0:
         lines.append(
             "Friction with internal state creeps by itself. An audit of the same apparatus with "

@@ -15,6 +15,7 @@ from stiction.analysis.motion.regime import (
     STEADY,
     STICK_SLIP,
     TRANSITIONAL,
+    TRANSVERSE,
     UNDETERMINED,
     Regime,
 )
@@ -121,7 +122,7 @@ def find_friction(record: Record, regime: Regime, cycles: xr.Dataset) -> Frictio
             f"it is the mean of the peaks of stick-slip, and {without_loading(regime)}"
         )
     kinetic = None
-    if kind in (STICK_SLIP, TRANSITIONAL, HARMONIC, IRREGULAR) and count:
+    if kind in (STICK_SLIP, TRANSITIONAL, HARMONIC, TRANSVERSE, IRREGULAR) and count:
         kinetic = _over(0.5 * (cycles["peak"].values + cycles["trough"].values), load)
     elif comes_to_rest(record.slip_speed):
         missing["kinetic"] = "the mass comes to rest"

@@ -43,6 +43,7 @@ Floats = NDArray[np.float64]
 STICK_SLIP = "stick-slip"
 TRANSITIONAL = "transitional oscillation"
 HARMONIC = "harmonic vibration"
+TRANSVERSE = "transverse oscillation"
 IRREGULAR = "irregular vibration"
 SETTLING = "settling"
 STEADY = "steady sliding"
@@ -182,7 +183,8 @@ class Regime(NamedTuple):
         the cycle; or for half of it or more where the slip speed is known; in a run, if it sticks
         in each cycle, however shortly),
         "transitional oscillation" (for half of it or more by the shape), "harmonic vibration" (for
-        less or not at all), "irregular vibration" (swings that stand out, of changing period),
+        less or not at all), "transverse oscillation" (of a run, quicker than the mass can swing on
+        the softer spring alone), "irregular vibration" (swings that stand out, of changing period),
         "settling" (a transient that decays), "steady sliding" (no swings stand apart from the
         noise: what is smaller is not seen), "stuck" (it loads and never slips) or "undetermined".
     confidence : float
@@ -346,6 +348,14 @@ def _by_shape(record: Record, found: Swings) -> Regime:
     if kind == HARMONIC and count > 1:
         evidence["drop_spread"] = drop_spread(drop)
     evidence |= _natural_period(record, table)
+    own, resolution = record.own_period, step / float(table["period"].mean())
+    if own is not None and couples(shape(typical), float(table["period"].mean()), own):
+        quick = table["period"].values / own
+        alike = int((quick < COUPLED).sum())
+        if count > 1:
+            evidence["cycles_alike"] = alike / count
+        sure = max((alike + 1) / (count + 3), _chance(quick, 0.0, COUPLED, resolution))
+        return Regime(TRANSVERSE, sure, evidence, kind)
     if found.noise > NOISE_SHOWS * np.median(drop):
         evidence["drop_over_noise"] = float(np.median(drop)) / found.noise
     grown = float(drop[-1] / drop[0])
@@ -357,7 +367,6 @@ def _by_shape(record: Record, found: Swings) -> Regime:
     counted = (alike + 1) / (count + 3)
     if form in (TRANSITIONAL, HARMONIC) and (stays := _plateaus(record, table)) > PLATEAU:
         return Regime(UNDETERMINED, 0.0, {"cycles": count, "plateaus": 2.0 * stays})
-    resolution = step / float(table["period"].mean())
     decisive = (shares, *_bounds(kind), resolution)
     if form != shape(typical):
         decisive = (still, RESTS, np.inf, resolution)
@@ -471,6 +480,15 @@ def shape(rise_share: float, still: float = 0.0, sticks: float = 0.0) -> str:
         return UNDETERMINED
     rests = rest_share(rise_share)
     return next(kind for bound, kind in SHAPES if rests >= bound)
+
+
+def couples(kind: str, period: float, own: float) -> bool:
+    """Return whether a vibration is too quick for the softer spring alone, whose period is `own`.
+
+    Then the stiffer spring swings as well: friction that turns couples them. Where the mass sticks,
+    it does so once in each of these swings.
+    """
+    return kind in (TRANSITIONAL, HARMONIC) and period < COUPLED * own
 
 
 def _natural_period(record: Record, table: xr.Dataset) -> dict[str, float]:

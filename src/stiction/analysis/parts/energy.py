@@ -58,8 +58,10 @@ def section(found: Analysis) -> Section:
     names = [name for name in ENERGIES if (np.abs(budget[name]) > least).any()]
     columns = {"from": Quantity(budget["start"].values, "s")}
     columns |= {ENERGIES[name]: Quantity(budget[name].values, "J") for name in names}
-    closes = f"It closes to {left / work:.1g} of the work." if left > 0.0 else "It closes exactly."
-    closes = closes if work > 0.0 else "No work is done."
+    closes = (
+        f"It closes to {left / work:.1g} of the work." if left and work else "It closes exactly."
+    )
+    closes = closes if work else "No work is done."
     small = [ENERGIES[name] for name in ENERGIES if name not in names]
     most = f"{100 * NOTHING:g}% of it"
     less = f" Always less than {most}: {', '.join(small)}." if small and work else ""

@@ -8,7 +8,6 @@ import numpy as np
 
 from stiction.analysis.motion.doubts import turns_round
 from stiction.analysis.motion.regime import (
-    COUPLED,
     HARMONIC,
     IRREGULAR,
     SETTLING,
@@ -16,8 +15,9 @@ from stiction.analysis.motion.regime import (
     STICK_SLIP,
     STUCK,
     TRANSITIONAL,
+    TRANSVERSE,
 )
-from stiction.analysis.motion.rest import STICKING, comes_to_rest, stuck_until
+from stiction.analysis.motion.rest import comes_to_rest, stuck_until
 from stiction.analysis.parts.wording import number
 from stiction.text.sections import Section
 from stiction.text.units import in_words
@@ -78,10 +78,12 @@ def plainly(found: Analysis) -> str:
             TRANSITIONAL: f"The mass slips {times}{every}, between stick-slip and plain "
             f"vibration; {size}",
             HARMONIC: f"The mass swings {times}{every}{_stick_share(found)}; {size}",
+            TRANSVERSE: f"The mass oscillates across the drive {times}{every}"
+            f"{_stick_share(found)}; {size}",
         }
         if kind in plain:
             each = " each time" if count > 1 else ""
-            return f"{plain[kind]}{each}.{_note_fast_cycles(found, period)}"
+            return f"{plain[kind]}{each}.{_why_transverse(found)}"
     if found.regime.evidence.get("backward", 0.0) > 0.5:
         return (
             "The force falls slowly and rises fast: it is recorded with the other sign, in all "
@@ -112,15 +114,12 @@ def _stick_share(found: Analysis) -> str:
     return f", and sticks for {100.0 * share:.2g}% of that time" if share else ", without sticking"
 
 
-def _note_fast_cycles(found: Analysis, period: float) -> str:
-    """Note that the cycles of a run are too fast for the softer spring alone."""
-    shape = found.regime.evidence.get("rest_share", 0.0)
-    if not isinstance(found.source, Trajectory) or shape >= STICKING:
-        return ""
-    own = 1.0 / found.source.slider.natural_frequencies[0]
-    if period >= COUPLED * own:
+def _why_transverse(found: Analysis) -> str:
+    """Return what makes cycles of a run those of both springs, or nothing for other cycles."""
+    own = found.record.own_period
+    if found.regime.kind != TRANSVERSE or own is None:
         return ""
     return (
         f" That is quicker than the {in_words(own, 's')} in which it swings on the softer spring "
-        "alone: the stiffer one swings as well (a study calls this transverse oscillation)."
+        "alone: the stiffer one swings as well."
     )

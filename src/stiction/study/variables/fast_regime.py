@@ -21,7 +21,6 @@ from stiction.study.variables.features import PARTS, Features
 
 Floats = NDArray[np.float64]
 
-TRANSVERSE = "transverse oscillation"
 KINDS = (
     regime.UNDETERMINED,
     regime.STUCK,
@@ -30,13 +29,13 @@ KINDS = (
     regime.HARMONIC,
     regime.SETTLING,
     regime.STEADY,
-    TRANSVERSE,
+    regime.TRANSVERSE,
     regime.IRREGULAR,
 )  # stores keep their indices: append new ones
 FORMERLY = {
     "between stick-slip and harmonic vibration": regime.TRANSITIONAL,
     "damped approach": regime.SETTLING,
-    "song": TRANSVERSE,
+    "song": regime.TRANSVERSE,
 }
 FEWEST = 2  # swings needed for a kind: a single one may be the end of a transient
 OSCILLATES = 0.1  # of the largest amplitude of the fast oscillation without reversal of slip
@@ -124,7 +123,7 @@ def kind_of(
     dying = die_out(cycles, end)
     kind = regime.SETTLING if dying else course(found, start, end, drive)
     calm = kind in (regime.SETTLING, regime.STEADY)
-    return TRANSVERSE if calm and oscillation > OSCILLATES else kind
+    return regime.TRANSVERSE if calm and oscillation > OSCILLATES else kind
 
 
 def cycles_among(found: Swings, end: float) -> Swings:
@@ -151,9 +150,9 @@ def by_shape(cycles: Swings, own: float, still: Shares, sticks: Shares) -> str:
     count = len(cycles.drop)
     rise = float(np.sort(cycles.rise_share)[count // 2])
     kind = regime.shape(rise)
+    if regime.couples(kind, float(cycles.period.mean()), own):
+        return regime.TRANSVERSE
     if kind in (regime.TRANSITIONAL, regime.HARMONIC):
-        if cycles.period.mean() < regime.COUPLED * own:
-            return TRANSVERSE
         known = (float(np.median(share(cycles))) for share in (still, sticks))
         kind = regime.shape(rise, *known)
     return regime.IRREGULAR if kind == regime.HARMONIC and irregular(cycles) else kind
