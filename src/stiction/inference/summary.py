@@ -24,6 +24,7 @@ Floats = NDArray[np.float64]
 
 WIDTHS = (1.0, 3.0)  # of the kernel, over the typical distance between records
 FINER = 0.3  # ridge with the metric of a parameter, over that without
+UNKNOWN = 0.8  # error of a target over its variance, above which features say nothing of it
 OTHERS = 5  # records of the library whose distance says how usual a record is
 ROUND = 0.05  # share of the first metric that remains
 RIDGES = 10.0 ** np.arange(-6.0, 2.1, 0.5)
@@ -163,6 +164,8 @@ def adapt_metrics(first: Regression, scores: Floats, targets: Floats) -> Regress
     metric = np.repeat(first.metric, targets.shape[1], axis=0)
     even = np.arange(len(scores)) % 2 == 0
     for i, target in enumerate((targets - first.mean).T):
+        if error(first.library[:, i], targets[:, i]) > UNKNOWN * target.var():
+            continue  # no metric helps, and this is what learning takes most of its time for
         width, ridge = first.width[i], first.ridge[i]
         left_out = np.empty_like(target)
         for half in (even, ~even):
