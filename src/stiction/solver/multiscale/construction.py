@@ -12,6 +12,7 @@ from stiction.solver.multiscale.inside import (
     Window,
     add_motion,
     add_node,
+    begin_again,
     begin_at_edge,
     finish_motion,
     in_progress,
@@ -135,6 +136,8 @@ def chart(
     row, missed = known.sizes[0], inf
     patch, c = known.patches[row], known.coefficients[row]
     first = 1 if patch[0] == theta else 0
+    if first > 0 and len(known.record.rows) > 0:
+        begin_again(known)
     c[first:] = 0.0
     patch[0] = theta
     for n in range(first, NODES):

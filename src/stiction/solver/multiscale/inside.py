@@ -8,7 +8,7 @@ interpolated in the angle through the patch's own nodes, as its turn and time ar
 
 from __future__ import annotations
 
-from math import ceil, pi, sqrt
+from math import ceil, inf, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -194,6 +194,15 @@ def add_motion(
 
 
 @inlined
+def begin_again(known: Returns) -> None:
+    """Forget all nodes but the first of a patch that was not completed: the next is narrower."""
+    inside = known.inside
+    shape = inside.shapes[known.sizes[0]]
+    shape[1], shape[2] = 0, 1 if shape[0] > 0 else 0
+    inside.missed[0] = inf
+
+
+@inlined
 def begin_at_edge(known: Returns) -> None:
     """Set the place of the edge for a patch that ends near one, for nodes in the root (M59b).
 
@@ -239,35 +248,48 @@ def add_node(
 ) -> None:
     """Add the motion of node `n`, of the angle or of the time held.
 
-    The number of pieces is chosen at the first node. The nodes of the motion are enough when a
-    fresh one is predicted, and the one before it nearly so. Later ones are left out; a patch whose
-    motion is not resolved has none.
+    The number of pieces is chosen at the first node, none if that is not resolved. The nodes of the
+    motion are enough when a fresh one is predicted, and the one before it nearly so. Later ones are
+    left out; a patch whose motion is not resolved has none.
     """
-    inside, record, row = known.inside, known.record, known.sizes[0]
-    shape = inside.shapes[row]
+    inside, shape = known.inside, known.inside.shapes[known.sizes[0]]
     if n == 0:
         shape[0], shape[1], shape[2] = resolution(problem, window.duration, known.closing), 0, 1
     if shape[2] == 0 or shape[1] > 0:
         return
-    shape[2] = 0
-    if record.used[0] == 0 or record.used[0] > len(record.rows) or not window.duration > 0.0:
+    pieces = resolved_pieces(problem, accuracy, known, n, window)
+    shape[2] = 1 if pieces > 0 else 0
+    if n == 0:
+        shape[0] = pieces
+    if pieces == 0:
         return
-    while True:
-        pieces = shape[0]
-        if pieces > min(PIECES, len(inside.values) - inside.spans[PAST, 1]):
-            return
-        evaluate_record(problem, record, window, inside, pieces)
-        bounds(problem, accuracy, inside, pieces * PHASES, known.closing)
-        if error_of_phases(inside, pieces) < 1.0:
-            break
-        if n > 0:
-            return
-        shape[0] = 2 * pieces
     miss = added_motion(inside, n, pieces)
-    shape[2] = 1
     if miss < 1.0 and inside.missed[0] < 10.0:
         shape[1] = n + 1
     inside.missed[0] = miss
+
+
+@inlined
+def resolved_pieces(
+    problem: Problem, accuracy: Accuracy, known: Returns, n: int, window: Window
+) -> int:
+    """Evaluate a slip in so many pieces that they resolve it, and return their number, or 0.
+
+    Only at the first node it may be more than at the start.
+    """
+    inside, record = known.inside, known.record
+    pieces = inside.shapes[known.sizes[0], 0]
+    if record.used[0] == 0 or record.used[0] > len(record.rows) or not window.duration > 0.0:
+        return 0
+    while pieces <= min(PIECES, len(inside.values) - inside.spans[PAST, 1]):
+        evaluate_record(problem, record, window, inside, pieces)
+        bounds(problem, accuracy, inside, pieces * PHASES, known.closing)
+        if error_of_phases(inside, pieces) < 1.0:
+            return int(pieces)
+        if n > 0:
+            return 0
+        pieces = 2 * pieces
+    return 0
 
 
 @inlined
