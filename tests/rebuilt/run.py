@@ -84,9 +84,9 @@ class Solver:
     def at_rest(self):
         """Return whether the slip counts as zero, section 13."""
         small = self.tol * self.sigma
-        if self.isotropic or self.r > 1e-3 * small:
+        if self.isotropic or self.r > 1e-3 * small or self.r < 1e-13 * small:
             return self.r < 1e-13 * small
-        return self.margin(self.u) < 0 or self.r == 0
+        return self.margin(self.u) < 0
 
     def stick(self, end):
         """Section 3, and the direction of take-off (M18)."""

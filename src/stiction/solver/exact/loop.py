@@ -178,9 +178,11 @@ def at_rest(problem: Problem, motion: Motion, accuracy: Accuracy) -> bool:
     turning as it vanishes. There a slip that friction is about to end is cut off earlier.
     """
     tolerated = accuracy.tolerance * accuracy.speed
+    if motion.r < 1e-13 * tolerated:
+        return True
     if isotropic(problem.surface) or motion.r > 1e-3 * tolerated:
-        return motion.r < 1e-13 * tolerated
-    return margin(problem, motion.t, motion.u_x, motion.u_y)[0] < 0.0 or motion.r == 0.0
+        return False
+    return margin(problem, motion.t, motion.u_x, motion.u_y)[0] < 0.0
 
 
 @inlined
