@@ -40,6 +40,23 @@ Changes = Annotated[
         ),
     ),
 ]
+Simulations = Annotated[
+    int,
+    Parameter(
+        name=("--simulations", "-n"),
+        help="Simulated records in the library; more sharpen the posterior, and take longer.",
+    ),
+]
+Library = Annotated[
+    Path | None,
+    Parameter(
+        help=(
+            "A folder for libraries; by default in the user's cache. What was interrupted "
+            "continues there, and another record under the same conditions needs no new "
+            "simulations."
+        ),
+    ),
+]
 
 
 @Parameter(name="*")

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
-
-from cyclopts import Parameter
 
 from stiction.cli.options import (
     Changes,
     FromPreset,
+    Library,
     MaybeOutput,
     Measured,
+    Simulations,
     Trust,
     changes,
     rig_from,
@@ -28,8 +27,8 @@ def audit(
     trust: Trust = False,
     set: Changes = None,
     record: Path | None = None,
-    simulations: Annotated[int, Parameter(name=("--simulations", "-n"))] = 4000,
-    library: Path | None = None,
+    simulations: Simulations = 4000,
+    library: Library = None,
     measured: Measured | None = None,
 ) -> int:
     """Audit the apparatus that CONFIG describes: will it measure friction, or itself?
@@ -62,8 +61,6 @@ def audit(
         A measured record of the apparatus, of any format that `stiction import` reads; CONFIG
         states what is uncertain, as for `stiction fit`. The report begins with what it says:
         verdict, grounds, prior against posterior, and what would change it.
-    simulations, library
-        As of `stiction fit`, for RECORD.
     """
     from stiction.analysis.measurement.reading import read_source
     from stiction.analysis.record import Record, record_of

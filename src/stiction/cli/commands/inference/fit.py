@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
-from cyclopts import Parameter
-
-from stiction.cli.options import Changes, Measured, Output, Trust, changes
+from stiction.cli.options import (
+    Changes,
+    Library,
+    Measured,
+    Output,
+    Simulations,
+    Trust,
+    changes,
+)
 from stiction.cli.terminal import say
 
 
@@ -18,8 +24,8 @@ def fit(
     rig: Path,
     output: Output,
     figures: Path | None = None,
-    simulations: Annotated[int, Parameter(name=("--simulations", "-n"))] = 4000,
-    library: Path | None = None,
+    simulations: Simulations = 4000,
+    library: Library = None,
     seed: int = 0,
     trust: Trust = False,
     set: Changes = None,
@@ -58,11 +64,6 @@ def fit(
         The posterior: NetCDF, a variable for each parameter, with the prior in the group "prior".
     figures
         A folder for figures: prior against posterior, and all pairs. Made if it does not exist.
-    simulations
-        Simulated records in the library; more sharpen the posterior, and take longer.
-    library
-        A folder for libraries; by default in the user's cache. An interrupted fit continues there,
-        and another record under the same conditions needs no new simulations.
     seed
         Of the simulations.
     """
