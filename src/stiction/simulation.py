@@ -83,8 +83,9 @@ def simulate(
         angle; few cycles are solved, others interpolated, which is checked by fresh cycles to
         0.03 rtol, and what does not agree is solved in steps, as is everything else. What is
         promised of the error, as at `rtol`, is 2 times in place of 30 for a run with cycles that
-        were interpolated: its steps are held to 0.3 of the tolerance. Of 10 400 random systems
-        the worst is off by 1.1 times. Every stick is recorded. Samples inside such cycles are
+        were interpolated: its steps are held to 0.3 of the tolerance. Of 10 401 random systems
+        all but one are off by less than 1.2 times; that one by 2.9, and by 2.2 in steps: its motion
+        is nearly chaotic. Every stick is recorded. Samples inside such cycles are
         interpolated too, to 0.3 rtol or to what the steps of the cycles solved are held to.
     max_steps : int, optional
         Give up after so many steps.
