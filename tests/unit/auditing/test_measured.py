@@ -65,9 +65,10 @@ def test_a_record_of_the_rig_is_explained_and_its_misalignment_found(found):
     assert phi.low < np.radians(2.5) < phi.high
     first = found.tables()[0]
     assert first.title == "What the record says"
-    (said,) = first.sentences
+    said, described = first.sentences
     assert said.startswith("The rig explains this record by itself: with a misalignment of 2.")
     assert "no static friction beyond that law is needed, and none is excluded" in said
+    assert "as it is described" in described
 
 
 def test_the_report_says_what_it_rests_on_and_what_would_change_it(found):

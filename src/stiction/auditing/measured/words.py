@@ -9,6 +9,10 @@ from stiction.text.sections import Section
 from stiction.text.units import in_words
 
 TITLE = "What the record says"
+DESCRIBED = (
+    "The sections after the fit are of the apparatus as it is described, with uncertain values in "
+    "the middle of their priors: write the fitted values into the description, and audit again."
+)
 GROUNDS, CHANGES = "What that rests on", "What would change it"
 NAMES = {"force_across": "force across the drive", "position": "displacement of the mass"}
 
@@ -18,7 +22,7 @@ def sections(found: Comparison) -> list[Section]:
     if found.fit is None:
         return [Section(TITLE, [f"No verdict: {found.reason}."])]
     parts = [
-        Section(TITLE, [verdict(found)]),
+        Section(TITLE, [verdict(found), DESCRIBED]),
         Section(GROUNDS, grounds(found, found.fit)),
         Section(CHANGES, changes(found, found.fit)),
     ]

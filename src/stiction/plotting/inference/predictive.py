@@ -40,8 +40,8 @@ def plot_predictive(comparison: Any, axes: Sequence[Axes] | None = None) -> NDAr
         panels = as_list(axes)
         draw_cycles(panels[0], comparison.seen, comparison.predictive)
         draw_loading(panels[1:], comparison.predictive)
-        for ax in panels[:2]:
-            ax.legend(loc="best")
+        for ax in panels[:2]:  # both curves fill the panels
+            ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
     return np.array(panels, dtype=object)
 
 
