@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from stiction.analysis.measurement.reading import read_source
-from stiction.analysis.record import Record, record_of
+from stiction.analysis.record import Record, as_record
 from stiction.auditing import chain
 from stiction.auditing.advice import LEVERS, Advice, advise, limits
 from stiction.auditing.chain_words import chain_sections
-from stiction.auditing.measured.comparison import Comparison, compare
-from stiction.auditing.measured.words import sections as record_sections
 from stiction.auditing.observation import (
     MOST_WORK,
     OSCILLATES,
@@ -27,12 +25,15 @@ from stiction.auditing.tolerance.budget import Budget, budget
 from stiction.auditing.tolerance.words import section
 from stiction.auditing.words import sections
 from stiction.deprecation import old_attributes
-from stiction.inference.fit import SIMULATIONS
+from stiction.inference.library import SIMULATIONS
 from stiction.inference.priors import Rig, rig_of
 from stiction.linear_stability import Critical, Linearisation, critical, steady_sliding
 from stiction.system.description import Description
 from stiction.system.slider import Slider
 from stiction.text.sections import Section, as_html, as_text
+
+if TYPE_CHECKING:  # a fit takes 0.3 s to import
+    from stiction.auditing.measured.comparison import Comparison
 
 # parts of the work: two tests, the advices, critical misalignments, and springs replaced
 PARTS = 4 + len(LEVERS)
@@ -108,8 +109,7 @@ class Audit(NamedTuple):
     def tables(self) -> list[Section]:
         """Return the report as sections of sentences and tables."""
         tolerance = [section(self.budget)] if self.budget else []
-        record = record_sections(self.measured) if self.measured else []
-        return [*record, *sections(self), *chain_sections(self), *tolerance]
+        return [*_of_record(self.measured), *sections(self), *chain_sections(self), *tolerance]
 
     def plot(self, axes: Any = None) -> Any:
         """Draw the simulated test as a load cell records it; see `stiction.plotting`."""
@@ -183,7 +183,9 @@ def audit(
 
     measured = None
     if record is not None:
-        seen = record if isinstance(record, Record) else record_from(record)
+        from stiction.auditing.measured.comparison import compare
+
+        seen = record if isinstance(record, Record) else as_record(read_source(record))
         measured = compare(
             seen, rig, simulations=simulations, library=library,
             progress=lambda fraction: told(before * fraction),
@@ -216,10 +218,13 @@ def audit(
     )
 
 
-def record_from(path: str | Path) -> Record:
-    """Return the record in a file; a stored run is taken as if measured."""
-    source = read_source(path)
-    return source if isinstance(source, Record) else record_of(source)
+def _of_record(measured: Comparison | None) -> list[Section]:
+    """Return the sections on a measured record, none without one."""
+    if measured is None:
+        return []
+    from stiction.auditing.measured.words import sections as sections_of
+
+    return sections_of(measured)
 
 
 FORMER = {"Audit": "stiction.auditing.Audit", "examine": "stiction.audit"}

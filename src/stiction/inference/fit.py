@@ -12,12 +12,11 @@ from stiction.drive import ConstantVelocity
 from stiction.errors import DescriptionError, Fault, ResultError
 from stiction.friction import has_state
 from stiction.inference.calibration import study
-from stiction.inference.library import Library, Plan, build, plan
+from stiction.inference.library import SIMULATIONS, Library, Plan, build, plan
 from stiction.inference.observation import Observation, observe
 from stiction.inference.posterior import Fit
 from stiction.inference.priors import Normal, Prior, Rig
 
-SIMULATIONS = 4000
 FEWEST = 300  # simulations with cycles, below which nothing is learned
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from tests.uncertain import TEXT
 
 import stiction as st
 from stiction.errors import DescriptionError, ResultError
@@ -12,23 +13,6 @@ from stiction.inference.jitter import Jitter, move
 from stiction.inference.library import build
 from stiction.inference.observation import observe
 
-TEXT = """
-[slider]
-mass = "80 g"
-k_x = "2.3 +- 0.1 kN/m"
-k_y = "0.9 MN/m"
-phi = {low = "0.5 deg", high = "5 deg", scale = "log"}
-normal_load = "4 N"
-
-[friction]
-law = "exponential-weakening"
-mu_0 = {low = 0.5, high = 0.75}
-mu_inf = {low = 0.25, high = 0.5}
-v_f = "10 mm/s"
-
-[drive]
-velocity = "0.5 mm/s"
-"""
 SIMULATIONS = 420  # enough for a fit
 
 

@@ -11,7 +11,8 @@ import numpy as np
 from stiction.analysis.record import Record
 from stiction.errors import ResultError
 from stiction.inference.features import USED
-from stiction.inference.fit import SIMULATIONS, check, fit
+from stiction.inference.fit import check, fit
+from stiction.inference.library import SIMULATIONS
 from stiction.inference.observation import Observation, observe
 from stiction.inference.posterior import Fit
 from stiction.inference.predictive import Predictive, predict

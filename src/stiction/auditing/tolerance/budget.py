@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats.qmc import Sobol
 
 from stiction.auditing.observation import coarse_rate, observe
 from stiction.auditing.prediction import predict
@@ -116,6 +115,8 @@ def read(slider: Slider) -> Reading:
 
 def budget(rig: Rig, progress: Progress) -> Budget:
     """Return the tolerance budget of a rig with an uncertain misalignment."""
+    from scipy.stats.qmc import Sobol
+
     names = [*rig.priors]
     shares = Sobol(len(names), seed=0).random(DRAWS)
     which = names.index("phi")

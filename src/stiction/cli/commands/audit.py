@@ -63,7 +63,7 @@ def audit(
         verdict, grounds, prior against posterior, and what would change it.
     """
     from stiction.analysis.measurement.reading import read_source
-    from stiction.analysis.record import Record, record_of
+    from stiction.analysis.record import as_record
     from stiction.auditing.report import audit as examine
     from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
@@ -77,8 +77,8 @@ def audit(
         writable(output)
     seen = None
     if record is not None:
-        source = read_source(record, trust=trust, **(measured or Measured()).arguments())
-        seen = source if isinstance(source, Record) else record_of(source)
+        said = (measured or Measured()).arguments()
+        seen = as_record(read_source(record, trust=trust, **said))
     kept = cache_folder() if library is None else library
     with progress("auditing") as report:
         found = examine(rig, report, record=seen, simulations=simulations, library=kept)

@@ -46,16 +46,21 @@ def plot_posterior(fit: Any, axes: Sequence[Axes] | None = None) -> NDArray[np.o
     names = [*fit.data.data_vars]
     with style():
         if axes is None:
-            rows = ceil(len(names) / ACROSS)
-            grid = canvas(PAGE, 1.5 * rows + 0.3).subplots(rows, ACROSS, squeeze=False).ravel()
-            for ax in grid[len(names) :]:
-                ax.set_axis_off()
-            axes = fix_ticks(list(grid[: len(names)]))
+            axes = panels_of(len(names), 1.5)
         panels = as_list(axes)
         for ax, name, estimate in zip(panels, names, fit.estimates, strict=True):
             draw_parameter(ax, fit.data[name], fit.prior[name], estimate.identified)
         panels[0].legend(loc="upper right", handlelength=1.0)
     return np.array(panels, dtype=object)
+
+
+def panels_of(count: int, height: float) -> Sequence[Axes]:
+    """Return a panel for each parameter on a new page, in rows of a height (inches)."""
+    rows = ceil(count / ACROSS)
+    grid = canvas(PAGE, height * rows + 0.3).subplots(rows, ACROSS, squeeze=False).ravel()
+    for ax in grid[count:]:
+        ax.set_axis_off()
+    return fix_ticks(list(grid[:count]))
 
 
 def draw_parameter(ax: Axes, after: xr.DataArray, before: xr.DataArray, identified: bool) -> None:

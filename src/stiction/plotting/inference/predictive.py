@@ -9,13 +9,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from stiction.plotting.inference.posterior import panels_of
 from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
 from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PALE, SKY, style
 from stiction.text.quantity_text import metric_prefix
 
 SHOWN = 5  # cycles
 BINS = 10
-ACROSS = 4  # panels in a row
 
 
 def plot_predictive(comparison: Any, axes: Sequence[Axes] | None = None) -> NDArray[np.object_]:
@@ -97,11 +97,7 @@ def plot_ranks(fit: Any, axes: Sequence[Axes] | None = None) -> NDArray[np.objec
     low, high = binom.ppf([0.025, 0.975], len(fit.ranks), 1.0 / BINS)
     with style():
         if axes is None:
-            rows = -(-len(names) // ACROSS)
-            grid = canvas(PAGE, 1.3 * rows + 0.3).subplots(rows, ACROSS, squeeze=False).ravel()
-            for ax in grid[len(names) :]:
-                ax.set_axis_off()
-            axes = fix_ticks(list(grid[: len(names)]))
+            axes = panels_of(len(names), 1.3)
         panels = as_list(axes)
         for ax, name, ranks in zip(panels, names, fit.ranks.T, strict=True):
             ax.axhspan(low, high, color=PALE, zorder=0)

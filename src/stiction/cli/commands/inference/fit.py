@@ -68,7 +68,7 @@ def fit(
         Of the simulations.
     """
     from stiction.analysis.measurement.reading import read_source
-    from stiction.analysis.record import Record, record_of
+    from stiction.analysis.record import as_record
     from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
     from stiction.inference.fit import fit as infer
@@ -81,8 +81,7 @@ def fit(
         usable_folder(figures)
     known = Rig.from_toml(rig, changes(set), trust=trust)
     said = (measured or Measured()).arguments()
-    sources = [read_source(path, trust=trust, **said) for path in records]
-    given = [each if isinstance(each, Record) else record_of(each) for each in sources]
+    given = [as_record(read_source(path, trust=trust, **said)) for path in records]
     with progress("simulating") as report:
         found = infer(
             given,
