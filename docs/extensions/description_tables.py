@@ -99,6 +99,9 @@ def key_lines() -> list[str]:
     lines: list[str] = []
     for name, part in schema()["properties"].items():
         lines += [f"**`[{name}]`**", "", *keys(part), ""]
+        for key, inner in part["properties"].items():
+            if rows := keys(inner.get("items", {})):
+                lines += [f"**`[[{name}.{key}]]`**", "", *rows, ""]
         for case in part.get("allOf", []):
             law = case["if"]["properties"]["law"]["const"]
             lines += [f'**`[{name}]`, `law = "{law}"`**', "", *keys(case["then"]), ""]

@@ -5,13 +5,13 @@ from __future__ import annotations
 import tomllib
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from math import sqrt
+from math import pi, sqrt
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from stiction.analysis.slip import outcome
+from stiction.analysis.slip import cell_symbol, outcome
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import LAWS, Law, has_state, name_of, parameters, read_law
 from stiction.friction.equivalent import Traits, like, traits
@@ -28,12 +28,12 @@ from stiction.text.validation import unknown_name
 from stiction.trajectory import Trajectory
 
 HEADINGS = (
-    "law", "sticks", "stuck (s)", "largest k_x u_x/W", "fastest slip (m/s)",
+    "law", "sticks", "stuck (s)", "largest {}/W", "fastest slip (m/s)",
     "slowest in load-up (m/s)", "median in load-up (m/s)",
 )  # fmt: skip
 ROUNDED = 1.0 + 1e-9  # times the speed of the release, which is no slip
 REST = 1e-9  # of the drive's speed: slower motion counts as rest
-BRISTLES = 100.0  # of the stiffness along x: sigma_0 of Canudas de Wit et al. (1995) over 1 kN/m
+BRISTLES = 100.0  # of a spring's stiffness: sigma_0 of Canudas de Wit et al. (1995) over 1 kN/m
 MEMORY = 200.0  # memory lengths in a slip length: 10 µm in the 2 mm of Nakano & Popov
 EXAMPLE = """'{law = "coulomb", mu_0 = 0.15}'"""
 
@@ -68,7 +68,9 @@ class Comparison(dict[str, Trajectory]):
             for label, run in self.items()
             if not run.status.ok
         ]
-        return [Section("Friction laws", early, Table(HEADINGS, rows))]
+        force = next((cell_symbol(run.slider) for run in self.values()), "")
+        headings = tuple(each.format(force) for each in HEADINGS)
+        return [Section("Friction laws", early, Table(headings, rows))]
 
     def plot(self, axes: Any = None) -> Any:
         """Draw the runs together; see `stiction.plotting.plot_comparison`."""
@@ -234,9 +236,9 @@ def comparable(kind: Any, description: Description) -> Law:
     """Return a law of `kind` that is comparable with the description's own.
 
     The description's own law is returned if it is of that kind. Bristles are a hundred times as
-    stiff as the soft spring, and critically damped; the memory length is a two-hundredth of the
-    slip length, or that of the described law. For the apparatus of Nakano & Popov these are the
-    published values of both laws.
+    stiff as the spring whose axis is nearest to the drive, and critically damped; the memory length
+    is a two-hundredth of the slip length on that spring, or that of the described law. For the
+    apparatus of Nakano & Popov these are the published values of both laws.
     """
     slider = description.slider
     if isinstance(slider.law, kind):
@@ -244,8 +246,10 @@ def comparable(kind: Any, description: Description) -> Law:
         return described
     made: Any = like(kind, shared_traits(description))
     known = slider.law._asdict() if hasattr(slider.law, "_asdict") else {}  # a user's class
-    sigma_0, memory = BRISTLES * slider.k_x, slider.F_0 / slider.k_x / MEMORY
-    own = {"sigma_0": sigma_0, "sigma_1": 2.0 * sqrt(sigma_0 * slider.masses[0])}
+    across = abs(slider.misalignment) > 0.25 * pi
+    k, m = (slider.k_x, slider.k_y)[across], slider.masses[across]
+    sigma_0, memory = BRISTLES * k, slider.F_0 / k / MEMORY
+    own = {"sigma_0": sigma_0, "sigma_1": 2.0 * sqrt(sigma_0 * m)}
     own |= {"D_c": memory, "D_1": memory, "D_2": 10.0 * memory}
     chosen = {
         name: known.get(name, float(f"{value:.4g}"))

@@ -173,6 +173,48 @@ def test_a_law_by_name_is_in_proportion_to_the_apparatus(described: st.Descripti
     assert read_laws(rock, ["rate-and-state-slip"])[0].D_c == 3e-6  # as the described law has it
 
 
+GENERAL = st.Slider(
+    mass="0.3 kg", mass_y="0.8 kg", mass_angle="35 deg", k_x="1.1 kN/m", k_y="9 kN/m",
+    c_x="3 N s/m", c_y="12 N s/m", damping_angle="-50 deg", cell_angle="20 deg", phi="25 deg",
+    normal_load="10 N", friction=WEAKENING, drive=st.ConstantVelocity("20 mm/s"),
+)  # fmt: skip
+QUARTER = GENERAL.replace(
+    k_x="9 kN/m", k_y="1.1 kN/m", phi="-65 deg", mass_angle="-55 deg", damping_angle="-140 deg"
+)
+
+
+def test_which_axis_is_called_x_changes_nothing_of_a_general_rig() -> None:
+    """All axes are turned by a right angle, and so are laws by name, and their runs."""
+    names = ["coulomb", "lugre", "rate-and-state-ageing"]
+    settings = st.Settings(duration=0.2, sample_rate=500.0, rtol=1e-8)
+    one, other = (
+        st.compare(st.Description(each, st.Initial(), settings), names)
+        for each in (GENERAL, QUARTER)
+    )
+    assert list(one) == list(other) == ["exponential-weakening", *names]
+    assert one.ok
+    for name, run in one.items():
+        assert run.slider.law == other[name].slider.law
+        for variable in ("X", "V_X", "mu"):
+            a, b = (each.data[variable].values for each in (run, other[name]))
+            # local errors differ, and grow while the mass slips
+            np.testing.assert_allclose(a, b, rtol=0, atol=1e-5 * np.abs(a).max())
+
+
+def test_a_comparison_shows_the_force_of_the_load_cell() -> None:
+    settings = st.Settings(duration=0.1, sample_rate=500.0)
+    found = st.compare(st.Description(GENERAL, st.Initial(), settings), ["coulomb"])
+    run = found["coulomb"]
+    largest = np.abs(run.data["mu"].values).max()
+    assert outcome(run).peak == pytest.approx(largest, rel=1e-12)
+    assert "largest cell force/W" in found.tables()[0].table.headings
+    ax = panels(figure_of(plot_comparison, found))
+    assert ax["force"].get_ylabel() == ax["held"].get_xlabel() == "cell force (N)"
+    drawn = max(np.abs(line.get_ydata()).max() for line in ax["force"].lines)
+    forces = [each.data["mu"].values * 10.0 for each in found.values()]
+    assert drawn == pytest.approx(max(np.abs(each).max() for each in forces), rel=1e-12)
+
+
 def test_the_name_of_the_described_law_means_that_law_once(described: st.Description) -> None:
     assert read_laws(described, ["exponential-weakening"])[0] is described.slider.law
     short = described._replace(run=st.Settings(duration=0.01, sample_rate=1e3))

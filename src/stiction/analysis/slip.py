@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from stiction.analysis.creep.first_slip import first_slip_time
 from stiction.errors import Status
+from stiction.system.slider import Slider
 from stiction.trajectory import Trajectory
 
 Floats = NDArray[np.float64]
@@ -26,7 +27,7 @@ class Slip(NamedTuple):
     Parameters
     ----------
     time, force : ndarray
-        Time (s) and spring force k_x u_x (N).
+        Time (s) and the load cell's force (N).
     mean, high : ndarray
         Mean and largest slip speed; of a run that `is_undersampled`, the mean is that of its motion
         from place to place, without the oscillation.
@@ -39,6 +40,20 @@ class Slip(NamedTuple):
     mean: Floats
     high: Floats
     rest: Floats
+
+
+def cell_force(run: Trajectory) -> Floats:
+    """Return the force that the load cell shows, N: k_x u_x, or that along its own axis."""
+    along, across = (run.samples[name] for name in ("spring_x", "spring_y"))
+    if run.slider.cell_angle is None:
+        return along
+    x, y = run.slider.cell
+    return x * along + y * across
+
+
+def cell_symbol(slider: Slider) -> str:
+    """Return the name of the load cell's force in tables and figures."""
+    return "k_x u_x" if slider.cell_angle is None else "cell force"
 
 
 def averaged_slip(run: Trajectory, parts: int) -> Slip:
@@ -70,7 +85,7 @@ def averaged_slip(run: Trajectory, parts: int) -> Slip:
     else:
         speed = mean(run.samples["slip_speed"])
     at, sticking = np.add.reduceat(time, starts) / counts, run.samples["sticking"]
-    return Slip(at, mean(run.samples["spring_x"]), speed, high, mean(sticking.astype(np.float64)))
+    return Slip(at, mean(cell_force(run)), speed, high, mean(sticking.astype(np.float64)))
 
 
 def is_undersampled(run: Trajectory) -> bool:
@@ -98,7 +113,7 @@ class Outcome(NamedTuple):
     time_stuck : float
         Their total duration, s.
     peak : float
-        Largest magnitude of k_x u_x, in normal loads.
+        Largest magnitude of the load cell's force, in normal loads.
     fastest : float
         Largest slip speed of the samples, m/s.
     slowest : float
@@ -133,7 +148,7 @@ def outcome(run: Trajectory) -> Outcome:
         run.status,
         statistics.stick_count,
         statistics.time_stuck,
-        float(np.fmax.reduce(np.abs(run.samples["spring_x"]))) / run.slider.normal_load,
+        float(np.fmax.reduce(np.abs(cell_force(run)))) / run.slider.normal_load,
         float(np.fmax.reduce(speed)),  # ignores NaN at the end of a run
         0.0 if rests else float(np.fmin.reduce(loading)),
         float(np.median([part.mean() for part in parts])),

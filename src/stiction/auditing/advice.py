@@ -12,6 +12,7 @@ from stiction.auditing.prediction import predict
 from stiction.linear_stability import Critical, critical, growth_rate
 from stiction.system.parameter import change_parameter, read, unit
 from stiction.system.slider import Slider
+from stiction.system.springs import COMPLIANCES
 
 # Steps beyond a critical value, relative to it: larger ones for an oscillation that persists
 # although steady sliding is stable
@@ -137,7 +138,12 @@ def further(slider: Slider, path: str) -> Iterator[float]:
         elif path == "c_x":
             yield now + more * 2.0 * sqrt(slider.k_x * slider.masses[0])
         else:
-            yield now * more
+            yield now / more if is_compliance(path) else now * more
+
+
+def is_compliance(path: str) -> bool:
+    """Return whether a path is that of a spring's compliance."""
+    return path.rpartition(".")[2] in COMPLIANCES
 
 
 def lever(path: str) -> str:

@@ -13,7 +13,7 @@ from stiction.auditing.prediction import Prediction, predict
 from stiction.errors import DescriptionError
 from stiction.linear_stability import growth_rate
 from stiction.system.slider import Slider
-from stiction.system.springs import Spring, compliance
+from stiction.system.springs import COMPLIANCES, STIFFNESSES, Spring, compliance, scale_stiffness
 from stiction.system.tensors import Matrix
 
 FACTORS = (2.0, inf)  # of the stiffness of a part that is replaced
@@ -121,14 +121,16 @@ def yield_of_mass(mass: float, omega: float, beyond: Matrix, e: Matrix) -> float
 
 
 def softest_path(slider: Slider) -> str:
-    """Return the path of the stiffness that yields most along x."""
+    """Return the path of the stiffness, or the compliance, that yields most along x."""
     if not slider.springs:
         return "k_x"
     along_x = [share for share, _ in shares(slider)]
     spring = slider.springs[along_x.index(max(along_x))]
     turned = slider.turn - spring.angle
-    by_x, by_y = cos(turned) ** 2 / spring.k_x, sin(turned) ** 2 / spring.k_y
-    return f"springs.{spring.slug}.{'k_x' if by_x >= by_y else 'k_y'}"
+    c_x, c_y = spring.compliances
+    across = cos(turned) ** 2 * c_x < sin(turned) ** 2 * c_y
+    k, c = STIFFNESSES[across], COMPLIANCES[across]
+    return f"springs.{spring.slug}.{c if getattr(spring, k) is None else k}"
 
 
 def replace_each(slider: Slider, work: int, progress: Progress = None) -> Iterator[Replacement]:
@@ -152,7 +154,7 @@ def replace_one(
 ) -> Replacement:
     """Return a slider with one part `factor` times as stiff, simulated from rest."""
     spring = slider.springs[place]
-    stiff = spring._replace(k_x=spring.k_x * factor, k_y=spring.k_y * factor)
+    stiff = scale_stiffness(spring, factor)
     try:
         other = slider.replace(
             springs=[*slider.springs[:place], stiff, *slider.springs[place + 1 :]]

@@ -102,7 +102,7 @@ def outcomes(found: Audit) -> list[str]:
 
 def _describe_part(part: Part) -> tuple[str, ...]:
     spring = part.spring
-    k_x, k_y = (in_words(k, "N/m") if k < inf else "rigid" for k in (spring.k_x, spring.k_y))
+    k_x, k_y = (in_words(1.0 / c, "N/m") if c > 0.0 else "rigid" for c in spring.compliances)
     angle = f" at {degrees(spring.angle):.3g} deg" if spring.angle else ""
     return f"{spring.name}{angle}", k_x, k_y, percent(part.along_x), percent(part.along_y)
 

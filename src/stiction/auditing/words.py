@@ -20,7 +20,7 @@ from stiction.analysis.motion.regime import (
     UNDETERMINED,
 )
 from stiction.analysis.parts.wording import with_error
-from stiction.auditing.advice import Advice
+from stiction.auditing.advice import Advice, is_compliance
 from stiction.auditing.observation import (
     MOST_WORK,
     OSCILLATES,
@@ -393,7 +393,8 @@ def name_of(found: Audit, path: str) -> str:
         return "phi in [slider]"
     for each in slider.springs:
         if path.startswith(f"springs.{each.slug}."):
-            return f"stiffness {path.rpartition('.')[2]} of the {each.name}"
+            quantity = "" if is_compliance(path) else "stiffness "
+            return f"{quantity}{path.rpartition('.')[2]} of the {each.name}"
     return NAMES[path]
 
 

@@ -20,7 +20,7 @@ from stiction.friction import LAWS, Anisotropic
 from stiction.system.description import Settings
 from stiction.system.initial import Initial
 from stiction.system.slider import FROM_SPRINGS, Apparatus, Slider
-from stiction.system.springs import Spring
+from stiction.system.springs import COMPLIANCES, STIFFNESSES, Spring
 from stiction.text.units import FORCE, VELOCITY, Kind
 from stiction.text.validation import Described, fields
 
@@ -128,12 +128,22 @@ def schema_by_choice(key: str, kinds: Mapping[str, Schema], other: Schema | None
 def slider() -> Schema:
     """Return the schema of the table [slider], with one spring or several in series."""
     found = table(Apparatus, Slider)
-    found["properties"]["springs"]["items"] = table(fields(Spring), Spring)
+    found["properties"]["springs"]["items"] = spring()
     found["required"] = [name for name in found["required"] if name not in FROM_SPRINGS]
     series: Schema = {**dict.fromkeys(FROM_SPRINGS, False), "springs": {"minItems": 1}}
     found["anyOf"] = [
         {"required": [*FROM_SPRINGS], "properties": {"springs": {"maxItems": 0}}},
         {"required": ["springs"], "properties": series},
+    ]
+    return found
+
+
+def spring() -> Schema:
+    """Return the schema of a spring in series, which has a stiffness or a compliance an axis."""
+    found = table(fields(Spring), Spring)
+    found["allOf"] = [
+        {"oneOf": [{"required": [name]} for name in either]}
+        for either in zip(STIFFNESSES, COMPLIANCES, strict=True)
     ]
     return found
 

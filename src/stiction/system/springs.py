@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from cmath import exp, phase
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache, partial
 from itertools import combinations
 from math import inf, isinf, pi, sin
@@ -20,11 +20,12 @@ from stiction.errors import DescriptionError, Fault
 from stiction.system.tensors import Matrix, principal
 from stiction.text.paths import slug
 from stiction.text.quantity_text import RIGID, angle_text
-from stiction.text.units import Angle, Kind, Mass, fault, to_si
+from stiction.text.units import Angle, Kind, Mass, fault, reader, to_si
 from stiction.text.validation import faulty, make, validate
 
 LETTER = r"[^\W\d_]"
 ROUND = 1e-12  # of a compliance, or rad: less is rounding
+STIFFNESSES, COMPLIANCES = ("k_x", "k_y"), ("compliance_x", "compliance_y")
 SINGULAR = 1e-15  # of the larger compliance: a smaller one is lost beside it
 
 
@@ -45,6 +46,7 @@ Stiffness = Annotated[
     Field(gt=0),
     "float (N/m) | str, or 'rigid'",
 ]
+Compliance = Annotated[float, reader("a compliance", "m/N", "2 um/N"), Field(ge=0)]
 Name = Annotated[str, AfterValidator(_has_a_letter), Field(json_schema_extra={"pattern": LETTER})]
 
 
@@ -56,26 +58,48 @@ class Spring(NamedTuple):
     ----------
     name : str
         What it is; each has another one.
-    k_x, k_y : float or str
+    k_x, k_y : float or str, optional
         Stiffnesses along its own axes, N/m, or ``"rigid"``.
     angle : str, optional
         From x, towards y, to the axis of its `k_x`.
     mass : float or str, optional
         Mass that moves with it, kg. The model leaves it out; the audit says whether that matters.
+    compliance_x, compliance_y : float or str, optional
+        Compliances along its own axes, m/N, each in place of a stiffness; 0 where it is rigid.
 
     Examples
     --------
     >>> import stiction as st
-    >>> cell = st.Spring("load cell", k_x="20 kN/m", k_y="rigid")
+    >>> cell = st.Spring("load cell", compliance_x="50 um/N", k_y="rigid")
     >>> st.presets.nakano_popov_2020().replace(springs=[cell, st.Spring("leaf", 1e3, 1e7)]).k_x
-    952.3809523809524
+    952.3809523809523
     """
 
     name: Name
-    k_x: Stiffness
-    k_y: Stiffness
+    k_x: Stiffness | None = None
+    k_y: Stiffness | None = None
     angle: Angle = 0.0
     mass: Mass | None = None
+    compliance_x: Compliance | None = None
+    compliance_y: Compliance | None = None
+
+    def faults(self) -> Iterator[tuple[str, str]]:
+        """Yield each axis without a stiffness or a compliance, or with both."""
+        for k, c in zip(STIFFNESSES, COMPLIANCES, strict=True):
+            given = [name for name in (k, c) if getattr(self, name) is not None]
+            if not given:
+                yield k, f"missing; give {k}, or {c}"
+            elif len(given) > 1:
+                yield c, f"says the same as {k}; leave one of them out"
+
+    @property
+    def compliances(self) -> tuple[float, float]:
+        """Compliances along its own axes, m/N; 0 where it is rigid."""
+        c_x, c_y = (
+            1.0 / (k or inf) if c is None else c
+            for k, c in ((self.k_x, self.compliance_x), (self.k_y, self.compliance_y))
+        )
+        return c_x, c_y
 
     @property
     def slug(self) -> str:
@@ -101,9 +125,11 @@ def whole(springs: tuple[Spring, ...]) -> Whole:
     of c_p c_q sin(a_p - a_q)^2, without a difference. The axis x is the principal one that is
     nearer to the line x of the description.
     """
-    z = sum((1.0 / each.k_x - 1.0 / each.k_y) * exp(2j * each.angle) for each in springs)
-    along = [(1.0 / each.k_x, each.angle) for each in springs]
-    yields = [*along, *((1.0 / each.k_y, each.angle + 0.5 * pi) for each in springs)]
+    own = [each.compliances for each in springs]
+    z = sum((x - y) * exp(2j * each.angle) for each, (x, y) in zip(springs, own, strict=True))
+    along = [(x, each.angle) for each, (x, _) in zip(springs, own, strict=True)]
+    across = [(y, each.angle + 0.5 * pi) for each, (_, y) in zip(springs, own, strict=True)]
+    yields = [*along, *across]
     total = sum(c for c, _ in yields)
     soft = 0.5 * (total + abs(z))
     determinant = sum(c * d * sin(a - b) ** 2 for (c, a), (d, b) in combinations(yields, 2))
@@ -158,18 +184,26 @@ def _spring(value: Any) -> Spring:
 
 def compliance(spring: Spring) -> Matrix:
     """Return the compliance tensor of a spring in the axes of the description, (2, 2), m/N."""
-    return principal(1.0 / spring.k_x, 1.0 / spring.k_y, spring.angle)
+    return principal(*spring.compliances, spring.angle)
+
+
+def scale_stiffness(spring: Spring, factor: float) -> Spring:
+    """Return a spring that is `factor` times as stiff along both axes; rigid for infinity."""
+    stiffer = {name: (getattr(spring, name), factor) for name in STIFFNESSES}
+    stiffer |= {name: (getattr(spring, name), 1.0 / factor) for name in COMPLIANCES}
+    return spring._replace(
+        **{name: its * by for name, (its, by) in stiffer.items() if its is not None}
+    )
 
 
 def spring_table(spring: Spring) -> dict[str, Any]:
     """Return a spring as a table of a description, with SI numbers."""
-    stiffnesses = {name: getattr(spring, name) for name in ("k_x", "k_y")}
-    return {
-        "name": spring.name,
-        **{name: RIGID if isinf(k) else k for name, k in stiffnesses.items()},
-        **({"angle": angle_text(spring.angle)} if spring.angle else {}),
-        **({} if spring.mass is None else {"mass": spring.mass}),
-    }
+    table = {name: its for name, its in spring._asdict().items() if its is not None}
+    table |= {name: RIGID for name in STIFFNESSES if table.get(name) == inf}
+    if spring.angle:
+        return table | {"angle": angle_text(spring.angle)}
+    del table["angle"]
+    return table
 
 
 Springs = Annotated[

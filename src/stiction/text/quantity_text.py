@@ -23,6 +23,7 @@ PREFIXED = {
     "m/s": ("m/s", SMALL),
     "N": ("N", BOTH),
     "N/m": ("N/m", BOTH),
+    "m/N": ("m/N", SMALL),
     "N*s/m": ("N s/m", (6, 3, 0, -3)),
     "Hz": ("Hz", (9, 6, 3, 0)),
 }

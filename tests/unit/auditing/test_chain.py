@@ -7,9 +7,10 @@ import pytest
 from scipy.linalg import eigh
 
 import stiction as st
+from stiction.auditing.advice import further
 from stiction.auditing.chain import SMALL, axis, examine, parts, softest_path, yield_of_mass
 from stiction.auditing.chain_words import chain_sections, masses
-from stiction.auditing.words import final_motion
+from stiction.auditing.words import final_motion, name_of
 from stiction.system.tensors import principal
 
 PAPER = st.presets.nakano_popov_2020()
@@ -67,6 +68,19 @@ def test_shares_are_of_what_each_axis_yields(found):
     soft = [CHAIN.springs[1], st.Spring("leaf springs", 1e3, 1e6)]
     line = chain_sections(found._replace(chain=examine(CHAIN.replace(springs=soft), 0)))[0]
     assert "The softest is: leaf springs, with 98 % of the compliance along x and 83 %" in str(line)
+
+
+def test_a_compliance_is_told_as_such(found):
+    leaf = st.Spring("leaf springs", compliance_x="833.3333 um/N", k_y="30 MN/m")
+    soft = CHAIN.replace(springs=[*CHAIN.springs[:2], leaf])
+    path = softest_path(soft)
+    assert path == "springs.leaf-springs.compliance_x"
+    assert name_of(found._replace(slider=soft), path) == "compliance_x of the leaf springs"
+    values = list(further(soft, path))
+    assert values == sorted(values, reverse=True)
+    assert values[0] == 0.5 * leaf.compliance_x  # less of it is stiffer
+    table = chain_sections(found._replace(chain=examine(soft, 0)))[0].table
+    assert table.rows[2][1:3] == ("1.2 kN/m", "30 MN/m")
 
 
 @pytest.mark.parametrize("number", range(6))

@@ -17,7 +17,7 @@ VALIDATOR = Draft7Validator(schema())
 PAPER = st.presets.nakano_popov_2020()
 SPRINGS = [
     st.Spring("load cell", k_x="20 kN/m", k_y="rigid", angle="2 deg", mass="20 g"),
-    st.Spring("leaf springs", k_x="1 kN/m", k_y="5 MN/m"),
+    st.Spring("leaf springs", compliance_x="1 mm/N", k_y="5 MN/m"),
 ]
 # faults between values, which are not the schema's
 BETWEEN = (

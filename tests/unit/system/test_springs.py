@@ -9,7 +9,7 @@ from tests.drawn import inside
 import stiction as st
 from stiction.auditing.advice import limits
 from stiction.system.parameter import change_parameter, change_unchecked, read, unit, units
-from stiction.system.springs import compliance, whole
+from stiction.system.springs import compliance, scale_stiffness, whole
 from stiction.system.tensors import damping_tensor, mass_tensor, principal
 
 PAPER = st.presets.nakano_popov_2020()
@@ -183,6 +183,36 @@ def test_it_is_written_and_read_back(tmp_path):
     assert "springs" not in st.Description(PAPER, *whole_[1:]).to_json()
 
 
+SOFT = CELL._replace(k_x=None, compliance_x=5e-5)
+
+
+def test_a_compliance_stands_in_place_of_a_stiffness():
+    for cell in (SOFT, SOFT._replace(k_y=None, compliance_y=0.0)):
+        slider = CHAIN.replace(springs=[cell, DRIVE, LEAF])
+        assert (slider.k_x, slider.k_y) == pytest.approx((CHAIN.k_x, CHAIN.k_y), rel=1e-15)
+        assert st.Slider.from_toml(slider.to_toml()) == slider
+        assert eval(repr(slider), {"st": st}) == slider
+        description = st.Description(slider, st.Initial(), st.Settings(duration="5 ms"))
+        assert st.Description.from_json(description.to_json()) == description
+    assert 'compliance_x = "50 um/N"' in slider.to_toml()
+    assert "springs.load-cell.k_x" not in units(slider)
+    path = "springs.load-cell.compliance_x"
+    assert unit(slider, path) == "m/N"
+    softer = change_parameter(slider, path, "100 um/N")
+    assert softer == change_unchecked(slider, path, 1e-4)
+    assert softer.k_x < slider.k_x
+    changed = st.Slider.from_toml(slider.to_toml(), {path: "100 um/N"})
+    assert changed == softer
+
+
+@pytest.mark.parametrize("factor", [2.0, inf])
+def test_a_stiffened_spring_yields_less_by_that_factor(factor):
+    for spring in (CELL, SOFT, DRIVE):
+        np.testing.assert_array_equal(
+            scale_stiffness(spring, factor).compliances, np.array(spring.compliances) / factor
+        )
+
+
 def test_each_number_has_a_path_by_name_or_place():
     assert unit(CHAIN, "springs.load-cell.k_x") == unit(CHAIN, "springs.1.k_x") == "N/m"
     assert read(CHAIN, "springs.drive.k_y") == read(CHAIN, "slider.springs.2.k_y") == 5e6
@@ -219,7 +249,19 @@ def test_the_drive_stays_where_it_is_when_a_spring_changes():
         ({"springs": 3}, r"springs: 3 is not a list of springs"),
         ({"springs": [CELL]}, r"are rigid together along some axis"),
         ({"springs": [CELL, CELL, LEAF]}, r"'load cell' stands twice"),
-        ({"springs": [{"name": "a", "k_x": 1.0}]}, r"springs\.1\.k_y: missing"),
+        ({"springs": [{"name": "a", "k_x": 1.0}]}, r"springs\.1\.k_y: missing; give k_y, or co"),
+        (
+            {"springs": [SOFT._asdict() | {"angle": "2 deg", "k_x": 1.0}]},
+            r"1\.compliance_x: says the",
+        ),
+        (
+            {"springs": [{"name": "a", "compliance_x": -1.0, "k_y": 1.0}]},
+            r"compliance_x: must not be",
+        ),
+        (
+            {"springs": [{"name": "a", "compliance_x": "2 kN/m", "k_y": 1.0}]},
+            r"is in kN/m, not a unit",
+        ),
         ({"springs": [{"name": "1", "k_x": 1.0, "k_y": 1.0}]}, r"springs\.1\.name: must have a"),
         ({"springs": [{"name": "a", "k_x": -1, "k_y": "5 kg"}]}, r"k_x: must be greater than 0"),
         ({"springs": ["cell"]}, r"'cell' is not a spring; write st\.Spring"),

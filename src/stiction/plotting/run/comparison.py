@@ -18,7 +18,7 @@ from stiction.plotting.page.words import (
     system_in_words,
     wrap_words,
 )
-from stiction.plotting.run.curves import Curve, curves_of, draw_over_time
+from stiction.plotting.run.curves import Curve, curves_of, draw_over_time, force_symbol
 from stiction.plotting.run.slip_speeds import (
     draw_held,
     draw_portrait,
@@ -64,9 +64,10 @@ def plot_comparison(
     with style():
         curves = curves_of(runs)
         legend = [legend_text(curve) for curve in curves]
+        symbol = force_symbol(curves[0].run.slider)
         panels = dict(_panels(curves, legend) if axes is None else axes)
         draw: dict[str, Callable[[Axes], None]] = {
-            "force": lambda ax: draw_over_time(ax, curves, "spring_x", "$k_x u_x$"),
+            "force": lambda ax: draw_over_time(ax, curves, "force", symbol),
             "X": lambda ax: draw_over_time(ax, curves, "X", "$X$"),
             "speed": lambda ax: draw_speeds(ax, curves),
             "portrait": lambda ax: draw_portrait(ax, curves),

@@ -9,9 +9,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike, NDArray
 
-from stiction.analysis.slip import Slip
+from stiction.analysis.slip import Slip, cell_force, cell_symbol
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY
 from stiction.plotting.run.time_series import average_slip, envelope, say_only, stays
+from stiction.system.slider import Slider
 from stiction.text.quantity_text import metric_prefix
 from stiction.trajectory import Trajectory
 
@@ -19,6 +20,8 @@ Floats = NDArray[np.float64]
 
 COLOURS = (BLACK, RED, BLUE, GREEN, ORANGE, SKY, PURPLE)
 DASHES: tuple[Any, ...] = ("solid", (0, (5, 1.5)), (0, (7, 1.2, 1.2, 1.2)), (0, (1.4, 1.1)))
+
+UNITS = {"force": "N", "X": "m"}
 
 
 class Curve(NamedTuple):
@@ -62,10 +65,16 @@ def common(values: Iterable[ArrayLike]) -> tuple[float, str]:
     return metric_prefix([value for value in largest if np.isfinite(value)])
 
 
+def force_symbol(slider: Slider) -> str:
+    """Return the name of the load cell's force for an axis."""
+    name = cell_symbol(slider)
+    return f"${name}$" if "_" in name else name
+
+
 def draw_over_time(ax: Axes, curves: Sequence[Curve], variable: str, symbol: str) -> None:
-    """Draw a variable of every run over time, with a cross where a run ended early."""
+    """Draw "force" or "X" of every run over time, with a cross where a run ended early."""
     factor, prefix = common(_without_rounding(curve.run, variable) for curve in curves)
-    ax.set_ylabel(f"{symbol} ({prefix}{curves[0].run.data[variable].attrs['units']})")
+    ax.set_ylabel(f"{symbol} ({prefix}{UNITS[variable]})")
     for curve in curves:
         times, values = curve.run.samples["time"], _without_rounding(curve.run, variable) * factor
         ax.plot(*envelope(times, values), **curve.look)
@@ -76,9 +85,11 @@ def draw_over_time(ax: Axes, curves: Sequence[Curve], variable: str, symbol: str
 
 
 def _without_rounding(run: Trajectory, variable: str) -> Floats:
-    """Return a variable of a run; a position without rounding errors where the mass rests."""
+    """Return force or position of a run, this without rounding errors where the mass rests."""
+    if variable == "force":
+        return cell_force(run)
     values = run.samples[variable]
-    return np.zeros(len(values)) if variable == "X" and stays(run) else values
+    return np.zeros(len(values)) if stays(run) else values
 
 
 def mark_early_end(ax: Axes, curve: Curve, x: float, y: float) -> None:

@@ -8,8 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from stiction.analysis.motion.rest import stuck_until
+from stiction.analysis.slip import cell_force
 from stiction.plotting.page.style import GREY
-from stiction.plotting.run.curves import Curve, common, mark_early_end
+from stiction.plotting.run.curves import Curve, common, force_symbol, mark_early_end
 from stiction.plotting.run.time_series import DEEPEST, fastest_drive, say_only, set_speed_limits
 
 ROW = 0.8  # height of a filled row
@@ -33,7 +34,7 @@ def draw_speeds(ax: Axes, curves: Sequence[Curve]) -> None:
 def draw_portrait(ax: Axes, curves: Sequence[Curve]) -> None:
     """Draw the mean slip speed (m/s) over the spring force."""
     ax.set_yscale("log", nonpositive="mask")
-    factor, _ = common(curve.run.samples["spring_x"] for curve in curves)
+    factor, _ = common(cell_force(curve.run) for curve in curves)
     for curve in curves:
         slip = curve.slip
         mean = np.where(slip.mean > DEEPEST * fastest_drive(curve.run), slip.mean, np.nan)
@@ -63,7 +64,7 @@ def draw_rests(ax: Axes, curves: Sequence[Curve], bins: int = 300) -> None:
 
 def draw_held(ax: Axes, curves: Sequence[Curve], bins: int = 120) -> None:
     """Draw the share of time at zero slip over the spring force, a filled row for each run."""
-    forces = [curve.run.samples["spring_x"] for curve in curves]
+    forces = [cell_force(curve.run) for curve in curves]
     factor, prefix = common(forces)
     finite = np.concatenate([force[np.isfinite(force)] for force in forces]) * factor
     low, high = (finite.min(), finite.max()) if len(finite) else (0.0, 1.0)
@@ -78,7 +79,7 @@ def draw_held(ax: Axes, curves: Sequence[Curve], bins: int = 120) -> None:
         share = np.divide(held, total, out=np.zeros(bins), where=total > 0)
         fill_row(ax, row, share, edges, curve)
     finish_rows(ax, len(curves))
-    ax.set_xlabel(f"$k_x u_x$ ({prefix}N)")
+    ax.set_xlabel(f"{force_symbol(curves[0].run.slider)} ({prefix}N)")
     ax.set_xlim(edges[0], edges[-1])
 
 
