@@ -25,7 +25,7 @@ from stiction.inference.features import USED, features, find_cycles
 from stiction.inference.library import Library, build, dummy, plan
 from stiction.inference.observation import Conditions, Noise
 from stiction.inference.priors import Rig, Uniform
-from stiction.inference.regression_abc import quantiles, rank
+from stiction.inference.regression_abc import Sample, quantiles, rank
 
 Floats = NDArray[np.float64]
 
@@ -128,7 +128,7 @@ def compare(known: Library, learned: Learned, unseen: Library, features: Floats)
     return Trial(names, np.array(inside), np.array(ranks), np.array(widths), seconds)
 
 
-def spread(known: Library, name: str, sample: object, index: int) -> float:
+def spread(known: Library, name: str, sample: Sample, index: int) -> float:
     """Return the standard deviation of a parameter's logarithm; NaN where it has none."""
     if name not in WIDTHS:
         return float("nan")

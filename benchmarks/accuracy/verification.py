@@ -10,7 +10,8 @@ from multiprocessing import get_context
 from rich.progress import Progress
 
 from benchmarks.accuracy import convergence
-from benchmarks.cases import GROUPS, Case
+from benchmarks.cases import GROUPS
+from benchmarks.cases.case import Case
 from benchmarks.cases.closed_forms import closed_forms
 from benchmarks.section import Cell, Section, Table
 from stiction.presets import Number

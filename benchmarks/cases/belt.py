@@ -33,7 +33,8 @@ def by_scipy() -> tuple[float, float, float, float]:
     def fastest(t, y):
         return change(t, y)[1]
 
-    landed.terminal, landed.direction, fastest.direction = True, -1.0, 1.0
+    vars(landed).update(terminal=True, direction=-1.0)
+    vars(fastest).update(direction=1.0)
     # an ulp of slip to leave by: on the boundary itself the event would fire at once
     start = [1.0, SPEED * (1.0 - 1e-14)]
     found = solve_ivp(

@@ -11,6 +11,7 @@ import argparse
 import sys
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
+from math import hypot
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -58,9 +59,9 @@ def sample(of: System, draw: Draw) -> float:
     moving = np.flatnonzero(run.data["slip_speed"].values[1:] > 0.0)[:: max(1, 90 // SAMPLES)] + 1
     for k in moving:
         end = st.simulate(of.slider, float(run.data["time"][k]), rtol=of.rtol).final
-        off = [float(run.data[name][k]) - float(end[name]) for name in ("slip_x", "slip_y")]
+        found = (float(run.data[name][k]) - float(end[name]) for name in ("slip_x", "slip_y"))
         worst = max(
-            worst, float(np.hypot(*off)) / (tolerance(of.rtol) * (V + float(end["slip_speed"])))
+            worst, float(hypot(*found)) / (tolerance(of.rtol) * (V + float(end["slip_speed"])))
         )
     return worst
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
-from scipy.signal import lfilter
+from scipy.signal import lfilter  # type: ignore[attr-defined]
 
 import stiction as st
 from stiction.analysis.motion.cycles import swings

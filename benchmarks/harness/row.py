@@ -91,7 +91,7 @@ def _excuse(match: Match) -> str:
     peer, ours, ratio = match
     assert peer.errors is not None
     what = f"{peer.solver} ({peer.settings}), {1e3 * peer.seconds:.3g} ms"
-    if ours is None:
+    if ours is None or ratio is None:
         return f"{what}: no row of stiction is as accurate in both"
     return f"{what}: stiction ({ours.settings}) takes {1 / ratio:.3g} times as long"
 

@@ -16,10 +16,10 @@ from typing import Any
 
 import pytest
 
-from .mutants import Mutant, digest, drawn, files, mutated
+from .mutants import Mutant, digest, draw_mutants, files, mutate
 from .python import change
-from .reach import Test, fitting, watched
-from .report import equivalent, told
+from .reach import Test, fitting, watch_tests
+from .report import equivalent, report
 from .session import Answer, apart, first_failure, with_tests
 
 SOURCES = (
@@ -73,7 +73,7 @@ def main() -> int:
     options.results.mkdir(parents=True, exist_ok=True)
     rows: list[Row] = []
     with_tests(options.tests, lambda items: rows.extend(try_mutants(items, options)))
-    left = told(rows, equivalent())
+    left = report(rows, equivalent())
     return 0 if left <= ALLOWED * len(rows) else 1
 
 
@@ -81,7 +81,7 @@ def try_mutants(items: Sequence[pytest.Item], options: argparse.Namespace) -> It
     """Yield what came of each mutant, known from before or tried now."""
     without = {path for each in options.without for path in files([each])}
     sources = [path for path in files(map(Path, options.sources)) if path not in without]
-    sample = drawn(sources, options.mutants, options.seed, options.results)
+    sample = draw_mutants(sources, options.mutants, options.seed, options.results)
     path = options.results / "mutants.jsonl"
     lines = path.read_text().splitlines() if path.exists() else []
     known = {tuple(row["mutant"]): row for row in map(json.loads, lines)}
@@ -102,7 +102,7 @@ def tests_by_line(
     items: Sequence[pytest.Item], sources: Sequence[Path], options: argparse.Namespace
 ) -> list[Test]:
     """Return the tests with the lines that they run, from the folder or by running them."""
-    known, left_out = watched(items, sources, options.longest, options.results)
+    known, left_out = watch_tests(items, sources, options.longest, options.results)
     for name in left_out:
         print(f"left out, as it takes long or is of compiled code: {name}")
     print(f"{len(known)} tests, {sum(each.seconds for each in known):.0f} s", flush=True)
@@ -121,7 +121,7 @@ def outcome(
     text = path.read_text(encoding="utf-8")
     if digest(text) != mutant.made_from:
         raise SystemExit(f"{path} was changed meanwhile: begin again")
-    changed = mutated(text, mutant.operator, mutant.occurrence)
+    changed = mutate(text, mutant.operator, mutant.occurrence)
     chosen_items, limit = [items[name] for name in chosen], ROOM + TIMES * seconds
 
     def task() -> Answer:

@@ -10,6 +10,7 @@ import hashlib
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 sys.path.append(str(Path(__file__).parent.parent.parent))
 
@@ -75,11 +76,11 @@ def add_program(draw: Draw, slider: st.Slider) -> st.Slider:
     return slider.replace(**changes)
 
 
-def digest(arguments: dict[str, object]) -> str:
+def digest(arguments: dict[str, Any]) -> str:
     """Return what tells two runs apart that differ by a bit."""
     run = st.simulate(**arguments, max_steps=MOST)
     found = hashlib.sha256(repr((run.status, run.data.attrs.get("steps"))).encode())
-    for name in sorted(run.data.data_vars):
+    for name in sorted(map(str, run.data.data_vars)):
         found.update(name.encode() + run.data[name].values.tobytes())
     found.update(run.stick_intervals.tobytes())
     return found.hexdigest()[:16]

@@ -13,10 +13,11 @@ from matplotlib.figure import Figure
 from rich.progress import Progress
 
 import stiction as st
-from benchmarks.section import Section, Table
+from benchmarks.section import Cell, Section, Table
 from benchmarks.speed import generality, memory
 from stiction import theory
 from stiction.plotting.page.style import BLUE, GREEN, PAGE, new_figure, panel_letter, style
+from stiction.trajectory import Statistics
 
 ROUNDS = 3  # the fastest counts
 DURATION = 5.0  # s
@@ -64,7 +65,7 @@ class Point(NamedTuple):
 
     time: float
     cycles: float
-    statistics: object
+    statistics: Statistics
     per_step: float
 
 
@@ -116,7 +117,7 @@ def run(progress: Progress, quick: bool) -> Section:
             found.append(_point(sweep.setting(value), fixed))
             progress.advance(task)
         points.append(found)
-    rows = [
+    rows: list[tuple[Cell, ...]] = [
         (sweep.name, f"{value:g}", *_cells(point))
         for sweep, found in zip(sweeps, points, strict=True)
         for value, point in zip(sweep.values, found, strict=True)

@@ -65,7 +65,7 @@ def modes_over(
 
 def match_eigenvalues(before: Sequence[Complex], now: Complex) -> Complex:
     """Order eigenvalues like the linear extrapolation of those before."""
-    from scipy.optimize import linear_sum_assignment  # type: ignore[attr-defined]
+    from scipy.optimize import linear_sum_assignment
 
     if not before:
         return now

@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import Chebyshev
-from scipy.integrate import solve_ivp  # type: ignore[attr-defined]
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from stiction.drive import ConstantVelocity

@@ -103,7 +103,7 @@ def dissipative(law: Any, speeds: Sequence[float]) -> Iterator[str]:
 
 def steady_state(law: Any, point: Point) -> tuple[float, ...]:
     """Return the state after a metre of steady slip."""
-    from scipy.integrate import solve_ivp  # type: ignore[attr-defined]
+    from scipy.integrate import solve_ivp
 
     v = hypot(*point.slip)
     done = solve_ivp(
