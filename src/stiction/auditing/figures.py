@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from stiction.analysis.creep.curve import creep_curves, mean_creep
-from stiction.auditing.words import HARDLY, VIBRATES, final_motion, name_of
+from stiction.auditing.words import HARDLY, VIBRATES, name_of, short_motion
 from stiction.friction import has_state
 from stiction.linear_stability import boundary
 from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep
@@ -42,7 +42,8 @@ def creep(found: Audit) -> Figure | None:
     if slider.misalignment == 0.0 or not np.isfinite(curves["velocity"].values).any():
         return None
     V, phi = hypot(*slider.motion.rate(0.0)), abs(slider.misalignment)
-    lines = creep_theory(V, phi, slider.F_0 / slider.k_x)
+    # Eqs. (7) and (8) suppose friction without internal state
+    lines = None if has_state(slider.law) else creep_theory(V, phi, slider.F_0 / slider.k_x)
     return figure_of(plot_creep, curves, mean_creep(curves), V, lines)
 
 
@@ -63,7 +64,7 @@ def trials(found: Audit) -> Figure | None:
     tried = [
         Trial(
             f"{name_of(found, each.path)} = {in_words(each.then, each.unit)}: "
-            f"{final_motion(each.tried)}",
+            f"{short_motion(each.tried)}",
             each.tried.record,
         )
         for each in found.advices

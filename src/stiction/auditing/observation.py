@@ -190,7 +190,8 @@ def shares(run: Trajectory, cycles: xr.Dataset) -> Shares:
     """Return the shares of time in whole cycles, or in the loading if there are none."""
     times, (drive, _) = run.samples["time"], run.slider.motion.rate(0.0)
     speed = run.samples["V_X"] / drive
-    begin, end = times[0], times[np.argmax(speed > ALMOST)] if speed.max() > ALMOST else times[-1]
+    slower = np.flatnonzero(speed <= ALMOST)  # a transverse swing exceeds the drive's speed before
+    begin, end = times[0], times[min(slower[-1] + 1, len(times) - 1)] if len(slower) else times[0]
     if cycles.sizes["cycle"]:
         begin, end = float(cycles["start"][0]), float(cycles["trough_time"][-1])
     if not end > begin:  # started sliding

@@ -35,7 +35,7 @@ class Illustration(NamedTuple):
 DRAWN: dict[str, tuple[tuple[Callable[[Audit], Figure | None], str], ...]] = {
     "Verdict": ((figures.test, "The simulated test as its load cell records it."),),
     "Is it stick?": (
-        (figures.creep, "Creep before slip, averaged over the transverse motion, and Eq. (7)."),
+        (figures.creep, "Creep before slip, averaged over the transverse motion."),
         (figures.damping, "How the friction force turns during creep, and where slow turns fast."),
     ),
     measured.TITLE: ((figures.record, "Measured, and simulated with the fitted parameters."),),

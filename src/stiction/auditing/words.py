@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, degrees, isfinite, nan, sqrt
+from math import degrees, hypot, isfinite, nan, sin, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +13,7 @@ from stiction.analysis.motion.regime import (
     HARMONIC,
     IRREGULAR,
     SETTLING,
+    STEADY,
     STICK_SLIP,
     STUCK,
     TRANSITIONAL,
@@ -20,11 +21,13 @@ from stiction.analysis.motion.regime import (
     UNDETERMINED,
 )
 from stiction.analysis.parts.wording import with_error
+from stiction.analysis.record import cell_axis
 from stiction.auditing.advice import Advice, is_compliance
 from stiction.auditing.observation import (
     MOST_WORK,
     OSCILLATES,
     SLIDES,
+    SMALL,
     UNSETTLED,
     Observation,
 )
@@ -42,6 +45,7 @@ MEANS = ("period", "s"), ("drop", "N")  # over the cycles
 SHOWN = 1e-3  # of a mean: a smaller error is not worth a word
 VIBRATES = (HARMONIC, TRANSVERSE, IRREGULAR)  # about steady sliding: nothing creeps
 HARDLY = 0.05  # of the time: a smaller share of creep or rest is negligible
+SOON = 10.0  # e-folds until the first slip: it dies out in the first half of creep
 ALMOST = 0.1  # of the present force drop: a change that leaves less is nearly a remedy
 NAMES = {
     "phi": "misalignment φ",
@@ -130,6 +134,14 @@ def final_motion(seen: Observation) -> str:
         if seen.comes_to == UNSETTLED
         else name
     )
+
+
+def short_motion(seen: Observation) -> str:
+    """Return the final motion of a test in a few words, for the title of a figure."""
+    if seen.comes_to == SLIDES:
+        return STEADY
+    name = "tiny oscillation" if seen.motion == SMALL else seen.motion
+    return f"{name}, still changing" if seen.comes_to == UNSETTLED else name
 
 
 def describe_motion(seen: Observation) -> str:
@@ -224,7 +236,7 @@ def numbers(found: Audit) -> Table:
         ("damping number A, Eq. (10)", p.A, None, "", True),
         ("damping ratio ζ at θ = φ, Eq. (10)", p.zeta, None, "", True),
         ("θ at which ζ = 1: slow slip turns fast", p.theta_c, None, "rad", True),
-        ("first stick: true rest", p.first_stick, first, "s", has_state(s.law)),
+        ("first stick: true rest", nan if has_state(s.law) else p.first_stick, first, "s", False),
         ("time until the first slip", p.load_up if p.slips else nan, slip, "s", True),
         ("creep velocity at first, V sin² φ", p.creep_at_start, None, "m/s", True),
         ("creep velocity when it slips, Eq. (7)", creep_at_slip, None, "m/s", True),
@@ -272,8 +284,13 @@ def loading(seen: Observation) -> float:
 
 
 def apparent_stiffness(slider: Slider) -> float:
-    """Return the stiffness along the drive that a load cell shows, by theory, N/m."""
-    return slider.k_x * cos(slider.misalignment) ** 2
+    """Return the rate of loading over the drive's speed, both along the load cell, N/m.
+
+    By Eq. (7) the transverse spring keeps its force: only the soft one is loaded.
+    """
+    cell, along = cell_axis(slider), slider.k_x * slider.direction[0]
+    share = cell.x * slider.direction[0] + cell.y * slider.direction[1]
+    return cell.x * along / share if share else nan
 
 
 def peak(seen: Observation) -> float:
@@ -322,8 +339,8 @@ def stick(found: Audit) -> list[str]:
         lines.append("The apparent stick is mostly true rest.")
     if seen.motion == STICK_SLIP:
         lines.append(
-            "The kinetic coefficient is the mean of peak and trough; the mass swings to the "
-            "trough, which is not a property of the interface either."
+            "The apparent kinetic coefficient is the mean of peak and trough. The mass overshoots "
+            "in each slip, so the trough alone is not a property of the interface."
         )
     return lines
 
@@ -334,21 +351,39 @@ def transverse(found: Audit) -> list[str]:
     if p.amplitude == 0.0:
         return ["Without misalignment the transverse spring is not excited."]
     frequency, rate = in_words(p.f_y, "Hz"), in_words(p.sample_rate, "Hz")
+    natural = f"The transverse natural frequency is {frequency}."
     if has_state(found.slider.law):
         return [
-            f"The transverse natural frequency is {frequency}. Whether friction with internal "
-            f"state lets it oscillate, a run sampled at {rate} shows: stiction analyse."
+            f"{natural} Whether friction with internal state lets it oscillate, a run sampled at "
+            f"{rate} shows: stiction analyse."
         ]
     if seen.motion in VIBRATES or seen.shares.creep < HARDLY:
         return [
-            f"The transverse natural frequency is {frequency}. The oscillation with it belongs to "
-            f"creep, and this mass hardly creeps; a run sampled at {rate} shows what is left of it."
+            f"{natural} A transverse oscillation needs creep, and this mass hardly creeps. What "
+            f"remains of it can be seen in a run sampled at {rate}."
         ]
-    force = in_words(p.amplitude * found.slider.k_y, "N")
+    creeps = seen.shares.creep * seen.mean("period")
+    if creeps * p.f_y < 1.0:
+        return [
+            f"{natural} A transverse oscillation needs creep, and this mass creeps for "
+            f"{in_words(creeps, 's')} in each cycle, less than one period of it."
+        ]
+    force, decay = in_words(p.amplitude * found.slider.k_y, "N"), transverse_decay(found.slider)
+    if decay * p.load_up > SOON:
+        return [
+            f"{natural} A transverse oscillation begins with creep, and dies out within some "
+            f"{in_words(float(f'{5.0 / decay:.1g}'), 's')}: dampers, or friction that rises with "
+            f"speed, damp it. To see it, sample at {rate}."
+        ]
+    then = (
+        "the amplitude grows with its period"
+        if decay < 0.0
+        else "the oscillation dies out: friction falls too little with speed to drive it"
+    )
     lines = [
         f"During creep the mass oscillates across the drive at {frequency}, by "
         f"{in_words(p.amplitude, 'm')} (V sin φ/ω_y) or {force}. Towards slip the frequency falls, "
-        "as sin θ, and the amplitude grows with its period.",
+        f"as sin θ, and {then}.",
         f"To see it, sample at {rate}; below {in_words(2.0 * p.f_y, 'Hz')} it appears at another "
         "frequency.",
     ]
@@ -356,6 +391,17 @@ def transverse(found: Audit) -> list[str]:
         rate = in_words(seen.record.sample_rate, "Hz")
         lines.append(f"Such a long test was simulated with {rate}, which does not show it.")
     return lines
+
+
+def transverse_decay(slider: Slider) -> float:
+    """Return the rate of decay of the transverse oscillation early in creep, 1/s.
+
+    There the mass slips across the drive, at V sin(phi) on average, and friction is a damper of
+    the slope of its law. If negative, the oscillation lasts.
+    """
+    speed = hypot(*slider.motion.rate(0.0)) * abs(sin(slider.misalignment))
+    slope = float(slider.law.slope(speed)) * slider.normal_load
+    return 0.5 * (slider.c_y + slope) / slider.masses[1]
 
 
 def changes(found: Audit) -> tuple[list[str], Table | None]:
@@ -370,7 +416,7 @@ def changes(found: Audit) -> tuple[list[str], Table | None]:
         if each.works
     ]
     what = f"To {goal}: {', or '.join(remedies)}" if remedies else f"None of these makes it {goal}"
-    lines = [f"{what}. Each was simulated from rest; the last column shows the result."]
+    lines = [f"{what}. Each change was simulated from rest; the last column shows the result."]
     cut = [name_of(found, each.path) for each in found.advices if each.cut]
     if cut:
         lines.append(

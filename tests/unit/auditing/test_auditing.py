@@ -9,6 +9,7 @@ from scipy.integrate import quad, solve_ivp
 import stiction as st
 from stiction import theory
 from stiction.analysis.motion.regime import HARMONIC, SETTLING, STICK_SLIP
+from stiction.analysis.record import record_of
 from stiction.auditing import advice, figures, observation, report, words
 from stiction.auditing.advice import advise, nearest
 from stiction.auditing.observation import OSCILLATES, SLIDES, coarse_rate, from_sliding, observe
@@ -370,6 +371,91 @@ def test_what_vibrates_does_not_creep():
     assert "it never rests" in text
     assert "creeping" not in text
     assert "During creep" not in text
+
+
+NEARLY_ISOTROPIC = st.Slider(
+    mass="0.5 kg",
+    k_x="5 kN/m",
+    k_y="15 kN/m",
+    phi="12 deg",
+    normal_load="15 N",
+    friction=st.ExponentialWeakening(mu_0=0.3, mu_inf=0.2, v_f="20 mm/s"),
+    drive=st.ConstantVelocity("5 mm/s"),
+)
+
+
+def test_creep_shorter_than_a_transverse_period_shows_no_oscillation():
+    """12 ms of creep in each cycle beside a transverse period of 36 ms."""
+    found = short(NEARLY_ISOTROPIC)
+    seen = found.observation
+    assert seen.shares.creep > 0.05
+    assert seen.shares.creep * seen.mean("period") < sqrt(0.5 / 15e3) * 2.0 * pi
+    text = " ".join(words.transverse(found))
+    assert "this mass creeps for 12" in text
+    assert "During creep" not in text
+
+
+@pytest.mark.parametrize(
+    ("friction", "c_y", "early", "late"),
+    [
+        (PAPER.friction, 0.0, True, True),
+        (PAPER.friction, 200.0, False, False),  # it loses 0.5 N in 10 mm/s: 50 N s/m
+        (st.Coulomb(mu_0=0.2), 0.0, True, False),
+        (st.ExponentialWeakening(mu_0=0.15, mu_inf=0.2, v_f="10 mm/s"), 0.0, False, False),
+    ],
+)
+def test_a_transverse_oscillation_is_said_to_die_out_where_it_does(friction, c_y, early, late):
+    slider = PAPER.replace(phi="2 deg", friction=friction, c_y=c_y)
+    found = short(slider)
+    p = found.prediction
+    run = st.simulate(slider, 0.5 * p.load_up, sample_rate=p.sample_rate)
+    u_y = run.samples["u_y"]
+    for share, lasts in ((0.1, early), (0.5, late)):
+        end = int(len(u_y) * share / 0.5)
+        two = u_y[end - 20 : end]  # periods, over which creep moves it by a 50th of that
+        assert (np.ptp(two) > p.amplitude) == lasts
+    text = " ".join(words.transverse(found))
+    assert ("During creep the mass oscillates" in text) == early
+    assert ("dies out" in text) != late
+
+
+def test_the_time_until_it_slides_ends_when_it_goes_on_sliding():
+    """A transverse swing moves it faster than the drive for moments, long before."""
+    slider = st.Slider(
+        mass="0.1 kg",
+        k_x="2 kN/m",
+        k_y="4 MN/m",
+        phi="40 deg",
+        normal_load="6 N",
+        friction=st.ExponentialWeakening(mu_0=0.25, mu_inf=0.15, v_f="10 mm/s"),
+        drive=st.ConstantVelocity("1 mm/s"),
+    )
+    seen = short(slider).observation
+    run = st.simulate(slider, 3.0, sample_rate=2e4)
+    times, speed = run.samples["time"], run.samples["V_X"] / 1e-3
+    mean = np.convolve(speed, np.full(40, 1 / 40), "same")[:-40]  # two periods
+    until = times[np.flatnonzero(mean <= 0.99)[-1]]
+    rest = np.diff(np.clip(run.stick_intervals, 0.0, until), axis=1).sum() / until
+    assert seen.shares.rest == pytest.approx(rest, rel=0.02)  # samples of 0.1 ms, in 1.9 s
+    assert seen.shares.slip > 0.0
+
+
+@pytest.mark.parametrize("cell", [None, "0 deg", "-20 deg"])
+def test_the_predicted_apparent_stiffness_is_that_of_a_load_cell(cell):
+    """From rest with the transverse spring loaded already: u_x alone grows, with V cos(phi)."""
+    slider = NEARLY_ISOTROPIC.replace(cell_angle=cell)
+    soft = slider.replace(k_y="1e-9 N/m", friction=st.Coulomb(mu_0=1e3))  # no slip, and no F_y
+    seen = record_of(st.simulate(soft, 1e-3, sample_rate=1e4))
+    shown = (seen.force[-1] - seen.force[0]) / (seen.time[-1] - seen.time[0]) / seen.drive_velocity
+    assert words.apparent_stiffness(slider) == pytest.approx(shown, rel=1e-6)
+
+
+def test_friction_with_state_has_no_predicted_rest():
+    law = st.laws.RateStateAgeing(a=0.008, b=0.012, D_c="10 um", mu_star=0.6, V_star="1 um/s")
+    rig = {"mass": "100 kg", "k_x": "1 MN/m", "k_y": "1 GN/m", "normal_load": "50 kN"}
+    block = st.Slider(**rig, phi="0.3 deg", friction=law, drive=st.ConstantVelocity("10 um/s"))
+    rows = {row[0]: row[1:] for row in words.numbers(short(block)).rows}
+    assert rows["first stick: true rest"] == ("none", "0 s")
 
 
 def test_what_mostly_rests_is_said_to():

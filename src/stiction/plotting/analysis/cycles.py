@@ -109,10 +109,10 @@ def _zoom(whole: Axes, part: Axes, record: Record, cycles: xr.Dataset) -> None:
     margin = 0.1 * (end - begin)
     begin, end = begin - margin, end + margin
     seen = (record.time >= begin) & (record.time <= end)
-    chosen = cycles.isel(cycle=slice(first, first + SHOWN))
+    chosen = cycles.isel(cycle=slice(max(first - 1, 0), first + SHOWN + 1))  # cut ones as well
     near = record.model_copy(update={"time": record.time[seen], "force": record.force[seen]})
     draw_cycles(part, near, chosen)
     if (legend := part.get_legend()) is not None:
         legend.remove()  # it would hide the magnified cycles
-    part.set_title("the shaded time")
+    part.set(title="Shaded above", xlim=(begin, end))
     whole.axvspan(begin, end, color=PALE, zorder=0)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from textwrap import fill
 from typing import NamedTuple
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
@@ -13,15 +15,19 @@ from stiction.analysis.record import Record
 from stiction.analysis.signals.reversals import standing_out
 from stiction.analysis.signals.turning_points import FINE, as_counts
 from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
-from stiction.plotting.page.style import BLUE, GREY, PAGE, style
+from stiction.plotting.page.style import BLUE, GREY, PAGE, PALE, style
 from stiction.plotting.run.time_series import draw_line, name_time
 from stiction.text.quantity_text import metric_prefix
 
+TITLE = 48  # characters of a line above a panel
 PANEL = 1.35  # height of a row, in
 ACROSS = 2
 ROOM = 0.4  # of the visible range, above and below it
-MOST, FEW = 40, 8  # most swings in a panel, and the number shown if there are more
-LEAST = 0.1  # of the visible range: smaller swings cannot be seen
+MOST, FEW = 80, 8  # most swings in a panel, and the number shown if there are more
+LEAST = 0.1  # of the force's range: smaller swings are ripple
+LASTING = 0.5  # of the range a quarter of the time before: less dies out
+# of the time shown, and of the force's range: less of the test before would mislead
+WIDE, WHOLE = 0.1, 0.5
 ROUNDING = 1e-6  # of the force: smaller variations are rounding
 
 
@@ -38,9 +44,10 @@ def plot_trials(
     """Draw the force of each trial over that of the original test, a panel for each.
 
     Time runs as long as the trial does; where the test before is longer, it is cut, where it is
-    shorter, it ends. Of a trial with more swings than a panel can show, the last few are drawn,
-    and it is said of how many. Forces are shown about what both come to, the loading from nothing
-    is cut off: an oscillation may be small beside it.
+    shorter, it ends, and where next to nothing of it would be seen, or less than a swing, a band
+    is the range of its force. Of a trial that goes on with more swings than a panel can show, the
+    last few are drawn, and it is said of how many. Forces are shown about what both come to, the
+    loading from nothing is cut off: an oscillation may be small beside it.
 
     Parameters
     ----------
@@ -56,57 +63,66 @@ def plot_trials(
     ndarray of Axes
         One for each trial.
     """
-    rows = -(-len(trials) // ACROSS)
+    across = min(ACROSS, len(trials))
+    rows = -(-len(trials) // across)
     largest = [np.abs(each.force).max() for each in (before, *(trial.record for trial in trials))]
     factor, prefix = metric_prefix(np.array(largest))
     with style():
         if axes is None:
             fig = canvas(PAGE, 0.5 + PANEL * rows)
-            panels = fix_ticks(list(fig.subplots(rows, ACROSS, squeeze=False).ravel()))
+            panels = fix_ticks(list(fig.subplots(rows, across, squeeze=False).ravel()))
         else:
             panels = as_list(axes)
-        for ax, (title, record) in zip(panels, trials, strict=False):
-            start, end, count = time_range(before, record)
-            for each, label, color, width in (
-                (before, "now", GREY, 0.7),
-                (record, "changed", BLUE, 1.0),
-            ):
-                seen = (each.time >= start) & (each.time <= end)
-                if seen.any():
-                    line = draw_line(ax, each.time[seen], factor * each.force[seen], color, width)
-                    line.set_label(label)
-            ax.set(xlim=(start, end), title=title, ylim=later(factor, before, record))
-            if count > MOST:
-                said = f"{FEW} of some {float(f'{count:.2g}'):.0f} swings"
-                ax.text(0.02, 0.04, said, transform=ax.transAxes, fontsize=7)
-            name_time(ax)
+        drawn: dict[str, Artist] = {}
+        for ax, trial in zip(panels, trials, strict=False):
+            drawn |= _draw_trial(ax, before, trial, factor)
         for ax in panels[len(trials) :]:
             ax.set_axis_off()
-        for ax in panels[::ACROSS]:
+        for ax in panels[::across]:
             ax.set_ylabel(f"spring force ({prefix}N)")
-        panels[0].legend(loc="upper right", ncols=2)
+        panels[0].legend(drawn.values(), drawn.keys(), loc="upper right", ncols=len(drawn))
     return np.array(panels[: len(trials)], dtype=object)
 
 
-def time_range(before: Record, record: Record) -> tuple[float, float, int]:
-    """Return the time range of a panel (s), and the approximate number of swings.
+def _draw_trial(ax: Axes, before: Record, trial: Trial, factor: float) -> dict[str, Artist]:
+    """Draw one trial over the test before; return what a legend has to name."""
+    title, record = trial
+    start, end, count = time_range(record)
+    low, high = later(factor, before, record)
+    drawn: dict[str, Artist] = {}
+    force, then = factor * before.force, (before.time >= start) & (before.time <= end)
+    late = force[len(force) // 2 :]
+    seen = then & (force >= low) & (force <= high)
+    wide = np.ptp(before.time[seen]) if seen.any() else 0.0
+    if wide >= WIDE * (end - start) and np.ptp(force[seen]) >= WHOLE * np.ptp(late):
+        drawn["now"] = draw_line(ax, before.time[then], force[then], GREY, 0.7)
+    else:
+        drawn["range of the force now"] = ax.axhspan(late.min(), late.max(), color=PALE, zorder=0)
+    then = (record.time >= start) & (record.time <= end)
+    drawn["changed"] = draw_line(ax, record.time[then], factor * record.force[then], BLUE, 1.0)
+    ax.set(xlim=(start, end), title=fill(title, TITLE), ylim=(low, high))
+    if count:
+        said = f"the last {FEW} of some {float(f'{count:.2g}'):.0f} swings"
+        ax.text(0.02, 0.04, said, transform=ax.transAxes, fontsize=7)
+    name_time(ax)
+    return drawn
 
-    If both motions last into its later half, the range ends with the first of them.
-    """
-    start, end, half = float(record.time[0]), float(record.time[-1]), len(record) // 2
-    late = record.force[half:]
-    span = max(float(np.ptp(each.force[len(each) // 2 :])) for each in (before, record))
-    height = LEAST * max(span, ROUNDING * float(np.abs(late).max()))
-    if not np.ptp(late) > height:
+
+def time_range(record: Record) -> tuple[float, float, int]:
+    """Return the time range of a panel (s), and the number of swings if only the last are shown."""
+    start, end = float(record.time[0]), float(record.time[-1])
+    quarter = len(record) // 4
+    before, last = record.force[-2 * quarter : -quarter], record.force[-quarter:]
+    least = ROUNDING * float(np.abs(record.force).max())
+    if quarter < 2 or np.ptp(last) <= max(least, LASTING * np.ptp(before)):
+        return start, end, 0  # it dies out, or hardly moves
+    height = int(LEAST * FINE)
+    turns = len(standing_out(as_counts(last), height, height))  # two a swing
+    if turns < 2:
         return start, end, 0
-    least = int(height / np.ptp(late) * FINE)
-    count = len(standing_out(as_counts(late), least, least))  # half of the time, two turns a swing
-    if count <= MOST:
-        return start, end, count
-    period = 2.0 * (end - float(record.time[half])) / count
-    last = float(before.time[-1])
-    end = min(end, last) if last > record.time[half] else end
-    return end - FEW * period, end, count
+    period = 2.0 * (end - float(record.time[-quarter])) / turns
+    count = round((end - start) / period)
+    return (end - FEW * period, end, count) if count > MOST else (start, end, 0)
 
 
 def later(factor: float, *records: Record) -> tuple[float, float]:
