@@ -121,6 +121,24 @@ def test_a_slider_moves_the_curves_and_can_be_undone(page):
     assert page.number("u_x at the end") == before
 
 
+def test_dampers_with_axes_of_their_own_are_drawn(page):
+    """They are weak, so that the picture at the start changes by nothing else."""
+
+    def picture_with(path, value):
+        page.value("document.querySelectorAll('details').forEach((more) => (more.open = true))")
+        field = page.row(path).locator("input[type=text]")
+        field.fill(value)
+        page.done_after(lambda: field.press("Enter"))
+        page.value(
+            "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+        )
+        return page.picture("#scene")
+
+    along = picture_with("slider.c_x", "1e-9 N s/m")
+    assert picture_with("slider.damping_angle", "40 deg") != along
+    assert picture_with("slider.c_y", "1e-9 N s/m") == along  # equal ones have no axes
+
+
 def test_a_fault_stands_beside_its_field_and_the_picture_stays(page):
     mass = page.row("slider.mass")
     picture = page.picture("#series-still")

@@ -251,6 +251,27 @@ def test_schematic_draws_springs_in_series_and_the_axes_of_masses(
     assert np.degrees(np.arctan2(y, x)) == pytest.approx(20.0 - drawn)
 
 
+@pytest.mark.parametrize(("phi", "angle"), [(8, 30), (-8, 30), (0, -50), (45, 70), (-85, 10)])
+def test_schematic_draws_dampers_along_their_own_axes(
+    slider: st.Slider, phi: float, angle: float
+) -> None:
+    askew = slider.replace(phi=f"{phi} deg", c_x=1.0, c_y=2.0, damping_angle=f"{angle} deg")
+    with style():
+        fig = new_figure(2.4, 2.4)
+        ax = draw_schematic(fig.subplots(), askew)
+        along = draw_schematic(new_figure(2.4, 2.4).subplots(), askew.replace(c_y=1.0))
+    draw(fig)
+    assert f"$c_x$ {angle}° to $x$".replace("-", "−") in words(ax)
+    assert "to $x$" not in words(along)  # where both are equal
+    names = {text.get_text(): np.array(text.get_position()) for text in ax.texts}
+    drawn = degrees(drawn_misalignment(askew.misalignment))
+    for name, at in (("$c_x$", angle), ("$c_y$", angle + 90.0)):
+        x, y = names[name]
+        # of an axis, seen from the block in the middle
+        seen = np.degrees(np.arctan2(y, x)) - (at - drawn)
+        assert (seen + 90.0) % 180.0 - 90.0 == pytest.approx(0.0, abs=1e-9)
+
+
 # --- overview ---
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
 from pydantic_core import PydanticCustomError
 
+from stiction.drive.program import nominal_velocity
 from stiction.errors import Fault, ResultError
 from stiction.names import draw
 from stiction.recording.origin import Origin
@@ -317,7 +318,7 @@ def cell_axis(slider: Slider) -> CellAxis:
     """Return the axis of a slider's load cell: the spring x, or that of its `cell_angle`."""
     x, y = (1.0, 0.0) if slider.cell_angle is None else slider.cell
     c, s = slider.direction
-    along = slider.motion.velocity * (x * c + y * s)
+    along = nominal_velocity(slider.motion) * (x * c + y * s)
     return CellAxis(x, y, along, -1.0 if along < 0.0 else 1.0)
 
 

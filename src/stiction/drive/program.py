@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 
 from stiction.drive.pieces import DRIVE_PIECES, LOAD_PIECES
 from stiction.drive.reading import Reading, as_modulation, as_pieces
-from stiction.drive.recorded.piece import RECORDS
+from stiction.drive.recorded.piece import RECORDS, Recorded
 from stiction.drive.recorded.reading import checksum
 from stiction.drive.recorded.spline import Recording, recording_at
 from stiction.drive.recorded.stretch import RecordedCourse, RecordedLoading
@@ -25,6 +25,8 @@ from stiction.text.validation import Described
 
 Times = Any  # a float or an array
 Repeat = Annotated[int, Field(ge=1, le=100_000)]
+AT_REST = 0.1  # of the largest speed between two rows
+TO_AND_FRO = 0.5  # of the way travelled
 ROW = 40.0  # bytes of memory for a recorded row, each time it is gone through
 
 
@@ -140,6 +142,41 @@ class LoadProgram(Described):
     def to_table(self) -> dict[str, Any]:
         """Return the table [load] of a description."""
         return table_of(self, LOAD_PIECES)
+
+
+def nominal_velocity(drive: ConstantVelocity | DriveProgram) -> float:
+    """Return the base velocity of a drive; without one, that at which recorded pieces go, m/s.
+
+    That is their mean from the first motion to the last. It is zero where they go to and fro: if
+    they come less than half as far as they travel.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> time = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
+    >>> stage = st.protocols.Recorded(time, position=[0.0, 0.0, 1e-3, 3e-3, 4e-3, 4e-3])
+    >>> round(nominal_velocity(st.protocols.DriveProgram(program=[stage])), 9)
+    0.001333333
+    """
+    if drive.velocity or isinstance(drive, ConstantVelocity):
+        return drive.velocity
+    moving = [
+        moving_rows(piece.recording(0.0)) for piece in drive.program if isinstance(piece, Recorded)
+    ]
+    if not moving:
+        return 0.0
+    times, ways = (np.concatenate(each) for each in zip(*moving, strict=True))
+    come, travelled = float(np.sum(ways)), float(np.sum(np.abs(ways)))
+    return come / float(np.sum(times)) if abs(come) > TO_AND_FRO * travelled else 0.0
+
+
+def moving_rows(recording: Recording) -> tuple[Any, Any]:
+    """Return durations (s) and travels (m) between rows, without rest before and after them."""
+    times, ways = np.diff(recording.rows), np.diff(recording.sums)
+    speeds = np.abs(ways / times)
+    moves = np.flatnonzero(speeds > AT_REST * speeds.max(initial=0.0))
+    inside = slice(moves[0], moves[-1] + 1) if len(moves) else slice(0, 0)
+    return times[inside], ways[inside]
 
 
 def must_end(program: Sequence[Any], repeat: int) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from stiction import theory
+from stiction.drive.program import nominal_velocity
 from stiction.errors import STATUSES
 from stiction.explorer.decimation import columns_of, extremes, share_stuck
 from stiction.friction import Anisotropic, has_state
@@ -18,6 +19,7 @@ from stiction.result.table import Table
 from stiction.simulation import automatic_times, solve
 from stiction.solver.integrate import Solution
 from stiction.system.description import Description
+from stiction.system.tensors import dampers_askew
 from stiction.text.units import in_words
 
 CURVES = ("spring_x", "spring_y", "friction", "psi", "X", "V_X", "slip_speed", "v_y", "normal_load")
@@ -136,14 +138,14 @@ def about(description: Description, solution: Solution, table: Table) -> dict[st
         "ok": status.ok,
         "status": status.value,
         "scene": {
-            "phi": slider.phi,
+            "phi": slider.misalignment,
             "limit": limit(description, table),
             "ellipse": ellipse(description),
             "k": (slider.k_x, slider.k_y),
-            "velocity": slider.motion.velocity,
+            "velocity": nominal_velocity(slider.motion),
             "damping": damping_number(description),
             "frequencies": slider.natural_frequencies,
-            "damped": (slider.c_x > 0.0, slider.c_y > 0.0),
+            "dampers": [*dampers_askew(slider).items()],
             "driven": slider.driven,
         },
     }
@@ -209,6 +211,7 @@ def ellipse(description: Description) -> tuple[float, float]:
 def damping_number(description: Description) -> float:
     """Return the damping number A of Eq. (10) at the drive's base velocity."""
     slider = description.slider
-    speed = abs(slider.motion.velocity)
-    found = theory.damping_number(slider.F_0, speed, abs(slider.phi), slider.masses[0], slider.k_x)
+    speed = abs(nominal_velocity(slider.motion))
+    angle, mass = abs(slider.misalignment), slider.masses[0]
+    found = theory.damping_number(slider.F_0, speed, angle, mass, slider.k_x)
     return float(found)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from stiction.friction import Anisotropic
 from stiction.friction.law import static_coefficient
-from stiction.plotting.apparatus.shapes import spring_path
+from stiction.plotting.apparatus.shapes import dashpot_paths, spring_path
 from stiction.plotting.page.style import (
     BLACK,
     BLUE,
@@ -31,12 +31,14 @@ from stiction.plotting.page.style import (
 )  # fmt: skip
 from stiction.result.table import Table
 from stiction.system.slider import Slider
+from stiction.system.tensors import dampers_askew
 from stiction.text.units import in_words
 
 Floats = NDArray[np.float64]
 ROOM = (7.2, 4.2)  # of the picture: its unit is the side of the mass
 HOME = np.array([0.3, -0.45])  # of the mass, where the springs are relaxed
 WALLS = np.array([3.1, 2.2])  # along x and y from there
+DAMPER = 1.45  # length of one with an axis of its own
 LARGEST = np.array([1.2, 0.5])  # displacement of the mass in the picture
 RADIUS = 1.35  # of the friction limit
 SIDE = 0.42  # half of the mass
@@ -51,8 +53,9 @@ class Scene:
     def __init__(self, ax: Axes, slider: Slider, samples: Table) -> None:
         """Draw what stands, and make what moves."""
         self.slider, self.samples = slider, samples
-        c, s = cos(slider.phi), sin(slider.phi)
+        c, s = slider.direction
         self.turn = np.array([[c, s], [-s, c]])  # from x, y to X, Y
+        self.dampers = [self.turn @ away(angle) for angle in dampers_askew(slider).values()]
         self.scale = magnification(samples)
         self.load = float(np.max(samples["normal_load"]))
         self.limit = largest_friction(slider, samples)
@@ -85,6 +88,10 @@ class Scene:
             reach = 0.45 + LARGEST[across]
             ends = [HOME + self.turn @ (WALLS[axis] * along + r * side) for r in (-reach, 0.45)]
             ax.plot(*np.transpose(ends), color=GREY, linewidth=4, solid_capstyle="butt")
+        for way in self.dampers:
+            normal = 0.22 * np.array([-way[1], way[0]])
+            ends = [HOME + DAMPER * way + normal, HOME + DAMPER * way - normal]
+            ax.plot(*np.transpose(ends), color=GREY, linewidth=4, solid_capstyle="butt")
         corners = HOME + SIDE * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)])
         ax.plot(*corners.T, color=GREY, linewidth=0.8, linestyle=":")
 
@@ -93,6 +100,10 @@ class Scene:
         (self.spring_x,) = ax.plot([], [], color=RED, linewidth=1.5, zorder=3)
         (self.spring_y,) = ax.plot([], [], color=ORANGE, linewidth=2.5, zorder=3)
         (self.circle,) = ax.plot([], [], color=PURPLE, linewidth=1.0, zorder=2)
+        self.pistons = [
+            [ax.plot([], [], color=BLACK, linewidth=1.0, zorder=3)[0] for _ in range(3)]
+            for _ in self.dampers
+        ]
         self.block = Polygon(np.zeros((4, 2)), facecolor="#C9CCD0", edgecolor=BLACK, zorder=4)
         ax.add_patch(self.block)
         self.force, self.slip = (
@@ -109,7 +120,8 @@ class Scene:
             ax.text(left, top - 0.28 * i, "", fontsize=10, color=color, zorder=6)
             for i, color in enumerate((BLACK, GREEN, PURPLE, RED))
         ]
-        moving = (self.marks, self.circle, self.spring_x, self.spring_y, self.block)
+        dampers = (line for parts in self.pistons for line in parts)
+        moving = (self.marks, self.circle, self.spring_x, self.spring_y, *dampers, self.block)
         return [*moving, self.force, self.slip, *self.words]
 
     def show(self, state: dict[str, float], words: str) -> None:
@@ -154,6 +166,10 @@ class Scene:
             start = mass + self.turn @ (SIDE * unit[axis])
             end = HOME + self.turn @ (WALLS[axis] * unit[axis] + away[side] * unit[side])
             line.set_data(*spring_path(start, end, 0.16, turns).T)
+        for way, parts in zip(self.dampers, self.pistons, strict=True):
+            paths = dashpot_paths(mass, HOME + DAMPER * way, 0.16)
+            for line, path in zip(parts, paths, strict=True):
+                line.set_data(*path.T)
 
     def _forces(self, state: dict[str, float]) -> tuple[Floats, Floats]:
         """Return the outline of the friction limit and the tip of the force, from the mass."""
@@ -179,6 +195,12 @@ class Scene:
         way = self.turn @ np.array([state["slip_x"], state["slip_y"]]) / speed
         found: Floats = length * way
         return found
+
+
+def away(angle: float) -> Floats:
+    """Return the unit vector of an axis at an angle (rad) to x, away from the springs."""
+    way = np.array([cos(angle), sin(angle)])
+    return -way if way.sum() > 0.0 else way
 
 
 def magnification(samples: Table) -> Floats:

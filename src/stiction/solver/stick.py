@@ -95,9 +95,9 @@ def stick_duration(
         smooth = smooth_until(problem.bend, now, t_stop)
         # excess + 2 change x + bend x^2/2 < 0 before this
         x = used_up(min(excess, 0.0), change, 0.5 * bend_after(problem.bend, now))
-        if now + x >= t_stop:
-            return inf, True
-        if now + x >= smooth:
+        if now + x >= smooth:  # beyond, the bound is another
+            if smooth >= t_stop:
+                return inf, True
             gone, now = smooth - t, smooth
         elif now + x == now:
             return gone, True

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from stiction.system.slider import Slider
 
 Matrix = NDArray[np.float64]
+ROUND = 1e-12  # rad: less is rounding
 
 
 def mass_tensor(slider: Slider) -> Matrix:
@@ -53,6 +54,23 @@ def is_aligned(slider: Slider) -> bool:
     """Return whether a slider has one mass, and dampers along its springs."""
     one_mass = slider.mass_y is None or slider.mass_y == slider.mass
     return one_mass and (slider.damping_angle == slider.turn or slider.c_x == slider.c_y)
+
+
+def dampers_askew(slider: Slider) -> dict[str, float]:
+    """Return the angle (rad) from x of each damper, by its name; none if they lie along springs.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> rig = st.presets.nakano_popov_2020().replace(c_x=1.0, damping_angle="0.5 rad")
+    >>> dampers_askew(rig), dampers_askew(rig.replace(c_y=1.0))
+    ({'c_x': 0.5}, {})
+    """
+    angle = slider.damping_angle - slider.turn
+    if slider.c_x == slider.c_y or abs(angle) < ROUND:
+        return {}
+    angles = {"c_x": angle, "c_y": angle + 0.5 * pi}
+    return {name: at for name, at in angles.items() if getattr(slider, name) > 0.0}
 
 
 class Axes(NamedTuple):

@@ -171,6 +171,18 @@ def test_the_map_agrees_with_the_critical_misalignment(description):
     assert [arrays["growth"].shape for _, arrays in found][-1] == (48, 48)
 
 
+def test_the_scene_has_the_axes_of_springs_and_dampers():
+    parts = [st.Spring("a", 2e3, 4e4, "30 deg"), st.Spring("b", 3e3, 9e4, "-5 deg")]
+    description = an_opened().description
+    askew = {"c_x": 1.0, "damping_angle": "40 deg"}
+    rig = description.slider.replace(springs=parts, phi="20 deg", **askew)
+    request = {"do": "run", "tables": tables_of(description._replace(slider=rig)), "columns": 50}
+    scene = answers(request)[0][0]["scene"]
+    assert scene["phi"] == rig.misalignment != rig.phi
+    assert scene["dampers"] == [("c_x", np.radians(40.0) - rig.turn)]
+    assert answers(request | {"tables": tables_of(description)})[0][0]["scene"]["dampers"] == []
+
+
 def test_a_record_lies_over_a_description(tmp_path):
     rig = st.init(tmp_path / "my.toml")
     record = tmp_path / "force.csv"

@@ -94,6 +94,27 @@ def test_the_scene_shows_the_state(run):
     assert np.hypot(*away) == pytest.approx(np.hypot(*u), rel=1e-6)
 
 
+def test_the_scene_turns_with_the_springs_and_shows_dampers_along_their_axes():
+    from matplotlib.figure import Figure
+
+    parts = [st.Spring("a", 2e3, 4e4, "30 deg"), st.Spring("b", 3e3, 9e4, "-5 deg")]
+    askew = {"c_x": 1.0, "c_y": 3.0, "damping_angle": "40 deg"}
+    slider = PAPER.replace(springs=parts, phi="20 deg", **askew)
+    samples = st.simulate(slider, 0.02, sample_rate=100.0).samples
+    scene = Scene(Figure().add_subplot(), slider, samples)
+    names = ("u_x", "u_y", "slip_x", "slip_y", "slip_speed", "friction", "psi", "X", "spring_x")
+    last = {name: float(samples[name][-1]) for name in (*names, "normal_load", "sticking")}
+    scene.show(last, "now")
+    # the far ends of the pistons; the lines of angles is at -phi to X, which points to the right
+    ends = [np.transpose(parts[1].get_data())[-1] - [0.3, -0.45] for parts in scene.pistons]
+    ways = [np.degrees(np.arctan2(y, x)) for x, y in ends]
+    assert np.mod(ways, 180.0) == pytest.approx([40.0 - 20.0, 130.0 - 20.0], abs=1e-9)
+    spring = np.diff(np.transpose(scene.spring_x.get_data())[[0, -1]], axis=0)[0]
+    turned = np.degrees(np.arctan2(*spring[::-1]))
+    assert turned == pytest.approx(-np.degrees(slider.misalignment), abs=1.0)
+    assert Scene(Figure().add_subplot(), PAPER, samples).pistons == []
+
+
 def test_frames_follow_the_time(run):
     frames = list(draw(run.description, np.linspace(0.0, 0.05, 3), 0.02, 1.0))
     assert [frame.shape for frame in (frames[0].copy(), *frames[1:])] == [(720, 1280, 3)] * 3

@@ -13,6 +13,7 @@ from stiction.analysis.creep.divergence import Divergence, fit_divergence
 from stiction.analysis.creep.force_curve import misalignment_from_force
 from stiction.analysis.creep.misalignment import Misalignment, fit_misalignment
 from stiction.analysis.record import Record
+from stiction.drive.program import nominal_velocity
 from stiction.errors import ResultError, StictionError
 from stiction.trajectory import Trajectory
 
@@ -93,7 +94,7 @@ def drive_speed(source: Trajectory | Record, record: Record) -> float | None:
     A run yields the drive's full velocity; its record has only the part along the soft spring.
     """
     if isinstance(source, Trajectory):
-        return abs(source.slider.motion.velocity) or None
+        return abs(nominal_velocity(source.slider.motion)) or None
     return record.drive_velocity
 
 

@@ -31,6 +31,7 @@ FLAT = 4  # times as many samples at the largest value as at any other, and so m
 QUIET_SHARE = 0.15  # of the record
 IMPOSED = {"drive": ("drive_X", "drive_Y"), "load": ("normal_load",)}  # columns of a run
 FEW_OFF = 0.05  # of the samples: interpolated, they hardly weaken an oscillation
+STIRS = 0.01  # of the drive's largest speed: more backwards is a motion to and fro
 NOISE = 5.0  # standard deviations
 
 
@@ -80,9 +81,10 @@ def unsteady(run: Trajectory) -> tuple[str, ...]:
 
 
 def turns_round(run: Trajectory) -> bool:
-    """Return whether the drive of a run goes both ways."""
+    """Return whether the drive of a run goes both ways; a stage at rest may stir a little."""
     along = run.samples["drive_X"]
-    return bool(along.min() < 0.0 < along.max())
+    least = STIRS * float(np.abs(along).max(initial=0.0))
+    return bool(along.min() < -least and along.max() > least)
 
 
 def _varies(run: Trajectory, columns: tuple[str, ...]) -> bool:

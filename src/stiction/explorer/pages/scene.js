@@ -42,6 +42,7 @@ export class Scene {
     const mass = [home[0] + dx, home[1] + dy];
     this.floor(context, width, height, s, M);
     this.springs(context, width, height, home, mass, turn, M);
+    this.dampers(context, height, home, mass, turn);
     this.forces(context, height, mass, s, turn);
     this.block(context, mass, turn, s);
     this.words(context, width, height, s, M);
@@ -101,6 +102,18 @@ export class Scene {
     context.strokeStyle = GREY;
     context.strokeRect(home[0] - BLOCK, home[1] - BLOCK, 2 * BLOCK, 2 * BLOCK);
     context.setLineDash([]);
+  }
+
+  // Dampers with axes of their own, away from the springs; the far end moves with theirs.
+  dampers(context, height, home, mass, turn) {
+    for (const [name, angle] of this.scene.dampers) {
+      const away = Math.cos(angle) + Math.sin(angle) > 0 ? -1 : 1, far = 0.36 * height;
+      const way = turn(away * Math.cos(angle), away * Math.sin(angle)), across = [-way[1], way[0]];
+      const wall = add(home, [far * way[0], far * way[1]]);
+      line(context, [-14, 14].map((side) => add(wall, [side * across[0], side * across[1]])), GREY, 5);
+      dashpot(context, mass, wall);
+      symbols(context, name, ...add(wall, [16 * way[0] - 6, 16 * way[1]]), { size: 15, halo: true });
+    }
   }
 
   block(context, mass, turn, s) {
@@ -189,6 +202,15 @@ function zigzag(context, from, to, wide, color, width) {
   points.splice(1, 0, mix(from, to, 0.12));
   points.push(mix(from, to, 0.88), to);
   line(context, points, color, width);
+}
+
+// A damper from one point to another: a cup, and a piston in it.
+function dashpot(context, from, to) {
+  const way = sub(to, from), length = Math.hypot(...way) || 1, normal = [(-way[1] / length) * 9, (way[0] / length) * 9];
+  const at = ([along, side]) => add(mix(from, to, along), [side * normal[0], side * normal[1]]);
+  for (const part of [[[0, 0], [0.55, 0], [0.55, 1], [0.75, 1]], [[0.55, 0], [0.55, -1], [0.75, -1]], [[0.66, 0.7], [0.66, -0.7]], [[0.66, 0], [1, 0]]]) {
+    line(context, part.map(at), INK, 1.6);
+  }
 }
 
 const add = ([a, b], [c, d]) => [a + c, b + d];

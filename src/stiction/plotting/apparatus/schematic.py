@@ -20,11 +20,14 @@ from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.style import BLACK, BLUE, COLUMN, FLOOR, GREEN, GREY, PURPLE, RED, style
 from stiction.system.slider import Slider
 from stiction.system.springs import compliance
+from stiction.system.tensors import dampers_askew
 
 # half side of the block; position of the bracket along x and y; its overhang
 BLOCK, WALL_X, WALL_Y, OVERHANG = 0.6, 3.0, 2.7, 0.75
 SEEN = 1e-3  # of the compliance along an axis: a spring with less is drawn as rigid
 LINE = 0.55  # height of a line of the legend
+SLIP = 1.5  # length of the arrow of the slip velocity
+DAMPER = 2.2  # from the block's centre to the end of a damper with an axis of its own
 BACK = 3.0  # extent of F and the axes behind the block
 
 
@@ -49,7 +52,8 @@ def draw_schematic(ax: Axes, slider: Slider) -> Axes:
     end of the spring is a bracket that moves with the drive. The friction F on the block is
     opposite to its slip velocity; psi and theta are the angles of the slip to X and x, and so
     those of F to -X and -x, where they are drawn. Springs in series are numbered from the block
-    to the bracket, a bar where one does not yield. Two masses have their axes in the block.
+    to the bracket, a bar where one does not yield. Two masses have their axes in the block, dampers
+    that do not lie along the springs an end of their own.
     Lengths are not to scale; the misalignment is, where it is large enough to be seen.
 
     Parameters
@@ -67,8 +71,9 @@ def draw_schematic(ax: Axes, slider: Slider) -> Axes:
     ends = [
         *_draw_axes(ax, lab, phi, side),
         *_draw_spring(ax, lab, slider),
+        *_draw_dampers(ax, lab, slider, side),
         *_draw_drive(ax, lab, phi, velocity),
-        *_draw_slip(ax, lab, phi, theta, backward=velocity < 0),
+        *_draw_slip(ax, lab, phi, theta, bool(dampers_askew(slider)), backward=velocity < 0),
     ]
     _draw_masses(ax, lab, slider, side)
     legend = _legend(slider)
@@ -107,8 +112,9 @@ def _draw_spring(ax: Axes, lab: Placement, slider: Slider) -> list[Points]:
     shapes.polygon(ax, lab(corners), face="#D5D5D5")
     shapes.line(ax, bracket, GREY, 3.0)
     ex, ey = np.eye(2)
+    c_x, c_y = (0.0, 0.0) if dampers_askew(slider) else (slider.c_x, slider.c_y)
     for place, (axis, along, across, length, c) in enumerate(
-        (("x", ex, ey, WALL_X, slider.c_x), ("y", ey, ex, WALL_Y, slider.c_y))
+        (("x", ex, ey, WALL_X, c_x), ("y", ey, ex, WALL_Y, c_y))
     ):
         ends, offset = np.outer([BLOCK, length], along), (0.3 if c > 0 else 0.0) * across
         if slider.springs:
@@ -122,6 +128,25 @@ def _draw_spring(ax: Axes, lab: Placement, slider: Slider) -> list[Points]:
             text, edge = f"{text}, $c_{axis}$".removeprefix(", "), 0.6
         shapes.beside(ax, lab(ends.mean(axis=0) - edge * across), -lab(across), text)
     return [bracket]
+
+
+def _draw_dampers(ax: Axes, lab: Placement, slider: Slider, side: float) -> list[Points]:
+    """Draw dampers with axes of their own, each towards where the drawing has most room."""
+    ends = []
+    drawn = drawn_misalignment(slider.misalignment)
+    phi, theta = abs(drawn), abs(drawn_slip_angle(drawn))
+    slip = np.array([BLOCK, BLOCK]) + polar(0.5 * SLIP, theta)  # the middle of its arrow
+    taken = np.array([0.0, pi / 2, np.arctan2(*slip[::-1]), phi + pi, theta + pi])
+    for name, angle in dampers_askew(slider).items():
+        ways = (side * angle, side * angle + pi)
+        at = min(ways, key=lambda way: float(np.cos(taken - way).max()))
+        start, end = BLOCK / max(abs(cos(at)), abs(sin(at))), DAMPER
+        shapes.dashpot(ax, *lab([polar(start, at), polar(end, at)]))
+        bar = [polar(end, at) + polar(0.3, at + turn) for turn in (pi / 2, -pi / 2)]
+        shapes.line(ax, lab(bar), GREY, 3.0)
+        shapes.name(ax, lab(polar(end + 0.4, at)), f"${name}$")
+        ends.append(lab([polar(end + 0.4, at)]))
+    return ends
 
 
 def _yields(slider: Slider, place: int) -> list[bool]:
@@ -159,13 +184,19 @@ def _draw_masses(ax: Axes, lab: Placement, slider: Slider, side: float) -> None:
 
 
 def _legend(slider: Slider) -> str:
-    """Return the names of springs in series, and the axis of the first of two masses."""
+    """Return the names of springs in series, and the axes of masses and dampers that differ."""
     lines = [f"{number}  {each.name}" for number, each in enumerate(slider.springs, 1)]
     if slider.mass_y is not None and slider.mass_y != slider.mass:
-        angle = degrees(slider.mass_angle - slider.turn)
-        where = f"{angle:.4g}° to $x$".replace("-", "−") if abs(angle) > 1e-9 else "along $x$"
-        lines.append(f"$m_x$ {where}, $m_y$ across")
+        lines.append(f"$m_x$ {_where(slider.mass_angle - slider.turn)}, $m_y$ across")
+    told = [f"${name}$ {_where(at)}" for name, at in dampers_askew(slider).items()]
+    lines += [", ".join(told)] if told else []
     return "\n".join(lines)
+
+
+def _where(angle: float) -> str:
+    """Return the direction of an axis at an angle (rad) to x in words."""
+    turned = (degrees(angle) + 90.0) % 180.0 - 90.0  # an axis has no sense
+    return f"{turned:.4g}° to $x$".replace("-", "−") if abs(turned) > 1e-9 else "along $x$"
 
 
 def _draw_drive(ax: Axes, lab: Placement, phi: float, velocity: float) -> list[Points]:
@@ -183,14 +214,18 @@ def _draw_drive(ax: Axes, lab: Placement, phi: float, velocity: float) -> list[P
     return [X]
 
 
-def _draw_slip(ax: Axes, lab: Placement, phi: float, theta: float, backward: bool) -> list[Points]:
+def _draw_slip(
+    ax: Axes, lab: Placement, phi: float, theta: float, askew: bool, backward: bool
+) -> list[Points]:
     """Draw slip velocity and friction, opposite to each other, and their angles."""
     corner = np.array([BLOCK, BLOCK])
-    ahead = lab([corner, corner + polar(1.5, theta)])
+    ahead = lab([corner, corner + polar(SLIP, theta)])
     behind = lab([polar(-BLOCK / max(cos(theta), sin(theta)), theta), polar(-BACK, theta)])
     beside = (
         corner + polar(1.0, theta) + polar(0.7, theta + (pi / 2 if theta < pi / 4 else -pi / 2))
     )
+    if askew:  # a damper may stand there
+        beside = corner + polar(SLIP + 0.45, theta)
     names = [(GREEN, r"$v_\mathrm{slip}$"), (PURPLE, "$F$")]
     for ends, place, (color, text) in zip(
         (ahead, behind),

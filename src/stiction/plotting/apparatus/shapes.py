@@ -93,11 +93,16 @@ def spring_path(start: ArrayLike, end: ArrayLike, width: float = 0.22, turns: in
 
 
 def dashpot(ax: Axes, start: ArrayLike, end: ArrayLike, width: float = 0.22) -> list[Line2D]:
-    """Draw a damper from `start` to `end`: a cup, and a piston in it."""
+    """Draw a damper from `start` to `end`."""
+    return [line(ax, path) for path in dashpot_paths(start, end, width)]
+
+
+def dashpot_paths(start: ArrayLike, end: ArrayLike, width: float) -> list[Points]:
+    """Return the lines of a damper from `start` to `end`: a cup, and a rod with a piston in it."""
     cup = ([0.0, 0.38, 0.38, 0.68, 0.38, 0.38, 0.68], [0, 0, 1, 1, 1, -1, -1])
     rod, piston = ([0.56, 1.0], [0, 0]), ([0.56, 0.56], [0.7, -0.7])
     return [
-        line(ax, _between(start, end, np.asarray(along), width * np.asarray(across)))
+        _between(start, end, np.asarray(along), width * np.asarray(across))
         for along, across in (cup, rod, piston)
     ]
 

@@ -12,6 +12,7 @@ from stiction import theory
 from stiction.analysis.slip import is_undersampled
 from stiction.drive import ConstantVelocity
 from stiction.drive.pieces import DRIVE_PIECES, LOAD_PIECES, Modulation
+from stiction.drive.program import nominal_velocity
 from stiction.drive.recorded.piece import RECORDS, Recorded, RecordedLoad
 from stiction.friction import Anisotropic, name_of, states
 from stiction.system.slider import Slider
@@ -65,15 +66,16 @@ def _askew(angle: float) -> str:
 
 def _base(slider: Slider) -> str:
     """Return the drive's velocity; nothing if only the pieces of a program have one."""
-    V, drive = base_velocity(slider), slider.motion
+    drive = slider.motion
+    V = drive.velocity
     if V == 0.0 and not isinstance(drive, ConstantVelocity) and drive.program:
         return ""
     return f", $V$ = {in_words(V, 'm/s')}"
 
 
 def base_velocity(slider: Slider) -> float:
-    """Return the velocity of a constant drive, or the base velocity of a program, in m/s."""
-    return slider.motion.velocity
+    """Return the velocity of a constant drive, or the nominal one of a program, in m/s."""
+    return nominal_velocity(slider.motion)
 
 
 def protocol_in_words(slider: Slider) -> list[str]:

@@ -14,6 +14,7 @@ from stiction.analysis.creep.first_slip import loading
 from stiction.analysis.motion.regime import STUCK
 from stiction.analysis.motion.rest import stick_shares, still_shares
 from stiction.drive import ConstantVelocity
+from stiction.drive.program import nominal_velocity
 from stiction.simulation import sample_times, solve
 from stiction.solver.integrate import Solution
 from stiction.study.variables.fast_regime import Swings, cycles_among, kind_of, swings
@@ -81,10 +82,15 @@ class Observed:
         return np.concatenate([values[: self.fine], values[self.fine :: self.parts]])
 
     @cached_property
+    def nominal(self) -> float:
+        """Velocity of the drive, m/s: the base of a program, or that of its recorded pieces."""
+        return nominal_velocity(self.description.slider.motion)
+
+    @cached_property
     def way(self) -> float:
         """1 if the spring is pulled towards positive x, else -1."""
         slider = self.description.slider
-        return -1.0 if slider.motion.velocity * slider.direction[0] < 0.0 else 1.0
+        return -1.0 if self.nominal * slider.direction[0] < 0.0 else 1.0
 
     @cached_property
     def force(self) -> Floats:
@@ -155,7 +161,7 @@ class Observed:
         """
         slider, samples = self.description.slider, self.solution.samples
         axis = 1 if slider.k_y >= slider.k_x else 0
-        drive = abs(slider.motion.velocity * slider.direction[axis])
+        drive = abs(self.nominal * slider.direction[axis])
         rate = samples[self.fine :, 2 + axis]
         return 0.5 * float(rate.max() - rate.min()) / drive if drive > 0.0 else 0.0
 
@@ -165,7 +171,7 @@ class Observed:
         if self.solution.counts.steps == 0:  # friction held all the time
             return STUCK
         slider = self.description.slider
-        drive = slider.k_x * abs(slider.motion.velocity * slider.direction[0])
+        drive = slider.k_x * abs(self.nominal * slider.direction[0])
         oscillation, own = self.transverse_oscillation, 1.0 / slider.natural_frequencies[0]
         shares = self.rests, self.sticks
         return kind_of(
@@ -174,7 +180,7 @@ class Observed:
 
     def rests(self, cycles: Swings) -> Floats:
         """Return for which share of each cycle the mass rests or creeps, in one piece."""
-        V = abs(self.description.slider.motion.velocity)
+        V = abs(self.nominal)
         slip = np.hypot(self.column(2), self.column(3))
         peak = cycles.start + cycles.rise_share * cycles.period
         return still_shares(self.time, slip / V if V else slip, cycles.start, peak, cycles.period)

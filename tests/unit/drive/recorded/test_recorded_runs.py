@@ -11,6 +11,8 @@ from tests.entry import plain
 from tests.systems import STEADY
 
 import stiction as st
+from stiction.analysis.motion.metadata import loading_rate
+from stiction.drive.program import nominal_velocity
 from stiction.solver.problem import Bend, Bends
 from stiction.solver.segments import stretches
 from stiction.solver.stick import margin
@@ -258,3 +260,61 @@ def test_a_table_sampled_anyhow_gives_the_same_run():
     coarse, fine = (st.simulate(slider, sample_rate=rate) for rate in (100, 10_000))
     assert coarse.data["u_x"].values == pytest.approx(fine.data["u_x"].values[::100], abs=0.0)
     assert coarse.statistics == fine.statistics
+
+
+def starting(rest, count=801, end=4.0):
+    """A stage that rests, starts smoothly in 0.2 s, and goes at V with a stutter: its table."""
+    t = np.linspace(0.0, end, count)
+    begun = 0.5 * (1 - np.cos(np.pi * np.clip((t - rest) / 0.2, 0.0, 1.0)))
+    return p.Recorded(time=t, velocity=V * begun * (1 + 0.2 * np.sin(2 * np.pi * 3.0 * (t - rest))))
+
+
+@pytest.mark.parametrize("rest", [0.1, 0.5])
+def test_a_stage_that_rests_at_first_moves_the_mass_when_it_starts(rest):
+    """However long it rests: the same motion, later."""
+    slider = st.presets.nakano_popov_2020().replace(phi="0 deg")
+    at_once, later = (
+        st.simulate(slider.replace(drive=p.DriveProgram(program=[starting(each)])), 3.0, rtol=1e-9)
+        for each in (0.0, rest)
+    )
+    first, then = (run.stick_intervals[0, 1] for run in (at_once, later))
+    assert 1.9 < first < 2.6  # F_0/(k_x V), and the start
+    assert then == pytest.approx(first + rest, abs=1e-6)  # the splines differ at their ends
+    for run in (at_once, later):
+        assert run.samples["friction"].max() <= (1 + 1e-9) * slider.F_0
+
+
+def test_analyses_take_the_drive_velocity_from_the_table():
+    slider = st.presets.nakano_popov_2020()
+    run = st.simulate(slider.replace(drive=p.DriveProgram(program=[starting(0.5, end=8.0)])), 8.0)
+    velocity = st.analysis.record_of(run).drive_velocity
+    # the mean of what is left of a start of 0.2 s, without its slowest tenth
+    assert velocity == pytest.approx(V, rel=0.02)
+    found = st.analyse(run)
+    assert found.regime.kind == "stick-slip"
+    rate = loading_rate(found.record, found.regime.kind, found.cycles)
+    assert rate.agrees
+    assert rate.stated == pytest.approx(slider.k_x * velocity, rel=1e-12)
+    assert not any("goes back" in each for each in found.warnings)
+
+
+@pytest.mark.parametrize(
+    ("program", "base", "nominal"),
+    [
+        ([harmonic(100, "velocity")], 0.0, V),
+        ([harmonic(100, "position")], 0.0, V),
+        ([harmonic(100, "velocity")], 2 * V, 2 * V),  # as it is given
+        ([p.Recorded(T, velocity=np.sin(2 * np.pi * T / 0.3))], 0.0, 0.0),  # to and fro
+        ([p.Recorded(T, velocity=0.0 * T)], 0.0, 0.0),
+        ([p.Constant(V, 1.0)], 0.0, 0.0),
+        (
+            [p.Recorded(T, velocity=0.0 * T - V), p.Recorded(T, velocity=0.0 * T - 3 * V)],
+            0.0,
+            -2 * V,
+        ),
+    ],
+)
+def test_the_nominal_velocity_is_the_mean_of_recorded_pieces(program, base, nominal):
+    drive = p.DriveProgram(velocity=base, program=program)
+    # the cubic spline of a harmonic with 14 rows to a period has its mean to this
+    assert nominal_velocity(drive) == pytest.approx(nominal, rel=1e-5, abs=1e-12)
