@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import degrees, hypot, isfinite, nan, sin, sqrt
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -400,7 +400,8 @@ def transverse_decay(slider: Slider) -> float:
     the slope of its law. If negative, the oscillation lasts.
     """
     speed = hypot(*slider.motion.rate(0.0)) * abs(sin(slider.misalignment))
-    slope = float(slider.law.slope(speed)) * slider.normal_load
+    law: Any = slider.law
+    slope = float(law.slope(speed)) * slider.normal_load
     return 0.5 * (slider.c_y + slope) / slider.masses[1]
 
 
