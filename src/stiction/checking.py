@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from stiction.errors import ResultError
 from stiction.result.checksums import intact_description
-from stiction.result.file import read_tables
+from stiction.result.file import CHANGED, is_netcdf, read_tables
 from stiction.simulation import run
 from stiction.storage.isolation import apart
 from stiction.study.execution.repair import damage_of, restore, stores_in
@@ -54,7 +54,7 @@ class Check(NamedTuple):
 
     def tables(self) -> list[Section]:
         """Return the damaged parts and the remedy, as sentences."""
-        lines = [f"damaged: {name}" for name in self.damaged] or ["Nothing is damaged."]
+        lines = [f"Damaged: {name}." for name in self.damaged] or ["Nothing is damaged."]
         if self.repaired:
             lines.append("It was computed again.")
         elif self.damaged:
@@ -107,14 +107,17 @@ def check(path: str | Path, *, repair: bool = False, trust: bool = False) -> Che
 def _check_result(path: Path, repair: bool, trust: bool) -> Check:
     if path.suffix.lower() in (".toml", ".csv", ".parquet", ".mat") and os.path.isfile(path):
         wrote = "what stiction run or stiction sweep wrote"
-        raise ResultError(f"{path}: a {path.suffix} file is no result; check tells of {wrote}")
+        raise ResultError(f"{path}: a {path.suffix} file is not a result; check reads {wrote}")
     try:
         read_tables(path)
         return Check(path, [])
     except ResultError as error:
         if not os.path.isfile(path):
             raise
-        told = str(error).removeprefix(f"{path}: ").partition("; compute it")[0]
+        if not is_netcdf(path):
+            raise
+        told = str(error).removeprefix(f"{path}: ").removeprefix(CHANGED)
+        told = told.partition("; compute it")[0]
     description = apart(intact_description, path)
     if not repair:
         return Check(path, [told])

@@ -24,7 +24,9 @@ from stiction.plotting.analysis.trials import Trial, plot_trials
 from stiction.plotting.apparatus.misalignment import drawn_misalignment
 from stiction.plotting.apparatus.schematic import draw_schematic
 from stiction.plotting.apparatus.shapes import Points
+from stiction.plotting.maps import Side, draw_slice
 from stiction.plotting.page.canvas import figure_of
+from stiction.plotting.page.parameter import Scale
 from stiction.plotting.page.save import save, write
 from stiction.plotting.page.style import BLACK, BLUE, GREY, PURPLE, new_figure, style
 from stiction.plotting.page.words import plain
@@ -632,3 +634,15 @@ def test_labels_of_slip_speed_within_a_decade_or_two_do_not_touch() -> None:
     assert all(below.y1 < above.y0 for below, above in pairwise(boxes))
     hidden = panels["portrait"].yaxis.get_minor_ticks()
     assert not any(tick.label1.get_visible() and tick.label1.get_text() for tick in hidden)
+
+
+def test_a_slice_shows_the_range_of_the_study_where_few_runs_have_a_value() -> None:
+    ax = new_figure(3, 3).subplots()
+    values = np.array([np.nan, np.nan, np.nan, 0.05])
+    side = Side(Scale("$\\mu$", 1.0, "1"), np.array([0.45, 0.53, 0.62, 0.7]), False)
+    draw_slice(ax, side, values, "N")
+    low, high = ax.get_xlim()
+    assert low < 0.45
+    assert high > 0.7
+    low, high = ax.get_ylim()
+    assert 0.0 < low < 0.05 < high

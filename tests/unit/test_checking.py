@@ -5,6 +5,7 @@ import pickle
 import shutil
 from pathlib import Path
 
+import h5py
 import pytest
 import xarray as xr
 from benchmarks.explore.draw import Draw
@@ -275,5 +276,30 @@ def test_a_store_without_checksums_goes_on(store, tmp_path):
 
 def test_what_is_no_result_by_its_name_is_not_called_a_broken_one(tmp_path):
     (tmp_path / "rig.toml").write_text("[slider]\n")
-    with pytest.raises(st.ResultError, match=r"a \.toml file is no result"):
+    with pytest.raises(st.ResultError, match=r"a \.toml file is not a result"):
         st.check(tmp_path / "rig.toml")
+
+
+def test_what_cannot_be_checked_is_said_without_the_words_of_a_library(tmp_path):
+    whole = st.simulate(st.presets.nakano_popov_2020(), 0.01).save(tmp_path / "a.nc")
+    content = bytearray(whole.read_bytes())
+    content[len(content) // 2 :] = b"\0" * (len(content) - len(content) // 2)
+    (tmp_path / "bad.nc").write_bytes(content)
+    (tmp_path / "text.nc").write_text("time,force")
+    (tmp_path / "folder").mkdir()
+    for name, what in (
+        ("text.nc", "not a NetCDF file; write one with 'stiction run'"),
+        ("folder", "is not the store of a study; make one with 'stiction sweep'$"),
+    ):
+        with pytest.raises(st.ResultError, match=what):
+            st.check(tmp_path / name)
+    with pytest.raises(st.ResultError, match="a file, not the store of a study"):
+        st.map(whole)
+
+
+def test_a_changed_result_is_said_once_to_be_damaged(tmp_path):
+    path = st.simulate(st.presets.nakano_popov_2020(), 0.01).save(tmp_path / "a.nc")
+    with h5py.File(path, "r+") as file:
+        file["u_x"][0] = 1.0
+    lines = str(st.check(path)).splitlines()
+    assert lines[1].strip() == "Damaged: samples.u_x."

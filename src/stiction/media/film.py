@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from stiction.errors import ResultError
 from stiction.media.encoder import KINDS, encode
-from stiction.media.scene import Scene
-from stiction.media.sound import window_of
+from stiction.media.scene import Scene, slowest_slip
+from stiction.media.sound import time_in, window_of
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, RED, style
 from stiction.plotting.run.time_series import envelope
 from stiction.result.columns import sample_table
@@ -135,9 +135,7 @@ def animate(
     if kind not in KINDS:
         raise ResultError(f"kind must be one of {', '.join(KINDS)}, is {kind!r}")
     start, end = window_of(found.description, window)
-    middle = (
-        start + (end - start) / 3.0 if at is None else window_of(found.description, (at, end))[0]
-    )
+    middle = start + (end - start) / 3.0 if at is None else time_in(found.description, at)
     times = np.linspace(start, end, ceil(length * RATE))
     frames = draw(found.description, times, middle, length)
     return Film(encode(_count(frames, len(times), progress), RATE, kind), kind)
@@ -207,20 +205,27 @@ def slowness(slow: float) -> str:
 
 def series(figure: Figure, run: Table, times: NDArray[np.float64]) -> list[Line2D]:
     """Draw spring forces, direction and slip speed over time; return the cursors."""
-    rows = (
-        ("spring force (N)", (("spring_y", ORANGE), ("spring_x", RED))),
-        ("ψ (deg)", (("psi", BLUE),)),
-        ("slip speed (m/s)", (("slip_speed", GREEN),)),
+    force, prefix = metric_prefix(np.concatenate([run["spring_x"], run["spring_y"]]))
+    rows: tuple[tuple[str, float, tuple[tuple[str, str, str], ...]], ...] = (
+        (
+            f"spring force ({prefix}N)",
+            force,
+            (("spring_y", "$k_y u_y$", ORANGE), ("spring_x", "$k_x u_x$", RED)),
+        ),
+        ("ψ (deg)", 1.0, (("psi", "", BLUE),)),
+        ("slip speed (m/s)", 1.0, (("slip_speed", "", GREEN),)),
     )
     cursors = []
-    for number, (label, curves) in enumerate(rows):
+    for number, (label, factor, curves) in enumerate(rows):
         ax = figure.add_axes((0.06 + 0.32 * number, 0.08, 0.265, 0.27))
-        for name, color in curves:
-            ax.plot(*envelope(run["time"], run[name]), color=color, linewidth=0.8)
+        for name, words, color in curves:
+            ax.plot(*envelope(run["time"], factor * run[name]), color=color, lw=0.8, label=words)
+        if len(curves) > 1:
+            ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, fontsize=9)
         if name == "slip_speed":
-            top = float(np.nanmax(run[name]))
+            slow = slowest_slip(run)
             ax.set_yscale("log", nonpositive="clip")
-            ax.set_ylim(1e-7 * top, 3.0 * top)
+            ax.set_ylim(slow, max(3.0 * float(np.nanmax(run[name])), 10.0 * slow))
         ax.set_xlim(times[0], times[-1])
         label_axes(ax, "time $t$ (s)", label)
         cursors.append(ax.axvline(times[0], color=BLACK, linewidth=1.0))
@@ -230,13 +235,16 @@ def series(figure: Figure, run: Table, times: NDArray[np.float64]) -> list[Line2
 def microscope(figure: Figure, fine: Table, length: float) -> Line2D:
     """Draw the slip speed over a few fast periods; return the cursor."""
     ax = figure.add_axes((0.72, 0.47, 0.26, 0.44))
-    factor, prefix = metric_prefix(fine["slip_speed"])
+    rests = bool((fine["slip_speed"] < slowest_slip(fine)).all())
+    factor, prefix = (1.0, "") if rests else metric_prefix(fine["slip_speed"])
     places = np.array([mark_at(fine, i) for i in range(len(fine["time"]))])
     ax.plot(places, fine["slip_speed"] * factor, color=GREEN, linewidth=1.2)
-    rest = fine["sticking"] > 0
+    rest = (fine["sticking"] > 0) | (fine["slip_speed"] < slowest_slip(fine))
     ax.fill_between(places, 0, 1, where=rest, transform=ax.get_xaxis_transform(), color="#D9D9D9")
     ax.set_xlim(places[0], places[-1])
     ax.set_ylim(bottom=0.0)
+    if rests:
+        ax.set_yticks([0.0])
     span = fine["time"][-1] - fine["time"][0]
     middle = 0.5 * (fine["time"][-1] + fine["time"][0])
     label_axes(ax, f"time from {middle:.4f} s (ms)", f"slip speed ({prefix}m/s), grey: at rest")

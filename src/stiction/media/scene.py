@@ -29,6 +29,7 @@ from stiction.plotting.page.style import (
     PURPLE,
     RED,
 )  # fmt: skip
+from stiction.plotting.run.time_series import DEEPEST
 from stiction.result.table import Table
 from stiction.system.slider import Slider
 from stiction.system.tensors import dampers_askew
@@ -60,6 +61,7 @@ class Scene:
         self.load = float(np.max(samples["normal_load"]))
         self.limit = largest_friction(slider, samples)
         self.fastest = float(np.nanmax(samples["slip_speed"]))
+        self.slowest = slowest_slip(samples)
         self._prepare(ax)
         self._draw_walls(ax)
         self.artists = self._make(ax)
@@ -132,13 +134,13 @@ class Scene:
         self._move_springs(mass)
         corners = SIDE * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
         self.block.set_xy(mass + corners @ self.turn.T)
-        self.block.set_facecolor("#6B6F75" if state["sticking"] > 0.5 else "#C9CCD0")
+        at_rest = state["sticking"] > 0.5 or state["slip_speed"] < self.slowest
+        self.block.set_facecolor("#6B6F75" if at_rest else "#C9CCD0")
         outline, tip = self._forces(state)
         self.circle.set_data(*(mass + outline).T)
         self.force.set_positions(tuple(mass), tuple(mass + tip))
         self.slip.set_positions(tuple(mass), tuple(mass + self._slip(state)))
-        self.slip.set_visible(state["sticking"] < 0.5 and state["slip_speed"] > 0.0)
-        at_rest = state["sticking"] > 0.5
+        self.slip.set_visible(not at_rest)
         lines = (
             words,
             f"slip speed: {'at rest' if at_rest else in_words(state['slip_speed'], 'm/s', 3)}",
@@ -206,9 +208,14 @@ def away(angle: float) -> Floats:
 def magnification(samples: Table) -> Floats:
     """Return the factors of elongations (per metre) along x and y; nearly equal ones are one."""
     largest = np.array([np.nanmax(np.abs(samples[name])) for name in ("u_x", "u_y")])
-    found = LARGEST / np.where(largest > 0.0, largest, 1.0)
+    found = LARGEST / np.where(largest > 0.0, largest, largest.max() or 1.0)
     found = np.array([10.0 ** floor(log10(x)) * floor(x / 10.0 ** floor(log10(x))) for x in found])
     return np.full(2, found.min()) if found.max() < 12.0 * found.min() else found
+
+
+def slowest_slip(samples: Table) -> float:
+    """Return the slip speed below which the mass is shown at rest, m/s."""
+    return DEEPEST * float(np.nanmax(np.hypot(samples["drive_X"], samples["drive_Y"])))
 
 
 def largest_friction(slider: Slider, samples: Table) -> float:

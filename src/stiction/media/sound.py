@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.errors import ResultError
+from stiction.errors import DescriptionError, ResultError
 from stiction.result.columns import sample_table
 from stiction.simulation import solve
 from stiction.storage.files import placeable, whole
@@ -135,18 +135,24 @@ def listen(
     description = found.description
     start, end = window_of(description, window)
     chosen = audible_speed(description, axis) if speed is None else float(speed)
-    length = (end - start) / chosen if chosen > 0.0 else 0.0
-    if not 0.0 < length <= LONGEST:
+    if not chosen > 0.0:
+        raise ResultError(f"speed must be above 0, is {chosen:g}; 0.1 is ten times slower")
+    length = (end - start) / chosen
+    if length > LONGEST:
         raise ResultError(
             f"at speed {chosen:g} the sound lasts {in_words(length, 's')}; it may last up to "
-            f"{LONGEST:g} s: choose a window or another speed above 0"
+            f"{LONGEST:g} s: choose a window or a larger speed"
         )
     count = floor(length * RATE)
     times = start + np.arange(count, dtype=np.float64) * (chosen / RATE)
     values = rate_at(description, times, axis, progress)
     loudest = float(np.max(np.abs(values), initial=0.0))
     if loudest == 0.0:
-        raise ResultError(f"nothing moves along {axis} from {start:g} s to {end:g} s")
+        other = "x" if axis == "y" else "y"
+        raise ResultError(
+            f"nothing moves along {axis} from {start:g} s to {end:g} s; choose the axis {other}, "
+            "or another window"
+        )
     return Sound((values * (LOUD / loudest)).astype(np.float32), chosen)
 
 
@@ -189,9 +195,37 @@ def window_of(
     last = first + description.run.duration
     if window is None:
         return first, last
-    start, end = (Initial(time=each).time for each in window)
+    start, end = (seconds(each) for each in window)
     if not first <= start < end <= last * (1 + 1e-12):
         raise ResultError(
             f"{start:g} s to {end:g} s is not a part of the run, {first:g} s to {last:g} s"
         )
     return start, min(end, last)
+
+
+def time_in(description: Description, time: float | str) -> float:
+    """Return a time in a run, s.
+
+    Raises
+    ------
+    ResultError
+        If it is not in it.
+    """
+    (first, last), found = window_of(description, None), seconds(time)
+    if not first <= found <= last:
+        raise ResultError(f"{found:g} s is not in the run, {first:g} s to {last:g} s")
+    return found
+
+
+def seconds(time: float | str) -> float:
+    """Return a time, given as a number of seconds or with its unit, s.
+
+    Raises
+    ------
+    ResultError
+        If it has no unit of time.
+    """
+    try:
+        return Initial(time=time).time
+    except DescriptionError as error:
+        raise ResultError(str(error).replace("Initial.time", "time")) from None

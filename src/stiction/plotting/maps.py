@@ -159,6 +159,8 @@ def draw_slice(ax: Axes, x: Side, values: Floats, label: str) -> None:
     """Draw a measure over one parameter, a point for each run."""
     ax.plot(x.values, values, "-", color=BLUE, linewidth=0.8)
     ax.plot(x.values, values, "o", color=BLUE, markersize=2.5)
+    ax.update_datalim([(each, 0.0) for each in x.values], updatey=False)  # runs without a value too
+    ax.autoscale_view()
     _label_axis(ax, x, "x")
     ax.set_ylabel(label)
 

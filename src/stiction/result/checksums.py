@@ -46,7 +46,8 @@ def intact_description(path: str | Path) -> str:
         If the description is damaged too, or has no checksum.
     """
     h5py: Any = import_module("h5py")  # slow to import
-    with opening(path, "not a result that can be repaired"), h5py.File(path) as file:
+    lost = "too damaged to be repaired: its description cannot be read; run it again"
+    with opening(path, lost), h5py.File(path) as file:
         known, text = str(file.attrs[SEAL]), str(file.attrs[DESCRIPTION])
         whole = DESCRIPTION not in broken_parts(known, {DESCRIPTION: text.encode()})
     if not whole:

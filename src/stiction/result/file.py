@@ -21,6 +21,7 @@ from stiction.storage.isolation import apart
 if TYPE_CHECKING:
     import xarray as xr
 
+CHANGED = "is damaged, or was changed: "
 SIGNATURE = b"\x89HDF\r\n\x1a\n"  # of HDF5, the format below NetCDF 4
 STICK_GROUP = "sticks"  # group of a result file
 CHUNK = 2**16  # samples per checksum of HDF5
@@ -107,17 +108,22 @@ def _damage_in(data: xr.Dataset, sticks: xr.Dataset) -> list[str]:
 
 def _damage(path: str | Path, lost: Sequence[str]) -> ResultError:
     return ResultError(
-        f"{path}: is damaged, or was changed: {', '.join(lost[:3])}; compute it again with: "
+        f"{path}: {CHANGED}{', '.join(lost[:3])}; compute it again with: "
         f"stiction check {path} --repair"
     )
 
 
 def _refuse_what_is_no_netcdf(path: str | Path) -> None:
     """Refuse a file that is not NetCDF, such as a measured record."""
+    if not is_netcdf(path):
+        record = "a measured record is read by 'stiction analyse' and st.read_record"
+        raise ResultError(f"{path}: not a NetCDF file; write one with 'stiction run'; {record}")
+
+
+def is_netcdf(path: str | Path) -> bool:
+    """Return whether a file begins as NetCDF does."""
     with open(path, "rb") as file:
-        if file.read(len(SIGNATURE)) != SIGNATURE:
-            record = "a measured record is read by 'stiction analyse' and st.read_record"
-            raise ResultError(f"{path}: not a NetCDF file; write one with 'stiction run'; {record}")
+        return file.read(len(SIGNATURE)) == SIGNATURE
 
 
 def age(data: xr.Dataset) -> str:

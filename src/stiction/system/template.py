@@ -37,7 +37,10 @@ def write_description(
         if target.exists() and not force:
             return target
     if target.exists() and not force:
-        raise StictionError(f"{target} exists already; choose another name, or force it")
+        raise StictionError(
+            f"{target} exists already; choose another name, or overwrite it with --force "
+            "(in Python: force=True)"
+        )
     with whole(target) as part:
         part.write_text(BY_SCHEMA * schema + text, encoding="utf-8")
     return target

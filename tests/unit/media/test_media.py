@@ -4,11 +4,12 @@ import wave
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 import stiction as st
 from stiction.cli import main
+from stiction.media.film import NAMES, draw, microscope, sample, series, slowness
 from stiction.media.film import RATE as FRAMES
-from stiction.media.film import draw, sample, slowness
 from stiction.media.scene import ROOM, Scene, magnification
 from stiction.media.sound import LOUD, RATE, audible_speed
 
@@ -160,5 +161,51 @@ def test_both_commands(run, tmp_path, capsys):
             main([str(each) for each in arguments])
         assert not end.value.code
     text = capsys.readouterr().out
-    assert "a.wav: 0.3 s at 0.1 of its pitch" in text
+    assert "a.wav: 0.3 s, 10 times slower and deeper" in text
     assert "a.gif" in text
+
+
+def test_times_and_speeds_that_cannot_be_say_what_they_are(run):
+    for call, what in (
+        (lambda: st.listen(run, speed=0.0), "speed must be above 0, is 0; 0.1 is ten times slower"),
+        (lambda: st.listen(run, window=("1", "2 s")), "^time: '1' has no unit; write for example"),
+        (lambda: st.animate(run, at="99 s"), "99 s is not in the run, 0 s to"),
+        (lambda: st.animate(run, at="1 m"), "^time: '1 m' is in m, not a unit of a time"),
+    ):
+        with pytest.raises(st.ResultError, match=what):
+            call()
+    still = st.simulate(st.presets.nakano_popov_2020().replace(phi="0 deg"), 0.01)
+    with pytest.raises(st.ResultError, match=r"nothing moves along y .*; choose the axis x"):
+        st.listen(still)
+
+
+def test_a_slip_slower_than_a_millionth_of_the_drive_is_shown_at_rest():
+    """A fault that has just been loaded creeps at 1e-30 m/s, which no axis and no unit suits."""
+    law = st.laws.RateStateAgeing(a=0.008, b=0.014, D_c="10 um", mu_star=0.6, V_star="1 um/s")
+    rock = st.Slider(
+        mass="1 kg", k_x="200 kN/m", k_y="20 MN/m", phi="1 deg", normal_load="5 kN",
+        friction=law, drive=st.ConstantVelocity("10 um/s"),
+    )  # fmt: skip
+    times = np.linspace(0.0, 60.0, 100)
+    samples = sample(st.simulate(rock, 60.0).description, times)
+    assert samples["slip_speed"][-1] < 1e-20
+    figure = Figure()
+    scene = Scene(figure.add_subplot(), rock, samples)
+    state = {name: float(samples[name][-1]) for name in NAMES}
+    scene.show(state, "")
+    assert scene.words[1].get_text() == "slip speed: at rest"
+    assert not scene.slip.get_visible()
+    microscope(figure, samples, 1.0)
+    assert figure.axes[-1].get_ylabel() == "slip speed (m/s), grey: at rest"
+    series(figure, samples, times)
+    force, slip = figure.axes[2], figure.axes[-1]
+    assert slip.get_ylim()[0] == pytest.approx(1e-11)
+    assert force.get_ylabel() == "spring force (kN)"  # 209 N
+    legend = force.get_legend()
+    assert [text.get_text() for text in legend.get_texts()] == ["$k_y u_y$", "$k_x u_x$"]
+
+
+def test_an_elongation_that_stays_zero_is_magnified_as_the_other():
+    samples = {"u_x": np.array([0.0, 2e-3]), "u_y": np.zeros(2)}
+    x, y = magnification(samples)
+    assert x == y == pytest.approx(200.0, rel=0.5)

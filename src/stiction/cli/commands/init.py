@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from stiction.cli.options import FromPreset
 from stiction.cli.terminal import say
 
 
@@ -12,7 +11,7 @@ def init(
     path: Path = Path("slider.toml"),
     /,
     *,
-    preset: FromPreset = None,
+    preset: str | None = None,
     force: bool = False,
     schema: bool = False,
 ) -> None:
@@ -30,6 +29,8 @@ def init(
     ----------
     path
         The file to write.
+    preset
+        A published system in place of the paper's apparatus; `stiction presets` lists them.
     force
         Overwrite an existing file.
     schema

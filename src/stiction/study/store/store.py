@@ -262,10 +262,13 @@ def group_at(path: str | Path, mode: Literal["r", "r+"]) -> zarr.Group:
     import zarr
 
     if not os.path.isdir(path):
-        raise ResultError(f"{path}: no such store; make one with 'stiction sweep'")
+        what = "a file, not the store of a study" if os.path.isfile(path) else "no such store"
+        raise ResultError(f"{path}: {what}; make one with 'stiction sweep'")
     refuse_links(path)
     was = (Path(path) / STATUS / seal.ROOT).is_file()
     what = f"is damaged: {seal.ROOT}; {seal.ANEW}" if was else "is not the store of a study"
+    if not was and not (Path(path) / seal.ROOT).is_file():
+        raise ResultError(f"{path}: {what}; make one with 'stiction sweep'")
     with opening(path, what):  # zarr's format 2 may contain pickles
         group = zarr.open_group(Path(path), mode=mode, zarr_format=3, use_consolidated=False)
         known = group.attrs.get("format")

@@ -50,5 +50,9 @@ def listen(
         sound = sound_of(
             result, speed=speed, window=window, axis=axis, trust=trust, progress=report
         )
-    pitch = "at its true pitch" if sound.speed == 1.0 else f"at {sound.speed:g} of its pitch"
-    say(f"wrote {sound.save(target)}: {sound.duration:.3g} s {pitch}")
+    pitch = "at its true pitch"
+    if sound.speed != 1.0:
+        slower = sound.speed < 1.0
+        times = 1.0 / sound.speed if slower else sound.speed
+        pitch = f"{times:.6g} times {'slower and deeper' if slower else 'faster and higher'}"
+    say(f"wrote {sound.save(target)}: {sound.duration:.3g} s, {pitch}")
