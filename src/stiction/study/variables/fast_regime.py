@@ -37,7 +37,7 @@ FORMERLY = {
     "damped approach": regime.SETTLING,
     "song": regime.TRANSVERSE,
 }
-FEWEST = 2  # swings needed for a kind: a single one may be the end of a transient
+FEWEST = 1  # cycles needed for a kind, as for an analysis of one run
 OSCILLATES = 0.1  # of the largest amplitude of the fast oscillation without reversal of slip
 
 
