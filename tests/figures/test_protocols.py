@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from stiction import plotting
 from stiction.analysis.protocols.healing import Healing
 from stiction.analysis.protocols.hysteresis import Hysteresis, Loop
+from stiction.analysis.protocols.load_dependence import LoadDependence
 from stiction.analysis.protocols.velocity_steps import VelocityStep, VelocitySteps
 from stiction.analysis.protocols.yaw import ApparentFriction
 
@@ -51,6 +52,16 @@ def test_a_loop_is_closed_and_shaded(ax):
     assert len(ax.patches) == 1
     assert ax.lines[0].get_xdata() == pytest.approx([0.0, -1.0, 0.0])
     assert "2 mJ" in text(ax)
+
+
+def test_friction_over_load_is_points_and_their_line(ax):
+    load = np.array([10.0, 20.0, 30.0])
+    found = LoadDependence(load, 1.0 + 0.3 * load, 0.3, 1e-3, 1.0)
+    plotting.plot_load_dependence(found, ax)
+    points, line = ax.lines
+    assert points.get_ydata() == pytest.approx([4.0, 7.0, 10.0])
+    assert line.get_xydata().ravel() == pytest.approx([0.0, 1.0, 30.0, 10.0])
+    assert "slope 0.3" in text(ax)
 
 
 def test_apparent_friction_has_peak_mean_and_steady_sliding(ax):

@@ -15,6 +15,7 @@ from stiction.analysis.oscillation import oscillation_by_phase as oscillation_by
 from stiction.analysis.oscillation import transverse_oscillation as transverse_oscillation
 from stiction.analysis.protocols.healing import healing as healing
 from stiction.analysis.protocols.hysteresis import hysteresis as hysteresis
+from stiction.analysis.protocols.load_dependence import load_dependence as load_dependence
 from stiction.analysis.protocols.velocity_steps import velocity_steps as velocity_steps
 from stiction.analysis.protocols.yaw import apparent_friction as apparent_friction
 from stiction.analysis.record import record_of as record_of

@@ -95,6 +95,40 @@ def test_a_loop_of_constant_friction():
     assert "84 mJ" in str(found)
 
 
+LEVELS = st.protocols.load_ramp([20.0, 40.0, 30.0], ramp="0.2 s", hold="1 s")
+
+
+def loaded_test(load=LEVELS):
+    """Constant friction of 0.3 of the load on a damped spring."""
+    slider = on_a_line(
+        mass=1e-3, k_x=1e3, c_x=5.0, friction=st.Coulomb(0.3), normal_load=10.0, load=load,
+        drive=st.ConstantVelocity("50 mm/s"), driven="spring",
+    )  # fmt: skip
+    return st.simulate(slider, duration=3.6, sample_rate=1e3)
+
+
+def test_constant_friction_is_proportional_to_the_load():
+    run = loaded_test()
+    found = st.analysis.load_dependence(run)
+    assert found.load == pytest.approx([20.0, 40.0, 30.0], rel=1e-12)
+    # 10 time constants of the damper, c/k, in each level
+    assert found.force == pytest.approx(0.3 * found.load, rel=1e-6)
+    assert (found.coefficient, found.adhesion) == pytest.approx((0.3, 0.0), abs=1e-6)
+    assert "Friction rises by 0.3" in str(found)
+    force = run.samples["spring_x"] + 2.0  # adhesion
+    record = st.Record(time=run.samples["time"], force=force, normal_load=10.0)
+    sticky = st.analysis.load_dependence(record, LEVELS)
+    assert (sticky.coefficient, sticky.adhesion) == pytest.approx((0.3, 2.0), abs=1e-5)
+
+
+def test_load_dependence_needs_levels():
+    for load in (None, st.protocols.load_ramp([20.0], ramp="1 s")):
+        with pytest.raises(st.ResultError, match="fewer than two levels"):
+            st.analysis.load_dependence(loaded_test(load))
+    with pytest.raises(st.ResultError, match="give the record its normal_load"):
+        st.analysis.load_dependence(st.Record(time=[0.0, 1.0], force=[0.0, 1.0]), LEVELS)
+
+
 def test_a_record_is_analysed_by_its_program():
     run = reversed_test()
     record = st.Record(
