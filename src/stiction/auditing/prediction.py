@@ -11,7 +11,6 @@ from stiction import theory
 from stiction.friction import Anisotropic, has_state
 from stiction.friction.law import static_coefficient
 from stiction.system.slider import Slider
-from stiction.system.tensors import is_aligned
 from stiction.text.units import in_words
 
 SEEN = 10.0  # samples per transverse period, enough for its shape and not only its frequency
@@ -178,7 +177,7 @@ def suppositions(slider: Slider, p: Prediction) -> list[str]:
     m_x, m_y = s.masses
     if max(s.c_x / sqrt(s.k_x * m_x), s.c_y / sqrt(s.k_y * m_y)) > DAMPED:
         found.append("nothing but friction damps")
-    if not is_aligned(s):
+    if not s.aligned:
         found.append("the mass is the same along x and y (here it is not, or dampers are askew)")
     return found
 

@@ -36,7 +36,7 @@ from stiction.solver.state import (
 from stiction.system.description import Description
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
-from stiction.system.tensors import is_aligned, solver_axes
+from stiction.system.tensors import solver_axes
 
 LEAST_SPEED = 1e-15  # of the initial speeds: slower slip counts as zero
 LEAST_MOTION = 1e-13  # of velocities: error that any step may have, well above a float's rounding
@@ -215,7 +215,7 @@ def integrate(
 
 def outward(slider: Slider, samples: np.ndarray) -> np.ndarray:
     """Return samples in the axes x and y, from those of the solver."""
-    if is_aligned(slider):
+    if slider.aligned:
         return samples
     axes, turned = solver_axes(slider), samples.copy()
     turned[:, 0:2] = axes.outward(samples[:, 0:2])

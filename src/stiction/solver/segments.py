@@ -23,7 +23,7 @@ from stiction.solver.problem import Bend, Bends, Elliptic, Isotropic, Problem, S
 from stiction.solver.rig import Aligned, General
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
-from stiction.system.tensors import is_aligned, solver_axes
+from stiction.system.tensors import solver_axes
 
 VARYING = (Course, Loading, RecordedCourse, RecordedLoading)
 
@@ -93,7 +93,7 @@ def system_of(slider: Slider) -> System:
     """Return the numbers of a slider in the solver's axes."""
     s = slider
     inertia = 1.0 if s.driven == "plate" else 0.0
-    if is_aligned(s):
+    if s.aligned:
         return System(s.mass, s.k_x, s.k_y, s.c_x, s.c_y, *s.direction, 1.0 / s.mass, inertia)
     axes = solver_axes(s)
     m, (k_x, k_y), (c_x, c_y) = axes.mass, axes.stiffness.tolist(), np.diag(axes.damping).tolist()
@@ -102,7 +102,7 @@ def system_of(slider: Slider) -> System:
 
 def rig_of(slider: Slider) -> Aligned | General:
     """Return how the solver's axes lie in the axes x and y."""
-    if is_aligned(slider):
+    if slider.aligned:
         return Aligned()
     axes, (c, s) = solver_axes(slider), slider.direction
     drive = axes.inward(np.array([[c, s], [-s, c]]))
@@ -113,7 +113,7 @@ def rig_of(slider: Slider) -> Aligned | General:
 def begin(slider: Slider, initial: Initial) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return the elongation (m) and slip (m/s) at the start, in the solver's axes."""
     u, slip = (initial.u_x, initial.u_y), initial.slip(slider)
-    if is_aligned(slider):
+    if slider.aligned:
         return u, slip
     (u_x, u_y), (s_x, s_y) = solver_axes(slider).inward(np.array([u, slip])).tolist()
     return (u_x, u_y), (s_x, s_y)
@@ -140,7 +140,7 @@ def friction_of(slider: Slider) -> tuple[Any, Isotropic | Elliptic]:
 def solver_surface(slider: Slider) -> Isotropic | Elliptic:
     """Return the surface in the solver's axes (M73)."""
     n = surface_of(slider)
-    if is_aligned(slider):
+    if slider.aligned:
         return n
     T = solver_axes(slider).turn
     N = T.T @ np.array([[n.xx, n.xy], [n.xy, n.yy]]) @ T

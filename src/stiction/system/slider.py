@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import partial
+from functools import cached_property, partial
 from math import cos, pi, sin, sqrt
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -28,7 +28,7 @@ from stiction.friction.user.loading import finder_for_descriptions, is_own
 from stiction.friction.user.validation import is_law
 from stiction.names import picture
 from stiction.system.springs import ROUND, Springs, read_springs, whole
-from stiction.system.tensors import is_aligned, solver_axes
+from stiction.system.tensors import solver_axes
 from stiction.system.writing import parameter_table, slider_tables
 from stiction.text.sections import Section, as_html
 from stiction.text.toml import Reader, folder_of, gather, read_toml, toml_text
@@ -118,18 +118,24 @@ class Apparatus(Described):
             raise faulty(found)
         return self
 
-    @property
+    @cached_property
     def turn(self) -> float:
         """From the line that angles count from to the axis x of the springs, rad: zero, unless
         springs in series have axes of their own."""
         return whole(self.springs).angle if self.springs else 0.0
 
-    @property
+    @cached_property
     def misalignment(self) -> float:
         """From the axis x of the springs to the drive direction X, rad: `phi`, unless springs in
         series have axes of their own."""
         angle = self.phi - self.turn
         return 0.0 if self.springs and abs(angle) < ROUND else angle
+
+    @cached_property
+    def aligned(self) -> bool:
+        """Whether there is one mass, and dampers lie along the springs."""
+        one_mass = self.mass_y is None or self.mass_y == self.mass
+        return one_mass and (self.damping_angle == self.turn or self.c_x == self.c_y)
 
     def own_fields(self) -> tuple[str, ...]:
         """Return the names of the fields that a description states; others follow from them."""
@@ -241,7 +247,7 @@ class Slider(Apparatus):
         drive: Drive = self.drive
         return drive
 
-    @property
+    @cached_property
     def direction(self) -> tuple[float, float]:
         """Unit vector of X in the axes (x, y): (cos phi, sin phi), exact at a right angle."""
         c, s = cos(self.misalignment), sin(self.misalignment)
@@ -267,7 +273,7 @@ class Slider(Apparatus):
 
         Where the mass has axes of its own, the two swings are those of mass and springs together.
         """
-        if is_aligned(self):
+        if self.aligned:
             return self.mass, self.mass
         axes = solver_axes(self)
         x, y = (float(k / axes.mass) for k in axes.stiffness)  # squares of the frequencies

@@ -50,12 +50,6 @@ def principal(along: float, across: float, angle: float) -> Matrix:
     )
 
 
-def is_aligned(slider: Slider) -> bool:
-    """Return whether a slider has one mass, and dampers along its springs."""
-    one_mass = slider.mass_y is None or slider.mass_y == slider.mass
-    return one_mass and (slider.damping_angle == slider.turn or slider.c_x == slider.c_y)
-
-
 def dampers_askew(slider: Slider) -> dict[str, float]:
     """Return the angle (rad) from x of each damper, by its name; none if they lie along springs.
 
