@@ -13,9 +13,7 @@ from stiction.plotting.inference.predictive import plot_predictive as plot_predi
 from stiction.plotting.inference.predictive import plot_ranks as plot_ranks
 from stiction.plotting.protocols.healing import plot_healing as plot_healing
 from stiction.plotting.protocols.hysteresis import plot_hysteresis as plot_hysteresis
-from stiction.plotting.protocols.load_dependence import (
-    plot_load_dependence as plot_load_dependence,
-)
+from stiction.plotting.protocols.load import plot_load_dependence as plot_load_dependence
 from stiction.plotting.protocols.velocity_steps import plot_velocity_steps as plot_velocity_steps
 from stiction.plotting.protocols.yaw import plot_apparent_friction as plot_apparent_friction
 from stiction.plotting.run.comparison import plot_comparison as plot_comparison
