@@ -21,8 +21,8 @@ from scipy.special import ndtr
 from scipy.stats import kstest
 
 from stiction.inference.calibration import Learned, study
-from stiction.inference.features import USED, features, find_cycles
-from stiction.inference.library import Library, build, dummy, plan
+from stiction.inference.features import USED
+from stiction.inference.library import Library, build, features_from, plan
 from stiction.inference.observation import Conditions, Noise
 from stiction.inference.priors import Rig, Uniform
 from stiction.inference.regression_abc import Sample, quantiles, rank
@@ -93,24 +93,6 @@ def library_of(name: str, count: int, seed: int, folder: Path | None) -> Library
     return build(of, count, place, seed=seed)
 
 
-def columns_of(of: Library, channels: tuple[str, ...]) -> NDArray[np.int64]:
-    """Return which features of a library come from some of its channels."""
-    (conditions,) = of.plan.conditions
-    blank, scale = dummy(conditions), conditions.scale(of.plan.slider)
-    cycles = find_cycles(blank["force"])
-
-    def count(*some: str) -> int:
-        chosen = {each: blank[each] for each in some}
-        return len(features(conditions.step, chosen, scale, cycles))
-
-    alone, across, position = count("force"), count(*USED[:2]), count("force", "position")
-    if channels == USED:
-        return np.arange(count(*USED))
-    if "position" in channels:
-        return np.r_[0:alone, across : across + position - alone]
-    return np.arange(across if "force_across" in channels else alone)
-
-
 def compare(known: Library, learned: Learned, unseen: Library, features: Floats) -> Trial:
     """Compare held-out records with a library by some of their features."""
     start = perf_counter()
@@ -168,7 +150,7 @@ def main() -> None:
         some = {each: library_of(name, options.records, each, options.library)
                 for each in options.seeds}  # fmt: skip
         for channels in (USED[:1], USED[:2], ("force", "position"), USED):
-            which = columns_of(known, channels)
+            which = features_from(channels, known.plan.conditions[0], known.plan.slider)
             start = perf_counter()
             learned = study(known.features[:, which], known.scores)
             print(

@@ -35,14 +35,9 @@ SOURCES = (
 )
 COMPILING = (Path("src/stiction/solver/compilation"),)  # in plain Python nothing is compiled
 TESTS = (  # of pieces, in plain Python; whole runs take long there
-    *(f"tests/unit/solver/{each}" for each in ("exact", "multiscale", "smooth")),
-    *(f"tests/unit/solver/test_{each}.py" for each in ("block_algebra", "integrate", "radau")),
-    *(f"tests/unit/solver/test_{each}.py" for each in ("segments", "state", "stick", "surface")),
-    "tests/unit/solver/test_reference.py",
-    "tests/unit/friction/test_anisotropic.py",
-    "tests/unit/friction/test_formulas.py",
-    "tests/unit/friction/test_laws.py",
-    "tests/unit/friction/test_user.py",
+    "tests/unit/solver",
+    "tests/unit/friction",
+    "tests/unit/analysis/motion/test_cycles.py",
     "tests/unit/analysis/motion/test_hesitations.py",
     "tests/unit/analysis/signals",
 )

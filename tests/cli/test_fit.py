@@ -7,6 +7,7 @@ import xarray as xr
 import stiction as st
 from stiction.cli import main
 from stiction.inference.jitter import Jitter, move
+from stiction.inference.next_test import further
 
 RIG = """
 [slider]
@@ -100,3 +101,20 @@ def test_an_audit_of_a_record_without_priors_is_refused(tmp_path, capsys):
     command = ("audit", rig, "--record", data, "--time", "t=ms", "--force", "F=mN")
     assert inside(*command) == 2
     assert "nothing is uncertain" in capsys.readouterr().err
+
+
+def test_a_design_says_what_to_measure_next(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(further, "CYCLES", 6)  # short, to see that it works
+    rig = tmp_path / "rig.toml"
+    rig.write_text(RIG)
+    options = ["--angles", "3 deg", "--velocities", "1 m/s", "--loads", "1 kN", "-n", 150]
+    files = ["--library", tmp_path, "-o", tmp_path / "design.png"]
+    assert inside("design", rig, *options, *files) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "What to measure next" in said
+    assert "turned by 3 deg" in said
+    assert (tmp_path / "design.png").stat().st_size > 10_000
+    assert inside("design", rig, "--of", "mass", "--angles", "3 mm") == 2
+    refused = capsys.readouterr().err
+    assert "is not uncertain" in refused
+    assert "angles.1: '3 mm' is in mm" in refused

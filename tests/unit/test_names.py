@@ -21,7 +21,7 @@ SESSION = {
     *("compare", "check", "sweep", "refine", "open_study", "map", "plot", "paper"),
     *("analysis", "laws", "linear_stability", "plotting", "presets", "protocols", "results"),
     *("testing", "theory", "Spring", "Sensor", "read_record", "read_records", "measure"),
-    *("explore", "animate", "listen", "fit", "Rig"),
+    *("explore", "animate", "listen", "fit", "design", "Rig"),
 }
 
 

@@ -47,6 +47,7 @@ COMMANDS = (
     "plot",
     "analyse",
     "fit",
+    "design",
     "export",
     "compare",
     "stability",
@@ -56,7 +57,8 @@ COMMANDS = (
     "check",
 )
 # commands in the file of another, or in a room
-BESIDE = {"presets": "init", "import": "analyse", "fit": "inference.fit"}
+BESIDE = {"presets": "init", "import": "analyse"}
+BESIDE |= {name: f"inference.{name}" for name in ("fit", "design")}
 BESIDE |= {name: f"live.{name}" for name in ("explore", "animate", "listen")}
 for _name in COMMANDS:  # light modules, which import heavy ones when called
     _file = BESIDE.get(_name, _name)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -82,16 +83,23 @@ def features(step: float, channels: dict[str, Floats], scale: Scale, cycles: Cyc
     cycles : Cycles
         Of the force.
     """
+    return np.concatenate([found for _, found in parts(step, channels, scale, cycles)])
+
+
+def parts(
+    step: float, channels: dict[str, Floats], scale: Scale, cycles: Cycles
+) -> Iterator[tuple[set[str], list[float]]]:
+    """Yield the features channel by channel: what they need beside the force, and the features."""
     loadings = Loadings(cycles)
-    found = [*of_cycles(step, channels["force"], scale, cycles)]
-    found += of_loading(step, channels["force"], scale, loadings)
-    if "force_across" in channels:
-        found += of_force_across(step, channels, scale, loadings)
-    if "position" in channels:
-        found += of_position(step, channels, scale, loadings)
-    if "force_across" in channels and "position" in channels:
-        found += of_both(step, channels, scale, loadings)
-    return np.array(found)
+    force, across, position = ({name} & set(channels) for name in USED)
+    yield force, of_cycles(step, channels["force"], scale, cycles)
+    yield force, of_loading(step, channels["force"], scale, loadings)
+    if across:
+        yield across, of_force_across(step, channels, scale, loadings)
+    if position:
+        yield position, of_position(step, channels, scale, loadings)
+    if across and position:
+        yield across | position, of_both(step, channels, scale, loadings)
 
 
 class Loadings:

@@ -107,12 +107,12 @@ def move(
     law, last = next(own), len(times) - 1
     while begin < last:
         end = min(begin + window, last)
+        duration, part = stretch(times, begin, end)
         settings = Settings.model_construct(
-            duration=float(times[end] - times[begin]), sample_rate=None, rtol=RTOL,
+            duration=duration, sample_rate=None, rtol=RTOL,
             regularisation=None, smoothing="root", multiscale=multiscale,
         )  # fmt: skip
         rig = slider.model_copy(update={"friction": law})
-        part = times[begin : end + 1]
         found = solve(Description(rig, initial, settings), part, max_steps=MOST_STEPS)
         if found.code != 0:
             return Motion(times[: begin + 1], rows[: begin + 1], np.array(troughs, np.int64), False)
@@ -133,6 +133,16 @@ def move(
         initial = start(slider, rows[begin], float(times[begin]))
     until = begin + 1
     return Motion(times[:until], rows[:until], np.array(troughs, dtype=np.int64), True)
+
+
+def stretch(times: Floats, begin: int, end: int) -> tuple[float, Floats]:
+    """Return the duration from one time to another, and the times in it.
+
+    The start plus the duration may be less than the last time by rounding; a run would not reach
+    that time, so that it is moved to where the run ends.
+    """
+    duration = float(times[end] - times[begin])
+    return duration, np.minimum(times[begin : end + 1], times[begin] + duration)
 
 
 def first_trough(values: Floats) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from hashlib import sha256
 from pathlib import Path
 from typing import NamedTuple
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from stiction.inference.features import Cycles, features, find_cycles
+from stiction.inference.features import Cycles, features, find_cycles, parts
 from stiction.inference.jitter import Jitter, Motion, move
 from stiction.inference.observation import Conditions
 from stiction.inference.priors import Normal, Prior, Uniform
@@ -91,9 +91,19 @@ def plan(slider: Slider, priors: Mapping[str, Prior], conditions: Sequence[Condi
 def build(
     plan: Plan, count: int, folder: Path | None, *, seed: int = 0, progress: Progress = None
 ) -> Library:
-    """Simulate a library of `count` records, or continue one that is stored in a folder.
+    """Simulate a library of `count` records, or continue one that is stored in a folder."""
+    scores, found = simulate_all(plan, count, folder, seed=seed, progress=progress)
+    complete = np.isfinite(found).all(axis=1)
+    return Library(plan, scores[complete], found[complete], count)
 
-    Simulation number i is the same whatever the number of others, so that a library may grow.
+
+def simulate_all(
+    plan: Plan, count: int, folder: Path | None, *, seed: int = 0, progress: Progress = None
+) -> tuple[Floats, Floats]:
+    """Return normal scores (n, p) and features (n, f) of `count` simulations.
+
+    Features of a record with too few cycles are NaN. What a folder holds already is not simulated
+    again: simulation number i is the same whatever the number of others.
     """
     blocks = range((count + BLOCK - 1) // BLOCK)
     done = (
@@ -115,8 +125,7 @@ def build(
         if progress is not None:
             progress(ready / len(missing))
     scores, found = (np.concatenate([done[each][i] for each in blocks])[:count] for i in (0, 1))
-    complete = np.isfinite(found).all(axis=1)
-    return Library(plan, scores[complete], found[complete], count)
+    return scores, found
 
 
 class Synthetic(NamedTuple):
@@ -186,6 +195,16 @@ def measure(
         values_of = gain * exact[name] + zero
         found[name] = values_of + noise.level * random.standard_normal(len(values_of))
     return found
+
+
+def features_from(
+    channels: Iterable[str], conditions: Conditions, slider: Slider
+) -> NDArray[np.bool_]:
+    """Return which features of a record under these conditions come from these channels alone."""
+    blank = dummy(conditions)
+    scale, some = conditions.scale(slider), set(channels)
+    found = parts(conditions.step, blank, scale, find_cycles(blank["force"]))
+    return np.concatenate([np.full(len(values), needed <= some) for needed, values in found])
 
 
 def dummy(conditions: Conditions) -> dict[str, Floats]:

@@ -41,7 +41,6 @@ UNIFORM = {"low", "high"}
 SCALES = ("linear", "log")
 BOTH = re.compile(r"\s*\(?\s*(.+?)\s*(?:\+-|\+/-|±)\s*([^)\s]+)\s*\)?\s*(.*)")
 EDGE = 1e-12  # shares beyond which a quantile would be infinite
-KEPT = ("sensors", "jitter")  # tables of a rig beside those of a slider
 
 
 @dataclass(frozen=True)
@@ -108,13 +107,10 @@ class Rig(NamedTuple):
         With every uncertain value in the middle of its prior.
     priors : dict of str to Prior
         By the path of each uncertain parameter.
-    tables : dict
-        Of its sensors and its jitter, as written.
     """
 
     slider: Slider
     priors: dict[str, Prior]
-    tables: dict[str, Any]
 
     @classmethod
     def from_toml(
@@ -163,7 +159,7 @@ class Rig(NamedTuple):
         middles = {name: middle(prior) for name, prior in priors.items()}
         given = {name: quantity(slider, name, value) for name, value in middles.items()}
         slider = change_parameters(slider, given) if given else slider
-        return cls(slider, priors, {name: raw[name] for name in KEPT if name in raw})
+        return cls(slider, priors)
 
 
 def rig_of(source: Any) -> Rig:
@@ -176,9 +172,7 @@ def rig_of(source: Any) -> Rig:
     """
     if isinstance(source, Rig):
         return source
-    return (
-        Rig.from_toml(source) if isinstance(source, str | Path) else Rig(slider_of(source), {}, {})
-    )
+    return Rig.from_toml(source) if isinstance(source, str | Path) else Rig(slider_of(source), {})
 
 
 def without_spread(

@@ -9,7 +9,7 @@ import stiction as st
 from stiction.errors import DescriptionError, ResultError
 from stiction.inference.features import find_cycles
 from stiction.inference.fit import plan_for
-from stiction.inference.jitter import Jitter, move
+from stiction.inference.jitter import Jitter, move, stretch
 from stiction.inference.library import build
 from stiction.inference.observation import observe
 
@@ -138,4 +138,17 @@ def test_a_record_without_cycles_is_refused(rig):
 
 def test_a_rig_without_priors_is_refused(record):
     with pytest.raises(DescriptionError, match="nothing is uncertain"):
-        st.fit(record, st.Rig(st.presets.nakano_popov_2020(), {}, {}))
+        st.fit(record, st.Rig(st.presets.nakano_popov_2020(), {}))
+
+
+def test_no_time_of_a_part_lies_beyond_its_end():
+    """A run from the first to the last time ends before the last one in some, by rounding."""
+    random, short = np.random.default_rng(0), 0
+    for _ in range(1000):
+        times = random.uniform(1e-3, 1e-2) * np.arange(400.0)
+        begin = int(random.integers(1, 200))
+        duration, part = stretch(times, begin, 399)
+        assert part[-1] <= times[begin] + duration
+        np.testing.assert_allclose(part, times[begin:], rtol=1e-15)
+        short += times[begin] + duration < times[399]
+    assert short > 0

@@ -1,0 +1,155 @@
+"""Which further test to make, in sentences, tables and numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stiction.inference.library import Plan
+from stiction.inference.next_test.expectation import Expected
+from stiction.inference.next_test.further import AGAIN
+from stiction.inference.posterior import unit_of
+from stiction.names import draw
+from stiction.text.sections import Section, Table, as_html
+from stiction.text.units import in_words
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True, repr=False)
+class Advice:
+    """What further tests are expected to tell about the parameters of a rig.
+
+    Parameters
+    ----------
+    plan : Plan
+        Rig, priors, and conditions of all records.
+    of : str
+        The parameter of interest.
+    tests : tuple of Expected
+        The present test, then those that may be added to it.
+    skipped : tuple of str
+        Tests in which the rig, in the middle of its priors, does not stick and slip.
+    assumed : tuple of str
+        What neither the description nor the user said, as sentences.
+    simulations : int
+        Number of simulated rigs.
+    """
+
+    plan: Plan
+    of: str
+    tests: tuple[Expected, ...]
+    skipped: tuple[str, ...]
+    assumed: tuple[str, ...]
+    simulations: int
+
+    @property
+    def index(self) -> int:
+        """The place of the parameter of interest among all."""
+        return [*self.plan.priors].index(self.of)
+
+    @property
+    def present(self) -> Expected:
+        """The present test."""
+        return self.tests[0]
+
+    @property
+    def ranked(self) -> list[Expected]:
+        """The further tests, the one that tells most of the parameter first."""
+        return sorted(self.tests[1:], key=lambda test: test.ratio[self.index])
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Widths, errors and ratios as a dataset over ``test`` and ``parameter``."""
+        import xarray as xr
+
+        dims = ("test", "parameter")
+        columns: dict[str, Any] = {
+            name: (dims, np.array([getattr(test, name) for test in self.tests]))
+            for name in ("width", "error", "ratio", "low", "high")
+        }
+        columns["usable"] = ("test", np.array([test.usable for test in self.tests]))
+        names = {"test": [test.test for test in self.tests], "parameter": [*self.plan.priors]}
+        return xr.Dataset(columns, names)
+
+    def __repr__(self) -> str:
+        """Return a one-line summary."""
+        best = self.ranked[0]
+        return f"Advice: best for {self.of}: {best.test}, {best.ratio[self.index]:.2f} of the width"
+
+    def tables(self) -> list[Section]:
+        """Return what is found as sentences and tables."""
+        its = "a fraction" if (unit := unit_of(self.plan, self.of)) == "" else unit
+        rows = [row(test, self.index, its) for test in (self.present, *self.ranked)]
+        headings = ("test", f"error of {self.of}", "over present", "95 %", "usable")
+        found = [Section("What to measure next", self.sentences(), Table(headings, rows))]
+        names = [*self.plan.priors]
+        widths = [
+            (test.test, *(f"{each:.0%}" for each in test.width))
+            for test in (self.present, *self.ranked)
+        ]
+        short = (name.split(".")[-1] for name in names)
+        return [
+            *found,
+            Section(
+                "Width of the posterior over that of the prior",
+                ["100 % where a test says nothing of a parameter."],
+                Table(("test", *short), widths),
+            ),
+        ]
+
+    def sentences(self) -> list[str]:
+        """Return what to do, and what it rests on."""
+        i, best, now = self.index, self.ranked[0], self.present
+        unit = unit_of(self.plan, self.of)
+        before, after = (in_words(float(test.error[i]), unit, 2) for test in (now, best))
+        found = []
+        if best.high[i] < 1.0:
+            found.append(
+                f"Most is learned of {self.of} from this: {best.test}. Its typical error falls "
+                f"from {before} to {after}; the posterior is {best.ratio[i]:.2f} times as wide as "
+                f"from the present test (95 %: {best.low[i]:.2f} to {best.high[i]:.2f})."
+            )
+        else:
+            found.append(
+                f"None of these tests clearly tells more of {self.of} than the present one, whose "
+                f"typical error is {before}."
+            )
+        if idle := self.no_better():
+            found.append(f"No better than {AGAIN}: {', '.join(idle)}.")
+        if self.skipped:
+            found.append(
+                "Left out, as the rig does not stick and slip there in the middle of its priors: "
+                f"{', '.join(self.skipped)}."
+            )
+        found.append(
+            "A hold tells nothing: this law has no memory of how long the contact was at rest."
+        )
+        found += self.assumed
+        found.append(f"Expected over {self.simulations} rigs drawn from the priors.")
+        return found
+
+    def no_better(self) -> Sequence[str]:
+        """Return the names of tests that tell no more than one more test of the present kind."""
+        i = self.index
+        (again,) = (test for test in self.tests if test.test == AGAIN)
+        others = (test for test in self.ranked if test is not again)
+        return [test.test for test in others if test.ratio[i] >= again.low[i]]
+
+    def _repr_html_(self) -> str:
+        return as_html(self.tables())
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draw the expected width from each test; see `stiction.plotting.plot_design`."""
+        return draw("plot_design", self, axes)
+
+
+def row(test: Expected, i: int, unit: str) -> tuple[str, ...]:
+    """Return a row of the table."""
+    error = in_words(float(test.error[i]), unit, 2)
+    between = f"{test.low[i]:.2f} to {test.high[i]:.2f}"
+    return (test.test, error, f"{test.ratio[i]:.2f}", between, f"{test.usable:.0%}")

@@ -1,0 +1,217 @@
+"""st.design(rig): which further test tells most about a parameter of a rig."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from stiction.analysis.record import Record
+from stiction.errors import DescriptionError, Fault, ResultError
+from stiction.inference.fit import check, one_sided
+from stiction.inference.library import Plan, features_from, plan, simulate_all
+from stiction.inference.next_test.advice import Advice
+from stiction.inference.next_test.expectation import Expected, Floats, expectation, misses, whole
+from stiction.inference.next_test.further import (
+    CYCLES,
+    NOISE,
+    Further,
+    further_tests,
+    usual_conditions,
+    with_cycle,
+    with_noise,
+)
+from stiction.inference.next_test.wanted import ANGLES, SIMULATIONS, Wanted
+from stiction.inference.observation import PER_CYCLE, Conditions, observe
+from stiction.inference.priors import Rig
+from stiction.system.slider import Slider
+from stiction.text.paths import canonical
+from stiction.text.units import in_words
+
+Given = float | str
+
+FEWEST = 100  # rigs with cycles in the present test, below which nothing is learned
+
+
+def design(
+    rig: Rig | str | Path,
+    record: Record | None = None,
+    *,
+    of: str = "phi",
+    channels: Sequence[str] = ("force",),
+    angles: Sequence[Given] = ANGLES,
+    velocities: Sequence[Given] | None = None,
+    loads: Sequence[Given] | None = None,
+    noise: Given | None = None,
+    position_noise: Given | None = None,
+    simulations: int = SIMULATIONS,
+    library: str | Path | None = None,
+    seed: int = 0,
+    progress: Callable[[float], None] | None = None,
+) -> Advice:
+    """Find which further test is expected to tell most about a parameter of a rig.
+
+    Rigs are drawn from the priors, and each is tested in every way: as it is tested now, and with
+    what may be added, a channel or a further record under other conditions. From each test a
+    regression learns what `stiction.fit` could. How far it is off for rigs that it has not seen is
+    what the test leaves open.
+
+    Parameters
+    ----------
+    rig : Rig, str or Path
+        The description with its priors; see `stiction.inference.priors`.
+    record : Record, optional
+        Of the present test: its channels, cycles, velocity, load and noise are taken.
+    of : str, optional
+        The parameter of interest, by its path: ``"phi"``, ``"friction.mu_0"``.
+    channels : sequence of str, optional
+        What is measured at present, without a record: ``"force"``, and perhaps ``"force_across"``
+        and ``"position"``.
+    angles : sequence of str, optional
+        Angles by which the rig may be turned on purpose, known exactly.
+    velocities : sequence of float or str, optional
+        Drive velocities to try, m/s; by default a third and three times the present one.
+    loads : sequence of float or str, optional
+        Normal loads to try, N; by default half and twice the present one.
+    noise, position_noise : float or str, optional
+        Standard deviation of a sample of the forces (N) and of the displacement (m). By default
+        that of the record, else 0.2 % of the friction force at rest, and this over ``k_x``.
+    simulations : int, optional
+        Rigs that are drawn; more sharpen the intervals.
+    library : str or Path, optional
+        A folder in which simulations are kept, so that an interrupted design continues.
+    seed : int, optional
+        Of the simulations.
+    progress : callable, optional
+        Called with the fraction done.
+
+    Returns
+    -------
+    Advice
+        What each test leaves open of each parameter.
+
+    Raises
+    ------
+    DescriptionError
+        If nothing is uncertain, or the rig is not of a kind that can be fitted.
+    ResultError
+        If the record cannot be used, or too few of the simulated rigs stick and slip.
+    """
+    known = rig if isinstance(rig, Rig) else Rig.from_toml(rig)
+    check(known)
+    slider = known.slider
+    name, wanted = read(
+        known, of, channels=tuple(channels), angles=tuple(angles),
+        velocities=None if velocities is None else tuple(velocities),
+        loads=None if loads is None else tuple(loads),
+        noise=noise, position_noise=position_noise, simulations=simulations,
+    )  # fmt: skip
+    now = usual_conditions(slider) if record is None else observe(record, slider).conditions
+    measured = wanted.channels if record is None else tuple(now.noise)
+    present = with_noise(now, slider, wanted)
+    if record is None:
+        present = must_slip(with_cycle(present, slider))
+    tests, skipped = split(further_tests(present, measured, wanted), slider)
+    trial = plan_of(known, present, measured, tests)
+    folder = None if library is None else Path(library) / f"{trial.key}-{seed}"
+    scores, features = simulate_all(trial, simulations, folder, seed=seed, progress=progress)
+    found = expectations(trial, Further("the present test", measured), tests, scores, features)
+    assumed = assumptions(record, present, wanted)
+    return Advice(trial, name, tuple(found), (*skipped,), (*assumed,), len(scores))
+
+
+def read(rig: Rig, of: str, **given: Any) -> tuple[str, Wanted]:
+    """Return the path of the parameter of interest and the other arguments, or every fault."""
+    name, faults = canonical(of), []
+    name = name if name in rig.priors else name.removeprefix("slider.")
+    if name not in rig.priors:
+        message = f"is not uncertain in this description; its priors are of {', '.join(rig.priors)}"
+        faults.append(Fault(of, message))
+    try:
+        wanted = Wanted(**given)
+    except DescriptionError as error:
+        raise DescriptionError([*faults, *error.faults]) from None
+    if faults:
+        raise DescriptionError(faults)
+    return name, wanted
+
+
+def must_slip(present: Conditions | None) -> Conditions:
+    """Refuse a rig without stick-slip."""
+    if present is None:
+        raise ResultError(
+            "in the middle of its priors this rig does not stick and slip; a design needs cycles. "
+            "Drive it more slowly, or see `stiction audit`"
+        )
+    return present
+
+
+def split(tests: Iterator[Further], slider: Slider) -> tuple[list[Further], list[str]]:
+    """Return the tests, their cycles' length known, and the names of those without stick-slip."""
+    possible, skipped = [], []
+    for test in tests:
+        its = None if test.record is None else with_cycle(test.record, slider)
+        if test.record is not None and its is None:
+            skipped.append(test.name)
+        else:
+            possible.append(test._replace(record=its))
+    return possible, skipped
+
+
+def plan_of(
+    rig: Rig, present: Conditions, channels: Sequence[str], tests: Sequence[Further]
+) -> Plan:
+    """Return the plan of simulations: each rig in the present test and in all further records."""
+    priors = {**rig.priors}
+    if "force_across" not in channels and "phi" in priors:
+        priors["phi"] = one_sided(priors["phi"])
+    records = [test.record for test in tests if test.record is not None]
+    return plan(rig.slider, priors, [present, *records])
+
+
+def expectations(
+    trial: Plan, present: Further, tests: Sequence[Further], scores: Floats, features: Floats
+) -> Iterator[Expected]:
+    """Yield what the present test leaves open, and each further one.
+
+    Raises
+    ------
+    ResultError
+        If too few of the simulated rigs stick and slip in the present test.
+    """
+    (first, *others), width = trial.conditions, features.shape[1] // len(trial.conditions)
+
+    def seen(number: int, channels: Sequence[str]) -> Floats:
+        columns = features_from(channels, first, trial.slider)
+        return features[:, number * width : (number + 1) * width][:, columns]
+
+    complete = whole(seen(0, present.channels))
+    if complete.sum() < FEWEST:
+        raise ResultError(
+            f"only {complete.sum()} of {len(complete)} rigs drawn from the priors have cycles of "
+            f"stick and slip, {FEWEST} are needed: check the priors, or simulate more"
+        )
+    truth = scores[complete]
+    before = misses([seen(0, present.channels)[complete]], truth)
+    yield expectation(trial, present.name, truth, before, before)
+    further = iter(range(1, 1 + len(others)))
+    for test in tests:
+        records = [seen(0, test.channels)[complete]]
+        if test.record is not None:
+            records.append(seen(next(further), test.channels)[complete])
+        yield expectation(trial, test.name, truth, misses(records, truth), before)
+
+
+def assumptions(record: Record | None, present: Conditions, wanted: Wanted) -> list[str]:
+    """Return what neither the description nor the user said, as sentences."""
+    noise = present.noise
+    found = []
+    if record is None:
+        found.append(f"Assumed: {CYCLES} cycles in each record, {PER_CYCLE} samples in each cycle.")
+    if wanted.noise is None and record is None:
+        level = in_words(noise["force"].level, "N", 2)
+        found.append(f"Assumed: a noise of {level} in each force, {NOISE:.1%} of that of friction.")
+    if wanted.position_noise is None:
+        level = in_words(noise["position"].level, "m", 2)
+        found.append(f"Assumed: a noise of {level} in the displacement.")
+    return found

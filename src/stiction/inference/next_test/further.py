@@ -1,0 +1,101 @@
+"""Tests that could be made of a rig: the present one, and what may be added to it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from stiction.drive import ConstantVelocity
+from stiction.inference.features import LEAST_CYCLES, USED, find_cycles
+from stiction.inference.jitter import Jitter, move
+from stiction.inference.library import LONGEST, SPARE
+from stiction.inference.next_test.wanted import Wanted
+from stiction.inference.observation import PER_CYCLE, Conditions, Noise
+from stiction.system.slider import Slider
+from stiction.text.units import in_words
+
+CYCLES = 20  # of a test, where no record says how many it has
+VELOCITIES, LOADS = (1.0 / 3.0, 3.0), (0.5, 2.0)  # to try, over the present ones
+NOISE = 0.002  # of the friction force at rest: of a load cell, where neither record nor user says
+AGAIN = "the same test again"
+CHANNEL_NAMES = {"force_across": "the force across", "position": "the displacement"}
+
+
+class Further(NamedTuple):
+    """The present test, and what is added to it.
+
+    Parameters
+    ----------
+    name : str
+        What is added, in words.
+    channels : tuple of str
+        That are measured.
+    record : Conditions or None
+        Of a further record; None if the present one is all.
+    """
+
+    name: str
+    channels: tuple[str, ...]
+    record: Conditions | None = None
+
+
+def usual_conditions(slider: Slider) -> Conditions:
+    """Return the conditions of a test of which no record exists yet, but for its cycles."""
+    motion = slider.motion
+    velocity = motion.rate(0.0)[0] if isinstance(motion, ConstantVelocity) else 0.0
+    return Conditions(velocity, slider.normal_load, 0.0, 0.0, CYCLES, 0.0, {})
+
+
+def with_noise(conditions: Conditions, slider: Slider, wanted: Wanted) -> Conditions:
+    """Return conditions in which every channel has a noise: what is given, known, or usual."""
+    known = conditions.noise
+    own = known["force"].level if "force" in known else NOISE * slider.F_0
+    force = wanted.noise or own
+    usual = {
+        "force": Noise(force),
+        "force_across": Noise(force),
+        "position": Noise(wanted.position_noise or force / slider.k_x),
+    }
+    given = {"force": wanted.noise, "force_across": wanted.noise, "position": wanted.position_noise}
+    kept = {name: its for name, its in known.items() if given[name] is None}
+    return conditions._replace(noise={**usual, **kept})
+
+
+def with_cycle(conditions: Conditions, slider: Slider) -> Conditions | None:
+    """Return conditions with the cycle's length, found by simulation; None without stick-slip."""
+    rig = conditions.slider_of(slider)
+    guess = rig.F_0 / (rig.k_x * abs(conditions.velocity))
+    wanted = LEAST_CYCLES + SPARE
+    times = guess / PER_CYCLE * np.arange(LONGEST * wanted * PER_CYCLE)
+    motion = move(
+        rig, times, Jitter(0.0, 0.0), np.random.default_rng(0), cycle=guess, cycles=wanted
+    )
+    found = find_cycles(motion.rows[:, 0])
+    if len(motion.troughs) < wanted or len(found.peak) < LEAST_CYCLES:
+        return None
+    cycle = float(np.mean(found.after - found.before)) * float(times[1])
+    return conditions._replace(cycle=cycle, step=cycle / PER_CYCLE)
+
+
+def further_tests(
+    present: Conditions, channels: tuple[str, ...], wanted: Wanted
+) -> Iterator[Further]:
+    """Yield what may be added: channels, the same test again, and tests under other conditions."""
+    absent = [name for name in USED if name not in channels]
+    for name in absent:
+        yield Further(CHANNEL_NAMES[name], (*channels, name))
+    if len(absent) > 1:
+        yield Further(" and ".join(CHANNEL_NAMES[name] for name in absent), USED)
+    yield Further(AGAIN, channels, present)
+    for angle in wanted.angles:
+        its = present._replace(yaw=present.yaw + angle)
+        yield Further(f"turned by {in_words(angle, 'rad')}", channels, its)
+    speeds = [factor * abs(present.velocity) for factor in VELOCITIES]
+    for velocity in speeds if wanted.velocities is None else wanted.velocities:
+        its = present._replace(velocity=float(np.copysign(velocity, present.velocity)))
+        yield Further(f"at {in_words(velocity, 'm/s')}", channels, its)
+    loads = [factor * present.normal_load for factor in LOADS]
+    for load in loads if wanted.loads is None else wanted.loads:
+        yield Further(f"under {in_words(load, 'N')}", channels, present._replace(normal_load=load))

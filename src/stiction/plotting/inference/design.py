@@ -1,0 +1,50 @@
+"""How far further tests narrow what is known of a parameter."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from stiction.plotting.page.canvas import canvas, fix_ticks
+from stiction.plotting.page.style import BLACK, BLUE, GREY, style
+
+NAMES = ("ratio", "low", "high")
+WIDTH = 4.5  # inches: long names stand beside the axis
+ROW = 0.22  # inches for a test
+
+
+def plot_design(advice: Any, axes: Axes | None = None) -> Axes:
+    """Draw the expected width of the posterior of the parameter of interest, test by test.
+
+    Parameters
+    ----------
+    advice : Advice
+        Of `stiction.design`.
+    axes : Axes, optional
+        A new figure when left out.
+
+    Returns
+    -------
+    Axes
+        The width over that from the present test, with 95 % intervals; the best test on top.
+    """
+    i, tests = advice.index, advice.ranked
+    with style():
+        if axes is None:
+            axes = canvas(WIDTH, ROW * len(tests) + 0.7).subplots()
+            fix_ticks([axes])
+        places = np.arange(len(tests))[::-1]
+        ratio, low, high = (np.array([getattr(t, n)[i] for t in tests]) for n in NAMES)
+        axes.errorbar(
+            ratio, places, xerr=[ratio - low, high - ratio], fmt="o", color=BLUE,
+            ecolor=GREY, markersize=3.5, elinewidth=1.0,
+        )  # fmt: skip
+        axes.axvline(1.0, color=BLACK, linewidth=0.8, linestyle=(0, (4, 2)))
+        axes.set_yticks(places, [test.test for test in tests])
+        axes.set(
+            xlim=(0.0, max(1.1, 1.05 * float(high.max()))), ylim=(-0.7, len(tests) - 0.3),
+            xlabel=f"uncertainty of {advice.of}\n(after the present test: 1)",
+        )  # fmt: skip
+    return axes

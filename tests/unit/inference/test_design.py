@@ -1,0 +1,141 @@
+"""What further tests are expected to tell, against posteriors in closed form."""
+
+import numpy as np
+import pytest
+from tests.uncertain import TEXT
+
+import stiction as st
+from stiction.inference.library import Plan
+from stiction.inference.next_test import design as module
+from stiction.inference.next_test import further
+from stiction.inference.next_test.expectation import expectation, misses
+from stiction.inference.next_test.further import further_tests
+from stiction.inference.next_test.wanted import Wanted
+from stiction.inference.observation import Conditions
+from stiction.inference.priors import Normal
+
+RIGS = 200
+NOISE = 0.5  # of a feature, over the prior's standard deviation
+PLAN = Plan(None, {"phi": Normal(0.0, 1.0)}, ())
+
+
+def draw(records, noise=NOISE, seed=0):
+    """Return normal scores (n, 1), and records whose one feature is the score and noise."""
+    random = np.random.default_rng(seed)
+    truth = random.standard_normal((RIGS, 1))
+    return truth, [truth + noise * random.standard_normal((RIGS, 1)) for _ in range(records)]
+
+
+def width(records, noise=NOISE):
+    """Return the standard deviation of the posterior of a normal mean, known in closed form."""
+    return (1.0 + records / noise**2) ** -0.5
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_expected_width_is_that_of_the_posterior(seed):
+    truth, (one, two) = draw(2, seed=seed)
+    before, after = misses([one], truth), misses([one, two], truth)
+    found = expectation(PLAN, "twice", truth, after, before)
+    error = 4.0 / (2 * RIGS) ** 0.5  # four standard errors of a standard deviation
+    assert found.width[0] == pytest.approx(width(2), rel=error)
+    assert found.error[0] == pytest.approx(width(2), rel=error)  # the prior has a deviation of 1
+    assert found.ratio[0] == pytest.approx(width(2) / width(1), rel=error)
+    assert found.low[0] < found.ratio[0] < found.high[0] < 1.0
+
+
+def test_the_interval_of_a_ratio_holds_it():
+    """At 95 %, of 200 sets of rigs at least 180: fewer have a probability of 0.2 %."""
+    random, inside = np.random.default_rng(4), 0
+    covariance = [[1.0, 0.6], [0.6, 0.5]]  # of misses before and after
+    truth = random.standard_normal((RIGS, 1))
+    for _ in range(200):
+        before, after = random.multivariate_normal([0.0, 0.0], covariance, RIGS).T[..., None]
+        found = expectation(PLAN, "", truth, after, before)
+        inside += found.low[0] < 0.5**0.5 < found.high[0]
+    assert inside >= 180
+
+
+def test_a_record_that_says_nothing_narrows_nothing():
+    truth, (one,) = draw(1)
+    nothing = np.random.default_rng(9).standard_normal((RIGS, 1))
+    before = misses([one], truth)
+    found = expectation(PLAN, "", truth, misses([one, nothing], truth), before)
+    assert found.low[0] < 1.0 + 4.0 / (2 * RIGS) ** 0.5
+    assert found.high[0] > 1.0 - 4.0 / (2 * RIGS) ** 0.5
+
+
+def test_rigs_without_cycles_keep_what_the_present_test_says():
+    truth, (one, two) = draw(2)
+    two[: RIGS // 4] = np.nan
+    before, after = misses([one], truth), misses([one, two], truth)
+    found = expectation(PLAN, "", truth, after, before)
+    assert found.usable == 0.75
+    missed = np.r_[before[: RIGS // 4], after[RIGS // 4 :]]
+    assert found.width[0] == pytest.approx(np.sqrt((missed**2).mean()))
+
+
+def test_what_may_be_added():
+    present = Conditions(-1e-3, 4.0, 0.0, 0.01, 20, 1.0, {})
+    changes = Wanted(angles=("0.1 rad",), velocities=(2e-3,), loads=(8.0,))
+    tests = list(further_tests(present, ("force",), changes))
+    assert [test.name for test in tests] == [
+        "the force across", "the displacement", "the force across and the displacement",
+        "the same test again", "turned by 5.73 deg", "at 2 mm/s", "under 8 N",
+    ]  # fmt: skip
+    *channels, again, turned, faster, loaded = tests
+    assert all(test.record is None for test in channels)
+    assert again.record == present
+    assert turned.record.yaw == 0.1
+    assert faster.record.velocity == -2e-3  # in the same direction
+    assert loaded.record.normal_load == 8.0
+    names = [test.name for test in further_tests(present, ("force", "position"), changes)]
+    assert names[:2] == ["the force across", "the same test again"]
+
+
+def test_a_design_of_a_rig(monkeypatch, tmp_path):
+    monkeypatch.setattr(module, "FEWEST", 20)  # few and short: to see that all of it works
+    monkeypatch.setattr(further, "CYCLES", 6)
+    asked = {"angles": ["3 deg"], "velocities": ["1 m/s"], "loads": (), "simulations": 100}
+    found = st.design(TEXT, library=tmp_path, **asked)
+    assert found.tests[0].test == "the present test"
+    assert found.skipped == ("at 1 m/s",)  # too fast for stick-slip
+    assert {test.test for test in found.ranked} == {
+        "the force across", "the displacement", "the force across and the displacement",
+        "the same test again", "turned by 3 deg",
+    }  # fmt: skip
+    order = [test.ratio[found.index] for test in found.ranked]
+    assert order == sorted(order)
+    data = found.data
+    assert data.sizes["test"] == 6
+    assert (data["low"] <= data["ratio"] + 1e-12).all()
+    said = "\n".join(map(str, found.tables()))
+    assert "What to measure next" in said
+    assert "Left out, as the rig does not stick and slip" in said
+    assert found.ranked[0].test in repr(found)
+    axes = found.plot()
+    assert [each.get_text() for each in axes.get_yticklabels()] == [t.test for t in found.ranked]
+    again = st.design(TEXT, library=tmp_path, **asked)  # from the folder
+    assert again.data.identical(data)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"of": "mass"}, "is not uncertain"),
+        ({"of": "nonsense"}, "is not uncertain"),
+        ({"channels": ["force_across"]}, "must be force"),
+        ({"channels": ["force", "sound"]}, "must be force"),
+        ({"simulations": 5}, "must not be below 100"),
+        ({"angles": ["2 mm"]}, "angles.1: .* not a unit of an angle"),
+        ({"loads": ["-2 N"]}, "loads.1: must be greater than 0"),
+        ({"noise": "2 mm"}, "force"),
+    ],
+)
+def test_what_cannot_be_designed_is_refused(arguments, words):
+    with pytest.raises(st.StictionError, match=words):
+        st.design(TEXT, **arguments)
+
+
+def test_a_rig_that_only_slides_is_refused():
+    with pytest.raises(st.ResultError, match="does not stick and slip"):
+        st.design(TEXT.replace('"0.5 mm/s"', '"5 m/s"'))
