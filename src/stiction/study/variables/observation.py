@@ -159,11 +159,21 @@ class Observed:
         This is half the span of the elongation rate along the stiffer axis, at most 1 unless the
         slip reverses (Nakano & Popov, below Eq. (9)).
         """
-        slider, samples = self.description.slider, self.solution.samples
-        axis = 1 if slider.k_y >= slider.k_x else 0
-        drive = abs(self.nominal * slider.direction[axis])
-        rate = samples[self.fine :, 2 + axis]
-        return 0.5 * float(rate.max() - rate.min()) / drive if drive > 0.0 else 0.0
+        slider = self.description.slider
+        drive = abs(self.nominal * slider.direction[self.stiffer])
+        return self.rate_across / drive if drive > 0.0 else 0.0
+
+    @property
+    def stiffer(self) -> int:
+        """The stiffer axis: 0 for x, 1 for y."""
+        slider = self.description.slider
+        return 1 if slider.k_y >= slider.k_x else 0
+
+    @cached_property
+    def rate_across(self) -> float:
+        """Rate amplitude of the final fast oscillation, m/s."""
+        rate = self.solution.samples[self.fine :, 2 + self.stiffer]
+        return 0.5 * float(rate.max() - rate.min())
 
     @cached_property
     def regime(self) -> str:
@@ -173,10 +183,12 @@ class Observed:
         slider = self.description.slider
         drive = slider.k_x * abs(self.nominal * slider.direction[0])
         oscillation, own = self.transverse_oscillation, 1.0 / slider.natural_frequencies[0]
+        across = min(slider.k_x, slider.k_y) * self.rate_across
         shares = self.rests, self.sticks
         return kind_of(
-            self.features, self.swings, self.start, self.end, drive, oscillation, own, *shares
-        )
+            self.features, self.swings, self.start, self.end, drive, oscillation, across, own,
+            *shares,
+        )  # fmt: skip
 
     def rests(self, cycles: Swings) -> Floats:
         """Return for which share of each cycle the mass rests or creeps, in one piece."""
