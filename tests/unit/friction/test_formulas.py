@@ -10,7 +10,8 @@ from stiction.errors import DescriptionError
 from stiction.friction import states
 from stiction.friction.equivalent import CHANGED, Traits, like, traits
 from stiction.friction.law import static_coefficient
-from stiction.friction.laws.lugre import bending
+from stiction.friction.laws.lugre import bending, bending_gradient
+from stiction.friction.laws.lugre_hyperbolic import LuGreHyperbolic
 from stiction.friction.laws.rate_and_state import common as rs
 
 SPEEDS = [0.0, 1e-4, 3e-3, 0.02, 0.5]
@@ -317,3 +318,16 @@ def test_at_zero_slip_friction_is_linear_and_blind_to_the_state():
     tiny = 1e-6 * rs.grain_of(0.01, 1e-6, 0.6)
     found = rs.friction_gradient(0.01, 1e-6, 0.6, (0.0, tiny), 7.0)
     assert found == pytest.approx((stiff, 0.0, stiff, 0.0, 0.0), rel=1e-9, abs=1e-5 * 7.0)
+
+
+def test_derivatives_at_zero_slip():
+    """Bristles do not slip yet, and ln V of the slip law has no slope there."""
+    law = st.laws.LuGre(0.15, 0.2, 1e-2, 1e5, 300.0, 0.4)
+    assert bending_gradient(law, 0.0, 0.0, 10.0) == (0.0, 0.0)
+    assert rs.slipping_gradient(1.0, (0.0, 0.0), 1e-6, 1e-5) == (0.0, 0.0, 0.0)
+
+
+def test_bristles_of_a_law_like_another_are_damped_critically_for_a_unit_mass():
+    """LuGre's own numbers: sigma_1 = sqrt(sigma_0)."""
+    law = LuGreHyperbolic.like(0.3, 0.2, 0.01)
+    assert law.sigma_1 == pytest.approx(law.sigma_0**0.5)

@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 import stiction as st
+from stiction.solver.rig import General
 from stiction.system.tensors import damping_tensor, mass_tensor, stiffness_tensor
 
 WEAKENING = st.ExponentialWeakening(0.3, 0.2, "20 mm/s")
@@ -242,3 +243,18 @@ def test_the_load_cell_has_an_axis():
     loading = np.polyfit(record.time[1:4], record.force[1:4], 1)[0]
     # before it slips, the mass moves with nothing but its creep
     assert loading <= 1.02 * record.stiffness * record.drive_velocity
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_axes_of_a_general_rig_are_a_matrix(seed):
+    """(M71): outward by T, inward by its transpose, and the metric is the product of both."""
+    random = np.random.default_rng(seed)
+    T, e = random.standard_normal((2, 2)), random.standard_normal((2, 2))
+    rig = General(*T.ravel(), 0.7, *e.T.ravel())
+    v = random.standard_normal(2)
+    assert rig.outward(v) == pytest.approx(T @ v)
+    assert rig.inward(v) == pytest.approx(T.T @ v)
+    xx, xy, yy = rig.metric()
+    assert np.array([[xx, xy], [xy, yy]]) == pytest.approx(T.T @ T)
+    assert rig.into_axes(0.0, 0.0, v) == pytest.approx(e @ v)
+    assert rig.cross_damping() == 0.7

@@ -133,3 +133,9 @@ def test_when_a_load_vanishes():
     assert segments.vanishes(Loading(Signal(1.0, 2.0, 0.5)), 1.0, 9.0) == inf
     assert segments.vanishes(Loading(Signal(1.0, -2.0, 0.5)), 1.0, 9.0) == 1.0
     assert segments.vanishes(st.drive.ConstantLoad(1.0), 1.0, 9.0) == inf
+
+
+def test_laws_with_state_have_no_end_of_stick_to_bound():
+    slider = st.presets.nakano_popov_2020()
+    slider = slider.replace(friction=st.laws.LuGre(0.15, 0.2, 1e-2, 1e5, 300.0, 0.4))
+    assert segments.bend(slider, ((1.0, 0.0),) * 4, (1.0, 0.0, 0.0)) == 0.0

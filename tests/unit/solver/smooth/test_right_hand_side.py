@@ -14,6 +14,7 @@ from tests.unit.solver.smooth.systems import (
     smooth_problem,
 )
 
+from stiction.solver.rig import General
 from stiction.solver.smooth import right_hand_side
 from stiction.solver.smooth.coordinate import coordinate, slip_at
 from stiction.solver.smooth.right_hand_side import NOTICED, SmoothOutset
@@ -107,3 +108,25 @@ def test_what_errors_of_states_are_held_against(effect):
         if name == "ageing":
             least = min(1.0, least)
         assert w.size == pytest.approx([1.0, 1.0, *[2.0 + least] * (len(w.size) - 2)])
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_friction_on_a_general_rig_and_its_derivatives(name):
+    """(M71) and (M72): the law is asked in x and y; cross damping is added; by differences."""
+    problem, _, w, _ = begun(name)
+    T, load, per = np.array([[1.1, 0.3], [-0.2, 0.8]]), 6.0, problem.system.per_mass
+    problem = problem._replace(rig=General(*T.ravel(), 0.7, 1.0, 0.0, 0.0, 1.0))
+    law, states = LAWS[name]
+    w.values[LAST, 2:] = states
+    s = np.array([2e-3, 3e-3])
+
+    def friction(s):
+        x, y = s
+        turned = T.T @ np.array(law.force(tuple(T @ s), load, states))
+        return per * turned + 0.7 * per * np.array([y, x])
+
+    found = plain(right_hand_side.acting)(problem, tuple(s), load, w, LAST, True)
+    assert found[:2] == pytest.approx(friction(s), rel=1e-12)
+    assert np.reshape(found[2:], (2, 2)) == pytest.approx(
+        derivative(friction, s, [1e-7, 1e-7]), rel=1e-5
+    )
