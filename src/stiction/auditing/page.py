@@ -95,7 +95,7 @@ def page(found: Audit, name: str) -> str:
         version=stiction.__version__,
         parts=found.tables(),
         figures={title: illustrations(found, drawn) for title, drawn in DRAWN.items()},
-        description=describe_apparatus(found),
+        description=found.slider.to_toml(),
     )
 
 
@@ -109,13 +109,3 @@ def illustrations(
         for figure, caption in made
         if figure is not None
     ]
-
-
-def describe_apparatus(found: Audit) -> str:
-    """Return the description of the apparatus, in SI."""
-    tables = found.observation.run.description.to_dict()
-    return "\n".join(
-        f"[{title}]\n" + "".join(f"{key} = {value!r}\n" for key, value in table.items())
-        for title, table in tables.items()
-        if title not in ("run", "initial")
-    )

@@ -199,12 +199,15 @@ def margin(found: Audit) -> str:
         )
     nearest = float(values[np.argmin(np.abs(values - phi))])
     lowest = abs(nearest) == np.min(np.abs(values))
-    form = f" ({degrees(closed):.4f} deg in closed form)" if lowest and isfinite(closed) else ""
+    at, form = f"{degrees(nearest):.4f} deg", ""
+    if lowest and isfinite(closed):
+        plain = f"{degrees(closed):.4f} deg"
+        form = ", as in closed form" if plain == at else f" ({plain} in closed form)"
     way = "more" if abs(nearest) > abs(phi) else "less"
     changes = {STABLE: "It becomes unstable", UNSTABLE: "It becomes stable"}
     what = changes.get(found.sliding.verdict, "Its stability changes")
     return (
-        f"{what} at φ_c = {degrees(nearest):.4f} deg{form}: the margin is "
+        f"{what} at φ_c = {at}{form}: the margin is "
         f"{abs(degrees(nearest - phi)):.4g} deg {way} misalignment than now, "
         f"{degrees(phi):.4g} deg."
     )

@@ -1,4 +1,5 @@
 import re
+from html import unescape
 from math import cos, degrees, isnan, pi, sin, sqrt
 
 import numpy as np
@@ -222,7 +223,10 @@ def test_the_command_prints_and_writes(tmp_path, capsys):
         assert ended.value.code == 0
     printed = capsys.readouterr().out
     assert "damping number A, Eq. (10)" in printed
-    assert report.read_text(encoding="utf-8").endswith("</html>")
+    page = report.read_text(encoding="utf-8")
+    assert page.endswith("</html>")
+    described = unescape(page.split("<pre>")[1].split("</pre>")[0])
+    assert st.Slider.from_toml(described) == st.Slider.from_toml(config)  # as one would write it
 
 
 def test_what_cannot_be_audited_or_written_says_why(tmp_path, capsys):
