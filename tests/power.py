@@ -8,6 +8,7 @@ CrashMonkey (Mohan et al., OSDI 2018) do with block devices, here with calls of 
 
 import os
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from stat import S_ISDIR
 
@@ -52,7 +53,16 @@ class Disk:
             self.content[found.st_ino] = os.pread(handle, found.st_size, 0)
 
     def look(self) -> None:
-        """Note the states that the folder may be found in now."""
+        """Note the states that the folder may be found in now.
+
+        Files are written in several threads: one that was listed may have another name by the time
+        that it is read. Then all is looked at again.
+        """
+        while True:
+            with suppress(FileNotFoundError):
+                return self._look()
+
+    def _look(self) -> None:
         lost: State = {}
         self._collect(self.root.stat().st_ino, "", lost)
         now = {each: each.stat() for each in self.root.rglob("*")}
