@@ -11,7 +11,7 @@ from stiction.inference.next_test import further
 from stiction.inference.next_test.expectation import expectation, misses
 from stiction.inference.next_test.further import further_tests
 from stiction.inference.next_test.wanted import Wanted
-from stiction.inference.observation import Conditions
+from stiction.inference.observation import Conditions, Noise
 from stiction.inference.priors import Normal
 
 RIGS = 200
@@ -116,6 +116,22 @@ def test_a_design_of_a_rig(monkeypatch, tmp_path):
     assert [each.get_text() for each in axes.get_yticklabels()] == [t.test for t in found.ranked]
     again = st.design(TEXT, library=tmp_path, **asked)  # from the folder
     assert again.data.identical(data)
+
+
+def test_a_record_of_the_present_test_is_repeated_as_it_is():
+    present = Conditions(1.0, 4.0, 0.0, 0.01, 20, 1.0, {})  # too fast for stick-slip in the middle
+    tests = further_tests(
+        present, ("force",), Wanted(angles=(), velocities=("0.5 mm/s",), loads=())
+    )
+    possible, skipped = module.split(tests, st.Rig.from_toml(TEXT).slider)
+    assert skipped == []
+    again, slower = possible[-2:]
+    assert again.record == present
+    assert 0.1 < slower.record.cycle < 10.0
+    noise = {"force": Noise(0.01), "force_across": Noise(0.01), "position": Noise(1e-6)}
+    said = module.assumptions(("force", "position"), present._replace(noise=noise), Wanted())
+    assert said == []
+    assert len(module.assumptions((), present._replace(noise=noise), Wanted())) == 3
 
 
 @pytest.mark.parametrize(

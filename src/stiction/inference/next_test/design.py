@@ -13,6 +13,7 @@ from stiction.inference.library import Plan, features_from, plan, simulate_all
 from stiction.inference.next_test.advice import Advice
 from stiction.inference.next_test.expectation import Expected, Floats, expectation, misses, whole
 from stiction.inference.next_test.further import (
+    AGAIN,
     CYCLES,
     NOISE,
     Further,
@@ -116,7 +117,7 @@ def design(
     folder = None if library is None else Path(library) / f"{trial.key}-{seed}"
     scores, features = simulate_all(trial, simulations, folder, seed=seed, progress=progress)
     found = expectations(trial, Further("the present test", measured), tests, scores, features)
-    assumed = assumptions(record, present, wanted)
+    assumed = assumptions(() if record is None else measured, present, wanted)
     return Advice(trial, name, tuple(found), (*skipped,), (*assumed,), len(scores))
 
 
@@ -150,8 +151,9 @@ def split(tests: Iterator[Further], slider: Slider) -> tuple[list[Further], list
     """Return the tests, their cycles' length known, and the names of those without stick-slip."""
     possible, skipped = [], []
     for test in tests:
-        its = None if test.record is None else with_cycle(test.record, slider)
-        if test.record is not None and its is None:
+        if test.record is None or test.name == AGAIN:  # whose cycles are known
+            possible.append(test)
+        elif (its := with_cycle(test.record, slider)) is None:
             skipped.append(test.name)
         else:
             possible.append(test._replace(record=its))
@@ -202,16 +204,16 @@ def expectations(
         yield expectation(trial, test.name, truth, misses(records, truth), before)
 
 
-def assumptions(record: Record | None, present: Conditions, wanted: Wanted) -> list[str]:
-    """Return what neither the description nor the user said, as sentences."""
+def assumptions(recorded: Sequence[str], present: Conditions, wanted: Wanted) -> list[str]:
+    """Return what neither a record's channels nor the user said, as sentences."""
     noise = present.noise
     found = []
-    if record is None:
+    if not recorded:
         found.append(f"Assumed: {CYCLES} cycles in each record, {PER_CYCLE} samples in each cycle.")
-    if wanted.noise is None and record is None:
+    if wanted.noise is None and not recorded:
         level = in_words(noise["force"].level, "N", 2)
         found.append(f"Assumed: a noise of {level} in each force, {NOISE:.1%} of that of friction.")
-    if wanted.position_noise is None:
+    if wanted.position_noise is None and "position" not in recorded:
         level = in_words(noise["position"].level, "m", 2)
         found.append(f"Assumed: a noise of {level} in the displacement.")
     return found
