@@ -267,15 +267,7 @@ def _place(part: Any, keys: list[str], value: float) -> Any:
     if key == "springs":  # the stiffnesses follow
         return part.replace(springs=new)
     replace = getattr(part, "_replace", None)
-    return _copy_with(part, key, new) if replace is None else replace(**{key: new})
-
-
-def _copy_with(part: Any, key: str, new: Any) -> Any:
-    """Return a copy of a model with another field, without what was derived from the old one."""
-    made = part.model_copy(update={key: new})
-    for name in vars(made).keys() - type(made).model_fields.keys():
-        del vars(made)[name]
-    return made
+    return part.model_copy(update={key: new}) if replace is None else replace(**{key: new})
 
 
 def _field_values(part: Any) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from functools import cache
 from inspect import Parameter, Signature, signature
 from math import isinf
 from numbers import Real
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar, cast, get_args, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar, cast, get_args, get_type_hints
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, create_model
 from pydantic.fields import FieldInfo
@@ -66,6 +66,13 @@ class Described(BaseModel, metaclass=_Presented):
         return type(self) is type(other) and all(
             getattr(self, name) == getattr(other, name) for name in names
         )
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Return a copy with other fields, without what was derived from the old ones."""
+        made = super().model_copy(update=update, deep=deep)
+        for name in vars(made).keys() - type(made).model_fields.keys():
+            del vars(made)[name]
+        return made
 
     def __dir__(self) -> list[str]:
         """List the fields and the members of this package."""

@@ -155,3 +155,13 @@ def test_what_cannot_be_designed_is_refused(arguments, words):
 def test_a_rig_that_only_slides_is_refused():
     with pytest.raises(st.ResultError, match="does not stick and slip"):
         st.design(TEXT.replace('"0.5 mm/s"', '"5 m/s"'))
+
+
+def test_a_rig_that_is_turned_forgets_the_angles_it_had():
+    """They are computed once for each slider; a copy under other conditions has others."""
+    slider = st.Rig.from_toml(TEXT).slider
+    assert slider.misalignment == slider.phi
+    assert slider.direction == (np.cos(slider.phi), np.sin(slider.phi))
+    turned = Conditions(5e-4, 4.0, 0.1, 0.01, 20, 1.0, {}).slider_of(slider)
+    assert turned.misalignment == slider.phi + 0.1
+    assert turned.direction == (np.cos(slider.phi + 0.1), np.sin(slider.phi + 0.1))
