@@ -73,5 +73,4 @@ def scales(slider: Slider) -> tuple[float, float, float]:
 
 def swing(slider: Slider, data: xr.Dataset) -> float:
     """Return half of the range of the elongation along the drive, m."""
-    c, s = slider.direction
-    return float(np.ptp(c * data["u_x"].values + s * data["u_y"].values)) / 2.0
+    return float(np.ptp(slider.along_drive(data["u_x"].values, data["u_y"].values))) / 2.0

@@ -9,6 +9,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from stiction.analysis.creep.first_slip import first_slip_time
+from stiction.analysis.record import cell_axis
 from stiction.errors import Status
 from stiction.system.slider import Slider
 from stiction.trajectory import Trajectory
@@ -44,11 +45,9 @@ class Slip(NamedTuple):
 
 def cell_force(run: Trajectory) -> Floats:
     """Return the force that the load cell shows, N: k_x u_x, or that along its own axis."""
-    along, across = (run.samples[name] for name in ("spring_x", "spring_y"))
-    if run.slider.cell_angle is None:
-        return along
-    x, y = run.slider.cell
-    return x * along + y * across
+    cell = cell_axis(run.slider)
+    force: Floats = cell.x * run.samples["spring_x"] + cell.y * run.samples["spring_y"]
+    return force
 
 
 def cell_symbol(slider: Slider) -> str:

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 def _late(run: Trajectory) -> tuple[float, float]:
     """Return mean and peak-to-peak value of the force along the drive in the second half, N."""
-    d, (c, s) = run.data, run.slider.direction
-    force = (c * d["spring_x"] + s * d["spring_y"]).values[d.sizes["time"] // 2 :]
+    d = run.samples
+    force = run.slider.along_drive(d["spring_x"], d["spring_y"])[len(d["time"]) // 2 :]
     return float(force.mean()), float(np.ptp(force))
 
 

@@ -90,7 +90,7 @@ def sample_table(
         "psi": theta - np.degrees(slider.misalignment),
         "X": travel_X - u_x * c - u_y * s,
         "Y": travel_Y + u_x * s - u_y * c,
-        "V_X": slip_x * c + slip_y * s,
+        "V_X": slider.along_drive(slip_x, slip_y),
         "drive_X": np.broadcast_to(rate_X, times.shape).copy(),
         "drive_Y": np.broadcast_to(rate_Y, times.shape).copy(),
         "normal_load": np.broadcast_to(slider.weight(times), times.shape).copy(),

@@ -253,6 +253,11 @@ class Slider(Apparatus):
         c, s = cos(self.misalignment), sin(self.misalignment)
         return (0.0, s) if abs(c) < 1e-15 else (c, s)
 
+    def along_drive(self, x: Any, y: Any) -> Any:
+        """Return the component along X of a vector with these components along the axes (x, y)."""
+        c, s = self.direction
+        return c * x + s * y
+
     @property
     def F_0(self) -> float:
         """Friction force at vanishing slip, mu_0 W, in N; for a law with internal state, which may

@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 import stiction as st
+from stiction.analysis.slip import cell_force
 from stiction.solver.rig import General
 from stiction.system.tensors import damping_tensor, mass_tensor, stiffness_tensor
 
@@ -238,11 +239,22 @@ def test_the_load_cell_has_an_axis():
     angle = slider.phi + np.radians(30.0)
     along = np.cos(angle) * a.data["spring_x"] + np.sin(angle) * a.data["spring_y"]
     np.testing.assert_allclose(b.data["mu"].values, along.values / 10.0, rtol=1e-12, atol=1e-15)
+    np.testing.assert_array_equal(cell_force(a), a.samples["spring_x"])
+    np.testing.assert_allclose(cell_force(b), along.values, rtol=1e-12, atol=1e-15)
     record = st.analysis.record_of(b)
     np.testing.assert_allclose(record.force, along.values, rtol=1e-12, atol=1e-15)
     loading = np.polyfit(record.time[1:4], record.force[1:4], 1)[0]
     # before it slips, the mass moves with nothing but its creep
     assert loading <= 1.02 * record.stiffness * record.drive_velocity
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_component_along_the_drive_is_what_a_turn_by_the_misalignment_leaves(seed):
+    random = np.random.default_rng([1, seed])
+    slider = BASE.replace(phi=f"{random.uniform(-90.0, 90.0)} deg")
+    X, Y = random.standard_normal((2, 7))
+    c, s = np.cos(slider.phi), np.sin(slider.phi)
+    assert slider.along_drive(c * X - s * Y, s * X + c * Y) == pytest.approx(X)
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -66,9 +66,9 @@ def loading(slider: Slider, elongation: Floats, drive: Floats) -> Loading:
 
 
 def _loading(run: Trajectory) -> Loading:
-    data, (c, s) = run.data, run.slider.direction
-    elongation = c * data["u_x"].values + s * data["u_y"].values
-    return loading(run.slider, elongation, data["drive_X"].values)
+    samples = run.samples
+    elongation = run.slider.along_drive(samples["u_x"], samples["u_y"])
+    return loading(run.slider, elongation, samples["drive_X"])
 
 
 def first_slip_time(run: Trajectory) -> float:

@@ -87,12 +87,12 @@ def course(source: Trajectory | Record, program: DriveProgram | None = None) -> 
         If the program or the load is unknown.
     """
     if isinstance(source, Trajectory):
-        d, (c, s) = source.data, source.slider.direction
-        load = np.asarray(d["normal_load"].values, dtype=np.float64)
-        force = c * d["spring_x"].values + s * d["spring_y"].values
-        lag = c * d["u_x"].values + s * d["u_y"].values
-        time, drive = d["time"].values, source.slider.motion
-        mean, k_x = float(load.mean()), source.slider.k_x
+        d, slider = source.samples, source.slider
+        load = np.asarray(d["normal_load"], dtype=np.float64)
+        force = slider.along_drive(d["spring_x"], d["spring_y"])
+        lag = slider.along_drive(d["u_x"], d["u_y"])
+        time, drive = d["time"], slider.motion
+        mean, k_x = float(load.mean()), slider.k_x
         return Course(time, force / load, lag, mean, k_x, stretches(drive, time))
     if source.normal_load is None:
         raise ResultError("friction needs the normal load; give the record its normal_load")

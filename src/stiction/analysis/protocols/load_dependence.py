@@ -76,9 +76,9 @@ def load_dependence(
         If fewer than two levels are held.
     """
     if isinstance(source, Trajectory):
-        d, (c, s) = source.samples, source.slider.direction
-        time, force = d["time"], c * d["spring_x"] + s * d["spring_y"]
-        base, program = source.slider.normal_load, source.slider.load
+        d, slider = source.samples, source.slider
+        time, force = d["time"], slider.along_drive(d["spring_x"], d["spring_y"])
+        base, program = slider.normal_load, slider.load
     elif source.normal_load is None:
         raise ResultError("the load is unknown; give the record its normal_load")
     else:

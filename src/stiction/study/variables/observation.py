@@ -134,9 +134,9 @@ class Observed:
     @cached_property
     def first_slip(self) -> tuple[float, float]:
         """Start of the first slip (s), and the distance of the mass until then (m)."""
-        slider, (c, s) = self.description.slider, self.description.slider.direction
+        slider = self.description.slider
         drive = np.broadcast_to(self.drive, self.time.shape)
-        at = loading(slider, c * self.column(0) + s * self.column(1), drive).slip
+        at = loading(slider, slider.along_drive(self.column(0), self.column(1)), drive).slip
         if at < 0:
             return nan, nan
         positions = self.positions
