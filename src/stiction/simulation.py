@@ -22,6 +22,7 @@ from stiction.solver.integrate import Solution, integrate
 from stiction.system.description import Description, Settings, description_of
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
+from stiction.text.units import Quantity
 from stiction.trajectory import Statistics, Trajectory
 
 PAPERS = Initial()
@@ -29,12 +30,12 @@ PAPERS = Initial()
 
 def simulate(
     slider: Slider,
-    duration: float | str | None = None,
+    duration: Quantity | None = None,
     *,
-    sample_rate: float | str | None = None,
+    sample_rate: Quantity | None = None,
     rtol: float = 1e-6,
     initial: Initial | None = None,
-    regularisation: float | str | None = None,
+    regularisation: Quantity | None = None,
     multiscale: bool = False,
     max_steps: int = 100_000_000,
     progress: Callable[[float], None] | None = None,

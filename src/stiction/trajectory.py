@@ -24,7 +24,7 @@ from stiction.system.slider import Slider
 from stiction.system.writing import parameter_table, slider_tables
 from stiction.text.sections import Section, as_html
 from stiction.text.sections import Table as Rows
-from stiction.text.units import in_words
+from stiction.text.units import Quantity, in_words
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -155,7 +155,7 @@ class Trajectory:
         """Draw the run; see `stiction.plotting.plot_run`."""
         return draw("plot_run", self, axes)
 
-    def state(self, time: float | str) -> Initial:
+    def state(self, time: Quantity) -> Initial:
         """Return the state at the sample nearest to `time` (s), as the start of another run.
 
         Raises

@@ -22,6 +22,7 @@ from stiction.errors import DescriptionError, Fault
 from stiction.linear_stability import steady_sliding
 from stiction.system.parameter import change_parameter, change_unchecked, read, unit
 from stiction.system.slider import Slider
+from stiction.text.units import Quantity
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -103,7 +104,7 @@ class Estimate(NamedTuple):
 def find_onset(
     slider: Slider,
     path: str,
-    values: Sequence[float | str],
+    values: Sequence[Quantity],
     *,
     most_blocks: int = 40,
     rtol: float = 1e-6,

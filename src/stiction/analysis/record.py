@@ -17,7 +17,7 @@ from stiction.recording.sensor import Sensor
 from stiction.recording.stored import KNOWN, write_stored
 from stiction.system.slider import Slider
 from stiction.text.samples import Floats, as_numbers, samples_to_si, unit_on
-from stiction.text.units import Force, Kind, Mass, PositiveSpeed, Stiffness, reader
+from stiction.text.units import Force, Kind, Mass, PositiveSpeed, Read, Stiffness, reader
 from stiction.text.validation import Described, faulty, unknown_name
 from stiction.trajectory import Trajectory
 
@@ -65,7 +65,7 @@ KINDS = {
     "drive_position": A_LENGTH,
     "slip_speed": Kind("a velocity", "m/s", "mm/s"),
 }
-SignedForce = Annotated[float, reader("a force", "N", "3 mN")]
+SignedForce = Annotated[Read[float], reader("a force", "N", "3 mN")]
 Samples = Annotated[Any, BeforeValidator(_samples)]
 
 

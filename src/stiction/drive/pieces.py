@@ -16,19 +16,12 @@ from typing import Annotated, Any, NamedTuple
 from pydantic import AfterValidator
 
 from stiction.drive.recorded.piece import Recorded, RecordedLoad
-from stiction.text.units import Duration, Rate, reader
+from stiction.text.units import Duration, Rate, Read, reader, unread
 from stiction.text.validation import validate
 
-
-def _level(value: Any) -> Any:
-    if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise ValueError(f"{value!r} is not a number or a string with a unit")
-    return value
-
-
 # a velocity or a force, depending on the program that contains the piece
-Level = Annotated[Any, AfterValidator(_level), "float (m/s or N) | str"]
-Phase = Annotated[float, reader("an angle", "rad", "90 deg")]
+Level = Annotated[Any, AfterValidator(unread), "float (m/s or N) | str"]
+Phase = Annotated[Read[float], reader("an angle", "rad", "90 deg")]
 
 
 class Shape(NamedTuple):

@@ -16,10 +16,9 @@ from stiction.drive.pieces import Constant, Hold, Ramp, Reversal, Step
 from stiction.drive.program import DriveProgram, LoadProgram
 from stiction.drive.steady import ConstantVelocity
 from stiction.errors import DescriptionError, Fault
-from stiction.text.units import FORCE, VELOCITY, Kind, to_si
+from stiction.text.units import FORCE, VELOCITY, Kind, Quantity, to_si
 
 TIME, LENGTH = Kind("a time", "s", "5 s"), Kind("a length", "m", "0.1 mm")
-Quantity = float | str
 
 
 def velocity_steps(

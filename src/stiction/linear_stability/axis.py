@@ -10,6 +10,7 @@ from stiction.errors import DescriptionError, Fault
 from stiction.system.parameter import change_parameter, change_unchecked, read, unit
 from stiction.system.slider import Slider
 from stiction.text.paths import canonical_path
+from stiction.text.units import Quantity
 
 DECADES = 3.0  # in both directions from a parameter's own value, the default range
 WIDE = 10.0  # the scale is logarithmic above this ratio of the ends
@@ -48,7 +49,7 @@ class Axis(NamedTuple):
         return change_unchecked(slider, self.path, self.value(fraction))
 
 
-def axis(slider: Slider, path: str, between: Sequence[float | str] | None = None) -> Axis:
+def axis(slider: Slider, path: str, between: Sequence[Quantity] | None = None) -> Axis:
     """Return the axis of a parameter.
 
     Parameters

@@ -16,6 +16,7 @@ from stiction.linear_stability.linear import growth_rate, steady_sliding
 from stiction.linear_stability.roots import sign_changes, signed_growth
 from stiction.system.parameter import read
 from stiction.system.slider import Slider
+from stiction.text.units import Quantity
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,8 +30,8 @@ def boundary(
     x: str,
     y: str,
     *,
-    x_between: Sequence[float | str] | None = None,
-    y_between: Sequence[float | str] | None = None,
+    x_between: Sequence[Quantity] | None = None,
+    y_between: Sequence[Quantity] | None = None,
 ) -> xr.Dataset:
     """Follow the boundary of stable steady sliding through the plane of two parameters.
 

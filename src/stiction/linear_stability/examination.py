@@ -27,7 +27,7 @@ from stiction.names import draw
 from stiction.system.parameter import read
 from stiction.system.slider import Slider, slider_of
 from stiction.text.sections import Section, Table, as_html, as_text
-from stiction.text.units import in_words
+from stiction.text.units import Quantity, in_words
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 OVER = ("phi", "drive.velocity")
 DIGITS = 6  # shown of a critical value
-Ends = Sequence[float | str]
+Ends = Sequence[Quantity]
 
 
 @dataclass(frozen=True, repr=False)

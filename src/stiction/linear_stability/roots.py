@@ -12,6 +12,7 @@ from stiction.linear_stability.axis import axis
 from stiction.linear_stability.derivatives import Floats
 from stiction.linear_stability.linear import BOUNDARY, steady_sliding
 from stiction.system.slider import Slider
+from stiction.text.units import Quantity
 
 POINTS = 65  # in the first scan of a range
 CLEAR = 1e-6  # of the largest eigenvalue: a larger growth rate has a certain sign
@@ -47,7 +48,7 @@ class Critical(NamedTuple):
 
 
 def critical(
-    slider: Slider, path: str, between: Sequence[float | str] | None = None, *, points: int = POINTS
+    slider: Slider, path: str, between: Sequence[Quantity] | None = None, *, points: int = POINTS
 ) -> Critical:
     """Find every value of a parameter at which steady sliding becomes unstable, or stable.
 

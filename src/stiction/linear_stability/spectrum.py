@@ -11,13 +11,14 @@ from stiction.linear_stability.axis import axis
 from stiction.linear_stability.eigenvalues import Complex
 from stiction.linear_stability.linear import steady_sliding
 from stiction.system.slider import Slider
+from stiction.text.units import Quantity
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
 def modes_over(
-    slider: Slider, path: str, between: Sequence[float | str] | None = None, *, points: int = 201
+    slider: Slider, path: str, between: Sequence[Quantity] | None = None, *, points: int = 201
 ) -> xr.Dataset:
     """Return growth rates and frequencies of all modes over a parameter.
 

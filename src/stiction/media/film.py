@@ -28,7 +28,7 @@ from stiction.simulation import automatic_times, solve
 from stiction.storage.files import placeable, whole
 from stiction.system.description import Description
 from stiction.text.quantity_text import metric_prefix
-from stiction.text.units import in_words
+from stiction.text.units import Quantity, in_words
 from stiction.trajectory import Trajectory, load
 
 SIZE, DPI = (12.8, 7.2), 100  # in: 1280 x 720
@@ -89,9 +89,9 @@ def filmable(path: str | Path) -> Path:
 def animate(
     run: Trajectory | str | Path,
     *,
-    window: Sequence[float | str] | None = None,
+    window: Sequence[Quantity] | None = None,
     length: float = LENGTH,
-    at: float | str | None = None,
+    at: Quantity | None = None,
     kind: str = "mp4",
     trust: bool = False,
     progress: Callable[[float], None] | None = None,

@@ -20,7 +20,7 @@ from stiction.simulation import solve
 from stiction.storage.files import placeable, whole
 from stiction.system.description import Description
 from stiction.system.initial import Initial
-from stiction.text.units import in_words
+from stiction.text.units import Quantity, in_words
 from stiction.trajectory import Trajectory, load
 
 RATE = 48_000  # samples of sound a second
@@ -89,7 +89,7 @@ def listen(
     run: Trajectory | str | Path,
     *,
     speed: float | None = None,
-    window: Sequence[float | str] | None = None,
+    window: Sequence[Quantity] | None = None,
     axis: Literal["x", "y"] = "y",
     trust: bool = False,
     progress: Callable[[float], None] | None = None,
@@ -181,9 +181,7 @@ def audible_speed(description: Description, axis: str = "y") -> float:
     return float(10.0 ** -floor(log10(pitch / low))) if pitch < low else 1.0
 
 
-def window_of(
-    description: Description, window: Sequence[float | str] | None
-) -> tuple[float, float]:
+def window_of(description: Description, window: Sequence[Quantity] | None) -> tuple[float, float]:
     """Return start and end of a part of a run, s.
 
     Raises
@@ -203,7 +201,7 @@ def window_of(
     return start, min(end, last)
 
 
-def time_in(description: Description, time: float | str) -> float:
+def time_in(description: Description, time: Quantity) -> float:
     """Return a time in a run, s.
 
     Raises
@@ -217,7 +215,7 @@ def time_in(description: Description, time: float | str) -> float:
     return found
 
 
-def seconds(time: float | str) -> float:
+def seconds(time: Quantity) -> float:
     """Return a time, given as a number of seconds or with its unit, s.
 
     Raises

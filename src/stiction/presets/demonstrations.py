@@ -79,7 +79,7 @@ def modelica_force() -> Description:
     The plate's acceleration acts as the force; positions are relative to the plate.
     """
     speed = FORCE / (2 * pi * FREQUENCY)
-    push = Modulation(speed, FREQUENCY, "-90 deg")  # type: ignore[arg-type]
+    push = Modulation(speed, FREQUENCY, "-90 deg")
     slider = on_a_line(
         k_x=1e-9,
         friction=Stribeck(mu_s=15.0, mu_c=5.0, v_s=0.5, d=1.0, c=1.0),

@@ -107,7 +107,7 @@ def lugre_pre_sliding() -> Description:
 def lag(omega: float) -> Description:
     """Return the run in which the slip speed varies as 1 mm/s (1.5 + cos(omega t))."""
     k = 1e10  # N/m: the contact is all that gives
-    waves = Modulation(1e-3, omega / (2 * pi), "90 deg")  # type: ignore[arg-type]
+    waves = Modulation(1e-3, omega / (2 * pi), "90 deg")
     slider = on_a_line(
         mass=1e-4,
         k_x=k,

@@ -28,8 +28,8 @@ def nakano_popov_2020() -> Slider:
         k_y="10 MN/m",
         phi="1 deg",
         normal_load="10 N",
-        friction=ExponentialWeakening(mu_0=0.20, mu_inf=0.15, v_f="10 mm/s"),  # type: ignore[arg-type]
-        drive=ConstantVelocity("1 mm/s"),  # type: ignore[arg-type]
+        friction=ExponentialWeakening(mu_0=0.20, mu_inf=0.15, v_f="10 mm/s"),
+        drive=ConstantVelocity("1 mm/s"),
     )
 
 

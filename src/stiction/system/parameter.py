@@ -19,7 +19,7 @@ from stiction.friction import Anisotropic
 from stiction.system.description import Description
 from stiction.system.slider import FROM_SPRINGS, Slider
 from stiction.text.paths import canonical
-from stiction.text.units import hints_of, unit_of
+from stiction.text.units import Quantity, hints_of, unit_of
 from stiction.text.validation import make, unknown_name
 
 Owner = TypeVar("Owner", Slider, Description)
@@ -79,7 +79,7 @@ def read(owner: Slider | Description, path: str) -> float:
     return next(iter(values.values()))
 
 
-def change_parameter(owner: Owner, path: str, value: float | str) -> Owner:
+def change_parameter(owner: Owner, path: str, value: Quantity) -> Owner:
     """Return a slider or description with another value of a parameter.
 
     Parameters
@@ -106,7 +106,7 @@ def change_parameter(owner: Owner, path: str, value: float | str) -> Owner:
     return change_parameters(owner, {path: value})
 
 
-def change_parameters(owner: Owner, changes: Mapping[str, float | str]) -> Owner:
+def change_parameters(owner: Owner, changes: Mapping[str, Quantity]) -> Owner:
     """Return a slider or description with several parameters changed, validated together.
 
     Raises

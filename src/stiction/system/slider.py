@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from functools import cached_property, partial
 from math import cos, pi, sin, sqrt
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, model_validator
 from pydantic_core import PydanticCustomError
@@ -81,8 +81,12 @@ class Apparatus(Described):
     """The mechanical part: mass, springs, dampers, misalignment, load (see `Slider`)."""
 
     mass: Mass
-    k_x: Stiffness
-    k_y: Stiffness
+    if TYPE_CHECKING:  # a checker cannot know that springs in series replace them
+        k_x: Stiffness = 0.0
+        k_y: Stiffness = 0.0
+    else:
+        k_x: Stiffness
+        k_y: Stiffness
     phi: Annotated[Angle, AfterValidator(_within_a_right_angle)]
     normal_load: Force
     c_x: Damping = 0.0

@@ -20,7 +20,7 @@ from stiction.errors import DescriptionError, Fault
 from stiction.system.tensors import Matrix, principal
 from stiction.text.paths import slug
 from stiction.text.quantity_text import RIGID, angle_text
-from stiction.text.units import Angle, Kind, Mass, fault, reader, to_si
+from stiction.text.units import Angle, Kind, Mass, Read, fault, reader, to_si
 from stiction.text.validation import faulty, make, validate
 
 LETTER = r"[^\W\d_]"
@@ -41,12 +41,12 @@ def _has_a_letter(name: str) -> str:
 
 _KIND = Kind(f"a stiffness or '{RIGID}'", "N/m", "1 kN/m")
 Stiffness = Annotated[
-    float,
+    Read[float],
     BeforeValidator(partial(_stiffness, kind=_KIND, words=(RIGID,))),
     Field(gt=0),
     "float (N/m) | str, or 'rigid'",
 ]
-Compliance = Annotated[float, reader("a compliance", "m/N", "2 um/N"), Field(ge=0)]
+Compliance = Annotated[Read[float], reader("a compliance", "m/N", "2 um/N"), Field(ge=0)]
 Name = Annotated[str, AfterValidator(_has_a_letter), Field(json_schema_extra={"pattern": LETTER})]
 
 

@@ -13,7 +13,19 @@ from fractions import Fraction
 from functools import cache, partial
 from math import inf, isfinite, isinf, isnan, pi, radians
 from types import UnionType
-from typing import Annotated, Any, NamedTuple, Union, get_args, get_origin, get_type_hints
+from typing import (
+    TYPE_CHECKING,
+    Annotated,
+    Any,
+    NamedTuple,
+    Protocol,
+    TypeAlias,
+    TypeVar,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
 from pydantic_core import PydanticCustomError
@@ -28,6 +40,35 @@ class Kind(NamedTuple):
     name: str
     unit: str
     example: str
+
+
+class Measured(Protocol):
+    """A number with a unit, as pint has it."""
+
+    @property
+    def magnitude(self) -> Any:
+        """The number."""
+
+    @property
+    def units(self) -> Any:
+        """Its unit."""
+
+
+Quantity = float | str | Measured  # what a public function takes: a number in SI, or with its unit
+
+# A field that is read from something else, such as a float from text. A type checker knows one type
+# for what a constructor takes and for the field: with Any beside it, text is taken, a float read.
+T = TypeVar("T")
+if TYPE_CHECKING:
+    Read: TypeAlias = T | Any
+else:
+
+    class Read:
+        """``Read[T]`` is T."""
+
+        def __class_getitem__(cls, kind: Any) -> Any:
+            """Return the type."""
+            return kind
 
 
 # the annotations of a class by field, with their quantities
@@ -60,7 +101,7 @@ def to_si(value: object, kind: Kind) -> float:
     PydanticCustomError
         With the rule, the offending value and the remedy.
     """
-    value = _bare(value)
+    value = bare(value)
     angle = kind.unit == "rad"
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise fault(f"{value!r} is not {kind.name}; write for example {kind.example!r}")
@@ -79,6 +120,14 @@ def to_si(value: object, kind: Kind) -> float:
     return number if abs(number) >= SMALLEST else 0.0
 
 
+def unread(value: object) -> object:
+    """Return a number, or text with a unit, that is read when its unit is known."""
+    value = bare(value)
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        raise ValueError(f"{value!r} is not a number or a string with its unit")
+    return value
+
+
 def as_float(value: Any) -> float:
     """Return a number as a float; infinity for an integer too large for a float."""
     try:
@@ -87,10 +136,10 @@ def as_float(value: Any) -> float:
         return inf
 
 
-def _bare(value: object) -> object:
+def bare(value: object) -> object:
     """Turn a NumPy number into a Python number and a pint quantity into text."""
     if hasattr(value, "magnitude") and hasattr(value, "units"):
-        return f"{_bare(value.magnitude)!r} {value.units}"
+        return f"{bare(value.magnitude)!r} {value.units}"
     return value.item() if hasattr(value, "item") and getattr(value, "shape", None) == () else value
 
 
@@ -188,27 +237,31 @@ def _not_below_one(value: float) -> float:
     return value
 
 
-Angle = Annotated[float, reader("an angle", "rad", "1 deg"), PlainSerializer(angle_text)]
-Coefficient = Annotated[float, reader("a number", "", "0.20"), Field(ge=0)]
-Number = Annotated[float, reader("a number", "", "1e-6")]
-Exponent = Annotated[float, reader("a number", "", "2"), AfterValidator(_not_below_one)]
-PositiveNumber = Annotated[float, reader("a number", "", "0.01"), Field(gt=0)]
-Mass = Annotated[float, reader("a mass", "kg", "0.25 kg"), Field(gt=0)]
-Stiffness = Annotated[float, reader("a stiffness", "N/m", "1 kN/m"), Field(gt=0)]
-Damping = Annotated[float, reader("a damping constant", "N*s/m", "0.5 N*s/m"), Field(ge=0)]
-Force = Annotated[float, reader("a force", "N", "10 N"), Field(gt=0)]
-Length = Annotated[float, reader("a length", "m", "0.1 mm")]
-PositiveLength = Annotated[float, reader("a length", "m", "10 um"), Field(gt=0)]
-Velocity = Annotated[float, reader("a velocity", "m/s", "1 mm/s")]
-Speed = Annotated[float, reader("a velocity", "m/s", "1 mm/s"), Field(ge=0)]
-PositiveSpeed = Annotated[float, reader("a velocity", "m/s", "10 mm/s"), Field(gt=0)]
-PerSpeed = Annotated[float, reader("friction per slip speed", "s/m", "0.5 s/m"), Field(ge=0)]
-Speeds = Annotated[tuple[Speed, ...], BeforeValidator(_as_list), "sequence of float (m/s) | str"]
-Coefficients = Annotated[tuple[Coefficient, ...], BeforeValidator(_as_list), "sequence of float"]
-Time = Annotated[float, reader("a time", "s", "5 s")]
-Duration = Annotated[float, reader("a time", "s", "5 s"), Field(gt=0)]
-Rate = Annotated[float, reader("a frequency", "Hz", "10 kHz"), Field(gt=0)]
-SampleRate = Annotated[float, reader("a frequency", "Hz", "10 kHz"), Field(ge=0)]
+Angle = Annotated[Read[float], reader("an angle", "rad", "1 deg"), PlainSerializer(angle_text)]
+Coefficient = Annotated[Read[float], reader("a number", "", "0.20"), Field(ge=0)]
+Number = Annotated[Read[float], reader("a number", "", "1e-6")]
+Exponent = Annotated[Read[float], reader("a number", "", "2"), AfterValidator(_not_below_one)]
+PositiveNumber = Annotated[Read[float], reader("a number", "", "0.01"), Field(gt=0)]
+Mass = Annotated[Read[float], reader("a mass", "kg", "0.25 kg"), Field(gt=0)]
+Stiffness = Annotated[Read[float], reader("a stiffness", "N/m", "1 kN/m"), Field(gt=0)]
+Damping = Annotated[Read[float], reader("a damping constant", "N*s/m", "0.5 N*s/m"), Field(ge=0)]
+Force = Annotated[Read[float], reader("a force", "N", "10 N"), Field(gt=0)]
+Length = Annotated[Read[float], reader("a length", "m", "0.1 mm")]
+PositiveLength = Annotated[Read[float], reader("a length", "m", "10 um"), Field(gt=0)]
+Velocity = Annotated[Read[float], reader("a velocity", "m/s", "1 mm/s")]
+Speed = Annotated[Read[float], reader("a velocity", "m/s", "1 mm/s"), Field(ge=0)]
+PositiveSpeed = Annotated[Read[float], reader("a velocity", "m/s", "10 mm/s"), Field(gt=0)]
+PerSpeed = Annotated[Read[float], reader("friction per slip speed", "s/m", "0.5 s/m"), Field(ge=0)]
+Speeds = Annotated[
+    Read[tuple[Speed, ...]], BeforeValidator(_as_list), "sequence of float (m/s) | str"
+]
+Coefficients = Annotated[
+    Read[tuple[Coefficient, ...]], BeforeValidator(_as_list), "sequence of float"
+]
+Time = Annotated[Read[float], reader("a time", "s", "5 s")]
+Duration = Annotated[Read[float], reader("a time", "s", "5 s"), Field(gt=0)]
+Rate = Annotated[Read[float], reader("a frequency", "Hz", "10 kHz"), Field(gt=0)]
+SampleRate = Annotated[Read[float], reader("a frequency", "Hz", "10 kHz"), Field(ge=0)]
 
 
 def in_words(value: float, unit: str, digits: int = DIGITS) -> str:

@@ -11,6 +11,7 @@ from stiction.errors import DescriptionError, Fault, ResultError
 from stiction.recording.measurement import Measurement, read_measurements
 from stiction.recording.stored import is_stored, read_stored, root_attributes
 from stiction.recording.table import natural_key, number_of
+from stiction.text.units import Quantity
 from stiction.trajectory import Trajectory, load
 
 T = TypeVar("T")
@@ -26,18 +27,18 @@ class Said(TypedDict, total=False):
     position: str | None
     drive_position: str | None
     slip_speed: str | None
-    interval: float | str | None
+    interval: Quantity | None
     times: str | None
     decimal: str | None
     separator: str | None
     wrap: str | None
     block: int | None
-    normal_load: float | str | None
-    stiffness: float | str | None
-    stiffness_across: float | str | None
-    drive_velocity: float | str | None
-    mass: float | str | None
-    zero: float | str | None
+    normal_load: Quantity | None
+    stiffness: Quantity | None
+    stiffness_across: Quantity | None
+    drive_velocity: Quantity | None
+    mass: Quantity | None
+    zero: Quantity | None
 
 
 def read_record(

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from stiction.analysis.record import Record, cell_axis, record_of
 from stiction.errors import ResultError
 from stiction.recording.sensor import Sensor
-from stiction.text.units import SampleRate
+from stiction.text.units import Quantity, SampleRate
 from stiction.text.validation import Described
 from stiction.trajectory import Trajectory
 
@@ -27,7 +27,7 @@ def measure(
     run: Trajectory,
     sensor: Sensor | Mapping[str, Sensor],
     *,
-    sample_rate: float | str | None = None,
+    sample_rate: Quantity | None = None,
     seed: int = 0,
 ) -> Record:
     """Return a run as its sensors record it: filtered, sampled, with noise, rounded.

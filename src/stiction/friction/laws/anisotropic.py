@@ -8,7 +8,7 @@ from pydantic import AfterValidator, Field
 
 from stiction.errors import DescriptionError, Fault
 from stiction.friction.law import FrictionLaw, Law, has_state
-from stiction.text.units import Angle, reader
+from stiction.text.units import Angle, Read, reader
 from stiction.text.validation import validate
 
 
@@ -18,7 +18,7 @@ def _is_set_valued(law: Any) -> Any:
     return law
 
 
-Ratio = Annotated[float, reader("a number", "", "1.5"), Field(gt=0)]
+Ratio = Annotated[Read[float], reader("a number", "", "1.5"), Field(gt=0)]
 
 
 @validate

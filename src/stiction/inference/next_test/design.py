@@ -27,9 +27,7 @@ from stiction.inference.observation import PER_CYCLE, Conditions, observe
 from stiction.inference.priors import Rig
 from stiction.system.slider import Slider
 from stiction.text.paths import canonical
-from stiction.text.units import in_words
-
-Given = float | str
+from stiction.text.units import Quantity, in_words
 
 FEWEST = 100  # rigs with cycles in the present test, below which nothing is learned
 
@@ -40,11 +38,11 @@ def design(
     *,
     of: str = "phi",
     channels: Sequence[str] = ("force",),
-    angles: Sequence[Given] = ANGLES,
-    velocities: Sequence[Given] | None = None,
-    loads: Sequence[Given] | None = None,
-    noise: Given | None = None,
-    position_noise: Given | None = None,
+    angles: Sequence[Quantity] = ANGLES,
+    velocities: Sequence[Quantity] | None = None,
+    loads: Sequence[Quantity] | None = None,
+    noise: Quantity | None = None,
+    position_noise: Quantity | None = None,
     simulations: int = SIMULATIONS,
     library: str | Path | None = None,
     seed: int = 0,

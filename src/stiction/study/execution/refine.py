@@ -28,6 +28,7 @@ from stiction.study.store.store import errors_as_message, open_study
 from stiction.study.variables.fast_regime import FORMERLY, KINDS
 from stiction.study.view.view import CHANGES, REFINED, REGIME, kinds
 from stiction.text.paths import canonical_path
+from stiction.text.units import Quantity
 from stiction.text.validation import unknown_name
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ def refine(
     study: Study,
     path: str | Path,
     along: str,
-    to: float | str,
+    to: Quantity,
     *,
     apart: Sequence[str] | None = None,
     engine: Engine | None = None,
@@ -106,7 +107,7 @@ def _keep(changes: xr.Dataset, target: Path) -> None:
         place({room / CHANGES: target})
 
 
-def _requested_width(study: Study, along: str, to: float | str) -> float:
+def _requested_width(study: Study, along: str, to: Quantity) -> float:
     """Return the desired width, if the arguments are valid."""
     found = []
     if along not in study.coordinates or along not in study.layout.dims:

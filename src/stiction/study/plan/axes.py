@@ -11,16 +11,11 @@ from numpy.typing import NDArray
 from pydantic import AfterValidator, BeforeValidator, Field
 
 from stiction.errors import DescriptionError, Fault
+from stiction.text.units import Read, unread
 from stiction.text.validation import Described, unknown_name
 
 Floats = NDArray[np.float64]
 MOST = 1_000_000_000  # values of an axis
-
-
-def _quantity(value: Any) -> Any:
-    if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise ValueError(f"{value!r} is not a number or a string with its unit")
-    return value
 
 
 def _list(value: Any) -> Any:
@@ -31,8 +26,8 @@ def _list(value: Any) -> Any:
 
 
 # the parameter of the axis determines the unit
-Quantity = Annotated[Any, AfterValidator(_quantity)]
-Quantities = Annotated[tuple[Quantity, ...], BeforeValidator(_list)]
+Quantity = Annotated[Any, AfterValidator(unread)]
+Quantities = Annotated[Read[tuple[Quantity, ...]], BeforeValidator(_list)]
 Count = Annotated[int, Field(ge=1, le=MOST)]
 Spacing = Literal["linear", "log"]
 

@@ -15,7 +15,7 @@ from stiction.study.plan.axes import Axis, Floats, Range
 from stiction.study.variables.measures import MEASURES
 from stiction.system import parameter
 from stiction.system.description import Description
-from stiction.text.units import Kind, to_si
+from stiction.text.units import Kind, bare, to_si
 
 TAKEN = {"status", "message", "time", *MEASURES}  # reserved names in a store
 NAME = re.compile(r"\w[\w ,.-]*")
@@ -49,6 +49,7 @@ def number(value: Any, unit: str) -> float:
     PydanticCustomError
         With the rule, the offending value and the remedy.
     """
+    value = bare(value)
     if unit == "deg" and not isinstance(value, str):
         return to_si(value, Kind("an angle", "rad", "1 deg"))  # says what to write instead
     return to_si(value, Kind("such a quantity", unit, f"1 {unit}".rstrip()))

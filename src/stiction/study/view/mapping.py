@@ -29,6 +29,7 @@ from stiction.plotting.stability.damping import draw_damping_map
 from stiction.study.plan.layout import Index
 from stiction.study.view.boundaries import Plane, damping_number, plane
 from stiction.study.view.view import REGIME, View, choose_measures, kinds, view_study
+from stiction.text.units import Quantity
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -76,7 +77,7 @@ class Map(NamedTuple):
 def map(
     store: str | Path,
     of: str | Sequence[str] = (),
-    at: Mapping[str, str | float] | None = None,
+    at: Mapping[str, Quantity] | None = None,
     *,
     trust: bool = False,
 ) -> Map:

@@ -20,6 +20,7 @@ from stiction.study.store.store import CHECKED, group_at, open_study
 from stiction.study.variables.fast_regime import KINDS
 from stiction.study.variables.measures import FORMERLY
 from stiction.text.paths import canonical_path
+from stiction.text.units import Quantity
 from stiction.text.validation import unknown_name
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ class View(NamedTuple):
     changes: Sequence[xr.Dataset]
 
 
-def view_study(path: str | Path, cut: Mapping[str, str | float], trust: bool = False) -> View:
+def view_study(path: str | Path, cut: Mapping[str, Quantity], trust: bool = False) -> View:
     """Return a study with some of its dimensions cut."""
     with opening(path, "is damaged"):
         data = open_study(path)
