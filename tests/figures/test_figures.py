@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.markers import MarkerStyle
 from matplotlib.patches import FancyArrowPatch
+from tests.drawn import inside
 
 import stiction as st
 from stiction import theory
@@ -392,9 +393,50 @@ def test_a_slow_period_among_fast_ones_makes_no_bar() -> None:
     period[::40] = 55.0
     ends = np.cumsum(period)
     values = np.sin(2 * np.pi * np.interp(np.arange(15_000.0), ends, np.arange(len(ends))))
-    fast, _ = swings(values)
-    inner = fast[50:1450]
-    assert inner.all()
+    (fast,) = swings(np.arange(15_000.0), values, 60.0, 0.1)
+    assert fast.samples.start < 100  # the first period is a slow one
+    assert fast.samples.stop == 15_000
+    assert fast.period == pytest.approx(period[:490].mean(), rel=0.01)
+    assert not swings(np.arange(15_000.0), values, 30.0, 0.1)  # the mean period is longer
+
+
+@pytest.mark.parametrize(
+    ("width", "samples", "damping"), inside(6, (0.5, 2.5), (8.0, 60.0), (0.1, 0.25))
+)
+def test_trials_that_die_out_are_bands_between_their_extremes(
+    width: float, samples: float, damping: float
+) -> None:
+    """Swings of few or many samples and of a few widths of the line; a line if they can be seen."""
+    period = width / (0.75 * 7.0 * 72.0)  # pt, of a page
+    time = np.linspace(0.0, 1.0, round(samples / period))
+    size = np.exp(-time / damping)
+    dying = 2.0 + size * np.sin(2.0 * pi * time / period)
+    before = st.Record(time=time, force=2.0 + 0.5 * (5.0 * time % 1.0))
+    (ax,) = plot_trials(before, [Trial("faster", st.Record(time=time, force=dying))])
+    (band,) = ax.collections
+    corners = band.get_paths()[0].vertices
+    for sign in (-1.0, 1.0):
+        side = corners[np.sign(corners[:, 1] - 2.0) == sign]
+        side = side[(side[:, 0] > 0.05) & (side[:, 0] < side[:, 0].max() - 0.05)]
+        expected = np.interp(side[:, 0], time, size)
+        np.testing.assert_allclose(np.abs(side[:, 1] - 2.0), expected, rtol=0.2)
+    line = ax.get_lines()[-1].get_xydata()
+    later = line[(line[:, 0] > 0.05) & (line[:, 0] < 0.95)]
+    assert np.ptp(later[:, 1]) < 0.1  # of two: their mean
+    (slow,) = plot_trials(before, [Trial("slow", st.Record(time=20.0 * time, force=dying))])
+    assert slow.collections  # time alone changes nothing
+    few = 2.0 + size * np.sin(2.0 * pi * 12.0 * time)
+    (ax,) = plot_trials(before, [Trial("slow", st.Record(time=time, force=few))])
+    assert not ax.collections
+    assert np.ptp(ax.get_lines()[-1].get_ydata()) > 1.0
+
+
+def test_a_few_fast_turns_in_each_cycle_leave_the_cycles_to_be_seen() -> None:
+    time = np.linspace(0.0, 10.0, 20_001)
+    within = time % 1.0
+    force = within + 0.1 * np.exp(-within / 0.02) * np.sin(2.0 * pi * 100.0 * within)
+    line = draw_line(Figure().add_subplot(), time, force)
+    assert np.ptp(line.get_ydata()) > 0.9 * np.ptp(force)
 
 
 def test_trials_of_many_swings_show_a_few_of_them() -> None:

@@ -50,7 +50,11 @@ DRAWN: dict[str, tuple[tuple[Callable[[Audit], Figure | None], str], ...]] = {
     ),
     tolerance.TITLE: ((figures.tolerance, "What tests read over the uncertain misalignment."),),
     "What to change": (
-        (figures.trials, "Each advice tried: the force of the same test, now and then."),
+        (
+            figures.trials,
+            "Each advice tried: the force of the same test, now and then. A pale band is the "
+            "range of swings too fast to be seen one by one, the line in it their mean.",
+        ),
         (figures.stability, "Where steady sliding is stable, and where this apparatus is."),
     ),
 }

@@ -46,8 +46,9 @@ def plot_trials(
     Time runs as long as the trial does; where the test before is longer, it is cut, where it is
     shorter, it ends, and where next to nothing of it would be seen, or less than a swing, a band
     is the range of its force. Of a trial that goes on with more swings than a panel can show, the
-    last few are drawn, and it is said of how many. Forces are shown about what both come to, the
-    loading from nothing is cut off: an oscillation may be small beside it.
+    last few are drawn, and it is said of how many. Where swings that die out are too fast to be
+    seen one by one, a pale band is their range, and the line their mean. Forces are shown about
+    what both come to, the loading from nothing is cut off: an oscillation may be small beside it.
 
     Parameters
     ----------
@@ -89,17 +90,19 @@ def _draw_trial(ax: Axes, before: Record, trial: Trial, factor: float) -> dict[s
     title, record = trial
     start, end, count = time_range(record)
     low, high = later(factor, before, record)
+    window = (end - start, high - low)
     drawn: dict[str, Artist] = {}
     force, then = factor * before.force, (before.time >= start) & (before.time <= end)
     late = force[len(force) // 2 :]
     seen = then & (force >= low) & (force <= high)
     wide = np.ptp(before.time[seen]) if seen.any() else 0.0
     if wide >= WIDE * (end - start) and np.ptp(force[seen]) >= WHOLE * np.ptp(late):
-        drawn["now"] = draw_line(ax, before.time[then], force[then], GREY, 0.7)
+        drawn["now"] = draw_line(ax, before.time[then], force[then], GREY, 0.7, window)
     else:
         drawn["range of the force now"] = ax.axhspan(late.min(), late.max(), color=PALE, zorder=0)
     then = (record.time >= start) & (record.time <= end)
-    drawn["changed"] = draw_line(ax, record.time[then], factor * record.force[then], BLUE, 1.0)
+    changed = factor * record.force[then]
+    drawn["changed"] = draw_line(ax, record.time[then], changed, BLUE, 1.0, window)
     ax.set(xlim=(start, end), title=fill(title, TITLE), ylim=(low, high))
     if count:
         said = f"the last {FEW} of some {float(f'{count:.2g}'):.0f} swings"

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import StepPatch
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
-from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 
 from stiction.analysis.motion.rest import stuck_until
+from stiction.analysis.signals.reversals import taken_out
+from stiction.analysis.signals.turning_points import FINE, as_counts
 from stiction.analysis.slip import Slip, averaged_slip
 from stiction.plotting.page.parameter import SPARSE
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED
@@ -24,10 +26,14 @@ Floats = NDArray[np.float64]
 FEW = 50  # so few samples are drawn as points: the motion between them is unknown
 PARTS = 500  # of the time: finer than a printed line shows
 BINS = 1500  # more than a printed line has dots
-NEAR, HALF = 9, 5  # bins around one for counting turns, and for the search of extremes
-TURNS = 5  # in these bins: a period below four bins cannot be resolved
+LINES = 3.0  # widths of a line in a period: fewer leave next to no paper between its two strokes
+TURNS = 6  # at least, of an oscillation: three periods
 THIN = 5e-3  # of a panel's height: a smaller range looks like a line
-SMOOTH = 13  # bins of the mean, two of them with weight zero
+RANGE = 1.5  # periods in which extremes are sought: they differ in length
+MEAN = 4.0  # periods of a mean; two are the least whose weight cancels them
+SMOOTH = 13  # least bins of a mean, two of them with weight zero: one may hold a period and a half
+POINT = 72.0  # pt in an inch
+EDGE = 0.3  # pt, of the outline of a range: pale colours look alike in print
 BAND = 0.3  # opacity of the range
 DEEPEST = 1e-6  # of the drive's speed: slower motion counts as rest
 LEAST = 1e-9  # of the drive's speed, or of its path: smaller values are rounding
@@ -53,65 +59,135 @@ def envelope(time: ArrayLike, values: ArrayLike, bins: int = BINS) -> tuple[Floa
     t, v = np.asarray(time, dtype=np.float64), np.asarray(values, dtype=np.float64)
     if len(t) <= 2 * bins:
         return t, v
-    starts = np.linspace(0, len(t), bins, endpoint=False).astype(np.intp)
+    starts = _bin_starts(len(t), bins)
     middle = 0.5 * (t[starts] + t[np.r_[starts[1:], len(t)] - 1])
     low, high = np.fmin.reduceat(v, starts), np.fmax.reduceat(v, starts)
     return np.repeat(middle, 2), np.column_stack([low, high]).ravel()
 
 
-def swings(values: ArrayLike, bins: int = BINS) -> tuple[NDArray[np.bool_], Floats]:
-    """Return the bins of `envelope` with unresolved oscillations, and their means."""
-    v = np.asarray(values, dtype=np.float64)
-    starts = np.linspace(0, len(v), bins, endpoint=False).astype(np.intp)
-    rate = np.diff(v)
-    moves = np.flatnonzero(np.isfinite(rate) & (rate != 0.0))
-    turns = moves[1:][np.diff(np.sign(rate[moves])) != 0.0]
-    known = np.isfinite(v)
-    count = np.maximum(np.add.reduceat(known.astype(np.intp), starts), 1)
-    mean = np.add.reduceat(np.where(known, v, 0.0), starts) / count
-    within = np.searchsorted(starts, turns, side="right") - 1
-    nearby = np.convolve(np.bincount(within, minlength=bins), np.ones(NEAR), "same")
-    fast = _without_gaps(nearby >= TURNS)
-    whole = np.hanning(SMOOTH)  # a bin may hold a period and a half
-    weight = np.maximum(np.convolve(fast, whole, "same"), 1e-300)
-    return fast, np.where(fast, np.convolve(mean * fast, whole, "same") / weight, mean)
+class Swings(NamedTuple):
+    """An oscillation: the samples from its first turn to its last, and its mean period in s.
+
+    An oscillation that begins or ends with the record has the samples beyond these turns, too.
+    """
+
+    samples: slice
+    period: float
 
 
-def _without_gaps(fast: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return bins with oscillations, and those of short gaps: a slow period, or a pause."""
-    from scipy.ndimage import binary_closing  # type: ignore[attr-defined]
+def swings(time: Floats, values: Floats, longest: float, least: float) -> list[Swings]:
+    """Find the oscillations with short periods.
 
-    wide = np.pad(fast, HALF)
-    return np.asarray(binary_closing(wide, np.ones(HALF))[HALF:-HALF])
+    Parameters
+    ----------
+    time, values : ndarray
+        (n,); not-a-number values are no turns.
+    longest : float
+        Mean period of the slowest of them, s, and time between two turns that ends one.
+    least : float
+        Height of a turn; smaller ones do not count.
+    """
+    known = np.flatnonzero(np.isfinite(values))
+    height = np.ptp(values[known]) if len(known) else 0.0
+    if not 0.0 < least < height:
+        return []
+    points, _ = taken_out(as_counts(values[known]), FINE * least / height)
+    first, *_, last = points = known[points]
+    turns, found = points[1:-1], []
+    for group in np.split(turns, np.flatnonzero(np.diff(time[turns]) > longest) + 1):
+        gaps = np.diff(time[group])
+        if len(group) >= TURNS and gaps.mean() <= 0.5 * longest:
+            begins = time[group[0]] - time[first] <= 1.5 * gaps[0]
+            goes_on = time[last] - time[group[-1]] <= 1.5 * gaps[-1]
+            start, end = first if begins else group[0], last if goes_on else group[-1]
+            found.append(Swings(slice(start, end + 1), 2.0 * gaps.mean()))
+    return found
 
 
 def draw_line(
-    ax: Axes, time: ArrayLike, values: ArrayLike, color: str = BLACK, width: float = 0.7
+    ax: Axes,
+    time: ArrayLike,
+    values: ArrayLike,
+    color: str = BLACK,
+    width: float = 0.7,
+    window: tuple[float, float] | None = None,
 ) -> Line2D:
-    """Draw values over time (s), thinned out by `envelope`; `width` in pt.
+    """Draw values over time (s), thinned out by `envelope`.
 
-    Where oscillations are unresolved, the line is their mean, and a pale band their range.
+    Where oscillations are too fast for a line of this width in this panel, the line is their mean,
+    and a pale band their range.
+
+    Parameters
+    ----------
+    ax : Axes
+        Drawn on, in a figure that has its size.
+    time, values : array
+        (n,).
+    color : str
+        Of the line and the band.
+    width : float
+        Of the line, pt.
+    window : tuple of float, optional
+        Time and range that the panel shows, by default those of the values.
     """
-    times = np.asarray(time)
-    thin, shown = envelope(times, values)
-    if len(times) > 2 * BINS:
-        fast, mean = swings(values)
-        pairs = shown.reshape(-1, 2)
+    times, shown = np.asarray(time, dtype=np.float64), np.asarray(values, dtype=np.float64)
+    if len(times) > FEW:
         height = np.fmax.reduce(shown) - np.fmin.reduce(shown)
-        fast &= pairs[:, 1] - pairs[:, 0] > THIN * height
-        if fast.any():
-            near = np.pad(pairs, ((HALF // 2, HALF // 2), (0, 0)), mode="edge")
-            windows = sliding_window_view(near, HALF, axis=0)
-            low = np.where(fast, windows[:, 0].min(axis=1), np.nan)
-            high = np.where(fast, windows[:, 1].max(axis=1), np.nan)
-            ax.fill_between(thin[::2], low, high, color=color, alpha=BAND, linewidth=0)
-        shown = np.where(fast[:, np.newaxis], mean[:, np.newaxis], pairs).ravel()
-    (line,) = ax.plot(thin, shown, color=color, linewidth=width)
+        span, height = window or (times[-1] - times[0], height)
+        across = POINT * ax.get_window_extent().width / ax.figure.get_dpi()
+        longest = LINES * width / across * span
+        found = swings(times, shown, longest, THIN * height)
+        if found:
+            shown = _draw_range(ax, times, shown, found, color)
+    (line,) = ax.plot(*envelope(times, shown), color=color, linewidth=width)
     if len(times) <= FEW:
         line.set(linestyle="none", marker="o", markersize=2.5, clip_on=False, zorder=3)
     if times[-1] > times[0]:
         ax.set_xlim(times[0], times[-1])
     return line
+
+
+def _draw_range(ax: Axes, time: Floats, values: Floats, found: list[Swings], color: str) -> Floats:
+    """Draw the range of oscillations as a band; return the values with their mean in its place."""
+    bins = min(BINS, len(time) // 2)
+    starts = _bin_starts(len(time), bins)
+    step = (time[-1] - time[0]) / bins
+    low, high, shown = np.full(bins, np.nan), np.full(bins, np.nan), values.copy()
+    for samples, period in found:
+        first, last = np.searchsorted(starts, (samples.start, samples.stop - 1), side="right") - 1
+        within = slice(first, last + 1)
+        inner = np.maximum(starts[within] - samples.start, 0)
+        low[within], high[within], mean = _smoothed(values[samples], inner, period / step)
+        shown[samples] = np.repeat(mean, np.diff(inner, append=samples.stop - samples.start))
+    middle = 0.5 * (time[starts] + time[np.r_[starts[1:], len(time)] - 1])
+    band = ax.fill_between(middle, low, high, color=color, linewidth=EDGE)
+    band.set_facecolor((color, BAND))
+    return shown
+
+
+def _smoothed(values: Floats, starts: NDArray[np.intp], period: float) -> tuple[Floats, ...]:
+    """Return low, high and mean of periods around each bin of an oscillation; `period` in bins."""
+    from scipy.ndimage import (  # type: ignore[attr-defined]
+        convolve1d,
+        maximum_filter1d,
+        minimum_filter1d,
+    )
+
+    known = np.isfinite(values)
+    size = int(np.ceil(RANGE * period)) // 2 * 2 + 1
+    low = minimum_filter1d(np.fmin.reduceat(np.where(known, values, np.inf), starts), size)
+    high = maximum_filter1d(np.fmax.reduceat(np.where(known, values, -np.inf), starts), size)
+    weight = np.hanning(max(SMOOTH, round(MEAN * period) // 2 * 2 + 3))
+    total, count = (
+        convolve1d(np.add.reduceat(each, starts), weight, mode="constant")
+        for each in (np.where(known, values, 0.0), known.astype(np.float64))
+    )
+    return low, high, total / np.maximum(count, 1e-300)
+
+
+def _bin_starts(samples: int, bins: int) -> NDArray[np.intp]:
+    """Return the index of the first sample of each bin."""
+    return np.linspace(0, samples, bins, endpoint=False).astype(np.intp)
 
 
 def draw_quantity(
