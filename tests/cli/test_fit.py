@@ -3,29 +3,12 @@
 import numpy as np
 import pytest
 import xarray as xr
+from tests.uncertain import TEXT
 
 import stiction as st
 from stiction.cli import main
 from stiction.inference.jitter import Jitter, move
 from stiction.inference.next_test import further
-
-RIG = """
-[slider]
-mass = "80 g"
-k_x = "2.3 kN/m"
-k_y = "0.9 MN/m"
-phi = {low = "0.5 deg", high = "5 deg", scale = "log"}
-normal_load = "4 N"
-
-[friction]
-law = "exponential-weakening"
-mu_0 = 0.6
-mu_inf = {low = 0.3, high = 0.5}
-v_f = "10 mm/s"
-
-[drive]
-velocity = "0.5 mm/s"
-"""
 
 
 def inside(*arguments):
@@ -36,7 +19,7 @@ def inside(*arguments):
 
 def test_a_fit_writes_its_posterior_and_figures(tmp_path, capsys):
     rig, run = tmp_path / "rig.toml", tmp_path / "run.nc"
-    rig.write_text(RIG)
+    rig.write_text(TEXT)
     slider = st.Rig.from_toml(rig).slider.replace(phi="2 deg")
     st.simulate(slider, duration="14 s", sample_rate="100 Hz").save(run)
     output, figures = tmp_path / "fit.nc", tmp_path / "figures"
@@ -48,13 +31,13 @@ def test_a_fit_writes_its_posterior_and_figures(tmp_path, capsys):
     assert "Experimental" in said
     assert "Compared with" in said
     assert {path.name for path in figures.iterdir()} == {"posterior.png", "corner.png"}
-    assert {"phi", "mu_inf", "jitter"} == set(xr.open_dataset(output))
+    assert {"phi", "k_x", "mu_0", "mu_inf", "jitter"} == set(xr.open_dataset(output))
 
 
 def test_records_of_any_format_are_read_and_their_guess_is_shown(tmp_path, capsys):
     """Force alone, as text."""
     rig, data = tmp_path / "rig.toml", tmp_path / "data.csv"
-    rig.write_text(RIG)
+    rig.write_text(TEXT)
     slider = st.Rig.from_toml(rig).slider.replace(phi="2 deg")
     run = st.simulate(slider, duration="14 s", sample_rate="100 Hz")
     force = 1e3 * slider.k_x * run.samples["u_x"]
@@ -72,14 +55,14 @@ def test_records_of_any_format_are_read_and_their_guess_is_shown(tmp_path, capsy
 
 def test_a_wrong_prior_is_one_message(tmp_path, capsys):
     rig = tmp_path / "rig.toml"
-    rig.write_text(RIG.replace('high = "5 deg"', 'high = "0.1 deg"'))
+    rig.write_text(TEXT.replace('high = "5 deg"', 'high = "0.1 deg"'))
     assert inside("fit", tmp_path / "no.nc", "--rig", rig, "-o", tmp_path / "fit.nc") == 2
     assert "phi: low must be below high" in capsys.readouterr().err
 
 
 def test_an_audit_of_a_record_begins_with_what_it_says(tmp_path, capsys):
     rig, data = tmp_path / "rig.toml", tmp_path / "data.csv"
-    rig.write_text(RIG)
+    rig.write_text(TEXT)
     time = np.arange(0.0, 20.0, 0.01)
     slider = st.Rig.from_toml(rig).slider.replace(phi="2 deg")
     motion = move(slider, time, Jitter(0.005, 0.5), np.random.default_rng(3), cycle=1.4)
@@ -106,7 +89,7 @@ def test_an_audit_of_a_record_without_priors_is_refused(tmp_path, capsys):
 def test_a_design_says_what_to_measure_next(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(further, "CYCLES", 6)  # short, to see that it works
     rig = tmp_path / "rig.toml"
-    rig.write_text(RIG)
+    rig.write_text(TEXT)
     options = ["--angles", "3 deg", "--velocities", "1 m/s", "--loads", "1 kN", "-n", 150]
     files = ["--library", tmp_path, "-o", tmp_path / "design.png"]
     assert inside("design", rig, *options, *files) == 0

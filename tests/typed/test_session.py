@@ -11,6 +11,7 @@ from pint import UnitRegistry
 
 import stiction as st
 from stiction import laws, linear_stability, protocols
+from stiction.study.plan.coordinates import number
 
 unit: UnitRegistry[Any] = UnitRegistry()
 SLIDER = st.Slider(
@@ -82,5 +83,6 @@ def test_studies_take_quantities() -> None:
     study = st.Study(base=base, axes=axes)
     assert study.coordinates["phi"].values == pytest.approx([1.0, 2.0, 3.0])
     assert study.coordinates["mass"].values == pytest.approx([0.1, 0.2, 0.3])
+    assert number(30.0 * unit.degree, "deg") == pytest.approx(number("30 deg", "deg")) == 30.0
     found = linear_stability.critical(SLIDER, "phi", (1.0 * unit.degree, "60 deg"))
     assert found == linear_stability.critical(SLIDER, "phi", ("1 deg", "60 deg"))

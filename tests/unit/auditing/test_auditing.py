@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from benchmarks.explore.audits import RULES, rig
 from scipy.integrate import quad, solve_ivp
+from tests.rigs import NEARLY_ISOTROPIC
 
 import stiction as st
 from stiction import theory
@@ -375,17 +376,6 @@ def test_what_vibrates_does_not_creep():
     assert "it never rests" in text
     assert "creeping" not in text
     assert "During creep" not in text
-
-
-NEARLY_ISOTROPIC = st.Slider(
-    mass="0.5 kg",
-    k_x="5 kN/m",
-    k_y="15 kN/m",
-    phi="12 deg",
-    normal_load="15 N",
-    friction=st.ExponentialWeakening(mu_0=0.3, mu_inf=0.2, v_f="20 mm/s"),
-    drive=st.ConstantVelocity("5 mm/s"),
-)
 
 
 def test_creep_shorter_than_a_transverse_period_shows_no_oscillation():

@@ -320,16 +320,7 @@ def test_a_vibration_after_a_long_hold_is_not_stepped_over(rtol):
     drive = st.protocols.DriveProgram(
         program=[st.protocols.Hold(1e3), st.protocols.Harmonic(1.5e-2, 10.0, "90 deg", 10.0)]
     )
-    slider = st.Slider(
-        mass=1.0,
-        k_x=1e4,
-        k_y=1e4,
-        phi="0 deg",
-        normal_load=10.0,
-        friction=AGEING,
-        drive=drive,
-        driven="spring",
-    )
+    slider = TESTED.replace(drive=drive)
     start = st.Initial(u_x=5.3e-4, v_x=0.0, v_y=0.0, states={"log_theta": 0.0})
     whole = st.simulate(slider, 1010.0, initial=start, rtol=rtol)
     held = st.simulate(slider, 1e3, initial=start, rtol=1e-10)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.rigs import NEARLY_ISOTROPIC
 
 import stiction as st
 from stiction.analysis.creep.first_slip import first_slip_time
@@ -221,15 +222,8 @@ def test_a_coarse_sample_rate_of_the_description_changes_no_measure():
 
 def test_a_single_cycle_after_the_loading_is_no_transverse_oscillation():
     """Its drop is a tenth of the loading: the force seems to settle as the stiff spring moves."""
-    slider = st.Slider(
-        mass="0.5 kg",
-        k_x="5 kN/m",
-        k_y="15 kN/m",
-        phi="10 deg",
-        normal_load="15 N",
-        friction=st.ExponentialWeakening(mu_0=0.3, mu_inf=0.2, v_f="20 mm/s"),
-        drive=st.ConstantVelocity("0.5 mm/s"),
-    )
+    drive = st.ConstantVelocity("0.5 mm/s")
+    slider = NEARLY_ISOTROPIC.replace(phi="10 deg", drive=drive)
     run = observe_run(slider, "2 s", sample_rate="5 kHz")
     assert len(run.cycles.drop) == 1
     found = st.analysis.classify(st.simulate(slider, "2 s", sample_rate="5 kHz"))
