@@ -174,13 +174,8 @@ def audit(
     <Audit: settling; steady sliding is stable>
     """
     rig = rig_of(slider)
-    system = rig.slider
     told = progress or (lambda fraction: None)
     before = FITTING if record is not None else 0.0
-
-    def report(fraction: float) -> None:
-        told(before + (1.0 - before) * fraction)
-
     measured = None
     if record is not None:
         from stiction.auditing.measured.comparison import compare
@@ -190,6 +185,12 @@ def audit(
             seen, rig, simulations=simulations, library=library,
             progress=lambda fraction: told(before * fraction),
         )  # fmt: skip
+    return _examine(rig, measured, lambda fraction: told(before + (1.0 - before) * fraction))
+
+
+def _examine(rig: Rig, measured: Comparison | None, report: Callable[[float], None]) -> Audit:
+    """Return the audit of a rig, whose record was compared with it before."""
+    system = rig.slider
     parts = PARTS + (MORE if "phi" in rig.priors else 0)
 
     def part(number: int, of: int = 1) -> Callable[[float], None]:

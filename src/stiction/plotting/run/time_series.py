@@ -157,7 +157,7 @@ def _draw_range(ax: Axes, time: Floats, values: Floats, found: list[Swings], col
         first, last = np.searchsorted(starts, (samples.start, samples.stop - 1), side="right") - 1
         within = slice(first, last + 1)
         inner = np.maximum(starts[within] - samples.start, 0)
-        low[within], high[within], mean = _smoothed(values[samples], inner, period / step)
+        low[within], high[within], mean = _smooth(values[samples], inner, period / step)
         shown[samples] = np.repeat(mean, np.diff(inner, append=samples.stop - samples.start))
     middle = 0.5 * (time[starts] + time[np.r_[starts[1:], len(time)] - 1])
     band = ax.fill_between(middle, low, high, color=color, linewidth=EDGE)
@@ -165,7 +165,7 @@ def _draw_range(ax: Axes, time: Floats, values: Floats, found: list[Swings], col
     return shown
 
 
-def _smoothed(values: Floats, starts: NDArray[np.intp], period: float) -> tuple[Floats, ...]:
+def _smooth(values: Floats, starts: NDArray[np.intp], period: float) -> tuple[Floats, ...]:
     """Return low, high and mean of periods around each bin of an oscillation; `period` in bins."""
     from scipy.ndimage import (  # type: ignore[attr-defined]
         convolve1d,

@@ -27,7 +27,7 @@ def design(
     *,
     record: Path | None = None,
     of: str = "phi",
-    channels: Annotated[list[str] | None, Parameter(consume_multiple=True, negative=())] = None,
+    channels: Several = None,
     angles: Several = None,
     velocities: Several = None,
     loads: Several = None,
