@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from stiction.auditing.chain import SMALL, Chain, Part, Replacement
 from stiction.auditing.observation import Observation
 from stiction.auditing.prediction import Prediction
-from stiction.auditing.words import apparent_stiffness, final_motion, peak
+from stiction.auditing.words.numbers import apparent_stiffness, peak
+from stiction.auditing.words.verdict import final_motion
 from stiction.system.slider import Slider
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words

@@ -9,7 +9,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from stiction.analysis.creep.curve import creep_curves, mean_creep
-from stiction.auditing.words import HARDLY, VIBRATES, name_of, short_motion
+from stiction.auditing.words.changes import name_of
+from stiction.auditing.words.stick import HARDLY, VIBRATES
+from stiction.auditing.words.verdict import short_motion
 from stiction.friction import has_state
 from stiction.linear_stability import boundary
 from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep

@@ -23,7 +23,7 @@ from stiction.auditing.observation import (
 from stiction.auditing.prediction import Prediction, predict
 from stiction.auditing.tolerance.budget import Budget, budget
 from stiction.auditing.tolerance.words import section
-from stiction.auditing.words import sections
+from stiction.auditing.words.sections import sections
 from stiction.deprecation import old_attributes
 from stiction.inference.library import SIMULATIONS
 from stiction.inference.priors import Rig, rig_of

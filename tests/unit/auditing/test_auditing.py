@@ -12,14 +12,19 @@ import stiction as st
 from stiction import theory
 from stiction.analysis.motion.regime import HARMONIC, SETTLING, STICK_SLIP
 from stiction.analysis.record import record_of
-from stiction.auditing import advice, figures, observation, report, words
+from stiction.auditing import advice, figures, observation, report
 from stiction.auditing.advice import advise, nearest
 from stiction.auditing.observation import OSCILLATES, SLIDES, coarse_rate, from_sliding, observe
 from stiction.auditing.page import page
 from stiction.auditing.prediction import predict, suppositions
 from stiction.auditing.report import Audit
 from stiction.auditing.report import audit as examine
-from stiction.auditing.words import sections
+from stiction.auditing.words.changes import _change
+from stiction.auditing.words.numbers import apparent_stiffness, numbers
+from stiction.auditing.words.sections import sections
+from stiction.auditing.words.stick import stick
+from stiction.auditing.words.transverse import transverse
+from stiction.auditing.words.verdict import motions, stability
 from stiction.cli import main
 from stiction.linear_stability import Critical, critical, steady_sliding
 
@@ -372,7 +377,7 @@ def short(slider: st.Slider) -> Audit:
 def test_what_vibrates_does_not_creep():
     found = short(PAPER.replace(drive=st.ConstantVelocity("30 mm/s")))
     assert found.observation.motion == HARMONIC
-    text = " ".join(words.stick(found) + words.transverse(found))
+    text = " ".join(stick(found) + transverse(found))
     assert "it never rests" in text
     assert "creeping" not in text
     assert "During creep" not in text
@@ -384,7 +389,7 @@ def test_creep_shorter_than_a_transverse_period_shows_no_oscillation():
     seen = found.observation
     assert seen.shares.creep > 0.05
     assert seen.shares.creep * seen.mean("period") < sqrt(0.5 / 15e3) * 2.0 * pi
-    text = " ".join(words.transverse(found))
+    text = " ".join(transverse(found))
     assert "this mass creeps for 12" in text
     assert "During creep" not in text
 
@@ -408,7 +413,7 @@ def test_a_transverse_oscillation_is_said_to_die_out_where_it_does(friction, c_y
         end = int(len(u_y) * share / 0.5)
         two = u_y[end - 20 : end]  # periods, over which creep moves it by a 50th of that
         assert (np.ptp(two) > p.amplitude) == lasts
-    text = " ".join(words.transverse(found))
+    text = " ".join(transverse(found))
     assert ("During creep the mass oscillates" in text) == early
     assert ("dies out" in text) != late
 
@@ -441,19 +446,19 @@ def test_the_predicted_apparent_stiffness_is_that_of_a_load_cell(cell):
     soft = slider.replace(k_y="1e-9 N/m", friction=st.Coulomb(mu_0=1e3))  # no slip, and no F_y
     seen = record_of(st.simulate(soft, 1e-3, sample_rate=1e4))
     shown = (seen.force[-1] - seen.force[0]) / (seen.time[-1] - seen.time[0]) / seen.drive_velocity
-    assert words.apparent_stiffness(slider) == pytest.approx(shown, rel=1e-6)
+    assert apparent_stiffness(slider) == pytest.approx(shown, rel=1e-6)
 
 
 def test_friction_with_state_has_no_predicted_rest():
     law = st.laws.RateStateAgeing(a=0.008, b=0.012, D_c="10 um", mu_star=0.6, V_star="1 um/s")
     rig = {"mass": "100 kg", "k_x": "1 MN/m", "k_y": "1 GN/m", "normal_load": "50 kN"}
     block = st.Slider(**rig, phi="0.3 deg", friction=law, drive=st.ConstantVelocity("10 um/s"))
-    rows = {row[0]: row[1:] for row in words.numbers(short(block)).rows}
+    rows = {row[0]: row[1:] for row in numbers(short(block)).rows}
     assert rows["first stick: true rest"] == ("none", "0 s")
 
 
 def test_what_mostly_rests_is_said_to():
-    text = " ".join(words.stick(short(PAPER.replace(phi="0 deg"))))
+    text = " ".join(stick(short(PAPER.replace(phi="0 deg"))))
     assert "mostly true rest" in text
     assert "artefact" not in text
 
@@ -461,11 +466,11 @@ def test_what_mostly_rests_is_said_to():
 def test_a_stability_that_lasts_no_test_is_said_to():
     """Where a disturbance of 1 % oscillates in the test, "stable" says which are meant."""
     found = short(PAPER.replace(phi="10 deg"))
-    assert words.stability(found).startswith("Steady sliding is stable: small disturbances decay")
+    assert stability(found).startswith("Steady sliding is stable: small disturbances decay")
     kicked = found._replace(sliding_on=found.sliding_on._replace(comes_to=OSCILLATES))
     assert not kicked.bistable
-    assert "stable only to disturbances far below 1 %" in words.stability(kicked)
-    assert "in a test it does not last" in words.stability(kicked)
+    assert "stable only to disturbances far below 1 %" in stability(kicked)
+    assert "in a test it does not last" in stability(kicked)
 
 
 def test_a_sliding_that_lasts_a_test_only_is_said_to():
@@ -473,7 +478,7 @@ def test_a_sliding_that_lasts_a_test_only_is_said_to():
     found = short(PAPER.replace(drive=st.ConstantVelocity("92.1 mm/s")))
     assert found.sliding.verdict == "unstable"
     assert (found.observation.comes_to, found.sliding_on.comes_to) == (OSCILLATES, SLIDES)
-    assert "to steady sliding in the time of the test" in words.motions(found)[0]
+    assert "to steady sliding in the time of the test" in motions(found)[0]
 
 
 def test_a_change_that_leaves_little_is_no_failure(found):
@@ -481,9 +486,9 @@ def test_a_change_that_leaves_little_is_no_failure(found):
     rest = found.observation
     small = rest._replace(cycles=rest.cycles.assign(drop=0.01 * rest.cycles["drop"]))
     tried = found.advices[0]._replace(tried=small)
-    assert words._change(found, tried)[-1].startswith("almost: stick-slip, force drop ")
+    assert _change(found, tried)[-1].startswith("almost: stick-slip, force drop ")
     again = found.advices[0]._replace(tried=rest)
-    assert words._change(found, again)[-1].startswith("no remedy: stick-slip, force drop ")
+    assert _change(found, again)[-1].startswith("no remedy: stick-slip, force drop ")
 
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.__name__)

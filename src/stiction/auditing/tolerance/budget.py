@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from stiction.auditing.observation import coarse_rate, observe
 from stiction.auditing.prediction import predict
-from stiction.auditing.words import creep_before_slip, kinetic, peak
+from stiction.auditing.words.numbers import creep_before_slip, kinetic, peak
 from stiction.errors import StictionError
 from stiction.inference.priors import Rig, quantity
 from stiction.linear_stability import growth_rate

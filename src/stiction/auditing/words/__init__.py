@@ -1,0 +1,1 @@
+"""The report of an audit in words and tables: a section a file."""

@@ -1,0 +1,92 @@
+"""Changes that make an apparatus slide steadily, in words and as a table."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import TYPE_CHECKING
+
+from stiction.auditing.advice import Advice, is_compliance
+from stiction.auditing.observation import (
+    MOST_WORK,
+    OSCILLATES,
+)
+from stiction.auditing.words.verdict import final_motion
+from stiction.text.sections import Table
+from stiction.text.units import in_words
+
+if TYPE_CHECKING:
+    from stiction.auditing.report import Audit
+
+ALMOST = 0.1  # of the present force drop: a change that leaves less is nearly a remedy
+NAMES = {
+    "phi": "misalignment φ",
+    "drive.velocity": "drive velocity V",
+    "c_x": "damping c_x",
+    "k_x": "stiffness k_x",
+}
+
+
+def changes(found: Audit) -> tuple[list[str], Table | None]:
+    """Return changes that make it slide steadily, each with its simulation from rest."""
+    if not found.advices:
+        return ["Nothing: it slides steadily after the start."], None
+    rows = [_change(found, advice) for advice in found.advices]
+    goal = "take away the oscillation from rest" if found.bistable else "slide steadily"
+    remedies = [
+        f"{name_of(found, each.path)} of {in_words(each.then, each.unit)}"
+        for each in found.advices
+        if each.works
+    ]
+    what = f"To {goal}: {', or '.join(remedies)}" if remedies else f"None of these makes it {goal}"
+    lines = [f"{what}. Each change was simulated from rest; the last column shows the result."]
+    cut = [name_of(found, each.path) for each in found.advices if each.cut]
+    if cut:
+        lines.append(
+            f"Values farther from the present one were not tried of {', or '.join(cut)}: all "
+            f"simulations of an audit together take no more than {MOST_WORK / 1e6:g} million steps "
+            "and samples."
+        )
+    if found.bistable:
+        lines.append(
+            "Nothing has to be changed for a test that is started from steady sliding, as long as "
+            "no disturbance stops the mass."
+        )
+    return lines, Table(("change", "now", "stable", "tried", "simulated from rest"), rows)
+
+
+def name_of(found: Audit, path: str) -> str:
+    """Return a parameter in words."""
+    slider = found.slider
+    if path == "phi" and slider.turn:
+        return "phi in [slider]"
+    for each in slider.springs:
+        if path.startswith(f"springs.{each.slug}."):
+            quantity = "" if is_compliance(path) else "stiffness "
+            return f"{quantity}{path.rpartition('.')[2]} of the {each.name}"
+    return NAMES[path]
+
+
+def _change(found: Audit, advice: Advice) -> tuple[str, ...]:
+    name, now = name_of(found, advice.path), in_words(advice.now, advice.unit)
+    if advice.tried is None:
+        low, high = (in_words(end, advice.unit) for end in advice.between)
+        tried = f"{low} to {high}" if isfinite(advice.between[0]) else "none"
+        if advice.cut:
+            return name, now, "", "none", "not tried"
+        return name, now, "nowhere", tried, "no value in that range"
+    then, seen = in_words(advice.then, advice.unit), advice.tried
+    side = "above" if advice.critical > advice.now else "below"
+    edge = (
+        f"{side} {in_words(advice.critical, advice.unit)}" if isfinite(advice.critical) else "now"
+    )
+    if advice.works:
+        return name, now, edge, then, final_motion(seen)
+    if not seen.run.status.ok:
+        until = in_words(float(seen.record.time[-1]), "s")
+        return name, now, edge, then, f"not known: the simulation was cut at {until}"
+    what, drop = f"no remedy: {final_motion(seen)}", seen.mean("drop")
+    if seen.comes_to == OSCILLATES and isfinite(drop):
+        if drop < ALMOST * found.observation.mean("drop"):
+            what = f"almost: {final_motion(seen)}"
+        what += f", force drop {in_words(drop, 'N')}"
+    return name, now, edge, then, what

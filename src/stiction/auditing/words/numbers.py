@@ -1,0 +1,112 @@
+"""The table of predicted and simulated quantities of an audit."""
+
+from __future__ import annotations
+
+from math import isfinite, nan
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from stiction.analysis.creep.first_slip import first_slip_time
+from stiction.analysis.motion.friction import find_friction
+from stiction.analysis.record import cell_axis
+from stiction.auditing.observation import (
+    Observation,
+)
+from stiction.auditing.prediction import suppositions
+from stiction.friction import has_state
+from stiction.system.slider import Slider
+from stiction.text.sections import Table
+from stiction.text.units import in_words
+
+if TYPE_CHECKING:
+    from stiction.auditing.report import Audit
+
+
+def violated_assumptions(found: Audit) -> list[str]:
+    """Return the assumptions of the theory that this apparatus violates."""
+    unmet = suppositions(found.slider, found.prediction)
+    if not unmet:
+        return []
+    return [
+        f"Eqs. (7) and (10) suppose that {'; that '.join(unmet)}. Values that follow from them, "
+        "marked ~, are only a guide."
+    ]
+
+
+def numbers(found: Audit) -> Table:
+    """Return the table of predicted and simulated quantities."""
+    p, seen, s = found.prediction, found.observation, found.slider
+    first = float(np.diff(seen.run.stick_intervals[:1]).sum())  # zero if it never sticks
+    slip = slip_time(seen)
+    creep_at_slip, creep_distance = (p.creep_at_slip, p.creep_distance) if p.slips else (nan, nan)
+    held = [("friction that holds at rest", p.F_static, None, "N", False)]
+    rows = [
+        ("friction at vanishing slip F_0", p.F_0, None, "N", False),
+        *(held if p.F_static > p.F_0 * (1.0 + 1e-9) else []),
+        ("natural frequency along x", p.f_x, None, "Hz", False),
+        ("natural frequency along y", p.f_y, None, "Hz", False),
+        ("damping number A, Eq. (10)", p.A, None, "", True),
+        ("damping ratio ζ at θ = φ, Eq. (10)", p.zeta, None, "", True),
+        ("θ at which ζ = 1: slow slip turns fast", p.theta_c, None, "rad", True),
+        ("first stick: true rest", nan if has_state(s.law) else p.first_stick, first, "s", False),
+        ("time until the first slip", p.load_up if p.slips else nan, slip, "s", True),
+        ("creep velocity at first, V sin² φ", p.creep_at_start, None, "m/s", True),
+        ("creep velocity when it slips, Eq. (7)", creep_at_slip, None, "m/s", True),
+        ("creep before the first slip", creep_distance, creep_before_slip(seen), "m", True),
+        ("apparent static friction", p.mu_static, peak(seen), "", True),
+        ("apparent kinetic friction", p.mu_kinetic, kinetic(seen), "", True),
+        ("force drop", p.drop, seen.mean("drop"), "N", True),
+        ("period", p.period, seen.mean("period"), "s", True),
+        ("apparent stiffness", apparent_stiffness(s), loading(seen), "N/m", True),
+    ]
+    mark = "~ " if suppositions(s, p) else ""
+    lines = [
+        (
+            name,
+            (mark if rough else "") + in_words(theory, unit),
+            "" if shown is None else in_words(shown, unit),
+        )
+        for name, theory, shown, unit, rough in rows
+    ]
+    return Table(("quantity", "theory", "simulated"), lines)
+
+
+def slip_time(seen: Observation) -> float:
+    """Return when the first slip begins, s; NaN if there is none."""
+    slip = first_slip_time(seen.run)
+    return slip if slip < seen.record.time[-1] else nan
+
+
+def creep_before_slip(seen: Observation) -> float:
+    """Return the distance moved until the first slip, m; NaN if there is none."""
+    samples, slip = seen.run.samples, slip_time(seen)
+    along = np.abs(samples["X"] - samples["X"][0])
+    return float(np.interp(slip, samples["time"], along)) if isfinite(slip) else nan
+
+
+def kinetic(seen: Observation) -> float:
+    """Return the apparent coefficient of kinetic friction."""
+    found = find_friction(seen.record, seen.regime._replace(kind=seen.motion), seen.cycles).kinetic
+    return nan if found is None else found.coefficient
+
+
+def loading(seen: Observation) -> float:
+    """Return the apparent stiffness, N/m; NaN if nothing sticks during loading."""
+    return seen.mean("stiffness") if seen.motion == seen.regime.kind and seen.regime.loads else nan
+
+
+def apparent_stiffness(slider: Slider) -> float:
+    """Return the rate of loading over the drive's speed, both along the load cell, N/m.
+
+    By Eq. (7) the transverse spring keeps its force: only the soft one is loaded.
+    """
+    cell, along = cell_axis(slider), slider.k_x * slider.direction[0]
+    share = cell.x * slider.direction[0] + cell.y * slider.direction[1]
+    return cell.x * along / share if share else nan
+
+
+def peak(seen: Observation) -> float:
+    """Return the apparent coefficient of static friction."""
+    largest = float(np.max(seen.record.force, initial=0.0))
+    return largest / seen.run.slider.normal_load

@@ -1,0 +1,67 @@
+"""How much of the apparent stick is creep."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import TYPE_CHECKING
+
+from stiction.analysis.motion.regime import (
+    HARMONIC,
+    IRREGULAR,
+    STICK_SLIP,
+    TRANSVERSE,
+)
+from stiction.friction import has_state
+from stiction.text.units import in_words
+
+if TYPE_CHECKING:
+    from stiction.auditing.report import Audit
+
+VIBRATES = (HARMONIC, TRANSVERSE, IRREGULAR)  # about steady sliding: nothing creeps
+HARDLY = 0.05  # of the time: a smaller share of creep or rest is negligible
+
+
+def stick(found: Audit) -> list[str]:
+    """Return how much of the apparent stick is creep."""
+    seen, s = found.observation, found.slider
+    rest, creep, slip = (f"{100.0 * share:.3g} %" for share in seen.shares)
+    whole = "of each cycle" if seen.cycles.sizes["cycle"] else "of the time until it slides"
+    vibrates, state = seen.motion in VIBRATES, has_state(s.law)
+    slowly = "sliding" if vibrates else "creeping" if s.misalignment or state else "sliding slowly"
+    lines = [
+        f"Moving slower than the drive, which a load cell shows as a rising force, takes "
+        f"{100.0 * (seen.shares.rest + seen.shares.creep):.3g} % {whole}: at rest {rest}, "
+        f"{slowly} {creep}. Moving faster than the drive takes {slip}."
+    ]
+    if s.misalignment == 0.0:
+        lines.append("There is no misalignment, so friction does not turn.")
+    if vibrates:
+        rests = "it rests for a moment in each swing" if seen.shares.rest else "it never rests"
+        lines.append(f"The mass vibrates about steady sliding; {rests}.")
+    elif state and seen.shares.creep > 0.0:
+        lines.append(
+            "Friction with internal state creeps by itself. An audit of the same apparatus with "
+            "phi = 0 shows how much the misalignment adds."
+            if s.misalignment
+            else "The creep is due to the law of friction."
+        )
+    elif s.misalignment and seen.shares.creep > seen.shares.rest:
+        distance = seen.mean("creep_distance")
+        far = (
+            f"{in_words(distance, 'm')} before each slip"
+            if isfinite(distance)
+            else f"{in_words(found.prediction.creep_distance, 'm')}, by Eq. (7), before it slides"
+        )
+        lines.append(
+            f"The apparent stick is mostly creep under a turning friction force: an artefact "
+            f"of the misalignment. The mass covers {far}. The largest force says how friction "
+            f"turned, not that the interface has static friction."
+        )
+    elif seen.shares.rest > HARDLY:
+        lines.append("The apparent stick is mostly true rest.")
+    if seen.motion == STICK_SLIP:
+        lines.append(
+            "The apparent kinetic coefficient is the mean of peak and trough. The mass overshoots "
+            "in each slip, so the trough alone is not a property of the interface."
+        )
+    return lines

@@ -1,0 +1,177 @@
+"""The verdict of an audit: the motions, their stability, the margin to other ones."""
+
+from __future__ import annotations
+
+from math import degrees, isfinite, sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from stiction.analysis.motion.regime import (
+    SETTLING,
+    STEADY,
+    STUCK,
+    TRANSITIONAL,
+    UNDETERMINED,
+)
+from stiction.analysis.parts.wording import with_error
+from stiction.auditing.observation import (
+    OSCILLATES,
+    SLIDES,
+    SMALL,
+    UNSETTLED,
+    Observation,
+)
+from stiction.linear_stability.linear import STABLE, UNSTABLE
+from stiction.text.units import in_words
+
+if TYPE_CHECKING:
+    from stiction.auditing.report import Audit
+
+MEANS = ("period", "s"), ("drop", "N")  # over the cycles
+SHOWN = 1e-3  # of a mean: a smaller error is not worth a word
+SEEN = {  # kinds of motion, in a sentence
+    TRANSITIONAL: f"a {TRANSITIONAL} between stick-slip and harmonic vibration",
+    SETTLING: "steady sliding, after a motion at the start that dies out",
+    STUCK: "loading without a slip",
+    UNDETERMINED: "a motion of no clear kind",
+}
+
+
+def verdict(found: Audit) -> list[str]:
+    """Return the motion of the apparatus, and its margin to another one."""
+    early = [each for each in (found.observation, found.sliding_on) if not each.run.status.ok]
+    if early:
+        return [f"The simulated test ended early: {early[0].run.status.value}.", stability(found)]
+    return [*motions(found), stability(found), margin(found)]
+
+
+def motions(found: Audit) -> list[str]:
+    """Return the simulated motions from rest and from sliding."""
+    rest, sliding = found.observation, found.sliding_on
+    name = SEEN.get(rest.motion, rest.motion)
+    if found.bistable:
+        return [
+            f"Two motions are possible (it is bistable): from rest it reaches {name}; once it "
+            "slides steadily, it continues to slide steadily.",
+            f"From rest, springs unloaded: {describe_motion(rest)}. From steady sliding, "
+            f"disturbed by 1 % of the drive's speed: {SEEN.get(sliding.motion, sliding.motion)}.",
+        ]
+    if rest.comes_to == SLIDES and sliding.comes_to == SLIDES:
+        what = (
+            "It comes to slide steadily, started from rest, and goes on sliding steadily after a "
+            "small disturbance."
+        )
+        if found.sliding.verdict == UNSTABLE:
+            what = (
+                "In the time of the test it slides steadily, but that does not last: small "
+                "disturbances grow, more slowly than the test shows."
+            )
+        return [what, f"From rest the load cell sees: {describe_motion(rest)}."]
+    if rest.comes_to == OSCILLATES and sliding.comes_to == OSCILLATES:
+        lines = [
+            "It does not slide steadily: from rest, and when it is started sliding, it comes to "
+            f"{name}."
+        ]
+        if rest.motion != sliding.motion:
+            other = SEEN.get(sliding.motion, sliding.motion)
+            lines = [
+                f"It does not slide steadily: from rest it comes to {name}; started sliding, to "
+                f"{other}."
+            ]
+    else:
+        lines = [
+            f"From rest it comes to {final_motion(rest)}; started from steady sliding, disturbed "
+            f"by 1 % of the drive's speed, to {final_motion(sliding)}"
+            f"{' in the time of the test' if sliding.comes_to == SLIDES else ''}."
+        ]
+    return [*lines, f"From rest the load cell sees: {describe_motion(rest)}."]
+
+
+def final_motion(seen: Observation) -> str:
+    """Return the final motion of a test, in words."""
+    if seen.comes_to == SLIDES:
+        return "steady sliding"
+    name = SEEN.get(seen.motion, seen.motion)
+    return (
+        f"{name} (still growing or dying out when the test ends)"
+        if seen.comes_to == UNSETTLED
+        else name
+    )
+
+
+def short_motion(seen: Observation) -> str:
+    """Return the final motion of a test in a few words, for the title of a figure."""
+    if seen.comes_to == SLIDES:
+        return STEADY
+    name = "tiny oscillation" if seen.motion == SMALL else seen.motion
+    return f"{name}, still changing" if seen.comes_to == UNSETTLED else name
+
+
+def describe_motion(seen: Observation) -> str:
+    """Return a kind of motion with its cycles, in one line."""
+    count = seen.cycles.sizes["cycle"]
+    sure = SEEN.get(seen.motion, seen.motion)
+    if seen.motion == seen.regime.kind:
+        sure += f" (confidence {seen.regime.confidence:.2f})"
+    if not count or seen.comes_to == SLIDES:
+        return sure
+    period, drop = (mean_in_words(seen.cycles[name].values, unit) for name, unit in MEANS)
+    return f"{sure}, {count} cycles of {period} in which the force falls by {drop}"
+
+
+def mean_in_words(values: np.ndarray, unit: str) -> str:
+    """Return a mean over cycles, with its standard error where they differ."""
+    mean = float(values.mean())
+    error = float(values.std(ddof=1)) / sqrt(len(values)) if len(values) > 1 else 0.0
+    return with_error(in_words(mean, unit), error if error > SHOWN * mean else 0.0, unit)
+
+
+def stability(found: Audit) -> str:
+    """Return the stability of steady sliding in a sentence."""
+    growth, frequency = found.sliding.growth_rate, float(found.sliding.frequencies[0])
+    if found.sliding.verdict not in (STABLE, UNSTABLE):
+        return (
+            "Steady sliding is on the boundary of stability: disturbances neither grow nor decay."
+        )
+    stable, time = found.sliding.stable, in_words(1.0 / abs(growth), "s")
+    swing = f", oscillating at {in_words(frequency, 'Hz')}" if frequency > 0.0 else ""
+    if stable and found.sliding_on.comes_to == OSCILLATES:
+        return (
+            f"Steady sliding is stable only to disturbances far below 1 % of the drive's speed, "
+            f"which decay by e in {time}{swing}: in a test it does not last."
+        )
+    what = f"stable: small disturbances {'decay' if stable else 'grow'} by e in {time}"
+    return f"Steady sliding is {what if stable else 'un' + what}{swing}."
+
+
+def margin(found: Audit) -> str:
+    """Return the margin of phi to its critical values in a sentence."""
+    phi, turn = found.slider.misalignment, found.slider.turn
+    values = found.misalignment.values - turn
+    closed = found.prediction.phi_c
+    if not len(values):
+        always = "stable" if all(found.misalignment.stable) else "unstable"
+        sign = " of that sign" if phi else ""
+        rigid = (
+            f"; on a transverse spring that is rigid it would be stable from {degrees(closed):.4f} "
+            "deg on"
+        )
+        return (
+            f"No misalignment changes its stability: it is {always} at every φ{sign}"
+            f"{rigid if always == 'unstable' and isfinite(closed) else ''}."
+        )
+    nearest = float(values[np.argmin(np.abs(values - phi))])
+    lowest = abs(nearest) == np.min(np.abs(values))
+    at, form = f"{degrees(nearest):.4f} deg", ""
+    if lowest and isfinite(closed):
+        plain = f"{degrees(closed):.4f} deg"
+        form = ", as in closed form" if plain == at else f" ({plain} in closed form)"
+    way = "more" if abs(nearest) > abs(phi) else "less"
+    changes = {STABLE: "It becomes unstable", UNSTABLE: "It becomes stable"}
+    what = changes.get(found.sliding.verdict, "Its stability changes")
+    return (
+        f"{what} at φ_c = {at}{form}: the margin is "
+        f"{abs(degrees(nearest - phi)):.4g} deg {way} misalignment than now, "
+        f"{degrees(phi):.4g} deg."
+    )
