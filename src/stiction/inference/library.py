@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
+from stiction.analysis.record import cell_axis
 from stiction.inference.features import Cycles, features, find_cycles, parts
 from stiction.inference.jitter import Jitter, Motion, move
 from stiction.inference.observation import Conditions
@@ -178,7 +179,7 @@ def measure(
 ) -> dict[str, Floats]:  # fmt: skip
     """Return the channels of a motion as their sensors show them, along the load cell's axis."""
     u_x, u_y = motion.rows[:, 0], motion.rows[:, 1]
-    x, y = (1.0, 0.0) if rig.cell_angle is None else rig.cell
+    x, y = cell_axis(rig)[:2]
     c, s = rig.direction
     way = -1.0 if conditions.velocity < 0.0 else 1.0
     along, across = rig.k_x * u_x, rig.k_y * u_y
