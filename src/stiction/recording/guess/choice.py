@@ -12,8 +12,6 @@ from stiction.recording.channels import CHANNELS, LENGTH, OWN, RATIO, plain
 from stiction.recording.table import Column, Table
 from stiction.recording.units import is_electric, is_ratio, size_of
 
-NEEDED = "time", "force"
-
 
 class Chosen(NamedTuple):
     """A column for a channel: the size of its unit in SI, the unit as read, and a note.
