@@ -55,6 +55,7 @@ SHAPES = ((STICKING, STICK_SLIP), (0.5, TRANSITIONAL), (0.0, HARMONIC))
 # Share of a cycle for which the mass rests or creeps, in one piece, where its slip speed is known:
 # from there on it sticks and slips, whatever the shape says
 RESTS = 0.5
+SLOW_SHARES = ("rest_share", "still_share")  # evidence of rest or creep, by the shape and the slip
 ROUNDING = 1e-9  # of a period: stick intervals are that accurate, and more
 BACKWARD = 0.4  # share of the rise, below which the force falls slowly and rises fast
 # A vibration is irregular beyond either: the standard deviation of the periods over their mean,
@@ -209,15 +210,31 @@ class Regime(NamedTuple):
         Then the peaks show static friction, and the loading shows stiffness and creep. A mass that
         sticks only shortly is still slower than the drive, or faster, for most of that time.
         """
-        rests = max(self.evidence.get(name, 0.0) for name in ("rest_share", "still_share"))
+        rests = max(self.evidence.get(name, 0.0) for name in SLOW_SHARES)
         return self.kind in (STICK_SLIP, TRANSITIONAL) and rests >= RESTS
+
+    @property
+    def rests(self) -> str:
+        """How long a mass that sticks and slips rests, in words; empty if it does not stick."""
+        if self.kind not in (STICK_SLIP, TRANSITIONAL):
+            return ""
+        if not self.loads and "stick_share" in self.evidence:
+            return f"stuck for {_two_digits_of_percent(self.evidence['stick_share'])} of a cycle"
+        slow = [self.evidence[name] for name in SLOW_SHARES if name in self.evidence]
+        return f"at rest or in creep for {_percent(max(slow))} of a cycle" if slow else ""
+
+    @property
+    def surely(self) -> str:
+        """The kind, its confidence, and how long the mass rests, in words."""
+        other = f"; else {self.runner_up}" if self.runner_up and self.confidence < CERTAIN else ""
+        rests = f", {self.rests}" if self.rests else ""
+        return f"{self.kind} (confidence {self.confidence:.2f}{other}){rests}"
 
     def __str__(self) -> str:
         """Return the kind, its confidence and the evidence in words."""
-        other = f"; else {self.runner_up}" if self.runner_up and self.confidence < CERTAIN else ""
         said = ((*WORDS[name], value) for name, value in self.evidence.items())
         reasons = "; ".join(text.format(written(value)) for text, written, value in said)
-        return f"{self.kind} (confidence {self.confidence:.2f}{other}): {reasons}"
+        return f"{self.surely}: {reasons}"
 
 
 def classify(source: Trajectory | Record) -> Regime:

@@ -49,7 +49,7 @@ def verdict(found: Audit) -> list[str]:
 def motions(found: Audit) -> list[str]:
     """Return the simulated motions from rest and from sliding."""
     rest, sliding = found.observation, found.sliding_on
-    name = SEEN.get(rest.motion, rest.motion)
+    name = SEEN.get(rest.motion, rest.motion) + short_rest(rest)
     if found.bistable:
         return [
             f"Two motions are possible (it is bistable): from rest it reaches {name}; once it "
@@ -74,7 +74,7 @@ def motions(found: Audit) -> list[str]:
             f"{name}."
         ]
         if rest.motion != sliding.motion:
-            other = SEEN.get(sliding.motion, sliding.motion)
+            other = SEEN.get(sliding.motion, sliding.motion) + short_rest(sliding)
             lines = [
                 f"It does not slide steadily: from rest it comes to {name}; started sliding, to "
                 f"{other}."
@@ -92,12 +92,18 @@ def final_motion(seen: Observation) -> str:
     """Return the final motion of a test, in words."""
     if seen.comes_to == SLIDES:
         return "steady sliding"
-    name = SEEN.get(seen.motion, seen.motion)
+    name = SEEN.get(seen.motion, seen.motion) + short_rest(seen)
     return (
         f"{name} (still growing or dying out when the test ends)"
         if seen.comes_to == UNSETTLED
         else name
     )
+
+
+def short_rest(seen: Observation) -> str:
+    """Return how long a mass sticks that slides for most of its cycle of stick-slip, or ''."""
+    named = seen.motion == seen.regime.kind and not seen.regime.loads
+    return f", {seen.regime.rests}" if named and seen.regime.rests else ""
 
 
 def short_motion(seen: Observation) -> str:
@@ -113,7 +119,7 @@ def describe_motion(seen: Observation) -> str:
     count = seen.cycles.sizes["cycle"]
     sure = SEEN.get(seen.motion, seen.motion)
     if seen.motion == seen.regime.kind:
-        sure += f" (confidence {seen.regime.confidence:.2f})"
+        sure = seen.regime.surely.replace(seen.motion, sure, 1)
     if not count or seen.comes_to == SLIDES:
         return sure
     period, drop = (mean_in_words(seen.cycles[name].values, unit) for name, unit in MEANS)

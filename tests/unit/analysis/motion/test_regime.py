@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from math import pi
 
@@ -521,3 +522,29 @@ def test_a_force_that_rises_from_a_load_may_be_drift() -> None:
     assert found.confidence <= 0.5
     known = record.model_copy(update={"stiffness": 300.0, "drive_velocity": 1e-3})
     assert st.analysis.classify(known).confidence > 0.9
+
+
+@pytest.mark.parametrize(("speed", "rest"), [(0.17, (0.0, 0.1)), (0.002, (0.8, 1.0))])
+def test_stick_slip_says_how_long_the_mass_rests(speed: float, rest: tuple[float, float]) -> None:
+    """A soft tester at 170 mm/s sticks in each cycle, yet slides for nearly all of it."""
+    slider = st.Slider(
+        mass=0.2,
+        k_x=150.0,
+        k_y=60e3,
+        phi="0.5 deg",
+        normal_load=2.0,
+        friction=st.ExponentialWeakening(mu_0=0.35, mu_inf=0.22, v_f="5 mm/s"),
+        drive=st.ConstantVelocity(speed),
+    )
+    run = st.simulate(slider, duration=5.0 if speed > 0.1 else 15.0, sample_rate=2e3)
+    seen = st.analysis.classify(run)
+    assert seen.kind == "stick-slip"
+    share = float(re.findall(r"for ([\d.]+)% of a cycle", seen.rests)[0]) / 100.0
+    assert rest[0] < share < rest[1]
+    assert seen.rests.startswith("at rest or in creep" if seen.loads else "stuck")
+    assert str(seen).startswith(f"stick-slip (confidence {seen.confidence:.2f}), {seen.rests}: ")
+    if not seen.loads:
+        cycles = st.analysis.find_cycles(run)
+        ends = cycles["start"].values[0], cycles["trough_time"].values[-1]
+        stuck = np.clip(run.stick_intervals, *ends)
+        assert share == pytest.approx(np.ptp(stuck, axis=1).sum() / (ends[1] - ends[0]), rel=0.1)
