@@ -44,16 +44,28 @@ Simulations = Annotated[
     int,
     Parameter(
         name=("--simulations", "-n"),
-        help="Simulated records in the library; more sharpen the posterior, and take longer.",
+        help=(
+            "Number of simulated records to learn from: more give narrower intervals, and take "
+            "longer. Example: -n 8000."
+        ),
+    ),
+]
+Seed = Annotated[
+    int,
+    Parameter(
+        help=(
+            "Number that selects the random draws of the simulations: the same seed gives the "
+            "same result. Example: --seed 1."
+        ),
     ),
 ]
 Library = Annotated[
     Path | None,
     Parameter(
         help=(
-            "A folder for libraries; by default in the user's cache. What was interrupted "
-            "continues there, and another record under the same conditions needs no new "
-            "simulations."
+            "Folder for the simulated records, by default in the user's cache. An interrupted "
+            "command continues there, and another record under the same conditions needs no new "
+            "simulations. Example: --library simulations."
         ),
     ),
 ]
@@ -67,45 +79,58 @@ class Measured:
     Parameters
     ----------
     time
-        Its column, its unit, or both: ms, "Zeit=ms", 1=ms.
+        How the file gives the time: the name or number of its column, its unit, or both joined by
+        "=". Examples: --time ms, --time "Zeit=ms", --time 1=ms for the first column.
     force
-        Of the force along the drive, likewise: mN, Fx=mN, "CH1=2.5 N/V", "-1 N" to turn its sign.
+        How the file gives the force along the drive, in the same way. A factor scales it: "CH1=2.5
+        N/V" turns volts into newtons, "-1 N" turns the sign. Examples: --force mN, --force Fx=mN.
     force_across
-        Of the force across the drive.
+        How the file gives the force across the drive, as for --force. Example: --force-across
+        Fy=mN.
     load
-        Of the normal load over time.
+        How the file gives a normal load that varies over time, as for --force. Example: --load
+        Fz=N. For a constant load, use --normal-load.
     position
-        Of the displacement of the mass.
+        How the file gives the displacement of the mass, as for --force. Example: --position
+        "laser=um".
     drive_position
-        Of the displacement of the drive.
+        How the file gives the displacement of the drive, as for --force. Example:
+        --drive-position "stage=mm".
     slip_speed
-        Of the slip speed.
+        How the file gives the slip speed, as for --force. Example: --slip-speed "v=mm/s".
     normal_load
-        W, as a number and a unit: "10 N".
+        Constant normal load W that presses the mass onto the plate. Example: --normal-load "10 N".
     stiffness
-        Of the spring along the drive.
+        Stiffness k of the spring along the drive, which turns force into elongation. Example:
+        --stiffness "168 N/m".
     stiffness_across
-        Of the spring across it.
+        Stiffness of the spring across the drive. Example: --stiffness-across "60 kN/m".
     drive_velocity
-        V.
+        Constant velocity V of the drive. Example: --drive-velocity "42 um/s".
     mass
-        m.
+        Sliding mass m. Example: --mass "250 g".
     zero
-        Reading of the load cell without load; it is subtracted.
+        Reading of the load cell without load, which is subtracted from the force. Example: --zero
+        "3 mN".
     interval
-        Between two samples, for a file without times.
+        Time between two samples, for a file without a column of times. Example: --interval "1 ms".
     times
-        Whether the column of times holds the interval before each sample.
+        What the column of times holds: the time of each sample (clock), or the time since the
+        sample before (intervals). By default it is guessed. Example: --times intervals.
     decimal
-        Decimal sign of a text file.
+        Decimal sign of a text file: 1.5 (point) or 1,5 (comma). By default it is guessed. Example:
+        --decimal comma.
     separator
-        Between the columns of a text file.
+        Sign between the columns of a text file. By default it is guessed. Example: --separator
+        semicolon.
     wrap
-        Length after which a displacement starts again, or none.
+        Length after which a displacement starts again at its beginning, as that of a rotary
+        encoder does; "none" leaves it as it is. By default it is guessed. Example: --wrap "10 mm".
     block
-        Which of several blocks or strokes, from 1.
+        Number of the block or stroke to read, from 1, where a file has several. Example: --block 2.
     sidecar
-        TOML file with all this, in place of data.toml beside data.csv.
+        TOML file that says all this, so that it need not be repeated. By default it is the file
+        beside the record, data.toml for data.csv. Example: --sidecar rig/sensors.toml.
     """
 
     time: str | None = None

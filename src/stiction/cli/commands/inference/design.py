@@ -12,6 +12,7 @@ from stiction.cli.options import (
     Library,
     MaybeOutput,
     Measured,
+    Seed,
     Simulations,
     Trust,
     changes,
@@ -35,7 +36,7 @@ def design(
     position_noise: str | None = None,
     simulations: Simulations = 2000,
     library: Library = None,
-    seed: int = 0,
+    seed: Seed = 0,
     output: MaybeOutput = None,
     trust: Trust = False,
     set: Changes = None,
@@ -61,24 +62,26 @@ def design(
     rig
         A description in TOML with uncertain values, as phi = "2 +- 1 deg"; [run] is not used.
     record
-        A measured record of the present test, whose channels, cycles and noise are taken.
+        Measured record of the present test, in any format that `stiction import` reads: its
+        channels, cycles and noise are those of the tests to come. Example: --record data.csv.
     of
-        The parameter of interest: phi, friction.mu_0, k_y.
+        Parameter to learn more about, by its name in RIG. Example: --of friction.mu_0.
     channels
-        What is measured at present, without a record: force, force_across, position.
+        Channels that the present test measures, where there is no --record. Example: --channels
+        force position.
     angles
-        Angles by which the rig may be turned; 2 and 5 deg unless told otherwise.
+        Angles by which the rig may be turned, by default 2 and 5 deg. Example: --angles 1deg 3deg.
     velocities
-        Drive velocities to try; a third and three times the present one unless told otherwise.
+        Drive velocities to try, by default a third of the present one and three times it.
+        Example: --velocities "0.5 mm/s" "2 mm/s".
     loads
-        Normal loads to try; half and twice the present one unless told otherwise.
+        Normal loads to try, by default half the present one and twice it. Example: --loads "2 N"
+        "8 N".
     noise
-        Standard deviation of a sample of force: "2 mN". By default that of the record, or 0.2 %
-        of the friction force.
+        Standard deviation of a sample of force, by default that of the record, or 0.2 % of the
+        friction force. Example: --noise "2 mN".
     position_noise
-        Standard deviation of a sample of displacement.
-    seed
-        Of the simulations.
+        Standard deviation of a sample of displacement. Example: --position-noise "50 nm".
     output
         A figure: PNG, PDF or SVG.
     """

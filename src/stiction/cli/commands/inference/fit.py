@@ -10,6 +10,7 @@ from stiction.cli.options import (
     Library,
     Measured,
     Output,
+    Seed,
     Simulations,
     Trust,
     changes,
@@ -26,7 +27,7 @@ def fit(
     figures: Path | None = None,
     simulations: Simulations = 4000,
     library: Library = None,
-    seed: int = 0,
+    seed: Seed = 0,
     trust: Trust = False,
     set: Changes = None,
     measured: Measured | None = None,
@@ -64,8 +65,6 @@ def fit(
         The posterior: NetCDF, a variable for each parameter, with the prior in the group "prior".
     figures
         A folder for figures: prior against posterior, and all pairs. Made if it does not exist.
-    seed
-        Of the simulations.
     """
     from stiction.analysis.measurement.reading import read_source
     from stiction.analysis.record import as_record
