@@ -38,7 +38,7 @@ from stiction.plotting.stability.damping import draw_damping_map
 from stiction.reproduction.creep import creep
 from stiction.reproduction.figure3 import figure3
 from stiction.reproduction.figure4 import figure4
-from stiction.reproduction.figure5 import HALF, clear_of, figure5
+from stiction.reproduction.figure5 import figure5
 from stiction.reproduction.schematic import schematic
 from stiction.reproduction.zero_slip import zero_slip
 from stiction.text.quantity_text import metric_prefix
@@ -563,10 +563,17 @@ def test_times_of_milliseconds_are_written_so() -> None:
     assert 0.1 < max(labels) <= 0.8
 
 
-def test_words_in_the_damping_diagram_stand_beside_its_paths() -> None:
-    for A in (3.0, 100.0, 3000.0):
-        place = clear_of([A], 0.1, 1e5)
-        assert abs(place - np.log(A / 0.1) / np.log(1e6)) >= HALF
+@pytest.mark.parametrize(
+    ("speed", "phi", "other"), inside(8, (-5.0, -1.5), (0.3, 6.0), (8.0, 30.0))
+)
+def test_words_in_the_damping_diagram_cover_no_others(
+    slider: st.Slider, speed: float, phi: float, other: float
+) -> None:
+    apart = slider.replace(drive=st.ConstantVelocity(10.0**speed), phi=f"{phi} deg")
+    (ax,) = draw(figure5(apart, radians(other))).axes
+    boxes = [text.get_window_extent() for text in ax.texts]
+    for at, box in enumerate(boxes):
+        assert not any(box.overlaps(each) for each in boxes[:at]), ax.texts[at].get_text()
 
 
 def test_an_oscillation_too_fast_to_be_seen_is_a_band_about_its_mean() -> None:

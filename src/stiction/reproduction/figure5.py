@@ -2,18 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from math import degrees, log, radians, sin
+from math import degrees, radians, sin
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from stiction import theory
 from stiction.plotting.page.style import BLUE, COLUMN, GREEN, RED, new_figure, style
-from stiction.plotting.stability.damping import CLEAR, draw_damping_map, draw_force_path
+from stiction.plotting.stability.damping import (
+    CLEAR,
+    draw_damping_map,
+    draw_force_path,
+    name_crossing,
+    place_clear,
+)
 from stiction.system.slider import Slider
 
-PLACES = (0.41, 0.6, 0.75, 0.25)  # of a label in the diagram, the best first
-HALF = 0.17  # of its width, with a margin
+BEST = (
+    0.41,
+    0.5,
+    0.6,
+    0.63,
+    0.7,
+    0.75,
+    0.82,
+    0.29,
+    0.35,
+    0.25,
+    0.2,
+)  # places of a word, share of width
 
 
 def figure5(slider: Slider, other_phi: float | None = radians(10)) -> Figure:
@@ -47,23 +64,23 @@ def figure5(slider: Slider, other_phi: float | None = radians(10)) -> Figure:
         draw_damping_map(ax, (low, high), (lowest, 90.0))
         for (A, phi), color in zip(paths, (RED, BLUE), strict=False):
             draw_force_path(ax, A, phi, color, _label(A, phi))
-        middle = clear_of([A for A, _ in paths], low, high)
-        for place, text in (
-            ((middle, 0.93), "overdamped:\nslow creep"),
-            ((0.29, 0.15), "underdamped:\nrapid slip"),
+        for A, phi in paths:
+            name_crossing(ax, A, phi)
+        at = np.geomspace(low, high, 40)[2:-2]
+        edge = np.degrees(theory.critical_angle(np.maximum(at, 1.0)))
+        name = ax.text(0.0, 0.0, r"$\zeta$ = 1", color=GREEN, ha="right", va="top", bbox=CLEAR)
+        place_clear(
+            name, [{"position": each} for each in zip(at[::-1], 0.88 * edge[::-1], strict=True)]
+        )
+        for text, across, up in (
+            ("overdamped:\nslow creep", BEST, (0.93, 0.86, 0.8)),
+            ("underdamped:\nrapid slip", (0.29, 0.2, 0.25, 0.35, 0.41, 0.5, 0.6), (0.15, 0.1, 0.2)),
         ):
-            ax.text(*place, text, transform=ax.transAxes, ha="center", va="center", bbox=CLEAR)
-        at = min(high / 2.5, 1.0 / sin(radians(2.0 * lowest)) ** 3)  # above the lower edge
-        boundary = float(degrees(theory.critical_angle(at)))
-        ax.text(at, 0.88 * boundary, r"$\zeta$ = 1", color=GREEN, ha="right", va="top", bbox=CLEAR)
+            word = ax.text(0.0, 0.0, text, transform=ax.transAxes, ha="center", bbox=CLEAR)
+            word.set_va("center")
+            place_clear(word, [{"position": (x, y)} for y in up for x in across])
         fig.legend(loc="outside upper center", ncols=2)
     return fig
-
-
-def clear_of(numbers: Sequence[float], low: float, high: float) -> float:
-    """Return the first place for the upper label, as a share of the axis of A, clear of paths."""
-    taken = [log(A / low) / log(high / low) for A in numbers]
-    return max(PLACES, key=lambda place: min(HALF, *(abs(place - at) for at in taken)))
 
 
 def damping_number(slider: Slider, phi: float) -> float:

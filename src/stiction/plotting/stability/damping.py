@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import product
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.contour import QuadContourSet
 from matplotlib.lines import Line2D
 from matplotlib.markers import CARETDOWN
-from matplotlib.text import Annotation
+from matplotlib.text import Text
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from stiction import theory
@@ -18,7 +22,8 @@ from stiction.plotting.page.style import BLACK, COLUMN, GREEN, style
 SHADES = LinearSegmentedColormap.from_list("damping", ["#E9BE8B", "#FFFFFF", "#9DBDD3"])
 CLEAR = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 1.0}
 DECADES = np.arange(-7, 7)
-CLOSE = 30.0  # ratio of the damping numbers of two paths whose labels would meet
+BOLD = 1.0  # pt: words keep clear of such contours
+MARGIN = 2.0  # pixels around a word
 
 
 def draw_damping_map(
@@ -107,21 +112,66 @@ def draw_force_path(ax: Axes, A: float, phi: float, color: str, label: str) -> L
     crossing = float(np.degrees(theory.critical_angle(A)))
     if crossing > end:
         ax.plot([A], [crossing], color=BLACK, marker="x", markersize=7, mew=1.8, zorder=5)
-        # a path close to the right has its label on the left
-        others = [text.xy[0] / A for text in ax.texts if isinstance(text, Annotation)]
-        left = any(1.0 <= ratio < CLOSE for ratio in others)
-        ax.annotate(
+    return path
+
+
+def name_crossing(ax: Axes, A: float, phi: float) -> None:
+    """Write the force angle beside the cross of a path, clear of all that is drawn before."""
+    crossing = float(np.degrees(theory.critical_angle(A)))
+    if crossing > np.degrees(abs(phi)):
+        text = ax.annotate(
             rf"$\theta$ = {crossing:.1f}°",
             (A, crossing),
-            (-7, -3) if left else (7, 3),
+            (0.0, 0.0),
             textcoords="offset points",
             fontsize=7,
-            ha="right" if left else "left",
-            va="top" if left else "bottom",
             bbox=CLEAR,
             zorder=6,
         )
-    return path
+        place_clear(
+            text,
+            [
+                {"position": (x * gap, y * gap), "ha": ha, "va": va}
+                for gap in (4, 7, 12, 20, 30)
+                for (x, ha), (y, va) in product(
+                    ((1, "left"), (-1, "right")), ((1, "bottom"), (-1, "top"), (0, "center"))
+                )
+            ],
+        )
+
+
+def place_clear(text: Text, places: Sequence[dict[str, Any]]) -> None:
+    """Put a text at the first of the places, in its properties, that hides least.
+
+    Other words weigh most, then lines and markers; a text beyond the axes is the worst. The lines
+    of the contours do not count.
+    """
+    ax = text.axes
+    assert ax is not None
+    words = [each.get_window_extent() for each in ax.texts if each is not text]
+    lines = [
+        each.get_transform().transform_path(each.get_path()).interpolated(50).vertices
+        for each in ax.lines
+    ]
+    lines += [
+        each.get_transform().transform_path(path).vertices
+        for each in ax.collections
+        if np.max(each.get_linewidth()) > BOLD
+        for path in each.get_paths()
+    ]
+    drawn = np.concatenate([np.zeros((0, 2)), *lines])
+    inner = ax.get_window_extent()
+
+    def hidden(place: dict[str, Any]) -> float:
+        text.set(**place)
+        box = text.get_window_extent().padded(MARGIN)
+        outside = not (
+            inner.x0 < box.x0 and box.x1 < inner.x1 and inner.y0 < box.y0 and box.y1 < inner.y1
+        )
+        covered = np.all((drawn > box.min) & (drawn < box.max), axis=1).mean()
+        return 100.0 * outside + 10.0 * sum(map(box.overlaps, words)) + covered
+
+    text.set(**min(places, key=hidden))
 
 
 def _name_decades(
