@@ -73,8 +73,8 @@ class Trial(NamedTuple):
     seconds: float  # for all records
 
 
-def library_of(name: str, count: int, seed: int, folder: Path | None) -> Library:
-    """Simulate records of a rig, with all channels."""
+def rig_of(name: str) -> tuple[Rig, Conditions]:
+    """Return a rig, and the conditions of a record with all channels."""
     rig = Rig.from_toml(TEXT.format(**RIGS[name]))
     slider = rig.slider
     velocity = slider.motion.rate(0.0)[0]
@@ -88,7 +88,13 @@ def library_of(name: str, count: int, seed: int, folder: Path | None) -> Library
     step = cycle / PER_CYCLE
     conditions = Conditions(velocity, slider.normal_load, 0.0, step, CYCLES, cycle, noise)
     jitter = {"jitter": Uniform(1e-3, 0.03, "log")}
-    of = plan(slider, {**rig.priors, **jitter}, [conditions])
+    return Rig(slider, {**rig.priors, **jitter}), conditions
+
+
+def library_of(name: str, count: int, seed: int, folder: Path | None) -> Library:
+    """Simulate records of a rig, with all channels."""
+    rig, conditions = rig_of(name)
+    of = plan(rig.slider, rig.priors, [conditions])
     place = None if folder is None else folder / f"{of.key}-{seed}"
     return build(of, count, place, seed=seed)
 

@@ -25,6 +25,7 @@ from stiction.friction import laws as laws
 from stiction.friction.laws import Coulomb as Coulomb
 from stiction.friction.laws import ExponentialWeakening as ExponentialWeakening
 from stiction.inference.fit import fit as fit
+from stiction.inference.mechanism.comparison import mechanism as mechanism
 from stiction.inference.next_test.design import design as design
 from stiction.inference.priors import Rig as Rig
 from stiction.linear_stability.examination import stability as stability

@@ -25,12 +25,16 @@ def test_a_fit_writes_its_posterior_and_figures(tmp_path, capsys):
     output, figures = tmp_path / "fit.nc", tmp_path / "figures"
     library = ("-n", 400, "--library", tmp_path / "libraries")
     command = ("fit", run, "--rig", rig, "-o", output, "--figures", figures, *library)
-    assert inside(*command) == 0
+    assert inside(*command, "--mechanism") == 0
     said = capsys.readouterr().out
     assert "phi is" in said
     assert "Experimental" in said
     assert "Compared with" in said
-    assert {path.name for path in figures.iterdir()} == {"posterior.png", "corner.png"}
+    assert "called 1, 2" in said.lower()
+    names = {"posterior.png", "corner.png", "mechanism.png"}
+    assert {path.name for path in figures.iterdir()} == names
+    odds = xr.open_dataset(output, group="mechanism")
+    assert float(odds["probability"].sum()) == pytest.approx(1.0)
     assert {"phi", "k_x", "mu_0", "mu_inf", "jitter"} == set(xr.open_dataset(output))
 
 

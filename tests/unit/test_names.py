@@ -20,7 +20,8 @@ SESSION = {
     *("simulate", "run", "load", "export", "init", "analyse", "analyze", "audit", "stability"),
     *("compare", "check", "sweep", "refine", "open_study", "map", "plot", "paper"),
     *("analysis", "laws", "linear_stability", "plotting", "presets", "protocols", "results"),
-    *("testing", "theory", "Spring", "Sensor", "read_record", "read_records", "measure"),
+    *("testing", "theory", "Spring", "Sensor", "read_record", "read_records"),
+    *("measure", "mechanism"),
     *("explore", "animate", "listen", "fit", "design", "Rig"),
 }
 

@@ -18,6 +18,7 @@ from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep
 from stiction.plotting.analysis.cycles import plot_cycles
 from stiction.plotting.analysis.tolerance import plot_tolerance
 from stiction.plotting.analysis.trials import Trial, plot_trials
+from stiction.plotting.inference.mechanism import plot_mechanism
 from stiction.plotting.inference.posterior import plot_corner, plot_posterior
 from stiction.plotting.inference.predictive import plot_predictive, plot_ranks
 from stiction.plotting.page.canvas import figure_of
@@ -79,6 +80,12 @@ def record(found: Audit) -> Figure | None:
     """Draw a measured record beside simulations; None where there is none that was fitted."""
     seen = found.measured
     return figure_of(plot_predictive, seen) if seen and seen.predictive else None
+
+
+def mechanism(found: Audit) -> Figure | None:
+    """Draw the odds of mechanisms for a measured record."""
+    seen = found.measured
+    return figure_of(plot_mechanism, seen.odds) if seen and seen.odds else None
 
 
 def posterior(found: Audit) -> Figure | None:

@@ -39,6 +39,13 @@ DRAWN: dict[str, tuple[tuple[Callable[[Audit], Figure | None], str], ...]] = {
         (figures.damping, "How the friction force turns during creep, and where slow turns fast."),
     ),
     measured.TITLE: ((figures.record, "Measured, and simulated with the fitted parameters."),),
+    "Mechanism": (
+        (
+            figures.mechanism,
+            "Odds of mechanisms; how often simulated records are called so; the loading's "
+            "departure from a straight line, measured and simulated.",
+        ),
+    ),
     "Fit": (
         (figures.posterior, "Prior (grey) and posterior (blue), with its 95 % interval."),
         (figures.corner, "All pairs of what the record identifies: 50 % and 95 %."),

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
-from zipfile import BadZipFile
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,11 +22,12 @@ from stiction.inference.regression_abc import (
     with_marginals,
 )
 from stiction.inference.summary import Regression, Standard, Summary, learn
-from stiction.storage.files import make_folders, whole
+from stiction.storage.arrays import read_arrays, write_arrays
 
 Floats = NDArray[np.float64]
 
 RANKED = 500  # records of the library whose ranks are found
+REGRESSIONS = "middle", "spread"  # of a summary
 
 
 class Learned(NamedTuple):
@@ -72,7 +72,7 @@ def estimates(summary: Summary, truth: Floats) -> Iterator[Known]:
 
 def study(features: Floats, truth: Floats, path: Path | None = None) -> Learned:
     """Learn from features (n, f) and scores (n, p), or read from a file what was learned."""
-    stored = None if path is None else read(path, features)
+    stored = read(path, features)
     if stored is not None:
         return Learned(stored[0], truth, stored[1])
     summary = learn(features, truth)
@@ -93,29 +93,26 @@ def ranks(summary: Summary, truth: Floats) -> Floats:
 
 
 def write(path: Path, found: Learned) -> None:
-    """Write what was learned, whole or not at all."""
+    """Write what was learned."""
     summary = found.summary
-    arrays = {"ranks": found.ranks, **summary.standard._asdict()}
-    for name in ("middle", "spread"):
-        its: Regression = getattr(summary, name)
-        arrays |= {f"{name}_{key}": value for key, value in its._asdict().items()}
-    make_folders(path.parent)
-    with whole(path) as part:
-        np.savez(part, allow_pickle=False, **arrays)
+    own = {f"{name}_{key}": value for name in REGRESSIONS
+           for key, value in getattr(summary, name)._asdict().items()}  # fmt: skip
+    write_arrays(path, ranks=found.ranks, **summary.standard._asdict(), **own)
 
 
-def read(path: Path, features: Floats) -> tuple[Summary, Floats] | None:
+def read(path: Path | None, features: Floats) -> tuple[Summary, Floats] | None:
     """Return a stored summary and its ranks; None where there is none of these features."""
+    arrays = read_arrays(path)
     try:
-        with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
-            arrays = {key: file[key] for key in file.files}
+        if arrays is None or arrays["mean"].shape != features.shape[1:]:
+            return None
         standard = Standard(arrays["mean"], arrays["spread"])
         both = [
             Regression(*(arrays[f"{name}_{key}"] for key in Regression._fields))
-            for name in ("middle", "spread")
+            for name in REGRESSIONS
         ]
-    except (OSError, ValueError, KeyError, EOFError, BadZipFile):
-        return None  # absent or damaged: it is learned again
-    if both[0].library.shape[0] != len(features) or len(standard.mean) != features.shape[1]:
+        if len(both[0].library) != len(features):
+            return None
+        return Summary(standard, standard.scores(features), *both), arrays["ranks"]
+    except KeyError:
         return None
-    return Summary(standard, standard.scores(features), *both), arrays["ranks"]

@@ -18,6 +18,7 @@ EDGES = np.array([0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.86, 0.91,
 DROP = 0.3  # of the span of the force: a smaller fall is not a slip
 TAILS = (2.0, 98.0)  # percentiles that bound the span, so that a spike does not
 USED = ("force", "force_across", "position")  # channels, in the order of their features
+BEND = "bend"  # name of the features that say how far loading is from straight
 LEAST_CYCLES = 6
 CREEP = (0.1, 0.95)  # shares of a loading in which the misalignment is sought
 ABOVE = 1.003  # the friction force at rest over the largest force along the spring
@@ -83,23 +84,30 @@ def features(step: float, channels: dict[str, Floats], scale: Scale, cycles: Cyc
     cycles : Cycles
         Of the force.
     """
-    return np.concatenate([found for _, found in parts(step, channels, scale, cycles)])
+    return np.concatenate([part.values for part in parts(step, channels, scale, cycles)])
 
 
-def parts(
-    step: float, channels: dict[str, Floats], scale: Scale, cycles: Cycles
-) -> Iterator[tuple[set[str], list[float]]]:
-    """Yield the features channel by channel: what they need beside the force, and the features."""
+class Part(NamedTuple):
+    """Features of one kind: what they describe, the channels they need, and their values."""
+
+    name: str
+    needs: frozenset[str]
+    values: list[float]
+
+
+def parts(step: float, channels: dict[str, Floats], scale: Scale, cycles: Cycles) -> Iterator[Part]:
+    """Yield the features kind by kind."""
     loadings = Loadings(cycles)
-    force, across, position = ({name} & set(channels) for name in USED)
-    yield force, of_cycles(step, channels["force"], scale, cycles)
-    yield force, of_loading(step, channels["force"], scale, loadings)
+    force, across, position = (frozenset({name} & set(channels)) for name in USED)
+    yield Part("cycles", force, of_cycles(step, channels["force"], scale, cycles))
+    yield Part("loading", force, of_loading(step, channels["force"], scale, loadings))
+    yield Part(BEND, force, of_bend(channels["force"], loadings))
     if across:
-        yield across, of_force_across(step, channels, scale, loadings)
+        yield Part("force across", across, of_force_across(step, channels, scale, loadings))
     if position:
-        yield position, of_position(step, channels, scale, loadings)
+        yield Part("position", position, of_position(step, channels, scale, loadings))
     if across and position:
-        yield across | position, of_both(step, channels, scale, loadings)
+        yield Part("both", across | position, of_both(step, channels, scale, loadings))
 
 
 class Loadings:
@@ -168,17 +176,22 @@ def of_cycles(step: float, force: Floats, scale: Scale, cycles: Cycles) -> list[
 
 
 def of_loading(step: float, force: Floats, scale: Scale, loadings: Loadings) -> list[float]:
-    """Return the loading rate, and how the loading curve departs from a straight line."""
+    """Return the loading rate, and by how much creep lowers it."""
     f = force[loadings.index]
-    first, last = f[loadings.first], f[loadings.first + loadings.count - 1]
-    height = (f - first[loadings.cycle]) / (last - first)[loadings.cycle]
-    residual = loadings.averages(height - loadings.share)
     time = step * loadings.number
-    peak = last[loadings.cycle]
+    peak = f[loadings.first + loadings.count - 1][loadings.cycle]
     lean = np.clip(f / (ABOVE * peak), 0.0, 1.0 / ABOVE)
     way = loadings.integral(lean / np.sqrt(1.0 - lean * lean), step)
     rate, slowed = loadings.regression(f, time, way)
-    return [logarithm(rate / scale.loading), -slowed / scale.loading, *residual]
+    return [logarithm(rate / scale.loading), -slowed / scale.loading]
+
+
+def of_bend(force: Floats, loadings: Loadings) -> list[float]:
+    """Return how far the loading is from a straight line, over its rise, in each of its parts."""
+    f = force[loadings.index]
+    first, last = f[loadings.first], f[loadings.first + loadings.count - 1]
+    height = (f - first[loadings.cycle]) / (last - first)[loadings.cycle]
+    return [*loadings.averages(height - loadings.share)]
 
 
 def of_force_across(
@@ -195,7 +208,7 @@ def of_force_across(
     aside = np.where(np.abs(across) < least, np.copysign(least, across), across)
     way = loadings.integral(along / aside, step)
     rate, slowed = loadings.regression(along, step * loadings.number, way)
-    tangent = -slowed / rate
+    tangent = -slowed / rate if rate else 0.0  # too few samples in each loading
     course = loadings.averages(across / scale.force)
     ends = across[loadings.first + loadings.count - 1] / scale.force
     return [

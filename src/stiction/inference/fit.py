@@ -13,7 +13,7 @@ from stiction.errors import DescriptionError, Fault, ResultError
 from stiction.friction import has_state
 from stiction.inference.calibration import study
 from stiction.inference.library import SIMULATIONS, Library, Plan, build, plan
-from stiction.inference.observation import Observation, observe
+from stiction.inference.observation import Conditions, Observation, observe
 from stiction.inference.posterior import Fit
 from stiction.inference.priors import Normal, Prior, Rig
 
@@ -74,7 +74,7 @@ def fit(
         raise ResultError("no record is given; name one or several")
     check(known)
     seen = [observe(each, known.slider, f"record {number}") for number, each in enumerate(given, 1)]
-    plan_of = plan_for(known, seen)
+    plan_of = plan_for(known, [each.conditions for each in seen])
     folder = None if library is None else Path(library) / f"{plan_of.key}-{seed}"
     simulated = build(plan_of, simulations, folder, seed=seed, progress=progress)
     return compare(simulated, seen, folder)
@@ -95,13 +95,13 @@ def check(rig: Rig) -> None:
         raise DescriptionError(faults)
 
 
-def plan_for(rig: Rig, seen: Sequence[Observation]) -> Plan:
-    """Return the plan of a library for what was observed."""
-    across = any("force_across" in each.conditions.noise for each in seen)
+def plan_for(rig: Rig, conditions: Sequence[Conditions]) -> Plan:
+    """Return the plan of a library for records under these conditions."""
+    across = any("force_across" in each.noise for each in conditions)
     priors = {**rig.priors}
     if not across and "phi" in priors:
         priors["phi"] = one_sided(priors["phi"])
-    return plan(rig.slider, priors, [each.conditions for each in seen])
+    return plan(rig.slider, priors, conditions)
 
 
 def one_sided(prior: Prior) -> Prior:

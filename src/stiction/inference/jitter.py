@@ -10,12 +10,13 @@ to the next, so that no motion is disturbed by the change.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import pairwise
+from itertools import count, pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.friction import Anisotropic, states
 from stiction.simulation import solve
 from stiction.study.variables.features import zigzag
 from stiction.system.description import Description, Settings
@@ -26,9 +27,11 @@ Floats = NDArray[np.float64]
 
 RTOL = 1e-4  # of each cycle: a hundredth of a per cent, below any jitter that is seen
 LARGE = 0.15  # of the span in a cycle's window: a fall by so much, and a rise, make a trough
+SMALLEST = 1e-3  # of the elongation: a smaller fall is not a slip
 REACH = 1.3  # lengths of the last cycle that are simulated at once in search of the next trough
 MORE = 0.4  # of them, if it is not among these
-LONGEST = 4.0  # of them without a trough: the motion has no cycles
+LONGEST = 4.0  # of them without a trough: the friction of a further cycle is drawn
+IDLE = 10.0  # of them without a trough: the motion has no more cycles
 FEWEST = 8  # samples that are simulated at once
 MOST_STEPS = 2_000_000
 
@@ -41,15 +44,21 @@ class Jitter(NamedTuple):
     spread : float
         Standard deviation of the logarithm of each coefficient.
     common : float
-        Correlation between both coefficients, 0 to 1.
+        Correlation between the coefficients, 0 to 1.
+    drift : float, optional
+        Change of the logarithm of all coefficients from each cycle to the next.
     """
 
     spread: float
     common: float
+    drift: float = 0.0
 
 
 class Motion(NamedTuple):
-    """A motion at `time` (n,), s: elongation and slip (n, 4), and the indices of its troughs."""
+    """A motion at `time` (n,), s: its samples (n, 4 + internal states), and where its troughs are.
+
+    A sample is elongation x and y (m), slip velocity x and y (m/s), and the internal states.
+    """
 
     time: Floats
     rows: Floats
@@ -59,13 +68,27 @@ class Motion(NamedTuple):
 
 def laws(law: Any, jitter: Jitter, random: np.random.Generator) -> Iterator[Any]:
     """Yield the friction law of each cycle, its coefficients drawn about those of `law`."""
-    names = [name for name in ("mu_0", "mu_inf", "mu_static") if name in law._fields]
-    while True:
+    if isinstance(law, Anisotropic):
+        yield from (law._replace(law=inner) for inner in laws(law.law, jitter, random))
+    names = coefficients(law)
+    for number in count():
         common, *own = random.standard_normal(1 + len(names))
         share, rest = jitter.common**0.5, (1.0 - jitter.common) ** 0.5
-        factors = np.exp(jitter.spread * (share * common + rest * np.array(own)))
+        factors = np.exp(
+            jitter.spread * (share * common + rest * np.array(own)) + number * jitter.drift
+        )
         its = {name: getattr(law, name) * f for name, f in zip(names, factors, strict=True)}
         yield law._replace(**its)
+
+
+def coefficients(law: Any) -> list[str]:
+    """Return the names of a law's friction coefficients, which differ from cycle to cycle.
+
+    >>> from stiction.friction.laws import Coulomb, LuGre
+    >>> coefficients(Coulomb(0.2)), coefficients(LuGre(0.2, 0.3, 0.01, 1e5, 300.0))
+    (['mu_0', 'mu_static'], ['mu_c', 'mu_s'])
+    """
+    return [name for name in law._fields if name.startswith("mu_")]
 
 
 def move(
@@ -83,7 +106,7 @@ def move(
     Parameters
     ----------
     slider : Slider
-        With a law that has coefficients ``mu_0`` (and ``mu_inf``), a steady drive and load.
+        With a steady drive and load.
     times : ndarray
         (n,), s, from 0 on.
     jitter : Jitter
@@ -95,10 +118,12 @@ def move(
     multiscale : bool, optional
         As of `stiction.simulate`, for drives so slow that transverse oscillations fill each cycle.
     cycles : int, optional
-        End after so many troughs.
+        End after so many troughs, or when no more come.
     """
     step = times[1] - times[0]
-    rows = np.empty((len(times), 4))  # elongation and slip
+    internal = len(states(slider.law))
+    kept = [*range(4), *range(-internal, 0)]  # friction and load are between
+    rows = np.empty((len(times), len(kept)))
     troughs: list[int] = []
     origin, begin, initial = 0, 0, Initial(epsilon=0.0)  # where the cycle and its part begin
     whole = max(int(REACH * cycle / step), FEWEST)
@@ -116,7 +141,7 @@ def move(
         found = solve(Description(rig, initial, settings), part, max_steps=MOST_STEPS)
         if found.code != 0:
             return Motion(times[: begin + 1], rows[: begin + 1], np.array(troughs, np.int64), False)
-        rows[begin : end + 1] = found.samples[:, :4]
+        rows[begin : end + 1] = found.samples[:, kept]
         trough = first_trough(rows[origin : end + 1, 0])
         if trough >= 0:
             begin = origin + trough
@@ -127,6 +152,8 @@ def move(
             origin, window, law = begin, whole, next(own)
         elif end - origin > LONGEST * whole:  # no slip: sliding, or loading
             begin = origin = end
+            if cycles is not None and end - (troughs or [0])[-1] > IDLE * whole:
+                break
             window, law = whole, next(own)
         else:  # a longer cycle
             begin, window = end, max(int(MORE * whole), FEWEST)
@@ -148,10 +175,16 @@ def stretch(times: Floats, begin: int, end: int) -> tuple[float, Floats]:
 def first_trough(values: Floats) -> int:
     """Return the index of the first trough after a fall; -1 if there is none.
 
+    A fall by less than a thousandth of the largest value is none: steady sliding has some by
+    rounding.
+
     >>> first_trough(np.array([0.0, 1.0, 2.0, 0.5, 1.0])), first_trough(np.array([0.0, 1.0]))
     (3, -1)
+    >>> first_trough(np.array([2.0, 1.9999, 2.0]))
+    -1
     """
-    turns = zigzag(values, LARGE * float(np.ptp(values)))
+    least = SMALLEST * float(np.abs(values).max())
+    turns = zigzag(values, max(LARGE * float(np.ptp(values)), least))
     for before, at in pairwise((0, *turns)):
         if values[at] < values[before]:
             return int(at)
@@ -162,8 +195,10 @@ def start(slider: Slider, row: Floats, time: float) -> Initial:
     """Return the state of a sample as the start of a run."""
     (c, s), (X, Y) = slider.direction, slider.motion.rate(time)
     v_x, v_y = X * c - Y * s - row[2], X * s + Y * c - row[3]
+    names = [state.name for state in states(slider.law)]
+    internal = dict(zip(names, row[4:].tolist(), strict=True)) or None
     return Initial.model_construct(
-        {"u_x", "u_y", "v_x", "v_y", "time"},
+        {"u_x", "u_y", "v_x", "v_y", "time", "states"},
         epsilon=1e-6, u_x=float(row[0]), u_y=float(row[1]), v_x=float(v_x), v_y=float(v_y),
-        states=None, time=time,
+        states=internal, time=time,
     )  # fmt: skip

@@ -7,18 +7,17 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from hashlib import sha256
 from pathlib import Path
 from typing import NamedTuple
-from zipfile import BadZipFile
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from stiction.analysis.record import cell_axis
-from stiction.inference.features import Cycles, features, find_cycles, parts
+from stiction.inference.features import BEND, Cycles, Part, features, find_cycles, parts
 from stiction.inference.jitter import Jitter, Motion, move
 from stiction.inference.observation import Conditions
 from stiction.inference.priors import Normal, Prior, Uniform
-from stiction.storage.files import make_folders, whole
+from stiction.storage.arrays import read_arrays, write_arrays
 from stiction.study.execution.engines import Threads
 from stiction.system.parameter import change_unchecked
 from stiction.system.slider import Slider
@@ -31,7 +30,8 @@ BLOCK = 32  # simulations that are stored together
 SPARE = 2  # cycles simulated beyond those that are used: the first begins from rest
 LONGEST = 4.0  # of the measured cycles: simulations with longer ones end without
 JITTER = Uniform(1e-3, 0.05, "log")  # of friction from cycle to cycle, unless the rig says
-FORMAT = 2  # of stored simulations and of what is learned from them
+NOT_OF_THE_SLIDER = {"jitter", "drift", "gain", "zero"}  # names of priors
+FORMAT = 3  # of stored simulations and of what is learned from them
 
 
 class Plan(NamedTuple):
@@ -42,19 +42,25 @@ class Plan(NamedTuple):
     slider : Slider
         The rig in the middle of its priors.
     priors : dict of str to Prior
-        Of its parameters, by path; and of ``jitter``, ``gain`` and ``zero`` (N) of the force.
+        Of its parameters, by path; and of ``jitter``, ``gain`` and ``zero`` (N) of the force, and
+        ``drift``, the change of the coefficients' logarithm over a record.
     conditions : tuple of Conditions
         Of each record.
+    basis : Slider, optional
+        What features are relative to, where it is not `slider`: plans with the same basis can be
+        compared.
     """
 
     slider: Slider
     priors: dict[str, Prior]
     conditions: tuple[Conditions, ...]
+    basis: Slider | None = None
 
     @property
     def key(self) -> str:
         """A hash of all that decides what is simulated."""
-        text = json.dumps([FORMAT, repr(self.slider), repr(self.priors), repr(self.conditions)])
+        parts = self.slider, self.priors, self.conditions, self.basis
+        text = json.dumps([FORMAT, *map(repr, parts)])
         return sha256(text.encode()).hexdigest()[:16]
 
     def parameters(self, scores: Floats) -> dict[str, float]:
@@ -138,16 +144,22 @@ class Synthetic(NamedTuple):
 
 def simulate(plan: Plan, number: int, seed: int) -> tuple[Floats, Floats]:
     """Return the normal scores and features of one simulation; NaN where it has too few cycles."""
-    random = np.random.default_rng([seed, number])
-    drawn = random.standard_normal(len(plan.priors))
-    parts = []
-    for conditions, made in zip(plan.conditions, synthesise(plan, drawn, random), strict=True):
-        scale = conditions.scale(plan.slider)
+    drawn, records = draw(plan, number, seed)
+    found = []
+    for conditions, made in zip(plan.conditions, records, strict=True):
+        scale = conditions.scale(plan.basis or plan.slider)
         blank = dummy(conditions)
         channels, cycles = made or (blank, find_cycles(blank["force"]))
-        found = features(conditions.step, channels, scale, cycles)
-        parts.append(found if made else np.full_like(found, np.nan))
-    return drawn, np.concatenate(parts)
+        its = features(conditions.step, channels, scale, cycles)
+        found.append(its if made else np.full_like(its, np.nan))
+    return drawn, np.concatenate(found)
+
+
+def draw(plan: Plan, number: int, seed: int) -> tuple[Floats, Iterator[Synthetic | None]]:
+    """Return normal scores drawn for one simulation, and its records."""
+    random = np.random.default_rng([seed, number])
+    drawn = random.standard_normal(len(plan.priors))
+    return drawn, synthesise(plan, drawn, random)
 
 
 def synthesise(
@@ -157,10 +169,11 @@ def synthesise(
     values = plan.parameters(scores)
     slider = plan.slider
     for path, value in values.items():
-        if path not in ("jitter", "gain", "zero"):
+        if path not in NOT_OF_THE_SLIDER:
             slider = change_unchecked(slider, path, value)
-    jitter = Jitter(values["jitter"], float(random.uniform()))
+    spread, common = values["jitter"], float(random.uniform())
     for conditions in plan.conditions:
+        jitter = Jitter(spread, common, values.get("drift", 0.0) / conditions.cycles)
         rig = conditions.slider_of(slider)
         wanted = conditions.cycles + SPARE
         most = LONGEST * wanted * conditions.cycle
@@ -168,7 +181,7 @@ def synthesise(
         motion = move(rig, times, jitter, random, cycle=conditions.cycle, cycles=wanted)
         channels = measure(conditions, rig, motion, values, random)
         found = find_cycles(channels["force"])
-        enough = len(found.peak) >= conditions.cycles
+        enough = min(len(found.peak), len(motion.troughs)) >= conditions.cycles  # not of noise
         last = Cycles(*(each[-conditions.cycles :] for each in found))
         yield Synthetic(channels, last) if enough else None
 
@@ -202,10 +215,22 @@ def features_from(
     channels: Iterable[str], conditions: Conditions, slider: Slider
 ) -> NDArray[np.bool_]:
     """Return which features of a record under these conditions come from these channels alone."""
+    some = set(channels)
+    return which(conditions, slider, lambda part: part.needs <= some)
+
+
+def bend_features(conditions: Conditions, slider: Slider) -> NDArray[np.bool_]:
+    """Return which features of a record under these conditions are those of a bent loading."""
+    return which(conditions, slider, lambda part: part.name == BEND)
+
+
+def which(
+    conditions: Conditions, slider: Slider, wanted: Callable[[Part], bool]
+) -> NDArray[np.bool_]:
+    """Return which features of a record under these conditions belong to the wanted parts."""
     blank = dummy(conditions)
-    scale, some = conditions.scale(slider), set(channels)
-    found = parts(conditions.step, blank, scale, find_cycles(blank["force"]))
-    return np.concatenate([np.full(len(values), needed <= some) for needed, values in found])
+    found = parts(conditions.step, blank, conditions.scale(slider), find_cycles(blank["force"]))
+    return np.concatenate([np.full(len(part.values), wanted(part)) for part in found])
 
 
 def dummy(conditions: Conditions) -> dict[str, Floats]:
@@ -222,19 +247,13 @@ def cache_folder() -> Path:
 
 
 def write_block(folder: Path, block: int, scores: Floats, found: Floats) -> None:
-    """Write a block of simulations, whole or not at all."""
-    make_folders(folder)
-    with whole(folder / f"{block:05d}.npz") as part:
-        np.savez(part, scores=scores, features=found)
+    """Write a block of simulations."""
+    write_arrays(folder / f"{block:05d}.npz", scores=scores, features=found)
 
 
 def read_block(folder: Path, block: int) -> tuple[Floats, Floats] | None:
-    """Return a stored block; None where there is none."""
-    path = folder / f"{block:05d}.npz"
-    if not path.is_file():
+    """Return a stored block; None where there is none, so that it is simulated again."""
+    stored = read_arrays(folder / f"{block:05d}.npz")
+    if stored is None or not stored.keys() >= {"scores", "features"}:
         return None
-    try:
-        with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
-            return file["scores"], file["features"]
-    except (OSError, ValueError, KeyError, EOFError, BadZipFile):
-        return None  # damaged: it is simulated again
+    return stored["scores"], stored["features"]

@@ -168,12 +168,16 @@ class Fit:
         """Draw prior against posterior; see `stiction.plotting.plot_posterior`."""
         return draw("plot_posterior", self, axes)
 
-    def save(self, path: str | Path) -> Path:
-        """Write the posterior as NetCDF, the prior in its group ``prior``; return the path."""
+    def save(self, path: str | Path, **groups: xr.Dataset) -> Path:
+        """Write the posterior as NetCDF, the prior in its group ``prior``; return the path.
+
+        Further datasets become groups of their name: ``fit.save("fit.nc", mechanism=odds.data)``.
+        """
         target = placeable(path)
         with whole(target) as part:
             self.data.to_netcdf(part, engine="h5netcdf")
-            self.prior.to_netcdf(part, mode="a", group="prior", engine="h5netcdf")
+            for name, data in {"prior": self.prior, **groups}.items():
+                data.to_netcdf(part, mode="a", group=name, engine="h5netcdf")
         return target
 
 

@@ -8,6 +8,7 @@ from stiction.plotting.analysis.tolerance import plot_tolerance as plot_toleranc
 from stiction.plotting.analysis.trials import plot_trials as plot_trials
 from stiction.plotting.apparatus.schematic import plot_slider as plot_slider
 from stiction.plotting.inference.design import plot_design as plot_design
+from stiction.plotting.inference.mechanism import plot_mechanism as plot_mechanism
 from stiction.plotting.inference.posterior import plot_corner as plot_corner
 from stiction.plotting.inference.posterior import plot_posterior as plot_posterior
 from stiction.plotting.inference.predictive import plot_predictive as plot_predictive

@@ -77,7 +77,7 @@ def figure5(slider: Slider, other_phi: float | None = radians(10)) -> Figure:
             ("underdamped:\nrapid slip", (0.29, 0.2, 0.25, 0.35, 0.41, 0.5, 0.6), (0.15, 0.1, 0.2)),
         ):
             word = ax.text(0.0, 0.0, text, transform=ax.transAxes, ha="center", bbox=CLEAR)
-            word.set_va("center")
+            word.set_verticalalignment("center")
             place_clear(word, [{"position": (x, y)} for y in up for x in across])
         fig.legend(loc="outside upper center", ncols=2)
     return fig

@@ -8,11 +8,12 @@ from tests.uncertain import TEXT
 
 import stiction as st
 from stiction.auditing.measured.comparison import compare
-from stiction.auditing.measured.words import sections, verdict
+from stiction.auditing.measured.words import alternatives, sections, verdict
 from stiction.auditing.page import page
 from stiction.errors import DescriptionError
 from stiction.inference.features import find_cycles
 from stiction.inference.jitter import Jitter, move
+from stiction.inference.mechanism.rivals import ROTATION, STATIC
 from stiction.inference.predictive import SHARES, loading_curve
 from stiction.plotting import plot_predictive, plot_ranks
 
@@ -51,7 +52,7 @@ def test_a_record_of_the_rig_is_explained_and_its_misalignment_found(found):
     assert first.title == "What the record says"
     said, described = first.sentences
     assert said.startswith("The rig explains this record by itself: with a misalignment of 2.")
-    assert "no static friction beyond that law is needed, and none is excluded" in said
+    assert said.endswith(f"; {alternatives(found.measured.odds.decision)}.")
     assert "as it is described" in described
 
 
@@ -59,13 +60,16 @@ def test_the_report_says_what_it_rests_on_and_what_would_change_it(found):
     parts = {part.title: " ".join(part.sentences) for part in found.tables()}
     assert "simulated records" in parts["What that rests on"]
     assert "force across the drive and displacement of the mass" in parts["What would change it"]
-    assert "Other mechanisms" in parts["What would change it"]
-    assert {"Fit", "Verdict", "How well to align"} <= set(parts)
+    assert "turned by a known angle" in parts["What would change it"]
+    assert {"Fit", "Mechanism", "Verdict", "How well to align"} <= set(parts)
 
 
 def test_the_page_has_the_figures_of_the_record(found):
     text = page(found, "pin")
-    captions = ("Measured, and simulated", "Prior (grey)", "All pairs", "Calibration: ranks")
+    captions = (
+        "Measured, and simulated", "Odds of mechanisms", "Prior (grey)", "All pairs",
+        "Calibration: ranks",
+    )  # fmt: skip
     assert [each for each in captions if each not in text] == []
 
 
@@ -79,14 +83,38 @@ def test_the_band_holds_the_measured_curve(found):
     assert len(plot_ranks(found.measured.fit)) == len(found.measured.fit.estimates)
 
 
-def test_a_record_with_static_friction_and_no_rotation_gets_no_verdict(rig, folder):
+def test_a_record_with_static_friction_and_no_rotation_is_not_explained_by_the_rig(rig, folder):
     """Coulomb friction with a static coefficient, square on: no creep, steeper slips."""
     slider = rig.slider.replace(phi="0 deg", friction=st.Coulomb(mu_0=0.45, mu_static=0.6))
     seen = compare(record_of(slider, 8), rig, simulations=SIMULATIONS, library=folder)
     assert not seen.like
-    assert verdict(seen).startswith("No verdict: this record is not like those of the rig")
-    assert "phi" in seen.beyond  # the prior excludes zero
-    assert "At an end of its prior" in str(sections(seen)[1])
+    assert seen.odds.decision == STATIC
+    assert verdict(seen).startswith("Friction, not misalignment: this record is like simulations")
+    undecided = replace(seen.odds, probabilities=np.full(len(seen.odds.names), 0.25))
+    said = verdict(replace(seen, odds=undecided))
+    assert said.startswith("No verdict: this record is not like those of the rig")
+
+
+def test_a_posterior_in_the_tail_of_its_prior_is_named(found):
+    seen = found.measured
+    fit = seen.fit
+    tail = replace(seen, fit=replace(fit, scores=fit.scores - 4.0))
+    assert not tail.like
+    assert tail.beyond == [each.name for each in fit.estimates]
+    assert "At an end of its prior" in str(sections(tail)[1])
+
+
+def test_the_verdict_says_what_other_mechanisms_leave_open(found):
+    """Claimed, undecided, and not compared: three different sentences about one fit."""
+    seen = found.measured
+    sure = np.eye(len(seen.odds.names))[seen.odds.names.index(ROTATION)]
+    claimed = replace(seen, odds=replace(seen.odds, probabilities=sure, steady=1.0))
+    assert "is the apparatus, whose friction vector rotates" in verdict(claimed)
+    open_still = replace(seen, odds=replace(seen.odds, probabilities=np.full(len(sure), 0.2)))
+    assert "another mechanism is not excluded" in verdict(open_still)
+    alone = replace(seen, odds=None, incomparable="nothing rotates")
+    assert "none is excluded" in verdict(alone)
+    assert "Other mechanisms were not compared: nothing rotates." in str(sections(alone)[2])
 
 
 def test_a_record_without_cycles_gets_no_verdict_and_says_why(rig):

@@ -85,7 +85,7 @@ def test_a_library_that_was_interrupted_is_completed(found, rig, record, tmp_pat
     block = sorted(own.glob("*.npz"))[3]
     before = block.read_bytes()
     block.unlink()
-    whole = build(plan_for(rig, [observe(record, rig.slider)]), SIMULATIONS, own)
+    whole = build(plan_for(rig, [observe(record, rig.slider).conditions]), SIMULATIONS, own)
     with np.load(block) as made:
         block.with_suffix(".old").write_bytes(before)
         with np.load(block.with_suffix(".old")) as old:

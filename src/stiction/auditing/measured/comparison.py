@@ -9,10 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from stiction.analysis.record import Record
-from stiction.errors import ResultError
+from stiction.errors import DescriptionError, ResultError
 from stiction.inference.features import USED
 from stiction.inference.fit import check, fit
 from stiction.inference.library import SIMULATIONS
+from stiction.inference.mechanism.comparison import SHARE, mechanism
+from stiction.inference.mechanism.odds import Odds
 from stiction.inference.observation import Observation, observe
 from stiction.inference.posterior import Fit
 from stiction.inference.predictive import Predictive, predict
@@ -38,6 +40,10 @@ class Comparison:
         Simulations with parameters of the posterior; None if hardly any has cycles.
     reason : str
         Why there is no fit.
+    odds : Odds or None
+        Of mechanisms.
+    incomparable : str
+        Why there are no odds.
     """
 
     record: Record
@@ -45,6 +51,8 @@ class Comparison:
     fit: Fit | None = None
     predictive: Predictive | None = None
     reason: str = ""
+    odds: Odds | None = None
+    incomparable: str = ""
 
     @property
     def like(self) -> bool:
@@ -90,9 +98,17 @@ def compare(
         seen = observe(record, rig.slider)
         found = fit(
             record, rig, simulations=simulations, library=library,
-            progress=lambda fraction: report(0.9 * fraction),
+            progress=lambda fraction: report(0.5 * fraction),
         )  # fmt: skip
     except ResultError as error:
         return Comparison(record, reason=str(error))
-    made = predict(found, seen, lambda fraction: report(0.9 + 0.1 * fraction))
-    return Comparison(record, seen, found, made)
+    made = predict(found, seen, lambda fraction: report(0.5 + 0.05 * fraction))
+    odds, why = None, ""
+    try:
+        odds = mechanism(
+            record, rig, simulations=simulations // SHARE, library=library,
+            progress=lambda fraction: report(0.55 + 0.45 * fraction),
+        )  # fmt: skip
+    except (ResultError, DescriptionError) as error:
+        why = str(error)
+    return Comparison(record, seen, found, made, odds=odds, incomparable=why)

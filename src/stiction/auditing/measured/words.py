@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from stiction.auditing.measured.comparison import RARE, Comparison
+from stiction.inference.mechanism.odds import UNDECIDED, near_one
+from stiction.inference.mechanism.rivals import ROTATION
 from stiction.inference.posterior import Estimate, Fit
 from stiction.inference.predictive import Predictive
 from stiction.text.sections import Section
@@ -26,32 +28,56 @@ def sections(found: Comparison) -> list[Section]:
         Section(GROUNDS, grounds(found, found.fit)),
         Section(CHANGES, changes(found, found.fit)),
     ]
-    return [*parts, *found.fit.tables()]
+    return [*parts, *(found.odds.tables() if found.odds else ()), *found.fit.tables()]
 
 
 def verdict(found: Comparison) -> str:
     """Return the verdict in one sentence."""
+    claimed = "" if found.odds is None else found.odds.decision
+    if found.odds is not None and claimed not in (ROTATION, UNDECIDED):
+        probability = near_one(found.odds.probabilities.max())
+        return (
+            f"Friction, not misalignment: this record is like simulations of {claimed} "
+            f"(probability {probability} among the mechanisms compared), not of a friction vector "
+            "that rotates; the fit below, which assumes that it rotates, means nothing."
+        )
     if not found.like:
         return (
             "No verdict: this record is not like those of the rig as described, whatever the "
             "uncertain values are; the fitted values below mean nothing until that is explained."
         )
+    return f"{explanation(found)}; {alternatives(claimed)}."
+
+
+def explanation(found: Comparison) -> str:
+    """Return how the rig explains the record, a clause."""
     phi = angle(found)
     if phi is None:
         return (
             "The rig as described explains this record without any coefficient of static friction "
-            "beyond its law; its misalignment is not fitted."
+            "beyond its law; its misalignment is not fitted"
         )
     if not phi.identified:
         return (
             "The rig as described explains this record, but the record does not say how far it is "
-            "misaligned: static friction and apparatus cannot be told apart by it."
+            "misaligned"
         )
     return (
         f"The rig explains this record by itself: with a misalignment of {describe(phi)}, and the "
-        "friction law of its description, simulated records look like it; no static friction "
-        "beyond that law is needed, and none is excluded."
+        "friction law of its description, simulated records look like it"
     )
+
+
+def alternatives(claimed: str) -> str:
+    """Return what the comparison with other mechanisms adds to an explanation, a clause."""
+    if claimed == ROTATION:
+        return (
+            "the other mechanisms compared do not explain it: what looks like static friction is "
+            "the apparatus, whose friction vector rotates"
+        )
+    if claimed == UNDECIDED:
+        return "that it is another mechanism is not excluded"
+    return "no static friction beyond that law is needed, and none is excluded"
 
 
 def angle(found: Comparison) -> Estimate | None:
@@ -77,6 +103,9 @@ def grounds(found: Comparison, fit: Fit) -> list[str]:
         f"{fit.farther:.0%} of the simulated records lie farther from the others, by their "
         f"features, than the measured one; below {RARE:.0%} it is unlike them.",
     ]
+    if found.odds is not None:
+        lines += [f"Among the mechanisms compared: {each}" for each in found.odds.sentences()[:1]]
+        lines += found.odds.sentences()[1:]
     if found.beyond:
         lines.append(
             f"At an end of its prior, beyond which the record points: {', '.join(found.beyond)}."
@@ -120,9 +149,10 @@ def changes(found: Comparison, fit: Fit) -> list[str]:
             f"Not identifiable from this record: {', '.join(open_ones)}. Where the prior of one "
             "of these is wrong, the verdict is."
         )
+    if found.odds is None:
+        lines.append(f"Other mechanisms were not compared: {found.incomparable}.")
     lines.append(
-        "Other mechanisms (static friction in one dimension, rate and state, LuGre) were not "
-        "compared; a record of the same rig, turned by a known angle, would tell: the fitted "
+        "A record of the same rig, turned by a known angle, would tell most: the fitted "
         "misalignment must turn with it."
     )
     return lines

@@ -168,7 +168,7 @@ def place_clear(text: Text, places: Sequence[dict[str, Any]]) -> None:
         outside = not (
             inner.x0 < box.x0 and box.x1 < inner.x1 and inner.y0 < box.y0 and box.y1 < inner.y1
         )
-        covered = np.all((drawn > box.min) & (drawn < box.max), axis=1).mean()
+        covered = float(np.all((drawn > box.min) & (drawn < box.max), axis=1).mean())
         return 100.0 * outside + 10.0 * sum(map(box.overlaps, words)) + covered
 
     text.set(**min(places, key=hidden))

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+from cyclopts import Parameter
 
 from stiction.cli.options import (
     Changes,
@@ -25,6 +27,7 @@ def fit(
     rig: Path,
     output: Output,
     figures: Path | None = None,
+    mechanism: Annotated[bool, Parameter(negative=())] = False,
     simulations: Simulations = 4000,
     library: Library = None,
     seed: Seed = 0,
@@ -54,6 +57,12 @@ def fit(
 
         stiction fit data.csv --time ms --force mN --rig rig.toml -o fit.nc
 
+    With --mechanism, records are simulated by other mechanisms too: static friction in one
+    dimension, rate and state, LuGre. The odds say which of them the measured ones are like, beside
+    how often such odds are right; they say "undecided" rather than guess.
+
+        stiction fit data.csv --time ms --force mN --rig rig.toml -o fit.nc --mechanism
+
     Parameters
     ----------
     records
@@ -64,7 +73,11 @@ def fit(
     output
         The posterior: NetCDF, a variable for each parameter, with the prior in the group "prior".
     figures
-        A folder for figures: prior against posterior, and all pairs. Made if it does not exist.
+        A folder for figures: prior against posterior, all pairs, and the odds of mechanisms. Made
+        if it does not exist.
+    mechanism
+        Give the odds of mechanisms too, from a quarter as many simulations of each; they are
+        written in the group "mechanism" of the output.
     """
     from stiction.analysis.measurement.reading import read_source
     from stiction.analysis.record import as_record
@@ -72,6 +85,8 @@ def fit(
     from stiction.cli.tables import print_sections
     from stiction.inference.fit import fit as infer
     from stiction.inference.library import cache_folder
+    from stiction.inference.mechanism.comparison import SHARE
+    from stiction.inference.mechanism.comparison import mechanism as find
     from stiction.inference.priors import Rig
     from stiction.storage.files import placeable, usable_folder
 
@@ -81,25 +96,31 @@ def fit(
     known = Rig.from_toml(rig, changes(set), trust=trust)
     said = (measured or Measured()).arguments()
     given = [as_record(read_source(path, trust=trust, **said)) for path in records]
+    kept = cache_folder() if library is None else library
     with progress("simulating") as report:
         found = infer(
-            given,
-            known,
-            simulations=simulations,
-            library=cache_folder() if library is None else library,
-            seed=seed,
-            progress=report,
+            given, known, simulations=simulations, library=kept, seed=seed, progress=report
         )
     origins = [part for each in given if each.origin is not None for part in each.origin.tables()]
-    print_sections(", ".join(map(str, records)), [*origins, *found.tables()])
-    say(f"wrote {found.save(output)}")
+    sections, groups = [*origins, *found.tables()], {}
+    plots: dict[str, Any] = {"posterior": found, "corner": found}
+    if mechanism:
+        with progress("simulating other mechanisms") as report:
+            odds = find(
+                given, known, simulations=simulations // SHARE, library=kept, seed=seed,
+                progress=report,
+            )  # fmt: skip
+        sections += odds.tables()
+        groups["mechanism"], plots["mechanism"] = odds.data, odds
+    print_sections(", ".join(map(str, records)), sections)
+    say(f"wrote {found.save(output, **groups)}")
     if figures is not None:
-        from stiction.plotting.inference.posterior import plot_corner, plot_posterior
+        from stiction import plotting
         from stiction.plotting.page.canvas import figure_of
         from stiction.plotting.page.save import write
         from stiction.storage.files import make_folder
 
         make_folder(figures)
-        plots: dict[str, Any] = {"posterior": plot_posterior, "corner": plot_corner}
-        for name in plots:
-            say(f"wrote {write(figure_of(plots[name], found), figures / f'{name}.png')}")
+        for name, what in plots.items():
+            drawn = figure_of(getattr(plotting, f"plot_{name}"), what)
+            say(f"wrote {write(drawn, figures / f'{name}.png')}")

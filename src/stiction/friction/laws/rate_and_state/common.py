@@ -117,13 +117,18 @@ def slipping_gradient(
     return f * slip[0], f * slip[1], -V / D
 
 
-def faults(a: float, b: float, mu_star: float) -> Iterator[tuple[str, str]]:
-    """Check that the direct effect `a` is large enough for floats near rest.
+def least_direct_effect(b: float, mu_star: float) -> float:
+    """Return the smallest `a` with which floats suffice near rest.
 
     The slip speed below which friction is proportional to slip, 2 V* exp(-psi/a), must not
     underflow; 30 b allows for contacts that have aged for a hundred days.
     """
-    least = (mu_star + 30.0 * b) / MOST_FOLDS
+    return (mu_star + 30.0 * b) / MOST_FOLDS
+
+
+def faults(a: float, b: float, mu_star: float) -> Iterator[tuple[str, str]]:
+    """Check that the direct effect `a` is large enough for floats near rest."""
+    least = least_direct_effect(b, mu_star)
     if a < least:
         yield (
             "a",

@@ -1,0 +1,221 @@
+"""Mechanisms told apart: on records that no part has seen, and of laws that no library holds.
+
+``python -m benchmarks.accuracy.mechanisms --library FOLDER``: for two rigs and four sets of
+channels, the classifier's balanced accuracy, how often a claim is wrong, how often rotation is
+called so, and what becomes of records by laws in no library: a Stribeck curve with a static peak,
+with and without misalignment; a friction limit that is an ellipse; coefficients that drift. Records
+are those of `benchmarks.accuracy.fits`. FOLDER holds the simulations, so that a second call only
+compares.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from time import perf_counter
+from typing import NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtr
+
+from benchmarks.accuracy.fits import RIGS, rig_of
+from stiction.friction.laws import Anisotropic, Stribeck
+from stiction.inference.features import USED
+from stiction.inference.library import (
+    Plan,
+    bend_features,
+    draw,
+    features_from,
+    plan,
+    simulate_all,
+)
+from stiction.inference.mechanism.classifier import Classifier, study
+from stiction.inference.mechanism.likeness import Reference
+from stiction.inference.mechanism.odds import CLAIM, RARE, TREND
+from stiction.inference.mechanism.rivals import Levels, Mechanism, levels, mechanisms
+from stiction.inference.mechanism.simulations import Simulations, simulate
+from stiction.inference.mechanism.steadiness import trend
+from stiction.inference.next_test.expectation import whole
+from stiction.inference.observation import Conditions
+from stiction.inference.priors import Prior, Rig, Uniform
+from stiction.system.parameter import change_unchecked
+
+Floats = NDArray[np.float64]
+
+PHI = 0.5, 4.0  # deg
+ELLIPSES = {"ellipse 0.6 to 0.8": (0.6, 0.8), "ellipse 1.25 to 1.6": (1.25, 1.6)}
+DRIFTING = "drift of 10 to 30 %"
+DRIFT = Uniform(0.1, 0.3)  # of the coefficients' logarithm, over a record
+PEAK = 1.1, 1.4  # static coefficient over that of the Stribeck curve at rest
+
+
+def foreign(rig: Rig, conditions: Conditions) -> Iterator[Mechanism]:
+    """Yield laws that are in no library."""
+    slider, priors = rig.slider, rig.priors
+    for name, ratios in ELLIPSES.items():
+        law = Anisotropic(slider.friction, ratio=sum(ratios) / 2)
+        own = {**priors, "friction.ratio": Uniform(*ratios)}
+        yield Mechanism(name, (with_law(rig, law, own, conditions),))
+    drifting = plan(slider, {**priors, "drift": DRIFT}, [conditions])
+    yield Mechanism(DRIFTING, (drifting,))
+    level = levels(rig)
+    own, law = stribeck(rig, level)
+    kept = {path: each for path, each in priors.items() if not path.startswith("friction.")}
+    yield Mechanism("Stribeck with a static peak, misaligned",
+                    (with_law(rig, law, {**kept, **own}, conditions),))  # fmt: skip
+    straight = rig._replace(slider=change_unchecked(slider, "phi", 0.0))
+    kept.pop("phi")
+    yield Mechanism("Stribeck with a static peak, aligned",
+                    (with_law(straight, law, {**kept, **own}, conditions),))  # fmt: skip
+
+
+def stribeck(rig: Rig, level: Levels) -> tuple[dict[str, Prior], Stribeck]:
+    """Return a Stribeck curve that falls by half as much as the rig's law, below a static peak."""
+    low, high = level.kinetic[0], level.static[1]
+    middle = 0.5 * (low + high)
+    peak = Uniform(PEAK[0] * middle, PEAK[1] * middle)
+    speed = abs(rig.slider.motion.rate(0.0)[0])
+    priors: dict[str, Prior] = {
+        "friction.mu_c": Uniform(low, 0.5 * (low + middle)),
+        "friction.mu_s": Uniform(0.5 * (low + middle), middle),
+        "friction.v_s": Uniform(3.0 * speed, 60.0 * speed, "log"),
+        "friction.mu_static": peak,
+    }
+    law = Stribeck(mu_s=middle, mu_c=low, v_s=10.0 * speed, mu_static=peak.high)
+    return priors, law
+
+
+def with_law(rig: Rig, law: object, priors: dict[str, Prior], conditions: Conditions) -> Plan:
+    """Return the plan of a rig with another law."""
+    slider = rig.slider.model_copy(update={"friction": law})
+    return plan(slider, priors, [conditions])._replace(basis=rig.slider)
+
+
+class Part(NamedTuple):
+    """Records with the features of some channels (n, f), their bends and labels."""
+
+    names: tuple[str, ...]
+    features: Floats
+    bends: Floats
+    labels: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, records: Simulations, which: NDArray[np.bool_], bend: NDArray[np.bool_]) -> Self:
+        """Return those of simulations with all channels."""
+        rows = records.features
+        return cls(records.names, rows[:, which], rows[:, bend], records.labels)
+
+
+class Called(NamedTuple):
+    """The most probable mechanism of records, whether that is sure, and whether it is claimed."""
+
+    likeliest: NDArray[np.int64]
+    sure: NDArray[np.bool_]
+    claimed: NDArray[np.bool_]
+
+
+def angles(rotation: Plan, count: int, folder: Path | None) -> Floats:
+    """Return the misalignment (deg) of each test record of rotation that has cycles."""
+    place = None if folder is None else folder / f"{rotation.key}-1"
+    scores, features = simulate_all(rotation, count, place, seed=1)
+    shares = ndtr(scores[whole(features), [*rotation.priors].index("phi")])
+    return np.degrees(rotation.priors["phi"].quantile(shares))
+
+
+def call(classifier: Classifier, references: Sequence[Reference], records: Part) -> Called:
+    """Return what each of some records is called, and whether it may be claimed."""
+    probabilities = classifier.probabilities(records.features)
+    likeliest = probabilities.argmax(axis=1)
+    scores = classifier.standard.scores(records.features)
+    found = [
+        references[label].likeness(*each)
+        for label, each in zip(likeliest, zip(scores, records.bends, strict=True), strict=True)
+    ]
+    sure = probabilities.max(axis=1) >= CLAIM
+    usual = [its.farther >= RARE and its.larger >= RARE for its in found]
+    return Called(likeliest, sure, sure & np.array(usual))
+
+
+def trends(of: Plan, count: int, seed: int) -> Floats:
+    """Return the probability of such a trend by chance, of each record that has cycles."""
+    made = (next(draw(of, number, seed)[1]) for number in range(count))
+    return np.array([trend([(its.channels["force"], its.cycles)]) for its in made if its])
+
+
+def report(
+    known: Part, unseen: Part, others: Sequence[tuple[str, Part]], phi: Floats, drifts: Floats
+) -> None:
+    """Print what becomes of records that no part has seen, with some channels."""
+    start = perf_counter()
+    classifier = study(Simulations(known.names, known.features, known.labels))
+    took = perf_counter() - start
+    references = [
+        Reference.of(classifier.scores[own], known.bends[own])
+        for own in (known.labels == label for label in range(len(known.names)))
+    ]
+    its, labels = call(classifier, references, unseen), unseen.labels
+    right = its.likeliest == labels
+    recall = [float(right[labels == label].mean()) for label in range(len(known.names))]
+    print(
+        f"    balanced accuracy {np.mean(recall):.3f}; claims above {CLAIM} wrong: "
+        f"{1.0 - right[its.sure].mean():.2%}, of records that are usual "
+        f"{1.0 - right[its.claimed].mean():.2%}; learned in {took:.0f} s"
+    )
+    turning = labels == 0
+    some = (phi >= PHI[0]) & (phi <= PHI[1])
+    shares = [(each & right)[turning][some].mean() for each in (right, its.sure, its.claimed)]
+    print(
+        f"    rotation at {PHI[0]} to {PHI[1]} deg: most probable {shares[0]:.1%}, with "
+        f"{CLAIM} and above {shares[1]:.1%}, claimed {shares[2]:.1%}"
+    )
+    for name, records in others:
+        found = call(classifier, references, records)
+        claimed = found.claimed & (drifts >= TREND) if name == DRIFTING else found.claimed
+        counts = np.bincount(found.likeliest[claimed], minlength=len(known.names))
+        listed = ", ".join(
+            f"{known.names[i]} {counts[i] / len(claimed):.0%}" for i in np.nonzero(counts)[0]
+        )
+        print(f"    {name}: undecided {1.0 - claimed.mean():.1%}; called {listed or 'none'}")
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--simulations", type=int, default=1280)
+    parser.add_argument("--records", type=int, default=384)
+    parser.add_argument("--rigs", nargs="+", default=[*RIGS])
+    parser.add_argument("--library", type=Path)
+    options = parser.parse_args()
+    for name in options.rigs:
+        start = perf_counter()
+        rig, conditions = rig_of(name)
+        rivals, strange = mechanisms(rig, [conditions]), [*foreign(rig, conditions)]
+        folder = options.library
+        known = simulate(rivals, options.simulations, folder)
+        unseen = simulate(rivals, options.records, folder, seed=1)
+        others = [simulate([each], options.records, folder, seed=2) for each in strange]
+        print(
+            f"{name}: {len(known.labels)} records to learn from, {len(unseen.labels)} to test on; "
+            f"{perf_counter() - start:.0f} s"
+        )
+        phi = angles(rivals[0].plans[0], options.records, folder)
+        (drifting,) = [each.plans[0] for each in strange if each.name == DRIFTING]
+        drifts = trends(drifting, options.records, 2)
+        steady = trends(rivals[0].plans[0], options.records, 1)
+        print(
+            f"  a trend is seen in {(drifts < TREND).mean():.1%} of the records that drift, and in "
+            f"{(steady < TREND).mean():.1%} of the others"
+        )
+        bend = bend_features(conditions, rig.slider)
+        for channels in (USED[:1], USED[:2], ("force", "position"), USED):
+            print(f"  {' + '.join(channels)}", flush=True)
+            which = features_from(channels, conditions, rig.slider)
+            parts = [Part.of(each, which, bend) for each in (known, unseen, *others)]
+            named = [*zip((each.name for each in strange), parts[2:], strict=True)]
+            report(parts[0], parts[1], named, phi, drifts)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,129 @@
+"""A classifier of mechanisms: from features of a record to probabilities that hold.
+
+A kernel ridge regression predicts membership of each mechanism; its predictions for each simulated
+record, made from all others, become probabilities by a multinomial logistic regression. That has a
+few coefficients only, so that the same records may calibrate it. Each mechanism counts the same,
+however many of its simulations have cycles: the odds before are even.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize
+from scipy.special import log_softmax, softmax
+
+from stiction.inference.mechanism.simulations import Simulations
+from stiction.inference.summary import Regression, Standard, decompose, kernel, regression
+from stiction.storage.arrays import read_arrays, write_arrays
+
+Floats = NDArray[np.float64]
+
+WIDTH = 1.0  # of the kernel, over the typical distance between records
+WEAK = 1e-3  # penalty on the slopes' squares: finite where mechanisms are told apart surely
+
+
+class Classifier(NamedTuple):
+    """What tells mechanisms apart.
+
+    Parameters
+    ----------
+    standard : Standard
+        How features are made comparable.
+    scores : ndarray
+        (n, f), standardised features of the simulations.
+    membership : Regression
+        Of each mechanism, 0 or 1.
+    slopes : ndarray
+        (k + 1, k), from its predictions to log odds, the constant last.
+    """
+
+    standard: Standard
+    scores: Floats
+    membership: Regression
+    slopes: Floats
+
+    def probabilities(self, features: Floats) -> Floats:
+        """Return the probability of each mechanism (m, k) for records with features (m, f)."""
+        new = self.standard.scores(np.atleast_2d(features))
+        return self._calibrate(self.membership.predict(new, self.scores))
+
+    @property
+    def left_out(self) -> Floats:
+        """Probabilities (n, k) for each simulation, from all others."""
+        return self._calibrate(self.membership.library)
+
+    def _calibrate(self, predicted: Floats) -> Floats:
+        found: Floats = softmax(with_constant(predicted) @ self.slopes, axis=1)
+        return found
+
+
+def study(simulations: Simulations, path: Path | None = None) -> Classifier:
+    """Learn to tell mechanisms apart, or read from a file what was learned."""
+    features, labels = simulations.features, simulations.labels
+    stored = read(path, features)
+    if stored is not None:
+        return stored
+    standard = Standard.of(features)
+    scores = standard.scores(features)
+    parts = [(WIDTH, *decompose(kernel(scores, scores, WIDTH)))]
+    membership = regression(parts, np.eye(labels.max() + 1)[labels], scores.shape[1])
+    found = Classifier(standard, scores, membership, logistic(membership.library, labels))
+    if path is not None:
+        write_arrays(
+            path, average=standard.mean, spread=standard.spread, slopes=found.slopes,
+            **membership._asdict(),
+        )  # fmt: skip
+    return found
+
+
+def read(path: Path | None, features: Floats) -> Classifier | None:
+    """Return a stored classifier of simulations with these features (n, f); None without one."""
+    arrays = read_arrays(path)
+    try:
+        if arrays is None or arrays["average"].shape != features.shape[1:]:
+            return None
+        standard = Standard(arrays["average"], arrays["spread"])
+        membership = Regression(*(arrays[name] for name in Regression._fields))
+        if len(membership.library) != len(features):
+            return None
+        return Classifier(standard, standard.scores(features), membership, arrays["slopes"])
+    except KeyError:
+        return None
+
+
+def logistic(predictors: Floats, labels: NDArray[np.int64]) -> Floats:
+    """Return the slopes (p + 1, k) of a multinomial logistic regression, all labels equally heavy.
+
+    >>> random = np.random.default_rng(1)
+    >>> labels = np.repeat([0, 1], 20000)
+    >>> x = random.standard_normal(40000) + labels  # log odds are x - 1/2
+    >>> slopes = logistic(x[:, None], labels)
+    >>> np.diff(slopes)[:, 0].round(1)
+    array([ 1. , -0.5])
+    """
+    columns, count = with_constant(predictors), labels.max() + 1
+    members = np.eye(count)[labels]
+    weights = 1.0 / (count * np.bincount(labels)[labels])
+
+    def loss(flat: Floats) -> tuple[float, Floats]:
+        slopes = flat.reshape(columns.shape[1], count)
+        logs = log_softmax(columns @ slopes, axis=1)
+        apart = (np.exp(logs) - members) * weights[:, None]
+        penalty = WEAK / len(labels) * slopes
+        value = 0.5 * float((penalty * slopes).sum()) - weights @ (members * logs).sum(axis=1)
+        return float(value), (columns.T @ apart + penalty).ravel()
+
+    start = np.zeros(columns.shape[1] * count)
+    found: Any = minimize(  # type: ignore[no-untyped-call]
+        loss, start, jac=True, method="L-BFGS-B", options={"maxiter": 2000}
+    )
+    return np.asarray(found.x.reshape(columns.shape[1], count))
+
+
+def with_constant(predictors: Floats) -> Floats:
+    """Return predictors (n, p) with a column of ones after them."""
+    return np.column_stack([predictors, np.ones(len(predictors))])

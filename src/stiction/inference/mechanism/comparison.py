@@ -1,0 +1,142 @@
+"""st.mechanism(records, rig): which mechanism made the records, friction or apparatus."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from hashlib import sha256
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.analysis.record import Record
+from stiction.errors import DescriptionError, Fault, ResultError
+from stiction.inference.fit import check
+from stiction.inference.library import bend_features
+from stiction.inference.mechanism.classifier import Classifier, study
+from stiction.inference.mechanism.likeness import Reference
+from stiction.inference.mechanism.odds import CLAIM, Odds
+from stiction.inference.mechanism.rivals import Mechanism, mechanisms
+from stiction.inference.mechanism.simulations import Simulations, simulate
+from stiction.inference.mechanism.steadiness import trend
+from stiction.inference.observation import Observation, observe
+from stiction.inference.priors import Rig
+
+Floats = NDArray[np.float64]
+
+SIMULATIONS = 1000  # of each mechanism, unless told otherwise
+SHARE = 4  # simulations of a fit for each that a mechanism gets beside it
+
+
+def mechanism(
+    records: Record | Sequence[Record],
+    rig: Rig | str | Path,
+    *,
+    simulations: int = SIMULATIONS,
+    library: str | Path | None = None,
+    seed: int = 0,
+    progress: Callable[[float], None] | None = None,
+) -> Odds:
+    """Find which mechanism made one or several measured records of a rig.
+
+    Compared are rotation of the friction vector, static friction in one dimension, rate and state,
+    and LuGre, each on the apparatus that the rig's description states, its priors included. Records
+    are simulated by each, as for `stiction.fit`; a classifier learns to tell them apart. It says
+    "undecided" when no mechanism is probable enough, when the record or its loading curve is unlike
+    simulations of the most probable one, or when friction drifts.
+
+    Experimental: how often simulated records are called rightly is reported beside the odds, but a
+    law that was not simulated may pass for one that was.
+
+    Parameters
+    ----------
+    records : Record or sequence of Record
+        As for `stiction.fit`.
+    rig : Rig, str or Path
+        The description with its priors, one of them of the misalignment ``phi``.
+    simulations : int, optional
+        Of each mechanism.
+    library : str or Path, optional
+        A folder in which simulations are kept; those of rotation are shared with `stiction.fit`.
+    seed : int, optional
+        Of the simulations.
+    progress : callable, optional
+        Called with the fraction done.
+
+    Returns
+    -------
+    Odds
+        Probabilities, the confusion matrix of the classifier, and a decision.
+
+    Raises
+    ------
+    ResultError
+        If a record cannot be used, or the priors lead to too few records with cycles.
+    DescriptionError
+        If the rig is not of a kind that can be fitted, or is exactly aligned.
+    """
+    known = rig if isinstance(rig, Rig) else Rig.from_toml(rig)
+    given = [records] if isinstance(records, Record) else [*records]
+    if not given:
+        raise ResultError("no record is given; name one or several")
+    check(known)
+    if known.slider.phi == 0.0 and "phi" not in known.priors:
+        message = 'is 0 for certain, so that nothing rotates; write for example phi = "0 +- 2 deg"'
+        raise DescriptionError([Fault("phi", message)])
+    seen = [observe(each, known.slider, f"record {number}") for number, each in enumerate(given, 1)]
+    rivals = mechanisms(known, [each.conditions for each in seen])
+    place = None if library is None else Path(library)
+    simulated = simulate(rivals, simulations, place, seed=seed, progress=progress)
+    if len(simulated.names) < 2:
+        raise ResultError(
+            f"only {simulated.names[0]} sticks and slips on this rig: there is nothing to compare"
+        )
+    kept = None if place is None else place / f"{key(rivals)}-{simulations}-{seed}.npz"
+    return compare(simulated, study(simulated, kept), known, seen)
+
+
+def key(rivals: Sequence[Mechanism]) -> str:
+    """Return a hash of all that decides what is simulated of some mechanisms."""
+    keys = [plan.key for rival in rivals for plan in rival.plans]
+    return sha256("".join(keys).encode()).hexdigest()[:16]
+
+
+def compare(
+    simulated: Simulations, classifier: Classifier, rig: Rig, seen: Sequence[Observation]
+) -> Odds:
+    """Return the odds of what was observed."""
+    observed = np.concatenate([each.features for each in seen])
+    bend = np.concatenate([bend_features(each.conditions, rig.slider) for each in seen])
+    record = classifier.standard.scores(observed)
+    labels = simulated.labels
+    places = [labels == label for label in range(len(simulated.names))]
+    bends = simulated.features[:, bend]
+    return Odds(
+        names=simulated.names,
+        probabilities=classifier.probabilities(observed)[0],
+        confusion=confusion(classifier.left_out, labels),
+        likeness=tuple(
+            Reference.of(classifier.scores[own], bends[own]).likeness(record, observed[bend])
+            for own in places
+        ),
+        bend=observed[bend],
+        steady=trend((each.force, each.cycles) for each in seen),
+        counts=tuple(int(own.sum()) for own in places),
+        absent=simulated.absent,
+        channels=tuple({name: None for each in seen for name in each.conditions.noise}),
+    )
+
+
+def confusion(probabilities: Floats, labels: NDArray[np.int64]) -> Floats:
+    """Return how often records of each label (rows) are called each, last: none of them.
+
+    >>> confusion(np.array([[0.95, 0.05], [0.6, 0.4], [0.02, 0.98]]), np.array([0, 0, 1]))
+    array([[0.5, 0. , 0.5],
+           [0. , 1. , 0. ]])
+    """
+    count = probabilities.shape[1]
+    claimed = probabilities.max(axis=1) >= CLAIM
+    called = np.where(claimed, probabilities.argmax(axis=1), count)
+    found = np.zeros((count, count + 1))
+    np.add.at(found, (labels, called), 1.0)
+    return np.asarray(found / found.sum(axis=1, keepdims=True))

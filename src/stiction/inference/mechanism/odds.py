@@ -1,0 +1,215 @@
+"""The odds of mechanisms, given records, and whether they allow a claim."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.inference.features import EDGES
+from stiction.inference.mechanism.likeness import Likeness
+from stiction.inference.mechanism.rivals import ROTATION, STATIC
+from stiction.names import draw
+from stiction.text.sections import Section, Table, as_html
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+
+CLAIM = 0.9  # probability from which on a mechanism is claimed
+RARE = 0.05  # share of simulations below which a record is not like them
+TREND = 0.01  # probability below which cycles do not stay the same
+UNDECIDED = "undecided"
+EXPLAINED = (
+    "The odds before were even. Farther: the share of the mechanism's simulated records that lie "
+    "farther from their nearest ones than this record does; more bent: of those nearest to it, the "
+    "share whose loading departs more from their mean. Experimental: a law that was not simulated "
+    "may pass for one that was."
+)
+CHANNEL = "force_across"  # without which the shape of the friction limit is not seen
+
+
+@dataclass(frozen=True, repr=False)
+class Odds:
+    """The odds of mechanisms, and what they rest on.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Of the k mechanisms.
+    probabilities : ndarray
+        (k,), given the records, all equally probable before.
+    confusion : ndarray
+        (k, k + 1), how often simulated records of each mechanism (rows) are called each, and, in
+        the last column, undecided.
+    likeness : tuple of Likeness
+        To simulations of each mechanism.
+    bend : ndarray
+        (s,), departure of the records' loading from a straight line over its rise, in each part.
+    steady : float
+        How probable as clear a trend is in records whose cycles have none.
+    counts : tuple of int
+        Number of simulations of each mechanism.
+    absent : tuple of str
+        Mechanisms that are not compared: on this rig they hardly ever stick and slip.
+    channels : tuple of str
+        What was measured.
+    """
+
+    names: tuple[str, ...]
+    probabilities: Floats
+    confusion: Floats = field(compare=False)
+    likeness: tuple[Likeness, ...] = field(compare=False)
+    bend: Floats = field(compare=False)
+    steady: float
+    counts: tuple[int, ...]
+    absent: tuple[str, ...]
+    channels: tuple[str, ...]
+
+    @property
+    def needed(self) -> float:
+        """The probability that a claim needs."""
+        return CLAIM
+
+    @property
+    def shares(self) -> Floats:
+        """The middle of each part of a loading, as a share of its time."""
+        return np.asarray(0.5 * (EDGES[1:] + EDGES[:-1]))
+
+    @property
+    def likeliest(self) -> int:
+        """The place of the most probable mechanism."""
+        return int(np.argmax(self.probabilities))
+
+    @property
+    def decision(self) -> str:
+        """The mechanism that is claimed, or "undecided"."""
+        return UNDECIDED if self.objections() else self.names[self.likeliest]
+
+    @property
+    def straight_excluded(self) -> bool | None:
+        """Whether the loading excludes static friction in one dimension; None if not compared."""
+        if STATIC not in self.names:
+            return None
+        return self.likeness[self.names.index(STATIC)].larger < RARE
+
+    def objections(self) -> list[str]:
+        """Return why no mechanism is claimed, as sentences; none if one is."""
+        name, its = self.names[self.likeliest], self.likeness[self.likeliest]
+        probability = float(self.probabilities[self.likeliest])
+        found = []
+        if probability < CLAIM:
+            found.append(
+                f"The most probable one, {name}, has a probability of {probability:.2f}; a claim "
+                f"needs {CLAIM}."
+            )
+        if its.farther < RARE:
+            found.append(
+                f"The record is not like those of {name}: {its.farther:.1%} of the simulated "
+                f"records lie farther from their nearest ones, {RARE:.0%} are needed."
+            )
+        if its.larger < RARE:
+            found.append(
+                f"The loading curve is not like those of {name}: {its.larger:.1%} of the simulated "
+                f"ones depart as far from their mean, {RARE:.0%} are needed."
+            )
+        if self.steady < TREND:
+            found.append(
+                "Friction drifts: peaks or drops have a trend from cycle to cycle (probability "
+                f"{self.steady:.1g} without one), which is not simulated. Take cycles after "
+                "running in."
+            )
+        return found
+
+    def tables(self) -> list[Section]:
+        """Return the odds, what they rest on, and how often such odds are right."""
+        numbered = [f"{number} {name}" for number, name in enumerate(self.names, 1)]
+        rows = [
+            (name, near_one(p), f"{its.farther:.0%}", f"{its.larger:.0%}", str(count))
+            for name, p, its, count in zip(
+                numbered, self.probabilities, self.likeness, self.counts, strict=True
+            )
+        ]
+        headings = ("mechanism", "probability", "farther", "more bent", "simulated")
+        shares = [
+            (name, *(f"{share:.0%}" for share in row))
+            for name, row in zip(numbered, self.confusion, strict=True)
+        ]
+        columns = ("simulated by", *map(str, range(1, len(numbered) + 1)), UNDECIDED)
+        return [
+            Section("Mechanism", [*self.sentences(), EXPLAINED], Table(headings, rows)),
+            Section(
+                "How often simulated records are called so",
+                [
+                    f"Called 1, 2, ... with a probability of {CLAIM} and above, otherwise "
+                    "undecided. Each record was left out of what calls it."
+                ],
+                Table(columns, shares),
+            ),
+        ]
+
+    def sentences(self) -> list[str]:
+        """Return the decision and what limits it."""
+        objections = self.objections()
+        probability = near_one(self.probabilities[self.likeliest])
+        found = (
+            ["No mechanism is claimed.", *objections]
+            if objections
+            else [f"Claimed: {self.decision}, with a probability of {probability}."]
+        )
+        if self.straight_excluded:
+            found.append(
+                "The loading is not as straight as static friction in one dimension makes it: that "
+                "alone does not explain this record."
+            )
+        if self.decision == ROTATION and CHANNEL not in self.channels:
+            found.append(
+                "Whether friction is the same in all directions cannot be told without the force "
+                "across the drive: a friction limit that is an ellipse looks like another "
+                "misalignment."
+            )
+        if self.absent:
+            found.append(f"Hardly ever sticks and slips on this rig: {', '.join(self.absent)}.")
+        return found
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Probabilities and confusion as a dataset over ``mechanism`` and ``called``."""
+        import xarray as xr
+
+        columns: dict[str, Any] = {
+            "probability": ("mechanism", self.probabilities),
+            "confusion": (("mechanism", "called"), self.confusion),
+            "farther": ("mechanism", [its.farther for its in self.likeness]),
+            "more_bent": ("mechanism", [its.larger for its in self.likeness]),
+        }
+        places = {"mechanism": [*self.names], "called": [*self.names, UNDECIDED]}
+        about = {"decision": self.decision, "probability_of_such_a_trend": self.steady}
+        return xr.Dataset(columns, places, about)
+
+    def __repr__(self) -> str:
+        """Return a one-line summary."""
+        pairs = zip(self.names, self.probabilities, strict=True)
+        said = ", ".join(f"{name} {near_one(p)}" for name, p in pairs)
+        return f"<Odds: {self.decision}; {said}>"
+
+    def _repr_html_(self) -> str:
+        return as_html(self.tables())
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draw odds, confusion and loading; see `stiction.plotting.plot_mechanism`."""
+        return draw("plot_mechanism", self, axes)
+
+
+def near_one(probability: float) -> str:
+    """Return a probability in words that never are a certainty.
+
+    >>> near_one(0.934), near_one(0.9991), near_one(2e-4)
+    ('0.93', '> 0.99', '< 0.01')
+    """
+    if probability > 0.99:
+        return "> 0.99"
+    return f"{probability:.2f}" if probability >= 0.01 else "< 0.01"

@@ -1,0 +1,171 @@
+"""Mechanisms that make a record of stick and slip on the same apparatus.
+
+- rotation of the friction vector: the rig as it is described, misaligned;
+- static friction in one dimension: the same apparatus, exactly aligned, with the law of the
+  description, or with constant friction and a separate static coefficient;
+- rate and state: friction that depends on the age of contacts, by the ageing law or the slip law,
+  aligned or not;
+- LuGre: bristles that bend and slip, aligned.
+
+Every mechanism has the apparatus of the description and its priors. Coefficients of another law
+have the range of those that the description's law has at rest and in rapid slip; its other
+parameters follow from the scales of the rig, over one or two decades (docs/how-to/mechanism.md).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from stiction.friction.laws import Coulomb, LuGre, RateStateAgeing, RateStateSlip
+from stiction.friction.laws.rate_and_state.common import least_direct_effect
+from stiction.inference.fit import plan_for
+from stiction.inference.library import Plan, plan
+from stiction.inference.observation import Conditions
+from stiction.inference.priors import Prior, Rig, Uniform
+from stiction.system.parameter import change_unchecked
+from stiction.system.slider import Slider
+
+ROTATION = "rotation of the friction vector"
+STATIC = "static friction in one dimension"
+RATE_AND_STATE = "rate and state"
+LUGRE = "LuGre"
+
+DRAWN = 400  # of the description's law, for the range of its coefficients
+TAILS = (0.025, 0.975)
+WIDER = 0.1  # by which the range is widened on either side: another law, other coefficients
+DIRECT = 0.01, 0.15  # direct effect a over the fall of the coefficient
+EVOLVING = 0.05, 0.5  # evolution effect b over it
+DISTANCE = 1e-3, 0.1  # D_c over the distance that the spring is let go by this fall
+STRIBECK = 0.3  # largest Stribeck speed over the rig's largest slip speed
+BRISTLES = 20.0, 500.0  # stiffness of the bristles over that of the spring
+DAMPING = 1.0, 20.0  # their damping constant over the root of the spring's stiffness times mass
+
+
+class Mechanism(NamedTuple):
+    """A mechanism by name, and the plans of its simulations."""
+
+    name: str
+    plans: tuple[Plan, ...]
+
+
+class Levels(NamedTuple):
+    """Ranges (low, high) of the friction coefficient at rest and in rapid slip."""
+
+    static: tuple[float, float]
+    kinetic: tuple[float, float]
+
+    @property
+    def fall(self) -> float:
+        """The difference of their middles."""
+        return 0.5 * (sum(self.static) - sum(self.kinetic))
+
+
+def mechanisms(rig: Rig, conditions: Sequence[Conditions]) -> tuple[Mechanism, ...]:
+    """Return the mechanisms that are compared for records under these conditions."""
+    slider, level = rig.slider, levels(rig)
+    rotation = plan_for(rig, conditions)  # that of a fit, whose simulations are shared
+    own, turned = split(rotation.priors)
+    aligned = {path: prior for path, prior in turned.items() if path != "phi"}
+    straight = change_unchecked(slider, "phi", 0.0)
+
+    def with_law(base: Slider, law: Any, priors: dict[str, Prior]) -> Plan:
+        friction = dict(priors_of(law, slider, level))
+        rival = base.model_copy(update={"friction": middle_of(law, slider, friction)})
+        return plan(rival, {**priors, **friction}, conditions)._replace(basis=slider)
+
+    return (
+        Mechanism(ROTATION, (rotation,)),
+        Mechanism(
+            STATIC,
+            (
+                plan(straight, {**aligned, **own}, conditions)._replace(basis=slider),
+                with_law(straight, Coulomb, aligned),
+            ),
+        ),
+        Mechanism(
+            RATE_AND_STATE,
+            tuple(
+                with_law(base, law, priors)
+                for law in (RateStateAgeing, RateStateSlip)
+                for base, priors in ((straight, aligned), (slider, turned))
+            ),
+        ),
+        Mechanism(LUGRE, (with_law(straight, LuGre, aligned),)),
+    )
+
+
+def split(priors: Mapping[str, Prior]) -> tuple[dict[str, Prior], dict[str, Prior]]:
+    """Return the priors of the friction law, and those of all else."""
+    own = {path: prior for path, prior in priors.items() if path.startswith("friction.")}
+    return own, {path: prior for path, prior in priors.items() if path not in own}
+
+
+def levels(rig: Rig) -> Levels:
+    """Return the coefficients that the description's law has, over its priors."""
+    random = np.random.default_rng(0)
+    own, _ = split(rig.priors)
+    found = []
+    for shares in random.uniform(size=(DRAWN, len(own))):
+        slider = rig.slider
+        for (path, prior), share in zip(own.items(), shares, strict=True):
+            slider = change_unchecked(slider, path, float(prior.quantile(share)))
+        law: Any = slider.law
+        at_rest = max(law.coefficient(0.0), getattr(law, "mu_static", 0.0))
+        found.append((at_rest, law.coefficient(fastest(rig.slider))))
+    (s_low, k_low), (s_high, k_high) = np.quantile(found, TAILS, axis=0)
+    s_low, k_low, s_high, k_high = (
+        s_low * (1.0 - WIDER), k_low * (1.0 - WIDER), s_high * (1.0 + WIDER), k_high * (1.0 + WIDER)
+    )  # fmt: skip
+    if k_high > s_low:  # neither beyond the middle
+        between = 0.5 * (k_high + s_low)
+        s_low, k_high = max(s_low, between), min(k_high, between)
+    return Levels((float(s_low), float(s_high)), (float(k_low), float(k_high)))
+
+
+def fastest(slider: Slider) -> float:
+    """Return the speed that the mass would have, if the spring let go of all it holds."""
+    return slider.F_0 / sqrt(slider.k_x * slider.mass)
+
+
+def priors_of(law: Any, slider: Slider, level: Levels) -> Iterator[tuple[str, Prior]]:
+    """Yield the priors of a law's parameters, by their path."""
+    static, kinetic = level
+    fall, speed = level.fall, abs(slider.motion.rate(0.0)[0])
+    if law is Coulomb:
+        yield "friction.mu_0", Uniform(*kinetic)
+        yield "friction.mu_static", Uniform(*static)
+    elif law is LuGre:
+        k_x, mass = slider.k_x, slider.mass
+        yield "friction.mu_c", Uniform(*kinetic)
+        yield "friction.mu_s", Uniform(*static)
+        low, high = sorted((speed, STRIBECK * fastest(slider)))
+        yield "friction.v_s", Uniform(low, high, "log")
+        yield "friction.sigma_0", logarithmic(BRISTLES, k_x)
+        yield "friction.sigma_1", logarithmic(DAMPING, sqrt(k_x * mass))
+    else:
+        least = least_direct_effect(EVOLVING[1] * fall, static[1])
+        direct = logarithmic(DIRECT, fall)
+        yield "friction.a", Uniform(max(direct.low, least), max(direct.high, 10.0 * least), "log")
+        yield "friction.b", logarithmic(EVOLVING, fall)
+        yield "friction.D_c", logarithmic(DISTANCE, fall * slider.normal_load / slider.k_x)
+        yield "friction.mu_star", Uniform(kinetic[0], static[1])
+
+
+def logarithmic(shares: tuple[float, float], scale: float) -> Uniform:
+    """Return the prior of a value whose logarithm is uniform between shares of a scale."""
+    return Uniform(shares[0] * scale, shares[1] * scale, "log")
+
+
+def middle_of(law: Any, slider: Slider, priors: dict[str, Prior]) -> Any:
+    """Return a law in the middle of its priors; the reference speed is that of the drive."""
+    middles = {
+        path.removeprefix("friction."): float(prior.quantile(np.array(0.5)))
+        for path, prior in priors.items()
+    }
+    if "V_star" in law._fields:
+        middles["V_star"] = abs(slider.motion.rate(0.0)[0])
+    return law(**middles)

@@ -1,0 +1,94 @@
+"""Which mechanism a record is like: odds, how often such odds are right, and the loading."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from textwrap import fill
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
+from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, RED, style
+
+LETTERS = 16  # in a line of a mechanism's name
+TAILS = (0.025, 0.975)
+LOOKS = (  # of the mechanisms' loadings: told apart without colour too
+    (BLUE, "-"), (RED, (0, (4, 1.5))), (GREEN, (0, (1, 1))), (ORANGE, (0, (5, 1.5, 1, 1.5))),
+)  # fmt: skip
+DARK = 0.5  # share above which its number is white
+
+
+def plot_mechanism(odds: Any, axes: Sequence[Axes] | None = None) -> NDArray[np.object_]:
+    """Draw the odds of mechanisms beside the confusion matrix and the loading.
+
+    Parameters
+    ----------
+    odds : Odds
+        Of `stiction.mechanism`.
+    axes : sequence of three Axes, optional
+        A new figure as wide as a page when left out.
+
+    Returns
+    -------
+    ndarray of Axes
+        Probabilities, and the one that a claim needs; how often simulated records of each mechanism
+        (rows) are called each (columns); the loading's departure from a straight line, of the
+        record and, on average, in simulations that are nearest to it; the band holds 95 % of those
+        of the most probable mechanism.
+    """
+    with style():
+        if axes is None:
+            axes = fix_ticks(list(canvas(PAGE, 2.9).subplots(1, 3, width_ratios=(1, 1.35, 1.25))))
+        panels = as_list(axes)
+        names = [fill(name, LETTERS) for name in odds.names]
+        draw_odds(panels[0], odds, names)
+        draw_confusion(panels[1], odds.confusion, names)
+        draw_loading(panels[2], odds)
+    return np.array(panels, dtype=object)
+
+
+def draw_odds(ax: Axes, odds: Any, names: Sequence[str]) -> None:
+    """Draw a bar for each mechanism, and the line from which a claim is made."""
+    places = np.arange(len(names))
+    claimed = [name == odds.decision for name in odds.names]
+    colors = [BLUE if each else GREY for each in claimed]
+    ax.barh(places, odds.probabilities, color=colors, height=0.6)
+    ax.axvline(odds.needed, color=BLACK, linewidth=0.8, linestyle=(0, (4, 2)))
+    ax.set_yticks(places, names)
+    ax.invert_yaxis()
+    ax.tick_params(axis="y", length=0.0)
+    ax.set(xlim=(0.0, 1.0), xlabel="probability", title="this record")
+
+
+def draw_confusion(ax: Axes, confusion: NDArray[np.float64], names: Sequence[str]) -> None:
+    """Draw the confusion matrix, each share written in its cell."""
+    ax.imshow(confusion, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto")
+    for (row, column), share in np.ndenumerate(confusion):
+        color = "white" if share > DARK else BLACK
+        ax.text(column, row, f"{share:.0%}", ha="center", va="center", color=color, fontsize=7.0)
+    columns = [*names, "undecided"]
+    ax.set_xticks(range(len(columns)), columns, rotation=45.0, ha="right", rotation_mode="anchor")
+    ax.set_yticks(range(len(names)), [""] * len(names))
+    ax.tick_params(length=0.0, which="both")
+    ax.set_title("simulated records (rows) called so")
+
+
+def draw_loading(ax: Axes, odds: Any) -> None:
+    """Draw the bend of the record's loading over those of simulations."""
+    share = odds.shares
+    parts = len(share)  # of the first record, where there are several
+    for i, (name, its) in enumerate(zip(odds.names, odds.likeness, strict=True)):
+        color, line = LOOKS[i % len(LOOKS)]
+        bends = 100.0 * its.bends[:, :parts]
+        ax.plot(share, bends.mean(axis=0), color=color, linestyle=line, label=name)
+        if i == odds.likeliest:
+            low, high = np.quantile(bends, TAILS, axis=0)
+            ax.fill_between(share, low, high, color=color, alpha=0.2, linewidth=0.0)
+    record = 100.0 * odds.bend[:parts]
+    ax.plot(share, record, "o-", color=BLACK, markersize=2.0, linewidth=0.5, label="this record")
+    ax.axhline(0.0, color=GREY, linewidth=0.5, zorder=0)
+    ax.set(xlabel="share of the loading time", title="bend of the loading (% of its rise)")
+    ax.legend(loc="upper center", bbox_to_anchor=(0.42, -0.22), fontsize=6.5)

@@ -1,0 +1,350 @@
+"""Mechanisms: rivals on one apparatus, a classifier that is calibrated, and what it may claim."""
+
+from dataclasses import replace
+from itertools import islice
+
+import numpy as np
+import pytest
+import xarray as xr
+from tests.uncertain import TEXT
+
+import stiction as st
+from stiction.errors import DescriptionError, ResultError
+from stiction.friction.laws import Anisotropic, Coulomb, LuGre, RateStateAgeing
+from stiction.inference.features import EDGES, find_cycles
+from stiction.inference.fit import plan_for
+from stiction.inference.jitter import Jitter, laws, move
+from stiction.inference.library import bend_features
+from stiction.inference.mechanism.classifier import study
+from stiction.inference.mechanism.likeness import CURVES, Likeness, Reference
+from stiction.inference.mechanism.odds import UNDECIDED, Odds
+from stiction.inference.mechanism.rivals import RATE_AND_STATE, ROTATION, STATIC, levels, mechanisms
+from stiction.inference.mechanism.simulations import Simulations, simulate
+from stiction.inference.mechanism.steadiness import trend
+from stiction.inference.observation import observe
+from stiction.plotting import plot_mechanism
+
+SIMULATIONS = 120  # of each mechanism: enough to tell these records apart
+STILL = Jitter(0.0, 0.0)
+
+
+@pytest.fixture(scope="module")
+def rig():
+    return st.Rig.from_toml(TEXT)
+
+
+def record_of(slider, seed, drift=0.0):
+    """Some jittered cycles, both forces measured."""
+    random = np.random.default_rng(seed)
+    times = np.arange(0.0, 13.0, 0.01)
+    motion = move(slider, times, Jitter(0.005, 0.5, drift), random, cycle=1.4)
+    noise = 0.004 * random.standard_normal((2, len(motion.time)))
+    forces = np.array([slider.k_x, slider.k_y]) * motion.rows[:, :2] + noise.T
+    return st.Record(
+        time=motion.time, force=forces[:, 0], force_across=forces[:, 1],
+        drive_velocity=0.5e-3, normal_load=4.0,
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def rotating(rig):
+    return record_of(rig.slider.replace(phi="2.5 deg"), 7)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("libraries")
+
+
+@pytest.fixture(scope="module")
+def odds(rig, rotating, folder):
+    return st.mechanism(rotating, rig, simulations=SIMULATIONS, library=folder)
+
+
+def test_a_record_of_a_rotating_friction_vector_is_called_so(odds):
+    assert odds.decision == ROTATION, odds
+    assert odds.straight_excluded
+    said = " ".join(odds.sentences())
+    assert f"Claimed: {ROTATION}" in said
+    assert "not as straight" in said
+    assert "in all directions" not in said  # the force across is measured
+
+
+def test_a_record_of_static_friction_is_called_so(rig, folder):
+    slider = rig.slider.replace(phi="0 deg", friction=Coulomb(mu_0=0.42, mu_static=0.6))
+    found = st.mechanism(record_of(slider, 8), rig, simulations=SIMULATIONS, library=folder)
+    assert found.decision == STATIC, found
+    assert not found.straight_excluded
+
+
+def test_drifting_friction_has_a_trend(rig, rotating):
+    drifting = record_of(rig.slider.replace(phi="2.5 deg"), 9, drift=-0.02)
+    found = [observe(each, rig.slider) for each in (rotating, drifting)]
+    steady, falling = (trend([(each.force, each.cycles)]) for each in found)
+    assert steady > 0.05
+    assert falling < 0.01
+
+
+def test_a_second_call_simulates_nothing_and_says_the_same(rig, rotating, odds, folder):
+    before = {path: path.stat().st_mtime_ns for path in folder.rglob("*.npz")}
+    again = st.mechanism(rotating, rig, simulations=SIMULATIONS, library=folder)
+    assert {path: path.stat().st_mtime_ns for path in folder.rglob("*.npz")} == before
+    xr.testing.assert_identical(again.data, odds.data)
+
+
+def test_the_confusion_matrix_is_of_shares(odds):
+    assert odds.confusion.shape == (len(odds.names), len(odds.names) + 1)
+    assert odds.confusion.sum(axis=1) == pytest.approx(1.0)
+    assert odds.data["confusion"].sel(mechanism=ROTATION, called=ROTATION) > 0.8
+
+
+def test_the_figure_shows_odds_confusion_and_loading(odds):
+    bars, matrix, loading = plot_mechanism(odds)
+    assert [bar.get_width() for bar in bars.patches] == pytest.approx([*odds.probabilities])
+    assert len(matrix.texts) == odds.confusion.size
+    assert loading.lines[len(odds.names)].get_ydata() == pytest.approx(
+        100.0 * odds.bend[: len(EDGES) - 1]
+    )
+
+
+def test_the_simulations_of_rotation_are_those_of_a_fit(rig, rotating):
+    conditions = [observe(rotating, rig.slider).conditions]
+    rotation = mechanisms(rig, conditions)[0].plans
+    assert [plan.key for plan in rotation] == [plan_for(rig, conditions).key]
+
+
+def test_an_aligned_rig_is_refused_because_nothing_rotates(rig, rotating):
+    aligned = rig._replace(
+        slider=rig.slider.replace(phi="0 deg"),
+        priors={path: prior for path, prior in rig.priors.items() if path != "phi"},
+    )
+    with pytest.raises(DescriptionError, match="nothing rotates"):
+        st.mechanism(rotating, aligned)
+    with pytest.raises(ResultError, match="no record is given"):
+        st.mechanism([], rig)
+
+
+# what is simulated
+
+
+def test_every_law_drawn_from_a_mechanism_is_a_valid_one(rig, rotating):
+    """Corners of the priors and 200 points between, through the law's own validation."""
+    random = np.random.default_rng(3)
+    conditions = [observe(rotating, rig.slider).conditions]
+    for rival in mechanisms(rig, conditions):
+        for plan in rival.plans:
+            law = plan.slider.friction
+            own = {path: prior for path, prior in plan.priors.items() if "friction." in path}
+            for shares in (*random.integers(0, 2, (60, len(own))), *random.random((200, len(own)))):
+                values = {
+                    path.removeprefix("friction."): float(prior.quantile(share))
+                    for (path, prior), share in zip(own.items(), shares, strict=True)
+                }
+                type(law)(**{**law._asdict(), **values})
+
+
+def test_the_coefficients_of_rivals_have_the_range_of_the_rig_s_law(rig):
+    static, kinetic = levels(rig)
+    assert static[0] < 0.52 < 0.75 < static[1]  # mu_0 of the description is 0.5 to 0.75
+    assert kinetic[0] < 0.25 < 0.48 < kinetic[1]  # mu_inf is 0.25 to 0.5
+    assert kinetic[1] <= static[0]
+
+
+def test_a_mechanism_that_never_slips_is_left_out_and_named(rig, rotating):
+    conditions = observe(rotating, rig.slider).conditions._replace(cycle=0.01)  # all are longer
+    rivals = mechanisms(rig, [conditions])[1:2]
+    with pytest.raises(ResultError, match="by no mechanism"):
+        simulate(rivals, 64, None)
+
+
+@pytest.mark.parametrize("law", [
+    RateStateAgeing(a=0.01, b=0.06, D_c=5e-6, mu_star=0.5, V_star=1e-3),
+    LuGre(mu_c=0.4, mu_s=0.6, v_s=1e-3, sigma_0=2e5, sigma_1=100.0),
+])  # fmt: skip
+def test_a_motion_with_internal_states_goes_on_where_it_was_cut(rig, law):
+    """Cycle by cycle, without jitter: the same as one run."""
+    slider = rig.slider.replace(friction=law, phi="1 deg")
+    times = np.arange(0.0, 6.0, 0.01)
+    found = move(slider, times, STILL, np.random.default_rng(1), cycle=1.0)
+    assert len(found.troughs) >= 2
+    start = st.Initial(epsilon=0.0)
+    exact = st.simulate(slider, 6.0, initial=start, sample_rate=100.0).data
+    last = found.troughs[-1]
+    span = np.ptp(exact["u_x"].values)
+    apart = np.abs(found.rows[: last + 1, 0] - exact["u_x"].values[: last + 1])
+    assert np.median(apart) < 1e-3 * span  # within a slip, samples are off by its delay
+
+
+def test_jitter_spares_the_shape_of_an_anisotropic_limit():
+    law = Anisotropic(Coulomb(0.3, mu_static=0.4), ratio=1.3)
+    some = [*islice(laws(law, Jitter(0.05, 0.5), np.random.default_rng(1)), 50)]
+    assert {its.ratio for its in some} == {1.3}
+    assert np.std([its.law.mu_0 / 0.3 for its in some]) == pytest.approx(0.05, rel=0.3)
+
+
+def test_coefficients_drift_from_cycle_to_cycle():
+    some = [*islice(laws(Coulomb(0.3), Jitter(0.0, 0.0, -0.02), np.random.default_rng(1)), 11)]
+    assert some[10].mu_0 == pytest.approx(0.3 * np.exp(-0.2))
+
+
+def test_a_motion_that_slides_ends_before_all_its_time(rig):
+    slider = rig.slider.replace(phi="0 deg", friction=Coulomb(0.4), c_x="20 N s/m")
+    times = np.arange(0.0, 100.0, 0.05)
+    found = move(slider, times, STILL, np.random.default_rng(1), cycle=1.0, cycles=8)
+    assert len(found.troughs) == 0
+    assert len(found.time) < len(times) // 2
+
+
+def test_the_bend_features_of_a_sawtooth_are_zero(rig, rotating):
+    saw = np.tile(np.r_[0.0:1.0:41j, 0.6, 0.3], 12)
+    record = st.Record(time=0.01 * np.arange(len(saw)), force=saw, normal_load=4.0)
+    seen = observe(record, rig.slider)
+    bend = bend_features(seen.conditions, rig.slider)
+    assert bend.sum() == len(EDGES) - 1
+    assert seen.features[bend] == pytest.approx(0.0, abs=1e-9)
+
+
+# what is learned
+
+
+@pytest.fixture(scope="module")
+def learned(clouds):
+    return study(clouds)
+
+
+@pytest.fixture(scope="module")
+def clouds():
+    """Two mechanisms in three features, 1.5 standard deviations apart in the first."""
+    random = np.random.default_rng(5)
+    labels = np.repeat([0, 1], [300, 500])
+    features = random.standard_normal((800, 3))
+    features[:, 0] += 1.5 * labels
+    return Simulations(("a", "b"), features, labels)
+
+
+def test_probabilities_are_those_of_even_odds_before(learned):
+    """Two normal clouds: the log odds are 1.5 x - 1.125, whatever the number of each."""
+    x = np.linspace(-1.0, 2.5, 8)
+    new = np.column_stack([x, np.zeros(8), np.zeros(8)])
+    found = learned.probabilities(new)[:, 1]
+    # 500 records place the slope and the middle to some 10 % and 0.1
+    assert found == pytest.approx(1.0 / (1.0 + np.exp(1.125 - 1.5 * x)), abs=0.08)
+
+
+def test_left_out_probabilities_are_calibrated(learned, clouds):
+    sure = learned.left_out.max(axis=1)
+    right = learned.left_out.argmax(axis=1) == clouds.labels
+    weights = 1.0 / np.bincount(clouds.labels)[clouds.labels]
+    for low, high in ((0.5, 0.7), (0.7, 0.9), (0.9, 1.0)):
+        some = (sure >= low) & (sure < high)
+        share, said = (np.average(each[some], weights=weights[some]) for each in (right, sure))
+        assert share == pytest.approx(said, abs=3.0 * (0.25 / some.sum()) ** 0.5)
+
+
+def test_what_was_learned_is_stored_and_found_again(clouds, tmp_path):
+    path = tmp_path / "learned.npz"
+    first, second = study(clouds, path), study(clouds, path)
+    new = np.random.default_rng(1).standard_normal((5, 3))
+    assert (first.probabilities(new) == second.probabilities(new)).all()
+    fewer = clouds._replace(features=clouds.features[1:], labels=clouds.labels[1:])
+    assert len(study(fewer, path).left_out) == 799  # not those of other simulations
+    path.write_bytes(b"damaged")
+    assert (study(clouds, path).probabilities(new) == first.probabilities(new)).all()
+
+
+def test_a_record_of_the_mechanism_is_as_usual_as_any_and_one_beside_it_is_not():
+    random = np.random.default_rng(2)
+    shear = random.standard_normal((4, 4))
+    members = random.standard_normal((900, 4)) @ shear
+    reference = Reference.of(members, members[:, :2])
+    new = random.standard_normal((300, 4)) @ shear
+    found = [reference.likeness(each, each[:2]) for each in new]
+    farther = np.array([its.farther for its in found])
+    larger = np.array([its.larger for its in found])
+    # uniform: the mean of 300 is 0.5 within three standard errors, and few are rare
+    assert farther.mean() == pytest.approx(0.5, abs=3.0 * (1.0 / 12.0 / 300.0) ** 0.5)
+    assert (farther < 0.05).mean() == pytest.approx(0.05, abs=3.0 * (0.05 * 0.95 / 300.0) ** 0.5)
+    assert larger.min() >= 1.0 / (CURVES + 1)
+    away = reference.likeness(8.0 * shear[0], np.zeros(2))
+    assert away.farther == 0.0
+    bent = reference.likeness(members[0], 8.0 * shear[0, :2])
+    assert bent.farther > 0.0
+    assert bent.larger == pytest.approx(1.0 / (CURVES + 1))
+
+
+def test_trends_are_found_where_there_are_some_and_only_there():
+    random = np.random.default_rng(4)
+    rise = np.r_[0.0:1.0:9j, 0.5]
+    found = []
+    for slope in (0.0, 0.02):
+        ps = []
+        for _ in range(200):
+            sizes = 1.0 + slope * np.arange(15) + 0.03 * random.standard_normal(15)
+            saw = np.concatenate([rise * size for size in sizes])
+            ps.append(trend([(saw, find_cycles(saw))]))
+        found.append(np.mean(np.array(ps) < 0.01))
+    assert found[0] <= 0.01 + 3.0 * (0.01 / 200) ** 0.5
+    assert found[1] > 0.9
+
+
+# what is claimed
+
+USUAL = Likeness(0.5, np.zeros((CURVES, len(EDGES) - 1)), 0.5)
+
+
+def odds_with(**changes):
+    """Odds that allow a claim, with changes."""
+    sure = Odds(
+        names=(ROTATION, STATIC, RATE_AND_STATE), probabilities=np.array([0.95, 0.03, 0.02]),
+        confusion=np.eye(3, 4), likeness=(USUAL, USUAL, USUAL), bend=np.zeros(len(EDGES) - 1),
+        steady=0.5, counts=(100, 100, 100), absent=(), channels=("force",),
+    )  # fmt: skip
+    return replace(sure, **changes)
+
+
+def test_a_claim_needs_every_part_to_agree():
+    assert odds_with().decision == ROTATION
+    far, bent = USUAL._replace(farther=0.01), USUAL._replace(larger=0.01)
+    for change, reason in (
+        ({"probabilities": np.array([0.85, 0.1, 0.05])}, "0.85; a claim needs 0.9"),
+        ({"likeness": (far, USUAL, USUAL)}, "lie farther from their nearest ones"),
+        ({"likeness": (bent, USUAL, USUAL)}, "loading curve is not like"),
+        ({"steady": 1e-3}, "Friction drifts"),
+    ):
+        found = odds_with(**change)
+        assert found.decision == UNDECIDED
+        (objection,) = found.objections()
+        assert reason in objection
+        assert "No mechanism is claimed" in str(found.tables()[0])
+    assert odds_with(likeness=(USUAL, far, bent)).decision == ROTATION  # of the others
+
+
+def test_an_elliptic_limit_loads_as_another_misalignment_does(rig):
+    """Creep on an ellipse with ratio r is that at tan(phi') = r tan(phi), up to phi^2."""
+    slider = rig.slider.replace(k_y="90 MN/m", phi="2 deg")
+    law = slider.friction
+    for ratio in (0.7, 1.4):
+        like = np.degrees(np.arctan(ratio * np.tan(np.radians(2.0))))
+        ellipse, circle, other = (
+            st.simulate(each, 1.6, sample_rate=100.0).samples["u_x"]
+            for each in (
+                slider.replace(friction=Anisotropic(law, ratio=ratio)),
+                slider.replace(phi=f"{like} deg"),
+                slider,
+            )
+        )
+        before = int(np.argmax(np.diff(ellipse) < 0.0)) or len(ellipse)  # the first slip
+        apart, beside = (np.abs(ellipse - its)[:before].max() for its in (circle, other))
+        assert apart < np.radians(2.0) ** 2 * ellipse[:before].max()
+        assert beside > 5.0 * apart
+
+
+def test_an_ellipse_is_said_to_look_like_misalignment_without_the_force_across():
+    assert "ellipse" in " ".join(odds_with().sentences())
+    assert "ellipse" not in " ".join(odds_with(channels=("force", "force_across")).sentences())
+
+
+def test_mechanisms_that_were_not_compared_are_named():
+    assert "LuGre" in " ".join(odds_with(absent=("LuGre",)).sentences())
+    only = odds_with(names=(ROTATION, "LuGre", RATE_AND_STATE))
+    assert only.straight_excluded is None
