@@ -158,7 +158,7 @@ class Odds:
         found = (
             ["No mechanism is claimed.", *objections]
             if objections
-            else [f"Claimed: {self.decision}, with a probability of {probability}."]
+            else [f"Claimed: {self.decision} (probability {probability})."]
         )
         if self.straight_excluded:
             found.append(
