@@ -232,8 +232,9 @@ def test_each_line_of_security_md_names_tests_that_are_there():
     rows = [line.split(" | ")[-1] for line in lines if line.startswith("|")][2:]
     assert rows
     for part in (part for row in rows for part in row.split(";")):
-        file, *names = re.findall(r"`(\w+)`", part)
-        (home,) = folder.rglob(f"{file}.py")
-        text = home.read_text()
+        file, *names = re.findall(r"`([\w/]+)`", part)
+        homes = list(folder.rglob(f"{file}.py"))
+        assert len(homes) == 1, f"{file}: name the folder too, as in `explorer/test_session`"
+        text = homes[0].read_text()
         assert names
         assert [name for name in names if not re.search(rf"def test_\w*{name}", text)] == []

@@ -140,7 +140,8 @@ def test_every_law_drawn_from_a_mechanism_is_a_valid_one(rig, rotating):
                     path.removeprefix("friction."): float(prior.quantile(share))
                     for (path, prior), share in zip(own.items(), shares, strict=True)
                 }
-                type(law)(**{**law._asdict(), **values})
+                drawn = type(law)(**{**law._asdict(), **values})
+                assert {path: getattr(drawn, path) for path in values} == pytest.approx(values)
 
 
 def test_the_coefficients_of_rivals_have_the_range_of_the_rig_s_law(rig):
