@@ -17,16 +17,28 @@ def inside(*arguments):
     return int(end.value.code or 0)
 
 
-def test_a_fit_writes_its_posterior_and_figures(tmp_path, capsys):
-    rig, run = tmp_path / "rig.toml", tmp_path / "run.nc"
+def test_a_record_from_its_file_to_a_verdict(tmp_path, capsys):
+    """Text without units is refused, then fitted; an audit finds the fit's simulations again."""
+    rig, data = tmp_path / "rig.toml", tmp_path / "data.csv"
     rig.write_text(TEXT)
+    time = np.arange(0.0, 14.0, 0.01)
     slider = st.Rig.from_toml(rig).slider.replace(phi="2 deg")
-    st.simulate(slider, duration="14 s", sample_rate="100 Hz").save(run)
-    output, figures = tmp_path / "fit.nc", tmp_path / "figures"
+    motion = move(slider, time, Jitter(0.005, 0.5), np.random.default_rng(3), cycle=1.4)
+    force = 1e3 * slider.k_x * motion.rows[:, 0]
+    rows = zip(1e3 * motion.time, force, strict=True)
+    data.write_text("t,F\n" + "".join(f"{t:.1f},{f:.3f}\n" for t, f in rows))
     library = ("-n", 400, "--library", tmp_path / "libraries")
-    command = ("fit", run, "--rig", rig, "-o", output, "--figures", figures, *library)
-    assert inside(*command, "--mechanism") == 0
+
+    output, figures = tmp_path / "fit.nc", tmp_path / "figures"
+    command = ("fit", data, "--rig", rig, "-o", output, "--figures", figures, *library)
+    assert inside(*command, "--mechanism") == 2  # nothing ambiguous passes silently
+    assert "states no unit" in capsys.readouterr().err
+    assert not output.exists()
+
+    units = ("--time", "t=ms", "--force", "F=mN")
+    assert inside(*command, *units, "--mechanism") == 0
     said = capsys.readouterr().out
+    assert "mN" in said  # the guess of the file is shown
     assert "phi is" in said
     assert "Experimental" in said
     assert "Compared with" in said
@@ -37,24 +49,14 @@ def test_a_fit_writes_its_posterior_and_figures(tmp_path, capsys):
     assert float(odds["probability"].sum()) == pytest.approx(1.0)
     assert {"phi", "k_x", "mu_0", "mu_inf", "jitter"} == set(xr.open_dataset(output))
 
-
-def test_records_of_any_format_are_read_and_their_guess_is_shown(tmp_path, capsys):
-    """Force alone, as text."""
-    rig, data = tmp_path / "rig.toml", tmp_path / "data.csv"
-    rig.write_text(TEXT)
-    slider = st.Rig.from_toml(rig).slider.replace(phi="2 deg")
-    run = st.simulate(slider, duration="14 s", sample_rate="100 Hz")
-    force = 1e3 * slider.k_x * run.samples["u_x"]
-    rows = zip(1e3 * run.samples["time"], force, strict=True)
-    data.write_text("t,F\n" + "".join(f"{t:.1f},{f:.3f}\n" for t, f in rows))
-    options = ("--rig", rig, "-o", tmp_path / "fit.nc", "-n", 400, "--library", tmp_path / "store")
-    assert inside("fit", data, *options) == 2  # no units: nothing ambiguous passes silently
-    assert "states no unit" in capsys.readouterr().err
-    assert inside("fit", data, *options, "--time", "ms", "--force", "mN") == 0
-    said = capsys.readouterr().out
-    assert "F" in said
-    assert "mN" in said
-    assert "Compared with" in said
+    libraries = sorted((tmp_path / "libraries").iterdir())
+    page = tmp_path / "rig.html"
+    assert inside("audit", rig, "--record", data, *units, *library, "-o", page) == 0
+    assert sorted((tmp_path / "libraries").iterdir()) == libraries
+    out = capsys.readouterr().out
+    assert out.index("What the record says") < out.index("Verdict")
+    assert "What would change it" in out
+    assert "simulated with the fitted" in page.read_text()
 
 
 def test_a_wrong_prior_is_one_message(tmp_path, capsys):
@@ -62,23 +64,6 @@ def test_a_wrong_prior_is_one_message(tmp_path, capsys):
     rig.write_text(TEXT.replace('high = "5 deg"', 'high = "0.1 deg"'))
     assert inside("fit", tmp_path / "no.nc", "--rig", rig, "-o", tmp_path / "fit.nc") == 2
     assert "phi: low must be below high" in capsys.readouterr().err
-
-
-def test_an_audit_of_a_record_begins_with_what_it_says(tmp_path, capsys):
-    rig, data = tmp_path / "rig.toml", tmp_path / "data.csv"
-    rig.write_text(TEXT)
-    time = np.arange(0.0, 20.0, 0.01)
-    slider = st.Rig.from_toml(rig).slider.replace(phi="2 deg")
-    motion = move(slider, time, Jitter(0.005, 0.5), np.random.default_rng(3), cycle=1.4)
-    force = 1e3 * slider.k_x * motion.rows[:, 0]
-    rows = zip(1e3 * motion.time, force, strict=True)
-    data.write_text("t,F\n" + "".join(f"{t:.1f},{f:.3f}\n" for t, f in rows))
-    said = ("--time", "t=ms", "--force", "F=mN", "-n", 400, "--library", tmp_path / "store")
-    assert inside("audit", rig, "--record", data, *said, "-o", tmp_path / "rig.html") == 0
-    out = capsys.readouterr().out
-    assert out.index("What the record says") < out.index("Verdict")
-    assert "What would change it" in out
-    assert "simulated with the fitted" in (tmp_path / "rig.html").read_text()
 
 
 def test_an_audit_of_a_record_without_priors_is_refused(tmp_path, capsys):
