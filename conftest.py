@@ -1,7 +1,13 @@
 """Examples in docstrings draw without a screen, and what they write goes to a folder of its own."""
 
+import os
+
 import pytest
 from _pytest.doctest import DoctestItem
+
+# before NumPy is imported: its threads wait busily for each other, and each worker of the tests has
+# a core already
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
 @pytest.fixture(autouse=True)

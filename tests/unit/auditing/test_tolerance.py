@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 import stiction as st
 from stiction.auditing.page import page
 from stiction.auditing.tolerance import budget as module
-from stiction.auditing.tolerance.budget import ALLOWED, Alignment, bisect, budget, read, turn_to
+from stiction.auditing.tolerance.budget import ALLOWED, Alignment, budget, crossing, read, turn_to
 from stiction.auditing.tolerance.words import limit, round_down
 from stiction.plotting import plot_tolerance
 
@@ -45,10 +45,14 @@ def test_the_error_passes_2_percent_at_the_limit(found):
     def error(angle):
         return abs(read(turn_to(slider, angle)).static / aligned - 1.0)
 
+    def mean(around):
+        return np.mean([error(angle) for angle in around * np.linspace(0.95, 1.05, 8)])
+
+    # The phase of the transverse oscillation at a slip, which the last bits of a processor decide,
+    # changes the error by 5 %, one standard deviation; it grows like the angle to the power 0.7. A
+    # mean of 8 tests is off by 2.5 % in the angle, a crossing among 24 by as much: four of both.
     angle = found.budget.alignment.angle
-    # the phase of the transverse oscillation at the slip changes the largest force by some 1e-4,
-    # 1 % of the allowed error; a margin of five times that
-    assert error(0.95 * angle) < ALLOWED < error(1.05 * angle)
+    assert mean(0.86 * angle) < ALLOWED < mean(1.14 * angle)
     assert found.budget.alignment.least < ALLOWED
     said = f"{round_down(degrees(angle)):g} deg to keep the error of mu_static below 2 %"
     assert f"Align to better than {said}" in str(found)
@@ -102,10 +106,27 @@ def test_a_limit_that_is_not_reached_is_said():
     )
 
 
-def test_bisection_finds_a_jump_and_a_root():
-    # ten halvings of an interval of length 1
-    assert bisect(lambda x: 0.0 if x < 0.3 else 1.0, 0.0, 1.0) == pytest.approx(0.3, abs=2**-10)
-    assert bisect(lambda x: 0.1 * x, 0.0, 1.0) == pytest.approx(0.2, abs=2**-10)
+def test_single_tests_that_scatter_are_said():
+    text = limit(Alignment(radians(2.24), radians(2.9), 0.001, radians(1.61)))
+    assert text == (
+        "Align to better than 2.2 deg to keep the error of mu_static below 2 %. "
+        "That is a mean: single tests are off by more from 1.6 deg on."
+    )
+    assert "single" not in limit(Alignment(0.04, 0.05, 0.001, 0.0401))
+
+
+def test_a_crossing_is_found_in_errors_that_jump_grow_or_scatter():
+    angles = np.geomspace(1.0, 3.0, 24)
+    step = angles[1] / angles[0] - 1.0
+    assert crossing(angles, 0.01 * angles) == pytest.approx(2.0, rel=1e-9)
+    assert crossing(angles, np.where(angles < 1.7, 0.0, 1.0)) == pytest.approx(1.7, rel=step)
+    found = []
+    for seed in range(100):
+        noise = 0.001 * np.random.default_rng(seed).standard_normal(24)
+        found.append(crossing(angles, 0.02 * (angles / 2.0) ** 0.7 + noise))
+    # 5 % of the allowed error is 7 % in the angle; about a third of the 24 tests lie near it
+    assert np.mean(found) == pytest.approx(2.0, rel=0.03)
+    assert np.std(found) < 0.07 * 2.0
 
 
 def test_a_misalignment_of_the_other_sign_is_sought_on_its_side():

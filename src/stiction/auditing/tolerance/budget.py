@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import copysign, isnan, nan, radians
+from math import nan, radians
 from typing import NamedTuple
 
 import numpy as np
@@ -28,7 +28,7 @@ DRAWS = 64  # of the priors, a power of 2 for Sobol's sequence
 TAILS = (0.025, 0.5, 0.975)
 MOST_STEPS = 400_000  # of each test
 SCAN = 14  # misalignments at which the error is looked at, in a geometric series
-STEPS = 10  # bisections after that: to a thousandth of a stretch of the scan
+FINE = 24  # misalignments, evenly in the logarithm, about the first of these that is too large
 FARTHEST = 30.0  # degrees up to which the error is looked at; farther, the soft spring is another
 NEAREST = 0.02  # degrees: the first of the scan
 
@@ -50,12 +50,14 @@ class Alignment(NamedTuple):
     """How well to align: beyond `angle` (rad), the error of the static coefficient is `allowed`.
 
     NaN if that is not reached up to `until` (rad), or is exceeded at the smallest angle that was
-    tried, where the error is `least`.
+    tried, where the error is `least`. Single tests scatter about their mean, with the phase of the
+    transverse oscillation at the slip: one exceeds the allowed error at `first` (rad) already.
     """
 
     angle: float
     until: float
     least: float
+    first: float = nan
     allowed: float = ALLOWED
 
 
@@ -166,32 +168,43 @@ def alignment(slider: Slider, aligned: float, farthest: float) -> Alignment:
     """Return the misalignment at which the static coefficient is wrong by the allowed error.
 
     The error is relative to `aligned`, the coefficient that the rig reads without misalignment.
-    The first crossing of a scan is bisected.
+    Tests over a wide range show where it is first exceeded, and further ones there, how it grows.
     """
 
-    def error(angle: float) -> float:
-        side = copysign(angle, slider.misalignment)
-        return abs(read(turn_to(slider, side)).static / aligned - 1.0)
+    def errors(angles: Floats) -> Floats:
+        sides = np.copysign(angles, slider.misalignment).tolist()
+        found = read_all([turn_to(slider, side) for side in sides], lambda fraction: None)
+        return np.asarray(abs(found[:, 0] / aligned - 1.0))
 
     last = min(max(farthest, radians(0.5 * FARTHEST)), radians(FARTHEST))
-    below, least = 0.0, nan
-    for angle in np.geomspace(radians(NEAREST), last, SCAN).tolist():
-        found = error(angle)
-        least = found if isnan(least) else least
-        if isnan(found):
-            return Alignment(nan, below, least)
-        if found > ALLOWED:
-            return Alignment(bisect(error, below, angle) if below else nan, angle, least)
-        below = angle
-    return Alignment(nan, last, least)
+    scan = np.geomspace(radians(NEAREST), last, SCAN)
+    found = errors(scan)
+    known = int(np.argmax(np.append(np.isnan(found), True)))  # up to what cannot be simulated
+    scan, found, least = scan[:known], found[:known], float(found[0])
+    over = np.flatnonzero(found > ALLOWED)
+    if not len(over):
+        return Alignment(nan, float(scan[-1]) if known else 0.0, least)
+    if over[0] == 0:
+        return Alignment(nan, float(scan[0]), least)
+    below, above = scan[over[0] - 1], scan[min(over[0] + 1, known - 1)]
+    angles = np.geomspace(below, above, FINE)
+    fine = errors(angles)
+    angles, fine = angles[np.isfinite(fine)], fine[np.isfinite(fine)]
+    first = min(scan[over[0]], *angles[fine > ALLOWED])
+    return Alignment(crossing(angles, fine), float(scan[over[0]]), least, float(first))
 
 
-def bisect(error: Callable[[float], float], below: float, above: float) -> float:
-    """Return the angle at which the error passes the allowed one, which it does in between."""
-    for _ in range(STEPS):
-        middle = 0.5 * (below + above)
-        if error(middle) > ALLOWED:
-            above = middle
-        else:
-            below = middle
-    return below
+def crossing(angles: Floats, errors: Floats) -> float:
+    """Return the angle at which scattered errors pass the allowed one on average.
+
+    Their mean is taken to grow with the angle, in whichever way: it is their isotonic regression
+    (Barlow et al., Statistical Inference under Order Restrictions, 1972).
+    """
+    from scipy.optimize import isotonic_regression
+
+    mean = isotonic_regression(errors).x
+    over = np.flatnonzero(mean > ALLOWED)
+    if not len(over) or over[0] == 0:
+        return float(angles[0 if len(over) else -1])
+    ends = slice(over[0] - 1, over[0] + 1)
+    return float(np.interp(ALLOWED, mean[ends], angles[ends]))

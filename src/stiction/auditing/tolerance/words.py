@@ -45,8 +45,10 @@ def limit(found: Alignment) -> str:
     """Return how well to align, in a sentence."""
     share = f"{100.0 * found.allowed:g} %"
     if not isnan(found.angle):
-        angle = f"{round_down(degrees(found.angle)):g} deg"
-        return f"Align to better than {angle} to keep the error of mu_static below {share}."
+        angle, first = round_down(degrees(found.angle)), round_down(degrees(found.first))
+        said = f"Align to better than {angle:g} deg to keep the error of mu_static below {share}."
+        single = f" That is a mean: single tests are off by more from {first:g} deg on."
+        return said + single * (first < angle)
     if found.least > found.allowed:
         return (
             f"Alignment to {in_words(found.until, 'rad')} is not enough to keep the error of "
@@ -58,8 +60,8 @@ def limit(found: Alignment) -> str:
 def round_down(value: float) -> float:
     """Return a positive value, its third digit and all after it cut off.
 
-    The largest force depends on where the transverse oscillation is when the slip begins: more
-    digits would differ with the smallest change of the rig.
+    The largest force scatters with the phase of the transverse oscillation when the slip begins:
+    more digits would differ with the smallest change of the rig.
 
     >>> round_down(2.397), round_down(0.0429)
     (2.3, 0.042)
