@@ -21,7 +21,7 @@ from stiction.inference.regression_abc import (
     rank,
     with_marginals,
 )
-from stiction.inference.summary import Regression, Standard, Summary, learn
+from stiction.inference.summary import Regression, Standard, Summary, learn, single_threaded_algebra
 from stiction.storage.arrays import read_arrays, write_arrays
 
 Floats = NDArray[np.float64]
@@ -75,8 +75,9 @@ def study(features: Floats, truth: Floats, path: Path | None = None) -> Learned:
     stored = read(path, features)
     if stored is not None:
         return Learned(stored[0], truth, stored[1])
-    summary = learn(features, truth)
-    found = Learned(summary, truth, ranks(summary, truth))
+    with single_threaded_algebra():
+        summary = learn(features, truth)
+        found = Learned(summary, truth, ranks(summary, truth))
     if path is not None:
         write(path, found)
     return found

@@ -13,12 +13,14 @@ from a first regression with the same metric for all: the average outer product 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager
 from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.linalg.lapack import dpotrf, dpotrs, dtrtri  # type: ignore[attr-defined]
+from threadpoolctl import threadpool_limits
 
 Floats = NDArray[np.float64]
 
@@ -129,11 +131,22 @@ def learn(features: Floats, parameters: Floats) -> Summary:
     """Learn the summary of a library: features (n, f) and parameters (n, p)."""
     standard = Standard.of(features)
     scores = standard.scores(features)
-    parts = [(width, *decompose(kernel(scores, scores, width))) for width in WIDTHS]
-    middle = adapt_metrics(regression(parts, parameters, scores.shape[1]), scores, parameters)
-    apart = parameters - middle.library
-    spread = regression(parts, np.log(apart * apart + LEAST), scores.shape[1])
+    with single_threaded_algebra():
+        parts = [(width, *decompose(kernel(scores, scores, width))) for width in WIDTHS]
+        middle = adapt_metrics(regression(parts, parameters, scores.shape[1]), scores, parameters)
+        apart = parameters - middle.library
+        spread = regression(parts, np.log(apart * apart + LEAST), scores.shape[1])
     return Summary(standard, scores, middle, spread)
+
+
+def single_threaded_algebra() -> AbstractContextManager[object]:
+    """Keep NumPy's and SciPy's linear algebra to one thread, in all threads of the process.
+
+    Those of OpenBLAS wait for each other in a busy loop: learning took four times as long with two
+    on a machine of two cores that had other work to do, and as long where it had none.
+    """
+    limits: AbstractContextManager[object] = threadpool_limits(1, user_api="blas")
+    return limits
 
 
 def regression(

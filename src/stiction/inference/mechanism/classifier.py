@@ -17,7 +17,14 @@ from scipy.optimize import minimize
 from scipy.special import log_softmax, softmax
 
 from stiction.inference.mechanism.simulations import Simulations
-from stiction.inference.summary import Regression, Standard, decompose, kernel, regression
+from stiction.inference.summary import (
+    Regression,
+    Standard,
+    decompose,
+    kernel,
+    regression,
+    single_threaded_algebra,
+)
 from stiction.storage.arrays import read_arrays, write_arrays
 
 Floats = NDArray[np.float64]
@@ -69,9 +76,10 @@ def study(simulations: Simulations, path: Path | None = None) -> Classifier:
         return stored
     standard = Standard.of(features)
     scores = standard.scores(features)
-    parts = [(WIDTH, *decompose(kernel(scores, scores, WIDTH)))]
-    membership = regression(parts, np.eye(labels.max() + 1)[labels], scores.shape[1])
-    found = Classifier(standard, scores, membership, logistic(membership.library, labels))
+    with single_threaded_algebra():
+        parts = [(WIDTH, *decompose(kernel(scores, scores, WIDTH)))]
+        membership = regression(parts, np.eye(labels.max() + 1)[labels], scores.shape[1])
+        found = Classifier(standard, scores, membership, logistic(membership.library, labels))
     if path is not None:
         write_arrays(
             path, average=standard.mean, spread=standard.spread, slopes=found.slopes,
