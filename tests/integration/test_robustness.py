@@ -46,6 +46,33 @@ def test_isotropic_spring_knows_no_misalignment():
     np.testing.assert_allclose(turned.data["Y"], 0, atol=1e-15)
 
 
+def instants(time):
+    """Floats around a time."""
+    return (time + n * np.spacing(time) for n in range(-1, 4))
+
+
+def test_a_run_may_end_at_the_instant_at_which_a_stick_does():
+    """Floats show no slip yet: steps that were to find one never ended."""
+    system = slider()
+    whole = st.simulate(system, 0.02, sample_rate=0)
+    for times in whole.stick_intervals[1:].T:
+        for end in (float(each) for time in times for each in instants(time)):
+            run = st.simulate(system, end, sample_rate=0, max_steps=10_000)
+            assert (run.status, float(run.samples["time"][-1])) == (st.Status.COMPLETED, end)
+            begun = whole.stick_intervals[:, 0] < end
+            assert run.stick_intervals[:-1] == pytest.approx(whole.stick_intervals[begun][:-1])
+
+
+def test_a_run_may_end_at_the_instant_at_which_slip_touches_zero():
+    """With constant friction, along a spring: the mass stops once in each period, for no time."""
+    system = slider(friction=st.Coulomb(0.2), phi="0 deg")
+    period = 2.0 * np.pi * np.sqrt(system.mass / system.k_x)
+    for touch in (2.0 + n * period for n in (1, 5, 12)):
+        for end in instants(touch):
+            run = st.simulate(system, float(end), sample_rate=0, max_steps=10_000)
+            assert (run.status, len(run.stick_intervals)) == (st.Status.COMPLETED, 1)
+
+
 def test_backwards_is_forwards_mirrored():
     forth = st.simulate(slider(), 0.1, sample_rate=1e4)
     back = st.simulate(slider(drive=st.ConstantVelocity("-1 mm/s")), 0.1, sample_rate=1e4)

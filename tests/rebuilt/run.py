@@ -7,7 +7,7 @@ depend on.
 from math import cos, hypot, inf, sin, sqrt
 
 import numpy as np
-from tests.rebuilt.step import NotConverged, Step
+from tests.rebuilt.step import C, NotConverged, Step
 
 import stiction as st
 
@@ -97,6 +97,10 @@ class Solver:
             root = sqrt(b * b - q * M)
             tau = -M / (b + root) if b > 0 else (root - b) / q  # (M7)
         tau = min(tau, end - self.t)
+        at_end, (b, q) = self.margin(self.u + self.v_d * tau), (b + q * tau, q)
+        x = C[0] * (end - self.t - tau)
+        if at_end + (b + q * x / 3) * x < rounding:  # (M9a)
+            tau = end - self.t
         if -M / (4 * self.f_s) * tau >= self.tol * self.sigma:  # (M10)
             self.sticks.append((self.t, self.t + tau))
         self.t, self.u, self.r = self.t + tau, self.u + self.v_d * tau, 0.0
@@ -123,7 +127,7 @@ class Solver:
         size, r, may_land, guess = self.size(), self.r, self.r > 0, None
         h, landing = step.first_size(size)
         for _ in range(100):
-            if self.t + h >= end and guess is None:
+            if h >= end - self.t and guess is None:
                 h, landing = end - self.t, False
             p, w = guess or step.guess(h)
             p = np.array([p[0], p[1], 0.0]) if landing else p

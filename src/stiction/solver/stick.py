@@ -21,6 +21,7 @@ from stiction.solver.problem import (
     steady,
     travel,
 )
+from stiction.solver.radau import C
 from stiction.solver.surface import held_product
 
 USED_UP = 1e-14  # of f^2: the margin |a|^2 - f^2 is zero within rounding
@@ -72,6 +73,18 @@ def margin(problem: Problem, t: float, u_x: float, u_y: float) -> tuple[float, f
 
 
 @inlined
+def half_bend(problem: Problem, t: float) -> float:
+    """Return half the second derivative of the margin, or half its bound (M8) from `t` on.
+
+    For a steady drive and load it is a constant, j.N^-1 j.
+    """
+    if steady(problem.drive) and constant(problem.load):
+        j = holding_change(problem, t)
+        return held_product(problem, j, j)
+    return 0.5 * bend_after(problem.bend, t)
+
+
+@inlined
 def stick_duration(
     problem: Problem, t: float, u_x: float, u_y: float, t_stop: float
 ) -> tuple[float, bool]:
@@ -86,15 +99,14 @@ def stick_duration(
     if excess > USED_UP * square or (excess >= 0.0 and change > 0.0):
         return 0.0, True
     if steady(problem.drive) and constant(problem.load):
-        j = holding_change(problem, t)
-        return used_up(excess, change, held_product(problem, j, j)), True
+        return used_up(excess, change, half_bend(problem, t)), True
     gone, now = 0.0, t
     for _ in range(MARGIN_LOOKS):
         if excess > -USED_UP * square and change > 0.0:
             return gone, True
         smooth = smooth_until(problem.bend, now, t_stop)
         # excess + 2 change x + bend x^2/2 < 0 before this
-        x = used_up(min(excess, 0.0), change, 0.5 * bend_after(problem.bend, now))
+        x = used_up(min(excess, 0.0), change, half_bend(problem, now))
         if now + x >= smooth:  # beyond, the bound is another
             if smooth >= t_stop:
                 return inf, True
@@ -107,6 +119,18 @@ def stick_duration(
         d_x, d_y = in_principal_axes(problem, travel(problem.drive, t, gone))
         excess, change, square = margin(problem, now, u_x + d_x, u_y + d_y)
     return gone, False
+
+
+@inlined
+def holds_on(problem: Problem, t: float, u_x: float, u_y: float, stop: float) -> bool:
+    """Return whether friction, at its limit, holds zero slip until `stop` within rounding (M9a).
+
+    The slip at the first stage of a step until then is proportional to the mean of the margin until
+    there. Where that is rounding, the step could not rise from zero.
+    """
+    excess, change, square = margin(problem, t, u_x, u_y)
+    x = C[0] * (stop - t)
+    return excess + (change + half_bend(problem, t) / 3.0 * x) * x < USED_UP * square
 
 
 @inlined

@@ -10,6 +10,7 @@ from tests.entry import plain
 from tests.systems import MOTIONS, SLIDERS, Printed, motion_of, problem_of
 
 from stiction.solver import stick
+from stiction.solver.radau import C
 
 HELD = [(0.3 * u_x, 0.3 * u_y) for u_x, u_y, _, _ in MOTIONS]
 
@@ -87,6 +88,33 @@ def test_a_stick_under_a_program_that_outlasts_the_stretch():
     for share in (0.5, 0.999, 1.001):
         found = plain(stick.stick_duration)(problem_of("program"), t, *u, t + share * duration)
         assert found == ((inf, True) if share < 1.0 else (pytest.approx(duration), True))
+
+
+@pytest.mark.parametrize("name", SLIDERS)
+def test_friction_at_its_limit_holds_on_until_slip_would_show(name):
+    """(M9a): until the mean of the margin, up to the first stage of a step, is its rounding."""
+    t, problem = 0.35, problem_of(name)
+    duration, _ = plain(stick.stick_duration)(problem, t, 0.0, 0.0, inf)
+    end, u = t + duration, elongation_after(name, t, (0.0, 0.0), duration)
+    excess, change, square = plain(stick.margin)(problem, end, *u)
+    longest = (1e-14 * square - excess) / change / C[0]  # s; so short that the margin is a line
+    for share, holds in ((0.99, True), (1.01, False)):
+        assert plain(stick.holds_on)(problem, end, *u, end + share * longest) == holds
+
+
+@pytest.mark.parametrize("name", ["steady", "ellipse"])
+def test_friction_that_holds_on_with_a_margin_that_is_a_parabola(name):
+    """(M9a), by the integral of the margin from the middle of a stick on."""
+    t, problem = 0.35, problem_of(name)
+    duration, _ = plain(stick.stick_duration)(problem, t, 0.0, 0.0, inf)
+    u = elongation_after(name, t, (0.0, 0.0), 0.5 * duration)
+
+    def total(x):
+        return quad(lambda dt: margin_of(name, t + dt, elongation_after(name, t, u, dt)), 0.0, x)[0]
+
+    longest = brentq(total, 0.5 * duration, 2.0 * duration) / C[0]
+    for share, holds in ((0.999, True), (1.001, False)):
+        assert plain(stick.holds_on)(problem, t, *u, t + share * longest) == holds
 
 
 @pytest.mark.parametrize("name", ["steady", "ellipse"])

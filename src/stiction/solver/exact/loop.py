@@ -52,7 +52,7 @@ from stiction.solver.state import (
     size_to_try,
     write_plan,
 )
-from stiction.solver.stick import holding, margin, stick_duration, to_spare
+from stiction.solver.stick import holding, holds_on, margin, stick_duration, to_spare
 from stiction.solver.surface import takeoff
 
 
@@ -75,8 +75,13 @@ def stick(
     motion, memory, counts = state
     t, u_x, u_y = motion.t, motion.u_x, motion.u_y
     duration, ends = stick_duration(problem, t, u_x, u_y, t_stop)
-    ends = ends and t + duration < t_stop
     end = t_stop if t + duration >= t_stop else t + duration
+    ends = ends and end < t_stop
+    if ends:
+        d_x, d_y = in_principal_axes(problem, travel(problem.drive, t, end - t))
+        smooth = smooth_until(problem.bend, end, t_stop)
+        if holds_on(problem, end, u_x + d_x, u_y + d_y, smooth):
+            ends, end = False, smooth
     if end > t:
         row = counts.sticks
         goes_on = row > 0 and sticks[row - 1, 1] == t  # a stick continued over stretches

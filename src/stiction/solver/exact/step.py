@@ -59,7 +59,7 @@ def step(
     warm = False
     p = w = (0.0, 0.0, 0.0)
     for _ in range(ATTEMPTS):
-        if t + h >= t_stop and not warm:
+        if h >= t_stop - t and not warm:
             h, landing = t_stop - t, False
         elif not h > RESOLUTION * abs(t):
             break

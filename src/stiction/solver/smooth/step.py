@@ -78,7 +78,7 @@ def step(
     """Take one step; return (done, h, error over tolerance, rejected, iterations)."""
     rejected = iterations = 0
     for _ in range(ATTEMPTS):
-        if start.t + h >= t_stop:
+        if h >= t_stop - start.t:
             h = t_stop - start.t
         elif not h > RESOLUTION * abs(start.t):
             break

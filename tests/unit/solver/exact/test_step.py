@@ -10,7 +10,7 @@ from tests.unit.solver.exact.test_collocation import begin, residuals
 from tests.unit.solver.exact.test_newton import SLIDES
 from tests.unit.solver.exact.test_predictor import COLD
 
-from stiction.solver.control import RESOLUTION
+from stiction.solver.control import RESOLUTION, step_factor
 from stiction.solver.exact import error_estimate, oscillation, predictor, slip_frame
 from stiction.solver.exact.step import step
 from stiction.solver.state import Accuracy
@@ -74,6 +74,20 @@ def test_a_step_ends_at_the_end_of_the_segment_at_most(name, drawn):
         assert found[3] == pytest.approx(wanted, rel=1e-9)
     longest = held_to(1e-3)._replace(longest=3e-5)
     assert take_step(name, drawn, longest, h=1e-4)[0][3] == 3e-5
+
+
+@ALL
+def test_a_step_to_the_next_float_can_be_refused_too(name, drawn, monkeypatch):
+    """A shorter one rounds to the same time, and is nevertheless shorter."""
+    _, (_, frame, *_) = take_step(name, drawn, held_to(1e-3))
+    short = np.spacing(frame.t)
+    errors = iter([1.5e-3, 0.0])
+    monkeypatch.setitem(plain(step).__globals__, "local_error", lambda *_: next(errors))
+    (done, _, _, h, *_, rejected, _), _ = take_step(
+        name, drawn, held_to(1e-3), t_stop=frame.t + short
+    )
+    assert (done, rejected) == (True, 1)
+    assert h / short == pytest.approx(plain(step_factor)(1.5, 1.0))
 
 
 def slowing(r, name="steady"):

@@ -117,6 +117,16 @@ def test_an_error_as_large_as_the_tolerance_is_accepted(error, refused, monkeypa
         assert (h, last) == (1e-6, 1.0)
 
 
+def test_a_step_to_the_next_float_can_be_refused_too(monkeypatch):
+    """A shorter one rounds to the same time, and is nevertheless shorter."""
+    _, start, _, _ = take_step("smoothed", 1e-6, 2.0**-20)
+    short, errors = np.spacing(start.t), iter([1.5 * 2.0**-20, 0.0])
+    monkeypatch.setitem(plain(step.step).__globals__, "local_error", lambda *_: next(errors))
+    *_, (done, h, _, rejected, _) = take_step("smoothed", 1e-6, 2.0**-20, start.t + short)
+    assert (done, rejected) == (True, 1)
+    assert h / short == pytest.approx(plain(step_factor)(1.5, 1.0))
+
+
 @pytest.mark.parametrize("name", ["smoothed", "ageing"])
 def test_a_step_ends_at_the_end_of_the_stretch_at_most(name):
     _, start, _, _ = take_step(name, 1e-6, 1e-3)
