@@ -182,6 +182,7 @@ def test_what_one_looks_at_has_a_short_text_and_a_table_for_notebooks(slider):
         "st.Record(time=<3000 values>, force=<3000 values>, normal_load="
     )
     shown = (slider, run, st.analyse(run), study)
+    assert "<td>run.duration</td><td>5 s</td>" in base._repr_html_()
     for each in shown:
         assert len(repr(each)) < 250
         page = each._repr_html_()

@@ -17,9 +17,11 @@ from stiction.errors import DescriptionError, Fault
 from stiction.friction import law_table, read_law
 from stiction.friction.user.loading import Find, finder_for_descriptions, finder_for_results, is_own
 from stiction.machine import shortage
+from stiction.names import picture
 from stiction.system.initial import Initial
 from stiction.system.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider
-from stiction.system.writing import describe, slider_tables
+from stiction.system.writing import describe, parameter_table, slider_tables
+from stiction.text.sections import Section, as_html
 from stiction.text.toml import Reader, folder_of, gather, read_json, read_toml, toml_text
 from stiction.text.units import Duration, Number, SampleRate, Velocity
 from stiction.text.validation import Described, faulty, write_call
@@ -86,6 +88,10 @@ class Description(NamedTuple):
     def __repr__(self) -> str:
         """Return the call that makes an equal description."""
         return write_call(self)
+
+    def _repr_html_(self) -> str:
+        table = as_html([Section("Description", [], parameter_table(self._tables()))])
+        return table + picture("plot_slider", self.slider)
 
     @classmethod
     def from_toml(
@@ -154,12 +160,16 @@ class Description(NamedTuple):
 
     def to_toml(self) -> str:
         """Return the description as TOML with units, which `from_toml` reads back."""
+        return toml_text(self._tables())
+
+    def _tables(self) -> dict[str, dict[str, Any]]:
+        """Return the tables of a description in which something is not the default."""
         tables = {
             **slider_tables(self.slider),
             "initial": describe(self.initial, type(self.initial).model_fields),
             "run": describe(self.run, type(self.run).model_fields),
         }
-        return toml_text({name: table for name, table in tables.items() if table})
+        return {name: table for name, table in tables.items() if table}
 
     def to_dict(self) -> dict[str, dict[str, Any]]:
         """Return nested tables of SI numbers, which `from_dict` reads."""
