@@ -1,9 +1,6 @@
 """``stiction import`` and ``stiction analyse`` on measured records."""
 
-import inspect
 import json
-import re
-from dataclasses import fields
 
 import numpy as np
 import pytest
@@ -11,7 +8,6 @@ from tests.measured import FOLDER
 
 import stiction as st
 from stiction.cli import main
-from stiction.cli.options import Measured
 
 
 def inside(*arguments):
@@ -97,11 +93,3 @@ def test_a_measured_record_of_paper(tmp_path, capsys):
     said = " ".join(capsys.readouterr().out.split())
     assert "is a friction coefficient: the force is that times the normal load" in said
     assert "stiffness over mass is 1.5 times" in said
-
-
-def test_options_that_take_a_value_give_an_example() -> None:
-    """Each option of a record is taught where it is listed, and its example names it."""
-    words = " ".join(inspect.cleandoc(Measured.__doc__ or "").split())
-    for field in fields(Measured):
-        option = f"--{field.name.replace('_', '-')}"
-        assert re.search(rf"Examples?: [^.]*{option} ", words), option

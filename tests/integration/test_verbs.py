@@ -1,6 +1,7 @@
 """Each command is a function of its name, which returns what the command prints and draws."""
 
 import inspect
+import re
 
 import matplotlib as mpl
 import pytest
@@ -304,6 +305,41 @@ def test_the_output_option_has_one_name_and_help_an_example(name, capsys):
     assert "--output" in text
     assert "-o " in text
     assert text.count(f"stiction {name}") > 1  # in the usage, and as an example
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_options_that_take_a_value_give_an_example(name):
+    """Each is taught where it is listed: its example names it."""
+    from stiction.cli import app
+
+    for option in app[name].assemble_argument_collection(parse_docstring=True):
+        if option.name.startswith("--") and option.hint is not bool:
+            words = " ".join((option.parameter.help or "").split())
+            assert re.search(f"({'|'.join(option.names)}) ", words), option.name
+            assert not any(name.startswith("--empty-") for name in option.names)
+
+
+def test_an_error_is_printed_to_the_letter(capsys, tmp_path, monkeypatch):
+    """Not even a name between colons becomes an emoji."""
+    monkeypatch.chdir(tmp_path)
+    assert inside("init") == 0
+    assert inside("compare", "slider.toml", "--law", "nofile.py:A", "-o", "laws.png") == 2
+    assert "law nofile.py:A: no file 'nofile.py'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        (("--refine", "phi"), "--refine 'phi' is not NAME=VALUE"),
+        (("--refine", "psi = 1 deg"), "psi"),
+        (("--refine", "phi = 1 deg", "--apart", "nope"), "unknown kind of motion 'nope'"),
+        (("--apart", "settling"), "--apart needs --refine"),
+    ],
+)
+def test_a_refinement_is_refused_before_the_first_run(options, reason, capsys, tmp_path):
+    assert inside("sweep", "--preset", "yaw-angle", "-o", tmp_path / "yaw.zarr", *options) == 2
+    assert reason in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_table_breaks_between_words_on_a_narrow_terminal(capsys, monkeypatch):

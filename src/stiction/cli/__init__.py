@@ -73,7 +73,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line; user errors end with one message and exit status 2."""
     spell_out()
     show_notices()
-    errors = Console(stderr=True, soft_wrap=True)
+    errors = Console(stderr=True, soft_wrap=True, emoji=False)
     try:
         code = app(arguments, result_action="return_value", print_error=False, exit_on_error=False)
         if sys.stdout is not None:

@@ -12,7 +12,7 @@ class Notices(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         """Print a notice."""
-        console = Console(stderr=True, soft_wrap=True)  # on the present standard error
+        console = Console(stderr=True, soft_wrap=True, emoji=False)  # on the present standard error
         console.print(record.getMessage(), markup=False, highlight=False)
 
 

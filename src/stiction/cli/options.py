@@ -159,11 +159,15 @@ class Measured:
         return {name: value for name, value in vars(self).items() if value is not None}
 
 
+Window = Annotated[tuple[str, str] | None, Parameter(negative=())]
 FromPreset = Annotated[
     str | None,
     Parameter(
         name="--preset",
-        help="A published system in place of CONFIG; `stiction presets` lists them.",
+        help=(
+            "A published system in place of CONFIG; `stiction presets` lists them. Example: "
+            "--preset leine-belt."
+        ),
     ),
 ]
 

@@ -15,7 +15,7 @@ PATIENCE = 1.0  # seconds of silence before a bar appears
 @contextmanager
 def progress(title: str) -> Iterator[Callable[[float], None]]:
     """Show a bar on standard error after a second; yield a function that takes the fraction."""
-    console = Console(stderr=True)
+    console = Console(stderr=True, emoji=False)
     if not console.is_terminal:
         yield lambda fraction: None
         return

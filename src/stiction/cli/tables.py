@@ -18,7 +18,7 @@ LONGEST = 24  # letters of the longest unbroken word
 
 def print_sections(title: str, parts: Iterable[Section]) -> None:
     """Print sections below a title."""
-    console = Console(highlight=False)
+    console = Console(highlight=False, emoji=False)
     console.print(plain(title, style="bold"))
     for part in parts:
         console.print()

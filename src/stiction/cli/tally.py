@@ -91,7 +91,7 @@ def _failures(result: Summary) -> str:
 @contextmanager
 def _bar() -> Iterator[Report | None]:
     """Show a bar with the rate and the time left, on a terminal."""
-    console = Console(stderr=True)
+    console = Console(stderr=True, emoji=False)
     if not console.is_terminal:
         yield None
         return

@@ -39,7 +39,8 @@ def analyse(
         A file written by `stiction run`, or a measured record: CSV and other text, .lvm, .tdms,
         .mat, HDF5, NetCDF, .npy, .npz, Parquet.
     output
-        The folder to write to, by default RESULT-analysis; made if it does not exist.
+        The folder to write to, by default RESULT-analysis; made if it does not exist. Example: -o
+        report.
     """
     from stiction.analysis.export import write as write_tables
     from stiction.analysis.measurement.reading import read_source
@@ -111,9 +112,10 @@ def import_(
     files
         More of them.
     output
-        The file to write, .nc, which `stiction analyse` and xarray read; by default none.
+        The file to write, .nc, which `stiction analyse` and xarray read; by default none. Example:
+        -o record.nc.
     json
-        Write the guess as JSON, too.
+        Write the guess as JSON, too. Example: --json guess.json.
     """
     from stiction.analysis.measurement.reading import read_records
     from stiction.cli.tables import print_sections

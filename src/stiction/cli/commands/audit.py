@@ -56,11 +56,12 @@ def audit(
     config
         A description in TOML; `stiction init` writes one to start from.
     output
-        An HTML page to write: the same report with figures, in one file.
+        An HTML page to write: the same report with figures, in one file. Example: -o my.html.
     record
         A measured record of the apparatus, of any format that `stiction import` reads; CONFIG
         states what is uncertain, as for `stiction fit`. The report begins with what it says:
-        verdict, grounds, prior against posterior, and what would change it.
+        verdict, grounds, prior against posterior, and what would change it. Example: --record
+        data.csv.
     """
     from stiction.analysis.measurement.reading import read_source
     from stiction.analysis.record import as_record

@@ -49,12 +49,13 @@ def compare(
         A description in TOML; `stiction init` writes one to start from.
     law
         A law to compare with; repeat it for more. A name (coulomb), an inline table with its
-        parameters ('{law = "coulomb", mu_0 = 0.15}'), another description (other.toml), whose
-        table [friction] is used, or your own law (file.py:Class).
+        parameters ('{law = "coulomb", mu_0 = 0.15}'), another description (other.toml), whose table
+        [friction] is used, or your own law (file.py:Class). Example: --law coulomb.
     output
-        The figure to write: .png, .pdf or .svg.
+        The figure to write: .png, .pdf or .svg. Example: -o laws.png.
     data
-        A folder for the results too, a NetCDF file each; made if it does not exist.
+        A folder for the results too, a NetCDF file each; made if it does not exist. Example: --data
+        results.
     """
     from stiction import comparison
     from stiction.cli.progress import progress

@@ -21,7 +21,7 @@ def export(result: Path, /, *, output: Output, trust: Trust = False) -> None:
         A file written by `stiction run`.
     output
         The file to write: .csv or .parquet for the samples, with the stick intervals in a second
-        file beside it (my-sticks.csv); .mat for both in one file.
+        file beside it (my-sticks.csv); .mat for both in one file. Example: -o my.csv.
     """
     from stiction import trajectory
 

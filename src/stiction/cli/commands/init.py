@@ -31,6 +31,7 @@ def init(
         The file to write.
     preset
         A published system in place of the paper's apparatus; `stiction presets` lists them.
+        Example: --preset leine-belt.
     force
         Overwrite an existing file.
     schema

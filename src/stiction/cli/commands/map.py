@@ -42,12 +42,14 @@ def map(
     study
         The store that `stiction sweep` wrote.
     of
-        A measure to draw, such as regime or peak_force; repeat it for more panels.
+        A measure to draw, such as regime or peak_force; repeat it for more panels. Example: --of
+        period.
     at
         A cut through a study of more dimensions, NAME=VALUE; the nearest value of the study is
-        used. Repeat it for several.
+        used. Repeat it for several. Example: --at "phi = 1 deg".
     output
-        The figure to write (.png, .pdf or .svg); by default STUDY.png beside the store.
+        The figure to write (.png, .pdf or .svg); by default STUDY.png beside the store. Example: -o
+        map.png.
     """
     from stiction.plotting.page.canvas import figure_of
     from stiction.plotting.page.save import drawable, write

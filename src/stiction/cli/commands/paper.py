@@ -29,9 +29,9 @@ def paper(
     Parameters
     ----------
     output
-        The folder to write to; made if it does not exist.
+        The folder to write to; made if it does not exist. Example: -o paper-output.
     figure
-        Only this figure, without the table of numbers.
+        Only this figure, without the table of numbers. Example: --figure 3.
     """
     from stiction.cli.progress import progress
     from stiction.reproduction.reproduce import paper as reproduce

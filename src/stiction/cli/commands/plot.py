@@ -20,7 +20,7 @@ def plot(result: Path, /, *, output: Output, trust: Trust = False) -> None:
     result
         A file written by `stiction run`.
     output
-        The figure to write: .png, .pdf or .svg.
+        The figure to write: .png, .pdf or .svg. Example: -o my.png.
     """
     from stiction.plotting.door import plot as draw
     from stiction.plotting.page.canvas import figure_of

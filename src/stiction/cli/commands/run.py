@@ -46,7 +46,7 @@ def run(
     config
         A description in TOML; `stiction init` writes one to start from.
     output
-        The NetCDF file to write: samples over time, and every stick interval.
+        The NetCDF file to write: samples over time, and every stick interval. Example: -o my.nc.
     """
     from stiction import simulation
     from stiction.cli.progress import progress

@@ -45,13 +45,14 @@ def stability(
         A description in TOML; `stiction init` writes one to start from. Its [run] is not used.
     over
         A parameter to vary: phi, V, c_x, mass, friction.mu_inf, ..., or several with one value
-        ("k_x, k_y"). Repeat it for a second one; phi and V by default.
+        ("k_x, k_y"). Repeat it for a second one; phi and V by default. Example: --over phi.
     between
-        Its range, two values with their units; repeat it for a second one, in the same order.
-        By default 0 to 90 degrees for an angle, else three decades below and above the value.
+        Its range, two values with their units; repeat it for a second one, in the same order. By
+        default 0 to 90 degrees for an angle, else three decades below and above the value. Example:
+        --between "1 deg" "30 deg".
     output
-        The figure to write (.png, .pdf or .svg): the modes over one parameter, or the boundary
-        of stability in the plane of two.
+        The figure to write (.png, .pdf or .svg): the modes over one parameter, or the boundary of
+        stability in the plane of two. Example: -o map.png.
     """
     from stiction.cli.tables import print_sections
     from stiction.errors import StictionError

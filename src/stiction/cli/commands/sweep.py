@@ -10,6 +10,7 @@ from cyclopts import Parameter
 
 from stiction.cli.options import Changes, Output, Trust, changes, parse_assignment
 from stiction.cli.terminal import say
+from stiction.errors import StictionError
 
 if TYPE_CHECKING:
     from stiction.study.execution.engines import Engine
@@ -66,23 +67,26 @@ def sweep(
     config
         The study, in TOML.
     output
-        The store to write or to continue, a folder: study.zarr.
+        The store to write or to continue, a folder: study.zarr. Example: -o study.zarr.
     preset
-        A ready study in place of CONFIG: yaw-angle (phi x V: misalignment stabilises),
-        anisotropy (k_y x phi), damping-diagram (A x theta, Fig. 5 with simulations on it).
+        A ready study in place of CONFIG: yaw-angle (phi x V: misalignment stabilises), anisotropy
+        (k_y x phi), damping-diagram (A x theta, Fig. 5 with simulations on it). Example: --preset
+        yaw-angle.
     refine
         An axis, and the accuracy with which to find changes of motion along it, for each value of
-        the others: "phi = 0.01 deg". It bisects, instead of filling the grid.
+        the others: "phi = 0.01 deg". It bisects, instead of filling the grid. Example: --refine
+        "phi = 0.01 deg".
     apart
         With --refine, a kind of motion to distinguish from all others, such as "settling"; repeat
-        it for more. By default every change of kind counts.
+        it for more. By default every change of kind counts. Example: --apart settling.
     threads
-        Number of runs at a time in this process; by default the number of cores.
+        Number of runs at a time in this process; by default the number of cores. Example: --threads
+        4.
     workers
-        Number of processes on this machine, by dask, in place of threads.
+        Number of processes on this machine, by dask, in place of threads. Example: --workers 4.
     scheduler
         A dask scheduler for the runs, tcp://host:port. Its workers write to the store themselves:
-        all must see the same files.
+        all must see the same files. Example: --scheduler tcp://node1:8786.
     dashboard
         With --workers, show dask's dashboard at http://localhost:8787 to every user of this
         machine.
@@ -93,16 +97,21 @@ def sweep(
     """
     from stiction.cli.tally import show_tally
     from stiction.study.execution.refine import refine as halve
+    from stiction.study.execution.refine import request
     from stiction.study.execution.sweep import sweep as do
 
     found = None
     study = read_study(config, preset, changes(set), trust)
     means = engine(threads, workers, scheduler, dashboard)
+    along, to = ("", "") if refine is None else parse_assignment(refine, "--refine")
+    if refine is not None:  # before the first of many runs
+        request(study, along, to, apart)
+    elif apart is not None:
+        raise StictionError("--apart needs --refine; give both")
     try:
         with show_tally(quiet, json_lines) as (report, conclude):
             result = do(study, output, engine=means, progress=report)
             if refine is not None:
-                along, to = parse_assignment(refine, "--refine")
                 found = halve(study, output, along, to, apart=apart, engine=means, progress=report)
     except KeyboardInterrupt:
         say(f"{output}: stopped; the same command continues", error=True)
@@ -117,7 +126,6 @@ def read_study(
     config: Path | None, preset: str | None, given: Mapping[str, Any], trust: bool = False
 ) -> Study:
     """Return the requested study, with changed parameters."""
-    from stiction.errors import StictionError
     from stiction.study import presets
     from stiction.study.plan.study import Study
     from stiction.text.paths import with_changes
@@ -135,7 +143,6 @@ def engine(
     threads: int | None, workers: int | None, scheduler: str | None, dashboard: bool = False
 ) -> Engine:
     """Return the requested engine."""
-    from stiction.errors import StictionError
     from stiction.study.execution.engines import Threads
 
     if sum(each is not None for each in (threads, workers, scheduler)) > 1:

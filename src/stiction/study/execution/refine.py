@@ -78,8 +78,7 @@ def refine(
     DescriptionError
         If there is no such axis, or the study keeps no regime.
     """
-    along = canonical_path(along)
-    width, apart = _requested_width(study, along, to), _kinds(apart)
+    along, width, apart = request(study, along, to, apart)
     sweep(study, path, engine=engine, progress=progress)
     found, runs = changes(study, open_study(path).load(), along, apart), study.layout.runs
     folder = Path(path) / REFINED / along
@@ -95,6 +94,20 @@ def refine(
     made = table(study, found, along, runs)
     _keep(made, folder / CHANGES)
     return made
+
+
+def request(
+    study: Study, along: str, to: Quantity, apart: Sequence[str] | None
+) -> tuple[str, float, list[str] | None]:
+    """Return axis, width and kinds of `refine` in their standard form, or refuse them.
+
+    Raises
+    ------
+    DescriptionError
+        If there is no such axis or kind, or the study keeps no regime.
+    """
+    along = canonical_path(along)
+    return along, _requested_width(study, along, to), _kinds(apart)
 
 
 def _keep(changes: xr.Dataset, target: Path) -> None:

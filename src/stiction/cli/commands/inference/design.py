@@ -83,7 +83,7 @@ def design(
     position_noise
         Standard deviation of a sample of displacement. Example: --position-noise "50 nm".
     output
-        A figure: PNG, PDF or SVG.
+        A figure: PNG, PDF or SVG. Example: -o design.png.
     """
     from stiction.analysis.measurement.reading import read_source
     from stiction.analysis.record import as_record

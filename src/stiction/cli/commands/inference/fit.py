@@ -69,12 +69,13 @@ def fit(
         Measured records with stick-slip, of any format that `stiction import` reads; results of
         `stiction run` are taken as if measured.
     rig
-        A description in TOML with uncertain values; [run] is not used.
+        A description in TOML with uncertain values; [run] is not used. Example: --rig rig.toml.
     output
         The posterior: NetCDF, a variable for each parameter, with the prior in the group "prior".
+        Example: -o fit.nc.
     figures
         A folder for figures: prior against posterior, all pairs, and the odds of mechanisms. Made
-        if it does not exist.
+        if it does not exist. Example: --figures figures.
     mechanism
         Give the odds of mechanisms too, from a quarter as many simulations of each; they are
         written in the group "mechanism" of the output.

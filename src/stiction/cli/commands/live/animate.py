@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from stiction.cli.options import Output, Trust
+from stiction.cli.options import Output, Trust, Window
 from stiction.cli.terminal import say
 
 
@@ -13,7 +13,7 @@ def animate(
     /,
     *,
     output: Output,
-    window: tuple[str, str] | None = None,
+    window: Window = None,
     length: float = 10.0,
     at: str | None = None,
     trust: Trust = False,
@@ -32,14 +32,14 @@ def animate(
     result
         A file written by `stiction run`.
     output
-        The film to write: .mp4, .webm or .gif.
+        The film to write: .mp4, .webm or .gif. Example: -o lecture.mp4.
     window
-        Start and end in the run; all of it by default.
+        Start and end in the run; all of it by default. Example: --window 1.9s 2.2s.
     length
-        Of the film, s: it decides how slowly the window passes.
+        Of the film, s: it decides how slowly the window passes. Example: --length 15.
     at
         The time whose surroundings are shown under the microscope: a few periods of the fast
-        oscillation; by default a third into the window.
+        oscillation; by default a third into the window. Example: --at 2.05s.
     """
     from stiction.cli.progress import progress
     from stiction.media.film import animate as film_of

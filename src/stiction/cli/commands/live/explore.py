@@ -36,7 +36,7 @@ def explore(
         A description (.toml), a result (.nc), a study (.zarr), or a measured record, as `stiction
         import` reads it. A record may go with one of the others.
     port
-        The port that it listens on; any free one by default.
+        The port that it listens on; any free one by default. Example: --port 8050.
     browser
         Open the browser; otherwise the address is printed, and it serves until Ctrl-C.
     """

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Literal
 
-from stiction.cli.options import Output, Trust
+from stiction.cli.options import Output, Trust, Window
 from stiction.cli.terminal import say
 
 
@@ -15,7 +15,7 @@ def listen(
     *,
     output: Output,
     speed: float | None = None,
-    window: tuple[str, str] | None = None,
+    window: Window = None,
     axis: Literal["x", "y"] = "y",
     trust: Trust = False,
 ) -> None:
@@ -32,14 +32,15 @@ def listen(
     result
         A file written by `stiction run`.
     output
-        The file to write: .wav, 48 kHz.
+        The file to write: .wav, 48 kHz. Example: -o oscillation.wav.
     speed
         1 for the true pitch, 0.1 for a tenth; by default 1 where the natural frequency can be
-        heard, else the power of ten by which it can.
+        heard, else the power of ten by which it can. Example: --speed 0.1.
     window
-        Start and end in the run; all of it by default.
+        Start and end in the run; all of it by default. Example: --window 1.8s 2.1s.
     axis
-        Whose elongation rate is heard: that of the transverse spring, y, or of x.
+        Whose elongation rate is heard: that of the transverse spring, y, or of x. Example: --axis
+        x.
     """
     from stiction.cli.progress import progress
     from stiction.media.sound import listen as sound_of
