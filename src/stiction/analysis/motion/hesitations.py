@@ -2,8 +2,9 @@
 
 Before a slip, or within it, the mass can hesitate: the force dips, rises again, and then falls.
 Such a reversal belongs to its cycle. Its height distinguishes it: a cycle is a fall of at least
-half the swing. Irregular stick-slip is the exception, with slips of every size: if falls differ so
-much, and small ones are a minority, only a fall far below the others is a hesitation.
+half the swing. Irregular stick-slip with slips of every size is the exception: if falls differ so
+much that their number depends on the share of the swing that is asked for, and small ones are a
+minority, only a fall far below the others is a hesitation.
 
 Only reversals that stand apart from noise and ripple are considered: in a measured force those
 above about 5 % of a drop, 10 % under noise.
@@ -21,7 +22,8 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-HALF = 0.5  # of the swing: a larger fall is a cycle, if the falls are alike
+HALF = 0.5  # of the swing: a larger fall is a cycle
+ABOUT_HALF = (0.4, 0.6)  # of the swing: without a fall between these, half divides them clearly
 LEAST = 0.1  # of the swing: a smaller fall is a hesitation in any case
 AROUND = 12  # neighbours on each side for comparison: amplitudes may grow or shrink
 # Times as many as falls: so many reversals come with the falls and belong to them. Those below
@@ -64,7 +66,8 @@ def take_out(values: Floats) -> Hesitations:
     change = np.diff(values[found.kept])
     fall = -change[change < 0.0]
     deep = (len(shallow.kept) - len(found.kept)) // 2
-    return found if deep >= OFTEN * len(fall) > 0 or _alike(fall) else shallow
+    halves = deep >= OFTEN * len(fall) > 0 or _alike(fall) or _is_divided(values)
+    return found if halves else shallow
 
 
 def _below(values: Floats, share: float) -> Hesitations:
@@ -84,6 +87,12 @@ def _below(values: Floats, share: float) -> Hesitations:
     places = np.concatenate(at)
     order = np.argsort(places)
     return Hesitations(_whole(values, points, share), places[order], np.concatenate(depth)[order])
+
+
+def _is_divided(values: Floats) -> bool:
+    """Return whether falls and reversals lie on either side of half the swing, none about it."""
+    least, most = (len(_below(values, share).kept) for share in ABOUT_HALF)
+    return least == most > 2 * FEW
 
 
 def _alike(fall: Floats) -> bool:

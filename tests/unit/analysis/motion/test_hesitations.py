@@ -75,9 +75,9 @@ def test_several_hesitations_in_order():
     assert found.depth == pytest.approx([0.2, 0.1, 0.4])
 
 
-def test_where_falls_differ_only_a_tenth_is_a_hesitation():
+def test_where_falls_have_every_size_only_a_tenth_is_a_hesitation():
     """Then a fall of a third of the largest is a cycle, unless such come with each of them."""
-    drops = (5.0, 1.8, 5.0, 4.0, 1.5, 5.0, 3.0, 5.0)
+    drops = (5.0, 1.8, 5.0, 4.0, 2.3, 5.0, 3.0, 5.0)
     found = hesitations.take_out(cycles(*drops))
     assert (len(found.at), len(found.kept)) == (0, 16)
     many = (5.0, 1.2, 1.3) * 8  # two lesser ones with each: they belong to it
@@ -85,6 +85,15 @@ def test_where_falls_differ_only_a_tenth_is_a_hesitation():
     assert len(found.at) == 16
     assert len(found.kept) == 16
     assert OFTEN < 2
+
+
+def test_half_the_swing_divides_falls_that_differ():
+    """If none lies between 40 and 60 %, their number is that of falls of half the swing."""
+    drops = [5.0, 1.7, 5.0, 4.0, 1.5, 5.0, 3.1, 5.0, 3.2, 5.0]
+    found = hesitations.take_out(cycles(*drops))
+    assert (len(found.at), len(found.kept)) == (2, 16)
+    drops[1] = 2.3
+    assert len(hesitations.take_out(cycles(*drops)).at) == 0
 
 
 def test_falls_of_one_size():
