@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stiction.analysis.record import Record
+from stiction.analysis.signals.digitised import rounding_line
 from stiction.analysis.signals.even_grid import EvenGrid, even_grid, why_not
 from stiction.analysis.signals.ridge import follow_ridge
 from stiction.analysis.signals.spectrum import spectrogram
@@ -16,7 +17,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 PERIODS = 100.0  # of the lowest frequency, in a window
-AS_SAWTOOTH = 1.5  # times the amplitude of a sawtooth's harmonic
+# Times the amplitude of a sawtooth's harmonic, or of the rounding's; a force of two levels has 2
+AS_SAWTOOTH = 2.5
 APART = 0.35  # of the cycles' frequency: wider lines of harmonics leave nothing between them
 LOBE = 2.5  # lines to each side over which a Hamming window spreads a sine
 SPREAD = 2.0  # standard deviations of the periods
@@ -87,6 +89,7 @@ def strongest_line(
     except ValueError as error:  # too few samples in a window, or lines above `low`
         raise ResultError(str(error)) from None
     seen = _missing_share(grid, found, chosen) <= LOST
+    seen &= found["amplitude"].values > AS_SAWTOOTH * rounding_line(record.force)
     found["frequency"] = found["frequency"].where(seen)
     found["frequency"] = found["frequency"].where(_lasting(found["frequency"].notnull().values))
     return found.assign(frequency_error=_frequency_error(found, lines))

@@ -18,6 +18,7 @@ from stiction.analysis.motion.cycle_summary import summary
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.doubts import taken_off, turns_round, unsteady, warnings
 from stiction.analysis.motion.friction import Friction, find_friction, without_loading
+from stiction.analysis.motion.metadata import loading_rate
 from stiction.analysis.motion.regime import Regime, regime_of
 from stiction.analysis.oscillation import (
     apart,
@@ -36,6 +37,8 @@ if TYPE_CHECKING:
 
 HARMONICS = 10.0  # of the stick-slip; oscillations are sought above them
 OF_STICKING = ("mu_static", "stick_slope", "stiffness", "creep_distance")  # columns of cycles
+# columns that a force alone gives by stiffness and drive velocity
+BY_STIFFNESS = ("creep_distance", "slip_distance", "peak_slip_speed")
 BINS = 20.0  # least number in a stick phase for averages
 
 
@@ -175,11 +178,13 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     friction = find_friction(clean, regime, cycles)
     if "plateaus" in regime.evidence:
         friction = friction.without_kinetic("the force goes back and forth between two levels")
+    if "forth" in regime.evidence:
+        friction = friction.without_any("the force goes back and forth between both signs")
     if run is not None and turns_round(run):
         friction = friction.without_kinetic("the drive goes back and forth")
     doubts = warnings(record, regime.kind, cycles, friction) if run is None else unsteady(run)
     doubts += taken_off(found.lines)
-    cycles = _blank_meaningless(cycles, regime, missing)
+    cycles = _blank_meaningless(record, cycles, regime, missing)
     creep = find_creep(source, record, sticking, width)
     missing |= creep.missing
     phases = None
@@ -210,11 +215,19 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
 analyze = analyse
 
 
-def _blank_meaningless(cycles: xr.Dataset, regime: Regime, missing: dict[str, str]) -> xr.Dataset:
-    """Blank the columns of a table that are meaningless for a kind of motion."""
+def _blank_meaningless(
+    record: Record, cycles: xr.Dataset, regime: Regime, missing: dict[str, str]
+) -> xr.Dataset:
+    """Blank the columns of a table that are meaningless for a motion, or as things are stated."""
     if not cycles.sizes["cycle"]:
         return cycles
     if regime.loads:
+        rate = loading_rate(record, regime.kind, cycles)
+        if rate is not None and rate.agrees is False and record.position is None:
+            missing |= dict.fromkeys(
+                BY_STIFFNESS, "stiffness or drive velocity contradict the force"
+            )
+            return cycles.assign({name: cycles[name].where(False) for name in BY_STIFFNESS})
         if not float(cycles["creep_distance"].median()) < 0.0:
             return cycles
         missing["creep_distance"] = (

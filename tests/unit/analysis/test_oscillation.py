@@ -11,6 +11,7 @@ from scipy.signal.windows import hamming
 from tests.measured import read_measured
 
 import stiction as st
+from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.oscillation import apart
 from stiction.analysis.signals.ridge import best_path
 from stiction.plotting.analysis.oscillation import plot_oscillation
@@ -246,3 +247,23 @@ def test_a_bend_of_the_force_is_no_oscillation(seed):
     assert "Seen in" not in str(st.analyse(st.Record(time=time, force=force)))
     line = force + 0.004 * np.sin(2 * np.pi * 40.0 * time)  # as high as the noise: it goes on
     assert "at 40 Hz" in str(st.analyse(st.Record(time=time, force=line)))
+
+
+@pytest.mark.parametrize("color", [0, 1, 2])
+def test_noise_of_any_color_has_no_line(color: int) -> None:
+    """Random walks had one at the lower end of the band, above all others."""
+    time = np.arange(20_000) * 1e-3
+    for seed in range(5):
+        force = np.random.default_rng(seed).normal(size=len(time))
+        for _ in range(color):
+            force = np.cumsum(force)
+        found = strongest_line(st.Record(time=time, force=force), 5.0)
+        assert np.isfinite(found["frequency"]).mean() < 0.05
+
+
+@pytest.mark.parametrize("step", [0.05, 0.1, 0.2])
+def test_the_rounding_of_a_sawtooth_has_no_line(step: float) -> None:
+    time = np.arange(20_000) * 1e-3
+    force = np.rint((0.8 + 0.2 * (time / 0.7 % 1.0)) / step) * step
+    found = st.analyse(st.Record(time=time, force=force))
+    assert np.isfinite(found.oscillation["frequency"]).mean() < 0.05

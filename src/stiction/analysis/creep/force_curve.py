@@ -205,7 +205,7 @@ def _refuse(phi: float, error: float, excess: float, misfit: float, off: float) 
     if misfit > WORST:
         raise ResultError(
             "not determined: the rises do not have the shape that friction gives as it turns "
-            f"(they miss it by {misfit:.1%} of the drop)"
+            f"(they miss it by {f'{misfit:.1%} of' if misfit < 1.0 else 'more than'} the drop)"
         )
     if excess > EARLY:
         raise ResultError(

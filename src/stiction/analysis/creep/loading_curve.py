@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.record import Record
+from stiction.analysis.signals.digitised import dither_remainder, resolution
 from stiction.errors import ResultError
 
 if TYPE_CHECKING:
@@ -18,7 +19,6 @@ Floats = NDArray[np.float64]
 LEVELS = 40  # number of forces on the curve
 FEWEST = 10  # bins in a rise, each of at least two samples
 AFTER_TROUGH, BEFORE_SLIP = 0.1, 0.12  # of the drop, left out because inertia matters there
-MANY, FINE = 100_000, 1e-4  # samples examined for steps of the force; finest step
 
 
 class LoadingCurve(NamedTuple):
@@ -124,10 +124,8 @@ def _rounding(force: Floats, width: float) -> float:
 
     A ramp through many steps reduces it, and so does noise of their size.
     """
-    some = force[:MANY]
-    step = float(np.diff(np.unique(some)).min(initial=np.inf))
-    if not np.isfinite(step) or step < FINE * float(np.ptp(some)):
-        return 0.0
-    noise = float(np.std(np.diff(some, 2))) / 6.0**0.5
-    dither = float(np.exp(-2.0 * (np.pi * noise / step) ** 2))  # what is left of the first harmonic
-    return float(step / 12.0**0.5 * min(1.0, step / width) * dither)
+    step = resolution(force)
+    error = (
+        step / 12.0**0.5 * min(1.0, step / width) * dither_remainder(force, step) if step else 0.0
+    )
+    return float(error)

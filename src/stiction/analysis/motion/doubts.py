@@ -24,10 +24,12 @@ if TYPE_CHECKING:
 
 LARGEST_MU = 3.0
 LEAST_MU = 0.01  # of dry friction: superlubricity aside
+TINY_MU = 1e-3  # no friction is so small, but of a film of fluid
 THOUSAND = 0.2  # a ratio within a factor of 5 of a thousand, or its square, is a wrong unit
 ABOUT_ZERO = 0.05  # of half the drop: so far from zero the middle of a swing may lie
 AT_REST = 0.02  # of the largest force
 FLAT = 4  # times as many samples at the largest value as at any other, and so many at least
+TIMES = 3  # that a force stays at its least value: at rest it does so once
 QUIET_SHARE = 0.15  # of the record
 IMPOSED = {"drive": ("drive_X", "drive_Y"), "load": ("normal_load",)}  # columns of a run
 FEW_OFF = 0.05  # of the samples: interpolated, they hardly weaken an oscillation
@@ -38,7 +40,7 @@ NOISE = 5.0  # standard deviations
 def warnings(record: Record, kind: str, cycles: xr.Dataset, friction: Friction) -> tuple[str, ...]:
     """Return warnings as sentences, the most important first."""
     found = [
-        *_friction_too_large(record, friction),
+        *_implausible_friction(record, friction),
         *_doubt_clipping(record),
         *_doubt_mean_period(cycles),
         *_doubt_quiet(record, friction, cycles),
@@ -153,22 +155,31 @@ def _mains(kind: str, cycles: xr.Dataset) -> Iterator[str]:
 
 
 def _doubt_clipping(record: Record) -> Iterator[str]:
-    """Doubt a force that stays at exactly its largest value for longer than at any other."""
+    """Doubt a force that stays at exactly its largest or least value for longer than elsewhere."""
     way = 1.0 if record.force.max(initial=0.0) >= -record.force.min(initial=0.0) else -1.0
     force = way * record.force
     if not len(force):
         return
     begins = np.flatnonzero(np.diff(force, prepend=force[0] - 1.0))
     lasts, values = np.diff(begins, append=len(force)), force[begins]
-    top = values == force.max()
-    longest = int(lasts[top].max())
-    if top.all() or longest < FLAT or longest <= FLAT * int(lasts[~top].max()):
+    top, bottom = values == force.max(), values == force.min()
+    if (top | bottom).all():
         return
-    yield (
-        f"The force stays at exactly {in_words(way * float(force.max()), 'N')} for up to {longest} "
-        "samples, its largest value: if that is the end of the load cell's range, peaks are cut "
-        "off, static coefficients and drops are too small, and what seems to creep there may rest."
-    )
+    flat = lasts >= max(FLAT, FLAT * int(lasts[~top & ~bottom].max()) + 1)
+    cut = {
+        "largest": (top, 1, "peaks are cut off, static coefficients and drops are too small, and "
+        "what seems to creep there may rest"),
+        "least": (bottom, TIMES, "troughs are cut off, drops are too small and kinetic "
+        "coefficients too large"),
+    }  # fmt: skip
+    for name, (end, least, then) in cut.items():
+        if np.count_nonzero(flat & end) < least:
+            continue
+        value, longest = way * float(values[end][0]), int(lasts[end].max())
+        yield (
+            f"The force stays at exactly {in_words(value, 'N')} for up to {longest} samples, its "
+            f"{name} value: if that is the end of the load cell's range, {then}."
+        )
 
 
 def _doubt_mean_period(cycles: xr.Dataset) -> Iterator[str]:
@@ -204,17 +215,16 @@ def _doubt_quiet(record: Record, friction: Friction, cycles: xr.Dataset) -> Iter
         )
 
 
-def _friction_too_large(record: Record, friction: Friction) -> Iterator[str]:
+def _implausible_friction(record: Record, friction: Friction) -> Iterator[str]:
     known = [each for each in friction[:3] if each is not None]
     mu = max((abs(each.coefficient) for each in known), default=np.nan)
-    if mu > LARGEST_MU:
-        load = in_words(record.normal_load or 0.0, "N")
-        thousandfold = mu * 1e-3 > LEAST_MU
-        milli = "is the force in millinewtons? Give force_unit='mN'; or " if thousandfold else ""
-        yield (
-            f"A friction coefficient of {mu:.3g} is implausible: {milli}check the normal load, "
-            f"{load}."
-        )
+    if TINY_MU <= mu <= LARGEST_MU or not np.isfinite(mu):
+        return
+    load = in_words(record.normal_load or 0.0, "N")
+    unit, prefix, right = ("mN", "milli", mu * 1e-3) if mu > 1.0 else ("kN", "kilo", mu * 1e3)
+    thousandfold = LEAST_MU < right < LARGEST_MU
+    its = f"is the force in {prefix}newtons? Give force_unit='{unit}'; or " if thousandfold else ""
+    yield f"A friction coefficient of {mu:.3g} is implausible: {its}check the normal load, {load}."
 
 
 def _loading_too_fast(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:
@@ -233,8 +243,9 @@ def _remedy(ratio: float) -> str:
     if abs(power) > 0.5 and abs(power - round(power)) < 0.1:
         if power < 0.0:
             return (
-                "is the time in milliseconds? Give time_unit='ms'; or stiffness or drive velocity "
-                "is stated 1000 times too large"
+                "is the time in milliseconds? Give time_unit='ms'; is the force in kilonewtons? "
+                "Give force_unit='kN'; or stiffness or drive velocity is stated 1000 times too "
+                "large"
             )
         return (
             "is the force in millinewtons? Give force_unit='mN'; or stiffness or drive velocity "

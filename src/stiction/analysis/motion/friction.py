@@ -88,6 +88,10 @@ class Friction(NamedTuple):
         """Return the same without kinetic friction, for a reason."""
         return self._replace(kinetic=None, missing=self.missing | {"kinetic": reason})
 
+    def without_any(self, reason: str) -> Friction:
+        """Return none of them, for a reason."""
+        return Friction(None, None, None, dict.fromkeys(self._fields[:3], reason))
+
 
 def find_friction(record: Record, regime: Regime, cycles: xr.Dataset) -> Friction:
     """Find the friction of a record.
@@ -104,7 +108,7 @@ def find_friction(record: Record, regime: Regime, cycles: xr.Dataset) -> Frictio
     missing: dict[str, str] = {}
     kind, load = regime.kind, record.normal_load or np.nan
     if len(record) < FEWEST:
-        few = f"the record has {len(record)} samples and {FEWEST} are needed"
+        few = f"of the {FEWEST} samples that are needed the record has {len(record)}"
         return Friction(None, None, None, dict.fromkeys(("break_away", "static", "kinetic"), few))
     forces, times, noise = _means(record)
     at, reason = _first_peak(forces, noise)
@@ -156,7 +160,7 @@ def _means(record: Record) -> tuple[Floats, Floats, float]:
 def _first_peak(forces: Floats, noise: float) -> tuple[int | None, str]:
     """Return the index of the first maximum of a loading; or None and the reason."""
     highest = np.maximum.accumulate(forces)
-    if forces[0] > UNLOADED * highest[-1]:
+    if forces[0] > UNLOADED * highest[-1] or _is_within(forces):
         return None, "the record does not begin with an unloaded spring"
     fall = np.maximum(STANDS_OUT * noise, PEAK * (highest - forces[0]))
     risen = highest - forces[0] > 0.5 * (highest[-1] - forces[0])
@@ -165,6 +169,20 @@ def _first_peak(forces: Floats, noise: float) -> tuple[int | None, str]:
         least = f"{100.0 * PEAK:g}% of its rise"
         return None, f"the first loading does not end in a fall of more than {least}"
     return int(np.argmax(forces[: fallen[0] + 1])), ""
+
+
+def _is_within(forces: Floats) -> bool:
+    """Return whether a record that begins against the drive begins as it goes on.
+
+    A spring that is loaded from there, with an untared zero, leaves those forces for good.
+    """
+    largest = float(np.abs(forces).max())
+    if forces[0] >= -UNLOADED * largest:
+        return False
+    rise = forces - forces[0]
+    if rise.max() < UNLOADED * largest:
+        return True
+    return bool(rise[np.argmax(rise > 0.5 * rise.max()) :].min() <= 0.0)
 
 
 def _break_away(record: Record, forces: Floats, at: int, noise: float) -> Measured:

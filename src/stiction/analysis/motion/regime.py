@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import exp, hypot, log, pi, sqrt
+from math import hypot, log, pi, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -16,7 +16,9 @@ from stiction.analysis.motion.course import (
     UNLOADED,
     change_of_period,
     course,
+    lone_fall,
     order,
+    strokes,
 )
 from stiction.analysis.motion.cycles import Swings, swings, swings_without
 from stiction.analysis.motion.disturbance import RESIDUE
@@ -71,6 +73,10 @@ IRREGULAR_SPREAD, HARMONIC_SPREAD = (1.05, 0.1), (0.17, 0.8)
 ONE_WAY = 0.8  # of all ups and downs is change: a drift or a load, no wandering
 SETTLED = 0.1  # of the force's span is passed in the last quarter; of an even load it is 0.25
 LOADING = 0.5  # of the early rate, or of stiffness times drive velocity: it still sticks
+# Times the scatter about it, and share of the mean force: by more a force wanders that slides, or
+# the mass sticks and slips more slowly than the record shows
+SMOOTH, VARIES = 5.0, 0.05
+LONE_FALL = ("falls_at", "falls_by")  # evidence
 SLOW = 0.1  # of stiffness times drive velocity: the mass goes at 9/10 of the drive's speed or more
 MANY_SAMPLES = 64.0  # a cycle: no quicker line has been folded back to it
 FEWEST, ENOUGH = 3.5, 8.0  # samples a cycle: below the first it is not known, nor what it is
@@ -85,6 +91,10 @@ COUPLED = 0.9
 # Of a swing from trough to peak, to each end, and share of time that is spent there: of a sine 0.2,
 # of a force between two levels nearly half
 NEAR, PLATEAU = 0.1, 0.35
+# The same of a mass that swings on its spring and rests for less than half of its cycle: 0.16 and
+# more; of a force that rises and falls evenly 0.1. Noise of less than this share of a drop
+# does not change them much
+STRAIGHT, QUIET = 0.13, 0.05
 OWN = 1.2  # times that period: up to there a vibration is that of the mass on its spring
 MAY_BE_HUM = (TRANSITIONAL, HARMONIC, IRREGULAR, UNDETERMINED)
 SAME = 0.01  # of a period: by so much that of a line and that of the cycles differ
@@ -145,6 +155,11 @@ WORDS = {
         "the drive goes back and forth, or the load changes in steps",
         _percent,
     ),
+    "straight": (
+        "it rises and falls evenly, and turns at once, as no vibration does: it is within a tenth "
+        "of its swing from either end for {} of the time (a sine: 41%)",
+        _percent,
+    ),
     "changed_at": ("at {} the cycles change", _seconds),
     "mains": ("it swings at {} as the mains do: it may be hum over another motion", _frequency),
     "swings": ("{} swings, each smaller than the last but for noise", _whole),
@@ -153,6 +168,13 @@ WORDS = {
     "change": ("the force changes by {} from beginning to end", _force),
     "span": ("it spans {}, averaged over a 32nd of the time", _force),
     "scatter": ("it scatters by {} about that", _force),
+    "wanders": (
+        "it wanders by {}, too smoothly for noise: either friction changes, or cycles are longer "
+        "than the record shows",
+        _force,
+    ),
+    "falls_at": ("it falls quickly once, at {}", _seconds),
+    "falls_by": ("by {}", _force),
     "late_share": ("in the last quarter of the time it spans {} of this", _percent),
     "one_way": ("{} of all its ups and downs is this change", _percent),
     "rate_kept": ("at the end it changes at {} times the rate of the beginning", _three_digits),
@@ -170,7 +192,10 @@ WORDS = {
     ),
     "samples_per_cycle": ("a cycle has {} samples, too few to show it", _three_digits),
     "rate_needed": ("sample at {} or more", _frequency),
-    "samples": ("there are {} samples, too few", _whole),
+    "samples": ("number of samples: {}, too few", _whole),
+    "unchanging": ("all samples are exactly {}", _force),
+    "forth": ("one way the force is about {}", _force),
+    "back": ("the other way {}", _force),
 }
 
 
@@ -257,6 +282,11 @@ def regime_of(record: Record, found: Swings) -> Regime:
     """Classify the motion in a record with known swings: see `classify`."""
     if len(record) < PARTS:
         return Regime(UNDETERMINED, 0.0, {"samples": len(record)})
+    if record.slip_speed is None:
+        if np.ptp(record.force) == 0.0:
+            return Regime(UNDETERMINED, 0.0, {"unchanging": float(record.force[0])})
+        if (pulls := strokes(record.force)) is not None:
+            return Regime(UNDETERMINED, 0.0, {"forth": pulls[0], "back": pulls[1]})
     if found.lines:
         record = record.model_copy(update={"force": found.force})
     per_cycle = 2.0 * len(record) / max(found.turns, 1)
@@ -322,8 +352,8 @@ def _by_parts(record: Record, found: Swings) -> Regime:
     return Regime(main.kind, share * main.confidence, main.evidence | changed, other.kind)
 
 
-def _plateaus(record: Record, table: xr.Dataset) -> float:
-    """Return the share of time for which a force stays near its troughs, or its peaks, if less."""
+def _near_ends(record: Record, table: xr.Dataset) -> tuple[float, float]:
+    """Return the shares of time for which a force stays near its troughs and near its peaks."""
     start, peak, end = (table[name].values for name in ("start", "peak_time", "trough_time"))
     inside = (record.time >= start[0]) & (record.time <= end[-1])
     time, force = record.time[inside], record.force[inside]
@@ -332,7 +362,7 @@ def _plateaus(record: Record, table: xr.Dataset) -> float:
     )
     high = np.interp(time, peak, table["peak"].values)
     place = (force - low) / np.maximum(high - low, 1e-300)
-    return float(min(np.mean(place < NEAR), np.mean(place > 1.0 - NEAR)))
+    return float(np.mean(place < NEAR)), float(np.mean(place > 1.0 - NEAR))
 
 
 def _by_shape(record: Record, found: Swings) -> Regime:
@@ -351,6 +381,8 @@ def _by_shape(record: Record, found: Swings) -> Regime:
     alike = kinds.count(kind)
     evidence = {"cycles": count, "rise_share": typical}
     if kind == UNDETERMINED:
+        if float(table["hesitations"].median()) >= 1.0:  # it turns back: two swings, or a ringing
+            return Regime(UNDETERMINED, 0.0, evidence)
         evidence["backward"] = alike / count
     else:
         evidence["rest_share"] = float(rest_share(typical))
@@ -382,8 +414,13 @@ def _by_shape(record: Record, found: Swings) -> Regime:
         evidence["line_taken_off"] = found.lines[0].frequency
     others = sorted(set(kinds) - {kind, UNDETERMINED}, key=kinds.count)
     counted = (alike + 1) / (count + 3)
-    if form in (TRANSITIONAL, HARMONIC) and (stays := _plateaus(record, table)) > PLATEAU:
-        return Regime(UNDETERMINED, 0.0, {"cycles": count, "plateaus": 2.0 * stays})
+    if form in (TRANSITIONAL, HARMONIC):
+        stays = _near_ends(record, table)
+        if min(stays) > PLATEAU:
+            return Regime(UNDETERMINED, 0.0, {"cycles": count, "plateaus": 2.0 * min(stays)})
+        unknown = record.slip_speed is None and form == HARMONIC
+        if unknown and max(stays) < STRAIGHT and found.noise < QUIET * np.median(drop):
+            return Regime(UNDETERMINED, 0.0, {"cycles": count, "straight": sum(stays)})
     decisive = (shares, *_bounds(kind), resolution)
     if form != shape(typical):
         decisive = (still, RESTS, np.inf, resolution)
@@ -392,7 +429,7 @@ def _by_shape(record: Record, found: Swings) -> Regime:
     confidence = max(counted, _chance(*decisive))
     if other:  # as likely
         return Regime(kind, 0.5 * confidence, evidence, other)
-    irregular = irregularity(period_spread, drop) if kind == HARMONIC else 0.0
+    irregular = irregularity(table["period"].values, drop) if kind == HARMONIC else 0.0
     if irregular > 0.5:
         return Regime(IRREGULAR, irregular * confidence, evidence, HARMONIC)
     confidence *= 1.0 - irregular
@@ -440,30 +477,35 @@ def drop_spread(drop: Floats) -> float:
     return float((high - low) / middle)
 
 
-def irregularity(period_spread: float, drop: Floats) -> float:
+def irregularity(period: Floats, drop: Floats) -> float:
     """Return the likelihood of irregular swings from the spread of their periods and drops.
 
     By periods: whether more swings would exceed the spread `REGULAR`. By drops: their spread is
     drawn from one of two distributions, of which that of irregular swings narrows with the number
-    of swings; where both overlap, `EVEN` decides.
+    of swings; where both overlap, `EVEN` decides. Sizes in order grow or shrink; they say nothing.
     """
-    from scipy.special import ndtr
+    from scipy.special import expit, ndtr
 
-    count = len(drop)
-    periods = log(max(period_spread / REGULAR, 1e-9)) * sqrt(count) / SPREAD_ERROR
+    count, likely = len(drop), 0.0
+    if count < MANY or abs(order(period)) < -ORDERED:
+        spread = float(period.std() / period.mean()) / REGULAR
+        likely = float(ndtr(log(max(spread, 1e-9)) * sqrt(count) / SPREAD_ERROR))
     spread = drop_spread(drop)
     if abs(order(drop)) >= -ORDERED or spread == 0.0:  # it grows, or is quite even
-        return float(ndtr(periods))
+        return likely
     error = hypot(SPREAD_ERROR / sqrt(count), IRREGULAR_SPREAD[1])
-    drops = _density(spread, IRREGULAR_SPREAD[0], error)
-    drops /= drops + _density(spread, *HARMONIC_SPREAD)
-    drops = max(drops, 0.5) if spread > EVEN else min(drops, 0.5)
-    return max(float(ndtr(periods)), drops)
+    drops = float(
+        expit(
+            _log_density(spread, IRREGULAR_SPREAD[0], error)
+            - _log_density(spread, *HARMONIC_SPREAD)
+        )
+    )
+    return max(likely, max(drops, 0.5) if spread > EVEN else min(drops, 0.5))
 
 
-def _density(value: float, typical: float, spread: float) -> float:
-    """Return the density of a value's logarithm, normally distributed about a typical one's."""
-    return exp(-0.5 * (log(value / typical) / spread) ** 2) / spread + 1e-300
+def _log_density(value: float, typical: float, spread: float) -> float:
+    """Return the logarithm of the density of a value's logarithm, normal about a typical one's."""
+    return -0.5 * (log(value / typical) / spread) ** 2 - log(spread)
 
 
 def _bounds(kind: str) -> tuple[float, float]:
@@ -515,6 +557,17 @@ def _natural_period(record: Record, table: xr.Dataset) -> dict[str, float]:
     return {"natural_period": float(table["period"].median()) / own}
 
 
+def _steady(record: Record, found: Swings, sure: float, evidence: dict[str, float]) -> Regime:
+    """Return steady sliding, or as likely stick-slip whose cycles are longer than the record."""
+    if record.slip_speed is not None:
+        return Regime(STEADY, sure, evidence)
+    least = max(SMOOTH * evidence["scatter"], VARIES * abs(float(np.mean(found.force))))
+    if evidence["span"] > least:
+        return Regime(STEADY, 0.5 * sure, evidence | {"wanders": evidence["span"]}, STICK_SLIP)
+    fall = lone_fall(record.time, found.force)
+    return Regime(STEADY, sure, evidence | dict(zip(LONE_FALL, fall or (), strict=False)))
+
+
 def _by_course(record: Record, found: Swings) -> Regime:
     way = course(record.time, record.force)
     drive = (record.stiffness or 0.0) * (record.drive_velocity or 0.0)
@@ -550,7 +603,7 @@ def _by_course(record: Record, found: Swings) -> Regime:
         vibrates = few.likelihood if few.rms > least else 0.0
         if vibrates > 0.5:
             return Regime(UNDETERMINED, 0.0, evidence | {"few_periods": few.frequency})
-        return Regime(STEADY, sure * (1.0 - vibrates), evidence)
+        return _steady(record, found, sure * (1.0 - vibrates), evidence)
     kept = way.late_rate / way.early_rate
     evidence |= {"one_way": way.one_way, "rate_kept": kept}
     loading = way.late_rate / drive if drive else kept

@@ -24,7 +24,11 @@ from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
+    from stiction.analysis.record import Record
     from stiction.analysis.report import Analysis
+
+
+ALIKE = 0.1  # standard deviation of the drops over their mean
 
 
 def section(found: Analysis) -> Section:
@@ -62,6 +66,22 @@ def plainly(found: Analysis) -> str:
             f"The motion changes at {in_words(change, 's')}: one part is {kind}, the other "
             f"{found.regime.runner_up}. Analyse each by itself: means over both mean little."
         )
+    if "unchanging" in evidence:
+        return (
+            "The force is the same in all samples, as no measured force is: the channel is dead, "
+            "or at an end of its range."
+        )
+    if "forth" in evidence:
+        return (
+            "The force goes back and forth between both signs, as where the drive does so. Analyse "
+            "the strokes by themselves; of a run, or with the position, st.analysis.hysteresis "
+            "gives the loops."
+        )
+    if "straight" in evidence:
+        return (
+            "The force rises and falls evenly, as where a drive goes back and forth and the mass "
+            "sticks, or the load changes so. No vibration has such a shape."
+        )
     if "plateaus" in evidence:
         return (
             "The force goes back and forth between two levels, as where the drive does so, or the "
@@ -82,17 +102,16 @@ def plainly(found: Analysis) -> str:
             f"{_stick_share(found)}; {size}",
         }
         if kind in plain:
-            each = " each time" if count > 1 else ""
-            return f"{plain[kind]}{each}.{_why_transverse(found)}"
+            return f"{plain[kind]}{_each_time(found)}.{_why_transverse(found)}"
     if found.regime.evidence.get("backward", 0.0) > 0.5:
         return (
             "The force falls slowly and rises fast: it is recorded with the other sign, in all "
-            "likelihood. Analyse it with force=-force."
+            f"likelihood. Analyse it with force=-force{_zero_as_well(found.record)}."
         )
     slides = found.friction.kinetic
     at = f", at a force of {in_words(slides.force, 'N')}" if slides is not None else ""
     plain = {
-        STEADY: f"The mass slides steadily{at}.",
+        STEADY: _slides(evidence, at),
         SETTLING: "The motion dies down, and the mass comes to rest."
         if comes_to_rest(found.record.slip_speed)
         else f"The motion dies down, and the mass comes to slide steadily{at}.",
@@ -102,6 +121,40 @@ def plainly(found: Analysis) -> str:
         IRREGULAR: "The mass vibrates irregularly.",
     }
     return plain.get(kind, "This record does not show what the mass does.")
+
+
+def _zero_as_well(record: Record) -> str:
+    """Return what else a force of the other sign needs, if it is then negative."""
+    above = float(record.force.mean()) > 0.0
+    return ", and zero=, its reading without load, as friction is positive" if above else ""
+
+
+def _slides(evidence: dict[str, float], at: str) -> str:
+    """Describe steady sliding, as far as its record shows it."""
+    if (span := evidence.get("wanders")) is not None:
+        return (
+            f"The force wanders by {in_words(span, 'N')}{at.replace('at', 'about', 1)}: the mass "
+            "slides while its friction changes, or it sticks and slips more slowly than this "
+            "record shows."
+        )
+    if (fall := evidence.get("falls_by")) is not None:
+        when = in_words(evidence["falls_at"], "s")
+        return (
+            f"The mass slides steadily{at}; but once, at {when}, the force falls by "
+            f"{in_words(fall, 'N')}: a single slip, or a knock."
+        )
+    return f"The mass slides steadily{at}."
+
+
+def _each_time(found: Analysis) -> str:
+    """Return whether the force drops by so much each time, or between which values."""
+    drop = found.cycles["drop"].values
+    if len(drop) == 1:
+        return ""
+    if drop.std() < ALIKE * drop.mean():
+        return " each time"
+    low, high = (in_words(float(end), "N") for end in (drop.min(), drop.max()))
+    return f" on average, {low} at least and {high} at most"
 
 
 def _stick_share(found: Analysis) -> str:

@@ -45,8 +45,8 @@ def follow_ridge(
     Dataset
         Over ``time``: ``frequency`` (Hz), NaN where nothing stands out; ``amplitude`` (unit of
         the spectrogram); ``prominence``, its ratio to the median of the 51 lines around it at
-        that time. A line stands out from 5 on, which noise alone reaches in one of some 10 000
-        windows.
+        that time, inclined as they are. A line stands out from 5 on, which noise alone reaches in
+        one of some 10 000 windows.
     """
     import xarray as xr
 
@@ -62,10 +62,7 @@ def follow_ridge(
     lines = band["frequency"].values
     frequency = lines[path] + offset * (lines[1] - lines[0])
     height = np.exp(peak)
-    near = np.clip(path - BESIDE, 0, max(0, len(lines) - 2 * BESIDE - 1))
-    rows = np.minimum(near + np.arange(2 * BESIDE + 1)[:, None], len(lines) - 1)
-    around = np.median(band.values[rows, np.arange(len(path))], axis=0)
-    prominence = height / np.maximum(around, np.finfo(float).tiny)
+    prominence = np.exp(peak - _surroundings(level, lines, path))
     frequency[prominence < STANDS_OUT] = np.nan
     unit = amplitude.attrs.get("units", "")
     return xr.Dataset(
@@ -76,6 +73,23 @@ def follow_ridge(
         },
         {"time": amplitude["time"]},
     )
+
+
+def _surroundings(level: Floats, lines: Floats, path: NDArray[np.intp]) -> Floats:
+    """Return the logarithm of the median of the lines around a path, at each time.
+
+    Noise that falls off with frequency lifts the lines at the lower end of a band above the median
+    of those around them, all of which are higher: a power of the frequency leads through the
+    medians of the lower and the upper half.
+    """
+    near = np.clip(path - BESIDE, 0, max(0, len(level) - 2 * BESIDE - 1))
+    rows = np.minimum(near + np.arange(2 * BESIDE + 1)[:, None], len(level) - 1)
+    around, octave = level[rows, np.arange(len(path))], np.log(lines[rows])
+    halves = slice(BESIDE + 1), slice(BESIDE, None)
+    low, high = (np.median(around[half], axis=0) for half in halves)
+    left, right = (np.median(octave[half], axis=0) for half in halves)
+    share = (np.log(lines[path]) - left) / np.maximum(right - left, np.finfo(float).tiny)
+    return np.asarray(low + np.where(right > left, share, 0.5) * (high - low))
 
 
 def best_path(level: Floats, jump: int, stiffness: float) -> NDArray[np.intp]:

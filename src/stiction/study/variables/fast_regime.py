@@ -167,8 +167,7 @@ def by_shape(cycles: Swings, own: float, still: Shares, sticks: Shares) -> str:
 
 def irregular(cycles: Swings) -> bool:
     """Return whether vibrations are irregular, by the rule of `stiction.analysis.motion.regime`."""
-    periods, drops = cycles.period, cycles.drop
-    return regime.irregularity(float(periods.std() / periods.mean()), drops) > 0.5
+    return regime.irregularity(cycles.period, cycles.drop) > 0.5
 
 
 def course(found: Features, start: float, end: float, drive: float) -> str:

@@ -1,5 +1,7 @@
 """Friction of any motion, and doubts in words: what cannot be true, drift, a zero that is off."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -240,3 +242,49 @@ def test_a_first_loading_is_no_drift():
     assert "drifts" not in told
     steady = st.analyse(st.Record(time=time, force=force - np.minimum(time, 3.0) + 0.1 * time))
     assert "The force drifts by 100 mN/s" in " ".join(steady.warnings)
+
+
+def test_a_force_against_the_drive_has_no_break_away() -> None:
+    """It begins as it goes on; with an untared zero it would leave its first values."""
+    time = np.arange(0.0, 20.0, 1e-3)
+    noise = 0.01 * np.random.default_rng(1).normal(size=len(time))
+    for force in (-1.0 + noise, -sawtooth(time / 0.7)):
+        assert st.analyse(st.Record(time=time, force=force)).friction.break_away is None
+    late = np.maximum(time - 2.0, 0.0)
+    untared = np.where(time < 2.0, time, 1.4 + 0.6 * np.exp(-4.0 * late)) - 3.0
+    found = st.analyse(st.Record(time=time, force=untared + 0.1 * noise))
+    assert found.friction.break_away.force == pytest.approx(-1.0, abs=0.02)
+    assert "give zero=" in " ".join(found.warnings)
+
+
+def test_a_force_in_kilonewtons_is_doubted_and_gives_no_distance() -> None:
+    time = np.arange(0.0, 20.0, 1e-3)
+    known = {"normal_load": 20.0, "stiffness": 1400.0, "drive_velocity": 1e-3}
+    found = st.analyse(st.Record(time=time, force=1e-3 * sawtooth(time / 0.7), **known))
+    for words in ("of 0.0001 is implausible: is the force in kilonewtons", "in milliseconds"):
+        assert words in " ".join(found.warnings)
+    assert np.isnan(found.cycles["slip_distance"]).all()
+    assert "contradict the force" in found.missing["creep_distance"]
+
+
+def test_troughs_that_are_cut_off_are_doubted_and_a_rest_is_not() -> None:
+    time = np.arange(0.0, 40.0, 2e-3)
+    noise = 0.01 * np.random.default_rng(1).normal(size=len(time))
+    force = sawtooth(time / 2.0) + noise
+    said = st.analyse(st.Record(time=time, force=np.maximum(force, 1.2))).warnings
+    assert "at exactly 1.2 N" in " ".join(said)
+    assert "troughs are cut off" in " ".join(said)
+    rests = np.where(time < 4.0, 0.0, force)
+    assert "exactly" not in " ".join(st.analyse(st.Record(time=time, force=rests)).warnings)
+
+
+def test_drops_that_differ_are_given_by_their_range() -> None:
+    time = np.arange(0.0, 40.0, 2e-3)
+    noise = 1e-3 * np.random.default_rng(1).normal(size=len(time))
+    ranges = "by [78].* mN on average, (59|60).* mN at least and 1.* N at most"
+    for second, words in ((1.0, "N each time"), (0.6, ranges)):
+        troughs = 2.0 - np.where(np.arange(21) % 2, second, 1.0)
+        corners = np.stack([troughs[:-1], np.full(20, 2.0)], axis=1).ravel()
+        at = 2.0 * np.arange(20)[:, None] + [0.0, 1.9]
+        record = st.Record(time=time, force=np.interp(time, at.ravel(), corners) + noise)
+        assert re.search(words, str(st.analyse(record)))

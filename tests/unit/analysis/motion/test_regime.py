@@ -224,13 +224,13 @@ def test_records_of_no_motion_in_particular() -> None:
         kind: [st.analysis.classify(st.Record(time=time, force=force)).kind for force in forces]
         for kind, forces in {
             "steady sliding": [
-                np.ones(4000),
                 white,
                 2.0 + 0.01 * white,
                 spike,
                 spike + 0.01 * white,
             ],
             "stuck": [time, time + 0.05 * white, time + spike],
+            "undetermined": [np.ones(4000), np.zeros(4000)],  # a dead channel
             "settling": [1.0 - np.exp(-5.0 * time), np.exp(-2 * time) * np.sin(40 * time)],
         }.items()
     }
@@ -242,7 +242,7 @@ def test_records_of_no_motion_in_particular() -> None:
 def test_too_few_samples_determine_nothing(size: int) -> None:
     regime = st.analysis.classify(st.Record(time=np.arange(size), force=np.ones(size)))
     assert (regime.kind, regime.confidence) == ("undetermined", 0.0)
-    assert f"there are {size} samples, too few" in str(regime)
+    assert f"number of samples: {size}, too few" in str(regime)
 
 
 def test_one_cut_slip_determines_nothing(paper_run: st.Trajectory) -> None:
@@ -481,8 +481,8 @@ def test_strokes_to_and_fro_are_no_vibration(share: float) -> None:
     record = st.Record(time=time, force=1.5 * place + 0.01 * random.normal(size=len(time)))
     found = st.analyse(record)
     assert found.regime.kind == "undetermined"
-    assert "back and forth between two levels" in str(found)
-    assert found.friction.kinetic is None
+    assert "back and forth between both signs" in str(found)
+    assert found.friction[:3] == (None, None, None)
     assert "against the drive" not in str(found)
 
 
@@ -548,3 +548,87 @@ def test_stick_slip_says_how_long_the_mass_rests(speed: float, rest: tuple[float
         ends = cycles["start"].values[0], cycles["trough_time"].values[-1]
         stuck = np.clip(run.stick_intervals, *ends)
         assert share == pytest.approx(np.ptp(stuck, axis=1).sum() / (ends[1] - ends[0]), rel=0.1)
+
+
+STROKES = np.arange(0.0, 20.0, 1e-3)
+
+
+@pytest.mark.parametrize("strokes", [2, 3, 4])
+def test_stick_slip_in_strokes_of_either_sign_is_of_a_drive_that_turns_round(strokes: int) -> None:
+    sign = np.where(STROKES // (20.0 / strokes) % 2 < 1, 1.0, -1.0)
+    for pull in (np.ones(len(STROKES)), 0.8 + 0.2 * (STROKES / 0.5 % 1.0)):
+        found = st.analyse(st.Record(time=STROKES, force=sign * pull))
+        assert "back and forth between both signs" in str(found)
+        assert found.friction[:3] == (None, None, None)
+        assert "against the drive" not in str(found)
+
+
+@pytest.mark.parametrize(
+    "force",
+    [
+        np.sin(2 * pi * 1.3 * STROKES),  # a vibration about zero
+        0.2 * (STROKES / 0.5 % 1.0) - 0.1,  # stick-slip about an untared zero
+        np.where(STROKES < 6.0, np.minimum(STROKES - 4.0, 1.0), 1.0).clip(-1.0),  # a first loading
+    ],
+)
+def test_a_force_that_passes_zero_is_of_no_strokes(force: np.ndarray) -> None:
+    noise = 2e-3 * np.random.default_rng(1).normal(size=len(STROKES))
+    found = st.analysis.classify(st.Record(time=STROKES, force=force + noise))
+    assert "forth" not in found.evidence
+
+
+def test_a_force_that_rises_and_falls_evenly_is_no_vibration() -> None:
+    noise = 1e-3 * np.random.default_rng(1).normal(size=len(STROKES))
+    for rises in (1.8, 2.0, 2.2):
+        place = np.interp(STROKES % 4.0, [0.0, rises, 4.0], [0.0, 1.0, 0.0])
+        found = st.analyse(st.Record(time=STROKES, force=1.0 + place + noise))
+        assert (found.regime.kind, found.regime.confidence) == ("undetermined", 0.0)
+        assert "No vibration has such a shape" in str(found)
+
+
+def test_a_vibration_whose_pitch_rises_is_harmonic() -> None:
+    turns = 0.5 * STROKES + 0.2 * STROKES**2
+    found = st.analysis.classify(st.Record(time=STROKES, force=3.0 + np.sin(2 * pi * turns)))
+    assert found.kind == "harmonic vibration"
+    assert found.confidence > 0.9
+
+
+def test_swings_that_differ_by_rounding_are_regular() -> None:
+    force = np.clip(3.0 + 1.3 * np.sin(2 * pi * 2.0 * STROKES), 2.0, 4.0)
+    found = st.analysis.classify(st.Record(time=STROKES, force=force))
+    assert (found.kind, found.runner_up) == ("harmonic vibration", "")
+    assert found.confidence > 0.99
+
+
+@pytest.mark.parametrize(
+    "force",
+    [
+        5.0 + np.sin(2 * pi * 3.0 * STROKES) + 0.8 * np.sin(2 * pi * 1.5 * STROKES),  # doubled
+        1.0  # a load cell that rings after each slip
+        - 0.3 * np.exp(-8.0 * (STROKES % 1.0)) * np.cos(2 * pi * 7.0 * (STROKES % 1.0))
+        + 0.1 * (STROKES % 1.0),
+    ],
+)
+def test_cycles_that_turn_back_are_not_of_the_other_sign(force: np.ndarray) -> None:
+    found = st.analyse(st.Record(time=STROKES, force=force))
+    assert (found.regime.kind, found.regime.confidence) == ("undetermined", 0.0)
+    assert "sign" not in str(found)
+
+
+@pytest.mark.parametrize(("size", "period"), [(20_000, 15.0), (40, 0.025)])
+def test_one_cycle_and_a_bit_is_no_steady_sliding_for_sure(size: int, period: float) -> None:
+    time = STROKES[:size]
+    noise = 1e-3 * np.random.default_rng(1).normal(size=size)
+    found = st.analyse(st.Record(time=time, force=0.8 + 0.2 * (time / period % 1.0) + noise))
+    assert found.regime.confidence < 0.5
+    assert "sticks and slips more slowly than this record shows" in str(found)
+
+
+def test_a_single_slip_in_steady_sliding_is_named() -> None:
+    slip = 0.3 * np.sin(10 * pi * (STROKES - 9.0)) * (abs(STROKES - 9.05) < 0.05)
+    noise = 3e-3 * np.random.default_rng(1).normal(size=len(STROKES))
+    found = st.analyse(st.Record(time=STROKES, force=1.0 - slip + noise))
+    assert found.regime.kind == "steady sliding"
+    assert found.regime.evidence["falls_at"] == pytest.approx(9.0, abs=0.03)
+    assert found.regime.evidence["falls_by"] == pytest.approx(0.3, abs=0.03)
+    assert "a single slip, or a knock" in str(found)
