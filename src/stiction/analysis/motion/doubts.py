@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 LARGEST_MU = 3.0
 LEAST_MU = 0.01  # of dry friction: superlubricity aside
+UNITS = (("mN", "milli", 1e-3), ("uN", "micro", 1e-6), ("kN", "kilo", 1e3))  # size, N
 TINY_MU = 1e-3  # no friction is so small, but of a film of fluid
 THOUSAND = 0.2  # a ratio within a factor of 5 of a thousand, or its square, is a wrong unit
 ABOUT_ZERO = 0.05  # of half the drop: so far from zero the middle of a swing may lie
@@ -32,6 +33,16 @@ FLAT = 4  # times as many samples at the largest value as at any other, and so m
 TIMES = 3  # that a force stays at its least value: at rest it does so once
 QUIET_SHARE = 0.15  # of the record
 IMPOSED = {"drive": ("drive_X", "drive_Y"), "load": ("normal_load",)}  # columns of a run
+# By which power of 1000 the rate of a force is off in another unit: quantity, unit, remedy
+CAUSES = {
+    -2: (("time", "microseconds", "time_unit='us'"),),
+    -1: (
+        ("time", "milliseconds", "time_unit='ms'"),
+        ("force", "kilonewtons", "force_unit='kN'"),
+    ),
+    1: (("force", "millinewtons", "force_unit='mN'"),),
+    2: (("force", "micronewtons", "force_unit='uN'"),),
+}
 FEW_OFF = 0.05  # of the samples: interpolated, they hardly weaken an oscillation
 STIRS = 0.01  # of the drive's largest speed: more backwards is a motion to and fro
 NOISE = 5.0  # standard deviations
@@ -221,9 +232,14 @@ def _implausible_friction(record: Record, friction: Friction) -> Iterator[str]:
     if TINY_MU <= mu <= LARGEST_MU or not np.isfinite(mu):
         return
     load = in_words(record.normal_load or 0.0, "N")
-    unit, prefix, right = ("mN", "milli", mu * 1e-3) if mu > 1.0 else ("kN", "kilo", mu * 1e3)
-    thousandfold = LEAST_MU < right < LARGEST_MU
-    its = f"is the force in {prefix}newtons? Give force_unit='{unit}'; or " if thousandfold else ""
+    its = next(
+        (
+            f"is the force in {prefix}newtons? Give force_unit='{unit}'; or "
+            for unit, prefix, size in UNITS
+            if LEAST_MU < mu * size < LARGEST_MU
+        ),
+        "",
+    )
     yield f"A friction coefficient of {mu:.3g} is implausible: {its}check the normal load, {load}."
 
 
@@ -240,18 +256,12 @@ def _loading_too_fast(record: Record, kind: str, cycles: xr.Dataset) -> Iterator
 def _remedy(ratio: float) -> str:
     """Return the likely cause of a rate that is `ratio` times as large as stated."""
     power = log10(ratio) / 3.0 if ratio > 0.0 else 0.0
-    if abs(power) > 0.5 and abs(power - round(power)) < 0.1:
-        if power < 0.0:
-            return (
-                "is the time in milliseconds? Give time_unit='ms'; is the force in kilonewtons? "
-                "Give force_unit='kN'; or stiffness or drive velocity is stated 1000 times too "
-                "large"
-            )
-        return (
-            "is the force in millinewtons? Give force_unit='mN'; or stiffness or drive velocity "
-            "is stated 1000 times too small"
-        )
-    return "check stiffness and drive velocity, or the gain of the load cell"
+    causes = CAUSES.get(round(power)) if abs(power - round(power)) < 0.1 else None
+    if causes is None:
+        return "check stiffness and drive velocity, or the gain of the load cell"
+    asked = "; ".join(f"is the {what} in {name}? Give {how}" for what, name, how in causes)
+    wrong = f"{1000 ** abs(round(power))} times too {'large' if power < 0.0 else 'small'}"
+    return f"{asked}; or stiffness or drive velocity is stated {wrong}"
 
 
 def _mass(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:

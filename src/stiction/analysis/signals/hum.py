@@ -148,11 +148,15 @@ def spectrum(force: Floats) -> tuple[Floats, float]:
 
 
 def beside(power: Floats) -> Floats:
-    """Return the median power around each sample of a spectrum, by blocks."""
+    """Return the median power around each sample of a spectrum, by blocks.
+
+    The last block takes the remainder: a line would fill a short one.
+    """
     edges = [0]
-    while edges[-1] < len(power):
-        edges.append(edges[-1] + max(BESIDE, int(10.0 * WANDERS * edges[-1])))
-    size = np.diff(np.minimum(edges, len(power)))
+    while len(power) - edges[-1] >= (width := max(BESIDE, int(10.0 * WANDERS * edges[-1]))):
+        edges.append(edges[-1] + width)
+    edges = [*edges[: max(len(edges) - 1, 1)], len(power)]
+    size = np.diff(edges)
     medians = np.array([np.median(block) for block in np.split(power, edges[1:-1])])
     around = np.maximum.reduce([medians, np.roll(medians, 1), np.roll(medians, -1)])
     return np.repeat(around, size)

@@ -36,6 +36,9 @@ def test_what_belongs_together_is_not_doubted(force) -> None:
     [
         (1e3, 1.0, {}, "is the time in milliseconds? Give time_unit='ms'"),
         (1.0, 1e3, {}, "is the force in millinewtons? Give force_unit='mN'"),
+        (1e6, 1.0, {}, "is the time in microseconds? Give time_unit='us'"),
+        (1.0, 1e6, {}, "implausible: is the force in micronewtons? Give force_unit='uN'"),
+        (1.0, 1e6, {}, "is stated 1000000 times too small"),
         (1e3, 1e3, {}, "A friction coefficient of 199 is implausible"),
         (1e3, 1e3, {}, "stiffness over mass is 7.3e-07 times"),
         (1.0, 1.0, {"stiffness": "1 MN/m"}, "stated 1000 times too large"),

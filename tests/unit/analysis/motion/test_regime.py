@@ -632,3 +632,15 @@ def test_a_single_slip_in_steady_sliding_is_named() -> None:
     assert found.regime.evidence["falls_at"] == pytest.approx(9.0, abs=0.03)
     assert found.regime.evidence["falls_by"] == pytest.approx(0.3, abs=0.03)
     assert "a single slip, or a knock" in str(found)
+
+
+@pytest.mark.parametrize("samples", [2.103, 2.112, 2.4, 3.0, 3.3])
+def test_fewer_than_four_samples_a_cycle_are_no_steady_sliding(samples: float) -> None:
+    """Near two of them a short spectrum has nothing beside the line but the line."""
+    time = np.arange(int(61.5 * samples)) * 1e-2
+    for fall in (0.047, 0.179):
+        phase = (time / (1e-2 * samples) + 0.3) % 1.0
+        force = np.where(phase < 1 - fall, phase / (1 - fall), (1 - phase) / fall)
+        found = st.analysis.classify(st.Record(time=time, force=5.0 + force))
+        assert found.kind == "undetermined"
+        assert "too few to show it" in str(found)
