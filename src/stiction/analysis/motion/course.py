@@ -141,17 +141,27 @@ def strokes(force: Floats) -> tuple[float, float] | None:
 def lone_fall(time: Floats, force: Floats) -> tuple[float, float] | None:
     """Return time (s) and height (N) of the largest fall, if it is quick and stands out of noise.
 
-    So does a single slip, in a record that else slides steadily, or a knock.
+    So does a single slip, in a record that else slides steadily, or a knock. No other fall is half
+    as high.
     """
-    below = np.maximum.accumulate(force) - force
-    end = int(np.argmax(below))
-    height = float(below[end])
-    begin = int(np.flatnonzero(below[: end + 1] <= 0.5 * height)[-1])
+    begin, end, height = _largest_fall(force)
+    others = max(_largest_fall(part)[2] for part in (force[:begin], force[end:]))
     steps = np.abs(np.diff(force))
     step = float(np.median(steps[steps > 0.0])) if steps.any() else 0.0  # of a digitised force
     noise = max(DEVIATION * float(np.median(np.abs(force - np.median(force)))), step)
     quick = float(time[end] - time[begin]) < BRIEF * float(time[-1] - time[0])
-    return (float(time[begin]), height) if quick and height > STANDS_OUT * noise else None
+    alone = height > max(STANDS_OUT * noise, 2.0 * others)
+    return (float(time[begin]), height) if quick and alone else None
+
+
+def _largest_fall(force: Floats) -> tuple[int, int, float]:
+    """Return begin, end and height of the largest fall of a force."""
+    if not len(force):
+        return 0, 0, 0.0
+    below = np.maximum.accumulate(force) - force
+    end = int(np.argmax(below))
+    begin = int(np.flatnonzero(below[: end + 1] <= 0.5 * below[end])[-1])
+    return begin, end, float(below[end])
 
 
 class Course(NamedTuple):

@@ -30,6 +30,7 @@ THOUSAND = 0.2  # a ratio within a factor of 5 of a thousand, or its square, is 
 ABOUT_ZERO = 0.05  # of half the drop: so far from zero the middle of a swing may lie
 AT_REST = 0.02  # of the largest force
 FLAT = 4  # times as many samples at the largest value as at any other, and so many at least
+ENOUGH_VALUES = 16  # that are all repeated as often
 TIMES = 3  # that a force stays at its least value: at rest it does so once
 QUIET_SHARE = 0.15  # of the record
 IMPOSED = {"drive": ("drive_X", "drive_Y"), "load": ("normal_load",)}  # columns of a run
@@ -51,7 +52,7 @@ NOISE = 5.0  # standard deviations
 def warnings(record: Record, kind: str, cycles: xr.Dataset, friction: Friction) -> tuple[str, ...]:
     """Return warnings as sentences, the most important first."""
     found = [
-        *_implausible_friction(record, friction),
+        *_implausible_friction(record, friction, cycles),
         *_doubt_clipping(record),
         *_doubt_mean_period(cycles),
         *_doubt_quiet(record, friction, cycles),
@@ -62,6 +63,7 @@ def warnings(record: Record, kind: str, cycles: xr.Dataset, friction: Friction) 
         *_drift(record, kind, cycles),
         *_zero(record, friction, cycles),
         *_doubt_times(record),
+        *_doubt_repeats(record),
     ]
     return tuple(found)
 
@@ -148,6 +150,18 @@ def _doubt_times(record: Record) -> Iterator[str]:
         )
 
 
+def _doubt_repeats(record: Record) -> Iterator[str]:
+    """Doubt a sample rate of which each value is recorded several times."""
+    lasts = np.diff(np.flatnonzero(np.diff(record.force, prepend=np.nan) != 0.0))[1:]
+    if len(lasts) < ENOUGH_VALUES or lasts.max() < 2 or np.ptp(lasts) > 1 or lasts.min() < 2:
+        return
+    times = int(np.median(lasts))
+    yield (
+        f"Each value is recorded {times} times: the sensor gives {record.sample_rate / times:.3g} "
+        f"values a second, fewer than the record has. Analyse time[::{times}] and force[::{times}]."
+    )
+
+
 def _samples(count: int) -> str:
     return f"{count} samples have" if count > 1 else "One sample has"
 
@@ -226,10 +240,12 @@ def _doubt_quiet(record: Record, friction: Friction, cycles: xr.Dataset) -> Iter
         )
 
 
-def _implausible_friction(record: Record, friction: Friction) -> Iterator[str]:
+def _implausible_friction(record: Record, friction: Friction, cycles: xr.Dataset) -> Iterator[str]:
     known = [each for each in friction[:3] if each is not None]
     mu = max((abs(each.coefficient) for each in known), default=np.nan)
     if TINY_MU <= mu <= LARGEST_MU or not np.isfinite(mu):
+        return
+    if mu < TINY_MU and _is_about_zero(friction, cycles):
         return
     load = in_words(record.normal_load or 0.0, "N")
     its = next(
@@ -308,11 +324,26 @@ def _drift(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:
         )
 
 
+def _is_about_zero(friction: Friction, cycles: xr.Dataset) -> bool:
+    """Return whether the mean friction is nearly nothing beside the swings, or the scatter."""
+    mean = friction.kinetic
+    if mean is None:
+        return False
+    swing = 0.5 * float(cycles["drop"].median()) if cycles.sizes["cycle"] else mean.spread
+    return abs(mean.force) < ABOUT_ZERO * swing
+
+
 def _zero(record: Record, friction: Friction, cycles: xr.Dataset) -> Iterator[str]:
     """Doubt the zero if a record begins unloaded, or reaches impossible values."""
     largest = float(np.abs(record.force).max(initial=0.0))
-    swing = 0.5 * float(cycles["drop"].median()) if cycles.sizes["cycle"] else 0.0
-    if friction.kinetic is not None and friction.kinetic.force < -ABOUT_ZERO * swing:
+    if friction.kinetic is not None and _is_about_zero(friction, cycles):
+        yield (
+            f"The mean friction is about zero, {in_words(friction.kinetic.force, 'N')}: the zero "
+            "of the force is off, as behind an amplifier that lets no constant force through; "
+            "give zero=, the reading without load."
+        )
+        return
+    if friction.kinetic is not None and friction.kinetic.force < 0.0:
         yield (
             f"The mean friction is {in_words(friction.kinetic.force, 'N')}, against the drive: the "
             "zero of the force is off, or its sign; give zero=, the reading without load."

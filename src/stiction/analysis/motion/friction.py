@@ -164,6 +164,7 @@ def _first_peak(forces: Floats, noise: float) -> tuple[int | None, str]:
         return None, "the record does not begin with an unloaded spring"
     fall = np.maximum(STANDS_OUT * noise, PEAK * (highest - forces[0]))
     risen = highest - forces[0] > 0.5 * (highest[-1] - forces[0])
+    risen &= highest - forces[0] > 2.0 * STANDS_OUT * noise
     fallen = np.flatnonzero((highest - forces > fall) & risen)
     if not len(fallen):
         least = f"{100.0 * PEAK:g}% of its rise"

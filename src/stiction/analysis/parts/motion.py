@@ -24,11 +24,11 @@ from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
-    from stiction.analysis.record import Record
     from stiction.analysis.report import Analysis
 
 
 ALIKE = 0.1  # standard deviation of the drops over their mean
+SLOW_SWING = 2.0  # times the mass's own period on its spring: a slower swing is not its own
 
 
 def section(found: Analysis) -> Section:
@@ -97,24 +97,28 @@ def plainly(found: Analysis) -> str:
             STICK_SLIP: f"The mass sticks and slips {times}{every}{_stick_share(found)}; {size}",
             TRANSITIONAL: f"The mass slips {times}{every}, between stick-slip and plain "
             f"vibration; {size}",
-            HARMONIC: f"The mass swings {times}{every}{_stick_share(found)}; {size}",
+            HARMONIC: f"The {_swinging(found)} swings {times}{every}{_stick_share(found)}; {size}",
             TRANSVERSE: f"The mass oscillates across the drive {times}{every}"
             f"{_stick_share(found)}; {size}",
         }
         if kind in plain:
-            return f"{plain[kind]}{_each_time(found)}.{_why_transverse(found)}"
-    if found.regime.evidence.get("backward", 0.0) > 0.5:
+            return f"{plain[kind]}{_each_time(found)}.{_why_transverse(found)}{_slow_swing(found)}"
+    if evidence.get("backward", 0.0) > 0.5:
+        fast = "The force falls slowly and rises fast"
+        if float(found.record.force.mean()) <= 0.0:
+            return (
+                f"{fast}: it is recorded with the other sign, in all likelihood. Analyse it with "
+                "force=-force."
+            )
         return (
-            "The force falls slowly and rises fast: it is recorded with the other sign, in all "
-            f"likelihood. Analyse it with force=-force{_zero_as_well(found.record)}."
+            f"{fast}: as where holds interrupt the sliding, or it is recorded with the other sign "
+            "and an untared zero; then analyse it with force=-force and zero=."
         )
     slides = found.friction.kinetic
     at = f", at a force of {in_words(slides.force, 'N')}" if slides is not None else ""
     plain = {
         STEADY: _slides(evidence, at),
-        SETTLING: "The motion dies down, and the mass comes to rest."
-        if comes_to_rest(found.record.slip_speed)
-        else f"The motion dies down, and the mass comes to slide steadily{at}.",
+        SETTLING: _settles(found, at),
         STUCK: "The mass does not slip, it rests or creeps: the force only rises."
         if found.regime.runner_up != STEADY
         else "The force only rises: either the mass sticks, or it slides and the force drifts.",
@@ -123,10 +127,39 @@ def plainly(found: Analysis) -> str:
     return plain.get(kind, "This record does not show what the mass does.")
 
 
-def _zero_as_well(record: Record) -> str:
-    """Return what else a force of the other sign needs, if it is then negative."""
-    above = float(record.force.mean()) > 0.0
-    return ", and zero=, its reading without load, as friction is positive" if above else ""
+def _swinging(found: Analysis) -> str:
+    """Return what is known to swing: the mass, or only the force, which friction changes too."""
+    period = found.regime.evidence.get("natural_period")
+    return "force" if period is None or period > SLOW_SWING else "mass"
+
+
+def _slow_swing(found: Analysis) -> str:
+    """Return that a mass on its spring swings more quickly than its record, if it does so."""
+    if found.regime.kind != HARMONIC or isinstance(found.source, Trajectory):
+        return ""
+    period = found.regime.evidence.get("natural_period", 0.0)
+    if period <= SLOW_SWING:
+        return ""
+    return (
+        f" The mass on its spring would do so {period:.3g} times as quickly: friction, load or "
+        "drive change so."
+    )
+
+
+def _settles(found: Analysis, at: str) -> str:
+    """Describe what dies down, or settles, and what the mass does then."""
+    evidence = found.regime.evidence
+    if comes_to_rest(found.record.slip_speed):
+        return "The motion dies down, and the mass comes to rest."
+    if "swings" in evidence or "fading" in evidence or evidence.get("change", 0.0) >= 0.0:
+        what = "force settles" if "late_share" in evidence else "vibration dies down"
+        return f"The {what}, and the mass comes to slide steadily{at}."
+    if found.record.slip_speed is not None:
+        return f"The force settles, and the mass comes to slide steadily{at}."
+    return (
+        f"The force falls and settles{at}: there the mass slides steadily, or it rests, as where "
+        "the drive has stopped."
+    )
 
 
 def _slides(evidence: dict[str, float], at: str) -> str:

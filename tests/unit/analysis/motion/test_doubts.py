@@ -291,3 +291,45 @@ def test_drops_that_differ_are_given_by_their_range() -> None:
         at = 2.0 * np.arange(20)[:, None] + [0.0, 1.9]
         record = st.Record(time=time, force=np.interp(time, at.ravel(), corners) + noise)
         assert re.search(words, str(st.analyse(record)))
+
+
+def test_a_mean_of_about_zero_is_doubted_whatever_its_sign() -> None:
+    """As behind an amplifier that lets no constant force through; its unit is not asked for."""
+    time = np.arange(0.0, 20.0, 1e-3)
+    noise = 1e-3 * np.random.default_rng(1).normal(size=len(time))
+    for force in (sawtooth(time / 0.7) - 1.49, np.sin(6.0 * np.pi * time), 1e3 * noise):
+        said = " ".join(st.analyse(st.Record(time=time, force=force + noise, **KNOWN)).warnings)
+        assert "The mean friction is about zero" in said
+        assert "kilonewtons? Give force_unit='kN'; or check the normal load" not in said
+    assert "about zero" not in doubts_in_words(time, sawtooth(time / 0.7))
+
+
+def test_values_that_are_repeated_are_named() -> None:
+    time = np.arange(0.0, 20.0, 1e-3)
+    force = sawtooth(time / 0.7) + 1e-3 * np.random.default_rng(1).normal(size=len(time))
+    for times in (1, 10, 200):
+        held = np.repeat(force[::times], times)
+        said = " ".join(st.analyse(st.Record(time=time, force=held)).warnings)
+        assert (f"recorded {times} times: the sensor gives {1000 // times} values" in said) == (
+            times > 1
+        )
+    coarse = np.rint(force / 0.1) * 0.1  # digitised, which repeats values, too
+    assert "recorded" not in " ".join(st.analyse(st.Record(time=time, force=coarse)).warnings)
+
+
+def test_words_say_no_more_than_a_force_shows() -> None:
+    time = np.arange(0.0, 20.0, 1e-3)
+    noise = 3e-3 * np.random.default_rng(1).normal(size=len(time))
+    swing = 2.0 + 0.3 * np.sin(np.pi * time)
+    holds = np.where(time % 5.0 < 3.0, 1.0 + 0.1 * np.exp(-10.0 * (time % 5.0)), 0.95)
+    stiff = {"stiffness": "1 kN/m", "mass": "250 g"}
+    for force, known, words in (
+        (np.where(time < 10.0, 1.0, 1.4), {}, "The force settles, and the mass comes to slide"),
+        (np.where(time < 10.0, 1.4, 1.0), {}, "slides steadily, or it rests"),
+        (2.0 + np.exp(-time) * np.sin(25.0 * time), {}, "The vibration dies down"),
+        (swing, {}, "The force swings 9 times, every 1.99"),
+        (swing, stiff, " times as quickly: friction, load or drive change so"),
+        (swing, {"stiffness": "1 kN/m", "mass": "100 kg"}, "The mass swings 9 times"),
+        (holds, {}, "as where holds interrupt the sliding"),
+    ):
+        assert words in str(st.analyse(st.Record(time=time, force=force + noise, **known)))

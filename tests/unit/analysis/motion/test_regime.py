@@ -644,3 +644,10 @@ def test_fewer_than_four_samples_a_cycle_are_no_steady_sliding(samples: float) -
         found = st.analysis.classify(st.Record(time=time, force=5.0 + force))
         assert found.kind == "undetermined"
         assert "too few to show it" in str(found)
+
+
+def test_of_many_large_falls_none_is_single() -> None:
+    noise = 0.01 * np.random.default_rng(1).standard_t(2, size=len(STROKES))
+    found = st.analysis.classify(st.Record(time=STROKES, force=2.0 + noise))
+    assert found.kind == "steady sliding"
+    assert "falls_by" not in found.evidence
