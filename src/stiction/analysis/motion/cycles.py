@@ -14,7 +14,7 @@ from stiction.analysis.motion.disturbance import (
     is_subharmonic,
     lasts_through_loading,
 )
-from stiction.analysis.motion.hesitations import take_out
+from stiction.analysis.motion.hesitations import level, take_out
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.hum import Line, narrow_lines
 from stiction.analysis.signals.outliers import without_outliers
@@ -238,7 +238,8 @@ def _corners(record: Record, points: TurningPoints) -> tuple[Vertices, Vertices]
         none = Vertices(np.zeros(0), np.zeros(0))
         return none, none
     found = vertices(record.time, points)
-    dips = take_out(np.concatenate([[points.before], found.value, [points.after]]))
+    values = np.concatenate([[points.before], found.value, [points.after]])
+    dips = take_out(level(values, found.time))
     kept = dips.kept - 1  # of which the first was before
     kept = kept[0 if points.trough[kept[0]] else 1 :]
     kept = kept[: (len(kept) - 1) // 2 * 2 + 1]

@@ -6,6 +6,9 @@ half the swing. Irregular stick-slip with slips of every size is the exception: 
 much that their number depends on the share of the swing that is asked for, and small ones are a
 minority, only a fall far below the others is a hesitation.
 
+Where the force moves slowly beside the cycles, as over each turn of a disc, the swing up and the
+swing down differ; that motion is subtracted first.
+
 Only reversals that stand apart from noise and ripple are considered: in a measured force those
 above about 5 % of a drop, 10 % under noise.
 
@@ -33,6 +36,9 @@ FEW = 5  # falls: whether fewer are alike is not known
 # Falls spread evenly from half the swing to the whole of it have a standard deviation of 0.19 of
 # their mean; twice the standard error of that, 1/(2 n)^(1/2), is added.
 ALIKE = 0.23
+# Legs, two cycles, over which a slow motion goes on and before which it went on, and by how much at
+# least, in swings: no hesitating cycle moves by so much to the same side twice
+AWAY, GOES_ON = 4, 0.5
 
 
 class Hesitations(NamedTuple):
@@ -68,6 +74,32 @@ def take_out(values: Floats) -> Hesitations:
     deep = (len(shallow.kept) - len(found.kept)) // 2
     halves = deep >= OFTEN * len(fall) > 0 or _alike(fall) or _is_divided(values)
     return found if halves else shallow
+
+
+def level(values: Floats, time: Floats) -> Floats:
+    """Subtract a slow motion beside the cycles from a sequence of turning points.
+
+    Parameters
+    ----------
+    values : ndarray
+        (n,) alternating peaks and troughs between two extremes, as for `take_out`.
+    time : ndarray
+        (n - 2,) times of the peaks and troughs.
+    """
+    inner, last = values[1:-1], len(values) - 3
+    if last < 2 * AWAY:
+        return values
+    size = typical(np.abs(np.diff(inner)))
+    middle = np.clip(np.arange(last + 1), AWAY, last - AWAY)
+    before, after = inner[middle] - inner[middle - AWAY], inner[middle + AWAY] - inner[middle]
+    moves = np.minimum(np.abs(before), np.abs(after)) * (before * after > 0.0)
+    lasts = np.maximum(time[middle + AWAY] - time[middle - AWAY], np.finfo(float).tiny)
+    rate = (before + after) / lasts
+    # a peak and a trough together: swings may grow to both sides
+    moves, rate = (0.5 * (each[1:] + each[:-1]) for each in (moves, rate))
+    passed = np.where(moves > GOES_ON * size, rate * np.diff(time), 0.0)
+    slow = np.concatenate([[0.0, 0.0], np.cumsum(passed)])
+    return np.asarray(values - np.append(slow, slow[-1]))
 
 
 def _below(values: Floats, share: float) -> Hesitations:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from stiction.analysis.motion import regime
 from stiction.analysis.motion.course import QUARTER, QUIET, built_up, dies_out
-from stiction.analysis.motion.hesitations import take_out
+from stiction.analysis.motion.hesitations import level, take_out
 from stiction.study.variables.features import PARTS, Features
 
 Floats = NDArray[np.float64]
@@ -78,7 +78,8 @@ Shares = Callable[[Swings], Floats]
 
 def swings(found: Features) -> Swings:
     """Return the complete swings between turning points, without hesitations."""
-    kept = take_out(np.concatenate([[found.first], found.turn_value, [found.last]])).kept - 1
+    values = np.concatenate([[found.first], found.turn_value, [found.last]])
+    kept = take_out(level(values, found.turn_time)).kept - 1
     kept = kept[0 if len(kept) and (kept[0] % 2 == 0) == found.trough else 1 :]
     time, value = found.turn_time[kept], found.turn_value[kept]
     last = 2 * max((len(time) - 1) // 2, 0)

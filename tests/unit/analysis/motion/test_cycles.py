@@ -604,3 +604,15 @@ def test_every_column_of_a_sawtooth() -> None:
         a, b = (float(found[name][row]) for name in ("peak_time", "trough_time"))
         fastest = np.cos(np.linspace(a, b, 400)) ** 2
         assert float(found["peak_slip_speed"][row]) == pytest.approx(fastest.max(), abs=5e-3)
+
+
+@pytest.mark.parametrize("turns", [2.0, 4.0, 6.0])
+@pytest.mark.parametrize("steep", [0.4, 0.7])
+def test_stick_slip_beside_a_slow_motion_has_all_its_cycles(turns: float, steep: float) -> None:
+    """As a disc that is askew adds, by up to 70 % of the rate of loading."""
+    time = np.arange(0.0, 80.0, 5e-3)
+    turn = 2.0 * np.pi * turns / 80.0
+    force = (time % 1.0) + steep / turn * np.sin(turn * time)
+    record = st.Record(time=time, force=10.0 + force)
+    assert st.analysis.find_cycles(record).sizes["cycle"] == pytest.approx(78, abs=1)
+    assert st.analysis.classify(record).kind == "stick-slip"

@@ -120,3 +120,19 @@ def test_what_the_record_cuts_of_a_hesitation_is_left_out(way):
     inside = values[found.kept]
     assert set(inside.tolist()) == {5.0, 10.0}
     assert len(inside) == 15
+
+
+@pytest.mark.parametrize("steep", [-0.8, -0.5, 0.5, 0.8])
+def test_a_slow_motion_takes_no_cycles_out(steep):
+    """Of so many swings a cycle: rises are much smaller than falls, or much larger."""
+    size = np.tile([1.0, -1.0], 20)
+    time = np.cumsum(np.tile([0.9, 0.1], 20))
+    values = np.concatenate([[1.0], np.cumsum(size) + steep * time, [1.0]])
+    values[-1] += values[-2]
+    assert len(hesitations.take_out(hesitations.level(values, time)).at) == 0
+
+
+def test_cycles_beside_no_slow_motion_stay_as_they_are():
+    for values in (cycles(*[5.0] * 8, dip=(0, 2.0, 0, 4.0)), cycles(*np.linspace(0.5, 5.0, 12))):
+        time = np.arange(len(values) - 2.0)
+        assert hesitations.level(values, time).tolist() == values.tolist()
