@@ -27,7 +27,7 @@ from stiction.plotting.apparatus.schematic import draw_schematic
 from stiction.plotting.apparatus.shapes import Points
 from stiction.plotting.maps import Side, draw_slice
 from stiction.plotting.page.canvas import figure_of
-from stiction.plotting.page.parameter import Scale
+from stiction.plotting.page.parameter import Scale, label_decades
 from stiction.plotting.page.save import save, write
 from stiction.plotting.page.style import BLACK, BLUE, GREY, PURPLE, new_figure, style
 from stiction.plotting.page.words import plain
@@ -564,7 +564,8 @@ def test_times_of_milliseconds_are_written_so() -> None:
 
 
 @pytest.mark.parametrize(
-    ("speed", "phi", "other"), inside(8, (-5.0, -1.5), (0.3, 6.0), (8.0, 30.0))
+    ("speed", "phi", "other"),
+    [*inside(8, (-5.0, -1.5), (0.3, 6.0), (8.0, 30.0)), (-1.523, 1.0, 14.35)],
 )
 def test_words_in_the_damping_diagram_cover_no_others(
     slider: st.Slider, speed: float, phi: float, other: float
@@ -574,6 +575,10 @@ def test_words_in_the_damping_diagram_cover_no_others(
     boxes = [text.get_window_extent() for text in ax.texts]
     for at, box in enumerate(boxes):
         assert not any(box.overlaps(each) for each in boxes[:at]), ax.texts[at].get_text()
+    paths = [line.get_window_extent() for line in ax.lines if len(line.get_xdata()) > 1]
+    for text, box in zip(ax.texts, boxes, strict=True):
+        if "theta" in text.get_text():  # the place was free before the legend shrank the axes
+            assert not any(box.overlaps(path) for path in paths), text.get_text()
 
 
 def test_an_oscillation_too_fast_to_be_seen_is_a_band_about_its_mean() -> None:
@@ -695,3 +700,23 @@ def test_a_slice_shows_the_range_of_the_study_where_few_runs_have_a_value() -> N
     assert high > 0.7
     low, high = ax.get_ylim()
     assert 0.0 < low < 0.05 < high
+
+
+def test_laws_that_swing_too_fast_for_the_panel_are_bands(slider: st.Slider) -> None:
+    rig = slider.replace(k_x=1e6, k_y=1e8, drive=st.ConstantVelocity("30 mm/s"))
+    runs = {"own": st.simulate(rig, "1 s", sample_rate="10 kHz")}
+    panels = plot_comparison(runs)
+    force = np.asarray(panels["force"].lines[0].get_ydata(), dtype=float)
+    assert np.ptp(force[len(force) // 2 :]) < 0.1 * np.ptp(force)
+    assert len(panels["force"].collections) == 1
+
+
+def test_speeds_about_a_millimetre_a_second_are_labelled_alike() -> None:
+    ax = Figure().add_subplot()
+    ax.set(yscale="log", ylim=(5e-4, 8e-3))
+    label_decades(ax.yaxis, 5e-4, 8e-3)
+    draw(ax.figure)
+    ticks = [*ax.get_yticklabels(), *ax.get_yticklabels(minor=True)]
+    shown = {text.get_text() for text in ticks} - {""}
+    assert len(shown) > 2
+    assert all("10^{" in each for each in shown), shown

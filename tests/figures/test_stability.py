@@ -122,3 +122,20 @@ def test_numbers_of_close_critical_values_stand_apart():
     fig = draw(figure_of(plot_modes, found.modes, found.criticals[0]))
     first, second = (text.get_window_extent() for text in fig.axes[0].texts)
     assert first.x1 < second.x0
+
+
+@pytest.mark.parametrize(
+    ("k_y", "labels"),
+    [("10 MN/m", {"1", "10", "100", "1000"}), ("200 kN/m", {"10", "20", "50", "100"})],
+)
+def test_modes_without_a_critical_value_are_drawn_and_frequencies_labelled_alike(k_y, labels):
+    rig = PAPER.replace(k_y=k_y, friction=st.Coulomb(mu_0=0.2), phi="3 deg")
+    found = st.stability(rig, over="phi", between=("1 deg", "89 deg"))
+    assert not len(found.criticals[0].values)
+    above, below = draw(figure_of(found.plot)).axes
+    assert not above.texts
+    low, high = below.get_ylim()
+    ticks = [*below.get_yticklabels(), *below.get_yticklabels(minor=True)]
+    shown = {text.get_text() for text in ticks if low <= text.get_position()[1] <= high} - {""}
+    assert shown, ticks
+    assert shown <= labels, shown

@@ -25,6 +25,7 @@ WIDTH = 50.0  # transverse periods in a window
 STEPS = 5  # windows that overlap at any time
 LOWEST = 0.15  # of omega_y: the frequency falls no lower before it dies away
 HIGHEST = 1.2
+SELDOM = 0.05  # of the time: a line that is seen no longer may be chance
 SILENT = 1e-3  # of V sin(phi): smaller swings may be noise of the solver
 
 
@@ -153,6 +154,12 @@ def oscillation_by_phase(oscillation: xr.Dataset, run: Trajectory, phases: Float
             "end": ("phase", phases[:, 1], seconds),
         },
     )
+
+
+def stands_out(oscillation: xr.Dataset) -> bool:
+    """Return whether a line is seen for longer than by chance."""
+    seen = np.isfinite(oscillation["frequency"].values)
+    return bool(seen.any() and seen.mean() >= SELDOM)
 
 
 def hides(oscillation: xr.Dataset, cycles: xr.Dataset) -> bool:

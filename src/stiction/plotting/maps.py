@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from stiction.plotting.page.parameter import PLAIN, SPARSE, Scale
+from stiction.plotting.page.parameter import Scale, sparse
 from stiction.plotting.page.style import BLACK, BLUE, GREEN
 
 Floats = NDArray[np.float64]
@@ -118,7 +118,7 @@ def draw_measure(
     bar = ax.figure.colorbar(mesh, ax=ax, label=label, pad=0.02)
     if log and found.max() < PLAINLY * found.min():
         for formatted in (bar.ax.yaxis.set_major_formatter, bar.ax.yaxis.set_minor_formatter):
-            formatted(SPARSE)
+            formatted(sparse(found.min()))
     return mesh, hatched
 
 
@@ -212,5 +212,6 @@ def _frame(ax: Axes, x: Side, y: Side) -> None:
 def _label_axis(ax: Axes, side: Side, way: str) -> None:
     ax.set(**{f"{way}scale": "log" if side.log else "linear", f"{way}label": side.scale.label})
     if side.log and side.values.max() < PLAINLY * side.values.min():
-        getattr(ax, f"{way}axis").set_major_formatter(PLAIN)
-        getattr(ax, f"{way}axis").set_minor_formatter(SPARSE)
+        axis, labels = getattr(ax, f"{way}axis"), sparse(side.values.min())
+        axis.set_major_formatter(labels)
+        axis.set_minor_formatter(labels)

@@ -18,19 +18,10 @@ from stiction.plotting.stability.damping import (
 )
 from stiction.system.slider import Slider
 
-BEST = (
-    0.41,
-    0.5,
-    0.6,
-    0.63,
-    0.7,
-    0.75,
-    0.82,
-    0.29,
-    0.35,
-    0.25,
-    0.2,
-)  # places of a word, share of width
+# places of a word, shares of width and height, the best first
+ACROSS = sorted(np.linspace(0.18, 0.84, 34), key=lambda x: abs(x - 0.45))
+WORD = (0.12, 0.05)  # half of a word
+HIGH, LOW = (0.92, 0.86, 0.8, 0.72, 0.64), (0.15, 0.1, 0.2, 0.28)
 
 
 def figure5(slider: Slider, other_phi: float | None = radians(10)) -> Figure:
@@ -64,6 +55,8 @@ def figure5(slider: Slider, other_phi: float | None = radians(10)) -> Figure:
         draw_damping_map(ax, (low, high), (lowest, 90.0))
         for (A, phi), color in zip(paths, (RED, BLUE), strict=False):
             draw_force_path(ax, A, phi, color, _label(A, phi))
+        fig.legend(loc="outside upper center", ncols=2)
+        fig.draw_without_rendering()  # the axes have their final size: words are placed in it
         for A, phi in paths:
             name_crossing(ax, A, phi)
         at = np.geomspace(low, high, 40)[2:-2]
@@ -72,14 +65,27 @@ def figure5(slider: Slider, other_phi: float | None = radians(10)) -> Figure:
         place_clear(
             name, [{"position": each} for each in zip(at[::-1], 0.88 * edge[::-1], strict=True)]
         )
-        for text, across, up in (
-            ("overdamped:\nslow creep", BEST, (0.93, 0.86, 0.8)),
-            ("underdamped:\nrapid slip", (0.29, 0.2, 0.25, 0.35, 0.41, 0.5, 0.6), (0.15, 0.1, 0.2)),
+        for text, heights, inner in (
+            ("overdamped:\nslow creep", HIGH, -1.0),
+            ("underdamped:\nrapid slip", LOW, 1.0),
         ):
             word = ax.text(0.0, 0.0, text, transform=ax.transAxes, ha="center", bbox=CLEAR)
-            word.set_verticalalignment("center")
-            place_clear(word, [{"position": (x, y)} for y in up for x in across])
-        fig.legend(loc="outside upper center", ncols=2)
+            word.set(verticalalignment="center", fontsize=7)
+            # the corner nearest to the boundary is on the word's own side of it
+            own = [
+                {"position": (x, y)}
+                for y in heights
+                for x in ACROSS
+                if inner
+                * np.log(
+                    theory.damping_ratio(
+                        low * (high / low) ** (x + inner * WORD[0]),
+                        np.radians(lowest * (90.0 / lowest) ** (y + inner * WORD[1])),
+                    )
+                )
+                < 0.0
+            ]
+            place_clear(word, own)
     return fig
 
 

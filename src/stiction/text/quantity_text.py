@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike
 
 SI = dict(zip(range(-10, 11), [*"qryzafpnµm", "", *"kMGTPEZYRQ"], strict=True))  # of thousands
 RIGID = "rigid"  # of an infinite stiffness
-BARE = ("", "1", "%", "1/s", "deg")  # units that take no prefix
+BARE = ("", "1", "%", "1/s", "1/s²", "deg")  # units that take no prefix
 DIGITS = 4  # of a number in a sentence
+ALL = 1e-6  # a share that is less is none, and one that lacks less is the whole
 MEASURABLE = 1e-12  # m, a hundredth of an atom: no instrument follows a mass so closely
 PREFIXES = {3 * power: "u" if letter == "µ" else letter for power, letter in SI.items()}
 # unit: the name that takes the prefix, and the powers of ten that are used
@@ -66,6 +67,41 @@ def thousands(value: float, unit: str, digits: int = DIGITS) -> int:
         return 0
     most = 0 if unit == "s" else 10  # nobody writes kiloseconds
     return min(max(floor(log10(float(f"{abs(value):.{digits - 1}e}"))) // 3, -10), most)
+
+
+def suited_unit(value: float, unit: str, digits: int = DIGITS) -> tuple[float, str]:
+    """Return the size of the unit that suits a value, in the SI unit, and its name.
+
+    Examples
+    --------
+    >>> suited_unit(0.0123, "kg"), suited_unit(8e3, "kg"), suited_unit(0.5, "1")
+    ((0.001, 'g'), (1000.0, 't'), (1.0, ''))
+    """
+    if unit == "rad":
+        return pi / 180.0, "deg"
+    power = thousands(1e3 * value if unit == "kg" else value, unit, digits)
+    if unit == "kg" and value != 0.0:
+        name = f"{SI[power]}g" if power < 2 else f"{SI[power - 2]}t"
+        return 1000.0 ** (power - 1), name
+    return 1000.0**power, SI[power] + ("" if unit == "1" else unit.replace("*", " "))
+
+
+def percent(share: float, digits: int = 2) -> str:
+    """Return a share in per cent as text; one below the whole is not rounded up to it.
+
+    Examples
+    --------
+    >>> percent(0.974), percent(0.9953), percent(0.0036), percent(1.0), percent(1.25)
+    ('97 %', '99.5 %', '0.36 %', '100 %', '125 %')
+    """
+    shown, rest = 100.0 * share, 100.0 * (1.0 - share)
+    if abs(share) < ALL:
+        return "0 %"
+    if 100.0 * ALL < rest < 0.5 * 10.0 ** (2 - digits):
+        decimals = -floor(log10(rest))  # down to the first digit of the rest
+        return f"{floor(shown * 10.0**decimals) / 10.0**decimals:.{decimals}f} %"
+    digits = max(digits, len(f"{abs(shown):.0f}"))
+    return f"{float(f'{shown:.{digits}g}'):g} %"
 
 
 def angle_text(value: float) -> str:

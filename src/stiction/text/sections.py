@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from html import escape
 from typing import TYPE_CHECKING, NamedTuple
@@ -48,6 +49,11 @@ def table_lines(table: Table) -> list[str]:
 def as_text(parts: Iterable[Section]) -> str:
     """Return a report as plain text."""
     return "\n\n".join(map(str, parts))
+
+
+def join_units(text: str) -> str:
+    """Return a text whose numbers are not parted from their units at the end of a line."""
+    return re.sub(r"(?<=\d) (?=\S)", "\N{NO-BREAK SPACE}", text)
 
 
 def as_html(parts: Iterable[Section]) -> str:

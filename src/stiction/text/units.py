@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable
 from fractions import Fraction
 from functools import cache, partial
-from math import inf, isfinite, isinf, isnan, pi, radians
+from math import floor, inf, isfinite, isinf, isnan, log10, radians
 from types import UnionType
 from typing import (
     TYPE_CHECKING,
@@ -30,7 +30,7 @@ from typing import (
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
 from pydantic_core import PydanticCustomError
 
-from stiction.text.quantity_text import DIGITS, MEASURABLE, SI, angle_text, thousands
+from stiction.text.quantity_text import DIGITS, MEASURABLE, angle_text, suited_unit
 from stiction.text.unit_text import UnitError, factor, short
 
 
@@ -282,15 +282,30 @@ def in_words(value: float, unit: str, digits: int = DIGITS) -> str:
         return "none"
     if isinf(value):
         return "∞" if value > 0.0 else "-∞"
-    if unit == "rad":
-        return f"{value * 180.0 / pi:.{digits}g} deg"
     if unit == "m" and 0.0 < abs(value) < MEASURABLE:
         return "< 1 pm"
-    if unit == "kg" and value != 0.0:
-        value, unit = 1e3 * value, "g"
-    power = thousands(value, unit, digits)
-    name = "" if unit == "1" else unit.replace("*", " ")
-    shown = f"{value / 1000.0**power:.{digits}g}"
+    size, name = suited_unit(value, unit, digits)
+    shown = f"{value / size:.{digits}g}"
     if "e+" in shown and abs(value) < LARGE:
         shown = f"{float(shown):.0f}"
-    return f"{shown} {SI[power]}{name}".rstrip()
+    plain = re.sub(r"e([+-])0*", lambda power: f"e{power[1].strip('+')}", shown)
+    return f"{plain} {name}".rstrip()
+
+
+def with_error(value: float, error: float, unit: str) -> str:
+    """Return a value and its standard error in one unit, to the first digit of the error.
+
+    Without an error above zero, return the value alone.
+
+    Examples
+    --------
+    >>> with_error(0.97763, 0.0048, "N"), with_error(6.2e-5, 6e-7, "m/s"), with_error(2.0, 0.0, "N")
+    ('978 ± 5 mN', '62.0 ± 0.6 µm/s', '2 N')
+    """
+    if not 0.0 < error < inf or not isfinite(value):
+        return in_words(value, unit)
+    size, name = suited_unit(max(abs(value), error), unit)
+    shown = float(f"{error / size:.1g}")
+    digit = -floor(log10(shown))
+    rounded, decimals = round(value / size, digit), max(0, digit)
+    return f"{rounded:.{decimals}f} ± {shown:.{decimals}f} {name}".rstrip()

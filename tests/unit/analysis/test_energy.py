@@ -204,3 +204,14 @@ def test_the_figure_says_what_is_drawn(slider):
     heights = [bar.get_height() for each in upper.containers for bar in each]
     parts = [budget[name].values for name in PARTS]
     assert sum(heights) == pytest.approx(1e6 * np.sum(parts), rel=3e-3)  # small ones are left out
+
+
+def test_bars_end_below_the_frame():
+    """A part of no height on top of a bar was a bound of the axis."""
+    import xarray as xr
+
+    parts = {name: ("interval", np.zeros(2)) for name in PARTS}
+    parts |= {"friction_x": ("interval", [1.0, 0.3]), "spring_y": ("interval", [0.0, 0.1])}
+    work = {name: ("interval", [1.0, 0.4]) for name in ("work", "residual", "bound")}
+    top, _ = figure_of(plot_energy, xr.Dataset({**parts, **work})).axes
+    assert top.get_ylim()[1] > 1.02

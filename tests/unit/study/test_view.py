@@ -54,6 +54,7 @@ def test_measures_and_slices(store):
     cut = {"friction.mu_inf": 0.15, "drive.velocity": "1.1 mm/s"}
     fig = figure_of(st.map(store, at=cut).plot)
     (ax,) = fig.axes
+    assert ax.get_title("left") == r"at $V$ = 1 mm/s, $\mu_{\infty}$ = 0.15"  # the nearest ones
     data = xr.open_zarr(store)["peak_force"].isel({"drive.velocity": 0, "friction.mu_inf": 0})
     x, y = ax.lines[0].get_data()
     np.testing.assert_allclose(x, data["phi"])

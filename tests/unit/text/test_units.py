@@ -4,9 +4,17 @@ import numpy as np
 import pint
 import pytest
 
-from stiction.text.quantity_text import quantity_text
+from stiction.text.quantity_text import percent, quantity_text
 from stiction.text.unit_text import COMMON, LONGEST, factor
-from stiction.text.units import FORCE, VELOCITY, Kind, PydanticCustomError, in_words, to_si
+from stiction.text.units import (
+    FORCE,
+    VELOCITY,
+    Kind,
+    PydanticCustomError,
+    in_words,
+    to_si,
+    with_error,
+)
 
 DAMPING = Kind("a damping constant", "N*s/m", "0.5 N*s/m")
 ANGLE = Kind("an angle", "rad", "1 deg")
@@ -117,7 +125,7 @@ def test_what_is_said_in_words_is_read_again():
         (1.5e-3, "1/s", "0.0015 1/s"),  # not 1.5 1/ks
         (2e4, "%", "20000 %"),
         (11434.2, "s", "11430 s"),
-        (3.2e7, "s", "3.2e+07 s"),
+        (3.2e7, "s", "3.2e7 s"),
         (0.25, "kg", "250 g"),
         (999.97, "N", "1 kN"),
         (40.0, "N*s/m", "40 N s/m"),
@@ -170,3 +178,29 @@ def test_quantities_are_written_as_people_write_them(value, unit, text):
 def test_degrees_need_no_registry():
     for degrees in np.arange(-90, 90.1, 0.37):
         assert to_si(f"{degrees} deg", ANGLE) == to_si(f"{degrees}°", ANGLE)
+
+
+@pytest.mark.parametrize(
+    ("share", "text"),
+    [(0.974, "97 %"), (0.9953, "99.5 %"), (0.99996, "99.996 %"), (1.0, "100 %"), (1.26, "126 %"),
+     (0.0, "0 %"), (6.48e-5, "0.0065 %"), (1.0 - 1e-9, "100 %")],
+)  # fmt: skip
+def test_less_than_the_whole_is_not_100_percent(share, text):
+    assert percent(share) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "unit", "text"),
+    [(0.9776, 0.0048, "N", "978 ± 5 mN"), (62e-6, 6.1e-7, "m/s", "62.0 ± 0.6 µm/s"),
+     (1.863, 0.00071, "N", "1.8630 ± 0.0007 N"), (np.radians(1.99), np.radians(0.02), "rad",
+     "1.99 ± 0.02 deg"), (0.2, 0.0, "1", "0.2"), (0.2, np.nan, "1", "0.2"),
+     (3299.0, 98.0, "1/s²", "3300 ± 100 1/s²")],
+)  # fmt: skip
+def test_an_error_has_the_unit_of_its_value(value, error, unit, text):
+    assert with_error(value, error, unit) == text
+
+
+def test_a_power_of_ten_has_no_zeros_and_tonnes_no_megagrams():
+    assert in_words(2e-8, "1") == "2e-8"
+    assert in_words(1.5575e7, "1/s") == "1.558e7 1/s"
+    assert in_words(8e3, "kg") == "8 t"

@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stiction.analysis.oscillation import hides
+from stiction.analysis.oscillation import hides, stands_out
 from stiction.analysis.parts.wording import SHOWN
 from stiction.analysis.signals.hum import of_mains
 from stiction.text.columns import Quantity, grid
+from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
 from stiction.text.units import in_words
 
@@ -19,26 +20,21 @@ if TYPE_CHECKING:
     from stiction.analysis.report import Analysis
 
 
-SELDOM = 0.05  # of the time: a line that is seen no longer may be chance
-
-
 def section(found: Analysis) -> Section:
     """Return the section on the fast oscillation."""
     if found.oscillation is None:
         return Section("Oscillation", [f"Not seen: {found.missing['oscillation']}."])
+    if not stands_out(found.oscillation):
+        return Section("Oscillation", [f"No oscillation stands out.{_note_hidden_cycles(found)}"])
     seen = found.oscillation["frequency"].values
     seen = seen[np.isfinite(seen)]
-    if len(seen) < SELDOM * found.oscillation.sizes["time"] or not len(seen):
-        return Section(
-            "Oscillation", [f"No line stands out of the noise.{_note_hidden_cycles(found)}"]
-        )
     low, high = (in_words(float(each), "Hz") for each in (seen.min(), seen.max()))
-    share = 100.0 * len(seen) / found.oscillation.sizes["time"]
+    share = percent(len(seen) / found.oscillation.sizes["time"])
     pitch = f"between {low} and {high}" if low != high else f"at {low}"
     if "frequency_error" in found.oscillation:
         error = float(np.nanmax(found.oscillation["frequency_error"].values))
         pitch += f", each ± {in_words(float(f'{error:.1g}'), 'Hz')}"
-    lines = [f"Seen in {share:.3g}% of the time, {pitch}."]
+    lines = [f"Seen in {share} of the time, {pitch}."]
     if of_mains(float(np.median(seen))):
         lines[0] += " That is the frequency of the mains, or twice it: it is probably hum."
     if found.phases is None:
@@ -50,7 +46,7 @@ def section(found: Analysis) -> Section:
         "stick phase from": Quantity(phases["start"].values, "s"),
         "at rest": Quantity(100.0 * phases["share_stuck"].values, "%"),
         "sticks": Quantity(phases["sticks_per_second"].values, "1/s"),
-        "free swing at the end": Quantity(100.0 * phases["ring_down"].values, "%"),
+        "without a stick at the end": Quantity(100.0 * phases["ring_down"].values, "%"),
         "oscillation from": Quantity(phases["first_frequency"].values, "Hz"),
         "to": Quantity(phases["last_frequency"].values, "Hz"),
     }
@@ -70,8 +66,8 @@ def _note_hidden_cycles(found: Analysis) -> str:
         return ""
     width = in_words(oscillation.attrs["width"], "s")
     return (
-        f" It is sought in windows of 50 of its periods, {width}; the cycles follow too closely "
-        "for that, so it is sought before the first only."
+        f" It is sought in windows of 50 of its periods, {width}. Cycles follow each other too "
+        "closely for that, so that only the time before the first one is searched."
     )
 
 

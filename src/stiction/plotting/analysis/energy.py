@@ -50,6 +50,7 @@ def draw_budget(ax: Axes, budget: xr.Dataset) -> None:
     named = {name: budget[name].values for name in PARTS}
     factor, prefix = metric_prefix(np.concatenate([*named.values(), budget["work"].values]))
     largest = max(float(np.abs(values).max()) for values in named.values())
+    ax.use_sticky_edges = False  # a part of no height would hold the axis to the top of its bar
     place = np.arange(1, budget.sizes["interval"] + 1)
     up, down = np.zeros(len(place)), np.zeros(len(place))
     for name, values in named.items():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -112,9 +112,10 @@ def plot_oscillation(
         draw_share_stuck(panels[2], oscillation)
         for ax, letter in zip(panels, "abc", strict=True):
             panel_letter(ax, letter)
-        panels[0].legend(loc="upper right", ncols=3, labelcolor="white", handlelength=1.4)
-        panels[1].set_ylim(0.0, 1.5 * panels[1].get_ylim()[1])  # room for the legend
-        panels[1].legend(loc="upper left", ncols=2, columnspacing=1.0)
+        above: Any = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "columnspacing": 1.0}
+        dark: Any = {"facecolor": mesh.cmap(0.0), "frameon": True, "framealpha": 1.0}
+        panels[0].legend(**above, **dark, ncols=3, labelcolor="white", handlelength=1.4)
+        panels[1].legend(**above, ncols=2)
         begin, end = (float(oscillation["time"][at]) for at in (0, -1))
         if end > begin:
             panels[-1].set_xlim(begin, end)

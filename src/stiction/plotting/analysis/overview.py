@@ -5,9 +5,11 @@ from __future__ import annotations
 from math import isfinite
 from typing import Any
 
+import numpy as np
 from matplotlib.figure import Figure
 
-from stiction.analysis.creep.findings import drive_speed
+from stiction.analysis.creep.findings import RESTS, drive_speed
+from stiction.analysis.oscillation import stands_out
 from stiction.analysis.report import Analysis
 from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep
 from stiction.plotting.analysis.cycles import plot_cycles
@@ -28,7 +30,7 @@ def figures(found: Analysis) -> dict[str, Figure]:
     if len(found.record):
         drawn["cycles"] = figure_of(plot_cycles, found.record)
     V = drive_speed(found.source, found.record)
-    if found.curves is not None and found.creep is not None and V is not None:
+    if found.curves is not None and found.creep is not None and V is not None and moves(found, V):
         fit, lines = found.misalignment, {}
         if fit is not None and fit.stands_out and found.record.stiffness is not None:
             stiffness = fit.stiffness if isfinite(fit.stiffness) else found.record.stiffness
@@ -36,12 +38,18 @@ def figures(found: Analysis) -> dict[str, Figure]:
             theory = creep_theory(V, fit.phi, l_x, _loading(found))
             lines = {f"{name}, fitted": line for name, line in theory.items()}
         drawn["creep"] = figure_of(plot_creep, found.curves, found.creep, V, lines)
-    seen = 0 if found.oscillation is None else found.oscillation.sizes.get("time", 0)
-    if isinstance(found.source, Trajectory) and found.oscillation is not None and seen > 1:
-        drawn["oscillation"] = figure_of(plot_oscillation, found.source, found.oscillation)
+    its = found.oscillation
+    if isinstance(found.source, Trajectory) and its is not None and stands_out(its):
+        drawn["oscillation"] = figure_of(plot_oscillation, found.source, its)
     if found.energy is not None:
         drawn["energy"] = figure_of(plot_energy, found.energy)
     return drawn
+
+
+def moves(found: Analysis, V: float) -> bool:
+    """Return whether the mass creeps at all: a figure of rest alone is empty."""
+    mean = found.creep
+    return mean is not None and bool((np.abs(mean["velocity"].values) > RESTS * V).any())
 
 
 def _loading(found: Analysis) -> float | None:

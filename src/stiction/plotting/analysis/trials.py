@@ -81,7 +81,15 @@ def plot_trials(
             ax.set_axis_off()
         for ax in panels[::across]:
             ax.set_ylabel(f"spring force ({prefix}N)")
-        panels[0].legend(drawn.values(), drawn.keys(), loc="upper right", ncols=len(drawn))
+        lines = panels[0].get_title().count("\n") + 1
+        panels[0].legend(
+            drawn.values(),
+            drawn.keys(),
+            loc="lower left",
+            bbox_to_anchor=(0.0, 1.0),
+            borderaxespad=0.5 + 1.5 * lines,  # above the title
+            ncols=len(drawn),
+        )
     return np.array(panels[: len(trials)], dtype=object)
 
 

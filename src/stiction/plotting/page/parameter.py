@@ -6,7 +6,8 @@ from math import degrees
 from typing import NamedTuple
 
 import numpy as np
-from matplotlib.ticker import FuncFormatter
+from matplotlib.axis import Axis
+from matplotlib.ticker import FuncFormatter, NullFormatter
 from numpy.typing import ArrayLike, NDArray
 
 from stiction.plotting.page.words import symbol
@@ -15,17 +16,35 @@ from stiction.text.quantity_text import metric_prefix
 SYMBOLS = {"phi": r"$\varphi$", "drive.velocity": "$V$", "normal_load": "$W$", "mass": "$m$"}
 PLAIN = FuncFormatter(lambda value, _: f"{value:g}")  # 0.1, 1, 10: the units suit the values
 
-# the same for close ticks within a decade: one, two and five only
-SPARSE = FuncFormatter(lambda value, _: _short(value) if f"{value:.0e}"[0] in "125" else "")
 SMALL = 1e-3  # below it with a power of ten
+FEW_DECADES = 30.0  # the ratio of the ends of an axis
 
 
-def _short(value: float) -> str:
-    """Return a number of one digit."""
-    if value >= SMALL:
-        return f"{value:g}"
-    digit, power = f"{value:.0e}".split("e")
-    return rf"${digit}\times 10^{{{int(power)}}}$"
+def sparse(least: float) -> FuncFormatter:
+    """Return labels of close ticks within a decade, from `least` on: one, two and five only.
+
+    All are written alike, with powers of ten if the least value is small.
+    """
+
+    def label(value: float, _: object) -> str:
+        digit, power = f"{value:.0e}".split("e")
+        if digit not in "125":
+            return ""
+        if least >= SMALL:
+            return f"{value:g}"
+        return (
+            rf"$10^{{{int(power)}}}$" if digit == "1" else rf"${digit}\times 10^{{{int(power)}}}$"
+        )
+
+    return FuncFormatter(label)
+
+
+def label_decades(axis: Axis, low: float, high: float) -> None:
+    """Label the decades of a logarithmic axis; if it has few, close ticks within them too."""
+    few = high < FEW_DECADES * low
+    axis.set_minor_formatter(sparse(low) if few else NullFormatter())
+    if few:
+        axis.set_major_formatter(sparse(low))
 
 
 def parameter_symbol(path: str) -> str:

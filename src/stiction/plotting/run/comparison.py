@@ -32,9 +32,10 @@ from stiction.trajectory import Trajectory
 WIDTH = 44  # characters of a legend's line
 LINE = 8.4 / 72  # in
 NOTE = (
-    "Broad line: the described law.",
-    "Slip speed: mean (line), up to the maximum (band);",
-    "rows below: share of time at zero slip.",
+    "Broad line: the described law. Pale bands: the",
+    "range of fast swings about their mean (line); of",
+    "the slip speed, from its mean up to its maximum.",
+    "Rows below: share of time at zero slip.",
 )
 
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stiction.analysis.slip import Slip, cell_force, cell_symbol
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY
-from stiction.plotting.run.time_series import average_slip, envelope, say_only, stays
+from stiction.plotting.run.time_series import average_slip, draw_line, say_only, stays
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import metric_prefix
 from stiction.trajectory import Trajectory
@@ -77,11 +77,25 @@ def draw_over_time(ax: Axes, curves: Sequence[Curve], variable: str, symbol: str
     ax.set_ylabel(f"{symbol} ({prefix}{UNITS[variable]})")
     for curve in curves:
         times, values = curve.run.samples["time"], _without_rounding(curve.run, variable) * factor
-        ax.plot(*envelope(times, values), **curve.look)
+        draw_curve(ax, curve, times, values)
         mark_early_end(ax, curve, times[-1], values[-1])
     ax.margins(y=0.08)
+    fit_time(ax, curves)
     if variable == "X" and all(stays(curve.run) for curve in curves):
         say_only(ax, "at rest")
+
+
+def draw_curve(ax: Axes, curve: Curve, time: Floats, values: Floats) -> None:
+    """Draw values of a run over time in its style; swings too fast for the panel are a band."""
+    line = draw_line(ax, time, values, curve.color, curve.look["linewidth"])
+    line.set(linestyle=curve.look["linestyle"], zorder=curve.look["zorder"])
+
+
+def fit_time(ax: Axes, curves: Sequence[Curve]) -> None:
+    """Fit the axis of time to all runs: some may have ended early."""
+    ends = [curve.run.samples["time"][[0, -1]] for curve in curves]
+    if np.ptp(ends) > 0.0:
+        ax.set_xlim(np.min(ends), np.max(ends))
 
 
 def _without_rounding(run: Trajectory, variable: str) -> Floats:

@@ -10,7 +10,14 @@ from matplotlib.axes import Axes
 from stiction.analysis.motion.rest import stuck_until
 from stiction.analysis.slip import cell_force
 from stiction.plotting.page.style import GREY
-from stiction.plotting.run.curves import Curve, common, force_symbol, mark_early_end
+from stiction.plotting.run.curves import (
+    Curve,
+    common,
+    draw_curve,
+    fit_time,
+    force_symbol,
+    mark_early_end,
+)
 from stiction.plotting.run.time_series import DEEPEST, fastest_drive, say_only, set_speed_limits
 
 ROW = 0.8  # height of a filled row
@@ -27,8 +34,9 @@ def draw_speeds(ax: Axes, curves: Sequence[Curve]) -> None:
         slip = curve.slip
         mean = np.where(slip.mean > DEEPEST * fastest_drive(curve.run), slip.mean, np.nan)
         ax.fill_between(slip.time, mean, slip.high, color=curve.color, alpha=0.18, linewidth=0)
-        ax.plot(slip.time, mean, **curve.look)
+        draw_curve(ax, curve, slip.time, mean)
         mark_early_end(ax, curve, slip.time[-1], mean[-1])
+    fit_time(ax, curves)
 
 
 def draw_portrait(ax: Axes, curves: Sequence[Curve]) -> None:

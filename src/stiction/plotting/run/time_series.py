@@ -9,16 +9,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import StepPatch
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 
 from stiction.analysis.motion.rest import stuck_until
 from stiction.analysis.signals.reversals import taken_out
 from stiction.analysis.signals.turning_points import FINE, as_counts
 from stiction.analysis.slip import Slip, averaged_slip
-from stiction.plotting.page.parameter import SPARSE
+from stiction.plotting.page.parameter import label_decades
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED
-from stiction.text.quantity_text import metric_prefix
+from stiction.text.quantity_text import metric_prefix, percent
 from stiction.trajectory import Trajectory
 
 Floats = NDArray[np.float64]
@@ -35,6 +35,7 @@ SMOOTH = 13  # least bins of a mean, two of them with weight zero: one may hold 
 POINT = 72.0  # pt in an inch
 EDGE = 0.3  # pt, of the outline of a range: pale colours look alike in print
 BAND = 0.3  # opacity of the range
+HARDLY = 1.0  # %, of the time stuck: less is hardly seen
 DEEPEST = 1e-6  # of the drive's speed: slower motion counts as rest
 LEAST = 1e-9  # of the drive's speed, or of its path: smaller values are rounding
 CONSTANT = 1e-9  # of a quantity: a smaller range is rounding
@@ -386,7 +387,7 @@ def set_speed_limits(ax: Axes, slips: Sequence[tuple[Slip, float]]) -> bool:
     ax.set_ylim(bottom / 10 ** max(0.3, 0.05 * decades), top * 10 ** (0.05 * decades))
     ax.yaxis.set_major_locator(LogLocator(numticks=8))
     ax.yaxis.set_minor_locator(LogLocator(subs="all" if decades < 8 else (1.0,), numticks=99))
-    ax.yaxis.set_minor_formatter(NullFormatter() if decades > 1.5 else SPARSE)
+    label_decades(ax.yaxis, bottom, top)
     return True
 
 
@@ -408,7 +409,9 @@ def draw_time_stuck(ax: Axes, run: Trajectory, bins: int = 300) -> StepPatch:
     edges = np.linspace(times[0], max(times[-1], np.nextafter(times[0], np.inf)), bins + 1)
     share = 100.0 * np.diff(stuck_until(edges, run.stick_intervals)) / np.diff(edges)
     ax.set_ylabel("stuck (%)")
-    if not share.any():
-        ax.text(0.5, 0.4, "no stick", transform=ax.transAxes, ha="center", color=GREY, fontsize=7)
+    whole = float(share.mean())
+    if whole < HARDLY:
+        said = f"stuck for {percent(0.01 * whole)} of the time" if whole else "no stick"
+        ax.text(0.5, 0.4, said, transform=ax.transAxes, ha="center", color=GREY, fontsize=7)
     ax.set_ylim(0, 105)
     return ax.stairs(share, edges, fill=True, color=GREY)

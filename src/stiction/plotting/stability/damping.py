@@ -23,7 +23,7 @@ SHADES = LinearSegmentedColormap.from_list("damping", ["#E9BE8B", "#FFFFFF", "#9
 CLEAR = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 1.0}
 DECADES = np.arange(-7, 7)
 BOLD = 1.0  # pt: words keep clear of such contours
-MARGIN = 2.0  # pixels around a word
+MARGIN = 4.0  # pixels around a word
 
 
 def draw_damping_map(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from stiction.linear_stability import Critical
 from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
-from stiction.plotting.page.parameter import PLAIN, Scale, scale_of
+from stiction.plotting.page.parameter import PLAIN, Scale, label_decades, scale_of
 from stiction.plotting.page.style import BLUE, COLUMN, GREY, ORANGE, UNSTABLE, style
 
 if TYPE_CHECKING:
@@ -83,11 +84,11 @@ def sides(ax: Axes, values: NDArray[np.float64]) -> list[str]:
     The axis must have its scale and limits already.
     """
     points = np.column_stack([values, np.zeros(len(values))])
-    gaps = np.diff(ax.transAxes.inverted().transform(ax.transData.transform(points))[:, 0])
-    before, after = (np.append(*pair) < CLOSE for pair in ((np.inf, gaps), (gaps, np.inf)))
+    at = ax.transAxes.inverted().transform(ax.transData.transform(points))[:, 0]
+    close = np.diff(at, prepend=-np.inf, append=np.inf) < CLOSE
     return [
         "right" if next_is and not last_is else "left" if last_is and not next_is else "center"
-        for last_is, next_is in zip(before, after, strict=True)
+        for last_is, next_is in pairwise(close)
     ]
 
 
@@ -130,3 +131,4 @@ def draw_frequencies(ax: Axes, modes: xr.Dataset, scale: Scale) -> None:
     else:
         ax.set_yscale("log")
         ax.yaxis.set_major_formatter(PLAIN)
+        label_decades(ax.yaxis, ringing.min(), ringing.max())

@@ -30,6 +30,7 @@ from stiction.study.plan.layout import Index
 from stiction.study.view.boundaries import Plane, damping_number, plane
 from stiction.study.view.view import REGIME, View, choose_measures, kinds, view_study
 from stiction.text.units import Quantity
+from stiction.text.units import in_words as value_in_words
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -132,7 +133,21 @@ def plot_map(found: Map, axes: Any = None) -> NDArray[np.object_]:
     if len(found.dims) == 1 and len({*names} - {"run.duration"}) > 1:
         draw = _points
     with style():
-        return np.array(draw(view, found.measures, axes), dtype=object)
+        panels = draw(view, found.measures, axes)
+        if view.at:
+            panels[0].set_title(cut(view), loc="left")
+        return np.array(panels, dtype=object)
+
+
+def cut(view: View) -> str:
+    """Return the values at which a study is cut, for a title: the nearest ones that it has."""
+    known = {
+        name: (float(each.values[view.at[each.dim]]), each.unit)
+        for name, each in view.study.coordinates.items()
+        if each.dim in view.at
+    }
+    values = (f"{parameter_symbol(name)} = {value_in_words(*its)}" for name, its in known.items())
+    return f"at {', '.join(values)}"
 
 
 def side(view: View, dim: str, values: np.ndarray | None = None) -> Side:
