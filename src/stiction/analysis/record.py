@@ -244,7 +244,7 @@ class Record(Described):
 
     @property
     def own_period(self) -> float | None:
-        """Period of the mass on the softer spring alone, s, where the record is that of a run."""
+        """Period of the mass on the spring along x alone, s, where the record is that of a run."""
         return self._own_period
 
     def __len__(self) -> int:
@@ -352,5 +352,5 @@ def record_of(run: Trajectory) -> Record:
         slip_speed=slip_speed,
     )
     record._sticks = run.stick_intervals
-    record._own_period = 1.0 / slider.natural_frequencies[0]
+    record._own_period = 1.0 / slider.natural_frequency_x
     return record

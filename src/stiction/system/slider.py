@@ -277,6 +277,11 @@ class Slider(Apparatus):
         return sqrt(low) / (2 * pi), sqrt(high) / (2 * pi)
 
     @property
+    def natural_frequency_x(self) -> float:
+        """Natural frequency of the mass on the spring along x, in Hz."""
+        return sqrt(self.k_x / self.masses[0]) / (2 * pi)
+
+    @property
     def masses(self) -> tuple[float, float]:
         """The mass that swings on each spring, in kg: k over its natural frequency squared.
 

@@ -187,7 +187,7 @@ PIN = st.Slider(
 def test_a_small_vibration_on_both_springs(phi, V):
     """Of 2e-3 and less of the force; below 1e-3 of it a study saw none.
 
-    It is quicker than the mass can swing on the softer spring alone: the stiffer one swings as
+    It is quicker than the mass can swing on the spring along x alone: the other one swings as
     well. An analysis counts the same cycles, but for where those begin that build up: when they
     reach half of the median, on which the smallest that either sees have a part.
     """

@@ -34,6 +34,7 @@ from stiction.analysis.motion.rest import (
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.hum import narrow_lines, of_mains, samples_per_period
 from stiction.analysis.signals.turning_points import CLEAR
+from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
@@ -85,8 +86,9 @@ FEWEST, ENOUGH = 3.5, 8.0  # samples a cycle: below the first it is not known, n
 QUICK, SLOWEST = 1.6, 3.0
 RIPPLE = 1e-3  # of the force's span: a vibration that is less is no motion of its own
 CERTAIN = 0.995  # a confidence that is written as 1.00: it leaves no room for another kind
-# Of the period of the mass on the softer spring alone: a vibration of a lesser one has the stiffer
-# spring swing as well, as friction that turns couples them. On one spring friction only prolongs it
+# Of the period of the mass on the spring along x alone: a vibration of a lesser one has the
+# transverse spring swing as well, as friction that turns couples them. On one spring friction only
+# prolongs it
 COUPLED = 0.9
 # Of a swing from trough to peak, to each end, and share of time that is spent there: of a sine 0.2,
 # of a force between two levels nearly half
@@ -107,14 +109,6 @@ def _whole(value: float) -> str:
     return f"{value:.0f}"
 
 
-def _percent(value: float) -> str:
-    return f"{value:.0%}"
-
-
-def _two_digits_of_percent(value: float) -> str:
-    return f"{float(f'{100.0 * value:.2g}'):g}%"
-
-
 def _three_digits(value: float) -> str:
     return f"{float(f'{value:.3g}'):g}" if abs(value) > NO_MORE else "0"
 
@@ -131,34 +125,34 @@ def _frequency(value: float) -> str:
     return in_words(value, "Hz")
 
 
-WORDS = {
+WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
     "cycles": ("complete cycles: {}", _whole),
-    "rise_share": ("the force rises for {} of a cycle (a sine: 50%, a sawtooth: 100%)", _percent),
-    "rest_share": ("a mass that swings so rests or creeps for {} of it", _percent),
+    "rise_share": ("the force rises for {} of a cycle (a sine: 50 %, a sawtooth: 100 %)", percent),
+    "rest_share": ("by this shape the mass rests or creeps for {} of it", percent),
     "backward": (
         "it falls slowly and rises fast, in {} of the cycles: is its sign right?",
-        _percent,
+        percent,
     ),
     "still_share": (
         "the slip speed stays below a tenth of the drive velocity for {} of it",
-        _percent,
+        percent,
     ),
-    "stick_share": ("the mass sticks for {} of it", _two_digits_of_percent),
-    "cycles_alike": ("{} of the cycles have this shape themselves", _percent),
-    "period_spread": ("periods differ by {} of their mean", _percent),
-    "drop_spread": ("four fifths of the force drops differ by up to {} of their median", _percent),
+    "stick_share": ("the mass sticks for {} of it", percent),
+    "cycles_alike": ("{} of the cycles, each by itself, have this shape", percent),
+    "period_spread": ("periods differ by {} of their mean", percent),
+    "drop_spread": ("four fifths of the force drops differ by up to {} of their median", percent),
     "natural_period": ("a period is {} times the mass's own on its spring", _three_digits),
     "drop_over_noise": ("force drops are {} times as high as noise reaches", _three_digits),
     "line_taken_off": ("a line at {} was subtracted from the force", _frequency),
     "plateaus": (
         "it stays near its largest or its smallest value for {} of the time, as no vibration does: "
         "the drive goes back and forth, or the load changes in steps",
-        _percent,
+        percent,
     ),
     "straight": (
         "it rises and falls evenly, and turns at once, as no vibration does: it is within a tenth "
         "of its swing from either end for {} of the time (a sine: 41%)",
-        _percent,
+        percent,
     ),
     "changed_at": ("at {} the cycles change", _seconds),
     "mains": ("it swings at {} as the mains do: it may be hum over another motion", _frequency),
@@ -175,17 +169,17 @@ WORDS = {
     ),
     "falls_at": ("it falls quickly once, at {}", _seconds),
     "falls_by": ("by {}", _force),
-    "late_share": ("in the last quarter of the time it spans {} of this", _percent),
-    "one_way": ("{} of all its ups and downs is this change", _percent),
-    "rate_kept": ("at the end it changes at {} times the rate of the beginning", _three_digits),
+    "late_share": ("in the last quarter of the time it spans {} of this", percent),
+    "one_way": ("{} of all its ups and downs is this change", percent),
+    "rate_kept": ("at the end it changes at {} of the rate of the beginning", percent),
     "rate_over_drive": (
-        "at the end its rate is {} times stiffness times drive velocity",
-        _three_digits,
+        "at the end its rate is {} of stiffness times drive velocity",
+        percent,
     ),
     "hump": ("it vibrates at about {}, in swings of every size", _frequency),
     "hump_height": ("in the spectrum they stand {} times above the threshold", _three_digits),
     "fading": ("it vibrates at about {}, less and less", _frequency),
-    "fades_to": ("at the end {} or less of that is left", _percent),
+    "fades_to": ("at the end {} or less of that is left", percent),
     "few_periods": (
         "it may vibrate at about {}, or scatter: for so slow a vibration the record is too short",
         _frequency,
@@ -210,7 +204,7 @@ class Regime(NamedTuple):
         in each cycle, however shortly),
         "transitional oscillation" (for half of it or more by the shape), "harmonic vibration" (for
         less or not at all), "transverse oscillation" (of a run, quicker than the mass can swing on
-        the softer spring alone), "irregular vibration" (swings that stand out, of changing period),
+        the spring along x alone), "irregular vibration" (swings of changing period that stand out),
         "settling" (a transient that decays), "steady sliding" (no swings stand apart from the
         noise: what is smaller is not seen), "stuck" (it loads and never slips) or "undetermined".
     confidence : float
@@ -244,9 +238,9 @@ class Regime(NamedTuple):
         if self.kind not in (STICK_SLIP, TRANSITIONAL):
             return ""
         if not self.loads and "stick_share" in self.evidence:
-            return f"stuck for {_two_digits_of_percent(self.evidence['stick_share'])} of a cycle"
+            return f"stuck for {percent(self.evidence['stick_share'])} of a cycle"
         slow = [self.evidence[name] for name in SLOW_SHARES if name in self.evidence]
-        return f"at rest or in creep for {_percent(max(slow))} of a cycle" if slow else ""
+        return f"at rest or in creep for {percent(max(slow))} of a cycle" if slow else ""
 
     @property
     def surely(self) -> str:
@@ -257,7 +251,9 @@ class Regime(NamedTuple):
 
     def __str__(self) -> str:
         """Return the kind, its confidence and the evidence in words."""
-        said = ((*WORDS[name], value) for name, value in self.evidence.items())
+        # a vibration does not rest: its shape is only an estimate of that
+        none = {"rest_share"} if self.kind in (HARMONIC, TRANSVERSE) else set()
+        said = ((*WORDS[name], value) for name, value in self.evidence.items() if name not in none)
         reasons = "; ".join(text.format(written(value)) for text, written, value in said)
         return f"{self.surely}: {reasons}"
 
@@ -542,10 +538,10 @@ def shape(rise_share: float, still: float = 0.0, sticks: float = 0.0) -> str:
 
 
 def couples(kind: str, period: float, own: float) -> bool:
-    """Return whether a vibration is too quick for the softer spring alone, whose period is `own`.
+    """Return whether a vibration is too quick for the spring along x, whose period is `own`.
 
-    Then the stiffer spring swings as well: friction that turns couples them. Where the mass sticks,
-    it does so once in each of these swings.
+    Then the transverse spring swings as well: friction that turns couples them. Where the mass
+    sticks, it does so once in each of these swings.
     """
     return kind in (TRANSITIONAL, HARMONIC) and period < COUPLED * own
 

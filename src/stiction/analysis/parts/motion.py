@@ -19,6 +19,7 @@ from stiction.analysis.motion.regime import (
 )
 from stiction.analysis.motion.rest import comes_to_rest, stuck_until
 from stiction.analysis.parts.wording import number
+from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
@@ -90,7 +91,7 @@ def plainly(found: Analysis) -> str:
         )
     if count:
         drop, period = (float(found.cycles[name].mean()) for name in ("drop", "period"))
-        times = "once" if count == 1 else f"{count} times"
+        times = {1: "once", 2: "twice"}.get(count, f"{count} times")
         every = f", every {in_words(period, 's')}" if count > 1 else ""
         size = f"the force drops by {in_words(drop, 'N')}"
         plain = {
@@ -151,6 +152,8 @@ def _settles(found: Analysis, at: str) -> str:
     evidence = found.regime.evidence
     if comes_to_rest(found.record.slip_speed):
         return "The motion dies down, and the mass comes to rest."
+    if found.friction.break_away is not None and "swings" not in evidence:
+        return f"The mass breaks away once, and comes to slide steadily{at}."
     if "swings" in evidence or "fading" in evidence or evidence.get("change", 0.0) >= 0.0:
         what = "force settles" if "late_share" in evidence else "vibration dies down"
         return f"The {what}, and the mass comes to slide steadily{at}."
@@ -197,7 +200,7 @@ def _stick_share(found: Analysis) -> str:
         return ""
     time = np.array([ends["start"].values[0], ends["trough_time"].values[-1]])
     share = float(np.diff(stuck_until(time, run.stick_intervals))[0] / np.diff(time)[0])
-    return f", and sticks for {100.0 * share:.2g}% of that time" if share else ", without sticking"
+    return f", and sticks for {percent(share)} of that time" if share else ", without sticking"
 
 
 def _why_transverse(found: Analysis) -> str:
@@ -206,6 +209,6 @@ def _why_transverse(found: Analysis) -> str:
     if found.regime.kind != TRANSVERSE or own is None:
         return ""
     return (
-        f" That is quicker than the {in_words(own, 's')} in which it swings on the softer spring "
-        "alone: the stiffer one swings as well."
+        f" That is quicker than the {in_words(own, 's')} in which it swings on the spring along x "
+        "alone: the transverse spring takes part."
     )

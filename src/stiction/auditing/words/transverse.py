@@ -5,6 +5,8 @@ from __future__ import annotations
 from math import hypot, sin
 from typing import TYPE_CHECKING, Any
 
+from stiction.analysis.motion.regime import TRANSVERSE
+from stiction.auditing.observation import SLIDES
 from stiction.auditing.words.stick import HARDLY, VIBRATES
 from stiction.friction import has_state
 from stiction.system.slider import Slider
@@ -23,10 +25,17 @@ def transverse(found: Audit) -> list[str]:
         return ["Without misalignment the transverse spring is not excited."]
     frequency, rate = in_words(p.f_y, "Hz"), in_words(p.sample_rate, "Hz")
     natural = f"The transverse natural frequency is {frequency}."
+    if seen.motion == TRANSVERSE:
+        swings = in_words(1.0 / seen.mean("period"), "Hz")
+        return [
+            f"{natural} The vibration itself, at {swings}, is a transverse oscillation, faster "
+            f"than the {in_words(p.f_x, 'Hz')} of the mass on the spring along x alone. To see its "
+            f"shape, sample at {rate}."
+        ]
     if has_state(found.slider.law):
         return [
-            f"{natural} Whether friction with internal state lets it oscillate, a run sampled at "
-            f"{rate} shows: stiction analyse."
+            f"{natural} Whether the mass oscillates in spite of a friction with internal state can "
+            f"be seen in a run sampled at {rate}: stiction analyse."
         ]
     if seen.motion in VIBRATES or seen.shares.creep < HARDLY:
         return [
@@ -46,21 +55,24 @@ def transverse(found: Audit) -> list[str]:
             f"{in_words(float(f'{5.0 / decay:.1g}'), 's')}: dampers, or friction that rises with "
             f"speed, damp it. To see it, sample at {rate}."
         ]
-    then = (
-        "the amplitude grows with its period"
-        if decay < 0.0
-        else "the oscillation dies out: friction falls too little with speed to drive it"
-    )
+    end, then = "slip", "the oscillation dies out: friction falls too little with speed to drive it"
+    if seen.comes_to == SLIDES:
+        end, then = "steady sliding", "the oscillation dies out"
+    elif decay < 0.0:
+        then = "the amplitude grows with its period"
     lines = [
         f"During creep the mass oscillates across the drive at {frequency}, by "
-        f"{in_words(p.amplitude, 'm')} (V sin φ/ω_y) or {force}. Towards slip the frequency falls, "
-        f"as sin θ, and {then}.",
+        f"{in_words(p.amplitude, 'm')} (V sin φ/ω_y) or {force}. Towards {end} the frequency "
+        f"falls, as sin θ, and {then}.",
         f"To see it, sample at {rate}; below {in_words(2.0 * p.f_y, 'Hz')} it appears at another "
         "frequency.",
     ]
     if seen.coarse:
         rate = in_words(seen.record.sample_rate, "Hz")
-        lines.append(f"Such a long test was simulated with {rate}, which does not show it.")
+        lines.append(
+            f"This test lasts so long that it was simulated with {rate} only, which does not show "
+            "the oscillation."
+        )
     return lines
 
 

@@ -24,10 +24,10 @@ def map(
 
     Two parameters give a map of the kind of motion: stick-slip, transitional oscillation,
     harmonic vibration, irregular vibration, settling, steady sliding, stuck; and transverse
-    oscillation, which is faster than the mass can swing on the softer spring alone, so that the
-    stiffer spring oscillates too. Two theoretical lines mark where steady sliding loses stability,
-    and where the damping ratio at slip is 1. One parameter gives a curve; samples over phi and V
-    are points in the damping diagram.
+    oscillation, which is faster than the mass can swing on the spring along x alone, so that the
+    transverse spring oscillates too. Two theoretical lines mark where steady sliding loses
+    stability, and where the damping ratio at slip is 1. One parameter gives a curve; samples over
+    phi and V are points in the damping diagram.
 
     For example, after `stiction sweep --preset yaw-angle -o yaw.zarr`:
 

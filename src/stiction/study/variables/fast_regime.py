@@ -118,7 +118,7 @@ def kind_of(
     across : float
         The same rate amplitude times the lesser stiffness, N/s.
     own : float
-        Period of the mass on the softer spring alone, s.
+        Period of the mass on the spring along x alone, s.
     still, sticks : callable
         Return for which share of each of some swings the mass rests or creeps, and sticks.
     """

@@ -182,7 +182,7 @@ class Observed:
             return STUCK
         slider = self.description.slider
         drive = slider.k_x * abs(self.nominal * slider.direction[0])
-        oscillation, own = self.transverse_oscillation, 1.0 / slider.natural_frequencies[0]
+        oscillation, own = self.transverse_oscillation, 1.0 / slider.natural_frequency_x
         across = min(slider.k_x, slider.k_y) * self.rate_across
         shares = self.rests, self.sticks
         return kind_of(
