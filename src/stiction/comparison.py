@@ -29,7 +29,7 @@ from stiction.trajectory import Trajectory
 
 HEADINGS = (
     "law", "sticks", "stuck (s)", "largest {}/W", "fastest slip (m/s)",
-    "slowest in load-up (m/s)", "median in load-up (m/s)",
+    "slowest slip while loading (m/s)", "median slip while loading (m/s)",
 )  # fmt: skip
 ROUNDED = 1.0 + 1e-9  # times the speed of the release, which is no slip
 REST = 1e-9  # of the drive's speed: slower motion counts as rest

@@ -346,10 +346,22 @@ def test_a_table_breaks_between_words_on_a_narrow_terminal(capsys, monkeypatch):
     from stiction.cli.tables import print_sections
     from stiction.text.sections import Section, Table
 
-    headings = ("law", "sticks", "slowest in load-up (m/s)", "median in load-up (m/s)")
+    headings = ("law", "sticks", "slowest slip while loading (m/s)", "median slip (m/s)")
     row = ("coulomb, mu_static = 0.2", "39", "3.58e-05", "1.25e-05")
     monkeypatch.setenv("COLUMNS", "40")
     print_sections("a title", [Section("a part", [], Table(headings, [row]))])
     text = capsys.readouterr().out
-    assert {*row[1:], "coulomb,", "load-up"} <= set(text.split())
+    assert {*row[1:], "coulomb,", "loading"} <= set(text.split())
     assert max(map(len, text.splitlines())) <= 40
+
+
+def test_a_number_is_not_parted_from_its_unit_on_a_narrow_terminal(capsys, monkeypatch):
+    from stiction.cli.tables import print_sections
+    from stiction.text.sections import Section, Table
+
+    rows = [("force at the trough before loading", "1.377 N", "10 N s/m")]
+    monkeypatch.setenv("COLUMNS", "44")
+    print_sections("a title", [Section("a part", [], Table(("quantity", "mean", "spread"), rows))])
+    text = capsys.readouterr().out
+    assert "1.377 N" in text
+    assert "10 N s/m" in text

@@ -71,8 +71,8 @@ def strongest_line(
         raise ResultError(f"low must be above 0 Hz, is {low:g} Hz")
     if low >= 0.5 * rate:
         raise ResultError(
-            f"a line above {low:.3g} Hz is seen at {2.0 * low:.3g} samples a second or more, of "
-            f"which there are {rate:.3g}"
+            f"a line above {low:.3g} Hz needs more than {2.0 * low:.3g} samples a second, and the "
+            f"record has {rate:.3g}"
         )
     chosen = min(PERIODS / low, 0.1 * record.duration) if width is None else width
     if not 0.0 < chosen <= record.duration:

@@ -176,15 +176,17 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
         width = _free_of_hum(oscillation, sticking)
     clean = record.model_copy(update={"force": found.force}) if found.lines else record
     friction = find_friction(clean, regime, cycles)
-    if "plateaus" in regime.evidence:
-        friction = friction.without_kinetic("the force goes back and forth between two levels")
+    turns = _turns_round(run, regime)
+    if turns:
+        friction = friction.without_kinetic(turns)
     if "forth" in regime.evidence:
-        friction = friction.without_any("the force goes back and forth between both signs")
-    if run is not None and turns_round(run):
-        friction = friction.without_kinetic("the drive goes back and forth")
+        friction = friction.without_any(turns)
     doubts = warnings(record, regime.kind, cycles, friction) if run is None else unsteady(run)
     doubts += taken_off(found.lines)
     cycles = _blank_meaningless(record, cycles, regime, missing)
+    if turns and cycles.sizes["cycle"]:
+        missing["mu_kinetic"] = turns
+        cycles = cycles.assign(mu_kinetic=cycles["mu_kinetic"].where(False))
     creep = find_creep(source, record, sticking, width)
     missing |= creep.missing
     phases = None
@@ -215,6 +217,17 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
 analyze = analyse
 
 
+def _turns_round(run: Trajectory | None, regime: Regime) -> str:
+    """Return what goes back and forth, so that no mean is a kinetic friction; empty if nothing."""
+    if run is not None and turns_round(run):
+        return "the drive goes back and forth"
+    if "forth" in regime.evidence:
+        return "the force goes back and forth between both signs"
+    if "plateaus" in regime.evidence:
+        return "the force goes back and forth between two levels"
+    return ""
+
+
 def _blank_meaningless(
     record: Record, cycles: xr.Dataset, regime: Regime, missing: dict[str, str]
 ) -> xr.Dataset:
@@ -231,10 +244,10 @@ def _blank_meaningless(
         if not float(cycles["creep_distance"].median()) < 0.0:
             return cycles
         missing["creep_distance"] = (
-            "the force rises faster than stiffness and drive velocity, as stated, allow"
+            "the force rises faster than the stated stiffness and drive velocity allow"
         )
         return cycles.assign(creep_distance=cycles["creep_distance"].where(False))
-    why = f"they are of stick-slip, and {without_loading(regime)}"
+    why = f"they are defined for stick-slip, and {without_loading(regime)}"
     missing |= dict.fromkeys(OF_STICKING, why)
     return cycles.assign({name: cycles[name].where(False) for name in OF_STICKING})
 

@@ -11,6 +11,7 @@ from stiction.auditing.prediction import Prediction
 from stiction.auditing.words.numbers import apparent_stiffness, peak
 from stiction.auditing.words.verdict import final_motion
 from stiction.system.slider import Slider
+from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words
 
@@ -140,8 +141,3 @@ def _row(name: str, slider: Slider, p: Prediction, seen: Observation | None) -> 
 def _name(each: Replacement) -> str:
     how = {2.0: "twice as stiff", inf: "rigid"}.get(each.factor, f"{each.factor:g} times as stiff")
     return f"{each.spring.name} {how}"
-
-
-def percent(share: float) -> str:
-    """Return a share in per cent, as text."""
-    return f"{100.0 * share:.2g} %"

@@ -17,6 +17,7 @@ from stiction.auditing.tolerance import words as tolerance
 from stiction.errors import ResultError
 from stiction.plotting.page.save import png
 from stiction.storage.files import placeable, whole
+from stiction.text.sections import join_units
 
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit
@@ -101,6 +102,7 @@ def page(found: Audit, name: str) -> str:
     environment = Environment(
         loader=PackageLoader("stiction.auditing", "."), autoescape=True, trim_blocks=True
     )
+    environment.filters["join_units"] = join_units
     return environment.get_template("page.html.jinja").render(
         name=name,
         version=stiction.__version__,

@@ -11,6 +11,7 @@ from stiction import theory
 from stiction.friction import Anisotropic, has_state
 from stiction.friction.law import static_coefficient
 from stiction.system.slider import Slider
+from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 
 SEEN = 10.0  # samples per transverse period, enough for its shape and not only its frequency
@@ -140,11 +141,11 @@ def predict(slider: Slider) -> Prediction:
 
 
 def suppositions(slider: Slider, p: Prediction) -> list[str]:
-    """Return the assumptions of Eqs. (7) and (10) that the apparatus violates, a clause each."""
+    """Return the assumptions of Eqs. (7) and (10) that the apparatus violates, with its numbers."""
     s, phi, V = slider, abs(slider.misalignment), hypot(*slider.motion.rate(0.0))
     law: Any = s.law
     if has_state(law):
-        return [f"friction has no internal state (here F_0 is that at {in_words(V, 'm/s')})"]
+        return [f"friction has no internal state; here F_0 is that at {in_words(V, 'm/s')}"]
     found = []
     if isinstance(law, Anisotropic):
         found.append("the surface has no grain")
@@ -153,32 +154,35 @@ def suppositions(slider: Slider, p: Prediction) -> list[str]:
     elif phi != 0.0 and p.first_stick > SHORT * p.load_up:
         ratio, share = s.k_y * tan(phi) / s.k_x, p.first_stick / p.load_up
         found.append(
-            f"the transverse spring is loaded at once, k_y tan φ ≫ k_x (here {ratio:.3g} k_x: the "
-            f"first stick takes {share:.0%} of the time until the slip that they give)"
+            f"the transverse spring is loaded at once, k_y tan φ ≫ k_x; here k_y tan φ is only "
+            f"{ratio:.3g} k_x, and the first stick takes {percent(share)} of the time until the "
+            "predicted slip"
         )
     if 2.0 * pi * p.f_x * p.load_up < SLOWLY:
         found.append(
-            f"loading is slow beside a free swing (here {in_words(p.load_up, 's')} beside "
-            f"{in_words(1.0 / p.f_x, 's')})"
+            f"loading takes many natural periods; here it takes {in_words(p.load_up, 's')}, and a "
+            f"period {in_words(1.0 / p.f_x, 's')}"
         )
     if phi != 0.0 and p.F_static > p.F_0 * (1.0 + 1e-9):
-        found.append("no static friction above the kinetic one ends each rest with a jump")
+        found.append(
+            "static friction does not exceed F_0; here it is larger, and each rest ends with a jump"
+        )
     weakening = -float(law.slope(0.0)) * s.normal_load
     if phi != 0.0 and weakening > 2.0 * sqrt(s.masses[1] * s.k_y):
-        found.append(
-            "friction weakens gently (here so steeply that each rest ends in a slip of its own)"
-        )
+        found.append("friction weakens gently; here so steeply that each rest ends in a rapid slip")
     lost = s.F_0 - float(law.coefficient(p.creep_at_slip)) * s.normal_load if phi != 0.0 else 0.0
     if p.slips and lost > WEAKENED * p.drop:
         found.append(
-            f"friction is still F_0 when creep turns into slip (here, at "
-            f"{in_words(p.creep_at_slip, 'm/s')}, it has lost {in_words(lost, 'N')})"
+            f"friction is still F_0 when creep turns into slip; here, at "
+            f"{in_words(p.creep_at_slip, 'm/s')}, it has lost {in_words(lost, 'N')}"
         )
     m_x, m_y = s.masses
     if max(s.c_x / sqrt(s.k_x * m_x), s.c_y / sqrt(s.k_y * m_y)) > DAMPED:
         found.append("nothing but friction damps")
     if not s.aligned:
-        found.append("the mass is the same along x and y (here it is not, or dampers are askew)")
+        found.append(
+            "the mass is the same along x and y, and dampers lie along the axes; here they do not"
+        )
     return found
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 
 from rich.box import SIMPLE_HEAD
@@ -56,20 +57,22 @@ def widths(columns: Sequence[Sequence[str]], room: int) -> list[int | None]:
     """Return the widths of columns in letters; None if words must be broken too."""
     least = [narrowest(cells) for cells in columns]
     wanted = [max(map(len, cells), default=0) for cells in columns]
-    left = room - sum(least)
-    if left < 0:
+    if sum(least) > room:
         return [None for _ in columns]  # words must be broken too
-    found: list[int | None] = []
-    for low, high in zip(least, wanted, strict=True):
-        more = max(0, min(high - low, left))
-        found.append(low + more)
-        left -= more
-    return found
+    widest = max(wanted, default=0)
+    while True:  # the widest columns give way first
+        found = [max(low, min(high, widest)) for low, high in zip(least, wanted, strict=True)]
+        if sum(found) <= room:
+            return [*found]
+        widest -= 1
 
 
 def narrowest(cells: Iterable[str]) -> int:
-    """Return the least width at which cells break only between words, if these are not long."""
-    words = (word for text in cells for word in text.split())
+    """Return the least width at which cells break between words only, if these are not long.
+
+    A number and its unit are one word.
+    """
+    words = (word for text in cells for word in re.split(r"(?<!\d)\s+(?!s/m)", text))
     return min(max(map(len, words), default=0), LONGEST)
 
 

@@ -17,6 +17,7 @@ from stiction.inference.regression_abc import Sample, quantiles
 from stiction.names import draw
 from stiction.storage.files import placeable, whole
 from stiction.system.parameter import unit
+from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table, as_html
 from stiction.text.units import in_words
 
@@ -141,7 +142,7 @@ class Fit:
             names = ", ".join(x.name for x in others)
             sentences.append(
                 f"Not identifiable from these records: {names}. Their posterior is more than "
-                f"{NARROWER:.0%} as wide as their prior."
+                f"{percent(NARROWER)} as wide as their prior."
             )
         if "phi" in self.plan.priors and self.sign_unseen:
             sentences.append(
@@ -231,5 +232,5 @@ def row(x: Estimate) -> tuple[str, ...]:
     after = in_words(x.median, x.unit) if x.identified else "not identifiable"
     between = f"{in_words(x.low, x.unit)} to {in_words(x.high, x.unit)}"
     before = f"{in_words(x.prior_low, x.unit)} to {in_words(x.prior_high, x.unit)}"
-    shares = f"{x.narrower:.0%}", f"{x.coverage:.0%}"
+    shares = percent(x.narrower), percent(x.coverage)
     return (x.name, after, between, in_words(x.prior_median, x.unit), before, *shares)

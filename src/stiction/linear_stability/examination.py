@@ -167,7 +167,7 @@ def modes_section(linear: Linearisation) -> Section:
     decays = "every small disturbance decays" if linear.stable else "not every disturbance decays"
     modes = zip(linear.eigenvalues, linear.frequencies, linear.damping_ratios, strict=True)
     rows = [
-        (f"{value.real:.6g}", f"{f:.6g}", f"{zeta:.4g}")
+        (in_words(value.real, "1"), in_words(f, "1"), f"{zeta:.4g}")
         for value, f, zeta in modes
         if value.imag >= 0.0
     ]
@@ -191,7 +191,7 @@ def critical_section(slider: Slider, found: Sequence[Critical]) -> Section:
         if isfinite(own[each.path])
     )
     rows = [row for each in found for row in stretches(each, own[each.path])]
-    headings = ("parameter", "from", "to", "steady sliding", "oscillation at its end")
+    headings = ("parameter", "from", "to", "steady sliding", "oscillation at the upper end")
     return Section("Where that changes", [f"Now: {now}."] if now else [], Table(headings, rows))
 
 

@@ -14,7 +14,7 @@ from stiction.linear_stability.derivatives import Floats, Response, set_valued, 
 from stiction.system.slider import Slider
 
 SETTLED = 1e-9  # largest relative error of friction from unsteady internal states
-STEADY = "sliding is linearised at a steady drive and load: slider.replace("
+STEADY = "this needs a steady drive and load; remove the program"
 
 
 def drive_velocity(slider: Slider) -> Floats:
@@ -23,11 +23,11 @@ def drive_velocity(slider: Slider) -> Floats:
     drives, loads = drive_stretches(slider.motion), load_stretches(slider.normal_load, slider.load)
     X, Y = slider.motion.rate(0.0)
     if len(drives) > 1 or not drives[0][1].steady():
-        found.append(Fault("drive", f"is not steady; {STEADY}drive=st.ConstantVelocity(...))"))
+        found.append(Fault("drive", f"is not steady; {STEADY}, or drive=st.ConstantVelocity(...)"))
     elif X == Y == 0.0:
         found.append(Fault("drive.velocity", "is zero: nothing slides; give it a velocity"))
     if len(loads) > 1 or not loads[0][1].constant():
-        found.append(Fault("load", f"is not constant; {STEADY}load=None)"))
+        found.append(Fault("load", f"is not constant; {STEADY}, or load=None"))
     if found:
         raise DescriptionError(found)
     c, s = slider.direction

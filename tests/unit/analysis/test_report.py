@@ -79,7 +79,7 @@ def test_bare_arrays_say_what_they_can(run):
     record = st.Record(time=run.data["time"].values, force=run.data["spring_x"].values)
     found = st.analyse(record)
     assert found.cycles.sizes["cycle"] == 3
-    assert "stiffness and drive_velocity" in found.missing["creep"]
+    assert "stiffness and drive velocity" in found.missing["creep"]
     assert found.energy is None
     assert all(part.sentences for part in found.tables())
 
@@ -204,8 +204,8 @@ def test_a_vibration_that_sticks_is_not_said_not_to() -> None:
     assert 0.3 < late < 0.5
     assert "and sticks for 4" in text
     assert "without sticking" not in text
-    assert "quicker than the 37.06 ms in which it swings on the softer spring alone" in text
-    assert "they are of stick-slip, and this is transverse oscillation" in text
+    assert "quicker than the 37.06 ms in which it swings on the spring along x alone" in text
+    assert "they are defined for stick-slip, and this is transverse oscillation" in text
     measured = st.Record(time=run.data["time"].values, force=run.data["spring_x"].values)
     assert "stick" not in str(st.analyse(measured)).partition("Friction")[0]
 
@@ -224,3 +224,26 @@ def test_a_mass_that_never_slips_does_not_creep_before_slip() -> None:
     text = str(st.analyse(run))
     assert "rests from beginning to end" in text
     assert "before" not in text.partition("Creep")[2].partition("Oscillation")[0]
+
+
+def test_a_force_between_two_levels_has_no_kinetic_friction_in_any_table() -> None:
+    time = np.arange(5000) * 2e-3
+    record = st.Record(time=time, force=np.tanh(8.0 * np.sin(4.4 * time)), normal_load=9.0)
+    found = st.analyse(record)
+    assert found.friction.kinetic is None
+    assert found.cycles.sizes["cycle"] > 3
+    assert np.isnan(found.cycles["mu_kinetic"]).all()
+    assert "Not given: µ kinetic; the force goes back and forth" in str(found)
+
+
+def test_a_single_break_away_is_named() -> None:
+    time = np.arange(3000) * 4e-3
+    force = np.where(time < 3.4, 0.9 * time, 2.6 + 0.46 * np.exp(-(time - 3.4) / 0.05))
+    text = str(st.analyse(st.Record(time=time, force=force, normal_load=8.0)))
+    assert "The mass breaks away once, and comes to slide steadily, at a force of 2.6 N." in text
+
+
+def test_a_mass_that_rests_throughout_has_no_figure_of_creep() -> None:
+    run = st.simulate(RIG.replace(friction=st.Coulomb(mu_0=0.9)), "20 ms", sample_rate="10 kHz")
+    assert run.sticks.sizes["stick"] == 1
+    assert "creep" not in figures(st.analyse(run))

@@ -153,8 +153,8 @@ def _position(record: Record) -> Floats:
         return np.asarray(record.position)
     if record.stiffness is None or record.drive_velocity is None:
         raise ResultError(
-            "creep needs the position of the mass, which the record lacks; give "
-            "Record(...) its stiffness and drive_velocity, or its position"
+            "creep needs the position of the mass, which the record lacks; give its stiffness and "
+            "drive velocity, or its position"
         )
     return np.asarray(record.drive_velocity * record.time - record.force / record.stiffness)
 

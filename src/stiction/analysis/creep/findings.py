@@ -15,6 +15,7 @@ from stiction.analysis.creep.misalignment import Misalignment, fit_misalignment
 from stiction.analysis.record import Record
 from stiction.drive.program import nominal_velocity
 from stiction.errors import ResultError, StictionError
+from stiction.text.quantity_text import percent
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -146,12 +147,10 @@ def _divergence(mean: xr.Dataset, loading: float) -> Divergence:
 def _misalignment(mean: xr.Dataset, V: float, stiffness: float) -> Misalignment:
     """Return the implied misalignment, if it exceeds its uncertainty."""
     if np.nanmedian(np.abs(mean["velocity"].values)) < RESTS * V:
-        raise ResultError("not determined: the mass rests where Eq. (7) predicts creep")
+        raise ResultError("not determined: the mass mostly rests where Eq. (7) predicts creep")
     found = fit_misalignment(mean, V, stiffness)
     if found.misfit > MISSED or found.scatter > SCATTER:
-        by = (
-            f"{100.0 * found.misfit:.2g}%" if found.misfit > MISSED else "more than its uncertainty"
-        )
+        by = percent(found.misfit) if found.misfit > MISSED else "more than its uncertainty"
         raise ResultError(
             "not determined: Eq. (7), which supposes slow loading and a spring that is far "
             f"stiffer across, misses this creep by {by}"

@@ -13,6 +13,7 @@ from stiction.analysis.creep.misalignment import Misalignment
 from stiction.analysis.motion.cycles import find_cycles
 from stiction.analysis.record import Record
 from stiction.errors import ResultError
+from stiction.text.quantity_text import percent
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -205,7 +206,7 @@ def _refuse(phi: float, error: float, excess: float, misfit: float, off: float) 
     if misfit > WORST:
         raise ResultError(
             "not determined: the rises do not have the shape that friction gives as it turns "
-            f"(they miss it by {f'{misfit:.1%} of' if misfit < 1.0 else 'more than'} the drop)"
+            f"(they miss it by {f'{percent(misfit)} of' if misfit < 1.0 else 'more than'} the drop)"
         )
     if excess > EARLY:
         raise ResultError(

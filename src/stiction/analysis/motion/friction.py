@@ -22,6 +22,7 @@ from stiction.analysis.motion.regime import (
 from stiction.analysis.motion.rest import comes_to_rest
 from stiction.analysis.record import Record
 from stiction.analysis.signals.turning_points import without_spikes
+from stiction.text.quantity_text import percent
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -167,7 +168,7 @@ def _first_peak(forces: Floats, noise: float) -> tuple[int | None, str]:
     risen &= highest - forces[0] > 2.0 * STANDS_OUT * noise
     fallen = np.flatnonzero((highest - forces > fall) & risen)
     if not len(fallen):
-        least = f"{100.0 * PEAK:g}% of its rise"
+        least = f"{percent(PEAK)} of its rise"
         return None, f"the first loading does not end in a fall of more than {least}"
     return int(np.argmax(forces[: fallen[0] + 1])), ""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import hypot, log, pi, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 

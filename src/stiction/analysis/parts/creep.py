@@ -12,7 +12,7 @@ from stiction.analysis.motion.regime import STUCK
 from stiction.analysis.parts.wording import number
 from stiction.friction import states
 from stiction.text.sections import Section
-from stiction.text.units import in_words
+from stiction.text.units import in_words, with_error
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -35,13 +35,13 @@ def section(found: Analysis) -> Section:
     phases = int(found.creep["phases"].max())
     V = drive_speed(found.source, found.record) or 0.0
     first, last = _creeping(far, V), _creeping(near, V)
-    several = f"{phases} stick phase{'s' * (phases != 1)}"
-    lines = [f"At {long} before {_end(found)} {first}, in the last {short} {last}; {several}."]
+    several = f" These are means over {phases} stick phases." if phases > 1 else ""
+    lines = [f"{long} before {_end(found)} {first}; in the last {short} {last}.{several}"]
     if first == last == RESTING and found.regime.kind == STUCK:
         return Section("Creep", ["None: it rests from beginning to end."])
     d, phi = found.divergence, found.misalignment
     if found.record.position is None and phi is None:
-        lines.append("Counted from the even loading in the first half of each rise.")
+        lines.append("Creep is counted from the even loading in the first half of each rise.")
     if isinstance(found.source, Trajectory) and found.source.slider.misalignment == 0.0:
         lines.append("There is no misalignment, so friction does not turn.")
         if not states(found.source.slider.law):
@@ -52,10 +52,10 @@ def section(found: Analysis) -> Section:
             "(1/2 by Eq. (8), corrected)."
         )
     if phi is not None:
-        angle, error = degrees(phi.phi), degrees(phi.phi_error)
         lines.append(
-            f"By Eq. (7) it implies a misalignment of {angle:.3g} ± {error:.1g} deg{_true(found)}, "
-            f"and F_0 = {in_words(phi.F_0, 'N')}."
+            "By Eq. (7) it implies a misalignment of "
+            f"{with_error(phi.phi, phi.phi_error, 'rad')}{_true(found)}, and "
+            f"F_0 = {in_words(phi.F_0, 'N')}."
         )
     fits = {"divergence": "Exponent of its divergence", "misalignment": "Implied misalignment"}
     lines += [
@@ -89,8 +89,8 @@ def _creeping(row: xr.Dataset, V: float) -> str:
     if value <= SURE * error:
         most = max(value, 0.0) + SURE * error
         return f"it creeps no faster than {in_words(most, 'm/s')} (two standard errors)"
-    spread = f" ± {in_words(error, 'm/s')}" if error > SLIGHT * abs(value) else ""
-    return f"it creeps at {in_words(value, 'm/s')}{spread}"
+    known = with_error(value, error if error > SLIGHT * abs(value) else 0.0, "m/s")
+    return f"it creeps at {known}"
 
 
 def tables(found: Analysis) -> dict[str, xr.Dataset | None]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from stiction.analysis.parts.wording import SHOWN, number, with_spread
 from stiction.text.columns import Quantity, grid
+from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words
 
@@ -46,11 +47,14 @@ def section(found: Analysis) -> Section:
             several = with_spread(spread, mean, unit)
             rows.append((str(row["meaning"].values), in_words(mean, unit), several))
     table = Table(("quantity", "mean", "standard deviation"), rows)
-    lines = [*_hesitations(found.cycles), f"{count}, from trough to trough. Means over them:"]
+    lines = [
+        *_hesitations(found.cycles),
+        f"{count} cycle{'s' * (count > 1)}, from trough to trough.",
+    ]
     left_out = [name for name in COLUMNS if name in found.missing]
-    if left_out:
-        columns = ", ".join(COLUMNS[name] for name in left_out)
-        lines.append(f"Not given: {columns}; {found.missing[left_out[0]]}.")
+    for why in dict.fromkeys(found.missing[name] for name in left_out):
+        columns = ", ".join(COLUMNS[name] for name in left_out if found.missing[name] == why)
+        lines.append(f"Not given: {columns}; {why}.")
     return Section("Cycles", lines, table)
 
 
@@ -60,12 +64,12 @@ def _hesitations(table: xr.Dataset) -> list[str]:
     if not some:
         return []
     depth = table["hesitation_depth"]
-    most, least = 100.0 * float((depth / table["drop"]).max()), float(depth.attrs["least"])
+    most, least = float((depth / table["drop"]).max()), float(depth.attrs["least"])
     cycles = f"{some} of {table.sizes['cycle']} cycles"
     return [
-        f"In {cycles} the force hesitates: before or within its fall "
-        f"it turns back by up to {most:.2g}% of that fall. What turns back by less than "
-        f"{in_words(least, 'N')} cannot be distinguished from noise and ripple, and is not counted."
+        f"In {cycles} the force hesitates: before or within its fall it turns back, by up to "
+        f"{percent(most)} of that fall. Smaller hesitations, below {in_words(least, 'N')}, "
+        "cannot be distinguished from noise and ripple, and are not counted."
     ]
 
 

@@ -10,7 +10,9 @@ from stiction.analysis.energy import energy_budget
 from stiction.analysis.parts.wording import SHOWN
 from stiction.errors import ResultError
 from stiction.text.columns import Quantity, grid
+from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
+from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -59,13 +61,18 @@ def section(found: Analysis) -> Section:
     columns = {"from": Quantity(budget["start"].values, "s")}
     columns |= {ENERGIES[name]: Quantity(budget[name].values, "J") for name in names}
     closes = (
-        f"It closes to {left / work:.1g} of the work." if left and work else "It closes exactly."
+        f"The balance closes to {in_words(left / work, '1', 1)} of the work."
+        if left and work
+        else "The balance closes exactly."
     )
     closes = closes if work else "No work is done."
     small = [ENERGIES[name] for name in ENERGIES if name not in names]
-    most = f"{100 * NOTHING:g}% of it"
-    less = f" Always less than {most}: {', '.join(small)}." if small and work else ""
-    sentence = f"Where the work of the drive goes, from each time to the next. {closes}{less}"
+    less = (
+        f" Not shown, because always less than {percent(NOTHING)} of the work: {', '.join(small)}."
+        if small and work
+        else ""
+    )
+    sentence = f"The work of the drive, and where it goes, cycle by cycle. {closes}{less}"
     return Section("Energy", [sentence], grid(columns, SHOWN, alike="J"))
 
 

@@ -6,9 +6,9 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from stiction.analysis.motion.friction import Measured
-from stiction.analysis.parts.wording import ALIKE, number, with_error, with_spread
+from stiction.analysis.parts.wording import number, with_spread
 from stiction.text.sections import Section, Table
-from stiction.text.units import in_words
+from stiction.text.units import in_words, with_error
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ FRICTION = {
     "coefficient_error": "1",
     "coefficient_spread": "1",
 }
-SLIGHT = 1e-3  # of a velocity: an error that is less is not worth a word
+SLIGHT = 1e-3  # of a value: an error that is less is not worth a word
 OVERSHOOT = 0.01  # of the peaks: a smaller one is not worth a word
 
 
@@ -45,12 +45,13 @@ def section(found: Analysis) -> Section:
                 f"{title[0].upper()}{title[1:]}: not known; {found.friction.missing[name]}."
             )
             continue
-        error = each.error if each.error > ALIKE * abs(each.force) else 0.0
-        force = with_error(in_words(each.force, "N"), error, "N")
+        error = each.error if each.error > SLIGHT * abs(each.force) else 0.0
+        force = with_error(each.force, error, "N")
         spread = with_spread(each.spread, each.force, "N")
-        mu = f"{each.coefficient:.4g}" if isfinite(each.coefficient) else ""
-        if mu and each.coefficient_error > SLIGHT * abs(each.coefficient):
-            mu += f" ± {each.coefficient_error:.1g}"
+        slight = each.coefficient_error <= SLIGHT * abs(each.coefficient)
+        known = isfinite(each.coefficient)
+        mu_error = 0.0 if slight else each.coefficient_error
+        mu = with_error(each.coefficient, mu_error, "1") if known else ""
         rows.append((title, mu, force, spread))
     if (
         found.friction.break_away is not None

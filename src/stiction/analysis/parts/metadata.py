@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from stiction.analysis.motion.metadata import Comparison, compare_metadata
 from stiction.analysis.parts.wording import number
 from stiction.text.sections import Section, Table
-from stiction.text.units import in_words
+from stiction.text.units import in_words, with_error
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -35,7 +35,12 @@ def section(found: Analysis) -> Section | None:
     if all(each.agrees is None for each in its):  # nothing is stated
         return None
     known = [each.agrees for each in its if each.agrees is not None]
-    lines = [f"{known.count(False)} of {len(known)} stated values contradict the record."]
+    wrong, those = known.count(False), f"{len(known)} stated values"
+    lines = [
+        f"{wrong} of {len(known)} stated values contradict the record."
+        if wrong
+        else f"The record agrees with the {'stated value' if len(known) == 1 else those}."
+    ]
     lines += [_sentence(x) for x in its if x.agrees is False and x.quantity not in TOLD]
     return Section("What the record says of its apparatus", lines, Table(HEADINGS, _rows(its)))
 
@@ -44,34 +49,25 @@ def _sentence(each: Comparison) -> str:
     """Return a contradiction in words."""
     if each.unit == "Hz":
         return (
-            f"The transverse oscillation, at {_words(each.stated, each.unit)}, is not in this "
-            f"record, which shows {_words(each.found, each.unit)} at most: the stiffness across "
+            f"The transverse oscillation, at {in_words(each.stated, each.unit)}, is not in this "
+            f"record, which shows {in_words(each.found, each.unit)} at most: the stiffness across "
             "cannot be found from it."
         )
     name = f"{each.quantity[0].upper()}{each.quantity[1:]}"
     return f"{name}: by the {each.how} it is {each.ratio:.2g} times what is stated."
 
 
-def _words(value: float, unit: str) -> str:
-    return f"{value:.4g} {unit}" if unit == "1/s²" else in_words(value, unit)
-
-
 def _rows(its: tuple[Comparison, ...]) -> list[tuple[str, ...]]:
     return [
         (
             each.quantity,
-            _cell(each),
-            _words(each.stated, each.unit) if isfinite(each.stated) else "",
+            with_error(each.found, each.error, each.unit),
+            in_words(each.stated, each.unit) if isfinite(each.stated) else "",
             VERDICTS[each.agrees],
             each.how,
         )
         for each in its
     ]
-
-
-def _cell(each: Comparison) -> str:
-    error = f" ± {_words(float(f'{each.error:.1g}'), each.unit)}" if each.error > 0.0 else ""
-    return _words(each.found, each.unit) + error
 
 
 def tables(found: Analysis) -> dict[str, xr.Dataset | None]:

@@ -5,15 +5,11 @@ from __future__ import annotations
 from math import isfinite
 from typing import Any
 
+from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 
 SHOWN = 8  # cycles in the terminal; files hold all
 ALIKE = 1e-5  # of a value: a spread that is less is the solver's, not the motion's
-
-
-def with_error(value: str, error: float, unit: str) -> str:
-    """Return a value in words with its standard error, if that is known."""
-    return f"{value} ± {in_words(float(f'{error:.1g}'), unit)}" if error > 0.0 else value
 
 
 def with_spread(spread: float, mean: float, unit: str) -> str:
@@ -21,8 +17,8 @@ def with_spread(spread: float, mean: float, unit: str) -> str:
     if not isfinite(spread):
         return ""
     if spread <= ALIKE * abs(mean):
-        return f"< {100.0 * ALIKE:g}%"
-    return in_words(spread, unit)
+        return f"< {percent(ALIKE)}"
+    return in_words(spread, unit, 2)
 
 
 def number(value: Any) -> float | None:

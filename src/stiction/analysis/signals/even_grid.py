@@ -14,6 +14,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.text.quantity_text import percent
+
 Floats = NDArray[np.float64]
 
 EVEN = 0.1  # of a step: how far a sample may lie off the grid to count as on it
@@ -172,10 +174,10 @@ def why_not(grid: EvenGrid | None) -> str:
     remedy = "analyse a part without gaps, or sample it evenly"
     if grid.missing.mean() > MOST_MISSING:
         return (
-            f"{100.0 * grid.missing.mean():.0f}% of the time lies in gaps between samples, and a "
-            f"spectrum allows {100.0 * MOST_MISSING:.0f}%: {remedy}"
+            f"{percent(grid.missing.mean())} of the time lies in gaps between samples, and a "
+            f"spectrum allows {percent(MOST_MISSING)}: {remedy}"
         )
     return (
-        f"{100.0 * grid.crowded:.0f}% of the samples follow the one before within half the typical "
-        f"interval, and a spectrum allows {100.0 * MOST_CROWDED:.0f}%: {remedy}"
+        f"{percent(grid.crowded)} of the samples follow the one before within half the typical "
+        f"interval, and a spectrum allows {percent(MOST_CROWDED)}: {remedy}"
     )

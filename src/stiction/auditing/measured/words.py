@@ -7,6 +7,7 @@ from stiction.inference.mechanism.odds import UNDECIDED, near_one
 from stiction.inference.mechanism.rivals import ROTATION
 from stiction.inference.posterior import Estimate, Fit
 from stiction.inference.predictive import Predictive
+from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
 from stiction.text.units import in_words
 
@@ -100,8 +101,8 @@ def grounds(found: Comparison, fit: Fit) -> list[str]:
         f"{conditions.cycles} cycles of {in_words(conditions.cycle, 's')}, with {channels}, beside "
         f"{fit.simulations} simulated records.",
         curve(found.predictive),
-        f"{fit.farther:.0%} of the simulated records lie farther from the others, by their "
-        f"features, than the measured one; below {RARE:.0%} it is unlike them.",
+        f"{percent(fit.farther)} of the simulated records lie farther from the others, by their "
+        f"features, than the measured one; below {percent(RARE)} it is unlike them.",
     ]
     if found.odds is not None:
         lines += [f"Among the mechanisms compared: {each}" for each in found.odds.sentences()[:1]]
@@ -125,9 +126,10 @@ def curve(found: Predictive | None) -> str:
     )
     return (
         f"The measured loading curve lies within the 95 % band of simulated ones over "
-        f"{force:.0%} of its length, and its departure from a straight line over {bend:.0%}; "
-        f"{found.larger:.0%} of the simulations depart as far from their mean, and below "
-        f"{RARE:.0%} it is unlike them."
+        f"{percent(force)} of its length, and its departure from a straight line over "
+        f"{percent(bend)}; "
+        f"{percent(found.larger)} of the simulations depart as far from their mean, and below "
+        f"{percent(RARE)} it is unlike them."
     )
 
 

@@ -6,6 +6,7 @@ from decimal import ROUND_DOWN, Context, Decimal
 from math import degrees, isnan
 
 from stiction.auditing.tolerance.budget import Alignment, Budget, Reading
+from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words
 
@@ -43,7 +44,7 @@ def section(found: Budget) -> Section:
 
 def limit(found: Alignment) -> str:
     """Return how well to align, in a sentence."""
-    share = f"{100.0 * found.allowed:g} %"
+    share = percent(found.allowed)
     if not isnan(found.angle):
         angle, first = round_down(degrees(found.angle)), round_down(degrees(found.first))
         said = f"Align to better than {angle:g} deg to keep the error of mu_static below {share}."
@@ -52,7 +53,7 @@ def limit(found: Alignment) -> str:
     if found.least > found.allowed:
         return (
             f"Alignment to {in_words(found.until, 'rad')} is not enough to keep the error of "
-            f"mu_static below {share}: it is {100.0 * found.least:.3g} % there."
+            f"mu_static below {share}: it is {percent(found.least, 3)} there."
         )
     return f"An error of mu_static of {share} is not reached up to {in_words(found.until, 'rad')}."
 

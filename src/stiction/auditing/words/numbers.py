@@ -29,8 +29,9 @@ def violated_assumptions(found: Audit) -> list[str]:
     if not unmet:
         return []
     return [
-        f"Eqs. (7) and (10) suppose that {'; that '.join(unmet)}. Values that follow from them, "
-        "marked ~, are only a guide."
+        "Values marked ~ follow from Eqs. (7) and (10), and are only a guide: the apparatus does "
+        "not meet all assumptions of these equations.",
+        *(f"They assume that {each}." for each in unmet),
     ]
 
 
@@ -40,22 +41,23 @@ def numbers(found: Audit) -> Table:
     first = float(np.diff(seen.run.stick_intervals[:1]).sum())  # zero if it never sticks
     slip = slip_time(seen)
     creep_at_slip, creep_distance = (p.creep_at_slip, p.creep_distance) if p.slips else (nan, nan)
-    held = [("friction that holds at rest", p.F_static, None, "N", False)]
+    theta_c = p.theta_c if p.zeta < 1.0 else nan  # else friction never turns so far
+    held = [("static friction", p.F_static, None, "N", False)]
     rows = [
-        ("friction at vanishing slip F_0", p.F_0, None, "N", False),
+        ("friction F_0 at vanishing slip", p.F_0, None, "N", False),
         *(held if p.F_static > p.F_0 * (1.0 + 1e-9) else []),
         ("natural frequency along x", p.f_x, None, "Hz", False),
         ("natural frequency along y", p.f_y, None, "Hz", False),
         ("damping number A, Eq. (10)", p.A, None, "", True),
         ("damping ratio ζ at θ = φ, Eq. (10)", p.zeta, None, "", True),
-        ("θ at which ζ = 1: slow slip turns fast", p.theta_c, None, "rad", True),
-        ("first stick: true rest", nan if has_state(s.law) else p.first_stick, first, "s", False),
+        ("θ at which ζ = 1: slow slip turns fast", theta_c, None, "rad", True),
+        ("first stick (true rest)", nan if has_state(s.law) else p.first_stick, first, "s", False),
         ("time until the first slip", p.load_up if p.slips else nan, slip, "s", True),
         ("creep velocity at first, V sin² φ", p.creep_at_start, None, "m/s", True),
         ("creep velocity when it slips, Eq. (7)", creep_at_slip, None, "m/s", True),
         ("creep before the first slip", creep_distance, creep_before_slip(seen), "m", True),
-        ("apparent static friction", p.mu_static, peak(seen), "", True),
-        ("apparent kinetic friction", p.mu_kinetic, kinetic(seen), "", True),
+        ("apparent coefficient of static friction", p.mu_static, peak(seen), "", True),
+        ("apparent coefficient of kinetic friction", p.mu_kinetic, kinetic(seen), "", True),
         ("force drop", p.drop, seen.mean("drop"), "N", True),
         ("period", p.period, seen.mean("period"), "s", True),
         ("apparent stiffness", apparent_stiffness(s), loading(seen), "N/m", True),

@@ -12,6 +12,7 @@ from stiction.analysis.motion.regime import (
     TRANSVERSE,
 )
 from stiction.friction import has_state
+from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 
 if TYPE_CHECKING:
@@ -24,14 +25,19 @@ HARDLY = 0.05  # of the time: a smaller share of creep or rest is negligible
 def stick(found: Audit) -> list[str]:
     """Return how much of the apparent stick is creep."""
     seen, s = found.observation, found.slider
-    rest, creep, slip = (f"{100.0 * share:.3g} %" for share in seen.shares)
     whole = "of each cycle" if seen.cycles.sizes["cycle"] else "of the time until it slides"
     vibrates, state = seen.motion in VIBRATES, has_state(s.law)
-    slowly = "sliding" if vibrates else "creeping" if s.misalignment or state else "sliding slowly"
+    slowly = "slides" if vibrates else "creeps" if s.misalignment or state else "slides slowly"
+    slow = ("rests", seen.shares.rest), (slowly, seen.shares.creep)
     lines = [
-        f"Moving slower than the drive, which a load cell shows as a rising force, takes "
-        f"{100.0 * (seen.shares.rest + seen.shares.creep):.3g} % {whole}: at rest {rest}, "
-        f"{slowly} {creep}. Moving faster than the drive takes {slip}."
+        f"For {percent(seen.shares.rest + seen.shares.creep)} {whole} the mass is slower than the "
+        f"drive, and the load cell shows a rising force: the mass "
+        f"{' and '.join(f'{verb} for {percent(share)}' for verb, share in slow if share)}. "
+        + (
+            f"For {percent(seen.shares.slip)} it is faster than the drive."
+            if seen.shares.slip
+            else "It is never faster than the drive."
+        )
     ]
     if s.misalignment == 0.0:
         lines.append("There is no misalignment, so friction does not turn.")
@@ -54,8 +60,8 @@ def stick(found: Audit) -> list[str]:
         )
         lines.append(
             f"The apparent stick is mostly creep under a turning friction force: an artefact "
-            f"of the misalignment. The mass covers {far}. The largest force says how friction "
-            f"turned, not that the interface has static friction."
+            f"of the misalignment. The mass covers {far}. The largest force shows how far "
+            f"friction has turned; it is no evidence of static friction."
         )
     elif seen.shares.rest > HARDLY:
         lines.append("The apparent stick is mostly true rest.")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import degrees, isfinite, sqrt
+from math import isfinite, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +14,6 @@ from stiction.analysis.motion.regime import (
     TRANSITIONAL,
     UNDETERMINED,
 )
-from stiction.analysis.parts.wording import with_error
 from stiction.auditing.observation import (
     OSCILLATES,
     SLIDES,
@@ -23,7 +22,7 @@ from stiction.auditing.observation import (
     Observation,
 )
 from stiction.linear_stability.linear import STABLE, UNSTABLE
-from stiction.text.units import in_words
+from stiction.text.units import in_words, with_error
 
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit
@@ -67,7 +66,7 @@ def motions(found: Audit) -> list[str]:
                 "In the time of the test it slides steadily, but that does not last: small "
                 "disturbances grow, more slowly than the test shows."
             )
-        return [what, f"From rest the load cell sees: {describe_motion(rest)}."]
+        return [what, f"Started from rest, the load cell shows {describe_motion(rest)}."]
     if rest.comes_to == OSCILLATES and sliding.comes_to == OSCILLATES:
         lines = [
             "It does not slide steadily: from rest, and when it is started sliding, it comes to "
@@ -85,7 +84,7 @@ def motions(found: Audit) -> list[str]:
             f"by 1 % of the drive's speed, to {final_motion(sliding)}"
             f"{' in the time of the test' if sliding.comes_to == SLIDES else ''}."
         ]
-    return [*lines, f"From rest the load cell sees: {describe_motion(rest)}."]
+    return [*lines, f"Started from rest, the load cell shows {describe_motion(rest)}."]
 
 
 def final_motion(seen: Observation) -> str:
@@ -130,7 +129,7 @@ def mean_in_words(values: np.ndarray, unit: str) -> str:
     """Return a mean over cycles, with its standard error where they differ."""
     mean = float(values.mean())
     error = float(values.std(ddof=1)) / sqrt(len(values)) if len(values) > 1 else 0.0
-    return with_error(in_words(mean, unit), error if error > SHOWN * mean else 0.0, unit)
+    return with_error(mean, error if error > SHOWN * mean else 0.0, unit)
 
 
 def stability(found: Audit) -> str:
@@ -145,9 +144,9 @@ def stability(found: Audit) -> str:
     if stable and found.sliding_on.comes_to == OSCILLATES:
         return (
             f"Steady sliding is stable only to disturbances far below 1 % of the drive's speed, "
-            f"which decay by e in {time}{swing}: in a test it does not last."
+            f"which decay by a factor of e in {time}{swing}: in a test it does not last."
         )
-    what = f"stable: small disturbances {'decay' if stable else 'grow'} by e in {time}"
+    what = f"stable: small disturbances {'decay' if stable else 'grow'} by a factor of e in {time}"
     return f"Steady sliding is {what if stable else 'un' + what}{swing}."
 
 
@@ -158,26 +157,25 @@ def margin(found: Audit) -> str:
     closed = found.prediction.phi_c
     if not len(values):
         always = "stable" if all(found.misalignment.stable) else "unstable"
-        sign = " of that sign" if phi else ""
+        low, high = (in_words(end - turn, "rad") for end in found.misalignment.between)
         rigid = (
-            f"; on a transverse spring that is rigid it would be stable from {degrees(closed):.4f} "
-            "deg on"
+            f"; with a rigid transverse spring it would be stable above {in_words(closed, 'rad')}"
         )
         return (
-            f"No misalignment changes its stability: it is {always} at every φ{sign}"
-            f"{rigid if always == 'unstable' and isfinite(closed) else ''}."
+            f"No misalignment changes that: steady sliding is {always} at every φ from {low} to "
+            f"{high}{rigid if always == 'unstable' and isfinite(closed) else ''}."
         )
     nearest = float(values[np.argmin(np.abs(values - phi))])
     lowest = abs(nearest) == np.min(np.abs(values))
-    at, form = f"{degrees(nearest):.4f} deg", ""
+    at, form = in_words(nearest, "rad"), ","
     if lowest and isfinite(closed):
-        plain = f"{degrees(closed):.4f} deg"
-        form = ", as in closed form" if plain == at else f" ({plain} in closed form)"
+        plain = in_words(closed, "rad")
+        rigid = "with a rigid transverse spring"
+        form = f", as {rigid}," if plain == at else f" ({plain} {rigid}),"
     way = "more" if abs(nearest) > abs(phi) else "less"
     changes = {STABLE: "It becomes unstable", UNSTABLE: "It becomes stable"}
     what = changes.get(found.sliding.verdict, "Its stability changes")
     return (
-        f"{what} at φ_c = {at}{form}: the margin is "
-        f"{abs(degrees(nearest - phi)):.4g} deg {way} misalignment than now, "
-        f"{degrees(phi):.4g} deg."
+        f"{what} at φ_c = {at}{form} which is {in_words(abs(nearest - phi), 'rad')} {way} than "
+        f"the present misalignment of {in_words(phi, 'rad')}."
     )

@@ -9,6 +9,7 @@ import numpy as np
 
 from stiction.cli.options import Changes, FromPreset, Output, Trust, changes, description_from
 from stiction.cli.terminal import say
+from stiction.text.quantity_text import percent
 
 REST = 1e-9  # of the drive velocity: slower slip counts as rest
 
@@ -112,7 +113,7 @@ def share(result: Trajectory) -> str:
     times = result.samples["time"]
     lasted = float(times[-1] - times[0])
     return (
-        f", {100 * result.statistics.time_stuck / lasted:.3g}% of the time" if lasted > 0.0 else ""
+        f", {percent(result.statistics.time_stuck / lasted, 3)} of the time" if lasted > 0.0 else ""
     )
 
 

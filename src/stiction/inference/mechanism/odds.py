@@ -12,6 +12,7 @@ from stiction.inference.features import EDGES
 from stiction.inference.mechanism.likeness import Likeness
 from stiction.inference.mechanism.rivals import ROTATION, STATIC
 from stiction.names import draw
+from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table, as_html
 
 if TYPE_CHECKING:
@@ -108,13 +109,13 @@ class Odds:
             )
         if its.farther < RARE:
             found.append(
-                f"The record is not like those of {name}: {its.farther:.1%} of the simulated "
-                f"records lie farther from their nearest ones, {RARE:.0%} are needed."
+                f"The record is not like those of {name}: {percent(its.farther)} of the simulated "
+                f"records lie farther from their nearest ones, {percent(RARE)} are needed."
             )
         if its.larger < RARE:
             found.append(
-                f"The loading curve is not like those of {name}: {its.larger:.1%} of the simulated "
-                f"ones depart as far from their mean, {RARE:.0%} are needed."
+                f"The loading curve is not like those of {name}: {percent(its.larger)} of the "
+                f"simulated ones depart as far from their mean, {percent(RARE)} are needed."
             )
         if self.steady < TREND:
             found.append(
@@ -128,14 +129,14 @@ class Odds:
         """Return the odds, what they rest on, and how often such odds are right."""
         numbered = [f"{number} {name}" for number, name in enumerate(self.names, 1)]
         rows = [
-            (name, near_one(p), f"{its.farther:.0%}", f"{its.larger:.0%}", str(count))
+            (name, near_one(p), percent(its.farther), percent(its.larger), str(count))
             for name, p, its, count in zip(
                 numbered, self.probabilities, self.likeness, self.counts, strict=True
             )
         ]
         headings = ("mechanism", "probability", "farther", "more bent", "simulated")
         shares = [
-            (name, *(f"{share:.0%}" for share in row))
+            (name, *(percent(share) for share in row))
             for name, row in zip(numbered, self.confusion, strict=True)
         ]
         columns = ("simulated by", *map(str, range(1, len(numbered) + 1)), UNDECIDED)

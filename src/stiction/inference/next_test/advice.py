@@ -13,6 +13,7 @@ from stiction.inference.next_test.expectation import Expected
 from stiction.inference.next_test.further import AGAIN
 from stiction.inference.posterior import unit_of
 from stiction.names import draw
+from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table, as_html
 from stiction.text.units import in_words
 
@@ -89,7 +90,7 @@ class Advice:
         found = [Section("What to measure next", self.sentences(), Table(headings, rows))]
         names = [*self.plan.priors]
         widths = [
-            (test.test, *(f"{each:.0%}" for each in test.width))
+            (test.test, *(percent(each) for each in test.width))
             for test in (self.present, *self.ranked)
         ]
         short = (name.split(".")[-1] for name in names)
@@ -152,4 +153,4 @@ def row(test: Expected, i: int, unit: str) -> tuple[str, ...]:
     """Return a row of the table."""
     error = in_words(float(test.error[i]), unit, 2)
     between = f"{test.low[i]:.2f} to {test.high[i]:.2f}"
-    return (test.test, error, f"{test.ratio[i]:.2f}", between, f"{test.usable:.0%}")
+    return (test.test, error, f"{test.ratio[i]:.2f}", between, percent(test.usable))

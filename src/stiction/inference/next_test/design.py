@@ -27,6 +27,7 @@ from stiction.inference.observation import PER_CYCLE, Conditions, observe
 from stiction.inference.priors import Rig
 from stiction.system.slider import Slider
 from stiction.text.paths import canonical
+from stiction.text.quantity_text import percent
 from stiction.text.units import Quantity, in_words
 
 FEWEST = 100  # rigs with cycles in the present test, below which nothing is learned
@@ -210,7 +211,9 @@ def assumptions(recorded: Sequence[str], present: Conditions, wanted: Wanted) ->
         found.append(f"Assumed: {CYCLES} cycles in each record, {PER_CYCLE} samples in each cycle.")
     if wanted.noise is None and not recorded:
         level = in_words(noise["force"].level, "N", 2)
-        found.append(f"Assumed: a noise of {level} in each force, {NOISE:.1%} of that of friction.")
+        found.append(
+            f"Assumed: a noise of {level} in each force, {percent(NOISE)} of that of friction."
+        )
     if wanted.position_noise is None and "position" not in recorded:
         level = in_words(noise["position"].level, "m", 2)
         found.append(f"Assumed: a noise of {level} in the displacement.")

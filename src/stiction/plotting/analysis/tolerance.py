@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
 from stiction.plotting.page.parameter import in_unit
 from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PALE, style
+from stiction.text.quantity_text import percent
 
 LABELS = (
     "apparent static friction",
@@ -59,7 +60,7 @@ def draw_limit(ax: Axes, budget: Any) -> None:
     """Draw the allowed error of the static coefficient, and where it is reached."""
     static, limit = budget.aligned.static, budget.alignment
     band = static * (1.0 - limit.allowed), static * (1.0 + limit.allowed)
-    ax.axhspan(*band, color=PALE, zorder=0, label=f"within {100.0 * limit.allowed:g} %")
+    ax.axhspan(*band, color=PALE, zorder=0, label=f"within {percent(limit.allowed)}")
     reached = np.degrees(limit.angle)
     if np.isfinite(reached):
         side = np.sign(np.median(budget.angles)) or 1.0

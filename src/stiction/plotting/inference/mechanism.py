@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, RED, style
+from stiction.text.quantity_text import percent
 
 LETTERS = 16  # in a line of a mechanism's name
 TAILS = (0.025, 0.975)
@@ -68,7 +69,7 @@ def draw_confusion(ax: Axes, confusion: NDArray[np.float64], names: Sequence[str
     ax.imshow(confusion, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto")
     for (row, column), share in np.ndenumerate(confusion):
         color = "white" if share > DARK else BLACK
-        ax.text(column, row, f"{share:.0%}", ha="center", va="center", color=color, fontsize=7.0)
+        ax.text(column, row, percent(share), ha="center", va="center", color=color, fontsize=7.0)
     columns = [*names, "undecided"]
     ax.set_xticks(range(len(columns)), columns, rotation=45.0, ha="right", rotation_mode="anchor")
     ax.set_yticks(range(len(names)), [""] * len(names))

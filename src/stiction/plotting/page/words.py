@@ -16,7 +16,7 @@ from stiction.drive.program import nominal_velocity
 from stiction.drive.recorded.piece import RECORDS, Recorded, RecordedLoad
 from stiction.friction import Anisotropic, name_of, states
 from stiction.system.slider import Slider
-from stiction.text.quantity_text import DIGITS
+from stiction.text.quantity_text import DIGITS, percent
 from stiction.text.units import hints_of, in_words, unit_of
 from stiction.trajectory import Trajectory
 
@@ -195,8 +195,8 @@ def outcome_in_words(run: Trajectory, width: int = 38) -> list[str]:
     """Return how the run ended, in lines of at most `width` characters, and how it stuck."""
     times = run.samples["time"]
     lasted, stuck = float(times[-1] - times[0]), run.stick_intervals
-    share = 100 * float((stuck[:, 1] - stuck[:, 0]).sum()) / lasted if lasted > 0 else 0.0
-    count = f"{len(stuck)} stick{'s' * (len(stuck) != 1)}, {share:.3g} % of the time"
+    share = float((stuck[:, 1] - stuck[:, 0]).sum()) / lasted if lasted > 0 else 0.0
+    count = f"{len(stuck)} stick{'s' * (len(stuck) != 1)}, {percent(share, 3)} of the time"
     simulated = f"{in_words(lasted, 's')} simulated"
     none = "no true rest: the law has a state" if states(run.slider.law) else "no stick"
     beats = wrap(MEAN_MOTION, width) if is_undersampled(run) else []

@@ -211,7 +211,7 @@ def test_hesitations_are_counted_and_measured() -> None:
         assert 0.0 < least < 0.1
         said = str(st.analyse(st.Record(time=samples, force=measured)))
         assert "In 5 of 10 cycles the force hesitates" in said
-        assert f"less than {in_words(least, 'N')}" in " ".join(said.split())
+        assert f"below {in_words(least, 'N')}" in " ".join(said.split())
 
 
 def corners(*legs: float) -> Floats:

@@ -147,7 +147,7 @@ def test_a_harmonic_of_the_cycles_is_no_line() -> None:
     sawtooth = 1.0 + 0.3 * (time % 1.1)
     found = st.analyse(st.Record(time=time, force=sawtooth + noise))
     assert np.isfinite(found.oscillation["frequency"]).mean() < 0.05
-    assert "No line stands out" in as_text(found.tables())
+    assert "No oscillation stands out" in as_text(found.tables())
     hum = 0.01 * np.sin(2.0 * np.pi * 47.0 * time)
     found = st.analyse(st.Record(time=time, force=sawtooth + hum + noise))
     assert found.oscillation["frequency"].values == pytest.approx(47.0, abs=0.1)
@@ -170,7 +170,7 @@ def test_a_report_prints_itself_and_no_creep_goes_backwards() -> None:
 def test_a_record_too_slow_for_a_fast_line_is_told_the_rate() -> None:
     time = np.arange(0.0, 33.0, 0.1)
     found = st.analyse(st.Record(time=time, force=1.0 + (time / 0.75) % 1.0))
-    assert found.missing["oscillation"].endswith("of which there are 10")
+    assert found.missing["oscillation"].endswith("the record has 10")
 
 
 def test_a_coefficient_of_five_is_doubted_but_is_no_factor_of_a_thousand() -> None:
