@@ -75,8 +75,8 @@ def study(features: Floats, truth: Floats, path: Path | None = None) -> Learned:
     stored = read(path, features)
     if stored is not None:
         return Learned(stored[0], truth, stored[1])
+    summary = learn(features, truth)
     with single_threaded_algebra():
-        summary = learn(features, truth)
         found = Learned(summary, truth, ranks(summary, truth))
     if path is not None:
         write(path, found)

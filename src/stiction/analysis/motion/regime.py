@@ -152,7 +152,7 @@ WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
     ),
     "straight": (
         "it rises and falls evenly, and turns at once, as no vibration does: it is within a tenth "
-        "of its swing from either end for {} of the time (a sine: 41%)",
+        "of its swing from either end for {} of the time (a sine: 41 %)",
         percent,
     ),
     "changed_at": ("at {} the cycles change", _seconds),

@@ -186,9 +186,9 @@ def alignment(slider: Slider, aligned: float, farthest: float) -> Alignment:
         return Alignment(nan, float(scan[-1]) if known else 0.0, least)
     if over[0] == 0:
         return Alignment(nan, float(scan[0]), least)
-    below, above = scan[over[0] - 1], scan[min(over[0] + 1, known - 1)]
-    angles = np.geomspace(below, above, FINE)
-    fine = errors(angles)
+    below, above = over[0] - 1, min(over[0] + 1, known - 1)
+    angles = np.geomspace(scan[below], scan[above], FINE)
+    fine = np.array([found[below], *errors(angles[1:-1]), found[above]])
     angles, fine = angles[np.isfinite(fine)], fine[np.isfinite(fine)]
     first = min(scan[over[0]], *angles[fine > ALLOWED])
     return Alignment(crossing(angles, fine), float(scan[over[0]]), least, float(first))
