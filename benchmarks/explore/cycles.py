@@ -22,7 +22,7 @@ from rich.console import Console
 from rich.table import Table
 
 import stiction as st
-from stiction.analysis.motion.regime import STICK_SLIP
+from stiction.analysis.motion.regime.kinds import STICK_SLIP
 from stiction.auditing import observation
 from stiction.auditing.prediction import predict
 from stiction.linear_stability import growth_rate

@@ -21,7 +21,8 @@ from scipy.signal import lfilter  # type: ignore[attr-defined]
 
 import stiction as st
 from stiction.analysis.motion.cycles import swings
-from stiction.analysis.motion.regime import (
+from stiction.analysis.motion.regime.classify import regime_of
+from stiction.analysis.motion.regime.kinds import (
     HARMONIC,
     IRREGULAR,
     SETTLING,
@@ -29,7 +30,6 @@ from stiction.analysis.motion.regime import (
     STICK_SLIP,
     STUCK,
     UNDETERMINED,
-    regime_of,
 )
 
 Floats = NDArray[np.float64]

@@ -8,8 +8,8 @@ from stiction.analysis.measured_line import strongest_line as strongest_line
 from stiction.analysis.motion.cycle_summary import summary as summary
 from stiction.analysis.motion.cycles import find_cycles as find_cycles
 from stiction.analysis.motion.drift import detrend as detrend
-from stiction.analysis.motion.regime import Regime as Regime
-from stiction.analysis.motion.regime import classify as classify
+from stiction.analysis.motion.regime.classify import classify as classify
+from stiction.analysis.motion.regime.evidence import Regime as Regime
 from stiction.analysis.onset import find_onset as find_onset
 from stiction.analysis.oscillation import oscillation_by_phase as oscillation_by_phase
 from stiction.analysis.oscillation import transverse_oscillation as transverse_oscillation

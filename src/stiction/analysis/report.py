@@ -19,7 +19,8 @@ from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.doubts import taken_off, turns_round, unsteady, warnings
 from stiction.analysis.motion.friction import Friction, find_friction, without_loading
 from stiction.analysis.motion.metadata import loading_rate
-from stiction.analysis.motion.regime import Regime, regime_of
+from stiction.analysis.motion.regime.classify import regime_of
+from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.oscillation import (
     apart,
     oscillation_by_phase,

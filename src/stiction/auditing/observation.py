@@ -10,7 +10,9 @@ import numpy as np
 
 from stiction import theory
 from stiction.analysis.motion.cycles import swings
-from stiction.analysis.motion.regime import SETTLING, STEADY, STUCK, Regime, regime_of
+from stiction.analysis.motion.regime.classify import regime_of
+from stiction.analysis.motion.regime.evidence import Regime
+from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK
 from stiction.analysis.record import Record, record_of
 from stiction.auditing.prediction import SEEN, Prediction
 from stiction.linear_stability import Linearisation

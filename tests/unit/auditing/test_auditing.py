@@ -10,7 +10,7 @@ from tests.rigs import NEARLY_ISOTROPIC
 
 import stiction as st
 from stiction import theory
-from stiction.analysis.motion.regime import HARMONIC, SETTLING, STICK_SLIP
+from stiction.analysis.motion.regime.kinds import HARMONIC, SETTLING, STICK_SLIP
 from stiction.analysis.record import record_of
 from stiction.auditing import advice, figures, observation, report
 from stiction.auditing.advice import advise, nearest

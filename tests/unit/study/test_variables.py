@@ -6,7 +6,7 @@ from tests.rigs import NEARLY_ISOTROPIC
 
 import stiction as st
 from stiction.analysis.creep.first_slip import first_slip_time
-from stiction.analysis.motion.regime import TRANSVERSE, shape
+from stiction.analysis.motion.regime.kinds import TRANSVERSE, shape
 from stiction.study.variables.fast_regime import KINDS
 from stiction.study.variables.features import features, zigzag
 from stiction.study.variables.measures import MEASURES

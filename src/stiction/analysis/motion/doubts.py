@@ -12,7 +12,7 @@ from stiction.analysis.motion.course import QUIET, change_of_period
 from stiction.analysis.motion.drift import Drift, find_drift
 from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.metadata import FEW, loading_rate, stiffness_over_mass
-from stiction.analysis.motion.regime import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
+from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import even_grid, why_not
 from stiction.analysis.signals.hum import Line, of_mains

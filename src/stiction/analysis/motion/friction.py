@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.motion.course import UNLOADED
-from stiction.analysis.motion.regime import (
+from stiction.analysis.motion.regime.evidence import Regime
+from stiction.analysis.motion.regime.kinds import (
     HARMONIC,
     IRREGULAR,
     SETTLING,
@@ -17,7 +18,6 @@ from stiction.analysis.motion.regime import (
     TRANSITIONAL,
     TRANSVERSE,
     UNDETERMINED,
-    Regime,
 )
 from stiction.analysis.motion.rest import comes_to_rest
 from stiction.analysis.record import Record

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from stiction.analysis.motion.drift import find_drift
-from stiction.analysis.motion.regime import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
+from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
 from stiction.analysis.signals.robust import trimmed_mean
 

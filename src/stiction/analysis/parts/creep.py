@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stiction.analysis.creep.findings import RESTS, drive_speed
-from stiction.analysis.motion.regime import STUCK
+from stiction.analysis.motion.regime.kinds import STUCK
 from stiction.analysis.parts.wording import number
 from stiction.friction import states
 from stiction.text.sections import Section

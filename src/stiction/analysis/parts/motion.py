@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stiction.analysis.motion.doubts import turns_round
-from stiction.analysis.motion.regime import (
+from stiction.analysis.motion.regime.kinds import (
     HARMONIC,
     IRREGULAR,
     SETTLING,

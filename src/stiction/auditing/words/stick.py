@@ -5,12 +5,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from stiction.analysis.motion.regime import (
-    HARMONIC,
-    IRREGULAR,
-    STICK_SLIP,
-    TRANSVERSE,
-)
+from stiction.analysis.motion.regime.kinds import HARMONIC, IRREGULAR, STICK_SLIP, TRANSVERSE
 from stiction.friction import has_state
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import hypot, sin
 from typing import TYPE_CHECKING, Any
 
-from stiction.analysis.motion.regime import TRANSVERSE
+from stiction.analysis.motion.regime.kinds import TRANSVERSE
 from stiction.auditing.observation import SLIDES
 from stiction.auditing.words.stick import HARDLY, VIBRATES
 from stiction.friction import has_state

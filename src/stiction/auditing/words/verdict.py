@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stiction.analysis.motion.regime import (
+from stiction.analysis.motion.regime.kinds import (
     SETTLING,
     STEADY,
     STUCK,

@@ -11,7 +11,7 @@ from matplotlib.markers import CARETDOWN, CARETUP
 from numpy.typing import NDArray
 
 from stiction.analysis.motion.cycles import swings
-from stiction.analysis.motion.regime import regime_of
+from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.record import Record, as_record
 from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
 from stiction.plotting.page.style import BLUE, GREY, PAGE, PALE, RED, style

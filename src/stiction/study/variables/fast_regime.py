@@ -15,28 +15,29 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.motion import regime
 from stiction.analysis.motion.course import QUARTER, QUIET, built_up, dies_out
 from stiction.analysis.motion.hesitations import level, take_out
+from stiction.analysis.motion.regime import force_course, kinds
+from stiction.analysis.motion.regime.irregular import irregularity
 from stiction.study.variables.features import PARTS, Features
 
 Floats = NDArray[np.float64]
 
 KINDS = (
-    regime.UNDETERMINED,
-    regime.STUCK,
-    regime.STICK_SLIP,
-    regime.TRANSITIONAL,
-    regime.HARMONIC,
-    regime.SETTLING,
-    regime.STEADY,
-    regime.TRANSVERSE,
-    regime.IRREGULAR,
+    kinds.UNDETERMINED,
+    kinds.STUCK,
+    kinds.STICK_SLIP,
+    kinds.TRANSITIONAL,
+    kinds.HARMONIC,
+    kinds.SETTLING,
+    kinds.STEADY,
+    kinds.TRANSVERSE,
+    kinds.IRREGULAR,
 )  # stores keep their indices: append new ones
 FORMERLY = {
-    "between stick-slip and harmonic vibration": regime.TRANSITIONAL,
-    "damped approach": regime.SETTLING,
-    "song": regime.TRANSVERSE,
+    "between stick-slip and harmonic vibration": kinds.TRANSITIONAL,
+    "damped approach": kinds.SETTLING,
+    "song": kinds.TRANSVERSE,
 }
 FEWEST = 1  # cycles needed for a kind, as for an analysis of one run
 OSCILLATES = 0.1  # of the largest amplitude of the fast oscillation without reversal of slip
@@ -126,12 +127,12 @@ def kind_of(
     if len(lasting.drop) >= FEWEST:
         return by_shape(lasting, own, still, sticks)
     dying = die_out(cycles, end)
-    kind = regime.SETTLING if dying else course(found, start, end, drive)
-    if kind not in (regime.SETTLING, regime.STEADY) or oscillation <= OSCILLATES:
+    kind = kinds.SETTLING if dying else course(found, start, end, drive)
+    if kind not in (kinds.SETTLING, kinds.STEADY) or oscillation <= OSCILLATES:
         return kind
     # what dies out sets the stiffer spring in motion, too
     swing = pi * float(cycles.drop[-1] / cycles.period[-1]) if dying else 0.0
-    return kind if swing > across else regime.TRANSVERSE
+    return kind if swing > across else kinds.TRANSVERSE
 
 
 def cycles_among(found: Swings, end: float) -> Swings:
@@ -157,18 +158,18 @@ def by_shape(cycles: Swings, own: float, still: Shares, sticks: Shares) -> str:
     """Return the kind of cycles from their shape, size and period, and the rest in them."""
     count = len(cycles.drop)
     rise = float(np.sort(cycles.rise_share)[count // 2])
-    kind = regime.shape(rise)
-    if regime.couples(kind, float(cycles.period.mean()), own):
-        return regime.TRANSVERSE
-    if kind in (regime.TRANSITIONAL, regime.HARMONIC):
+    kind = kinds.shape(rise)
+    if kinds.couples(kind, float(cycles.period.mean()), own):
+        return kinds.TRANSVERSE
+    if kind in (kinds.TRANSITIONAL, kinds.HARMONIC):
         known = (float(np.median(share(cycles))) for share in (still, sticks))
-        kind = regime.shape(rise, *known)
-    return regime.IRREGULAR if kind == regime.HARMONIC and irregular(cycles) else kind
+        kind = kinds.shape(rise, *known)
+    return kinds.IRREGULAR if kind == kinds.HARMONIC and irregular(cycles) else kind
 
 
 def irregular(cycles: Swings) -> bool:
     """Return whether vibrations are irregular, by the rule of `stiction.analysis.motion.regime`."""
-    return regime.irregularity(cycles.period, cycles.drop) > 0.5
+    return irregularity(cycles.period, cycles.drop) > 0.5
 
 
 def course(found: Features, start: float, end: float, drive: float) -> str:
@@ -177,13 +178,13 @@ def course(found: Features, start: float, end: float, drive: float) -> str:
     span, change = max(f) - min(f), f[-1] - f[0]
     quarter = QUARTER * (end - start) / PARTS
     early, late = (f[QUARTER] - f[0]) / quarter, (f[-1] - f[-1 - QUARTER]) / quarter
-    if span > 0.0 and max(f[-QUARTER:]) - min(f[-QUARTER:]) <= regime.SETTLED * span:
-        return regime.SETTLING
+    if span > 0.0 and max(f[-QUARTER:]) - min(f[-QUARTER:]) <= force_course.SETTLED * span:
+        return kinds.SETTLING
     if len(found.turn_time):
-        return regime.UNDETERMINED
+        return kinds.UNDETERMINED
     ups_and_downs = sum(abs(b - a) for a, b in pairwise(f))
-    rising = change > 0.0 and change >= regime.ONE_WAY * ups_and_downs
-    if not rising or 0.0 < max(abs(early), abs(late)) < regime.SLOW * drive:
-        return regime.STEADY
+    rising = change > 0.0 and change >= force_course.ONE_WAY * ups_and_downs
+    if not rising or 0.0 < max(abs(early), abs(late)) < force_course.SLOW * drive:
+        return kinds.STEADY
     loading = late / drive if drive else late / early
-    return regime.STUCK if loading >= regime.LOADING else regime.UNDETERMINED
+    return kinds.STUCK if loading >= force_course.LOADING else kinds.UNDETERMINED

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.creep.first_slip import loading
-from stiction.analysis.motion.regime import STUCK
+from stiction.analysis.motion.regime.kinds import STUCK
 from stiction.analysis.motion.rest import stick_shares, still_shares
 from stiction.drive import ConstantVelocity
 from stiction.drive.program import nominal_velocity

@@ -28,8 +28,8 @@ from tests.drawn import inside
 from tests.measured import bare, read_measured
 
 import stiction as st
-from stiction.analysis.motion.band import highest_hump
 from stiction.analysis.motion.course import dies_out
+from stiction.analysis.motion.regime.band import highest_hump
 from stiction.analysis.motion.rest import rest_share
 from stiction.plotting.analysis.overview import figures
 from stiction.study.variables.observation import observe

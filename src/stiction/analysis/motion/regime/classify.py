@@ -1,0 +1,104 @@
+"""Classify the motion in a record."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stiction.analysis.motion.course import PARTS, strokes
+from stiction.analysis.motion.cycles import Swings, swings, swings_without
+from stiction.analysis.motion.regime.band import WIDE
+from stiction.analysis.motion.regime.cycle_shape import ENOUGH, by_parts
+from stiction.analysis.motion.regime.evidence import Regime
+from stiction.analysis.motion.regime.force_course import by_course
+from stiction.analysis.motion.regime.kinds import (
+    COUPLED,
+    HARMONIC,
+    IRREGULAR,
+    SETTLING,
+    STEADY,
+    TRANSITIONAL,
+    UNDETERMINED,
+)
+from stiction.analysis.motion.rest import comes_to_rest
+from stiction.analysis.record import Record, as_record
+from stiction.analysis.signals.hum import narrow_lines, of_mains, samples_per_period
+from stiction.trajectory import Trajectory
+
+FEWEST = 3.5  # samples a cycle: below it is not known, nor what it is
+OWN = 1.2  # times that period: up to there a vibration is that of the mass on its spring
+MAY_BE_HUM = (TRANSITIONAL, HARMONIC, IRREGULAR, UNDETERMINED)
+SAME = 0.01  # of a period: by so much that of a line and that of the cycles differ
+MANY_SAMPLES = 64.0  # a cycle: no quicker line has been folded back to it
+
+
+def classify(source: Trajectory | Record) -> Regime:
+    """Classify the motion in a record.
+
+    The shape of the cycles decides (`stiction.analysis.motion.rest`). If there are none, or they
+    die out, the course of the force decides: it rises to the end, settles, or stays about constant.
+
+    Parameters
+    ----------
+    source : Trajectory or Record
+        A run or a measurement. With stiffness, drive velocity and mass, the rate of loading and
+        the natural period count too; otherwise only the shape.
+    """
+    record = as_record(source)
+    return regime_of(record, swings(record))
+
+
+def regime_of(record: Record, found: Swings) -> Regime:
+    """Classify the motion in a record with known swings: see `classify`."""
+    if len(record) < PARTS:
+        return Regime(UNDETERMINED, 0.0, {"samples": len(record)})
+    if record.slip_speed is None:
+        if np.ptp(record.force) == 0.0:
+            return Regime(UNDETERMINED, 0.0, {"unchanging": float(record.force[0])})
+        if (pulls := strokes(record.force)) is not None:
+            return Regime(UNDETERMINED, 0.0, {"forth": pulls[0], "back": pulls[1]})
+    if found.lines:
+        record = record.model_copy(update={"force": found.force})
+    per_cycle = 2.0 * len(record) / max(found.turns, 1)
+    if not found.table.sizes["cycle"] or per_cycle < MANY_SAMPLES:
+        per_cycle = min(per_cycle, samples_per_period(record.force))
+    if per_cycle < FEWEST:
+        needed = ENOUGH / per_cycle * record.sample_rate
+        return Regime(UNDETERMINED, 0.0, {"samples_per_cycle": per_cycle, "rate_needed": needed})
+    if found.dying or _is_over(record, found):
+        drop = found.table["drop"].values
+        sure = (len(drop) + 1) / (len(drop) + 3)
+        return Regime(SETTLING, sure, {"swings": len(drop), "last_over_first": drop[-1] / drop[0]})
+    if found.table.sizes["cycle"]:
+        period = float(found.cycles["period"].mean())
+        return _or_hum(record, period, SAME, by_parts(record, found))
+    seen = by_course(record, found)
+    frequency = seen.evidence.get("hump")
+    return _or_hum(record, 1.0 / frequency, WIDE - 1.0, seen) if frequency else seen
+
+
+def _is_over(record: Record, found: Swings) -> bool:
+    """Return whether swings have ended for good: mass and drive are known to rest."""
+    drop = found.table["drop"].values
+    ended = record.drive_velocity is None and comes_to_rest(record.slip_speed)
+    return ended and len(drop) > 0 and bool(drop[-1] <= drop[0])
+
+
+def _or_hum(record: Record, period: float, differs: float, seen: Regime) -> Regime:
+    """Return a kind of motion, as likely another one if its swings are a line of the mains.
+
+    Nothing distinguishes hum over another motion from a vibration at that frequency, unless the
+    slip speed is known, or the mass swings with that period on its spring.
+    """
+    own = seen.evidence.get("natural_period", 0.0)
+    free = seen.kind in MAY_BE_HUM and not COUPLED <= own <= OWN
+    if not free or record.slip_speed is not None:
+        return seen
+    for line in narrow_lines(record.time, record.force):
+        if of_mains(line.frequency) and abs(line.frequency * period - 1.0) < differs:
+            without, left = swings_without(line, record)
+            other = regime_of(without, left)
+            kind = STEADY if other.runner_up == STEADY else other.kind
+            evidence = {name: seen.evidence[name] for name in seen.evidence if name != "backward"}
+            evidence["mains"] = line.frequency
+            return Regime(seen.kind, 0.5 * seen.confidence, evidence, kind)
+    return seen

@@ -1,0 +1,286 @@
+"""The kind of motion in cycles, from their shape."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.analysis.motion.course import MANY, ORDERED, change_of_period, order
+from stiction.analysis.motion.cycles import Swings
+from stiction.analysis.motion.regime.evidence import Regime
+from stiction.analysis.motion.regime.irregular import drop_spread, irregularity
+from stiction.analysis.motion.regime.kinds import (
+    COUPLED,
+    HARMONIC,
+    IRREGULAR,
+    RESTS,
+    TRANSITIONAL,
+    TRANSVERSE,
+    UNDETERMINED,
+    bounds,
+    couples,
+    shape,
+)
+from stiction.analysis.motion.rest import TOUCHES, rest_share, stick_shares, still_shares
+from stiction.analysis.record import Record
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+
+ENOUGH = 8.0  # samples a cycle, which show its shape
+ROUNDING = 1e-9  # of a period: stick intervals are that accurate, and more
+# Samples that a quick fall seems to take at most, and that a fall takes which may be quick: a sine
+# of four samples falls for two
+QUICK, SLOWEST = 1.6, 3.0
+# Of a swing from trough to peak, to each end, and share of time that is spent there: of a sine 0.2,
+# of a force between two levels nearly half
+NEAR, PLATEAU = 0.1, 0.35
+# The same of a mass that swings on its spring and rests for less than half of its cycle: 0.16 and
+# more; of a force that rises and falls evenly 0.1. Noise of less than this share of a drop
+# does not change them much
+STRAIGHT, QUIET = 0.13, 0.05
+GROWN = 0.1  # of a force drop: less is not worth a word
+NOISE_SHOWS = 1e-3  # of a force drop; what is less is no noise of a load cell
+
+
+class Shapes(NamedTuple):
+    """The shapes of cycles.
+
+    Parameters
+    ----------
+    rise, still, sticks : ndarray
+        (n,), shares of each cycle: in which the force rises, in which the mass is known to rest or
+        creep, and in which it is known to stick.
+    resolution : float
+        Of the shares of rise: time between samples over period.
+    other : str
+        Kind of cycles as likely as `kind`, where they have few samples; else empty.
+    """
+
+    rise: Floats
+    still: Floats
+    sticks: Floats
+    resolution: float
+    other: str
+
+    @property
+    def typical(self) -> tuple[float, float, float]:
+        """Medians of the three shares."""
+        rise, still, sticks = (float(np.median(each)) for each in self[:3])
+        return rise, still, sticks
+
+    @property
+    def by_rise(self) -> str:
+        """Kind by the share of rise alone."""
+        return shape(self.typical[0])
+
+    @property
+    def by_speed(self) -> str:
+        """Kind by the share of rise and by the slip speed."""
+        return shape(*self.typical[:2])
+
+    @property
+    def kind(self) -> str:
+        """Kind of the cycles."""
+        return shape(*self.typical)
+
+    @property
+    def kinds(self) -> list[str]:
+        """Kind of each cycle."""
+        return [shape(*each) for each in zip(*self[:3], strict=True)]
+
+    @property
+    def chance(self) -> float:
+        """Likelihood that one more cycle is of the kind, by the shares that decide."""
+        if self.kind != self.by_speed:
+            return _chance(self.sticks, TOUCHES, np.inf, ROUNDING)
+        if self.by_speed != self.by_rise:
+            return _chance(self.still, RESTS, np.inf, self.resolution)
+        return _chance(self.rise, *bounds(self.kind), self.resolution)
+
+
+def by_parts(record: Record, found: Swings) -> Regime:
+    """Classify cycles whose period may change once: then each part has a kind of its own."""
+    seen, at = by_shape(record, found), change_of_period(found.cycles["period"].values)
+    if at is None:
+        return seen
+    tables = [found.cycles.isel(cycle=part) for part in (slice(at), slice(at, None))]
+    early, late = (by_shape(record, found._replace(table=table)) for table in tables)
+    lasts = [float(table["period"].sum()) for table in tables]
+    changed = {"changed_at": float(tables[1]["start"][0])}
+    if early.kind == late.kind:
+        sure = min(early.confidence, late.confidence)
+        return Regime(early.kind, sure, seen.evidence | changed, early.runner_up)
+    main, other = (early, late) if lasts[0] >= lasts[1] else (late, early)
+    share = max(lasts) / sum(lasts)
+    return Regime(main.kind, share * main.confidence, main.evidence | changed, other.kind)
+
+
+def by_shape(record: Record, found: Swings) -> Regime:
+    """Classify cycles of one kind."""
+    table, shapes = found.cycles, _shapes(record, found.cycles)
+    if shapes.kind == UNDETERMINED and float(table["hesitations"].median()) >= 1.0:
+        turns_back = {"cycles": table.sizes["cycle"], "rise_share": shapes.typical[0]}
+        return Regime(UNDETERMINED, 0.0, turns_back)  # two swings in one, or a ringing
+    evidence = _evidence(record, table, shapes)
+    own = record.own_period
+    if own is not None and couples(shapes.by_rise, float(table["period"].mean()), own):
+        return _transverse(table, shapes, own, evidence)
+    evidence |= _sizes(found)
+    return _no_vibration(record, found, shapes) or _weigh(table, shapes, evidence)
+
+
+def _shapes(record: Record, table: xr.Dataset) -> Shapes:
+    step, period = float(np.median(np.diff(record.time))), float(table["period"].mean())
+    rise, other = table["rise_share"].values, ""
+    if period < ENOUGH * step:
+        share, as_well = _coarse_shares(table, step)
+        rise = np.full(table.sizes["cycle"], share)
+        other = shape(as_well) if shape(as_well) != shape(share) else ""
+    return Shapes(rise, _still(record, table), _sticking(record, table), step / period, other)
+
+
+def _coarse_shares(table: xr.Dataset, step: float) -> tuple[float, float]:
+    """Return the mean rise share in cycles of few samples, and an alternative value.
+
+    A fall quicker than a sample is seen from the last sample before it to the first after it:
+    one sample longer than it is, on average. A fall of some samples may be so or not.
+    """
+    period = float(table["period"].mean())
+    fall = float((table["trough_time"] - table["peak_time"]).mean())
+    slow, quick = 1.0 - fall / period, 1.0 - max(fall - step, 0.0) / period
+    if fall < QUICK * step:
+        return quick, quick
+    return slow, quick if fall < SLOWEST * step else slow
+
+
+def _still(record: Record, table: xr.Dataset) -> Floats:
+    """Return for which share of each cycle the mass is known to rest or creep."""
+    if record.slip_speed is None or record.drive_velocity is None:
+        return np.zeros(table.sizes["cycle"])
+    speed = record.slip_speed / record.drive_velocity
+    ends = (table[name].values for name in ("start", "peak_time", "period"))
+    return still_shares(record.time, speed, *ends)
+
+
+def _sticking(record: Record, table: xr.Dataset) -> Floats:
+    """Return for which share of each cycle the mass is known to stick."""
+    if record.sticks is None:
+        return np.zeros(table.sizes["cycle"])
+    ends = (table[name].values for name in ("start", "peak_time", "period"))
+    return stick_shares(record.sticks, *ends)
+
+
+def _evidence(record: Record, table: xr.Dataset, shapes: Shapes) -> dict[str, float]:
+    """Return what the shape of the cycles says, and how alike they are."""
+    count, (rise, still, sticks) = table.sizes["cycle"], shapes.typical
+    alike = shapes.kinds.count(shapes.kind) / count
+    evidence = {"cycles": count, "rise_share": rise}
+    if shapes.kind == UNDETERMINED:
+        evidence["backward"] = alike
+    else:
+        evidence["rest_share"] = float(rest_share(rise))
+    if shapes.by_speed != shapes.by_rise:
+        evidence["still_share"] = still
+    if shapes.kind != shapes.by_speed:
+        evidence["stick_share"] = sticks
+    if count > 1:
+        evidence["cycles_alike"] = alike
+        evidence["period_spread"] = float(table["period"].std() / table["period"].mean())
+    if shapes.kind == HARMONIC and count > 1:
+        evidence["drop_spread"] = drop_spread(table["drop"].values)
+    if record.mass is not None and record.stiffness is not None:
+        own = 2.0 * pi * sqrt(record.mass / record.stiffness)
+        evidence["natural_period"] = float(table["period"].median()) / own
+    return evidence
+
+
+def _transverse(
+    table: xr.Dataset, shapes: Shapes, own: float, evidence: dict[str, float]
+) -> Regime:
+    """Return the transverse oscillation, as sure as its periods are too short for the spring."""
+    quick = table["period"].values / own
+    alike = int((quick < COUPLED).sum())
+    if len(quick) > 1:
+        evidence |= {"cycles_alike": alike / len(quick)}
+    sure = max((alike + 1) / (len(quick) + 3), _chance(quick, 0.0, COUPLED, shapes.resolution))
+    return Regime(TRANSVERSE, sure, evidence, shapes.kind)
+
+
+def _sizes(found: Swings) -> dict[str, float]:
+    """Return what is to be said of the sizes of the cycles: over the noise, and over time."""
+    drop = found.cycles["drop"].values
+    evidence, grown = {}, float(drop[-1] / drop[0])
+    if found.noise > NOISE_SHOWS * np.median(drop):
+        evidence["drop_over_noise"] = float(np.median(drop)) / found.noise
+    if len(drop) >= MANY and abs(order(drop)) >= -ORDERED and abs(grown - 1.0) > GROWN:
+        evidence["last_over_first"] = grown
+    if found.lines:
+        evidence["line_taken_off"] = found.lines[0].frequency
+    return evidence
+
+
+def _no_vibration(record: Record, found: Swings, shapes: Shapes) -> Regime | None:
+    """Return that nothing is determined if the shape is no vibration's and no stick-slip's."""
+    if shapes.by_speed not in (TRANSITIONAL, HARMONIC):
+        return None
+    stays, count = _near_ends(record, found.cycles), found.cycles.sizes["cycle"]
+    if min(stays) > PLATEAU:
+        return Regime(UNDETERMINED, 0.0, {"cycles": count, "plateaus": 2.0 * min(stays)})
+    clear = found.noise < QUIET * np.median(found.cycles["drop"])
+    known = record.slip_speed is not None or shapes.by_speed != HARMONIC
+    if not known and max(stays) < STRAIGHT and clear:
+        return Regime(UNDETERMINED, 0.0, {"cycles": count, "straight": sum(stays)})
+    return None
+
+
+def _near_ends(record: Record, table: xr.Dataset) -> tuple[float, float]:
+    """Return the shares of time for which a force stays near its troughs and near its peaks."""
+    start, peak, end = (table[name].values for name in ("start", "peak_time", "trough_time"))
+    inside = (record.time >= start[0]) & (record.time <= end[-1])
+    time, force = record.time[inside], record.force[inside]
+    low = np.interp(
+        time, [start[0], *end], [table["start_force"].values[0], *table["trough"].values]
+    )
+    high = np.interp(time, peak, table["peak"].values)
+    place = (force - low) / np.maximum(high - low, 1e-300)
+    return float(np.mean(place < NEAR)), float(np.mean(place > 1.0 - NEAR))
+
+
+def _weigh(table: xr.Dataset, shapes: Shapes, evidence: dict[str, float]) -> Regime:
+    """Return the kind of the cycles with its confidence: from their number, and their scatter."""
+    kinds, kind, count = shapes.kinds, shapes.kind, table.sizes["cycle"]
+    confidence = max((kinds.count(kind) + 1) / (count + 3), shapes.chance)
+    if shapes.other:  # as likely
+        return Regime(kind, 0.5 * confidence, evidence, shapes.other)
+    irregular = 0.0
+    if kind == HARMONIC:
+        irregular = irregularity(table["period"].values, table["drop"].values)
+    if irregular > 0.5:
+        return Regime(IRREGULAR, irregular * confidence, evidence, HARMONIC)
+    confidence *= 1.0 - irregular
+    if irregular > 1.0 - kinds.count(kind) / count:
+        return Regime(kind, confidence, evidence, IRREGULAR)
+    others = sorted(set(kinds) - {kind, UNDETERMINED}, key=kinds.count)
+    return Regime(kind, confidence, evidence, others[-1] if others else "")
+
+
+def _chance(shares: Floats, low: float, high: float, resolution: float) -> float:
+    """Return the likelihood that a share of one more cycle lies within bounds, if all have one.
+
+    Student's distribution of the next of n values, about their median, whose standard deviation
+    is seen with n - 1 degrees of freedom and is no less than the resolution.
+    """
+    from scipy.special import stdtr
+
+    count = len(shares)
+    if count < 2:
+        return 0.0
+    scale = np.hypot(shares.std(ddof=1), resolution) * sqrt(1.0 + 1.0 / count)
+    below = stdtr(count - 1, (np.array([low, high]) - np.median(shares)) / scale)
+    return float(below[1] - below[0])

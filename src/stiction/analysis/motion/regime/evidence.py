@@ -1,0 +1,173 @@
+"""A kind of motion with its confidence and evidence, and their words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from stiction.analysis.motion.regime.kinds import (
+    HARMONIC,
+    RESTS,
+    STICK_SLIP,
+    TRANSITIONAL,
+    TRANSVERSE,
+)
+from stiction.text.quantity_text import percent
+from stiction.text.units import in_words
+
+SLOW_SHARES = ("rest_share", "still_share")  # evidence of rest or creep, by the shape and the slip
+CERTAIN = 0.995  # a confidence that is written as 1.00: it leaves no room for another kind
+NO_MORE = 1e-6  # a ratio that is less is nothing, up to rounding
+
+
+def _whole(value: float) -> str:
+    return f"{value:.0f}"
+
+
+def _three_digits(value: float) -> str:
+    return f"{float(f'{value:.3g}'):g}" if abs(value) > NO_MORE else "0"
+
+
+def _force(value: float) -> str:
+    return in_words(value, "N")
+
+
+def _seconds(value: float) -> str:
+    return in_words(value, "s")
+
+
+def _frequency(value: float) -> str:
+    return in_words(value, "Hz")
+
+
+WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
+    "cycles": ("complete cycles: {}", _whole),
+    "rise_share": ("the force rises for {} of a cycle (a sine: 50 %, a sawtooth: 100 %)", percent),
+    "rest_share": ("by this shape the mass rests or creeps for {} of it", percent),
+    "backward": (
+        "it falls slowly and rises fast, in {} of the cycles: is its sign right?",
+        percent,
+    ),
+    "still_share": (
+        "the slip speed stays below a tenth of the drive velocity for {} of it",
+        percent,
+    ),
+    "stick_share": ("the mass sticks for {} of it", percent),
+    "cycles_alike": ("{} of the cycles, each by itself, have this shape", percent),
+    "period_spread": ("periods differ by {} of their mean", percent),
+    "drop_spread": ("four fifths of the force drops differ by up to {} of their median", percent),
+    "natural_period": ("a period is {} times the mass's own on its spring", _three_digits),
+    "drop_over_noise": ("force drops are {} times as high as noise reaches", _three_digits),
+    "line_taken_off": ("a line at {} was subtracted from the force", _frequency),
+    "plateaus": (
+        "it stays near its largest or its smallest value for {} of the time, as no vibration does: "
+        "the drive goes back and forth, or the load changes in steps",
+        percent,
+    ),
+    "straight": (
+        "it rises and falls evenly, and turns at once, as no vibration does: it is within a tenth "
+        "of its swing from either end for {} of the time (a sine: 41 %)",
+        percent,
+    ),
+    "changed_at": ("at {} the cycles change", _seconds),
+    "mains": ("it swings at {} as the mains do: it may be hum over another motion", _frequency),
+    "swings": ("{} swings, each smaller than the last but for noise", _whole),
+    "last_over_first": ("the last force drop is {} times the first", _three_digits),
+    "turns": ("{} peaks and troughs make no complete cycle", _whole),
+    "change": ("the force changes by {} from beginning to end", _force),
+    "span": ("it spans {}, averaged over a 32nd of the time", _force),
+    "scatter": ("it scatters by {} about that", _force),
+    "wanders": (
+        "it wanders by {}, too smoothly for noise: either friction changes, or cycles are longer "
+        "than the record shows",
+        _force,
+    ),
+    "falls_at": ("it falls quickly once, at {}", _seconds),
+    "falls_by": ("by {}", _force),
+    "late_share": ("in the last quarter of the time it spans {} of this", percent),
+    "one_way": ("{} of all its ups and downs is this change", percent),
+    "rate_kept": ("at the end it changes at {} of the rate of the beginning", percent),
+    "rate_over_drive": (
+        "at the end its rate is {} of stiffness times drive velocity",
+        percent,
+    ),
+    "hump": ("it vibrates at about {}, in swings of every size", _frequency),
+    "hump_height": ("in the spectrum they stand {} times above the threshold", _three_digits),
+    "fading": ("it vibrates at about {}, less and less", _frequency),
+    "fades_to": ("at the end {} or less of that is left", percent),
+    "few_periods": (
+        "it may vibrate at about {}, or scatter: for so slow a vibration the record is too short",
+        _frequency,
+    ),
+    "samples_per_cycle": ("a cycle has {} samples, too few to show it", _three_digits),
+    "rate_needed": ("sample at {} or more", _frequency),
+    "samples": ("number of samples: {}, too few", _whole),
+    "unchanging": ("all samples are exactly {}", _force),
+    "forth": ("one way the force is about {}", _force),
+    "back": ("the other way {}", _force),
+}
+
+
+class Regime(NamedTuple):
+    """A kind of motion, with its confidence and evidence.
+
+    Parameters
+    ----------
+    kind : str
+        "stick-slip" (at rest, or in creep, for three quarters of a cycle or more, by the shape of
+        the cycle; or for half of it or more where the slip speed is known; in a run, if it sticks
+        in each cycle, however shortly),
+        "transitional oscillation" (for half of it or more by the shape), "harmonic vibration" (for
+        less or not at all), "transverse oscillation" (of a run, quicker than the mass can swing on
+        the spring along x alone), "irregular vibration" (swings of changing period that stand out),
+        "settling" (a transient that decays), "steady sliding" (no swings stand apart from the
+        noise: what is smaller is not seen), "stuck" (it loads and never slips) or "undetermined".
+    confidence : float
+        0 to 1. With cycles, the likelihood that another one has the kind's shape, from their
+        scatter, or from the number of those with another shape. Thus it is higher for cycles
+        that are alike than for different ones, and for thirty than for three.
+    evidence : dict
+        Numbers behind the decision; ``str(regime)`` puts them into words.
+    runner_up : str
+        The second most frequent kind among the cycles; empty if there is none.
+    """
+
+    kind: str
+    confidence: float
+    evidence: dict[str, float]
+    runner_up: str = ""
+
+    @property
+    def loads(self) -> bool:
+        """Whether the mass rests, or creeps, for most of the time in which its spring is loaded.
+
+        Then the peaks show static friction, and the loading shows stiffness and creep. A mass that
+        sticks only shortly is still slower than the drive, or faster, for most of that time.
+        """
+        rests = max(self.evidence.get(name, 0.0) for name in SLOW_SHARES)
+        return self.kind in (STICK_SLIP, TRANSITIONAL) and rests >= RESTS
+
+    @property
+    def rests(self) -> str:
+        """How long a mass that sticks and slips rests, in words; empty if it does not stick."""
+        if self.kind not in (STICK_SLIP, TRANSITIONAL):
+            return ""
+        if not self.loads and "stick_share" in self.evidence:
+            return f"stuck for {percent(self.evidence['stick_share'])} of a cycle"
+        slow = [self.evidence[name] for name in SLOW_SHARES if name in self.evidence]
+        return f"at rest or in creep for {percent(max(slow))} of a cycle" if slow else ""
+
+    @property
+    def surely(self) -> str:
+        """The kind, its confidence, and how long the mass rests, in words."""
+        other = f"; else {self.runner_up}" if self.runner_up and self.confidence < CERTAIN else ""
+        rests = f", {self.rests}" if self.rests else ""
+        return f"{self.kind} (confidence {self.confidence:.2f}{other}){rests}"
+
+    def __str__(self) -> str:
+        """Return the kind, its confidence and the evidence in words."""
+        # a vibration does not rest: its shape is only an estimate of that
+        none = {"rest_share"} if self.kind in (HARMONIC, TRANSVERSE) else set()
+        said = ((*WORDS[name], value) for name, value in self.evidence.items() if name not in none)
+        reasons = "; ".join(text.format(written(value)) for text, written, value in said)
+        return f"{self.surely}: {reasons}"

@@ -1,0 +1,90 @@
+"""The kind of motion in a force without cycles, from its course."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stiction.analysis.motion.course import UNLOADED, course, lone_fall
+from stiction.analysis.motion.cycles import Swings
+from stiction.analysis.motion.disturbance import RESIDUE
+from stiction.analysis.motion.regime.band import EIGHTHS, SUSPECTED, highest_hump, remaining
+from stiction.analysis.motion.regime.evidence import Regime
+from stiction.analysis.motion.regime.kinds import (
+    IRREGULAR,
+    SETTLING,
+    STEADY,
+    STICK_SLIP,
+    STUCK,
+    UNDETERMINED,
+)
+from stiction.analysis.record import Record
+from stiction.analysis.signals.turning_points import CLEAR
+
+ONE_WAY = 0.8  # of all ups and downs is change: a drift or a load, no wandering
+SETTLED = 0.1  # of the force's span is passed in the last quarter; of an even load it is 0.25
+LOADING = 0.5  # of the early rate, or of stiffness times drive velocity: it still sticks
+# Times the scatter about it, and share of the mean force: by more a force wanders that slides, or
+# the mass sticks and slips more slowly than the record shows. Measured steady sliding: 3.7
+SMOOTH, VARIES = 5.0, 0.05
+LONE_FALL = ("falls_at", "falls_by")  # evidence
+SLOW = 0.1  # of stiffness times drive velocity: the mass goes at 9/10 of the drive's speed or more
+RIPPLE = 1e-3  # of the force's span: a vibration that is less is no motion of its own
+
+
+def by_course(record: Record, found: Swings) -> Regime:
+    """Return the kind of motion without cycles: settling, steady, stuck or vibrating."""
+    way = course(record.time, record.force)
+    drive = (record.stiffness or 0.0) * (record.drive_velocity or 0.0)
+    evidence = {"change": way.change, "span": way.span, "scatter": way.scatter}
+    if found.lines:
+        evidence["line_taken_off"] = found.lines[0].frequency
+    if drive:
+        evidence["rate_over_drive"] = way.late_rate / drive
+    late = way.late_span / way.span if way.span > 0.0 else 1.0
+    rising = way.change > 0.0 and way.one_way >= ONE_WAY
+    slides = not rising or 0.0 < max(abs(way.early_rate), abs(way.late_rate)) < SLOW * drive
+    if late > SETTLED and found.turns:
+        return Regime(UNDETERMINED, 0.0, evidence | {"turns": found.turns})
+    # a transient ends, and a load goes on, in the later half; what vibrates then does not end
+    begin = 0 if late > SETTLED and slides else len(record) // 2
+    hump = highest_hump(record.time[begin:], record.force[begin:])
+    least = max([RIPPLE * way.span, *(RESIDUE * line.height for line in found.lines)])
+    vibrates = hump.likelihood if hump.rms > least else 0.0
+    if vibrates > 0.5:
+        left = remaining(record.time, record.force, hump.frequency)
+        if left < 1.0:
+            sure = (EIGHTHS + 1) / (EIGHTHS + 3)
+            return Regime(SETTLING, sure, evidence | {"fading": hump.frequency, "fades_to": left})
+        evidence |= {"hump": hump.frequency, "hump_height": hump.height}
+        return Regime(IRREGULAR, vibrates, evidence, STEADY)
+    if late <= SETTLED:
+        sure = (1.0 - late / (2.0 * SETTLED)) * (1.0 - vibrates)
+        return Regime(SETTLING, sure, evidence | {"late_share": late})
+    if slides:
+        # the nearer to cycles it came, the less sure it is that there are none
+        sure = (1.0 - 0.5 * found.clearness / CLEAR) * (1.0 - vibrates)
+        few = highest_hump(record.time, record.force, SUSPECTED)
+        vibrates = few.likelihood if few.rms > least else 0.0
+        if vibrates > 0.5:
+            return Regime(UNDETERMINED, 0.0, evidence | {"few_periods": few.frequency})
+        return _steady(record, found, sure * (1.0 - vibrates), evidence)
+    kept = way.late_rate / way.early_rate
+    evidence |= {"one_way": way.one_way, "rate_kept": kept}
+    loading = way.late_rate / drive if drive else kept
+    if loading >= LOADING:
+        sure = way.one_way * min(loading, 1.0) * (1.0 - vibrates)
+        if not drive and abs(record.force[0]) > UNLOADED * float(np.abs(record.force).max()):
+            return Regime(STUCK, 0.5 * sure, evidence, STEADY)  # as likely, it drifts
+        return Regime(STUCK, sure, evidence)
+    return Regime(UNDETERMINED, 0.0, evidence)
+
+
+def _steady(record: Record, found: Swings, sure: float, evidence: dict[str, float]) -> Regime:
+    """Return steady sliding, or as likely stick-slip whose cycles are longer than the record."""
+    if record.slip_speed is not None:
+        return Regime(STEADY, sure, evidence)
+    least = max(SMOOTH * evidence["scatter"], VARIES * abs(float(np.mean(found.force))))
+    if evidence["span"] > least:
+        return Regime(STEADY, 0.5 * sure, evidence | {"wanders": evidence["span"]}, STICK_SLIP)
+    fall = lone_fall(record.time, found.force)
+    return Regime(STEADY, sure, evidence | dict(zip(LONE_FALL, fall or (), strict=False)))

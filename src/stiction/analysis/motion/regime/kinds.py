@@ -1,0 +1,55 @@
+"""The kinds of motion, and which a cycle of given shape belongs to."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stiction.analysis.motion.rest import STICKING, TOUCHES, rest_share, rise_share
+
+STICK_SLIP = "stick-slip"
+TRANSITIONAL = "transitional oscillation"
+HARMONIC = "harmonic vibration"
+TRANSVERSE = "transverse oscillation"
+IRREGULAR = "irregular vibration"
+SETTLING = "settling"
+STEADY = "steady sliding"
+STUCK = "stuck"
+UNDETERMINED = "undetermined"
+# Bounds of the share of a cycle for which the mass rests, or creeps, by the cycle's shape
+SHAPES = ((STICKING, STICK_SLIP), (0.5, TRANSITIONAL), (0.0, HARMONIC))
+# Share of a cycle for which the mass rests or creeps, in one piece, where its slip speed is known:
+# from there on it sticks and slips, whatever the shape says
+RESTS = 0.5
+BACKWARD = 0.4  # share of the rise, below which the force falls slowly and rises fast
+# Of the period of the mass on the spring along x alone: a vibration of a lesser one has the
+# transverse spring swing as well, as friction that turns couples them. On one spring friction only
+# prolongs it
+COUPLED = 0.9
+
+
+def shape(rise_share: float, still: float = 0.0, sticks: float = 0.0) -> str:
+    """Return the kind of cycles from the shares of rise, and of rest and sticking where known."""
+    if still >= RESTS or sticks > TOUCHES:
+        return STICK_SLIP
+    if rise_share < BACKWARD:
+        return UNDETERMINED
+    rests = rest_share(rise_share)
+    return next(kind for bound, kind in SHAPES if rests >= bound)
+
+
+def bounds(kind: str) -> tuple[float, float]:
+    """Return the bounds of the rise share for a kind of cycle."""
+    if kind == UNDETERMINED:
+        return -np.inf, BACKWARD
+    ends = [np.inf, *(float(rise_share(rests)) for rests, _ in SHAPES[:-1]), BACKWARD]
+    place = [name for _, name in SHAPES].index(kind)
+    return ends[place + 1], ends[place]
+
+
+def couples(kind: str, period: float, own: float) -> bool:
+    """Return whether a vibration is too quick for the spring along x, whose period is `own`.
+
+    Then the transverse spring swings as well: friction that turns couples them. Where the mass
+    sticks, it does so once in each of these swings.
+    """
+    return kind in (TRANSITIONAL, HARMONIC) and period < COUPLED * own
