@@ -3,7 +3,8 @@
 The error is held against the response: what the apparatus itself would do if its mass, or its
 normal load, were greater by the share to which each step is kept. Where that alone changes
 everything, as it does where motion is chaotic, no tolerance could tell more. Both are the largest
-difference of the force of the springs over the run; so no system needs to be left out as chaotic.
+difference of the force of the springs over the run. A system above a bound is left out as chaotic
+only if its reference is not known: it changes with its own tolerance as much as the response is.
 """
 
 from __future__ import annotations
@@ -21,8 +22,12 @@ from stiction.solver.multiscale.method import STEP_SHARE
 IN_STEPS = 30.0  # the bound of the error over the response
 # a run by the multiscale mode holds its steps to a share of the tolerance; the map adds little
 BOUNDS = {"in steps": IN_STEPS, "multiscale": STEP_SHARE * IN_STEPS}
+# Of the response: by so much a reference may change with a tenth of its tolerance. That of a system
+# which is not chaotic changes by the bound times `FINER` at most, 0.03
+KNOWN = 0.1
 SHARES = (0.5, 0.9, 0.99, 0.999, 1.0)
 WORST = 10
+CHAOTIC = "chaotic: the reference changes with its own tolerance as much as the response is"
 
 
 class Seen(NamedTuple):
@@ -52,6 +57,10 @@ def look(seed: int, number: int) -> Seen:
     for run in (reference, *(run for _, run in runs)):
         left_out = left_out if run.status.ok else run.status.value
     steps, mapped = (deviation(found, sharp) / (moved or 1.0) for found, _ in runs)
+    if not left_out and (steps > BOUNDS["in steps"] or mapped > BOUNDS["multiscale"]):
+        sharper, _ = forces(slider, duration, finer / 10.0)
+        if deviation(sharper, sharp) > KNOWN * moved:
+            left_out = CHAOTIC
     return Seen(
         number=number,
         law=type(slider.law).__name__,

@@ -5,7 +5,8 @@ are of the two laws that other tests compile as well.
 """
 
 import pytest
-from benchmarks.explore.accuracy import BOUNDS, look
+from benchmarks.explore import accuracy
+from benchmarks.explore.accuracy import BOUNDS, CHAOTIC, look
 
 SEED = 1
 ANY = (0, 1, 3, 4, 5, 7, 10, 12, 14, 16, 18, 21, 22, 27, 28, 29, 32, 36, 41, 42, 45, 47, 55, 58)
@@ -44,3 +45,10 @@ def test_an_error_is_that_of_an_apparatus_a_little_other(number):
 def test_what_is_seen_is_the_same_each_time():
     """To the last bit on one machine: no state is left from one run to the next."""
     assert look(SEED, 7) == look(SEED, 7)
+
+
+@pytest.mark.parametrize(("known", "left_out"), [(0.1, ""), (0.0, CHAOTIC)])
+def test_a_system_above_a_bound_counts_if_its_reference_is_known(known, left_out, monkeypatch):
+    monkeypatch.setattr(accuracy, "KNOWN", known)
+    monkeypatch.setitem(BOUNDS, "in steps", 0.0)
+    assert look(SEED, 7).left_out == left_out
