@@ -29,6 +29,7 @@ from stiction.analysis.motion.regime.kinds import (
     STEADY,
     STICK_SLIP,
     STUCK,
+    TRANSITIONAL,
     UNDETERMINED,
 )
 
@@ -269,6 +270,29 @@ def loading(random: np.random.Generator) -> Labelled:
     return st.Record(time=time, force=force), 0, (STUCK,)
 
 
+def on_a_wave(random: np.random.Generator) -> Labelled:
+    """Return stick-slip on a slower wave, up to 30 times as high as its drops; half with hum."""
+    drop, period = 10 ** random.uniform(-1.5, 0), 10 ** random.uniform(-1, 0.3)
+    rate = max(10 ** random.uniform(1.6, 2.7) / period, 300.0)
+    time, force, count = between(sawtooth(random, int(random.integers(30, 200)), period), rate)
+    turns = time / (period * random.uniform(3, 30)) + random.uniform()
+    wave = np.sin(2 * pi * turns) + random.uniform(0, 0.5) * np.sin(4 * pi * turns + 1.0)
+    force = drop * force + 0.5 * wave + 2.0
+    force += drop * 10 ** random.uniform(-3, -1.3) * random.normal(size=len(time))
+    if random.integers(2):
+        force += 10 ** random.uniform(-2, -0.5) * drop * mains(random, time)
+    return st.Record(time=time, force=force), count, (STICK_SLIP,)
+
+
+def in_noise(random: np.random.Generator) -> Labelled:
+    """Return stick-slip under noise whose standard deviation is 0.3 to 1 times its drops."""
+    period = 10 ** random.uniform(-1, 0.3)
+    count, per_cycle = int(random.integers(20, 60)), 10 ** random.uniform(1.7, 3)
+    time, force, _ = between(sawtooth(random, count, period), per_cycle / period)
+    force += 2.0 + 10 ** random.uniform(-0.5, 0) * random.normal(size=len(time))
+    return st.Record(time=time, force=force), None, (STICK_SLIP, TRANSITIONAL, HARMONIC)
+
+
 def brief_sliding(random: np.random.Generator) -> Labelled:
     """Return 64 to 500 samples of steady sliding under white or filtered noise."""
     size = int(10 ** random.uniform(1.8, 2.7))
@@ -282,7 +306,7 @@ def brief_sliding(random: np.random.Generator) -> Labelled:
 LABELLED: tuple[Callable[[np.random.Generator], Labelled], ...] = (
     hum, few_samples, wild_slips, wild_sliding, irregular, harmonic, short, long, wandering,
     sliding, brief_vibration, brief_harmonic, brief_slips, settling, loading, brief_sliding,
-    hum_over_loading, random_times,
+    hum_over_loading, random_times, on_a_wave, in_noise,
 )  # fmt: skip
 
 

@@ -8,19 +8,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.motion.course import built_up, dies_out
+from stiction.analysis.motion.cycle_columns import tabulate
 from stiction.analysis.motion.disturbance import (
     is_beside,
+    is_carried,
     is_residue,
     is_subharmonic,
     lasts_through_loading,
+    may_be_carried,
+    slow_wave,
 )
 from stiction.analysis.motion.hesitations import level, take_out
 from stiction.analysis.record import Record, as_record
-from stiction.analysis.signals.hum import Line, narrow_lines
+from stiction.analysis.signals.hum import Line, narrow_lines, of_mains, peak_frequencies
 from stiction.analysis.signals.outliers import without_outliers
 from stiction.analysis.signals.peak_refinement import Vertices, vertices
-from stiction.analysis.signals.piecewise_fit import fit_pieces
-from stiction.analysis.signals.turning_points import TurningPoints, turning_points, without_spikes
+from stiction.analysis.signals.turning_points import TurningPoints, turning_points
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -29,34 +32,9 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-# name: (unit, long name), as CF attributes
-COLUMNS = {
-    "start": ("s", "time of the trough before loading"),
-    "peak_time": ("s", "time of the largest force"),
-    "trough_time": ("s", "time of the trough after slip"),
-    "start_force": ("N", "force at the trough before loading"),
-    "peak": ("N", "largest force"),
-    "trough": ("N", "force at the trough after slip"),
-    "drop": ("N", "force drop, from peak to trough"),
-    "period": ("s", "time from trough to trough"),
-    "rise_share": ("1", "share of the period in which the force rises"),
-    "mu_static": ("1", "apparent static friction coefficient"),
-    "mu_kinetic": ("1", "apparent kinetic friction coefficient"),
-    "stick_slope": ("N/s", "rate of loading before it bends"),
-    "stiffness": ("N/m", "apparent stiffness, rate of loading over drive velocity"),
-    "creep_distance": ("m", "distance crept while loading, from trough to peak"),
-    "slip_distance": ("m", "distance slipped, from peak to trough"),
-    "peak_slip_speed": ("m/s", "largest slip speed"),
-    "hesitations": ("1", "number of hesitations, dips too small for a cycle of their own"),
-    "hesitation_depth": ("N", "depth of the deepest hesitation"),
-}
-UNSEEN = 0.25  # of a period without a sample: the cycle is not known
-JUMP = 1.5  # sampling steps: a shorter pause is not a gap
-LOADING = (0.1, 0.5)  # part of the rise that is straight: after the swing, before the creep
 LINES = 4  # taken off at most
 SAME = 0.01  # of a line's frequency: so far apart are two lines at least
 OWN = 10.0  # harmonics of the cycles below this can be lines as well; they make no cycles more
-QUARTER = 4  # of a fall, to each side: cubics through so much of half a sine are 0.2 % too flat
 
 
 def find_cycles(source: Trajectory | Record) -> xr.Dataset:
@@ -137,6 +115,8 @@ class Swings(NamedTuple):
         Lines, such as mains hum, subtracted from the force beforehand.
     force : ndarray
         (n,), N, without these lines and without wild samples.
+    wave : float
+        From crest to trough of a slower wave that carries the cycles, N; 0 if there is none.
     """
 
     table: xr.Dataset
@@ -146,6 +126,7 @@ class Swings(NamedTuple):
     clearness: float
     force: Floats
     lines: tuple[Line, ...] = ()
+    wave: float = 0.0
 
     @property
     def cycles(self) -> xr.Dataset:
@@ -167,6 +148,9 @@ def swings(record: Record) -> Swings:
         record = record.model_copy(update={"force": force})
     found = _swings(record)
     for _ in range(LINES):
+        carried = _cycles_on_a_wave(record, found)
+        if carried is not None:
+            return carried
         without = _without_line(record, found)
         if without is None:
             break
@@ -174,9 +158,32 @@ def swings(record: Record) -> Swings:
     return found
 
 
+def _cycles_on_a_wave(record: Record, found: Swings) -> Swings | None:
+    """Return stick-slip that a slower wave carries, if it does.
+
+    So does the wave of a disc that turns, or of a load that varies. Where it falls as fast as the
+    spring is loaded, the force does not rise while the mass sticks, and cycles would be missed.
+    """
+    if record.slip_speed is not None:
+        return None
+    for frequency in peak_frequencies(record.time, record.force):
+        wave = slow_wave(record.time, record.force, frequency)
+        if not may_be_carried(frequency, record.duration, record.force - wave, found.table):
+            continue
+        carried = _swings(record, wave)
+        if is_carried(frequency, record.duration, found.table, carried.table):
+            low, high = np.percentile(wave, (1.0, 99.0))
+            return carried._replace(wave=float(high - low), lines=found.lines)
+    return None
+
+
 def _without_line(record: Record, found: Swings) -> tuple[Record, Swings] | None:
-    """Return record and swings without a line beside the motion, if there is one."""
-    for line in narrow_lines(record.time, record.force):
+    """Return record and swings without a line beside the motion, if there is one.
+
+    Lines of the mains come first: others may be the stick-slip that a slow wave carries.
+    """
+    lines = narrow_lines(record.time, record.force)
+    for line in sorted(lines, key=lambda line: not of_mains(line.frequency)):
         if any(abs(line.frequency / each.frequency - 1.0) < SAME for each in found.lines):
             continue  # what is left of a line
         rest, without = swings_without(line, record)
@@ -184,7 +191,7 @@ def _without_line(record: Record, found: Swings) -> tuple[Record, Swings] | None
         if is_beside(line, without.table):
             number = line.frequency * float(without.table["period"].median())
             count, left = (each.table.sizes["cycle"] for each in (found, without))
-            own = 0 < count <= left + 1 or is_subharmonic(line, without.table)
+            own = left < 2 * count <= 2 * left + 2 or is_subharmonic(line, without.table)
             if number >= OWN or not own:
                 return rest, without
         if record.slip_speed is None and lasts_through_loading(line, record.time, record.force):
@@ -201,31 +208,16 @@ def swings_without(line: Line, record: Record) -> tuple[Record, Swings]:
     return rest, found
 
 
-def _swings(record: Record) -> Swings:
-    import xarray as xr
-
-    columns = dict.fromkeys(COLUMNS, np.zeros(0))
-    points = turning_points(record.force)
+def _swings(record: Record, wave: Floats | None = None) -> Swings:
+    """Return the swings of the force less a wave (N), of which the table has the whole force."""
+    points = turning_points(record.force if wave is None else record.force - wave)
     corners, dips = _corners(record, points)
-    if len(corners.time) >= 3:
-        with np.errstate(divide="ignore", invalid="ignore"):  # of corners that fall together
-            columns = _measure_cycles(record, without_spikes(record.force), corners)
-        columns |= _count_hesitations(corners, dips)
-        longest = _longest_step(record.time, corners)
-        gap = longest > UNSEEN * columns["period"]
-        seen = ~gap | (longest < JUMP * np.median(np.diff(record.time)))
-        seen &= (columns["rise_share"] > 0.0) & (columns["rise_share"] < 1.0)
-        columns = {name: values[seen] for name, values in columns.items()}
-    table = xr.Dataset(
-        {
-            name: ("cycle", columns[name], {"units": unit, "long_name": meaning})
-            for name, (unit, meaning) in COLUMNS.items()
-        },
-        {"cycle": ("cycle", np.arange(1, len(columns["start"]) + 1), {"long_name": "cycle"})},
-    )
-    table["hesitation_depth"].attrs["least"] = points.least
-    rest = record.time[-1] - columns["trough_time"][-1] if len(columns["trough_time"]) else 0.0
-    dying = dies_out(columns["drop"], columns["period"], rest)
+    if wave is not None:
+        there = np.interp(corners.time, record.time, wave)
+        corners = corners._replace(value=np.asarray(corners.value + there))
+    table = tabulate(record, corners, dips, points.least)
+    rest = record.time[-1] - table["trough_time"].values[-1] if table.sizes["cycle"] else 0.0
+    dying = dies_out(table["drop"].values, table["period"].values, rest)
     return Swings(table, dying, len(points.index), points.noise, points.clearness, record.force)
 
 
@@ -245,100 +237,3 @@ def _corners(record: Record, points: TurningPoints) -> tuple[Vertices, Vertices]
     kept = kept[: (len(kept) - 1) // 2 * 2 + 1]
     corners = Vertices(found.time[kept], found.value[kept])
     return corners, Vertices(found.time[dips.at - 1], dips.depth)
-
-
-def _count_hesitations(corners: Vertices, dips: Vertices) -> dict[str, Floats]:
-    """Return number and depth of the hesitations of each cycle."""
-    start = corners.time[:-1:2]
-    cycle = np.searchsorted(start, dips.time, side="right") - 1
-    inside = (cycle >= 0) & (dips.time < corners.time[-1])
-    number = np.bincount(cycle[inside], minlength=len(start)).astype(np.float64)
-    deepest = np.zeros(len(start))
-    np.maximum.at(deepest, cycle[inside], dips.value[inside])
-    return {"hesitations": number, "hesitation_depth": np.where(number > 0, deepest, np.nan)}
-
-
-def _measure_cycles(record: Record, force: Floats, corners: Vertices) -> dict[str, Floats]:
-    """Return each column, from alternating troughs and peaks, a trough first and last."""
-    start, peak_time, trough_time = (corners.time[i:j:2] for i, j in _THREE)
-    start_force, peak, trough = (corners.value[i:j:2] for i, j in _THREE)
-    unknown = np.full(len(start), np.nan)
-    load, velocity = record.normal_load, record.drive_velocity
-    slope = _loading_rate(record.time, force, start, peak_time)
-    return {
-        "start": start,
-        "peak_time": peak_time,
-        "trough_time": trough_time,
-        "start_force": start_force,
-        "peak": peak,
-        "trough": trough,
-        "drop": peak - trough,
-        "period": trough_time - start,
-        "rise_share": (peak_time - start) / (trough_time - start),
-        "mu_static": peak / load if load else unknown,
-        "mu_kinetic": 0.5 * (peak + trough) / load if load else unknown,
-        "stick_slope": slope,
-        "stiffness": slope / velocity if velocity else unknown,
-        "creep_distance": _distance_moved(record, start, peak_time, peak - start_force),
-        "slip_distance": _distance_moved(record, peak_time, trough_time, trough - peak),
-        "peak_slip_speed": _fastest(record, force, peak_time, trough_time),
-    }
-
-
-def _longest_step(time: Floats, corners: Vertices) -> Floats:
-    """Return the longest time between two samples in each cycle."""
-    begin, end = (_from(time, corners.time[i:j:2]) for i, j in (_THREE[0], _THREE[2]))
-    ends = np.stack([begin, np.maximum(end, begin + 1)], axis=1).ravel()
-    return np.asarray(np.maximum.reduceat(np.diff(time), np.minimum(ends, len(time) - 2))[::2])
-
-
-_THREE = ((0, -1), (1, None), (2, None))  # of troughs and peaks in turn: start, peak, trough
-
-
-def _loading_rate(time: Floats, force: Floats, start: Floats, peak_time: Floats) -> Floats:
-    rise = peak_time - start
-    begin, end = (_from(time, start + part * rise) for part in LOADING)
-    begin = np.minimum(begin, len(time) - 2)
-    fit = fit_pieces(time, force, begin, np.maximum(end, begin + 1), 1)
-    slope: Floats = fit.coefficients[:, 1] / fit.half
-    return slope
-
-
-def _from(time: Floats, begin: Floats) -> Indices:
-    """Return the first sample at or after each time, within rounding."""
-    place = np.interp(begin, time, np.arange(len(time)))
-    return np.ceil(place - 1e-3).astype(np.intp)
-
-
-def _distance_moved(record: Record, begin: Floats, end: Floats, gained: Floats) -> Floats:
-    """Return the distance that the mass moved from a time on, given the gain of force."""
-    if record.position is not None:
-        places = np.interp(np.stack([begin, end]), record.time, record.position)
-        return np.asarray(places[1] - places[0])
-    if record.stiffness is None or record.drive_velocity is None:
-        return np.full(len(begin), np.nan)
-    return np.asarray(record.drive_velocity * (end - begin) - gained / record.stiffness)
-
-
-def _fastest(record: Record, force: Floats, peak_time: Floats, trough_time: Floats) -> Floats:
-    """Return the largest slip speed of each fall."""
-    begin = _from(record.time, peak_time)
-    end = np.maximum(_from(record.time, trough_time), begin + 1)
-    if record.slip_speed is not None:
-        speed = record.slip_speed
-    elif record.stiffness is not None and record.drive_velocity is not None:
-        rate = _smooth_rate(record.time, force, int(np.median(end - begin)))
-        speed = record.drive_velocity - rate / record.stiffness
-    else:
-        return np.full(len(begin), np.nan)
-    ends = np.stack([begin, end], axis=1).ravel()
-    return np.asarray(np.maximum.reduceat(speed, np.minimum(ends, len(speed) - 1))[::2])
-
-
-def _smooth_rate(time: Floats, force: Floats, fall: int) -> Floats:
-    """Return the rate of force (N/s) from cubics through a quarter of a fall each way."""
-    from scipy.signal import savgol_filter  # type: ignore[attr-defined]
-
-    window = min(2 * max(2, fall // QUARTER) + 1, (len(time) - 1) // 2 * 2 + 1)
-    gained, passed = (savgol_filter(each, window, 3, deriv=1) for each in (force, time))
-    return np.asarray(gained / passed)

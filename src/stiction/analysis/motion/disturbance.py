@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 
 from stiction.analysis.motion.course import UNLOADED
 from stiction.analysis.motion.rest import STICKING, rest_share
-from stiction.analysis.signals.hum import Line
+from stiction.analysis.signals.even_grid import even_grid
+from stiction.analysis.signals.hum import Line, of_mains
+from stiction.analysis.signals.turning_points import turning_points
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -21,6 +23,11 @@ SLOWER, HIGHER = 2.0, 0.75
 # Median cosine of the line's phase from one swing to the next, where it returns to within 11 deg:
 # slips twice as long as a line's period, but irregular by 5 %, come to 0.95
 WHOLE = 0.98
+# Cycles on a slow wave: by so much, and by so many, more than without regard to it; share of them
+# that the line's period gives; how far their periods lie from it; and how much larger the wave's
+# own swings are at most if these stick, too
+MORE, AND_MORE, NEARLY_ALL, NEAR, NO_LARGER = 1.01, 1, 0.8, 0.2, 1.5
+MEANS = 24  # of each period, in which such cycles are first sought
 PARTS = 400  # means of a record in which its first loading is sought
 LOADED = 0.5  # of its rise: until then the mass goes at half the drive's speed or less
 SLIDES = 0.5  # of the rate of loading: afterwards the force rises more slowly, if at all
@@ -50,6 +57,71 @@ def is_subharmonic(line: Line, table: xr.Dataset) -> bool:
     period, drop = table["period"].values, table["drop"].values
     whole = float(np.median(np.cos(2.0 * np.pi * line.frequency * period)))
     return whole > WHOLE and float(np.median(drop)) < line.height
+
+
+def slow_wave(time: Floats, force: Floats, frequency: float) -> Floats:
+    """Return what of a force (N) is slower than `frequency` (Hz), at its times (s).
+
+    Means over a period, and those of what they leave: a wave of five periods is kept to 0.4 %, and
+    nothing of a motion with that frequency.
+    """
+    grid = even_grid(time)
+    if grid is None:
+        return np.zeros(len(time))
+    length = max(round(1.0 / (frequency * grid.step)), 1)
+    even = grid.on(force)
+    slow = _means_over(even, length)
+    slow += _means_over(even - slow, length)
+    return np.asarray(np.interp(grid.places, np.arange(grid.size), slow))
+
+
+def _means_over(force: Floats, length: int) -> Floats:
+    """Return the means of a force over `length` samples about each, as if it went on at its ends.
+
+    There its first and last period are repeated, with the drift from one to the next.
+    """
+    from scipy.ndimage import uniform_filter1d  # type: ignore[attr-defined]
+
+    first, second = force[:length], force[length : 2 * length]
+    last, before = force[-length:], force[-2 * length : -length]
+    early, late = second.mean() - first.mean(), last.mean() - before.mean()
+    longer = np.concatenate([first - early, force, last + late])
+    return np.asarray(uniform_filter1d(longer, length, mode="nearest")[length:-length])
+
+
+def may_be_carried(frequency: float, duration: float, left: Floats, seen: xr.Dataset) -> bool:
+    """Return whether a force has about as many swings as periods, which are more than are `seen`.
+
+    The force (N) is what is left without a slow wave. Few means of each period tell, quickly.
+    """
+    number = frequency * duration
+    if of_mains(frequency) or number < MORE * seen.sizes["cycle"] + AND_MORE:
+        return False
+    edges = np.linspace(0, len(left), min(int(MEANS * number), len(left)), endpoint=False)
+    means = np.add.reduceat(left, edges.astype(np.intp))
+    means /= np.diff(edges.astype(np.intp), append=len(left))
+    return len(turning_points(means).index) > 2 * NEARLY_ALL * number
+
+
+def is_carried(frequency: float, duration: float, seen: xr.Dataset, left: xr.Dataset) -> bool:
+    """Return whether the swings that are left without a slow wave are stick-slip which it carries.
+
+    They have the period that is sought, nearly all of them, and stick; and they are more than the
+    swings `seen` beside the wave, which are no larger stick-slip themselves.
+    """
+    count, number = left.sizes["cycle"], frequency * duration
+    enough = count > max(MORE * seen.sizes["cycle"] + AND_MORE, NEARLY_ALL * number)
+    if not enough or not _sticks(left):
+        return False
+    alike = np.abs(left["period"].values * frequency - 1.0) < NEAR
+    larger = float(seen["drop"].median()) > NO_LARGER * float(left["drop"].median())
+    return bool(np.mean(alike) > NEARLY_ALL) and not (_sticks(seen) and larger)
+
+
+def _sticks(table: xr.Dataset) -> bool:
+    """Return whether swings are stick-slip, by their typical shape."""
+    shares = table["rise_share"].values
+    return len(shares) > 0 and bool(rest_share(np.median(shares)) >= STICKING)
 
 
 def is_residue(line: Line, table: xr.Dataset) -> bool:

@@ -134,7 +134,8 @@ def find_friction(record: Record, regime: Regime, cycles: xr.Dataset) -> Frictio
     elif kind in (STEADY, SETTLING, UNDETERMINED) and (at is not None or kind != UNDETERMINED):
         kinetic = _sliding(record, times, at, kind, load)
     else:
-        missing["kinetic"] = "the mass does not slide"
+        unknown = kind == UNDETERMINED
+        missing["kinetic"] = f"the mass {'may' if unknown else 'does'} not slide"
     return Friction(break_away, static, kinetic, missing)
 
 

@@ -16,6 +16,7 @@ from stiction.analysis.motion.regime.kinds import (
     STUCK,
     TRANSITIONAL,
     TRANSVERSE,
+    UNDETERMINED,
 )
 from stiction.analysis.motion.rest import comes_to_rest, stuck_until
 from stiction.analysis.parts.wording import number
@@ -103,7 +104,14 @@ def plainly(found: Analysis) -> str:
             f"{_stick_share(found)}; {size}",
         }
         if kind in plain:
-            return f"{plain[kind]}{_each_time(found)}.{_why_transverse(found)}{_slow_swing(found)}"
+            said = f"{plain[kind]}{_each_time(found)}."
+            return f"{said}{_why_transverse(found)}{_slow_swing(found)}{_on_a_wave(found)}"
+    if kind == UNDETERMINED and "hidden" in evidence:
+        swings, by = in_words(evidence["hidden"], "Hz"), in_words(evidence["hidden_height"], "N")
+        return (
+            f"Noise hides what the mass does. By its spectrum the force swings at {swings}, by "
+            f"{by} from crest to trough: average neighbouring samples, or measure with less noise."
+        )
     if evidence.get("backward", 0.0) > 0.5:
         fast = "The force falls slowly and rises fast"
         if float(found.record.force.mean()) <= 0.0:
@@ -144,6 +152,17 @@ def _slow_swing(found: Analysis) -> str:
     return (
         f" The mass on its spring would do so {period:.3g} times as quickly: friction, load or "
         "drive change so."
+    )
+
+
+def _on_a_wave(found: Analysis) -> str:
+    """Return that a slower wave carries the cycles, if it does so."""
+    wave = found.regime.evidence.get("wave")
+    if wave is None:
+        return ""
+    return (
+        f" It does so on a slower wave of {in_words(wave, 'N')} from crest to trough, as of a disc "
+        "that turns askew, or a load that varies."
     )
 
 

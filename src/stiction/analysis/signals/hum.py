@@ -22,6 +22,8 @@ ABOVE = 30.0  # times the median power beside it: noise goes beyond in one of 2^
 BESIDE = 64  # samples of the spectrum at least, over which the median is taken
 LOBE = 4  # samples of the spectrum to each side that a line takes: the window's lobe
 WANDERS = 2e-3  # of its frequency, to each side: the mains keep theirs to 0.1 Hz
+HANN = 2  # samples of the spectrum to each side that the window makes of a constant line
+WHOLE = 0.95  # of the power: with so much two lines are the whole vibration
 FAINT = 0.1  # of a line's highest power: what is less may be something else
 ALONE = 9.0  # times the largest power within half an octave
 HARMONICS = 8
@@ -64,9 +66,23 @@ def narrow_lines(time: Floats, force: Floats) -> list[Line]:
     grid = even_grid(time)
     if grid is None or not grid.serves or grid.size < 4 * PERIODS or np.ptp(force) == 0.0:
         return []
-    power, bin_width = spectrum(grid.on(force))
+    power, width = spectrum(grid.on(force))
     floor = beside(power)
-    return [_measure_line(force, grid, power, floor, bin_width, at) for at in _alone(power, floor)]
+    found = _peaks(power, floor, ALONE)
+    return [_measure_line(force, grid, power, floor, width, at) for at in found]
+
+
+def peak_frequencies(time: Floats, force: Floats) -> list[float]:
+    """Return up to four frequencies (Hz) at which the spectrum is highest within half an octave.
+
+    The clearest first, as in `narrow_lines`; but these may be broad, and not alone.
+    """
+    grid = even_grid(time)
+    if grid is None or not grid.serves or grid.size < 4 * PERIODS or np.ptp(force) == 0.0:
+        return []
+    power, width = spectrum(grid.on(force))
+    found = _peaks(power, beside(power), 1.0)
+    return [_middle(power, at) * width / grid.step for at in found]
 
 
 def _measure_line(
@@ -116,6 +132,27 @@ def _between(grid: EvenGrid, values: NDArray[Any]) -> NDArray[Any]:
     return np.asarray(np.interp(grid.places, np.arange(grid.size), values))
 
 
+def beat_frequency(time: Floats, force: Floats) -> float | None:
+    """Return the frequency (Hz) at which two lines beat if they are the whole vibration; else None.
+
+    Noise in a band of frequencies has as many lines as the band is wide.
+    """
+    grid = even_grid(time)
+    if grid is None or not grid.serves or grid.size < 4 * PERIODS or np.ptp(force) == 0.0:
+        return None
+    power, width = spectrum(grid.on(force))
+    power[:PERIODS] = 0.0
+    total, lines = float(power.sum()), []
+    for _ in range(2):
+        at = int(np.argmax(power))
+        lobe = slice(max(at - HANN, 0), at + HANN + 1)
+        lines.append((at, float(power[lobe].sum())))
+        power[lobe] = 0.0
+    (first, high), (second, low) = lines
+    apart, both = abs(first - second), high + low > WHOLE * total and low > FAINT * high
+    return apart * width / grid.step if both and apart > 2 * HANN else None
+
+
 def of_mains(frequency: float) -> bool:
     """Return whether a frequency (Hz) is the mains frequency or twice it."""
     return any(abs(frequency / line - 1.0) < MAINS_VARIES for line in MAINS)
@@ -162,8 +199,11 @@ def beside(power: Floats) -> Floats:
     return np.repeat(around, size)
 
 
-def _alone(power: Floats, floor: Floats) -> list[int]:
-    """Return the isolated samples that stand out of their surroundings, the clearest first."""
+def _peaks(power: Floats, floor: Floats, above: float) -> list[int]:
+    """Return samples that stand out of the floor, the clearest first.
+
+    Each is larger by the factor `above` than all within half an octave.
+    """
     candidate = power > ABOVE * np.maximum(floor, LEAST * power.max())
     candidate[:PERIODS] = candidate[-LOBE - 1 :] = False
     candidate[1:-1] &= (power[1:-1] >= power[2:]) & (power[1:-1] >= power[:-2])
@@ -172,7 +212,7 @@ def _alone(power: Floats, floor: Floats) -> list[int]:
     for at in found[np.argsort(-power[found])[:TRIED]].tolist():
         low, high, own = int(at / 1.5), int(at * 1.5) + 1, _lobe(at)
         others = max(power[low : own.start].max(), power[own.stop : high].max(initial=0.0))
-        if power[at] > ALONE * others:
+        if power[at] > above * others:
             alone[at] = power[at] / max(others, 1e-300)
     return sorted(alone, key=lambda at: -alone[at])[:4]
 
@@ -187,7 +227,7 @@ def _middle(power: Floats, at: int) -> float:
     """Return the position of a line between samples: the power-weighted mean over its lobe."""
     lobe = _lobe(at)
     weight = np.where(power[lobe] > FAINT * power[at], power[lobe], 0.0)
-    return float(np.average(np.arange(lobe.start, lobe.stop), weights=weight))
+    return float(lobe.start + np.average(np.arange(len(weight)), weights=weight))
 
 
 def _envelope(turned: NDArray[np.complex128], cycles: float) -> NDArray[np.complex128]:

@@ -6,12 +6,13 @@ from math import pi
 
 import numpy as np
 import pytest
-from benchmarks.explore.records import sawtooth
+from benchmarks.explore.records import on_a_wave, sawtooth
 from numpy.typing import NDArray
 from tests.measured import bare, read_measured
 
 import stiction as st
 from stiction.analysis.motion.cycle_summary import TIMES
+from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.friction import find_friction
 from stiction.analysis.motion.hesitations import take_out
 from stiction.analysis.signals.outliers import without_outliers
@@ -616,3 +617,16 @@ def test_stick_slip_beside_a_slow_motion_has_all_its_cycles(turns: float, steep:
     record = st.Record(time=time, force=10.0 + force)
     assert st.analysis.find_cycles(record).sizes["cycle"] == pytest.approx(78, abs=1)
     assert st.analysis.classify(record).kind == "stick-slip"
+
+
+@pytest.mark.parametrize("number", range(6))  # half of them with hum
+def test_stick_slip_that_a_larger_wave_carries_has_all_its_cycles(number: int) -> None:
+    """As a disc that is askew: it adds up to 30 times a drop, and rates beyond that of loading."""
+    record, count, _ = on_a_wave(np.random.default_rng([1, number]))
+    found = swings(record)
+    assert found.wave > 0.5
+    assert found.cycles.sizes["cycle"] == pytest.approx(count, abs=1)
+    assert "a slower wave of" in str(st.analysis.classify(record))
+    with_hum = np.interp(found.cycles["peak_time"], record.time, record.force)
+    drop = float(found.cycles["drop"].median())
+    assert found.cycles["peak"].values == pytest.approx(with_hum, abs=0.5 * drop)

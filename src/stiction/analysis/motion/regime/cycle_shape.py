@@ -26,6 +26,7 @@ from stiction.analysis.motion.regime.kinds import (
 )
 from stiction.analysis.motion.rest import TOUCHES, rest_share, stick_shares, still_shares
 from stiction.analysis.record import Record
+from stiction.analysis.signals.hum import beat_frequency
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -132,7 +133,7 @@ def by_shape(record: Record, found: Swings) -> Regime:
     if own is not None and couples(shapes.by_rise, float(table["period"].mean()), own):
         return _transverse(table, shapes, own, evidence)
     evidence |= _sizes(found)
-    return _no_vibration(record, found, shapes) or _weigh(table, shapes, evidence)
+    return _no_vibration(record, found, shapes) or _weigh(record, table, shapes, evidence)
 
 
 def _shapes(record: Record, table: xr.Dataset) -> Shapes:
@@ -222,6 +223,8 @@ def _sizes(found: Swings) -> dict[str, float]:
         evidence["last_over_first"] = grown
     if found.lines:
         evidence["line_taken_off"] = found.lines[0].frequency
+    if found.wave:
+        evidence["wave"] = found.wave
     return evidence
 
 
@@ -252,7 +255,7 @@ def _near_ends(record: Record, table: xr.Dataset) -> tuple[float, float]:
     return float(np.mean(place < NEAR)), float(np.mean(place > 1.0 - NEAR))
 
 
-def _weigh(table: xr.Dataset, shapes: Shapes, evidence: dict[str, float]) -> Regime:
+def _weigh(record: Record, table: xr.Dataset, shapes: Shapes, evidence: dict[str, float]) -> Regime:
     """Return the kind of the cycles with its confidence: from their number, and their scatter."""
     kinds, kind, count = shapes.kinds, shapes.kind, table.sizes["cycle"]
     confidence = max((kinds.count(kind) + 1) / (count + 3), shapes.chance)
@@ -261,6 +264,8 @@ def _weigh(table: xr.Dataset, shapes: Shapes, evidence: dict[str, float]) -> Reg
     irregular = 0.0
     if kind == HARMONIC:
         irregular = irregularity(table["period"].values, table["drop"].values)
+    if irregular > 0.5 and (beat := beat_frequency(record.time, record.force)):
+        return Regime(kind, confidence, evidence | {"beat": beat})
     if irregular > 0.5:
         return Regime(IRREGULAR, irregular * confidence, evidence, HARMONIC)
     confidence *= 1.0 - irregular

@@ -59,6 +59,8 @@ WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
     "natural_period": ("a period is {} times the mass's own on its spring", _three_digits),
     "drop_over_noise": ("force drops are {} times as high as noise reaches", _three_digits),
     "line_taken_off": ("a line at {} was subtracted from the force", _frequency),
+    "beat": ("two vibrations beat at {}", _frequency),
+    "wave": ("a slower wave of {} from crest to trough carries the cycles", _force),
     "plateaus": (
         "it stays near its largest or its smallest value for {} of the time, as no vibration does: "
         "the drive goes back and forth, or the load changes in steps",
@@ -95,6 +97,8 @@ WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
     "hump_height": ("in the spectrum they stand {} times above the threshold", _three_digits),
     "fading": ("it vibrates at about {}, less and less", _frequency),
     "fades_to": ("at the end {} or less of that is left", percent),
+    "hidden": ("it swings at {}, by its spectrum", _frequency),
+    "hidden_height": ("by {} from crest to trough, in noise that hides their shape", _force),
     "few_periods": (
         "it may vibrate at about {}, or scatter: for so slow a vibration the record is too short",
         _frequency,

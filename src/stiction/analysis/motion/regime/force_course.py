@@ -10,6 +10,7 @@ from stiction.analysis.motion.disturbance import RESIDUE
 from stiction.analysis.motion.regime.band import EIGHTHS, SUSPECTED, highest_hump, remaining
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.regime.kinds import (
+    HARMONIC,
     IRREGULAR,
     SETTLING,
     STEADY,
@@ -18,6 +19,7 @@ from stiction.analysis.motion.regime.kinds import (
     UNDETERMINED,
 )
 from stiction.analysis.record import Record
+from stiction.analysis.signals.hum import beat_frequency, narrow_lines, of_mains
 from stiction.analysis.signals.turning_points import CLEAR
 
 ONE_WAY = 0.8  # of all ups and downs is change: a drift or a load, no wandering
@@ -28,6 +30,9 @@ LOADING = 0.5  # of the early rate, or of stiffness times drive velocity: it sti
 SMOOTH, VARIES = 5.0, 0.05
 LONE_FALL = ("falls_at", "falls_by")  # evidence
 SLOW = 0.1  # of stiffness times drive velocity: the mass goes at 9/10 of the drive's speed or more
+# Of the scatter about the course: swings that stand out in the spectrum may be stick-slip if they
+# are as high, which is 3 % of the variance
+HIDDEN = 0.5
 RIPPLE = 1e-3  # of the force's span: a vibration that is less is no motion of its own
 
 
@@ -56,6 +61,8 @@ def by_course(record: Record, found: Swings) -> Regime:
             sure = (EIGHTHS + 1) / (EIGHTHS + 3)
             return Regime(SETTLING, sure, evidence | {"fading": hump.frequency, "fades_to": left})
         evidence |= {"hump": hump.frequency, "hump_height": hump.height}
+        if beat := beat_frequency(record.time, record.force):
+            return Regime(HARMONIC, vibrates, evidence | {"beat": beat}, STEADY)
         return Regime(IRREGULAR, vibrates, evidence, STEADY)
     if late <= SETTLED:
         sure = (1.0 - late / (2.0 * SETTLED)) * (1.0 - vibrates)
@@ -80,11 +87,20 @@ def by_course(record: Record, found: Swings) -> Regime:
 
 
 def _steady(record: Record, found: Swings, sure: float, evidence: dict[str, float]) -> Regime:
-    """Return steady sliding, or as likely stick-slip whose cycles are longer than the record."""
+    """Return steady sliding, or as likely stick-slip whose cycles are longer than the record.
+
+    Nothing is determined if swings stand out in the spectrum that noise hides.
+    """
     if record.slip_speed is not None:
         return Regime(STEADY, sure, evidence)
     least = max(SMOOTH * evidence["scatter"], VARIES * abs(float(np.mean(found.force))))
     if evidence["span"] > least:
         return Regime(STEADY, 0.5 * sure, evidence | {"wanders": evidence["span"]}, STICK_SLIP)
+    lines = narrow_lines(record.time, record.force)
+    for line in (line for line in lines if not of_mains(line.frequency)):
+        evidence = evidence | {"hidden": line.frequency, "hidden_height": line.height}
+        if line.height > HIDDEN * evidence["scatter"]:
+            return Regime(UNDETERMINED, 0.0, evidence)
+        return Regime(STEADY, sure * (1.0 - line.height / evidence["scatter"]), evidence)
     fall = lone_fall(record.time, found.force)
     return Regime(STEADY, sure, evidence | dict(zip(LONE_FALL, fall or (), strict=False)))

@@ -14,6 +14,7 @@ from benchmarks.explore.records import (
     brief_vibration,
     filter_noise,
     hum_over_loading,
+    in_noise,
     judge,
     long,
     mains,
@@ -668,3 +669,30 @@ def test_a_vibration_along_a_stiff_spring_is_not_across_the_drive() -> None:
     assert "across the drive" not in str(found)
     assert observe(run.description, None).regime == found.regime.kind
     assert "oscillation" not in figures(found)  # of which nothing stands out
+
+
+@pytest.mark.parametrize("number", range(5))
+def test_stick_slip_under_noise_as_high_as_its_drops_is_no_steady_sliding(number: int) -> None:
+    record, _, _ = in_noise(np.random.default_rng([1, number]))
+    found = st.analysis.classify(record)
+    assert found.kind == "undetermined"
+    assert "in noise that hides their shape" in str(found)
+
+
+def test_faint_swings_in_steady_sliding_are_named() -> None:
+    time = np.arange(0.0, 60.0, 1e-3)
+    noise = 0.1 * np.random.default_rng(2).normal(size=len(time))
+    force = 2.0 + noise + 0.015 * np.sin(2 * pi * 1.3 * time)
+    found = st.analysis.classify(st.Record(time=time, force=force))
+    assert found.kind == "steady sliding"
+    assert 0.6 < found.confidence < 0.8
+    assert found.evidence["hidden"] == pytest.approx(1.3, rel=1e-3)
+
+
+@pytest.mark.parametrize(("second", "height"), [(1.03, 1.0), (0.95, 0.6), (1.2, 0.9)])
+def test_two_vibrations_that_beat_are_not_irregular(second: float, height: float) -> None:
+    time = np.arange(0.0, 300.0, 0.04)
+    force = 5.0 + np.sin(2 * pi * time) + height * np.sin(2 * pi * second * time)
+    found = st.analysis.classify(st.Record(time=time, force=force))
+    assert found.kind == "harmonic vibration"
+    assert found.evidence["beat"] == pytest.approx(abs(second - 1.0), rel=0.02)

@@ -1,0 +1,177 @@
+"""What is measured of each cycle: the columns of the table."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.analysis.record import Record
+from stiction.analysis.signals.peak_refinement import Vertices
+from stiction.analysis.signals.piecewise_fit import fit_pieces
+from stiction.analysis.signals.turning_points import without_spikes
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+# name: (unit, long name), as CF attributes
+COLUMNS = {
+    "start": ("s", "time of the trough before loading"),
+    "peak_time": ("s", "time of the largest force"),
+    "trough_time": ("s", "time of the trough after slip"),
+    "start_force": ("N", "force at the trough before loading"),
+    "peak": ("N", "largest force"),
+    "trough": ("N", "force at the trough after slip"),
+    "drop": ("N", "force drop, from peak to trough"),
+    "period": ("s", "time from trough to trough"),
+    "rise_share": ("1", "share of the period in which the force rises"),
+    "mu_static": ("1", "apparent static friction coefficient"),
+    "mu_kinetic": ("1", "apparent kinetic friction coefficient"),
+    "stick_slope": ("N/s", "rate of loading before it bends"),
+    "stiffness": ("N/m", "apparent stiffness, rate of loading over drive velocity"),
+    "creep_distance": ("m", "distance crept while loading, from trough to peak"),
+    "slip_distance": ("m", "distance slipped, from peak to trough"),
+    "peak_slip_speed": ("m/s", "largest slip speed"),
+    "hesitations": ("1", "number of hesitations, dips too small for a cycle of their own"),
+    "hesitation_depth": ("N", "depth of the deepest hesitation"),
+}
+UNSEEN = 0.25  # of a period without a sample: the cycle is not known
+JUMP = 1.5  # sampling steps: a shorter pause is not a gap
+LOADING = (0.1, 0.5)  # part of the rise that is straight: after the swing, before the creep
+QUARTER = 4  # of a fall, to each side: cubics through so much of half a sine are 0.2 % too flat
+_THREE = ((0, -1), (1, None), (2, None))  # of troughs and peaks in turn: start, peak, trough
+
+
+def tabulate(record: Record, corners: Vertices, dips: Vertices, least: float) -> xr.Dataset:
+    """Return a row for each cycle, with `COLUMNS`; a cycle that a gap hides has none.
+
+    Parameters
+    ----------
+    record : Record
+        What was measured.
+    corners : Vertices
+        Troughs and peaks in turn, a trough first and last (s, N).
+    dips : Vertices
+        Hesitations: time of the first point (s), and depth (N).
+    least : float
+        Depth of a hesitation that is seen, N.
+    """
+    import xarray as xr
+
+    columns = dict.fromkeys(COLUMNS, np.zeros(0))
+    if len(corners.time) >= 3:
+        with np.errstate(divide="ignore", invalid="ignore"):  # of corners that fall together
+            columns = _measure_cycles(record, without_spikes(record.force), corners)
+        columns |= _count_hesitations(corners, dips)
+        longest = _longest_step(record.time, corners)
+        gap = longest > UNSEEN * columns["period"]
+        seen = ~gap | (longest < JUMP * np.median(np.diff(record.time)))
+        seen &= (columns["rise_share"] > 0.0) & (columns["rise_share"] < 1.0)
+        columns = {name: values[seen] for name, values in columns.items()}
+    table = xr.Dataset(
+        {
+            name: ("cycle", columns[name], {"units": unit, "long_name": meaning})
+            for name, (unit, meaning) in COLUMNS.items()
+        },
+        {"cycle": ("cycle", np.arange(1, len(columns["start"]) + 1), {"long_name": "cycle"})},
+    )
+    table["hesitation_depth"].attrs["least"] = least
+    return table
+
+
+def _count_hesitations(corners: Vertices, dips: Vertices) -> dict[str, Floats]:
+    """Return number and depth of the hesitations of each cycle."""
+    start = corners.time[:-1:2]
+    cycle = np.searchsorted(start, dips.time, side="right") - 1
+    inside = (cycle >= 0) & (dips.time < corners.time[-1])
+    number = np.bincount(cycle[inside], minlength=len(start)).astype(np.float64)
+    deepest = np.zeros(len(start))
+    np.maximum.at(deepest, cycle[inside], dips.value[inside])
+    return {"hesitations": number, "hesitation_depth": np.where(number > 0, deepest, np.nan)}
+
+
+def _measure_cycles(record: Record, force: Floats, corners: Vertices) -> dict[str, Floats]:
+    """Return each column, from alternating troughs and peaks, a trough first and last."""
+    start, peak_time, trough_time = (corners.time[i:j:2] for i, j in _THREE)
+    start_force, peak, trough = (corners.value[i:j:2] for i, j in _THREE)
+    unknown = np.full(len(start), np.nan)
+    load, velocity = record.normal_load, record.drive_velocity
+    slope = _loading_rate(record.time, force, start, peak_time)
+    return {
+        "start": start,
+        "peak_time": peak_time,
+        "trough_time": trough_time,
+        "start_force": start_force,
+        "peak": peak,
+        "trough": trough,
+        "drop": peak - trough,
+        "period": trough_time - start,
+        "rise_share": (peak_time - start) / (trough_time - start),
+        "mu_static": peak / load if load else unknown,
+        "mu_kinetic": 0.5 * (peak + trough) / load if load else unknown,
+        "stick_slope": slope,
+        "stiffness": slope / velocity if velocity else unknown,
+        "creep_distance": _distance_moved(record, start, peak_time, peak - start_force),
+        "slip_distance": _distance_moved(record, peak_time, trough_time, trough - peak),
+        "peak_slip_speed": _fastest(record, force, peak_time, trough_time),
+    }
+
+
+def _longest_step(time: Floats, corners: Vertices) -> Floats:
+    """Return the longest time between two samples in each cycle."""
+    begin, end = (_from(time, corners.time[i:j:2]) for i, j in (_THREE[0], _THREE[2]))
+    ends = np.stack([begin, np.maximum(end, begin + 1)], axis=1).ravel()
+    return np.asarray(np.maximum.reduceat(np.diff(time), np.minimum(ends, len(time) - 2))[::2])
+
+
+def _loading_rate(time: Floats, force: Floats, start: Floats, peak_time: Floats) -> Floats:
+    rise = peak_time - start
+    begin, end = (_from(time, start + part * rise) for part in LOADING)
+    begin = np.minimum(begin, len(time) - 2)
+    fit = fit_pieces(time, force, begin, np.maximum(end, begin + 1), 1)
+    slope: Floats = fit.coefficients[:, 1] / fit.half
+    return slope
+
+
+def _from(time: Floats, begin: Floats) -> Indices:
+    """Return the first sample at or after each time, within rounding."""
+    place = np.interp(begin, time, np.arange(len(time)))
+    return np.ceil(place - 1e-3).astype(np.intp)
+
+
+def _distance_moved(record: Record, begin: Floats, end: Floats, gained: Floats) -> Floats:
+    """Return the distance that the mass moved from a time on, given the gain of force."""
+    if record.position is not None:
+        places = np.interp(np.stack([begin, end]), record.time, record.position)
+        return np.asarray(places[1] - places[0])
+    if record.stiffness is None or record.drive_velocity is None:
+        return np.full(len(begin), np.nan)
+    return np.asarray(record.drive_velocity * (end - begin) - gained / record.stiffness)
+
+
+def _fastest(record: Record, force: Floats, peak_time: Floats, trough_time: Floats) -> Floats:
+    """Return the largest slip speed of each fall."""
+    begin = _from(record.time, peak_time)
+    end = np.maximum(_from(record.time, trough_time), begin + 1)
+    if record.slip_speed is not None:
+        speed = record.slip_speed
+    elif record.stiffness is not None and record.drive_velocity is not None:
+        rate = _smooth_rate(record.time, force, int(np.median(end - begin)))
+        speed = record.drive_velocity - rate / record.stiffness
+    else:
+        return np.full(len(begin), np.nan)
+    ends = np.stack([begin, end], axis=1).ravel()
+    return np.asarray(np.maximum.reduceat(speed, np.minimum(ends, len(speed) - 1))[::2])
+
+
+def _smooth_rate(time: Floats, force: Floats, fall: int) -> Floats:
+    """Return the rate of force (N/s) from cubics through a quarter of a fall each way."""
+    from scipy.signal import savgol_filter  # type: ignore[attr-defined]
+
+    window = min(2 * max(2, fall // QUARTER) + 1, (len(time) - 1) // 2 * 2 + 1)
+    gained, passed = (savgol_filter(each, window, 3, deriv=1) for each in (force, time))
+    return np.asarray(gained / passed)
