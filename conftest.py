@@ -1,6 +1,8 @@
 """Examples in docstrings draw without a screen, and what they write goes to a folder of its own."""
 
 import os
+import sys
+from pathlib import Path
 
 import pytest
 from _pytest.doctest import DoctestItem
@@ -8,6 +10,14 @@ from _pytest.doctest import DoctestItem
 # before NumPy is imported: its threads wait busily for each other, and each worker of the tests has
 # a core already
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+# a hundred processes import the same thousands of files: where they may not leave bytecode beside
+# them, they share it here instead of compiling everything anew
+if sys.dont_write_bytecode:
+    sys.dont_write_bytecode = False
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+    sys.pycache_prefix = str(Path(__file__).parent / ".pytest_cache" / "bytecode")
+    os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix
 
 
 @pytest.fixture(autouse=True)

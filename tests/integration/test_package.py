@@ -36,6 +36,13 @@ def test_imports_stay_light(module):
     assert HEAVY.isdisjoint(loaded)
 
 
+def test_processes_of_tests_leave_bytecode_to_each_other():
+    """Otherwise each of them spends seconds on compiling what it imports."""
+    run_python("import stiction.errors")
+    place = run_python("import stiction.errors; print(stiction.errors.__cached__)").strip()
+    assert Path(place).exists()
+
+
 def test_public_names():
     for name in st.__all__:
         assert getattr(st, name) is not None
