@@ -1,13 +1,14 @@
 """``stiction fit``, on a run that is taken as a record."""
 
-import numpy as np
+import shutil
+
 import pytest
 import xarray as xr
-from tests.uncertain import TEXT
+from tests.uncertain import SIMULATIONS, TEXT
 
 import stiction as st
+from stiction.auditing.tolerance import budget
 from stiction.cli import main
-from stiction.inference.jitter import Jitter, move
 from stiction.inference.next_test import further
 
 
@@ -17,17 +18,16 @@ def inside(*arguments):
     return int(end.value.code or 0)
 
 
-def test_a_record_from_its_file_to_a_verdict(tmp_path, capsys):
+def test_a_record_from_its_file_to_a_verdict(record_file, libraries, tmp_path, capsys, monkeypatch):
     """Text without units is refused, then fitted; an audit finds the fit's simulations again."""
-    rig, data = tmp_path / "rig.toml", tmp_path / "data.csv"
+    monkeypatch.setattr(budget, "DRAWS", 8)  # few tests of the rig, whose number is not the matter
+    rig, data, folder = tmp_path / "rig.toml", record_file, tmp_path / "libraries"
     rig.write_text(TEXT)
-    time = np.arange(0.0, 14.0, 0.01)
-    slider = st.Rig.from_toml(rig).slider.replace(phi="2 deg")
-    motion = move(slider, time, Jitter(0.005, 0.5), np.random.default_rng(3), cycle=1.4)
-    force = 1e3 * slider.k_x * motion.rows[:, 0]
-    rows = zip(1e3 * motion.time, force, strict=True)
-    data.write_text("t,F\n" + "".join(f"{t:.1f},{f:.3f}\n" for t, f in rows))
-    library = ("-n", 400, "--library", tmp_path / "libraries")
+    shutil.copytree(libraries, folder)
+    blocks = sorted(folder.glob("*/*.npz"))
+    for block in blocks[::5]:
+        block.unlink()  # made again by the fit
+    library = ("-n", SIMULATIONS, "--library", folder)
 
     output, figures = tmp_path / "fit.nc", tmp_path / "figures"
     command = ("fit", data, "--rig", rig, "-o", output, "--figures", figures, *library)
@@ -47,12 +47,13 @@ def test_a_record_from_its_file_to_a_verdict(tmp_path, capsys):
     assert {path.name for path in figures.iterdir()} == names
     odds = xr.open_dataset(output, group="mechanism")
     assert float(odds["probability"].sum()) == pytest.approx(1.0)
-    assert {"phi", "k_x", "mu_0", "mu_inf", "jitter"} == set(xr.open_dataset(output))
+    assert {"phi", "k_x", "k_y", "mu_0", "mu_inf", "jitter"} == set(xr.open_dataset(output))
 
-    libraries = sorted((tmp_path / "libraries").iterdir())
+    made = {path: path.stat().st_mtime_ns for path in folder.glob("*/*.npz")}
+    assert [*sorted(made)] == blocks
     page = tmp_path / "rig.html"
     assert inside("audit", rig, "--record", data, *units, *library, "-o", page) == 0
-    assert sorted((tmp_path / "libraries").iterdir()) == libraries
+    assert {path: path.stat().st_mtime_ns for path in folder.glob("*/*.npz")} == made
     out = capsys.readouterr().out
     assert out.index("What the record says") < out.index("Verdict")
     assert "What would change it" in out

@@ -4,45 +4,25 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.uncertain import TEXT
+from tests.uncertain import SIMULATIONS, record_of
 
 import stiction as st
 from stiction.auditing.measured.comparison import compare
 from stiction.auditing.measured.words import alternatives, sections, verdict
 from stiction.auditing.page import page
+from stiction.auditing.tolerance import budget
 from stiction.errors import DescriptionError
 from stiction.inference.features import find_cycles
-from stiction.inference.jitter import Jitter, move
 from stiction.inference.mechanism.rivals import ROTATION, STATIC
 from stiction.inference.predictive import SHARES, loading_curve
 from stiction.plotting import plot_predictive, plot_ranks
 
-SIMULATIONS = 420
-
-
-def record_of(slider, seed):
-    """Jittered cycles with noise of 0.2 % of the friction force."""
-    random = np.random.default_rng(seed)
-    motion = move(slider, np.arange(0.0, 20.0, 0.01), Jitter(0.005, 0.5), random, cycle=1.4)
-    force = slider.k_x * motion.rows[:, 0]
-    noisy = force + 0.005 * random.standard_normal(len(force))
-    return st.Record(time=motion.time, force=noisy, drive_velocity=0.5e-3, normal_load=4.0)
-
 
 @pytest.fixture(scope="module")
-def rig():
-    return st.Rig.from_toml(TEXT)
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    return tmp_path_factory.mktemp("libraries")
-
-
-@pytest.fixture(scope="module")
-def found(rig, folder):
-    record = record_of(rig.slider.replace(phi="2.5 deg"), 7)
-    return st.audit(rig, record=record, simulations=SIMULATIONS, library=folder)
+def found(rig, record, libraries):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(budget, "DRAWS", 8)  # of what test_tolerance examines
+        return st.audit(rig, record=record, simulations=SIMULATIONS, library=libraries)
 
 
 def test_a_record_of_the_rig_is_explained_and_its_misalignment_found(found):
@@ -83,10 +63,11 @@ def test_the_band_holds_the_measured_curve(found):
     assert len(plot_ranks(found.measured.fit)) == len(found.measured.fit.estimates)
 
 
-def test_a_record_with_static_friction_and_no_rotation_is_not_explained_by_the_rig(rig, folder):
+def test_a_record_with_static_friction_and_no_rotation_is_not_explained_by_the_rig(rig, tmp_path):
     """Coulomb friction with a static coefficient, square on: no creep, steeper slips."""
     slider = rig.slider.replace(phi="0 deg", friction=st.Coulomb(mu_0=0.45, mu_static=0.6))
-    seen = compare(record_of(slider, 8), rig, simulations=SIMULATIONS, library=folder)
+    record = record_of(slider, 8, 12.0, channels=("force",))
+    seen = compare(record, rig, simulations=SIMULATIONS, library=tmp_path)
     assert not seen.like
     assert seen.odds.decision == STATIC
     assert verdict(seen).startswith("Friction, not misalignment: this record is like simulations")

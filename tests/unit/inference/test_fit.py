@@ -1,9 +1,11 @@
 """A fit from end to end: records of known rigs, a small library."""
 
+import shutil
+
 import numpy as np
 import pytest
 import xarray as xr
-from tests.uncertain import TEXT
+from tests.uncertain import SIMULATIONS
 
 import stiction as st
 from stiction.errors import DescriptionError, ResultError
@@ -13,92 +15,70 @@ from stiction.inference.jitter import Jitter, move, stretch
 from stiction.inference.library import build
 from stiction.inference.observation import observe
 
-SIMULATIONS = 420  # enough for a fit
-
 
 @pytest.fixture(scope="module")
-def rig():
-    return st.Rig.from_toml(TEXT)
+def found(rig, record, libraries):
+    return st.fit(record, rig, simulations=SIMULATIONS, library=libraries)
 
 
-@pytest.fixture(scope="module")
-def record(rig):
-    """Nine jittered cycles at 2.5 deg, with noise."""
-    slider = rig.slider.replace(phi="2.5 deg")
-    random = np.random.default_rng(7)
-    times = np.arange(0.0, 20.0, 0.01)
-    motion = move(slider, times, Jitter(0.005, 0.5), random, cycle=1.4)
-    force = slider.k_x * motion.rows[:, 0]
-    noisy = force + 0.004 * random.standard_normal(len(force))
-    return st.Record(time=motion.time, force=noisy, drive_velocity=0.5e-3, normal_load=4.0)
-
-
-@pytest.fixture(scope="module")
-def found(rig, record, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("libraries")
-    return st.fit(record, rig, simulations=SIMULATIONS, library=folder), folder
+@pytest.fixture
+def copied(libraries, tmp_path):
+    """A copy of the simulations, to damage them."""
+    return shutil.copytree(libraries, tmp_path / "libraries")
 
 
 def test_the_fit_finds_the_parameters_within_their_intervals(found):
-    fit, _ = found
     truth = {"phi": np.radians(2.5), "k_x": 2300.0, "mu_0": 0.625, "mu_inf": 0.375}
     # fixed seeds: each interval of 95 % holds the truth
-    assert [name for name, its in truth.items() if not fit[name].low < its < fit[name].high] == []
-    assert fit["phi"].identified
-    assert fit["phi"].narrower < 0.5
+    inside = [name for name, its in truth.items() if found[name].low < its < found[name].high]
+    assert inside == [*truth]
+    assert found["phi"].identified
+    assert found["phi"].narrower < 0.5
 
 
 def test_the_file_opens_with_xarray(found, tmp_path):
-    fit, _ = found
-    path = fit.save(tmp_path / "fit.nc")
+    path = found.save(tmp_path / "fit.nc")
     after, before = xr.open_dataset(path), xr.open_dataset(path, group="prior")
     assert after["phi"].attrs["units"] == "deg"
-    assert float(after["phi"].median()) == pytest.approx(np.degrees(fit["phi"].median), rel=0.05)
-    assert set(after) == set(before) == {"phi", "k_x", "mu_0", "mu_inf", "jitter"}
+    median = np.degrees(found["phi"].median)
+    assert float(after["phi"].median()) == pytest.approx(median, rel=0.05)
+    assert set(after) == set(before) == {"phi", "k_x", "k_y", "mu_0", "mu_inf", "jitter"}
 
 
 def test_coverage_is_measured_on_records_left_out_and_reported(found, tmp_path):
-    fit, _ = found
     # binomial: at least 300 trials, standard deviation 1.3 %; four of them
-    assert len(fit.ranks) >= 300
-    assert all(x.coverage == pytest.approx(0.95, abs=0.05) for x in fit.estimates)
-    stored = xr.open_dataset(fit.save(tmp_path / "fit.nc"))["phi"].attrs
-    assert stored["coverage_of_95_percent_intervals"] == fit["phi"].coverage
-    assert "Experimental" in str(fit.tables()[0])
+    assert len(found.ranks) >= 300
+    assert all(x.coverage == pytest.approx(0.95, abs=0.05) for x in found.estimates)
+    stored = xr.open_dataset(found.save(tmp_path / "fit.nc"))["phi"].attrs
+    assert stored["coverage_of_95_percent_intervals"] == found["phi"].coverage
+    assert "Experimental" in str(found.tables()[0])
 
 
-def test_a_stored_library_is_used_again(found, rig, record):
-    fit, folder = found
+def test_a_stored_library_is_used_again(found, rig, record, copied):
     reports = []
-    again = st.fit(record, rig, simulations=SIMULATIONS, library=folder, progress=reports.append)
+    again = st.fit(record, rig, simulations=SIMULATIONS, library=copied, progress=reports.append)
     assert reports == []
-    assert again.estimates == fit.estimates
-    (own,) = folder.iterdir()
-    (learned,) = own.glob("learned-*.npz")
+    assert again.estimates == found.estimates
+    (learned,) = copied.glob("*/learned-*.npz")
     learned.write_bytes(learned.read_bytes()[:5000])  # damaged: it is learned again
-    assert st.fit(record, rig, simulations=SIMULATIONS, library=folder).estimates == fit.estimates
+    again = st.fit(record, rig, simulations=SIMULATIONS, library=copied)
+    assert again.estimates == found.estimates
 
 
-def test_a_library_that_was_interrupted_is_completed(found, rig, record, tmp_path):
-    _, folder = found
-    (own,) = folder.iterdir()
-    block = sorted(own.glob("*.npz"))[3]
-    before = block.read_bytes()
-    block.unlink()
-    whole = build(plan_for(rig, [observe(record, rig.slider).conditions]), SIMULATIONS, own)
-    with np.load(block) as made:
-        block.with_suffix(".old").write_bytes(before)
-        with np.load(block.with_suffix(".old")) as old:
-            assert np.array_equal(made["features"], old["features"], equal_nan=True)
+def test_a_library_that_was_interrupted_is_completed(rig, record, copied):
+    plan = plan_for(rig, [observe(record, rig.slider).conditions])
+    block = copied / f"{plan.key}-0" / "00003.npz"
+    before = block.rename(block.with_suffix(".old"))
+    whole = build(plan, SIMULATIONS, block.parent)
+    with np.load(block) as made, np.load(before) as old:
+        assert np.array_equal(made["features"], old["features"], equal_nan=True)
     assert whole.wanted == SIMULATIONS
 
 
-def test_what_the_record_does_not_say_is_not_identifiable(record):
+def test_what_the_record_does_not_say_is_not_identifiable(found):
     """k_y swings far above the sample rate."""
-    text = TEXT.replace('"0.9 MN/m"', '{value = "0.9 MN/m", uncertainty = "10 %"}')
-    fit = st.fit(record, st.Rig.from_toml(text), simulations=SIMULATIONS)
-    assert not fit["k_y"].identified
-    said = str(fit.tables()[0])
+    assert not found["k_y"].identified
+    said = str(found.tables()[0])
     assert "Not identifiable from these records: k_y" in said
 
 

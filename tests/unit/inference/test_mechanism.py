@@ -6,7 +6,7 @@ from itertools import islice
 import numpy as np
 import pytest
 import xarray as xr
-from tests.uncertain import TEXT
+from tests.uncertain import record_of
 
 import stiction as st
 from stiction.errors import DescriptionError, ResultError
@@ -24,26 +24,8 @@ from stiction.inference.mechanism.steadiness import trend
 from stiction.inference.observation import observe
 from stiction.plotting import plot_mechanism
 
-SIMULATIONS = 120  # of each mechanism: enough to tell these records apart
+SIMULATIONS = 96  # of each mechanism: enough to tell these records apart
 STILL = Jitter(0.0, 0.0)
-
-
-@pytest.fixture(scope="module")
-def rig():
-    return st.Rig.from_toml(TEXT)
-
-
-def record_of(slider, seed, drift=0.0):
-    """Some jittered cycles, both forces measured."""
-    random = np.random.default_rng(seed)
-    times = np.arange(0.0, 13.0, 0.01)
-    motion = move(slider, times, Jitter(0.005, 0.5, drift), random, cycle=1.4)
-    noise = 0.004 * random.standard_normal((2, len(motion.time)))
-    forces = np.array([slider.k_x, slider.k_y]) * motion.rows[:, :2] + noise.T
-    return st.Record(
-        time=motion.time, force=forces[:, 0], force_across=forces[:, 1],
-        drive_velocity=0.5e-3, normal_load=4.0,
-    )  # fmt: skip
 
 
 @pytest.fixture(scope="module")
