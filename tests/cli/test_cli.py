@@ -217,5 +217,6 @@ def test_a_wrong_number_is_an_exit_status(tmp_path, monkeypatch, capsys):
     wrong = [Number("here", "one", 1.0, 2.0, 0.5), Number("here", "nothing", 0.0, float("nan"), 1)]
     monkeypatch.setattr(reproduce, "numbers", lambda *_: wrong)
     monkeypatch.setattr(reproduce, "DURATION", 0.6)
+    monkeypatch.setattr(reproduce, "save", lambda *_: [])  # no figures
     assert inside("paper", "--out", tmp_path) == 1
     assert "0 of 2 of the paper's numbers agree; wrong: one, nothing" in capsys.readouterr().out

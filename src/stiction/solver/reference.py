@@ -17,6 +17,7 @@ Equation numbers are those of Nakano & Popov, arXiv:2008.01854.
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import cos, sin, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -320,11 +321,19 @@ def slip(
         e = np.array([np.cos(theta), np.sin(theta)])
         return u + equations.drive * elapsed - slid, r * e
 
-    def change(_: float, y: np.ndarray) -> np.ndarray:
-        now_u, now_s = state_of(y)
-        r, e = y[3], now_s / y[3]
-        R = equations.acceleration(equations.pull(now_u, now_s), e, equations.friction(r))
-        return np.array([r, *(r * now_s), r * (R @ e), e[0] * R[1] - e[1] * R[0]])
+    K, C, N = equations.stiffness, equations.damping, equations.surface
+    (N_xx, N_xy), (_, N_yy) = N.tolist()
+    at_first = equations.pull(u, np.zeros(2))
+    # R = M^-1 (g - F n) is linear in 1, the elapsed time, the distance slid, s, and F over |e|_N
+    linear = np.vstack([at_first, equations.drive @ K, -K, -C, -N]) @ equations.mobility
+
+    def change(_: float, y: np.ndarray) -> list[float]:
+        elapsed, slid_x, slid_y, r, theta = y.tolist()
+        c, s = cos(theta), sin(theta)
+        F = equations.friction(r) / sqrt(c * (N_xx * c + 2.0 * N_xy * s) + N_yy * s * s)
+        variables = [1.0, elapsed, slid_x, slid_y, r * c, r * s, F * c, F * s]
+        R_x, R_y = (np.array(variables) @ linear).tolist()
+        return [r, r * r * c, r * r * s, r * (R_x * c + R_y * s), c * R_y - s * R_x]
 
     def vanishing(_: float, y: np.ndarray) -> float:
         return float(y[3] / (VANISHING * equations.speed) - 1)
