@@ -75,7 +75,7 @@ def slide_hold_slide(law, times):
         inside = times[(times > start) & (times <= end)]
         grid = np.unique([*inside, end])
         solution = solve_ivp(
-            change, (start, end), y, "Radau", grid, args=(drive,), rtol=1e-10, atol=1e-13
+            change, (start, end), y, "LSODA", grid, args=(drive,), rtol=1e-12, atol=1e-14
         )
         assert solution.success
         y = solution.y[:, -1]
@@ -128,7 +128,7 @@ def integrate_by_scipy(slider, law, times, equations, y0, rtol):
         return [*(drive - s), *((stiffness * u - f) / slider.mass), *dz]
 
     solution = solve_ivp(
-        change, (0.0, times[-1]), y0, "Radau", times, rtol=rtol, atol=1e-3 * rtol * np.abs(y0)
+        change, (0.0, times[-1]), y0, "LSODA", times, rtol=rtol, atol=1e-3 * rtol * np.abs(y0)
     )
     assert solution.success
     return solution.y
