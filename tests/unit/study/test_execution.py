@@ -89,11 +89,11 @@ class Nursery:
 
 @pytest.fixture(scope="module")
 def study() -> st.Study:
-    """About 600 runs of some 5 ms."""
+    """About 300 runs of some 5 ms."""
     base = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="6 s"))
     axes = {
-        "phi": st.Grid("0.5 deg", "9 deg", 21),
-        "drive.velocity": st.Grid("0.5 mm/s", "5 mm/s", 29, spacing="log"),
+        "phi": st.Grid("0.5 deg", "9 deg", 15),
+        "drive.velocity": st.Grid("0.5 mm/s", "5 mm/s", 21, spacing="log"),
     }
     return st.Study(base=base, axes=axes, measures=["peak_force", "stick_count", "time_stuck"])
 
