@@ -42,6 +42,23 @@ def test_the_map_names_both_sides_and_marks_the_slider():
     assert own.get_xydata() == pytest.approx(np.array([[1.0, 1.0]]))
 
 
+def test_a_drive_the_other_way_has_the_same_map():
+    """Over the size of its velocity, on a logarithmic axis."""
+    back = PAPER.replace(drive=st.ConstantVelocity("-1 mm/s"))
+    other = {"x_between": PLANE["x_between"], "y_between": ("-100 mm/s", "-0.1 mm/s")}
+    drawn = []
+    for slider, plane in ((PAPER, PLANE), (back, other)):
+        curve = boundary(slider, "phi", "drive.velocity", **plane)
+        (ax,) = draw(figure_of(plot_boundary, curve)).axes
+        (line,) = (each for each in ax.lines if each.get_label() == "boundary")
+        phi, speed = np.array(sorted(line.get_xydata(), key=lambda point: point[1])).T
+        drawn.append(np.interp([20.0, 40.0, 60.0, 80.0], speed, phi))
+        assert (ax.get_yscale(), sorted(ax.get_ylim())) == ("log", pytest.approx([0.1, 100.0]))
+    assert ax.get_ylabel() == "−$V$ (mm/s)"
+    # chords of 0.02 of the plane, 0.5 deg, along a curve whose radius is a tenth of it or more
+    assert drawn[1] == pytest.approx(drawn[0], abs=0.5 * 0.02 / (8.0 * 0.1))
+
+
 def test_a_plane_without_a_boundary_is_named_as_a_whole():
     slider = PAPER.replace(friction=st.Coulomb(mu_0=0.2))
     curve = boundary(slider, "phi", "mass", x_between=("1 deg", "89 deg"))

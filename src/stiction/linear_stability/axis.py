@@ -27,7 +27,8 @@ class Axis(NamedTuple):
     @property
     def logarithmic(self) -> bool:
         """Whether the scale is logarithmic."""
-        return self.low * self.high > 0.0 and self.high / self.low > WIDE
+        ratio = self.high / self.low if self.low else 0.0
+        return ratio > WIDE or 0.0 < ratio < 1.0 / WIDE  # both ends may be negative
 
     def value(self, fraction: float) -> float:
         """Return the value (SI) at a fraction of the range; exact at the ends."""

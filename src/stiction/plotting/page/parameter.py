@@ -87,6 +87,12 @@ class Scale(NamedTuple):
 
 
 def scale_of(path: str, unit: str, ends: ArrayLike, *, logarithmic: bool = False) -> Scale:
-    """Return the scale of a parameter over a range (SI); a logarithmic one by its middle."""
+    """Return the scale of a parameter over a range (SI); a logarithmic one by its middle.
+
+    A logarithmic one of negative values is that of their sizes.
+    """
     size = np.sqrt(np.prod(np.asarray(ends, dtype=np.float64))) if logarithmic else ends
-    return Scale(parameter_symbol(path), *in_unit(size, unit))
+    scale = Scale(parameter_symbol(path), *in_unit(size, unit))
+    if logarithmic and np.max(ends) < 0.0:
+        return scale._replace(symbol=f"−{scale.symbol}", factor=-scale.factor)
+    return scale
