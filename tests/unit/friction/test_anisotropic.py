@@ -5,14 +5,14 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import minimize
 from tests.drawn import inside
-from tests.entry import entry
+from tests.entry import plain
 
 import stiction as st
 from stiction.solver import surface
 from stiction.solver.problem import Elliptic, Problem
 from stiction.solver.surface import Tensor
 
-flow, friction_along, takeoff = map(entry, (surface.flow, surface.friction_along, surface.takeoff))
+flow, friction_along, takeoff = map(plain, (surface.flow, surface.friction_along, surface.takeoff))
 
 WEAKENING = st.ExponentialWeakening(0.2, 0.15, 0.01)
 

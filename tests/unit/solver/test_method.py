@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 from scipy.optimize import brentq, root
-from tests.entry import entry, plain
+from tests.entry import plain
 from tests.rebuilt.run import Solver
 from tests.rebuilt.step import PI, A, C, D, Step, gamma
 
@@ -52,9 +52,9 @@ TEXT = (ROOT / "docs/method.md").read_text(encoding="utf-8")
 SOLVER = Path(stiction.solver.__file__).parent
 
 coordinate, damped_rise, slip_at, slip_slope = map(
-    entry, (coordinate, damped_rise, slip_at, slip_slope)
+    plain, (coordinate, damped_rise, slip_at, slip_slope)
 )
-stick_duration, takeoff, to_spare = map(entry, (stick_duration, takeoff, to_spare))
+stick_duration, takeoff, to_spare = map(plain, (stick_duration, takeoff, to_spare))
 
 SMOOTHED = numba.njit(lambda law, slip, load: friction_and_gradient(law, slip, load))
 
@@ -662,11 +662,10 @@ def test_the_arc_tangent_of_a_smoothed_law(x):
         assert fall == pytest.approx(2 / 3 / delta**2, rel=1e-9)
 
 
-@numba.njit(error_model="numpy")
 def eliminated_and_solved(h, k, c, slope, friction, flow, right):
     """Return the solution of (M68) for slip x, slip y and the states, as the solver has it."""
     n = right.shape[0] - 2
-    w = workspace(n)
+    w = plain(workspace)(n)
     for i in range(3):
         w.jacobian[i + 1] = flow[i]
         for z in range(2, n + 2):
@@ -684,16 +683,16 @@ def eliminated_and_solved(h, k, c, slope, friction, flow, right):
         (friction[0, 1, 0], friction[1, 1, 0], friction[2, 1, 0]),
         (friction[0, 1, 1], friction[1, 1, 1], friction[2, 1, 1]),
     )
-    x = linear(h, k[0], c[0], 0.0, (0.0, 0.0, 0.0))
-    y = linear(h, k[1], c[1], 0.0, (0.0, 0.0, 0.0))
-    m = factors(h, x, y, at, w)
+    x = plain(linear)(h, k[0], c[0], 0.0, (0.0, 0.0, 0.0))
+    y = plain(linear)(h, k[1], c[1], 0.0, (0.0, 0.0, 0.0))
+    m = plain(factors)(h, x, y, at, w)
     r_x = right[0, 0], right[0, 1], right[0, 2]
     r_y = right[1, 0], right[1, 1], right[1, 2]
     if n > 0:
-        r_x, r_y = residuals_without(h, r_x, r_y, w)
-    d_x, d_y = solve_blocks(m, r_x, r_y)
+        r_x, r_y = plain(residuals_without)(h, r_x, r_y, w)
+    d_x, d_y = plain(solve_blocks)(m, r_x, r_y)
     if n > 0:
-        correct_states(d_x, d_y, w)
+        plain(correct_states)(d_x, d_y, w)
     return d_x, d_y, -w.values[1:4, 2:]
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
-from tests.entry import entry
+from tests.entry import plain
 
 import stiction as st
 from stiction.solver.exact.pursuit import landing_slip, landing_time
@@ -35,8 +35,8 @@ from stiction.solver.segments import stretches
 from stiction.solver.stick import stick_duration
 
 EPS = np.finfo(float).eps
-cubic, cubic_slope, stick_duration = map(entry, (cubic, cubic_slope, stick_duration))
-landing_slip, landing_time = map(entry, (landing_slip, landing_time))
+cubic, cubic_slope, stick_duration = map(plain, (cubic, cubic_slope, stick_duration))
+landing_slip, landing_time = map(plain, (landing_slip, landing_time))
 NAMES = ("u_x", "u_y", "slip_x", "slip_y")
 PAPER = st.presets.nakano_popov_2020()
 

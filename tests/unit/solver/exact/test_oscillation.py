@@ -2,11 +2,10 @@
 
 from math import cos, inf, pi, sqrt
 
-import numba
 import numpy as np
 import pytest
 from scipy.linalg import expm
-from tests.entry import entry, plain
+from tests.entry import plain
 from tests.unit.solver.exact.test_newton import held_to
 
 import stiction as st
@@ -28,7 +27,7 @@ OSCILLATORS = [
 ]
 
 
-_at, _cubic = entry(after), entry(cubic)
+_at, _cubic = plain(after), plain(cubic)
 
 
 def _after(o, t):
@@ -37,14 +36,12 @@ def _after(o, t):
     return tuple(np.transpose([_at(o, each) for each in t]))
 
 
-@numba.njit
 def _dips(o, h, p, margin):
-    return dips(o, swing(o, h, False), h, o.level + o.x, p, margin)
+    return plain(dips)(o, plain(swing)(o, h, False), h, o.level + o.x, p, margin)
 
 
-@numba.njit
 def _swing(o, h):
-    return swing(o, h, True)
+    return plain(swing)(o, h, True)
 
 
 @pytest.mark.parametrize("o", OSCILLATORS)

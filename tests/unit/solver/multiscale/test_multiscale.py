@@ -4,7 +4,7 @@ from math import pi
 
 import numpy as np
 import pytest
-from tests.entry import entry
+from tests.entry import plain
 
 import stiction as st
 from stiction.solver.multiscale.history import recall, remember
@@ -14,8 +14,8 @@ from stiction.solver.multiscale.section import angle, elongation_held, lead, wra
 from stiction.solver.problem import Problem
 from stiction.solver.segments import stretches
 
-angle, elongation_held, lead, wrap_angle = map(entry, (angle, elongation_held, lead, wrap_angle))
-interpolate, remember, recall = map(entry, (interpolate, remember, recall))
+angle, elongation_held, lead, wrap_angle = map(plain, (angle, elongation_held, lead, wrap_angle))
+interpolate, remember, recall = map(plain, (interpolate, remember, recall))
 
 
 def error(run: st.Trajectory, reference: st.Trajectory, name: str) -> float:
