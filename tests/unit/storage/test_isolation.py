@@ -79,7 +79,7 @@ def test_a_file_that_hdf5_reads_without_end_is_refused(result, monkeypatch, caps
     first = content.index(b"GCOL") + 16  # texts: HDF5 goes on by the size of each, here by zero
     content[first : first + 16] = bytes(16)
     result.write_bytes(content)
-    monkeypatch.setattr(isolation, "PATIENCE", 2.0)
+    monkeypatch.setattr(isolation, "PATIENCE", 1.0)
     for command in (["analyse", str(result)], ["check", str(result), "--repair"]):
         with pytest.raises(SystemExit) as end:
             cli.main(command)
