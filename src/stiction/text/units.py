@@ -286,7 +286,7 @@ def in_words(value: float, unit: str, digits: int = DIGITS) -> str:
         return "< 1 pm"
     size, name = suited_unit(value, unit, digits)
     shown = f"{value / size:.{digits}g}"
-    if "e+" in shown and abs(value) < LARGE:
+    if "e+" in shown and abs(float(shown)) < LARGE:
         shown = f"{float(shown):.0f}"
     plain = re.sub(r"e([+-])0*", lambda power: f"e{power[1].strip('+')}", shown)
     return f"{plain} {name}".rstrip()

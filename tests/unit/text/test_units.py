@@ -139,6 +139,14 @@ def test_words_have_a_prefix_where_the_unit_can(value, unit, text):
     assert in_words(value, unit) == text
 
 
+def test_a_power_of_ten_is_of_the_number_that_is_shown():
+    assert [in_words(2.1e7, "Hz", 1), in_words(2e8, "N", 1), in_words(45.0, "s", 1)] == [
+        "20 MHz",
+        "200 MN",
+        "40 s",
+    ]
+
+
 SYSTEM = ("kg", "N/m", "N*s/m", "N", "m", "m/s", "s", "Hz", "rad", "s/m")
 
 

@@ -33,7 +33,7 @@ def section(found: Analysis) -> Section:
     pitch = f"between {low} and {high}" if low != high else f"at {low}"
     if "frequency_error" in found.oscillation:
         error = float(np.nanmax(found.oscillation["frequency_error"].values))
-        pitch += f", each ± {in_words(float(f'{error:.1g}'), 'Hz')}"
+        pitch += f", each ± {in_words(error, 'Hz', 1)}"
     lines = [f"Seen in {share} of the time, {pitch}."]
     if of_mains(float(np.median(seen))):
         lines[0] += " That is the frequency of the mains, or twice it: it is probably hum."

@@ -52,7 +52,7 @@ def transverse(found: Audit) -> list[str]:
     if decay * p.load_up > SOON:
         return [
             f"{natural} A transverse oscillation begins with creep, and dies out within some "
-            f"{in_words(float(f'{5.0 / decay:.1g}'), 's')}: dampers, or friction that rises with "
+            f"{in_words(5.0 / decay, 's', 1)}: dampers, or friction that rises with "
             f"speed, damp it. To see it, sample at {rate}."
         ]
     end, then = "slip", "the oscillation dies out: friction falls too little with speed to drive it"
