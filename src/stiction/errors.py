@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from enum import Enum
 from typing import NamedTuple
 
@@ -65,6 +66,52 @@ class DescriptionError(StictionError, ValueError):
 
 class ResultError(StictionError, ValueError):
     """A file is not a result of this package, or lacks the requested data."""
+
+
+LISTED = 20  # faults of a file; the others are counted
+
+
+class Faults:
+    """Errors of parts that do not depend on each other, raised as one.
+
+    Examples
+    --------
+    >>> faults = Faults()
+    >>> for line in (3, 8):
+    ...     with faults.of_part():
+    ...         raise ResultError(f"line {line} is damaged")
+    >>> faults.refuse()
+    Traceback (most recent call last):
+    stiction.errors.ResultError: line 3 is damaged
+    line 8 is damaged
+    """
+
+    def __init__(self) -> None:
+        """Begin without any."""
+        self.found: list[StictionError] = []
+
+    def add(self, message: str) -> None:
+        """Note one fault."""
+        self.found.append(ResultError(message))
+
+    @contextmanager
+    def of_part(self) -> Iterator[None]:
+        """Keep the error of one part, and go on with the next."""
+        try:
+            yield
+        except StictionError as error:
+            self.found.append(error)
+
+    def refuse(self) -> None:
+        """Raise all errors as one, if there are any."""
+        described = [error for error in self.found if isinstance(error, DescriptionError)]
+        if described and len(described) == len(self.found):
+            raise DescriptionError([fault for error in described for fault in error.faults])
+        lines = [*dict.fromkeys(line for each in self.found for line in str(each).splitlines())]
+        if len(lines) > LISTED:
+            lines = [*lines[:LISTED], f"and {len(lines) - LISTED} more faults"]
+        if lines:
+            raise ResultError("\n".join(lines))
 
 
 class Status(Enum):

@@ -13,11 +13,12 @@ from stiction.drive.program import nominal_velocity
 from stiction.errors import Fault, ResultError
 from stiction.names import draw
 from stiction.recording.origin import Origin
+from stiction.recording.request import SignedForce
 from stiction.recording.sensor import Sensor
 from stiction.recording.stored import KNOWN, write_stored
 from stiction.system.slider import Slider
 from stiction.text.samples import Floats, as_numbers, samples_to_si, unit_on
-from stiction.text.units import Force, Kind, Mass, PositiveSpeed, Read, Stiffness, reader
+from stiction.text.units import Force, Kind, Mass, PositiveSpeed, Stiffness
 from stiction.text.validation import Described, faulty, unknown_name
 from stiction.trajectory import Trajectory
 
@@ -65,7 +66,6 @@ KINDS = {
     "drive_position": A_LENGTH,
     "slip_speed": Kind("a velocity", "m/s", "mm/s"),
 }
-SignedForce = Annotated[Read[float], reader("a force", "N", "3 mN")]
 Samples = Annotated[Any, BeforeValidator(_samples)]
 
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.errors import ResultError
+from stiction.errors import Faults, ResultError
 from stiction.recording.channels import CHANNELS, plain
 from stiction.recording.formats import Layout, read_tables
 from stiction.recording.guess.choice import Choice, Chosen, choose_columns, own_clock
@@ -21,21 +21,13 @@ from stiction.recording.origin import Origin, Use
 from stiction.recording.request import MARKS, SIGNS, Reading, Request, request
 from stiction.recording.sensor import Sensor
 from stiction.recording.table import Remark, Table, number_of
-from stiction.recording.units import size_of
-from stiction.text.units import Force, in_words
-from stiction.text.validation import Described
+from stiction.text.units import in_words
 
 Floats = NDArray[np.float64]
 DISPLACEMENTS = ("position", "drive_position")
 FEWEST = 2  # samples of a block
 STEPS = ("step", "stroke", "cycle", "block", "segment", "pass", "schritt", "zyklus", "hub")
 UNEVEN = 0.01  # relative: intervals that differ by more are told
-
-
-class Weight(Described):
-    """The normal load as the user gives it."""
-
-    normal_load: Force
 
 
 class Measurement(NamedTuple):
@@ -72,16 +64,15 @@ def read_measurements(
     reading = asked.reading
     layout = Layout(SIGNS.get(reading.decimal or ""), MARKS.get(reading.separator or ""))
     found: list[Measurement] = []
-    refused: list[ResultError] = []
+    faults, without = Faults(), Faults()  # a table beside those of samples may have no force
     for table in read_tables(path, layout):
         try:
             found += _measurements(path, table, asked)
         except ResultError as error:
-            refused.append(error)
+            (without if "no column is the force" in str(error) else faults).found.append(error)
+    faults.refuse()
     if not found:
-        raise refused[0]
-    if refused and not all("no column is the force" in str(error) for error in refused):
-        raise next(x for x in refused if "no column is the force" not in str(x))
+        without.refuse()
     return [
         each._replace(origin=_place_among(each.origin, number, len(found)))
         for number, each in enumerate(found, 1)
@@ -191,7 +182,7 @@ def _measurement(
         sensor = asked.sensors.get(name)
         channels[name] = its if sensor is None else sensor.value(its)
         if name in DISPLACEMENTS:
-            channels[name] = _unwrap(path, channels[name], time, asked.reading.wrap, name, notes)
+            channels[name] = _unwrap(channels[name], time, asked.reading.wrap, name, notes)
         sensors[name] = _with_noise(sensor, channels[name], name)
     known = dict(asked.known)
     _weigh(path, choice.channels["force"], channels, known, notes, sensors)
@@ -265,17 +256,9 @@ def _spacing(time: Floats) -> list[str]:
 
 
 def _unwrap(
-    path: Path, values: Floats, time: Floats, said: str | None, name: str, notes: list[str]
+    values: Floats, time: Floats, period: float | None, name: str, notes: list[str]
 ) -> Floats:
     """Return a displacement made continuous, with a note."""
-    period = None
-    if said is not None:
-        size = size_of(said, "m") if said != "none" else None
-        if said != "none" and (
-            size is None or size.value <= 0.0 or not any(map(str.isdigit, said))
-        ):
-            raise ResultError(f"{path}: --wrap {said!r} is not a length; say for example '10 mm'")
-        period = 0.0 if size is None else size.value
     found, length, count = unwrap(values, time, period)
     if count:
         notes.append(
@@ -333,7 +316,7 @@ def _weigh(
             f"{path}: column {force.column} is a friction coefficient, and the force is that times "
             "the normal load; say --normal-load, e.g. '10 N'"
         )
-    weight = load if load is not None else Weight(normal_load=known["normal_load"]).normal_load
+    weight = load if load is not None else known["normal_load"]
     channels["force"] = channels["force"] * weight
     sensors["force"] = _with_noise(None, channels["force"], "force")
 

@@ -4,23 +4,58 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple, TypeVar
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from stiction.errors import DescriptionError, Fault
 from stiction.recording.channels import CHANNELS
 from stiction.recording.sensor import Sensor
 from stiction.text.toml import read_toml
-from stiction.text.units import Duration
+from stiction.text.units import (
+    Duration,
+    Force,
+    Kind,
+    Mass,
+    PositiveSpeed,
+    Read,
+    Stiffness,
+    fault,
+    reader,
+    to_si,
+)
 from stiction.text.validation import Described, unknown_name
 
-KNOWN = (  # of the apparatus, for the record
-    *("normal_load", "stiffness", "stiffness_across", "drive_velocity", "mass", "zero"),
-)
+T = TypeVar("T", bound=Described)
 SECTIONS = ("columns", "reading", "record", "sensors")
 MARKS = {"tab": "\t", "comma": ",", "semicolon": ";", "space": " ", "bar": "|"}
 SIGNS = {"point": ".", "comma": ","}
+WHOLE = "none"  # a displacement that does not start again
+SignedForce = Annotated[Read[float], reader("a force", "N", "3 mN")]
+
+
+def _wrap(value: object) -> object:
+    """Return a length, or 0 where a displacement does not start again."""
+    if value is None or value == WHOLE:
+        return 0.0 if value == WHOLE else None
+    length = to_si(value, Kind("a length", "m", "10 mm"))
+    if length <= 0.0:
+        raise fault(f"must be greater than 0, is {value!r}; or write {WHOLE!r}")
+    return length
+
+
+class Known(Described):
+    """What is known of the apparatus; the fields are those of a record."""
+
+    normal_load: Force | None = None
+    stiffness: Stiffness | None = None
+    stiffness_across: Stiffness | None = None
+    drive_velocity: PositiveSpeed | None = None
+    mass: Mass | None = None
+    zero: SignedForce | None = None
+
+
+KNOWN = tuple(Known.model_fields)
 
 
 class Reading(Described):
@@ -39,8 +74,8 @@ class Reading(Described):
         Decimal sign of a text file.
     separator : {"tab", "comma", "semicolon", "space", "bar"}, optional
         Between the columns of a text file.
-    wrap : str, optional
-        The length after which a displacement starts again, ``"10 mm"``, or ``"none"``.
+    wrap : float or str, optional
+        The length after which a displacement starts again, m, or ``"none"``.
     block : int, optional
         Which of several blocks or strokes, counted from 1.
     """
@@ -56,7 +91,7 @@ class Reading(Described):
     times: Literal["clock", "intervals"] | None = None
     decimal: Literal["point", "comma"] | None = None
     separator: Literal["tab", "comma", "semicolon", "space", "bar"] | None = None
-    wrap: str | None = None
+    wrap: Annotated[Read[float] | None, BeforeValidator(_wrap)] = None
     block: Annotated[int, Field(ge=1)] | None = None
 
     @property
@@ -88,16 +123,37 @@ def request(path: Path, given: Mapping[str, Any], sidecar: Path | None = None) -
     said = {name: value for name, value in given.items() if value is not None}
     own = _beside(path) if sidecar is None else sidecar
     tables = {} if own is None else _tables(own)
-    read = {**tables.get("reading", {}), **tables.get("columns", {})}
-    known = dict(tables.get("record", {}))
-    for name, value in said.items():
-        (known if name in KNOWN else read)[name] = value
-    reading = Reading(**read)
-    sensors = {
-        name: Sensor(**{"unit": CHANNELS[name].unit, **table})
-        for name, table in tables.get("sensors", {}).items()
-    }
-    return Request(reading, known, sensors, own)
+    sensors = tables.get("sensors", {})
+    stated = {name: tables.get(name, {}) for name in ("reading", "columns", "record")}
+    places = {name: f"{own}: {section}" for section, table in stated.items() for name in table}
+    places = {name: f"{place}.{name}" for name, place in places.items()} | {x: x for x in said}
+    known = stated["record"] | {name: value for name, value in said.items() if name in KNOWN}
+    read = {name: value for name, value in said.items() if name not in KNOWN}
+    wrong: list[Fault] = []
+    reading = _read(Reading, stated["reading"] | stated["columns"] | read, places, wrong)
+    apparatus = _read(Known, known, places, wrong)
+    of_channels = {}
+    for name, table in sensors.items():
+        at = {key: f"{own}: sensors.{name}.{key}" for key in table}
+        its = {"unit": CHANNELS[name].unit, **table}
+        of_channels[name] = _read(Sensor, its, at, wrong)
+    if wrong:
+        raise DescriptionError(wrong)
+    numbers = {name: getattr(apparatus, name) for name in known}
+    return Request(reading, numbers, of_channels, own)
+
+
+def _read(
+    kind: type[T], values: Mapping[str, Any], places: Mapping[str, str], wrong: list[Fault]
+) -> T:
+    """Return what values describe, by their defaults where they are wrong."""
+    try:
+        return kind(**values)
+    except DescriptionError as error:
+        for each in error.faults:
+            name = each.path.partition(".")[2]
+            wrong.append(Fault(places.get(name, name), each.message))
+        return kind()
 
 
 def _beside(path: Path) -> Path | None:

@@ -520,3 +520,64 @@ def test_the_description_of_a_rig_beside_the_data_is_left_alone(write):
     path = write(f"t [s],F [N]\n{lines()}")
     write(st.presets.nakano_popov_2020().to_toml(), "data.toml")
     assert len(st.read_record(path)) == COUNT
+
+
+# --- all faults at once ---------------------------------------------------------------------------
+
+
+def faults_of(path, **said):
+    with pytest.raises(st.StictionError) as error:
+        st.read_record(path, **said)
+    return [line.removeprefix(f"{path}: ") for line in str(error.value).splitlines()]
+
+
+def test_all_wrong_cells_of_a_file_are_listed(write):
+    rows = [f"{x},{x}.5" for x in range(30)]
+    rows[3], rows[7], rows[9] = "3,a", "7,7.5,8", "9,b"
+    found = faults_of(write("\n".join(rows)))
+    assert [x.split(":")[0] for x in found] == [
+        "line 4, column 2",
+        "line 10, column 2",
+        "line 8, column 3",
+    ]
+    assert faults_of(write("\n".join(f"{x},a" if x % 2 else f"{x},{x}" for x in range(60))))[
+        -1
+    ] == ("and 9 more faults")
+
+
+def test_all_wrong_columns_and_units_are_listed(write):
+    path = write("time [s],Fx [N],Fy [N],pos [mm]\n" + lines(columns=(TIME, FORCE, FORCE, FORCE)))
+    found = faults_of(path, force="Fq=mN", force_across="Fy=kg/s", position="poss", time="pos=K")
+    assert [x.split(";")[0] for x in found] == [
+        "no column is called 'Fq', for the force along the drive",
+        "'poss' is neither a column nor a unit such as um of the displacement of the mass",
+        "column 3 'Fy [N]' is in 'kg/s', not a unit of the force across the drive",
+        "column 4 'pos [mm]' is in 'K', not a unit of time",
+    ]
+
+
+def test_all_wrong_arguments_and_keys_are_listed(write):
+    path = write(f"time [s],force [N]\n{lines()}")
+    beside = write('[record]\nmass = "3 N"\n[sensors.force]\nnoise = "2 s"\n', "data.toml")
+    found = faults_of(path, interval="3 N", wrap="-1 mm", normal_load="10 kg", block=0)
+    assert sorted(x.removeprefix(f"{beside}: ").split(": ")[0] for x in found) == [
+        *("block", "interval", "normal_load", "record.mass", "sensors.force.noise", "wrap")
+    ]
+
+
+def test_all_times_that_go_back_are_listed(write):
+    time = np.arange(20.0)
+    time[[8, 14]] = 3.0
+    found = faults_of(write("time [s],force [N]\n" + lines(columns=(time, time))))
+    assert [x.split(":")[0] for x in found] == ["line 10", "line 16"]
+
+
+def test_all_damaged_files_of_a_folder_are_listed(write):
+    write("time [s],force [N]\n0,1\n1,2\n2,3\n", "a.csv")
+    for name in ("b.csv", "c.csv"):
+        path = write("time [s],force [N]\n0,1\n1,a\n2,3\n", name)
+    with pytest.raises(st.ResultError) as error:
+        st.read_records(path.parent)
+    assert [line.split(": ")[0] for line in str(error.value).splitlines()] == [
+        str(path.parent / name) for name in ("b.csv", "c.csv")
+    ]

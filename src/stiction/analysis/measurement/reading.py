@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, TypedDict, TypeVar, Unpack
 
 from stiction.analysis.record import Record
-from stiction.errors import DescriptionError, Fault, ResultError
+from stiction.errors import DescriptionError, Fault, Faults, ResultError
 from stiction.recording.measurement import Measurement, read_measurements
 from stiction.recording.stored import is_stored, read_stored, root_attributes
 from stiction.recording.table import natural_key, number_of
@@ -131,8 +131,13 @@ def read_records(
     if not files:
         raise ResultError("no file is given; name one or several")
     listed = [each for file in files for each in (_files_of(file) if file.is_dir() else [file])]
-    found = [(path, each) for path in listed for each in _measurements(path, sidecar, dict(said))]
-    return tuple(_record(path, each) for path, each in found)
+    found: list[Record] = []
+    faults = Faults()
+    for path in listed:
+        with faults.of_part():
+            found += [_record(path, each) for each in _measurements(path, sidecar, dict(said))]
+    faults.refuse()
+    return tuple(found)
 
 
 def block_of(path: str | Path, found: Sequence[T], number: int) -> T:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.errors import ResultError
+from stiction.errors import Faults, ResultError
 from stiction.machine import largest_object
 from stiction.recording.formats import Layout
 from stiction.recording.formats.dialect import (
@@ -118,13 +118,14 @@ def read_lines(path: Path, lines: Sequence[str], dialect: Dialect) -> list[Table
     Raises
     ------
     ResultError
-        If a cell among the samples is not a number, with line and column.
+        If cells among the samples are not numbers, with line and column of each.
     """
     first = first_samples(lines, dialect)
     cells = _read_cells(path, lines, dialect, first)
     words = _word_columns(cells)
     numeric = np.array([at not in words for at in range(cells.numbers.shape[1])])
-    kinds = _kinds(path, lines, dialect, cells, numeric)
+    faults = Faults()
+    kinds = _kinds(path, lines, dialect, cells, numeric, faults)
     remarks = [Remark(at + 1, x) for at, x in enumerate(lines[:first]) if x.strip()]
     tables: list[Table] = []
     heading: Heading | None = None
@@ -134,7 +135,8 @@ def read_lines(path: Path, lines: Sequence[str], dialect: Dialect) -> list[Table
     def close() -> None:
         if rows:
             chosen = np.concatenate(rows)
-            tables.append(_table(path, cells, chosen, heading, words, remarks, skipped, dialect))
+            _note_longer_rows(path, cells, chosen, heading, faults)
+            tables.append(_table(cells, chosen, heading, words, remarks, skipped, dialect))
 
     breaks = np.flatnonzero(np.diff(kinds.astype(np.int8)) != 0) + 1
     for part in np.split(np.arange(len(kinds)), breaks):
@@ -162,6 +164,7 @@ def read_lines(path: Path, lines: Sequence[str], dialect: Dialect) -> list[Table
         skipped.append(f"line {said[0].line} skipped: {what}{many}")
         remarks = [*remarks, *said]
     close()
+    faults.refuse()
     return tables
 
 
@@ -238,8 +241,9 @@ def _kinds(
     dialect: Dialect,
     cells: _Cells,
     numeric: NDArray[np.bool_],
+    faults: Faults,
 ) -> NDArray[np.int8]:
-    """Return which lines hold samples; refuse one that has a wrong cell among numbers."""
+    """Return which lines hold samples; a wrong cell among numbers is a fault."""
     wrong = cells.wrong & numeric
     known = np.isfinite(cells.numbers)
     kinds = np.where(known.any(axis=1), DATA, BLANK).astype(np.int8)
@@ -252,12 +256,12 @@ def _kinds(
         if not known[row].any() or not begins[:1].isdigit() or cut_off:
             kinds[row] = TEXT
             continue
-        at = int(np.flatnonzero(wrong[row])[0])
-        raise ResultError(
-            f"{path}: line {cells.first + row + 1}, column {at + 1}: "
-            f"{str(cells.texts[at][row]).strip()[:40]!r} is not a number; correct it, or take the "
-            "line out"
-        )
+        for at in map(int, np.flatnonzero(wrong[row])):
+            faults.add(
+                f"{path}: line {cells.first + row + 1}, column {at + 1}: "
+                f"{str(cells.texts[at][row]).strip()[:40]!r} is not a number; correct it, or take "
+                "the line out"
+            )
     return kinds
 
 
@@ -278,8 +282,26 @@ def _lines_above(above: Sequence[Remark], heading: Heading | None) -> list[str]:
     return [f"{many} above the samples beside names and units, first {first!r}"]
 
 
+def _note_longer_rows(
+    path: Path, cells: _Cells, rows: Rows, heading: Heading | None, faults: Faults
+) -> None:
+    """Note each row that has more values than nearly all others."""
+    width = _width(cells, rows)
+    filled = np.isfinite(cells.numbers[rows, :width]) | cells.wrong[rows, :width]
+    count = width - np.argmax(filled[:, ::-1], axis=1) if width else np.zeros(len(rows))
+    usual = int(np.median(count)) if len(rows) else 0
+    extra = np.flatnonzero(count > usual)
+    named = len(heading.names) if heading is not None else 0
+    if len(extra) >= 0.1 * len(rows) or usual < named:
+        return
+    for at in extra:
+        faults.add(
+            f"{path}: line {cells.first + rows[at] + 1}, column {usual + 1}: has {int(count[at])} "
+            f"values, the others have {usual}; correct it, or take the line out"
+        )
+
+
 def _table(
-    path: Path,
     cells: _Cells,
     rows: Rows,
     heading: Heading | None,
@@ -290,17 +312,6 @@ def _table(
 ) -> Table:
     """Return the table of some rows."""
     width = _width(cells, rows)
-    filled = np.isfinite(cells.numbers[rows, :width]) | cells.wrong[rows, :width]
-    count = width - np.argmax(filled[:, ::-1], axis=1) if width else np.zeros(len(rows))
-    usual = int(np.median(count)) if len(rows) else 0
-    extra = np.flatnonzero(count > usual)
-    named = len(heading.names) if heading is not None else 0
-    if len(extra) and len(extra) < 0.1 * len(rows) and usual >= named:
-        line = cells.first + rows[extra[0]] + 1
-        raise ResultError(
-            f"{path}: line {line}, column {usual + 1}: has {int(count[extra[0]])} values, the "
-            f"others have {usual}; correct it, or take the line out"
-        )
     above = [x for x in remarks if x.line < cells.first + rows[0] + 1]
     notes = [f"{dialect}", *_lines_above(above, heading), *skipped]
     columns, labels, start = [], [], ""

@@ -7,7 +7,7 @@ from typing import NamedTuple, NoReturn
 
 import numpy as np
 
-from stiction.errors import ResultError
+from stiction.errors import Faults, ResultError
 from stiction.recording.channels import CHANNELS, LENGTH, OWN, RATIO, plain
 from stiction.recording.table import Column, Table
 from stiction.recording.units import is_electric, is_ratio, size_of
@@ -55,31 +55,42 @@ def choose_columns(path: object, table: Table, said: dict[str, str], *, timed: b
     Raises
     ------
     ResultError
-        If no column, or more than one, can be the time or the force; with the choices.
+        If no column, or more than one, can be the time or the force; with the choices, for all
+        channels at once.
     """
-    wishes = {name: _read_wish(path, table, name, text) for name, text in said.items()}
+    faults, wishes = Faults(), {}
+    for name, text in said.items():
+        with faults.of_part():
+            wishes[name] = _read_wish(path, table, name, text)
+    unknown = said.keys() - wishes.keys()
     taken = [wish.column for wish in wishes.values() if wish.column is not None]
     found: dict[str, Chosen] = {}
     notes: list[str] = []
     for name in ("load", "force_across", "force", "position", "drive_position", "slip_speed"):
-        wish = wishes.get(name, _Wish(None, ""))
-        column = wish.column or _by_name(path, table, name, wish, taken, said)
-        if column is None and (name == "force" or name in said):
-            column = _by_unit(path, table, name, wish, taken, found)
-        if column is not None:
-            found[name] = _with_size(path, table, name, column, wish.unit)
+        if name in unknown:
+            continue
+        with faults.of_part():
+            wish = wishes.get(name, _Wish(None, ""))
+            column = wish.column or _by_name(path, table, name, wish, taken, said)
+            if column is None and (name == "force" or name in said):
+                column = _by_unit(path, table, name, wish, taken)
+            if column is not None:
+                taken.append(column)
+                found[name] = _with_size(path, table, name, column, wish.unit)
+            elif name in said:
+                _refuse(path, table, name, "no column is")
+            elif name == "force":
+                found[name] = _ratio(path, table, taken)
+                taken.append(found[name].column)
+    force = found.get("force")
+    timed = timed or (force is not None and force.column.clock is not None)
+    if "time" not in unknown and (not timed or "time" in said):
+        with faults.of_part():
+            wish = wishes.get("time", _Wish(None, ""))
+            column = wish.column or _times(path, table, force, wish, taken)
             taken.append(column)
-        elif name in said:
-            _refuse(path, table, name, "no column is")
-    if "force" not in found:
-        found["force"] = _ratio(path, table, taken)
-    taken.append(found["force"].column)
-    timed = timed or found["force"].column.clock is not None
-    wish = wishes.get("time", _Wish(None, ""))
-    if not timed or "time" in said:
-        column = wish.column or _times(path, table, found, wish, taken, said)
-        found["time"] = _with_size(path, table, "time", column, wish.unit)
-        taken.append(column)
+            found["time"] = _with_size(path, table, "time", column, wish.unit)
+    faults.refuse()
     notes += [x.note for x in found.values() if x.note]
     for column in table.columns:
         if column not in taken and LENGTH.fullmatch(plain(column.name)):
@@ -171,7 +182,6 @@ def _by_unit(
     name: str,
     wish: _Wish,
     taken: Sequence[Column],
-    found: dict[str, Chosen],
 ) -> Column | None:
     """Return the only free column in a unit of a channel, or the only one without any name."""
     free = [each for each in table.columns if not any(each is one for one in taken)]
@@ -218,10 +228,9 @@ def _ratio(path: object, table: Table, taken: Sequence[Column]) -> Chosen:
 def _times(
     path: object,
     table: Table,
-    found: dict[str, Chosen],
+    force: Chosen | None,
     wish: _Wish,
     taken: Sequence[Column],
-    said: dict[str, str],
 ) -> Column:
     """Return the column of times; of several, that which stands left of the force."""
     free = [each for each in table.columns if not any(each is one for one in taken)]
@@ -237,8 +246,9 @@ def _times(
         _refuse(path, table, "time", "no column is", "; or give --interval, e.g. '0.5 ms'")
     first = matches[0]
     same = all(np.array_equal(x.values, first.values, equal_nan=True) for x in matches)
-    if len(matches) > 1 and not (same and len({x.unit for x in matches}) == 1):
-        return own_clock(path, table, found["force"].column, matches)
+    alike = same and len({x.unit for x in matches}) == 1
+    if force is not None and not alike:
+        return own_clock(path, table, force.column, matches)
     return first
 
 

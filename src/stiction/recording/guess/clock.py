@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.errors import ResultError
+from stiction.errors import Faults, ResultError
 from stiction.recording.table import Table, number_of
 from stiction.text.units import in_words
 
@@ -50,17 +50,19 @@ def blocks(path: object, table: Table, time: Floats, said: str | None, name: str
         values = np.cumsum(values) - values[0]
         notes.append(f"{name} holds the interval before each sample: times are their sum")
     back = np.flatnonzero(np.diff(values) < 0.0)
-    found, start = [], 0
+    found, start, faults = [], 0, Faults()
     for at in [*back.tolist(), len(values) - 1]:
         first, last = float(values[start]), float(values[at])
         if at < len(values) - 1 and values[at + 1] > first + AGAIN * (last - first):
-            raise ResultError(
+            faults.add(
                 f"{path}: {table.line(int(rows[at + 1]))}: the time goes back from {last:g} s to "
                 f"{values[at + 1]:g} s and does not begin again; put the lines in order"
             )
+            continue
         its = values[start : at + 1]
         found.append(Block(rows[start : at + 1], its, (*notes, *_first_interval(its))))
         start = at + 1
+    faults.refuse()
     return found
 
 
