@@ -206,7 +206,7 @@ def read_laws(description: Description, laws: Sequence[Any]) -> list[Law]:
 
 def within(fault: Fault, text: str) -> Iterator[str]:
     """Yield the path of a fault inside its law, if it has one, and the message."""
-    key = ".".join(fault.path.split(".")[1:])
+    key = fault.at().path
     if key not in ("", "law", "friction") and fault.path != text:
         yield key
     yield fault.message

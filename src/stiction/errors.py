@@ -37,6 +37,17 @@ class Fault(NamedTuple):
     path: str
     message: str
 
+    def at(self, place: str = "") -> Fault:
+        """Return the fault at another place than the class that found it.
+
+        Examples
+        --------
+        >>> Fault("Slider.mass", "missing").at("slider").path, Fault("Wanted.noise", "").at().path
+        ('slider.mass', 'noise')
+        """
+        inside = self.path.partition(".")[2]
+        return Fault(".".join(part for part in (place, inside) if part), self.message)
+
     def __str__(self) -> str:
         """Return ``path: message``, shortened if very long."""
         text = f"{self.path}: {self.message}" if self.path else self.message

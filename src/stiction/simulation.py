@@ -23,6 +23,7 @@ from stiction.system.description import Description, Settings, description_of
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
 from stiction.text.units import Quantity
+from stiction.text.validation import read_arguments
 from stiction.trajectory import Statistics, Trajectory
 
 PAPERS = Initial()
@@ -124,7 +125,8 @@ def simulate(
         "regularisation": regularisation,
         "multiscale": multiscale,
     }
-    settings = Settings(**{name: value for name, value in given.items() if value is not None})
+    stated = {name: value for name, value in given.items() if value is not None}
+    settings = read_arguments(Settings, **stated)
     return run(
         Description(slider, initial or PAPERS, settings), max_steps=max_steps, progress=progress
     )

@@ -25,6 +25,7 @@ from stiction.system.writing import parameter_table, slider_tables
 from stiction.text.sections import Section, as_html
 from stiction.text.sections import Table as Rows
 from stiction.text.units import Quantity, in_words
+from stiction.text.validation import read_arguments
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -163,7 +164,7 @@ class Trajectory:
         ResultError
             If `time` lies outside the run.
         """
-        wanted = Initial(time=time).time
+        wanted = read_arguments(Initial, time=time).time
         first, last = (float(self.data["time"][i]) for i in (0, -1))
         if not first <= wanted <= last:
             raise ResultError(f"the run goes from {first:g} s to {last:g} s, not to {wanted:g} s")

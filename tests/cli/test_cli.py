@@ -10,7 +10,7 @@ import pytest
 from tests.waiting import INTERRUPTIBLE, PATIENCE
 
 import stiction as st
-from stiction.cli import COMMANDS, main
+from stiction.cli import COMMANDS, app, main
 
 # runs the command, and says so once the simulation is on its way
 TOLD = """
@@ -74,6 +74,36 @@ def test_every_command_explains_itself(name, capsys):
     text = capsys.readouterr().out
     assert f"stiction {name}" in text
     assert len(text.splitlines()) > 8
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_has_an_example_of_each_option_and_speaks_of_what_the_command_takes(name):
+    known = app[name].assemble_argument_collection(parse_docstring=True)
+    words = {each.name: each.parameter.help or "" for each in known}
+    options = [x.name for x in known if x.name.startswith("-") and x.token_count()[0]]
+    assert [option for option in options if "Example:" not in words[option]] == []
+    assert "CONFIG" in words or not any("CONFIG" in text for text in words.values())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ("paper -o", "-o needs a value; write for example: -o paper-output"),
+        ("run my.toml", "--output is missing; write for example: -o my.nc"),
+        ("stability a --between 1", '--between needs 2 values; write for example: --between "1 '),
+        ("plot", "RESULT is missing; write for example: stiction plot"),
+        ("plot a.nc -o b.png c", "'c' is one argument too many; put a value that holds blanks"),
+    ],
+)
+def test_an_incomplete_command_is_answered_with_an_example(arguments, message, capsys):
+    assert inside(*arguments.split()) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_paper_says_that_a_file_is_not_a_folder(tmp_path, capsys):
+    (tmp_path / "file").write_text("")
+    assert inside("paper", "-o", tmp_path / "file") == 2
+    assert "file: exists and is not a folder; choose another name" in capsys.readouterr().err
 
 
 def test_a_preset_is_listed_explained_run_and_written(tmp_path, capsys):

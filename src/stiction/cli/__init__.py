@@ -15,6 +15,7 @@ from rich.console import Console
 
 import stiction
 from stiction.cli.notices import show_notices
+from stiction.cli.refusals import command_of, in_words
 from stiction.cli.terminal import give_up, spell_out
 from stiction.errors import StictionError, one_line, visible
 
@@ -79,7 +80,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         if sys.stdout is not None:
             sys.stdout.flush()
     except cyclopts.CycloptsError as error:
-        refuse(errors, "command line", f"{error}\nsee {command_of(error)} --help")
+        refuse(errors, "command line", f"{in_words(error)}\nsee {command_of(error)} --help")
     except StictionError as error:
         refuse(errors, type(error).__name__.removesuffix("Error").lower(), str(error))
     except KeyboardInterrupt:
@@ -123,8 +124,3 @@ def in_a_law(error: BaseException) -> str | None:
     laws = {m.get("__file__") for m in modules if isinstance(m.get("__loader__"), TextLoader)}
     frames = [each for each in extract_tb(error.__traceback__) if each.filename in laws]
     return f"{frames[-1].filename}, line {frames[-1].lineno}" if frames else None
-
-
-def command_of(error: cyclopts.CycloptsError) -> str:
-    """Return the command that was called."""
-    return " ".join(["stiction", *(error.command_chain or ())])

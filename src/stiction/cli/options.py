@@ -24,8 +24,8 @@ Trust = Annotated[
     Parameter(
         negative=(),
         help=(
-            "Trust and run a user's friction law: the text in a result or a store, or a file "
-            "outside the folder of CONFIG."
+            "Trust the friction law that a user wrote, and run its text: that in a result or a "
+            "store, or a file outside the folder of the description."
         ),
     ),
 ]
@@ -35,8 +35,8 @@ Changes = Annotated[
         name="--set",
         negative=(),
         help=(
-            "Change a parameter of CONFIG, NAME=VALUE: --set phi=3deg "
-            '--set "V = 2 mm/s" --set friction.mu_0=0.3 --set duration=10s; repeat it for more.'
+            "Change a parameter of the description, NAME=VALUE: --set friction.mu_0=0.3, --set "
+            'duration=10s, --set "V = 2 mm/s"; repeat it for more. Example: --set phi=3deg.'
         ),
     ),
 ]
@@ -80,10 +80,10 @@ class Measured:
     ----------
     time
         How the file gives the time: the name or number of its column, its unit, or both joined by
-        "=". Examples: --time ms, --time "Zeit=ms", --time 1=ms for the first column.
+        "=": --time ms, --time 1=ms for the first column. Example: --time "Zeit=ms".
     force
         How the file gives the force along the drive, in the same way. A factor scales it: "CH1=2.5
-        N/V" turns volts into newtons, "-1 N" turns the sign. Examples: --force mN, --force Fx=mN.
+        N/V" turns volts into newtons, "-1 N" turns the sign. Example: --force Fx=mN.
     force_across
         How the file gives the force across the drive, as for --force. Example: --force-across
         Fy=mN.

@@ -37,10 +37,7 @@ def as_pieces(reading: Reading) -> BeforeValidator:
                     raise DescriptionError([Fault("piece.duration", message)])
                 made.append(piece)
             except DescriptionError as error:
-                found += [
-                    Fault(".".join([str(i + 1), *fault.path.split(".")[1:]]), fault.message)
-                    for fault in error.faults
-                ]
+                found += [fault.at(str(i + 1)) for fault in error.faults]
         if found:
             raise faulty(found)
         return tuple(made)
@@ -60,9 +57,7 @@ def as_modulation(kind: Kind) -> BeforeValidator:
                 raise fault(f"{value!r} is not a modulation; it has an amplitude and a frequency")
             done: Modulation = _in_si(made, kind)
         except DescriptionError as error:
-            raise faulty(
-                [Fault(".".join(f.path.split(".")[1:]), f.message) for f in error.faults]
-            ) from None
+            raise faulty([fault.at() for fault in error.faults]) from None
         return done
 
     return BeforeValidator(read)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import exp, inf, log
 from typing import NamedTuple
 
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, Faults
 from stiction.system.parameter import change_parameter, change_unchecked, read, unit
 from stiction.system.slider import Slider
 from stiction.text.paths import canonical_path
@@ -72,13 +72,18 @@ def axis(slider: Slider, path: str, between: Sequence[Quantity] | None = None) -
     ends = default(slider, path) if between is None else between
     if isinstance(ends, str) or len(ends) != 2:
         raise DescriptionError([Fault(path, f"{ends!r} is not a range; give its two ends")])
+    faults, values = Faults(), []
+    for end in ends:
+        with faults.of_part():
+            values.append(read(change_parameter(slider, path, end), path))
     try:
-        low, high = (read(change_parameter(slider, path, end), path) for end in ends)
+        faults.refuse()
     except DescriptionError as error:
         if between is not None:
             raise
         message = f"the usual range, {ends[0]} to {ends[1]}, is not allowed; give another: {error}"
         raise DescriptionError([Fault(path, message)]) from None
+    low, high = values
     if not low < high:
         raise DescriptionError([Fault(path, f"{ends!r} is not a range; give its low end first")])
     return Axis(path, unit(slider, path), low, high)

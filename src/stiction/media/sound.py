@@ -21,6 +21,7 @@ from stiction.storage.files import placeable, whole
 from stiction.system.description import Description
 from stiction.system.initial import Initial
 from stiction.text.units import Quantity, in_words
+from stiction.text.validation import read_arguments
 from stiction.trajectory import Trajectory, load
 
 RATE = 48_000  # samples of sound a second
@@ -224,6 +225,6 @@ def seconds(time: Quantity) -> float:
         If it has no unit of time.
     """
     try:
-        return Initial(time=time).time
+        return read_arguments(Initial, time=time).time
     except DescriptionError as error:
-        raise ResultError(str(error).replace("Initial.time", "time")) from None
+        raise ResultError(str(error)) from None

@@ -150,9 +150,8 @@ def _read(
     try:
         return kind(**values)
     except DescriptionError as error:
-        for each in error.faults:
-            name = each.path.partition(".")[2]
-            wrong.append(Fault(places.get(name, name), each.message))
+        for each in (fault.at() for fault in error.faults):
+            wrong.append(Fault(places.get(each.path, each.path), each.message))
         return kind()
 
 

@@ -21,6 +21,7 @@ from stiction.reproduction.schematic import schematic
 from stiction.reproduction.table import Table
 from stiction.reproduction.zero_slip import zero_slip
 from stiction.simulation import simulate
+from stiction.storage.files import make_folder, usable_folder
 from stiction.text.sections import Section, as_text
 from stiction.trajectory import Trajectory
 
@@ -92,10 +93,8 @@ def reproduce(
     folder: Path, figure: int | None, report: Callable[[float], None]
 ) -> tuple[list[Path], Table | None]:
     """Write the paper's figures and numbers to `folder`; see `paper`."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise StictionError(f"{folder}: cannot be made: {error.strerror}") from None
+    usable_folder(folder)
+    make_folder(folder)
     if figure not in (None, 3, 4, 5):
         raise StictionError(f"figure must be 3, 4 or 5, is {figure!r}")
     slider = presets.nakano_popov_2020()

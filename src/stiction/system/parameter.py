@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, TypeVar, cast, get_args
 
 from stiction.drive.pieces import LEVELS
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, Faults
 from stiction.friction import Anisotropic
 from stiction.system.description import Description
 from stiction.system.slider import FROM_SPRINGS, Slider
@@ -122,10 +122,14 @@ def change_parameters(owner: Owner, changes: Mapping[str, Quantity]) -> Owner:
             for room in rooms:
                 branch = branch.setdefault(room, {})
             branch[field] = value
-    if isinstance(owner, Description):
-        parts = {room: _remake(getattr(owner, room), tree[room]) for room in tree}
-        return owner._replace(**parts)
-    return cast(Owner, _remake(owner, tree))
+    if not isinstance(owner, Description):
+        return cast(Owner, _remake_at("", owner, tree))
+    faults, parts = Faults(), {}
+    for room, new in tree.items():
+        with faults.of_part():
+            parts[room] = _remake_at("" if room == "slider" else room, getattr(owner, room), new)
+    faults.refuse()
+    return owner._replace(**parts)
 
 
 def change_unchecked(slider: Slider, path: str, value: float) -> Slider:
@@ -236,6 +240,14 @@ def _holder(part: Any, key: str) -> Any:
     return part.law if isinstance(part, Anisotropic) and key not in part._fields else part
 
 
+def _remake_at(path: str, part: Any, changes: Mapping[str, Any]) -> Any:
+    """Do as `_remake`, with faults below a path."""
+    try:
+        return _remake(part, changes)
+    except DescriptionError as error:
+        raise DescriptionError([fault.at(path) for fault in error.faults]) from None
+
+
 def _remake(part: Any, changes: Mapping[str, Any]) -> Any:
     """Return a part of a description with some fields changed, and validated."""
     if isinstance(part, Anisotropic):
@@ -243,10 +255,20 @@ def _remake(part: Any, changes: Mapping[str, Any]) -> Any:
         own = {key: value for key, value in changes.items() if key in part._fields}
         law = _remake(part.law, inner) if inner else part.law
         return Anisotropic(**{**_field_values(part), **own, "law": law})
-    new = {
-        key: _remake(_part(part, key), value) if isinstance(value, Mapping) else value
-        for key, value in changes.items()
-    }
+    faults, new, made = Faults(), {**changes}, part
+    for key, value in changes.items():
+        if isinstance(value, Mapping):
+            new[key] = _part(part, key)
+            with faults.of_part():
+                new[key] = _remake_at(f"{type(part).__name__}.{key}", new[key], value)
+    with faults.of_part():
+        made = _with_fields(part, new)
+    faults.refuse()
+    return made
+
+
+def _with_fields(part: Any, new: Mapping[str, Any]) -> Any:
+    """Return a part of a description with other values of some fields."""
     if hasattr(part, "replace"):
         return part.replace(**new)
     if isinstance(part, tuple) and not hasattr(part, "_fields"):

@@ -161,8 +161,7 @@ def read_springs(value: Any) -> tuple[Spring, ...]:
         try:
             made.append(_spring(each))
         except DescriptionError as error:
-            paths = (".".join([str(number), *f.path.split(".")[1:]]) for f in error.faults)
-            found += [Fault(p, f.message) for p, f in zip(paths, error.faults, strict=True)]
+            found += [fault.at(str(number)) for fault in error.faults]
     names = [each.slug for each in made]
     twice = sorted({each.name for each in made if names.count(each.slug) > 1})
     found += [Fault("name", f"{name!r} stands twice; name each spring otherwise") for name in twice]

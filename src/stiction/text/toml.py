@@ -179,10 +179,7 @@ def gather(
             try:
                 parts[name] = read(dict(table))
             except DescriptionError as error:
-                found += [
-                    Fault(".".join([name, *fault.path.split(".")[1:]]), fault.message)
-                    for fault in error.faults
-                ]
+                found += [fault.at(name) for fault in error.faults]
     if found:
         raise DescriptionError(found)
     return parts

@@ -174,6 +174,14 @@ def collect(
         raise DescriptionError(faults(error, path, known)) from None
 
 
+def read_arguments(kind: Callable[..., T], **given: Any) -> T:
+    """Return the arguments of a function as their model has them; faults name the arguments."""
+    try:
+        return kind(**given)
+    except DescriptionError as error:
+        raise DescriptionError([fault.at() for fault in error.faults]) from None
+
+
 def faults(error: ValidationError, path: str, known: Iterable[str]) -> list[Fault]:
     """Return each fault of a pydantic error below `path`; `known` are the keys allowed there."""
     found = []

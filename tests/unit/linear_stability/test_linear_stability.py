@@ -311,6 +311,13 @@ def test_a_right_angle_exchanges_the_axes(phi):
 
 # --- the boundary in two parameters -------------------------------------------------------------
 
+
+def test_both_ends_of_a_range_are_checked_together():
+    with pytest.raises(st.DescriptionError) as error:
+        st.stability(PAPER, over="phi", between=("1 kg", "100 deg"))
+    assert [fault.path for fault in error.value.faults] == ["phi", "phi"]
+
+
 PLANE = {"x_between": ("0 deg", "30 deg"), "y_between": ("0.1 mm/s", "100 mm/s")}
 
 

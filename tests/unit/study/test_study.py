@@ -139,6 +139,16 @@ def test_every_fault_of_a_study_is_told_at_once():
     assert "Study.axes.run.multiscale: is not one number" in text
 
 
+def test_an_invalid_value_is_a_fault_of_its_own_axis_alone():
+    axes = {"phi": st.Grid("1 deg", "95 deg", 3), "mass": st.Values(["-1 kg", "-2 kg"])}
+    with pytest.raises(st.DescriptionError) as error:
+        st.Study(base=BASE, axes=axes)
+    assert [fault.path for fault in error.value.faults] == ["Study.axes.phi", "Study.axes.mass"]
+    phi, mass = (fault.message for fault in error.value.faults)
+    assert phi.startswith("must lie between")
+    assert mass == "must be greater than 0, is -1.0"
+
+
 @pytest.mark.parametrize(
     ("axes", "says"),
     [

@@ -6,7 +6,14 @@ import pytest
 from tests.drawn import all_over
 
 import stiction as st
-from stiction.system.parameter import change_parameter, change_unchecked, read, unit, units
+from stiction.system.parameter import (
+    change_parameter,
+    change_parameters,
+    change_unchecked,
+    read,
+    unit,
+    units,
+)
 
 PAPER = st.presets.nakano_popov_2020()
 GRAIN = PAPER.replace(friction=st.laws.Anisotropic(PAPER.law, 1.2, "30 deg"))
@@ -40,6 +47,21 @@ def test_values_are_read_with_units_and_checked():
         change_parameter(PAPER, "mass", -1.0)
     with pytest.raises(st.DescriptionError, match="between -90 deg and 90 deg"):
         change_parameter(PAPER, "phi", "91 deg")
+
+
+def test_faults_name_the_changed_parameters_and_come_together():
+    start = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration=1.0))
+    wrong = {
+        "friction.mu_0": -1.0,
+        "V": "3 N",
+        "phi": "100 deg",
+        "run.rtol": 5.0,
+        "initial.u_x": "3 N",
+    }
+    with pytest.raises(st.DescriptionError) as error:
+        change_parameters(start, wrong)
+    paths = [fault.path for fault in error.value.faults]
+    assert paths == ["friction.mu_0", "drive.velocity", "phi", "run.rtol", "initial.u_x"]
 
 
 def test_an_unknown_parameter_is_answered_with_the_nearest():

@@ -11,7 +11,7 @@ from stiction.analysis.record import Record, cell_axis, record_of
 from stiction.errors import ResultError
 from stiction.recording.sensor import Sensor
 from stiction.text.units import Quantity, SampleRate
-from stiction.text.validation import Described
+from stiction.text.validation import Described, read_arguments
 from stiction.trajectory import Trajectory
 
 Floats = NDArray[np.float64]
@@ -59,7 +59,8 @@ def measure(
     """
     sensors = {"force": sensor} if isinstance(sensor, Sensor) else dict(sensor)
     plain = record_of(run)
-    rate = Sampling(sample_rate=sample_rate or 0.0).sample_rate or plain.sample_rate
+    sampling = read_arguments(Sampling, sample_rate=sample_rate or 0.0)
+    rate = sampling.sample_rate or plain.sample_rate
     if rate > plain.sample_rate * (1.0 + 1e-9):
         raise ResultError(
             f"the run has {plain.sample_rate:g} samples a second, the record is to have {rate:g}; "

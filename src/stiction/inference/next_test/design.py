@@ -29,6 +29,7 @@ from stiction.system.slider import Slider
 from stiction.text.paths import canonical
 from stiction.text.quantity_text import percent
 from stiction.text.units import Quantity, in_words
+from stiction.text.validation import read_arguments
 
 FEWEST = 100  # rigs with cycles in the present test, below which nothing is learned
 
@@ -128,7 +129,7 @@ def read(rig: Rig, of: str, **given: Any) -> tuple[str, Wanted]:
         message = f"is not uncertain in this description; its priors are of {', '.join(rig.priors)}"
         faults.append(Fault(of, message))
     try:
-        wanted = Wanted(**given)
+        wanted = read_arguments(Wanted, **given)
     except DescriptionError as error:
         raise DescriptionError([*faults, *error.faults]) from None
     if faults:

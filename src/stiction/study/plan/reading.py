@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from stiction.deprecation import by_new_names
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError
 from stiction.study.plan.axes import Axis, read_axis
 from stiction.study.variables.measures import FORMERLY, MEASURES
 from stiction.study.variables.traces import TRACES
@@ -34,7 +34,7 @@ def axes_of(value: Any) -> dict[str, Axis]:
         try:
             axes[canonical_path(str(path))] = read_axis(each, str(path))
         except DescriptionError as error:
-            found += [Fault(fault.path.partition(".")[2], fault.message) for fault in error.faults]
+            found += [fault.at() for fault in error.faults]
     if found:
         raise faulty(found)
     return axes

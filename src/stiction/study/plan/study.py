@@ -28,6 +28,7 @@ from stiction.study.plan.memory import axis_faults, run_faults
 from stiction.study.plan.reading import axes_of, is_description, measures_of, traces_of
 from stiction.study.variables.measures import DEFAULT
 from stiction.study.variables.observation import seconds_of
+from stiction.system import parameter
 from stiction.system.description import Description
 from stiction.system.writing import parameter_table, slider_tables
 from stiction.text.sections import Section, Table, as_html
@@ -96,17 +97,29 @@ class Study(Described):
         """Check the endpoints of each dimension.
 
         An endpoint is a fault if it is invalid at both ends of all other dimensions. Otherwise
-        only the single runs are refused.
+        only the single runs are refused. A value that is invalid by itself is a fault of its own
+        axis alone.
         """
         found: dict[str, Fault] = {}
         ends = [sorted({0, size - 1}) for size in self.layout.shape]
         for place, dim in enumerate(self.layout.dims):
+            own = self._parameters(dim)
+            others = set().union(*map(self._parameters, self.layout.dims)) - own
             for end in ends[place]:
-                others = [*ends[:place], [end], *ends[place + 1 :]]
-                refusals = [self._refusal(index) for index in product(*others)]
+                corners = product(*ends[:place], [end], *ends[place + 1 :])
+                refusals = [
+                    [fault for fault in self._refusal(index) if fault.path not in others]
+                    for index in corners
+                ]
                 if all(refusals):
-                    found.setdefault(dim, Fault(f"axes.{dim}", "; ".join(map(str, refusals[0]))))
+                    said = [x.message if {x.path} == own else str(x) for x in refusals[0]]
+                    found.setdefault(dim, Fault(f"axes.{dim}", "; ".join(dict.fromkeys(said))))
         return list(found.values())
+
+    def _parameters(self, dim: str) -> set[str]:
+        """Return the paths of the parameters that vary along a dimension."""
+        paths = (path for path, axis in self.axes.items() if (axis.along or path) == dim)
+        return {name for path in paths for name in parameter.names(path)}
 
     def _refusal(self, index: Index) -> tuple[Fault, ...]:
         try:

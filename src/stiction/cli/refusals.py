@@ -1,0 +1,56 @@
+"""Faults of the command line in words: the rule, the value and the remedy."""
+
+from __future__ import annotations
+
+import re
+from inspect import getdoc
+
+from cyclopts import CycloptsError, MissingArgumentError
+from cyclopts.exceptions import UnusedCliTokensError
+
+EXAMPLE = re.compile(r"Example:\s+(.+?)\.?\s*$", re.S)  # at the end of the help of an option
+SHOWN = re.compile(r"^ +(stiction .+)$", re.M)  # in the help of a command
+
+
+def in_words(error: CycloptsError) -> str:
+    """Return the message of an error; where this package has no words for it, the library's."""
+    match error:
+        case MissingArgumentError():
+            return _missing(error)
+        case UnusedCliTokensError(unused_tokens=[first, *_]):
+            return (
+                f"{first!r} is one argument too many; put a value that holds blanks in quotation "
+                'marks: --set "V = 2 mm/s"'
+            )
+    return str(error)
+
+
+def command_of(error: CycloptsError) -> str:
+    """Return the command that was called."""
+    return " ".join(["stiction", *(error.command_chain or ())])
+
+
+def _missing(error: MissingArgumentError) -> str:
+    """Return what is missing, and an example."""
+    assert error.argument is not None
+    name = error.argument.name
+    typed = error.keyword or next((x.keyword for x in error.argument.tokens if x.keyword), None)
+    if typed is None:
+        rule = f"{name} is missing"
+    else:
+        count, _ = error.argument.token_count()
+        rule = f"{typed} needs {'a value' if count < 2 else f'{count} values'}"
+    example = _example(error, name)
+    return f"{rule}; write for example: {example}" if example else rule
+
+
+def _example(error: MissingArgumentError, name: str) -> str:
+    """Return the example in the help of an option; of another argument, that of its command."""
+    if not name.startswith("-"):
+        shown = SHOWN.search(getdoc(error.target) or "")
+        return shown[1] if shown else ""
+    assert error.app is not None
+    known = error.app.assemble_argument_collection(parse_docstring=True)
+    words = next((x.parameter.help or "" for x in known if x.name == name), "")
+    found = EXAMPLE.search(words)
+    return " ".join(found[1].split()) if found else ""
