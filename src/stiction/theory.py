@@ -253,6 +253,22 @@ def first_stick_duration(
     return F_0 / (V * np.hypot(k_x * np.cos(phi), k_y * np.sin(phi)))
 
 
+def first_force_angle(phi: ArrayLike, k_x: ArrayLike, k_y: ArrayLike) -> Floats:
+    """Angle of the spring force to the x axis while the object rests, from u = 0 (rad).
+
+    Not in the paper, where a stiff transverse spring makes it a right angle: the force of both
+    springs, (k_x cos phi, k_y sin phi) V t, points along the drive if k_x = k_y.
+
+    Parameters
+    ----------
+    phi : misalignment (rad).
+    k_x, k_y : principal stiffnesses (N/m).
+    """
+    phi, k_x, k_y = _floats(phi, k_x, k_y)
+    angle: Floats = np.arctan2(k_y * np.sin(phi), k_x * np.cos(phi))
+    return angle
+
+
 def critical_misalignment(
     V: ArrayLike, mu: ArrayLike, slope: ArrayLike, *, c_x: ArrayLike = 0.0, W: ArrayLike = 1.0
 ) -> Floats:

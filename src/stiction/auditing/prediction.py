@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction import theory
+from stiction.analysis.creep.first_slip import slips_at_once
 from stiction.friction import Anisotropic, has_state
 from stiction.friction.law import static_coefficient
 from stiction.system.slider import Slider
@@ -45,10 +46,11 @@ class Prediction(NamedTuple):
     first_stick : float
         Duration of true rest after the drive starts, s.
     load_up : float
-        Time from the start of the drive to the slip, s: Eq. (7) until theta_c, or, if zeta stays
-        above 1, until the spring alone would carry friction.
+        Time from the start of the drive to the slip, s: the first stick where the springs' force
+        then points along the drive; else Eq. (7) until theta_c, or, if zeta stays above 1, until
+        the spring alone would carry friction.
     creep_at_start, creep_at_slip : float
-        Velocity along the drive at both ends of the loading, Eq. (7), m/s.
+        Velocity along the drive at both ends of the loading, Eq. (7), m/s; NaN without creep.
     creep_distance : float
         Distance crept before the slip, m.
     mu_static, mu_kinetic : float
@@ -112,7 +114,10 @@ def predict(slider: Slider) -> Prediction:
     creep = theory.creep_velocity(np.array([0.0, load_up]), V, phi, l_x)
     peak = F_0 * cos(turn)
     if phi == 0.0:  # friction does not turn: rest until the spring carries the static friction
-        load_up, peak = first_stick, F_static
+        peak = F_static
+    distance = creep_distance(V, phi, l_x, load_up)
+    if slips_at_once(s):  # both springs load together, until they carry the static friction
+        load_up, distance, creep = first_stick, 0.0, np.full(2, nan if phi > 0.0 else 0.0)
     drop, mean = stick_slip(slider, peak) if fast else (nan, peak)
     if not drop > 0.0:  # friction does not fall below the spring's force: steady sliding follows
         drop, mean = nan, s.law.coefficient(V) * s.normal_load * cos(phi)
@@ -130,7 +135,7 @@ def predict(slider: Slider) -> Prediction:
         load_up,
         float(creep[0]),
         float(creep[1]),
-        creep_distance(V, phi, l_x, load_up),
+        distance,
         peak / s.normal_load,
         mean / s.normal_load,
         drop,
@@ -151,6 +156,12 @@ def suppositions(slider: Slider, p: Prediction) -> list[str]:
         found.append("the surface has no grain")
     if s.k_y <= s.k_x or phi > QUARTER_TURN:
         found.append("the soft spring is the one along the drive")
+    elif phi != 0.0 and slips_at_once(s):
+        found.append(
+            "friction turns before the first slip; here k_y tan φ is only "
+            f"{s.k_y * tan(phi) / s.k_x:.3g} k_x: both springs load together, and the first stick "
+            "ends in a slip"
+        )
     elif phi != 0.0 and p.first_stick > SHORT * p.load_up:
         ratio, share = s.k_y * tan(phi) / s.k_x, p.first_stick / p.load_up
         found.append(
@@ -170,7 +181,8 @@ def suppositions(slider: Slider, p: Prediction) -> list[str]:
     weakening = -float(law.slope(0.0)) * s.normal_load
     if phi != 0.0 and weakening > 2.0 * sqrt(s.masses[1] * s.k_y):
         found.append("friction weakens gently; here so steeply that each rest ends in a rapid slip")
-    lost = s.F_0 - float(law.coefficient(p.creep_at_slip)) * s.normal_load if phi != 0.0 else 0.0
+    creeps = phi != 0.0 and isfinite(p.creep_at_slip)
+    lost = s.F_0 - float(law.coefficient(p.creep_at_slip)) * s.normal_load if creeps else 0.0
     if p.slips and lost > WEAKENED * p.drop:
         found.append(
             f"friction is still F_0 when creep turns into slip; here, at "

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from math import pi
-from typing import TYPE_CHECKING, NamedTuple
+from math import cos, pi, sin, sqrt
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction import theory
+from stiction.friction import has_state
+from stiction.friction.law import static_coefficient
 from stiction.system.slider import Slider
 from stiction.trajectory import Trajectory
 
@@ -21,6 +24,11 @@ Floats = NDArray[np.float64]
 # of the first unit; a transverse swing between rest and twice the drive's speed gains 2 of the
 # second, and at most 2.1 has been seen at any angle.
 GAINED, SWUNG = 1.0, 3.0
+# Angle between force and drive when the first stick ends, rad: below the first, a swing along the
+# force is a slip; below the second, one that runs away because friction weakens faster than this
+# share of critical damping. Found on systems of `python -m benchmarks.explore.rigs.first_slip`.
+STRAIGHT, OBLIQUE, STEEP = pi / 9.0, pi / 4.0, 0.5
+ROUNDED = 1e-9  # relative: static friction that exceeds the kinetic by less is the same
 
 
 class Loading(NamedTuple):
@@ -46,6 +54,10 @@ def loading(slider: Slider, elongation: Floats, drive: Floats) -> Loading:
     more than in a transverse swing, which can be faster than the drive too, and by more than in a
     small overshoot before steady sliding. The slip begins at the largest elongation.
 
+    Where the force of both springs points along the drive already, the mass slips at the end of the
+    first stick, on their stiffness along the force; else it creeps while friction turns, and slips
+    on the softer spring.
+
     Parameters
     ----------
     slider : Slider
@@ -56,13 +68,45 @@ def loading(slider: Slider, elongation: Floats, drive: Floats) -> Loading:
         (n,), velocity of the drive along X, m/s.
     """
     lag = np.concatenate([[0.0], np.cumsum(np.sign(drive[1:]) * np.diff(elongation))])
-    slow, fast = slider.natural_frequencies
-    least = np.abs(drive).max() / (2.0 * pi) * max(GAINED / slow, SWUNG / fast)
+    least = np.abs(drive).max() * _least_gain(slider)
     gained = np.flatnonzero(np.maximum.accumulate(lag) - lag > least)
     if len(gained):
         slip = int(np.argmax(lag[: gained[0]]))
         return Loading(slip, slip)
     return Loading(-1, int(np.argmax(lag >= lag.max() - least)))
+
+
+def slips_at_once(slider: Slider) -> bool:
+    """Return whether the first stick ends with a slip along the drive, without creep before it."""
+    phi = abs(slider.misalignment)
+    angle = abs(float(theory.first_force_angle(phi, slider.k_x, slider.k_y)) - phi)
+    return angle < STRAIGHT or (angle < OBLIQUE and _runs_away(slider))
+
+
+def _runs_away(slider: Slider) -> bool:
+    """Return whether friction falls so steeply that the swing after the first stick is a slip."""
+    law: Any = slider.law
+    if has_state(law):
+        return False
+    stiffness, mass = _along_force(slider)
+    fall = -float(law.slope(0.0)) * slider.normal_load
+    falls_at_once = static_coefficient(law) > float(law.coefficient(0.0)) * (1.0 + ROUNDED)
+    return falls_at_once or fall > STEEP * 2.0 * sqrt(stiffness * mass)
+
+
+def _along_force(slider: Slider) -> tuple[float, float]:
+    """Return stiffness and mass of the swing along the force at the end of the first stick."""
+    angle = float(theory.first_force_angle(slider.misalignment, slider.k_x, slider.k_y))
+    c, s, (m_x, m_y) = cos(angle) ** 2, sin(angle) ** 2, slider.masses
+    return c * slider.k_x + s * slider.k_y, c * m_x + s * m_y
+
+
+def _least_gain(slider: Slider) -> float:
+    """Return the least gain of a slip on the drive over the drive's speed, s."""
+    if slips_at_once(slider):
+        return GAINED / float(theory.natural_frequency(*_along_force(slider)))
+    slow, fast = slider.natural_frequencies
+    return max(GAINED / slow, SWUNG / fast) / (2.0 * pi)
 
 
 def _loading(run: Trajectory) -> Loading:
