@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from math import isfinite, isnan
 from typing import TYPE_CHECKING, Any
 
 from stiction.analysis.motion.metadata import Comparison, compare_metadata
@@ -16,9 +16,19 @@ if TYPE_CHECKING:
 
     from stiction.analysis.report import Analysis
 
-VERDICTS = {True: "agrees", False: "contradicts", None: ""}
+SAME, SURE = 0.1, 3.0  # relative, and standard errors: values that differ by less are the same
+ALLOWED = "possible"  # not the same, but the record gives a bound only, or a rough value
 NUMBERS = ("found", "error", "stated", "ratio")
 TOLD = ("stiffness over mass", "stiffness times drive velocity")  # among the warnings
+REASONS = {
+    "stiffness over mass": (
+        "Stiffness over mass by the motion is rough: friction that changes with speed makes a slip "
+        "last longer than half a free swing."
+    ),
+    "stiffness times drive velocity": (
+        "The force may rise more slowly than stiffness times drive velocity: the mass creeps."
+    ),
+}
 HEADINGS = ("quantity", "shown", "stated", "", "by the")
 
 
@@ -34,15 +44,28 @@ def section(found: Analysis) -> Section | None:
     its: tuple[Comparison, ...] = found.parts["metadata"] or ()
     if all(each.agrees is None for each in its):  # nothing is stated
         return None
-    known = [each.agrees for each in its if each.agrees is not None]
-    wrong, those = known.count(False), f"{len(known)} stated values"
+    known = [word for word in map(verdict, its) if word]
+    wrong, those = known.count("contradicts"), f"{len(known)} stated values"
     lines = [
         f"{wrong} of {len(known)} stated values contradict the record."
         if wrong
         else f"The record agrees with the {'stated value' if len(known) == 1 else those}."
+        if ALLOWED not in known
+        else f"The record does not contradict the {'stated value' if len(known) == 1 else those}."
     ]
     lines += [_sentence(x) for x in its if x.agrees is False and x.quantity not in TOLD]
+    lines += [REASONS[x.quantity] for x in its if x.quantity in REASONS and verdict(x) == ALLOWED]
     return Section("What the record says of its apparatus", lines, Table(HEADINGS, _rows(its)))
+
+
+def verdict(each: Comparison) -> str:
+    """Return whether the record agrees with a stated value, only allows it, or contradicts it."""
+    if not each.agrees:
+        return "" if each.agrees is None else "contradicts"
+    limit = isnan(each.error)  # of what the record can show, not a value of it
+    apart = abs(each.found - each.stated)
+    same = limit or apart <= max(SAME * abs(each.stated), SURE * each.error)
+    return "agrees" if same else ALLOWED
 
 
 def _sentence(each: Comparison) -> str:
@@ -63,7 +86,7 @@ def _rows(its: tuple[Comparison, ...]) -> list[tuple[str, ...]]:
             each.quantity,
             with_error(each.found, each.error, each.unit),
             in_words(each.stated, each.unit) if isfinite(each.stated) else "",
-            VERDICTS[each.agrees],
+            verdict(each),
             each.how,
         )
         for each in its

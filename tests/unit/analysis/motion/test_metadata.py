@@ -43,6 +43,17 @@ def test_a_true_description_is_not_contradicted():
     assert "contradicts" not in said
 
 
+def test_a_rough_value_that_differs_is_possible_and_does_not_agree():
+    true = {"stiffness": STIFFNESS, "drive_velocity": VELOCITY}
+    its, said = compare(sawtooth(), mass=MASS / 1.4, **true)
+    swing = its["stiffness over mass"]
+    assert abs(swing.found - swing.stated) > 5.0 * swing.error
+    row = next(line for line in said.splitlines() if "stiffness over mass" in line)
+    assert "possible" in row
+    assert "agrees" not in row
+    assert "does not contradict the 2 stated values" in said
+
+
 @pytest.mark.parametrize(
     ("wrong", "quantity", "ratio"),
     [
