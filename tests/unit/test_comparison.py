@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 
 import stiction as st
 from stiction import comparison
+from stiction.analysis.motion.cycles import find_cycles
 from stiction.analysis.slip import averaged_slip, is_undersampled, outcome
 from stiction.cli import main
 from stiction.comparison import exchange_law, read_laws, shared_traits
@@ -22,6 +23,7 @@ from stiction.plotting.page.canvas import figure_of
 from stiction.plotting.page.words import wrap_words
 from stiction.plotting.run.comparison import legend_text, plot_comparison
 from stiction.plotting.run.curves import curves_of
+from stiction.plotting.run.slip_speeds import LAST, MANY
 from stiction.result.table import as_table
 from stiction.simulation import automatic_times
 
@@ -354,6 +356,17 @@ def test_the_figure_has_units_on_every_axis(runs: dict[str, st.Trajectory]) -> N
     assert ax["speed"].get_ylim() == ax["portrait"].get_ylim()
     looks = {(line.get_color(), str(line.get_linestyle())) for line in ax["force"].lines}
     assert len(looks) == len(runs)
+
+
+def test_a_phase_portrait_of_many_cycles_shows_the_last_ones() -> None:
+    run = st.simulate(st.presets.nakano_popov_2020(), "12 s", sample_rate="1 kHz")
+    cycles = find_cycles(run)
+    assert cycles.sizes["cycle"] > MANY
+    axes = {"portrait": Figure().subplots()}
+    ax = plot_comparison({"paper": run}, axes)["portrait"]
+    force = ax.lines[0].get_xdata()
+    assert force.min() > 0.9 * cycles["trough"].values.min()  # not the first loading
+    assert np.count_nonzero(np.diff(np.sign(force - 1.6))) == pytest.approx(2 * LAST, abs=1)
 
 
 def test_a_mass_that_rests_has_no_position_of_rounding(described: st.Description) -> None:

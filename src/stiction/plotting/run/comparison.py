@@ -20,6 +20,8 @@ from stiction.plotting.page.words import (
 )
 from stiction.plotting.run.curves import Curve, curves_of, draw_over_time, force_symbol
 from stiction.plotting.run.slip_speeds import (
+    LAST,
+    MANY,
     draw_held,
     draw_portrait,
     draw_rests,
@@ -35,6 +37,7 @@ NOTE = (
     "Broad line: the described law. Pale bands: the",
     "range of fast swings about their mean (line); of",
     "the slip speed, from its mean up to its maximum.",
+    f"Loops: of more than {MANY} cycles the last {LAST}.",
     "Rows below: share of time at zero slip.",
 )
 
@@ -87,7 +90,7 @@ def plot_comparison(
 
 def _panels(curves: list[Curve], legend: list[str]) -> dict[str, Axes]:
     """Return the axes of a new figure, by their names."""
-    lines = sum(text.count("\n") + 1.6 for text in legend) + 8
+    lines = sum(text.count("\n") + 1.6 for text in legend) + 9
     top, strip = max(2.3, lines * LINE), 0.08 + 0.1 * len(curves)
     panels: dict[str, Axes] = canvas(PAGE, top + 2.5 + strip).subplot_mosaic(
         [["force", "words"], ["X", "words"], ["speed", "portrait"], ["rest", "held"]],

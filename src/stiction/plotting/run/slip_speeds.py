@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 
+from stiction.analysis.motion.cycles import find_cycles
 from stiction.analysis.motion.rest import stuck_until
 from stiction.analysis.slip import cell_force
 from stiction.plotting.page.style import GREY
@@ -19,8 +20,10 @@ from stiction.plotting.run.curves import (
     mark_early_end,
 )
 from stiction.plotting.run.time_series import DEEPEST, fastest_drive, say_only, set_speed_limits
+from stiction.trajectory import Trajectory
 
 ROW = 0.8  # height of a filled row
+MANY, LAST = 8, 5  # cycles: of a run with more than the first, only the last ones are seen apart
 
 
 def draw_speeds(ax: Axes, curves: Sequence[Curve]) -> None:
@@ -39,14 +42,24 @@ def draw_speeds(ax: Axes, curves: Sequence[Curve]) -> None:
     fit_time(ax, curves)
 
 
+def _portrayed_from(run: Trajectory) -> float:
+    """Return the time from which a phase portrait shows a run, s: its last cycles, if it has many.
+
+    Loops of many irregular cycles would cover each other.
+    """
+    starts = find_cycles(run)["start"].values
+    return float(starts[-LAST] if len(starts) > MANY else run.samples["time"][0])
+
+
 def draw_portrait(ax: Axes, curves: Sequence[Curve]) -> None:
-    """Draw the mean slip speed (m/s) over the spring force."""
+    """Draw the mean slip speed (m/s) over the spring force; of many cycles, the last ones."""
     ax.set_yscale("log", nonpositive="mask")
     factor, _ = common(cell_force(curve.run) for curve in curves)
     for curve in curves:
         slip = curve.slip
         mean = np.where(slip.mean > DEEPEST * fastest_drive(curve.run), slip.mean, np.nan)
-        ax.plot(slip.force * factor, mean, **curve.look)
+        seen = slip.time >= _portrayed_from(curve.run)
+        ax.plot(slip.force[seen] * factor, mean[seen], **curve.look)
         mark_early_end(ax, curve, slip.force[-1] * factor, mean[-1])
 
 
