@@ -5,13 +5,23 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterable, Mapping
 from importlib import import_module
+from inspect import currentframe
+from os import sep
+from pathlib import Path
 from typing import Any
 
 
-def warn_renamed(old: str, new: str, *, stacklevel: int = 3) -> None:
-    """Warn the caller's caller that `old` is called `new` now."""
+def warn_renamed(old: str, new: str) -> None:
+    """Warn that `old` is called `new` now, at the line of the user that holds the old name.
+
+    Python shows such a warning only for a line of a script or a session.
+    """
     message = f"{old} is now called {new}; the old name goes with the next version"
-    warnings.warn(message, DeprecationWarning, stacklevel=stacklevel)
+    own = f"{Path(__file__).parent}{sep}", f"{sep}pydantic{sep}"  # which checks arguments for us
+    frame, level = currentframe(), 1
+    while frame is not None and any(part in frame.f_code.co_filename for part in own):
+        frame, level = frame.f_back, level + 1
+    warnings.warn(message, DeprecationWarning, stacklevel=level)
 
 
 def by_new_names(names: Iterable[str], formerly: Mapping[str, str], what: str) -> list[str]:
@@ -29,7 +39,7 @@ def by_new_names(names: Iterable[str], formerly: Mapping[str, str], what: str) -
     given = list(names)
     for name in dict.fromkeys(given):
         if name in formerly:
-            warn_renamed(f"the {what} {name!r}", repr(formerly[name]), stacklevel=5)
+            warn_renamed(f"the {what} {name!r}", repr(formerly[name]))
     return [formerly.get(name, name) for name in given]
 
 
@@ -80,7 +90,7 @@ class _Moved:
         self._old, self._new = old, new
 
     def _resolve(self) -> Any:
-        warn_renamed(self._old, self._new, stacklevel=4)
+        warn_renamed(self._old, self._new)
         return _resolve(self._new)
 
     def __call__(self, *args: Any, **values: Any) -> Any:

@@ -138,8 +138,9 @@ def test_old_names_go_on_working_with_a_warning():
     for old, new in _RENAMED.items():
         with pytest.warns(
             DeprecationWarning, match=re.escape(f"stiction.{old} is now called {new};")
-        ):
+        ) as warned:
             found = getattr(st, old)
+        assert [each.filename for each in warned] == [__file__]
         assert found is resolve_name(new)
         assert old not in dir(st)
     find = old_names("stiction", {"old_load": "load", "older": "stiction.errors.Status"})
@@ -149,6 +150,28 @@ def test_old_names_go_on_working_with_a_warning():
         assert find("older") is st.Status
     with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
         find("nonsense")
+
+
+SLIDER = st.presets.nakano_popov_2020()
+STUDY = {
+    "base": st.Description(SLIDER, st.Initial(), st.Settings(duration=0.01)),
+    "axes": {"phi": st.Values(["1 deg"])},
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "use"),
+    [
+        ("disturbed", lambda: st.linear_stability.steady_sliding(SLIDER).disturbed()),
+        ("Slider.shaken", lambda: SLIDER.shaken),
+        ("the measure 'song'", lambda: st.Study(**STUDY, measures=["song"])),
+        ("stiction.stability.growth_rate", lambda: st.stability.growth_rate(SLIDER)),
+    ],
+)
+def test_an_old_name_warns_once_at_the_line_that_holds_it(name, use):
+    with pytest.warns(DeprecationWarning, match=re.escape(name)) as warned:
+        use()
+    assert [each.filename for each in warned] == [__file__]
 
 
 def test_what_a_module_held_answers_where_a_function_took_its_place() -> None:
