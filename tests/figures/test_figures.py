@@ -439,6 +439,26 @@ def test_a_few_fast_turns_in_each_cycle_leave_the_cycles_to_be_seen() -> None:
     assert np.ptp(line.get_ydata()) > 0.9 * np.ptp(force)
 
 
+def test_a_trial_that_hardly_moves_beside_the_test_before_is_drawn_whole() -> None:
+    time = np.linspace(0.0, 100.0, 5_001)
+    before = st.Record(time=time, force=1.0 + 0.25 * (time % 4.0))
+    tiny = st.Record(time=time, force=1.0 + 1e-3 * np.sin(2 * pi * 8.0 * time))
+    (ax,) = plot_trials(before, [Trial("turned", tiny)])
+    assert ax.get_xlim() == (0.0, 100.0)
+    assert not ax.texts
+
+
+def test_the_legend_of_trials_lies_above_a_title_of_two_lines() -> None:
+    time = np.linspace(0.0, 100.0, 101)
+    before = st.Record(time=time, force=1.0 + 0.25 * (time % 4.0))
+    (ax,) = plot_trials(before, [Trial("a change with a name " * 4, before)])
+    figure = ax.figure
+    figure.draw_without_rendering()
+    title = next(x for x in (ax.title, ax._left_title) if x.get_text())
+    assert "\n" in title.get_text()
+    assert not ax.get_legend().get_window_extent().overlaps(title.get_window_extent())
+
+
 def test_trials_of_many_swings_show_a_few_of_them() -> None:
     """A solid block says nothing of the motion; what hardly moves is drawn whole."""
     time = np.linspace(0.0, 100.0, 40_001)

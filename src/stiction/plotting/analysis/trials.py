@@ -25,6 +25,7 @@ ACROSS = 2
 ROOM = 0.4  # of the visible range, above and below it
 MOST, FEW = 80, 8  # most swings in a panel, and the number shown if there are more
 LEAST = 0.1  # of the force's range: smaller swings are ripple
+SEEN = 0.02  # of the visible range: smaller swings are as thin as a line
 LASTING = 0.5  # of the range a quarter of the time before: less dies out
 # of the time shown, and of the force's range: less of the test before would mislead
 WIDE, WHOLE = 0.1, 0.5
@@ -81,7 +82,7 @@ def plot_trials(
             ax.set_axis_off()
         for ax in panels[::across]:
             ax.set_ylabel(f"spring force ({prefix}N)")
-        lines = panels[0].get_title().count("\n") + 1
+        lines = _wrap(trials[0].title).count("\n") + 1
         panels[0].legend(
             drawn.values(),
             drawn.keys(),
@@ -93,11 +94,15 @@ def plot_trials(
     return np.array(panels[: len(trials)], dtype=object)
 
 
+def _wrap(title: str) -> str:
+    return fill(title, TITLE)
+
+
 def _draw_trial(ax: Axes, before: Record, trial: Trial, factor: float) -> dict[str, Artist]:
     """Draw one trial over the test before; return what a legend has to name."""
     title, record = trial
-    start, end, count = time_range(record)
     low, high = later(factor, before, record)
+    start, end, count = time_range(record, SEEN * (high - low) / factor)
     window = (end - start, high - low)
     drawn: dict[str, Artist] = {}
     force, then = factor * before.force, (before.time >= start) & (before.time <= end)
@@ -111,20 +116,23 @@ def _draw_trial(ax: Axes, before: Record, trial: Trial, factor: float) -> dict[s
     then = (record.time >= start) & (record.time <= end)
     changed = factor * record.force[then]
     drawn["changed"] = draw_line(ax, record.time[then], changed, BLUE, 1.0, window)
-    ax.set(xlim=(start, end), title=fill(title, TITLE), ylim=(low, high))
+    ax.set(xlim=(start, end), title=_wrap(title), ylim=(low, high))
     if count:
         said = f"the last {FEW} of some {float(f'{count:.2g}'):.0f} swings"
-        ax.text(0.02, 0.04, said, transform=ax.transAxes, fontsize=7)
+        ax.text(0.03, 0.08, said, transform=ax.transAxes, fontsize=7)
     name_time(ax)
     return drawn
 
 
-def time_range(record: Record) -> tuple[float, float, int]:
-    """Return the time range of a panel (s), and the number of swings if only the last are shown."""
+def time_range(record: Record, least: float) -> tuple[float, float, int]:
+    """Return the time range of a panel (s), and the number of swings if only the last are shown.
+
+    Swings smaller than `least` (N) are not seen in the panel one by one.
+    """
     start, end = float(record.time[0]), float(record.time[-1])
     quarter = len(record) // 4
     before, last = record.force[-2 * quarter : -quarter], record.force[-quarter:]
-    least = ROUNDING * float(np.abs(record.force).max())
+    least = max(least, ROUNDING * float(np.abs(record.force).max()))
     if quarter < 2 or np.ptp(last) <= max(least, LASTING * np.ptp(before)):
         return start, end, 0  # it dies out, or hardly moves
     height = int(LEAST * FINE)
