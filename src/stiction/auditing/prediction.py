@@ -116,12 +116,12 @@ def predict(slider: Slider) -> Prediction:
     if phi == 0.0:  # friction does not turn: rest until the spring carries the static friction
         peak = F_static
     distance = creep_distance(V, phi, l_x, load_up)
-    if slips_at_once(s):  # both springs load together, until they carry the static friction
-        load_up, distance, creep = first_stick, 0.0, np.full(2, nan if phi > 0.0 else 0.0)
     drop, mean = stick_slip(slider, peak) if fast else (nan, peak)
     if not drop > 0.0:  # friction does not fall below the spring's force: steady sliding follows
         drop, mean = nan, s.law.coefficient(V) * s.normal_load * cos(phi)
         peak = max(peak, mean) if fast else mean
+    elif slips_at_once(s):  # both springs load together, until they carry the static friction
+        load_up, distance, creep = first_stick, 0.0, np.full(2, nan if phi > 0.0 else 0.0)
     return Prediction(
         F_0,
         F_static,
@@ -156,7 +156,7 @@ def suppositions(slider: Slider, p: Prediction) -> list[str]:
         found.append("the surface has no grain")
     if s.k_y <= s.k_x or phi > QUARTER_TURN:
         found.append("the soft spring is the one along the drive")
-    elif phi != 0.0 and slips_at_once(s):
+    elif phi != 0.0 and p.slips and slips_at_once(s):
         found.append(
             "friction turns before the first slip; here k_y tan φ is only "
             f"{s.k_y * tan(phi) / s.k_x:.3g} k_x: both springs load together, and the first stick "

@@ -22,12 +22,12 @@ def stick(found: Audit) -> list[str]:
     seen, s = found.observation, found.slider
     whole = "of each cycle" if seen.cycles.sizes["cycle"] else "of the time until it slides"
     vibrates, state = seen.motion in VIBRATES, has_state(s.law)
-    slowly = "slides" if vibrates else "creeps" if s.misalignment or state else "slides slowly"
+    slowly = "creeps" if s.misalignment or state else "slides slowly"
     slow = ("rests", seen.shares.rest), (slowly, seen.shares.creep)
+    how = " and ".join(f"{verb} for {percent(share)}" for verb, share in slow if share)
     lines = [
         f"For {percent(seen.shares.rest + seen.shares.creep)} {whole} the mass is slower than the "
-        f"drive, and the load cell shows a rising force: the mass "
-        f"{' and '.join(f'{verb} for {percent(share)}' for verb, share in slow if share)}. "
+        f"drive, and the load cell shows a rising force{'' if vibrates else f': the mass {how}'}. "
         + (
             f"For {percent(seen.shares.slip)} it is faster than the drive."
             if seen.shares.slip
