@@ -36,6 +36,7 @@ RATE = 25  # frames a second
 LENGTH, LONGEST = 10.0, 300.0  # s of film
 PERIODS = 4  # of the fast oscillation under the microscope
 FINE = 2_000  # samples of these
+IN_WINDOW = 20_000  # samples of the time series, at least
 NAMES = ("u_x", "u_y", "slip_x", "slip_y", "slip_speed", "friction", "psi", "X", "normal_load",
          "spring_x", "sticking")  # fmt: skip
 
@@ -108,7 +109,8 @@ def animate(
         Of the film, s: how slowly the window passes.
     at : float or str, optional
         The time, s, whose surroundings are shown under the microscope: a few periods of the fast
-        oscillation, as slowly as the film lasts; by default a third into the window.
+        oscillation, as slowly as the film lasts; by default where the mass slips, about a third
+        into the window.
     kind : {"mp4", "webm", "gif"}, optional
         The format.
     trust : bool, optional
@@ -135,7 +137,7 @@ def animate(
     if kind not in KINDS:
         raise ResultError(f"kind must be one of {', '.join(KINDS)}, is {kind!r}")
     start, end = window_of(found.description, window)
-    middle = start + (end - start) / 3.0 if at is None else time_in(found.description, at)
+    middle = None if at is None else time_in(found.description, at)
     times = np.linspace(start, end, ceil(length * RATE))
     frames = draw(found.description, times, middle, length)
     return Film(encode(_count(frames, len(times), progress), RATE, kind), kind)
@@ -151,18 +153,20 @@ def _count(
 
 
 def draw(
-    description: Description, times: NDArray[np.float64], middle: float, length: float
+    description: Description, times: NDArray[np.float64], middle: float | None, length: float
 ) -> Iterator[NDArray[np.uint8]]:
     """Yield the frames at `times` (s), (height, width, 3)."""
     whole_run = sample(description, automatic_times(description))
-    shown = sample(description, times)
-    fine = sample(description, fine_times(description, middle))
+    shown, seen = sample(description, times), in_window(description, times)
+    fine = sample(
+        description, fine_times(description, moving_at(seen) if middle is None else middle)
+    )
     slow = length / (times[-1] - times[0])
     with style():
         figure = Figure(figsize=SIZE, dpi=DPI)
         canvas: Any = FigureCanvasAgg(figure)
         scene = Scene(figure.add_axes((0.02, 0.4, 0.62, 0.58)), description.slider, whole_run)
-        cursor, mark = series(figure, whole_run, times), microscope(figure, fine, length)
+        cursor, mark = series(figure, seen, times), microscope(figure, fine, length)
         moving: list[Any] = [*scene.artists, *cursor, mark]
         for artist in moving:
             artist.set_animated(True)
@@ -185,6 +189,22 @@ def sample(description: Description, times: NDArray[np.float64]) -> Table:
     """Return a run sampled at `times` (s)."""
     solution = solve(description, times)
     return sample_table(description, solution.times, solution.samples, {})
+
+
+def in_window(description: Description, times: NDArray[np.float64]) -> Table:
+    """Return a run between the first and the last of `times`, with samples that show its motion."""
+    every = automatic_times(description)
+    inside = every[(every >= times[0]) & (every <= times[-1])]
+    few = len(inside) < IN_WINDOW
+    return sample(description, np.linspace(times[0], times[-1], IN_WINDOW) if few else inside)
+
+
+def moving_at(seen: Table) -> float:
+    """Return the time nearest to a third of the way at which the mass slips, s."""
+    times = seen["time"]
+    third = float(times[0] + (times[-1] - times[0]) / 3.0)
+    slips = times[seen["slip_speed"] > slowest_slip(seen)]
+    return float(slips[np.argmin(np.abs(slips - third))]) if len(slips) else third
 
 
 def fine_times(description: Description, middle: float) -> NDArray[np.float64]:

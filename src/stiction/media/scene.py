@@ -37,6 +37,7 @@ from stiction.text.units import in_words
 
 Floats = NDArray[np.float64]
 ROOM = (7.2, 4.2)  # of the picture: its unit is the side of the mass
+BEHIND = {"facecolor": FLOOR, "edgecolor": "none", "alpha": 0.8, "pad": 1.0}  # words
 HOME = np.array([0.3, -0.45])  # of the mass, where the springs are relaxed
 WALLS = np.array([3.1, 2.2])  # along x and y from there
 DAMPER = 1.45  # length of one with an axis of its own
@@ -119,7 +120,7 @@ class Scene:
             ax.add_patch(arrow)
         left, top = -ROOM[0] / 2 + 0.15, ROOM[1] / 2 - 0.3
         self.words = [
-            ax.text(left, top - 0.28 * i, "", fontsize=10, color=color, zorder=6)
+            ax.text(left, top - 0.28 * i, "", fontsize=10, color=color, zorder=6, bbox=BEHIND)
             for i, color in enumerate((BLACK, GREEN, PURPLE, RED))
         ]
         dampers = (line for parts in self.pistons for line in parts)

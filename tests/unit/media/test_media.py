@@ -8,7 +8,16 @@ from matplotlib.figure import Figure
 
 import stiction as st
 from stiction.cli import main
-from stiction.media.film import NAMES, draw, microscope, sample, series, slowness
+from stiction.media.film import (
+    NAMES,
+    draw,
+    in_window,
+    microscope,
+    moving_at,
+    sample,
+    series,
+    slowness,
+)
 from stiction.media.film import RATE as FRAMES
 from stiction.media.scene import ROOM, Scene, magnification
 from stiction.media.sound import LOUD, RATE, audible_speed
@@ -209,3 +218,18 @@ def test_an_elongation_that_stays_zero_is_magnified_as_the_other():
     samples = {"u_x": np.array([0.0, 2e-3]), "u_y": np.zeros(2)}
     x, y = magnification(samples)
     assert x == y == pytest.approx(200.0, rel=0.5)
+
+
+def test_a_film_of_a_short_window_of_a_long_run_shows_it_in_full():
+    """Series have the resolution of the window, and the microscope a moment at which it slips."""
+    description = st.simulate(st.presets.nakano_popov_2020(), 100.0, multiscale=True).description
+    times = np.linspace(2.0, 2.02, 10)
+    seen = in_window(description, times)
+    figure = Figure()
+    series(figure, seen, times)
+    drawn = figure.axes[1].lines[0].get_xdata()
+    shown = drawn[(drawn >= times[0]) & (drawn <= times[-1])]
+    assert len(np.unique(shown)) > 500
+    at = moving_at(seen)
+    assert times[0] < at < times[-1]
+    assert np.interp(at, seen["time"], seen["slip_speed"]) > 1e-6
