@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise, takewhile
-from math import nan
+from math import isnan, nan
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
@@ -35,6 +35,7 @@ SHARP = 0.01  # of the least distance of two given values: so uncertain the onse
 APART = 1.4  # ratio of squared amplitudes, which have errors of 2 %
 FAR = 8.0  # times the nearest squared amplitude: beyond, the next says nothing of it
 ALIKE = 3.0  # ratio of two slopes of the squared amplitude: beyond, it is far from linear
+OPEN = 0.3  # of an end of hysteresis: so wide a gap between undecided trials is tried
 ROUGH = 0.05  # of the distance to the nearest oscillation: an error of 1 % in two amplitudes
 
 
@@ -52,8 +53,8 @@ class Onset(NamedTuple):
         squared amplitude, which is linear near a Hopf bifurcation; if not determined, the middle
         of the interval that contains the onset; otherwise NaN.
     hysteresis : tuple of float
-        First and last of the values (SI) at which one sweep rests and the other oscillates; NaN
-        if there is none.
+        Ends of the range of values (SI) in which one sweep rests and the other oscillates: the
+        middles between a value inside and one outside; NaN if there is none.
     data : Dataset
         Over ``sweep`` ("up", "down") and ``value`` (the parameter, SI; those given and those
         added near the onset): ``amplitude`` (m), half of the range of the spring's elongation
@@ -61,6 +62,9 @@ class Onset(NamedTuple):
         Over ``value``: ``growth_rate`` (1/s).
     uncertainty : float
         Uncertainty of `threshold`, SI.
+    hysteresis_uncertainty : tuple of float
+        Half the distance of the two values at each end, SI; NaN where the given values have none
+        outside.
     """
 
     kind: Kind
@@ -68,6 +72,7 @@ class Onset(NamedTuple):
     hysteresis: tuple[float, float]
     data: xr.Dataset
     uncertainty: float = nan
+    hysteresis_uncertainty: tuple[float, float] = (nan, nan)
 
 
 class Trial(NamedTuple):
@@ -86,6 +91,11 @@ class Trial(NamedTuple):
     def moves(self) -> bool:
         """Whether both oscillate."""
         return self.up.outcome == OSCILLATING and self.down.outcome == OSCILLATING
+
+    @property
+    def oscillations(self) -> list[Found]:
+        """Those that oscillate."""
+        return [each for each in (self.up, self.down) if each.outcome == OSCILLATING]
 
     @property
     def differs(self) -> bool:
@@ -180,9 +190,14 @@ def try_value(
     slider: Slider, value: float, trials: Sequence[Trial], most_blocks: int, rtol: float
 ) -> Trial:
     """Return the results from rest, and from the oscillation at the nearest value."""
-    moving = min((each for each in trials if each.moves), key=lambda each: abs(each.value - value))
+
+    def distance(each: Trial) -> float:
+        return abs(each.value - value)
+
     rest = steady_sliding(slider).disturbed_start(KICK)
-    found = [settle(slider, start, most_blocks, rtol) for start in (rest, moving.up.state)]
+    last = min((each for each in trials if each.oscillations), key=distance).oscillations[0].state
+    found = [settle(slider, start, most_blocks, rtol) for start in (rest, last)]
+    moving = min((each for each in trials if each.moves), key=distance)
     upward = moving.value < value  # an upward sweep comes from lower values
     return Trial(value, *(found[::-1] if upward else found))
 
@@ -204,9 +219,12 @@ def next_value(trials: Sequence[Trial], fine: float) -> float | None:
 
     Between rest and oscillation, where trials are decided, it is in the middle, or, once the onset
     is known, to either side of it. Where they are undecided, it lies among the next oscillations.
+    Where there is hysteresis, it is in the middle of the wider of its two ends.
     """
+    if any(each.differs for each in trials):
+        return within(hysteresis_ends(trials), trials, fine)
     found = change(trials)
-    if found is None or any(each.differs for each in trials):
+    if found is None:
         return None
     rest, moving = found
     first, estimate = moving[0].value, extrapolate_onset(rest, moving)
@@ -226,6 +244,37 @@ def next_value(trials: Sequence[Trial], fine: float) -> float | None:
     known = {each.value for each in trials}
     middles = (0.5 * (one.value + other.value) for one, other in pairwise(apart(moving)))
     return next((each for each in middles if each not in known), None)
+
+
+def hysteresis_ends(trials: Sequence[Trial]) -> list[tuple[float, float]]:
+    """Return the values outside and inside both ends of hysteresis; NaN outside if there is none.
+
+    Between them are at most undecided trials.
+    """
+    inside = [each.value for each in trials if each.differs]
+    outside = [each.value for each in trials if each.rests or each.moves]
+    below = (value for value in reversed(outside) if value < inside[0])
+    above = (value for value in outside if value > inside[-1])
+    return [(next(below, nan), inside[0]), (next(above, nan), inside[-1])]
+
+
+def within(
+    ends: Sequence[tuple[float, float]], trials: Sequence[Trial], fine: float
+) -> float | None:
+    """Return a value inside the widest end that is not known well, in its widest gap.
+
+    Undecided trials leave gaps; where they fill an end, it cannot be known better.
+    """
+    found: list[tuple[float, float]] = []
+    for end in ends:
+        low, high = sorted(end)
+        if not high - low > fine:
+            continue
+        values = [low, *(each.value for each in trials if low < each.value < high), high]
+        gap, middle = max((two - one, 0.5 * (one + two)) for one, two in pairwise(values))
+        if gap > OPEN * (high - low):
+            found.append((high - low, middle))
+    return max(found)[1] if found else None
 
 
 def apart(moving: Sequence[Trial]) -> list[Trial]:
@@ -280,9 +329,11 @@ def extrapolate_onset(rest: Trial, moving: Sequence[Trial]) -> Estimate:
 
 def judge_trials(trials: Sequence[Trial], data: xr.Dataset) -> Onset:
     """Return the onset seen in the trials."""
-    both = [each.value for each in trials if each.differs]
-    if both:
-        return Onset("hard", nan, (min(both), max(both)), data)
+    if any(each.differs for each in trials):
+        low, high = hysteresis_ends(trials)
+        middles = [inner if isnan(outer) else 0.5 * (outer + inner) for outer, inner in (low, high)]
+        halves = [0.5 * abs(outer - inner) for outer, inner in (low, high)]
+        return Onset("hard", nan, (middles[0], middles[1]), data, nan, (halves[0], halves[1]))
     found = change(trials)
     if found is None:
         alike = all(each.rests for each in trials) or all(each.moves for each in trials)

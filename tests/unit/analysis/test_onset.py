@@ -80,20 +80,41 @@ def test_a_soft_onset_has_the_amplitude_of_the_averaged_equation():
     assert rate == pytest.approx(np.array([expected, expected]), rel=left_out)
 
 
-def test_a_hard_onset_has_hysteresis():
-    """Beyond x^2 = 3/2 F''' < 0: steady sliding and stick-slip are both there above c = -F'."""
+@pytest.fixture(scope="module")
+def hard():
+    """A block beyond x^2 = 3/2, its c = -F', and its onset."""
     speed = 1.8 * V_S
     assert third_derivative(speed) < 0
     slider, c = block(speed)
-    found = find_onset(slider, "c_x", list(c * np.array([0.8, 0.9, 1.1, 1.2, 1.3, 2.0, 2.2])))
+    return slider, c, find_onset(slider, "c_x", list(c * np.array([0.9, 1.2, 2.2])))
+
+
+def test_a_hard_onset_has_hysteresis(hard):
+    """Steady sliding and stick-slip are both there above c."""
+    _, c, found = hard
     assert found.kind == "hard"
-    low, high = found.hysteresis
-    assert low == pytest.approx(1.1 * c)  # it cannot rest below c
-    assert high >= 1.3 * c * (1 - 1e-12)
+    (low, high), errors = found.hysteresis, found.hysteresis_uncertainty
+    assert abs(low - c) <= errors[0] < 0.01 * c  # it cannot rest below c
+    assert errors[1] < 0.02 * c
+    shares = found.data["value"].values / c
     up, down = found.data["outcome"].values
-    assert (up == [1, 1, 1, 1, 1, *up[5:]]).all()
-    assert (down == [1, 1, 0, 0, 0, 0, 0]).all()
+    assert (up[shares < high / c - 0.02] != 0).all()
+    assert (down[shares < 0.95] == 1).all()
+    assert (down[shares > 1.05] == 0).all()
     assert up[-1] == 0  # so much damping leaves no oscillation
+
+
+@pytest.mark.parametrize(("off", "lasts"), [(-3.0, True), (3.0, False)])
+def test_the_far_end_of_hysteresis_is_that_of_direct_simulation(hard, off, lasts):
+    """From the oscillation of a weaker damping it lasts below that end, and dies out above it."""
+    slider, c, found = hard
+    damping = found.hysteresis[1] + off * found.hysteresis_uncertainty[1]
+    state = None
+    for value in np.linspace(c, damping, 8):
+        run = st.simulate(slider.replace(c_x=value), 20.0, initial=state, sample_rate=200.0)
+        state = run.state(20.0)
+    last = run.data["u_x"].values[-400:]
+    assert (np.ptp(last) > 0.1 * np.ptp(found.data["amplitude"].values)) == lasts
 
 
 def test_without_weakening_there_is_no_onset():
