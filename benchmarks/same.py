@@ -1,6 +1,6 @@
 """``python -m benchmarks.same [REVISION]``: results of this tree against a revision's, bit by bit.
 
-200 runs over all laws, programs and modes are made in both trees. Who moves or renames code changes
+210 runs over all laws, programs and modes are made in both trees. Who moves or renames code changes
 none. Exit status 1 if one differs, 2 if there is nothing to compare.
 """
 

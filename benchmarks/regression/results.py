@@ -12,6 +12,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 sys.path.append(str(Path(__file__).parent.parent.parent))
 
 import stiction as st
@@ -30,7 +32,7 @@ STATES = (
 
 
 def runs() -> Iterator[tuple[str, dict[str, object]]]:
-    """Yield 200 runs: a name, and the arguments of `simulate`."""
+    """Yield 210 runs: a name, and the arguments of `simulate`."""
     for number in range(100):  # all laws without states
         drawn = system(SEED, number)
         common = {"slider": drawn.slider, "duration": drawn.duration, "rtol": drawn.rtol}
@@ -51,6 +53,10 @@ def runs() -> Iterator[tuple[str, dict[str, object]]]:
         else:
             delta = draw.decades(1e-7, 1e-5)
             yield f"smoothed {number}", common | {"slider": slider, "regularisation": delta}
+    for number in range(10):
+        draw = Draw(SEED, 2000 + number)
+        slider = add_tables(draw, st.presets.nakano_popov_2020())
+        yield f"recorded {number}", {"slider": slider, "duration": 0.4, "sample_rate": 2000.0}
 
 
 def add_program(draw: Draw, slider: st.Slider) -> st.Slider:
@@ -73,6 +79,21 @@ def add_program(draw: Draw, slider: st.Slider) -> st.Slider:
         changes["load"] = st.protocols.LoadProgram(
             modulation=st.protocols.Modulation(amplitude, hertz)
         )
+    return slider.replace(**changes)
+
+
+def add_tables(draw: Draw, slider: st.Slider) -> st.Slider:
+    """Return the slider with a recorded drive, a recorded load, or both."""
+    which, time = draw.between(0.0, 3.0), np.linspace(0.0, 0.3, 151)
+    wave = 2.0 * np.pi * draw.between(5.0, 40.0) * time
+    changes: dict[str, object] = {}
+    if which < 2.0:
+        x = 1e-3 * time + draw.decades(1e-7, 1e-5) * np.sin(wave)
+        pieces = [st.protocols.Recorded(time, position=x), st.protocols.Hold()]
+        changes["drive"] = st.protocols.DriveProgram(velocity="1 mm/s", program=pieces)
+    if which > 1.0:
+        load = st.protocols.RecordedLoad(time, 10.0 + draw.between(0.1, 2.0) * np.sin(wave))
+        changes["load"] = st.protocols.LoadProgram(program=[load])
     return slider.replace(**changes)
 
 

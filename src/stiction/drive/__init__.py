@@ -12,9 +12,8 @@ from math import inf
 from typing import Any
 
 from stiction.drive.program import DriveProgram, LoadProgram, pick
-from stiction.drive.recorded.stretch import RecordedCourse, RecordedLoading
-from stiction.drive.signal import Course, Loading
 from stiction.drive.steady import ConstantLoad, ConstantVelocity
+from stiction.drive.stretch import Course, Loading
 
 Drive = ConstantVelocity | DriveProgram
 Stretches = tuple[tuple[float, Any], ...]
@@ -76,8 +75,6 @@ __all__ = [
     "DriveProgram",
     "LoadProgram",
     "Loading",
-    "RecordedCourse",
-    "RecordedLoading",
     "ahead",
     "drive_stretches",
     "jump",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from math import inf, pi
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Self, TypeGuard
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -14,10 +14,10 @@ from stiction.drive.pieces import DRIVE_PIECES, LOAD_PIECES
 from stiction.drive.reading import Reading, as_modulation, as_pieces
 from stiction.drive.recorded.piece import RECORDS, Recorded
 from stiction.drive.recorded.reading import checksum
-from stiction.drive.recorded.spline import Recording, recording_at
-from stiction.drive.recorded.stretch import RecordedCourse, RecordedLoading
-from stiction.drive.signal import Course, Loading, Signal, signal_at
+from stiction.drive.recorded.spline import Recording
+from stiction.drive.signal import Signal
 from stiction.drive.steady import ConstantLoad, ConstantVelocity
+from stiction.drive.stretch import Course, Loading
 from stiction.machine import shortage
 from stiction.text.samples import Column
 from stiction.text.units import FORCE, VELOCITY, Velocity
@@ -209,7 +209,7 @@ def signals(
             recording = piece.recording(start)
             start = float(recording.rows[-1])
             yield start, recording
-            present = float(recording_at(recording, start))
+            present = float(recording.value_at(start))
             continue
         end = inf if piece.duration is None else start + piece.duration
         value, slope, amplitude, omega, phase = piece.shape(
@@ -219,7 +219,7 @@ def signals(
         yield end, signal
         if end == inf:
             return
-        start, present = end, signal_at(signal, end)
+        start, present = end, signal.value_at(end)
     yield inf, Signal(start, present)
 
 
@@ -237,21 +237,20 @@ def modulate(signal: Any, modulation: Any) -> Any:
 
 def _course(along: Signal | Recording, across: Signal) -> Any:
     """Return the simplest type that describes a stretch, which computes fastest."""
-    if isinstance(along, Recording):
-        return RecordedCourse(along, across)
     if _flat(along) and _flat(across) and across.value == 0.0:
         return ConstantVelocity._make([along.value])  # not validated again
     return Course(along, across)
 
 
 def _loading(force: Signal | Recording) -> Any:
-    if isinstance(force, Recording):
-        return RecordedLoading(force)
-    constant = _flat(force) and force.value > 0.0
-    return ConstantLoad._make([force.value]) if constant else Loading(force)
+    if _flat(force) and force.value > 0.0:
+        return ConstantLoad._make([force.value])
+    return Loading(force)
 
 
-def _flat(signal: Signal) -> bool:
+def _flat(signal: Signal | Recording) -> TypeGuard[Signal]:
+    if not isinstance(signal, Signal):
+        return False
     return signal.slope == signal.amplitude == signal.amplitude_2 == 0.0
 
 

@@ -10,14 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import inf
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numba.extending import overload, register_jitable
 
-from stiction.drive.recorded.spline import FUNCTIONS as RECORDING_FUNCTIONS
-from stiction.drive.recorded.spline import place, place_one
+from stiction.drive.recorded.spline import Recording, cubic_sum, place, place_one
 from stiction.drive.signal import FUNCTIONS as SIGNAL_FUNCTIONS
+from stiction.drive.signal import Signal
 from stiction.friction import FUNCTIONS as LAW_FUNCTIONS
 from stiction.friction import FrictionLaw, StateLaw
 from stiction.friction.law import Vector, static_coefficient
@@ -119,7 +119,8 @@ class Problem(NamedTuple):
 
 def kinds_of(problem: Problem) -> tuple[Any, ...]:
     """Return the types for which the compiled code is specialised."""
-    return type(problem.surface), type(problem.drive), type(problem.load), type(problem.rig)
+    kinds = (type(part) for part in (*problem.drive, *problem.load))
+    return type(problem.surface), type(problem.drive), type(problem.load), type(problem.rig), *kinds
 
 
 def coefficient(law: FrictionLaw, v: float) -> float:
@@ -259,14 +260,18 @@ def cross_damping(rig: Aligned | General) -> float:
 EVERYWHERE = inf  # friction is smooth at any slip speed
 
 
-def by_type(function: Callable[..., Any]) -> None:
-    """Make compiled code call the method of the first argument's type instead of `function`."""
+def by_type(function: Callable[..., Any], kind: type | None = None, **options: Any) -> None:
+    """Make compiled code call the method of the first argument's type instead of `function`.
+
+    If a `kind` is given, only for this type; `options` are those of the method's compilation.
+    """
     name = function.__name__
 
     def method(*arguments: Any) -> Any:
-        return getattr(arguments[0].instance_class, name)
+        found = arguments[0].instance_class
+        return getattr(found, name) if kind in (None, found) else None
 
-    overload(function, strict=False)(method)
+    overload(function, strict=False, jit_options=cast(Any, options))(method)
 
 
 for _function in (
@@ -294,11 +299,14 @@ for _function in (
     cross_damping,
 ):
     by_type(_function)
-for _piece in (*SIGNAL_FUNCTIONS, *LAW_FUNCTIONS):
+for _piece in LAW_FUNCTIONS:
     register_jitable(_piece)
-for _piece in RECORDING_FUNCTIONS:  # large and called from many places
-    register_jitable(forceinline=False)(_piece)
-overload(place, strict=False, jit_options={"forceinline": False})(lambda *_: place_one)
+SEPARATE: Any = {"forceinline": False}  # of what is large and called from many places
+for _method in SIGNAL_FUNCTIONS:
+    by_type(_method, Signal)
+    by_type(_method, Recording, **SEPARATE)
+register_jitable(**SEPARATE)(cubic_sum)
+overload(place, strict=False, jit_options=SEPARATE)(lambda *_: place_one)
 
 
 @overload(coefficient_and_slope, strict=False)

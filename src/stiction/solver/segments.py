@@ -13,9 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.drive import Course, Loading, ahead, drive_stretches, load_stretches
-from stiction.drive.bounds import drive_bounds, fastest, load_bounds, row_bounds, vanishes
-from stiction.drive.recorded.spline import silent
-from stiction.drive.recorded.stretch import RecordedCourse, RecordedLoading
+from stiction.drive.bounds import drive_bounds, load_bounds, row_bounds, vanishes
+from stiction.drive.recorded.spline import Recording, silent
 from stiction.drive.signal import Signal
 from stiction.friction import Anisotropic, has_state
 from stiction.friction.law import static_coefficient
@@ -24,8 +23,6 @@ from stiction.solver.rig import Aligned, General
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
 from stiction.system.tensors import solver_axes
-
-VARYING = (Course, Loading, RecordedCourse, RecordedLoading)
 
 
 class Stretch(NamedTuple):
@@ -61,32 +58,17 @@ def alike(drive: Any, load: Any) -> tuple[Any, Any]:
 
     The solver is then compiled for three cases instead of nine; the results are the same.
     """
-    if isinstance(drive, RecordedCourse) or isinstance(load, RecordedLoading):
-        return _as_recorded_drive(drive), _as_recorded_load(load)
-    if drive.steady() == load.constant():
+    if drive.steady() and load.constant():
         return drive, load
-    return _as_varying_drive(drive), _as_varying_load(load)
+    along, across = (Signal(0.0, drive.velocity), Signal(0.0, 0.0)) if drive.steady() else drive
+    force = Signal(0.0, load.force) if load.constant() else load.force
+    if isinstance(along, Recording) or isinstance(force, Recording):
+        along, force = _as_recorded(along), _as_recorded(force)
+    return Course(along, across), Loading(force)
 
 
-def _as_varying_drive(drive: Any) -> Any:
-    return Course(Signal(0.0, drive.velocity), Signal(0.0, 0.0)) if drive.steady() else drive
-
-
-def _as_varying_load(load: Any) -> Any:
-    return Loading(Signal(0.0, load.force)) if load.constant() else load
-
-
-def _as_recorded_drive(drive: Any) -> RecordedCourse:
-    if isinstance(drive, RecordedCourse):
-        return drive
-    course = _as_varying_drive(drive)
-    return RecordedCourse(silent(course.along), course.across)
-
-
-def _as_recorded_load(load: Any) -> RecordedLoading:
-    if isinstance(load, RecordedLoading):
-        return load
-    return RecordedLoading(silent(_as_varying_load(load).force))
+def _as_recorded(signal: Signal | Recording) -> Recording:
+    return signal if isinstance(signal, Recording) else silent(signal)
 
 
 def system_of(slider: Slider) -> System:
@@ -154,15 +136,16 @@ def speeds(slider: Slider, drive: Any, start: float, end: float) -> tuple[float,
 
 def fastest_swing(problem: Problem) -> float:
     """Return the largest angular frequency (rad/s) in drive and load, 0 if neither swings."""
-    parts = [part for part in (problem.drive, problem.load) if isinstance(part, VARYING)]
-    return max((fastest(each) for part in parts for each in part), default=0.0)
+    if problem.drive.steady():  # and so is the load, see `alike`
+        return 0.0
+    return max(float(each.fastest()) for each in (*problem.drive, *problem.load))
 
 
 def bend_of(slider: Slider, drive: Any, load: Any, start: float, end: float) -> Bend | Bends:
     """Return bounds of the second derivative of a stick's margin, between the rows of tables."""
     if drive.steady() and load.constant():  # a stick ends in closed form
         return Bend(0.0)
-    if isinstance(drive, RecordedCourse):
+    if isinstance(drive.along, Recording):
         found = row_bounds(drive, load, start, end)
         values = bend(slider, found.drive, found.load)
         return Bends(found.rows, np.broadcast_to(values, len(found.rows) - 1).astype(np.float64))

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from tests.drawn import inside
 
 import stiction as st
-from stiction.drive.signal import Signal, signal_at, signal_bounds, signal_change, signal_sum
+from stiction.drive.signal import Signal
 from stiction.solver.integrate import tolerance
 
 RTOL = 1e-10
@@ -312,17 +312,17 @@ def test_every_piece_against_the_smoothed_law(slider, driven):
 def test_a_signal_its_integral_derivative_and_bounds(value, slope, a, omega, phase, b, nu):
     signal = Signal(0.3, value, slope, a, omega, phase, b, nu, 0.7)
     t, dt = 0.4, 0.6
-    total, _ = quad(lambda x: signal_at(signal, x), t, t + dt, epsabs=1e-12, limit=200)
-    assert signal_sum(signal, t, dt) == pytest.approx(total, abs=1e-10)
+    total, _ = quad(lambda x: signal.value_at(x), t, t + dt, epsabs=1e-12, limit=200)
+    assert signal.sum_over(t, dt) == pytest.approx(total, abs=1e-10)
     step = 1e-5
-    centred = (signal_at(signal, t + step) - signal_at(signal, t - step)) / (2 * step)
-    assert signal_change(signal, t) == pytest.approx(centred, abs=1e-4)
+    centred = (signal.value_at(t + step) - signal.value_at(t - step)) / (2 * step)
+    assert signal.change_at(t) == pytest.approx(centred, abs=1e-4)
     times = np.linspace(t, t + dt, 200)
-    bounds = signal_bounds(signal, t, t + dt)
-    assert np.abs(signal_at(signal, times)).max() <= bounds[0] + 1e-12
-    assert np.abs(signal_change(signal, times)).max() <= bounds[1] + 1e-12
+    bounds = signal.bounds_between(t, t + dt)
+    assert np.abs(signal.value_at(times)).max() <= bounds[0] + 1e-12
+    assert np.abs(signal.change_at(times)).max() <= bounds[1] + 1e-12
     tiny = 1e-12  # no cancellation
-    assert signal_sum(signal, t, tiny) == pytest.approx(signal_at(signal, t) * tiny, abs=1e-22)
+    assert signal.sum_over(t, tiny) == pytest.approx(signal.value_at(t) * tiny, abs=1e-22)
 
 
 def test_a_drive_s_travel_is_the_integral_of_its_rate():

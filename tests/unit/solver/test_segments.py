@@ -51,7 +51,7 @@ def test_segments_end_where_drive_or_load_bend():
 def test_a_steady_drive_beside_a_load_that_changes_is_a_course():
     load = Loading(Signal(0.0, 10.0, 1.0))
     drive, same = segments.alike(st.ConstantVelocity(2e-3), load)
-    assert same is load
+    assert same == load
     assert drive.rate(0.7) == (2e-3, 0.0)
     assert drive.rate_change(0.7) == drive.rate_curve(0.7) == (0.0, 0.0)
     assert drive.travel(0.1, 0.5) == pytest.approx((1e-3, 0.0))

@@ -7,13 +7,14 @@ compiled code, for which `place_one` takes the place of `place`.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import lru_cache
 from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.drive.signal import Signal, signal_at, signal_change, signal_curve, signal_sum
+from stiction.drive.signal import Signal, change_at, curve_at, sum_over, value_at
 from stiction.text.samples import Column, Floats
 
 KEPT = 8  # splines of tables, while their programs are made again with other parameters
@@ -49,6 +50,60 @@ class Recording(NamedTuple):
     bounds: Any
     wave: Signal
 
+    def value_at(r, t: Any) -> Any:
+        """Return the value at time `t`."""
+        i = place(r, t)
+        c, x = r.cubics, t - r.rows[i]
+        found = c[i, 0] + x * (c[i, 1] + x * (c[i, 2] + x * c[i, 3]))
+        return found + value_at(r.wave, t)
+
+    def change_at(r, t: Any) -> Any:
+        """Return the derivative at time `t`."""
+        i = place(r, t)
+        c, x = r.cubics, t - r.rows[i]
+        found = c[i, 1] + x * (2.0 * c[i, 2] + x * (3.0 * c[i, 3]))
+        return found + change_at(r.wave, t)
+
+    def curve_at(r, t: Any) -> Any:
+        """Return the second derivative at time `t`."""
+        i = place(r, t)
+        c = r.cubics
+        return 2.0 * c[i, 2] + (t - r.rows[i]) * (6.0 * c[i, 3]) + curve_at(r.wave, t)
+
+    def sum_over(r, t: Any, dt: Any) -> Any:
+        """Return the integral from `t` to `t + dt`, without cancellation for short `dt`."""
+        end = t + dt
+        i, j = place(r, t), place(r, end)
+        begun = cubic_sum(r, i, t - r.rows[i], np.minimum(dt, r.rows[i + 1] - t))
+        rest = r.sums[j] - r.sums[i + 1] + cubic_sum(r, j, 0.0, end - r.rows[j])
+        return begun + (j > i) * rest + sum_over(r.wave, t, dt)
+
+    def bounds_between(r, start: float, end: float) -> tuple[float, float, float, float]:
+        """Return bounds of the magnitudes of the value and its first three derivatives."""
+        found = r.bounds[int(place(r, start)) : int(place(r, end)) + 1]
+        most = np.column_stack([np.abs(found[:, :2]).max(axis=1), found[:, 2:]]).max(axis=0)
+        wave = r.wave.bounds_between(start, end)
+        return tuple(float(a) + b for a, b in zip(most, wave, strict=True))  # type: ignore[return-value]
+
+    def bounds_at(r, rows: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        """Return such bounds from each of some times to the next; the recording's rows are some."""
+        found = r.bounds[place(r, rows[:-1])]
+        wave = r.wave.bounds_between(float(rows[0]), float(rows[-1]))
+        value = np.abs(found[:, :2]).max(axis=1) + wave[0]
+        return value, found[:, 2] + wave[1], found[:, 3] + wave[2], found[:, 4] + wave[3]
+
+    def fastest(r) -> float:
+        """Return the largest angular frequency, rad/s: curvature over slope, as of a harmonic."""
+        _, _, change, curve, _ = np.abs(r.bounds).max(axis=0)
+        return max(r.wave.fastest(), float(curve / change) if change > 0.0 else 0.0)
+
+    def may_vanish(r, start: float, end: float) -> Iterator[tuple[float, float]]:
+        """Yield the intervals (s) in which the value may reach zero: some of the pieces."""
+        least = r.bounds[:, 0] - r.wave.bounds_between(start, end)[0]
+        first, last = int(place(r, start)), int(place(r, end))
+        for i in (np.flatnonzero(least[first : last + 1] <= 0.0) + first).tolist():
+            yield max(start, float(r.rows[i])), min(end, float(r.rows[i + 1]))
+
 
 def place(r: Recording, t: Any) -> Any:
     """Return the piece that holds at time `t`, the later one at a row."""
@@ -77,38 +132,6 @@ def place_one(r: Recording, t: float) -> int:
     return int(low)
 
 
-def recording_at(r: Recording, t: Any) -> Any:
-    """Return the value at time `t`."""
-    i = place(r, t)
-    c, x = r.cubics, t - r.rows[i]
-    found = c[i, 0] + x * (c[i, 1] + x * (c[i, 2] + x * c[i, 3]))
-    return found + signal_at(r.wave, t)
-
-
-def recording_change(r: Recording, t: Any) -> Any:
-    """Return the derivative at time `t`."""
-    i = place(r, t)
-    c, x = r.cubics, t - r.rows[i]
-    found = c[i, 1] + x * (2.0 * c[i, 2] + x * (3.0 * c[i, 3]))
-    return found + signal_change(r.wave, t)
-
-
-def recording_curve(r: Recording, t: Any) -> Any:
-    """Return the second derivative at time `t`."""
-    i = place(r, t)
-    c = r.cubics
-    return 2.0 * c[i, 2] + (t - r.rows[i]) * (6.0 * c[i, 3]) + signal_curve(r.wave, t)
-
-
-def recording_sum(r: Recording, t: Any, dt: Any) -> Any:
-    """Return the integral from `t` to `t + dt`, without cancellation for short `dt`."""
-    end = t + dt
-    i, j = place(r, t), place(r, end)
-    begun = cubic_sum(r, i, t - r.rows[i], np.minimum(dt, r.rows[i + 1] - t))
-    rest = r.sums[j] - r.sums[i + 1] + cubic_sum(r, j, 0.0, end - r.rows[j])
-    return begun + (j > i) * rest + signal_sum(r.wave, t, dt)
-
-
 def cubic_sum(r: Recording, i: Any, x: Any, dx: Any) -> Any:
     """Return the integral of a piece from `x` to `x + dx`, s from its start: Taylor's at `x`."""
     c = r.cubics
@@ -116,10 +139,6 @@ def cubic_sum(r: Recording, i: Any, x: Any, dx: Any) -> Any:
     change = c[i, 1] + x * (2.0 * c[i, 2] + x * (3.0 * c[i, 3]))
     curve = c[i, 2] + x * (3.0 * c[i, 3])
     return dx * (value + dx * (change / 2.0 + dx * (curve / 3.0 + dx * (c[i, 3] / 4.0))))
-
-
-# called by the methods of stretches, compiled with them
-FUNCTIONS = (recording_at, recording_change, recording_curve, recording_sum, cubic_sum)
 
 
 class Spline(NamedTuple):

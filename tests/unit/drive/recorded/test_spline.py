@@ -7,17 +7,11 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 import stiction as st
-from stiction.drive.bounds import bounds_of, drive_bounds, fastest, load_bounds, vanishes
+from stiction.drive.bounds import drive_bounds, load_bounds, vanishes
 from stiction.drive.program import modulate
 from stiction.drive.recorded import spline as s
-from stiction.drive.recorded.spline import (
-    recording_at,
-    recording_change,
-    recording_curve,
-    recording_sum,
-)
-from stiction.drive.recorded.stretch import RecordedCourse, RecordedLoading
-from stiction.drive.signal import Loading, Signal
+from stiction.drive.signal import Signal
+from stiction.drive.stretch import Course, Loading
 from stiction.solver import problem
 from stiction.solver.compilation.jit import njit
 from stiction.text.samples import Column
@@ -62,19 +56,19 @@ def test_values_and_travel_are_those_of_scipys_spline(kind):
     curve = CubicSpline(time, values)
     at = np.sort(np.random.default_rng(1).uniform(time[0], time[-1], 500))
     size = np.abs(curve(at)).max()
-    assert recording_at(made, at) == pytest.approx(curve(at), abs=1e-7 * size)
-    assert recording_at(made, time) == pytest.approx(values, abs=1e-9 * size)
+    assert made.value_at(at) == pytest.approx(curve(at), abs=1e-7 * size)
+    assert made.value_at(time) == pytest.approx(values, abs=1e-9 * size)
     slopes, curves = curve(at, 1), curve(at, 2)
-    assert recording_change(made, at) == pytest.approx(slopes, abs=1e-6 * np.abs(slopes).max())
-    assert recording_curve(made, at) == pytest.approx(curves, abs=1e-6 * np.abs(curves).max())
+    assert made.change_at(at) == pytest.approx(slopes, abs=1e-6 * np.abs(slopes).max())
+    assert made.curve_at(at) == pytest.approx(curves, abs=1e-6 * np.abs(curves).max())
     for a, b in ((at[0], at[-1]), (at[3], at[4]), (at[100], at[400])):
-        found = recording_sum(made, a, b - a)
+        found = made.sum_over(a, b - a)
         assert found == pytest.approx(curve.integrate(a, b), abs=1e-7 * size * (b - a) + 1e-15)
 
 
 def test_the_travel_of_positions_is_their_difference():
     made, time, x = table("uneven", integrated=True)
-    sums = recording_sum(made, time[0], time - time[0])
+    sums = made.sum_over(time[0], time - time[0])
     assert sums == pytest.approx(x - x[0], abs=1e-12)
 
 
@@ -82,7 +76,7 @@ def test_a_short_travel_has_no_cancellation():
     made, time, _ = table("even")
     t, dt = time[30] + 0.004, 1e-11
     dt = (t + dt) - t
-    assert recording_sum(made, t, dt) == pytest.approx(recording_at(made, t) * dt, rel=1e-6)
+    assert made.sum_over(t, dt) == pytest.approx(made.value_at(t) * dt, rel=1e-6)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -101,7 +95,7 @@ def test_compiled_code_returns_the_same_values():
     wave = st.protocols.Modulation(0.3, 7.0)
     rng = np.random.default_rng(5)
     for each in (made, modulate(made, wave), s.silent(Signal(0.0, 2.0, 0.1, 0.5, 3.0))):
-        course = RecordedCourse(each, Signal(0.0, 0.0, 0.0, 0.4, 11.0))
+        course = Course(each, Signal(0.0, 0.0, 0.0, 0.4, 11.0))
         for t in rng.uniform(time[0], time[-1], 20):
             dt = rng.uniform(0, time[-1] - t)
             found = np.array(compiled(course, t, dt))
@@ -132,22 +126,22 @@ def test_bounds_over_an_interval_are_those_of_its_pieces_and_of_the_wave():
     with_wave = modulate(made, wave)
     start, end = time[10] + 1e-4, time[20] - 1e-4
     at = np.linspace(start, end, 5001)
-    course = RecordedCourse(with_wave, Signal(0.0, 0.0))
+    course = Course(with_wave, Signal(0.0, 0.0))
     found = [course.rate(at), course.rate_change(at), course.rate_curve(at)]
     bounds = drive_bounds(course, start, end)
     for (X, Y), (values, _) in zip(bounds, found, strict=False):
         assert np.abs(values).max() <= X
         assert Y == 0.0
-    plain, both = bounds_of(made, start, end), bounds_of(with_wave, start, end)
+    plain, both = made.bounds_between(start, end), with_wave.bounds_between(start, end)
     omega = 2 * np.pi * 7.0
     assert both == pytest.approx([b + 0.3 * omega**n for n, b in enumerate(plain)])
-    assert load_bounds(RecordedLoading(made), start, end) == plain[:3]
+    assert load_bounds(Loading(made), start, end) == plain[:3]
 
 
 def test_the_frequency_of_a_recorded_harmonic_is_told():
     t = np.linspace(0.0, 1.0, 401)
     made = s.spline(Column(t), Column(5.0 + np.sin(2 * np.pi * 9.0 * t)), False)
-    assert fastest(s.recording(made, 0.0)) == pytest.approx(2 * np.pi * 9.0, rel=5e-3)
+    assert s.recording(made, 0.0).fastest() == pytest.approx(2 * np.pi * 9.0, rel=5e-3)
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -157,15 +151,15 @@ def test_when_a_recorded_load_vanishes(seed):
         cubics=made.cubics + np.array([1.0, 0.0, 0.0, 0.0]),
         bounds=made.bounds + np.array([1.0, 1.0, 0.0, 0.0, 0.0]),
     )
-    curve = CubicSpline(time, recording_at(lifted, time))
+    curve = CubicSpline(time, lifted.value_at(time))
     zeros = [t for t in curve.roots(extrapolate=False) if time[0] < t < time[-1]]
-    first = time[0] if recording_at(lifted, time[0]) <= 0.0 else min(zeros, default=np.inf)
-    assert vanishes(RecordedLoading(lifted), time[0], time[-1]) == pytest.approx(first, abs=1e-7)
+    first = time[0] if lifted.value_at(time[0]) <= 0.0 else min(zeros, default=np.inf)
+    assert vanishes(Loading(lifted), time[0], time[-1]) == pytest.approx(first, abs=1e-7)
 
 
 def test_a_silent_recording_is_its_wave():
     wave = Signal(0.0, 2.0, -0.3, 0.5, 3.0)
-    one, other = RecordedLoading(s.silent(wave)), Loading(wave)
+    one, other = Loading(s.silent(wave)), Loading(wave)
     assert vanishes(one, 0.0, 20.0) == vanishes(other, 0.0, 20.0)
     assert load_bounds(one, 1.0, 2.0) == load_bounds(other, 1.0, 2.0)
 
