@@ -18,7 +18,7 @@ from stiction.analysis.motion.disturbance import (
     may_be_carried,
     slow_wave,
 )
-from stiction.analysis.motion.hesitations import level, take_out
+from stiction.analysis.motion.hesitations import cycle_corners
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.hum import Line, narrow_lines, of_mains, peak_frequencies
 from stiction.analysis.signals.outliers import without_outliers
@@ -230,10 +230,6 @@ def _corners(record: Record, points: TurningPoints) -> tuple[Vertices, Vertices]
         none = Vertices(np.zeros(0), np.zeros(0))
         return none, none
     found = vertices(record.time, points)
-    values = np.concatenate([[points.before], found.value, [points.after]])
-    dips = take_out(level(values, found.time))
-    kept = dips.kept - 1  # of which the first was before
-    kept = kept[0 if points.trough[kept[0]] else 1 :]
-    kept = kept[: (len(kept) - 1) // 2 * 2 + 1]
-    corners = Vertices(found.time[kept], found.value[kept])
-    return corners, Vertices(found.time[dips.at - 1], dips.depth)
+    ends = points.before, points.after
+    kept, at, depth = cycle_corners(found.value, found.time, ends, bool(points.trough[0]))
+    return Vertices(found.time[kept], found.value[kept]), Vertices(found.time[at], depth)

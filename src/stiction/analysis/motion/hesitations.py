@@ -59,6 +59,28 @@ class Hesitations(NamedTuple):
     depth: Floats
 
 
+def cycle_corners(
+    value: Floats, time: Floats, ends: tuple[float, float], trough: bool
+) -> Hesitations:
+    """Take the hesitations out of peaks and troughs, of which a trough stays first and last.
+
+    Parameters
+    ----------
+    value, time : ndarray
+        (n,) of alternating peaks and troughs, N and s.
+    ends : tuple of float
+        Extremes before and after them, as for `take_out`, N.
+    trough : bool
+        Whether the first is a trough.
+    """
+    values = np.concatenate([ends[:1], value, ends[1:]])
+    found = take_out(level(values, time))
+    kept = found.kept - 1  # of which the first was before
+    kept = kept[0 if len(kept) and (kept[0] % 2 == 0) == trough else 1 :]
+    kept = kept[: (len(kept) - 1) // 2 * 2 + 1]
+    return Hesitations(kept, found.at - 1, found.depth)
+
+
 def take_out(values: Floats) -> Hesitations:
     """Take the hesitations out of a sequence of turning points.
 

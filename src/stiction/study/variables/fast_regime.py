@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.motion.course import QUARTER, QUIET, built_up, dies_out
-from stiction.analysis.motion.hesitations import level, take_out
+from stiction.analysis.motion.hesitations import cycle_corners
 from stiction.analysis.motion.regime import force_course, kinds
 from stiction.analysis.motion.regime.irregular import irregularity
 from stiction.study.variables.features import PARTS, Features
@@ -79,15 +79,12 @@ Shares = Callable[[Swings], Floats]
 
 def swings(found: Features) -> Swings:
     """Return the complete swings between turning points, without hesitations."""
-    values = np.concatenate([[found.first], found.turn_value, [found.last]])
-    kept = take_out(level(values, found.turn_time)).kept - 1
-    kept = kept[0 if len(kept) and (kept[0] % 2 == 0) == found.trough else 1 :]
+    ends = found.first, found.last
+    kept = cycle_corners(found.turn_value, found.turn_time, ends, found.trough).kept
     time, value = found.turn_time[kept], found.turn_value[kept]
-    last = 2 * max((len(time) - 1) // 2, 0)
-    start, peak, trough = (time[i : i + last : 2] for i in range(3))
-    period = trough - start
-    drop = value[1 : 1 + last : 2] - value[2 : 2 + last : 2]
-    return Swings(drop, period, (peak - start) / period, float(trough[-1]) if last else 0.0)
+    start, peak, trough = time[:-1:2], time[1::2], time[2::2]
+    period, end = trough - start, float(trough[-1]) if len(trough) else 0.0
+    return Swings(value[1::2] - value[2::2], period, (peak - start) / period, end)
 
 
 def kind_of(

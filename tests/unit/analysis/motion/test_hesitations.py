@@ -136,3 +136,20 @@ def test_cycles_beside_no_slow_motion_stay_as_they_are():
     for values in (cycles(*[5.0] * 8, dip=(0, 2.0, 0, 4.0)), cycles(*np.linspace(0.5, 5.0, 12))):
         time = np.arange(len(values) - 2.0)
         assert hesitations.level(values, time).tolist() == values.tolist()
+
+
+@pytest.mark.parametrize("before", [[], [9.0]])
+def test_corners_of_cycles_begin_and_end_with_a_trough(before):
+    """Of a record that begins on a rise or with a fall, a hesitation in its second cycle."""
+    value = np.array([*before, 5.0, 10.0, 5.0, 8.0, 7.75, 10.0, 5.0, 10.0])
+    n = len(before)
+    found = hesitations.cycle_corners(value, np.arange(len(value)), (7.0, 6.0), not before)
+    assert value[found.kept].tolist() == [5.0, 10.0, 5.0, 10.0, 5.0]
+    assert found.at.tolist() == [n + 3]
+    assert found.depth.tolist() == [0.25]
+
+
+def test_too_few_corners_are_no_cycle():
+    for n in range(3):
+        found = hesitations.cycle_corners(np.ones(n), np.arange(n), (0.0, 0.0), trough=True)
+        assert len(found.kept) < 2
