@@ -18,7 +18,7 @@ from stiction.analysis.motion.cycle_summary import summary
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.doubts import taken_off, turns_round, unsteady, warnings
 from stiction.analysis.motion.friction import Friction, find_friction, without_loading
-from stiction.analysis.motion.metadata import loading_rate
+from stiction.analysis.motion.metadata import LOADING_RATE, Comparison, compare_metadata
 from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.oscillation import (
@@ -182,9 +182,14 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
         friction = friction.without_kinetic(turns)
     if "forth" in regime.evidence:
         friction = friction.without_any(turns)
-    doubts = warnings(record, regime.kind, cycles, friction) if run is None else unsteady(run)
+    stated: tuple[Comparison, ...] = ()
+    if run is None:  # which is what it states
+        stated = compare_metadata(record, regime.kind, cycles)
+        doubts = warnings(record, regime.kind, cycles, friction, stated)
+    else:
+        doubts = unsteady(run)
     doubts += taken_off(found.lines)
-    cycles = _blank_meaningless(record, cycles, regime, missing)
+    cycles = _blank_meaningless(record, cycles, regime, stated, missing)
     if turns and cycles.sizes["cycle"]:
         missing["mu_kinetic"] = turns
         cycles = cycles.assign(mu_kinetic=cycles["mu_kinetic"].where(False))
@@ -208,7 +213,7 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
         missing,
         friction,
         doubts,
-        {},
+        {"metadata": stated},
     )
     for name, find in functions("find"):
         analysis.parts[name] = attempt(missing, name, partial(find, analysis))
@@ -230,14 +235,18 @@ def _turns_round(run: Trajectory | None, regime: Regime) -> str:
 
 
 def _blank_meaningless(
-    record: Record, cycles: xr.Dataset, regime: Regime, missing: dict[str, str]
+    record: Record,
+    cycles: xr.Dataset,
+    regime: Regime,
+    stated: tuple[Comparison, ...],
+    missing: dict[str, str],
 ) -> xr.Dataset:
     """Blank the columns of a table that are meaningless for a motion, or as things are stated."""
     if not cycles.sizes["cycle"]:
         return cycles
     if regime.loads:
-        rate = loading_rate(record, regime.kind, cycles)
-        if rate is not None and rate.agrees is False and record.position is None:
+        wrong = any(each.quantity == LOADING_RATE and each.agrees is False for each in stated)
+        if wrong and record.position is None:
             missing |= dict.fromkeys(
                 BY_STIFFNESS, "stiffness or drive velocity contradict the force"
             )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import log10, pi
 from typing import TYPE_CHECKING
 
@@ -11,7 +11,7 @@ import numpy as np
 from stiction.analysis.motion.course import QUIET, change_of_period
 from stiction.analysis.motion.drift import Drift, find_drift
 from stiction.analysis.motion.friction import Friction
-from stiction.analysis.motion.metadata import FEW, loading_rate, stiffness_over_mass
+from stiction.analysis.motion.metadata import FEW, LOADING_RATE, SWING, Comparison
 from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import even_grid, why_not
@@ -49,15 +49,22 @@ STIRS = 0.01  # of the drive's largest speed: more backwards is a motion to and 
 NOISE = 5.0  # standard deviations
 
 
-def warnings(record: Record, kind: str, cycles: xr.Dataset, friction: Friction) -> tuple[str, ...]:
-    """Return warnings as sentences, the most important first."""
+def warnings(
+    record: Record,
+    kind: str,
+    cycles: xr.Dataset,
+    friction: Friction,
+    stated: Sequence[Comparison],
+) -> tuple[str, ...]:
+    """Return warnings as sentences, the most important first; `stated` is what was compared."""
+    wrong = {each.quantity: each for each in stated if each.agrees is False}
     found = [
         *_implausible_friction(record, friction, cycles),
         *_doubt_clipping(record),
         *_doubt_mean_period(cycles),
         *_doubt_quiet(record, friction, cycles),
-        *_loading_too_fast(record, kind, cycles),
-        *_mass(record, kind, cycles),
+        *_loading_too_fast(wrong.get(LOADING_RATE)),
+        *_mass(wrong.get(SWING), kind),
         *_mains(kind, cycles),
         *_coarse(record, cycles),
         *_drift(record, kind, cycles),
@@ -259,9 +266,8 @@ def _implausible_friction(record: Record, friction: Friction, cycles: xr.Dataset
     yield f"A friction coefficient of {mu:.3g} is implausible: {its}check the normal load, {load}."
 
 
-def _loading_too_fast(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:
-    its = loading_rate(record, kind, cycles)
-    if its is None or its.agrees is not False:
+def _loading_too_fast(its: Comparison | None) -> Iterator[str]:
+    if its is None:
         return
     yield (
         f"The force rises at {in_words(its.found, 'N/s')}, {its.ratio:.3g} times stiffness times "
@@ -280,10 +286,9 @@ def _remedy(ratio: float) -> str:
     return f"{asked}; or stiffness or drive velocity is stated {wrong}"
 
 
-def _mass(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:
+def _mass(its: Comparison | None, kind: str) -> Iterator[str]:
     """Doubt k/m if the period of a swing, or the duration of a slip, contradicts it."""
-    its = stiffness_over_mass(record, kind, cycles)
-    if its is None or its.agrees is not False:
+    if its is None:
         return
     what, lasts = ("swings", 2.0) if kind == HARMONIC else ("slips", 1.0)
     yield (

@@ -22,6 +22,7 @@ FEW = 6  # samples in a slip
 ALIKE = 0.1  # relative: a mean that was measured agrees so far with its stated value
 SEEN = 0.4  # of the sample rate: a faster oscillation is lost, or seen at another frequency
 AT_REST = 0.02  # of the largest force
+LOADING_RATE, SWING = "stiffness times drive velocity", "stiffness over mass"  # quantities
 
 
 class Comparison(NamedTuple):
@@ -63,8 +64,8 @@ def compare_metadata(record: Record, kind: str, cycles: xr.Dataset) -> tuple[Com
         From `stiction.analysis.find_cycles`.
     """
     found = (
-        stiffness_over_mass(record, kind, cycles),
-        loading_rate(record, kind, cycles),
+        _stiffness_over_mass(record, kind, cycles),
+        _loading_rate(record, kind, cycles),
         _drive_velocity(record),
         _normal_load(record),
         _transverse_frequency(record),
@@ -74,7 +75,7 @@ def compare_metadata(record: Record, kind: str, cycles: xr.Dataset) -> tuple[Com
     return tuple(each for each in found if each is not None)
 
 
-def loading_rate(record: Record, kind: str, cycles: xr.Dataset) -> Comparison | None:
+def _loading_rate(record: Record, kind: str, cycles: xr.Dataset) -> Comparison | None:
     """Compare the rate of loading while the mass sticks with stiffness times drive velocity."""
     if kind not in (STICK_SLIP, TRANSITIONAL):
         return None
@@ -82,11 +83,10 @@ def loading_rate(record: Record, kind: str, cycles: xr.Dataset) -> Comparison | 
     stated = (record.stiffness or nan) * (record.drive_velocity or nan)
     how = "rate at which the force rises"
     seen, error = float(np.median(slopes)), _error(slopes)
-    name = "stiffness times drive velocity"
-    return Comparison(name, "N/s", seen, error, stated, SLOWER, FASTER, how)
+    return Comparison(LOADING_RATE, "N/s", seen, error, stated, SLOWER, FASTER, how)
 
 
-def stiffness_over_mass(record: Record, kind: str, cycles: xr.Dataset) -> Comparison | None:
+def _stiffness_over_mass(record: Record, kind: str, cycles: xr.Dataset) -> Comparison | None:
     """Compare k/m by the period of a swing, or the duration of a slip, with that stated.
 
     A mass on its spring swings with the period T = 2 pi (m/k)^1/2; a slip under constant friction
@@ -104,7 +104,7 @@ def stiffness_over_mass(record: Record, kind: str, cycles: xr.Dataset) -> Compar
     found = (2.0 * pi / swing) ** 2
     stated = (record.stiffness or nan) / (record.mass or nan)
     error = 2.0 * found * _error(swings) / swing
-    return Comparison("stiffness over mass", "1/s²", found, error, stated, lowest, LIGHTER, how)
+    return Comparison(SWING, "1/s²", found, error, stated, lowest, LIGHTER, how)
 
 
 def _error(values: np.ndarray) -> float:

@@ -5,11 +5,10 @@ from __future__ import annotations
 from math import isfinite, isnan
 from typing import TYPE_CHECKING, Any
 
-from stiction.analysis.motion.metadata import Comparison, compare_metadata
+from stiction.analysis.motion.metadata import LOADING_RATE, SWING, Comparison
 from stiction.analysis.parts.wording import number
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words, with_error
-from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -19,29 +18,22 @@ if TYPE_CHECKING:
 SAME, SURE = 0.1, 3.0  # relative, and standard errors: values that differ by less are the same
 ALLOWED = "possible"  # not the same, but the record gives a bound only, or a rough value
 NUMBERS = ("found", "error", "stated", "ratio")
-TOLD = ("stiffness over mass", "stiffness times drive velocity")  # among the warnings
+TOLD = (SWING, LOADING_RATE)  # among the warnings
 REASONS = {
-    "stiffness over mass": (
+    SWING: (
         "Stiffness over mass by the motion is rough: friction that changes with speed makes a slip "
         "last longer than half a free swing."
     ),
-    "stiffness times drive velocity": (
+    LOADING_RATE: (
         "The force may rise more slowly than stiffness times drive velocity: the mass creeps."
     ),
 }
 HEADINGS = ("quantity", "shown", "stated", "", "by the")
 
 
-def find(found: Analysis) -> tuple[Comparison, ...]:
-    """Return the comparisons of a record; none of a run, which is what it states."""
-    if isinstance(found.source, Trajectory):
-        return ()
-    return compare_metadata(found.record, found.regime.kind, found.cycles)
-
-
 def section(found: Analysis) -> Section | None:
     """Return them as a table, with a sentence on those that contradict each other."""
-    its: tuple[Comparison, ...] = found.parts["metadata"] or ()
+    its: tuple[Comparison, ...] = found.parts["metadata"]
     if all(each.agrees is None for each in its):  # nothing is stated
         return None
     known = [word for word in map(verdict, its) if word]
@@ -97,7 +89,7 @@ def tables(found: Analysis) -> dict[str, xr.Dataset | None]:
     """Return a row for each quantity, in SI."""
     import xarray as xr
 
-    its: tuple[Comparison, ...] = found.parts["metadata"] or ()
+    its: tuple[Comparison, ...] = found.parts["metadata"]
     columns = {name: ("quantity", [getattr(each, name) for each in its]) for name in NUMBERS}
     texts = {name: ("quantity", [getattr(each, name) for each in its]) for name in ("unit", "how")}
     rows = {"quantity": ("quantity", [each.quantity for each in its])}
@@ -106,7 +98,7 @@ def tables(found: Analysis) -> dict[str, xr.Dataset | None]:
 
 def numbers(found: Analysis) -> dict[str, Any]:
     """Return them for JSON."""
-    its: tuple[Comparison, ...] = found.parts["metadata"] or ()
+    its: tuple[Comparison, ...] = found.parts["metadata"]
     return {
         "metadata": {
             each.quantity: {name: number(getattr(each, name)) for name in NUMBERS}

@@ -11,7 +11,7 @@ from tests.entry import plain
 from tests.systems import STEADY
 
 import stiction as st
-from stiction.analysis.motion.metadata import loading_rate
+from stiction.analysis.motion.metadata import LOADING_RATE, compare_metadata
 from stiction.drive.program import nominal_velocity
 from stiction.solver.problem import Bend, Bends
 from stiction.solver.segments import stretches
@@ -294,7 +294,8 @@ def test_analyses_take_the_drive_velocity_from_the_table():
     assert velocity == pytest.approx(V, rel=0.02)
     found = st.analyse(run)
     assert found.regime.kind == "stick-slip"
-    rate = loading_rate(found.record, found.regime.kind, found.cycles)
+    its = compare_metadata(found.record, found.regime.kind, found.cycles)
+    (rate,) = (each for each in its if each.quantity == LOADING_RATE)
     assert rate.agrees
     assert rate.stated == pytest.approx(slider.k_x * velocity, rel=1e-12)
     assert not any("goes back" in each for each in found.warnings)
