@@ -13,11 +13,11 @@ from stiction.plotting.inference.posterior import plot_corner as plot_corner
 from stiction.plotting.inference.posterior import plot_posterior as plot_posterior
 from stiction.plotting.inference.predictive import plot_predictive as plot_predictive
 from stiction.plotting.inference.predictive import plot_ranks as plot_ranks
-from stiction.plotting.protocols.healing import plot_healing as plot_healing
-from stiction.plotting.protocols.hysteresis import plot_hysteresis as plot_hysteresis
-from stiction.plotting.protocols.load import plot_load_dependence as plot_load_dependence
-from stiction.plotting.protocols.velocity_steps import plot_velocity_steps as plot_velocity_steps
-from stiction.plotting.protocols.yaw import plot_apparent_friction as plot_apparent_friction
+from stiction.plotting.protocols import plot_apparent_friction as plot_apparent_friction
+from stiction.plotting.protocols import plot_healing as plot_healing
+from stiction.plotting.protocols import plot_hysteresis as plot_hysteresis
+from stiction.plotting.protocols import plot_load_dependence as plot_load_dependence
+from stiction.plotting.protocols import plot_velocity_steps as plot_velocity_steps
 from stiction.plotting.run.comparison import plot_comparison as plot_comparison
 from stiction.plotting.run.glance import plot_glance as plot_glance
 from stiction.plotting.run.law import plot_law as plot_law

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from stiction import theory
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.parameter import PLAIN
-from stiction.plotting.page.style import BLACK, BLUE, COLUMN, GREEN, GREY, RED, style
+from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, RED, style
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -102,7 +102,7 @@ def plot_creep(
     middle = 0.5 * (mean["begin"] + mean["end"]).values
     value, error = mean["velocity"].values, np.nan_to_num(mean["velocity_error"].values)
     with style():
-        ax = panel(ax, COLUMN, 2.9)
+        ax = panel(ax, 2.9)
         draw_phases(ax, curves, V)
         draw_mean(ax, mean, V)
         to_slip = np.geomspace(0.5 * middle.min(), middle.max(), 400)

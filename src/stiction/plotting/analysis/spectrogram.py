@@ -10,7 +10,7 @@ from matplotlib.collections import QuadMesh
 from matplotlib.lines import Line2D
 
 from stiction.plotting.page.canvas import panel
-from stiction.plotting.page.style import COLUMN, style
+from stiction.plotting.page.style import style
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,7 +31,7 @@ def plot_spectrogram(
         Drawn on; a new figure as wide as a column when left out.
     """
     with style():
-        ax = panel(ax, COLUMN, 2.6)
+        ax = panel(ax, 2.6)
         top = float(amplitude["frequency"].max()) if highest is None else highest
         mesh = draw_spectrogram(
             ax, amplitude, reference=float(amplitude.max()), decibels=(-70.0, 0.0), highest=top

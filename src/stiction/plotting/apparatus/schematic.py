@@ -17,7 +17,7 @@ from stiction.plotting.apparatus.misalignment import (
 )
 from stiction.plotting.apparatus.shapes import Points, polar
 from stiction.plotting.page.canvas import panel
-from stiction.plotting.page.style import BLACK, BLUE, COLUMN, FLOOR, GREEN, GREY, PURPLE, RED, style
+from stiction.plotting.page.style import BLACK, BLUE, FLOOR, GREEN, GREY, PURPLE, RED, style
 from stiction.system.slider import Slider
 from stiction.system.springs import compliance
 from stiction.system.tensors import dampers_askew
@@ -42,7 +42,7 @@ def plot_slider(slider: Slider, ax: Axes | None = None) -> Axes:
         Drawn on; a new figure as wide as a column when left out.
     """
     with style():
-        return draw_schematic(panel(ax, COLUMN, 2.4), slider)
+        return draw_schematic(panel(ax, 2.4), slider)
 
 
 def draw_schematic(ax: Axes, slider: Slider) -> Axes:

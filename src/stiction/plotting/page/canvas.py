@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from stiction.errors import StictionError
-from stiction.plotting.page.style import SHEET, new_figure
+from stiction.plotting.page.style import COLUMN, SHEET, new_figure
 from stiction.text.validation import unknown_name
 
 Drawing = TypeVar("Drawing", bound=Callable[..., Any])
@@ -31,9 +31,9 @@ def canvas(width: float, height: float) -> Figure:
     return pyplot.figure(figsize=(width, height), layout="constrained")
 
 
-def panel(ax: Axes | None, width: float, height: float) -> Axes:
-    """Return the given axes, or those of a new figure of a size (in)."""
-    return fix_ticks([canvas(width, height).subplots()])[0] if ax is None else ax
+def panel(ax: Axes | None, height: float) -> Axes:
+    """Return the given axes, or those of a new figure of this height (in), as wide as a column."""
+    return fix_ticks([canvas(COLUMN, height).subplots()])[0] if ax is None else ax
 
 
 def as_list(axes: Any) -> list[Axes]:

@@ -10,7 +10,7 @@ from stiction.drive.program import nominal_velocity
 from stiction.friction import has_state
 from stiction.friction.law import static_coefficient
 from stiction.plotting.page.canvas import panel
-from stiction.plotting.page.style import COLUMN, PURPLE, style
+from stiction.plotting.page.style import PURPLE, style
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import metric_prefix
 
@@ -28,7 +28,7 @@ def plot_law(slider: Slider, fastest: float | None = None, ax: Axes | None = Non
         Drawn on; a new figure as wide as a column when left out.
     """
     with style():
-        ax = panel(ax, COLUMN, 2.2)
+        ax = panel(ax, 2.2)
         speed = 10.0 * abs(nominal_velocity(slider.motion)) if fastest is None else fastest
         draw_law(ax, slider, speed)
     return ax

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.parameter import PLAIN, Scale, scale_of
-from stiction.plotting.page.style import BLACK, BLUE, COLUMN, UNSTABLE, style
+from stiction.plotting.page.style import BLACK, BLUE, UNSTABLE, style
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,7 +37,7 @@ def plot_boundary(
         Drawn on; a new figure as wide as a column when left out.
     """
     with style():
-        ax = panel(ax, COLUMN, 2.9)
+        ax = panel(ax, 2.9)
         x, y = draw_boundary(ax, curve)
         if closed_form is not None:
             ax.plot(

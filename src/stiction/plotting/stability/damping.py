@@ -17,7 +17,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from stiction import theory
 from stiction.plotting.page.canvas import panel
-from stiction.plotting.page.style import BLACK, COLUMN, GREEN, style
+from stiction.plotting.page.style import BLACK, GREEN, style
 
 SHADES = LinearSegmentedColormap.from_list("damping", ["#E9BE8B", "#FFFFFF", "#9DBDD3"])
 CLEAR = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 1.0}
@@ -85,7 +85,7 @@ def plot_damping(
         Drawn on; a new figure as wide as a column when left out.
     """
     with style():
-        ax = panel(ax, COLUMN, 2.7)
+        ax = panel(ax, 2.7)
         draw_damping_map(ax, A, theta)
     return ax
 

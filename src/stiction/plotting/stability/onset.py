@@ -12,7 +12,7 @@ from stiction.analysis.limit_cycle import OSCILLATING, REST, UNDECIDED
 from stiction.analysis.onset import Onset
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.parameter import PLAIN, scale_of
-from stiction.plotting.page.style import BLUE, COLUMN, GREY, PALE, RED, style
+from stiction.plotting.page.style import BLUE, GREY, PALE, RED, style
 from stiction.text.quantity_text import metric_prefix
 
 LOOKS: dict[str, dict[str, Any]] = {
@@ -35,7 +35,7 @@ def plot_onset(onset: Onset, critical: float | None = None, ax: Axes | None = No
         Drawn on; a new figure as wide as a column when left out.
     """
     with style():
-        ax = panel(ax, COLUMN, 2.7)
+        ax = panel(ax, 2.7)
         draw_onset(ax, onset, critical)
         ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
     return ax

@@ -242,7 +242,7 @@ def _points(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
     indices: list[Index] = [(i,) for i in range(view.data.sizes[dim])]
     A = np.array([damping_number(view.study.description(index).slider) for index in indices])
     phi = known["phi"].values
-    ax = panel(None if axes is None else as_list(axes)[0], COLUMN, 3.4)
+    ax = panel(None if axes is None else as_list(axes)[0], 3.4)
     draw_damping_map(ax, (A.min() / 2, A.max() * 2), (phi.min() / 1.5, 90.0))
     handles = draw_points(ax, A, phi, list(kinds(view.data)))
     ax.set_ylabel(r"force angle $\theta$; points: $\varphi$ (deg)")

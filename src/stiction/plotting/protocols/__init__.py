@@ -1,1 +1,0 @@
-"""Figures of friction tests with a name."""
