@@ -23,7 +23,11 @@ from stiction.auditing.observation import (
 from stiction.auditing.prediction import Prediction, predict
 from stiction.auditing.tolerance.budget import Budget, budget
 from stiction.auditing.tolerance.words import section
-from stiction.auditing.words.sections import sections
+from stiction.auditing.words.changes import changes
+from stiction.auditing.words.numbers import numbers, violated_assumptions
+from stiction.auditing.words.stick import stick
+from stiction.auditing.words.transverse import transverse
+from stiction.auditing.words.verdict import verdict
 from stiction.deprecation import old_attributes
 from stiction.inference.library import SIMULATIONS
 from stiction.inference.priors import Rig, rig_of
@@ -217,6 +221,17 @@ def _examine(rig: Rig, measured: Comparison | None, report: Callable[[float], No
     return Audit(
         system, prediction, sliding, misalignment, *both, advices, springs, tolerance, measured
     )
+
+
+def sections(found: Audit) -> list[Section]:
+    """Return the sections of the report on the apparatus itself."""
+    return [
+        Section("Verdict", verdict(found)),
+        Section("Predicted and simulated", violated_assumptions(found), numbers(found)),
+        Section("Is it stick?", stick(found)),
+        Section("Transverse oscillation", transverse(found)),
+        Section("What to change", *changes(found)),
+    ]
 
 
 def _of_record(measured: Comparison | None) -> list[Section]:

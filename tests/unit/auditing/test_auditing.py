@@ -17,11 +17,10 @@ from stiction.auditing.advice import advise, nearest
 from stiction.auditing.observation import OSCILLATES, SLIDES, coarse_rate, from_sliding, observe
 from stiction.auditing.page import page
 from stiction.auditing.prediction import predict, suppositions
-from stiction.auditing.report import Audit
+from stiction.auditing.report import Audit, sections
 from stiction.auditing.report import audit as examine
 from stiction.auditing.words.changes import _change
 from stiction.auditing.words.numbers import apparent_stiffness, numbers
-from stiction.auditing.words.sections import sections
 from stiction.auditing.words.stick import stick
 from stiction.auditing.words.transverse import transverse
 from stiction.auditing.words.verdict import motions, stability

@@ -8,8 +8,7 @@ from typing import Any
 from stiction.deprecation import by_new_names
 from stiction.errors import DescriptionError
 from stiction.study.plan.axes import Axis, read_axis
-from stiction.study.variables.measures import FORMERLY, MEASURES
-from stiction.study.variables.traces import TRACES
+from stiction.study.variables.measures import FORMERLY, MEASURES, TRACES
 from stiction.system.description import Description
 from stiction.text.paths import canonical_path
 from stiction.text.validation import faulty, unknown_name

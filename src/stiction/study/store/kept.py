@@ -10,9 +10,8 @@ import numpy as np
 
 from stiction.study.plan.axes import Floats
 from stiction.study.plan.study import Study
-from stiction.study.variables.measures import MEASURES
+from stiction.study.variables.measures import MEASURES, TRACES
 from stiction.study.variables.observation import Observed
-from stiction.study.variables.traces import TRACES
 
 UNKNOWN = "unknown"  # the meaning of -1 in the code of a kind
 TIME = "time"  # dimension of traces

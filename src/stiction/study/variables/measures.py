@@ -1,4 +1,4 @@
-"""Measures: numbers with units that a study keeps of each run, one line each."""
+"""What a study can keep of each run, one line each: numbers with units, and time series."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from math import nan
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stiction.study.variables.fast_regime import KINDS
 from stiction.study.variables.observation import Observed
@@ -86,3 +87,18 @@ MEASURES: dict[str, Measure] = {
 }
 FORMERLY = {"song": "transverse_oscillation"}  # old names, which work until the next version
 DEFAULT = ("regime", "peak_force", "amplitude", "period", "creep_distance", "time_stuck")
+
+
+class Trace(NamedTuple):
+    """A time series: its CF attributes, and a function that returns its even samples."""
+
+    unit: str
+    long_name: str
+    of: Callable[[Observed], NDArray[np.float64]]
+
+
+TRACES: dict[str, Trace] = {
+    "force": Trace("N", "spring force along x, k_x u_x", lambda run: run.force),
+    "velocity": Trace("m/s", "velocity of the mass along X", lambda run: run.velocity),
+    "position": Trace("m", "position of the mass along X", lambda run: run.positions),
+}
