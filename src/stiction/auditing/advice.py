@@ -7,7 +7,14 @@ from math import copysign, inf, isfinite, nan, pi, radians, sqrt
 from typing import Any, NamedTuple
 
 from stiction.auditing.chain import softest_path
-from stiction.auditing.observation import SLIDES, Observation, Progress, coarse_rate, observe
+from stiction.auditing.observation import (
+    LEAST_WORK,
+    SLIDES,
+    Observation,
+    Progress,
+    coarse_rate,
+    observe,
+)
 from stiction.auditing.prediction import predict
 from stiction.linear_stability import Critical, critical, growth_rate
 from stiction.system.parameter import change_parameter, read, unit
@@ -28,7 +35,6 @@ MORE = {
 LEVERS = ("phi", "drive.velocity", "c_x", "k_x")  # of springs in series, the softest one's
 NOT_TRIED = (nan, nan, nan, None)  # fields of an `Advice` without a better value so far
 MOST_TURNED = 80.0  # degrees: near a right angle the soft spring no longer acts along the drive
-LEAST_WORK = 20_000  # steps: a trial with fewer would be cut
 STRONGEST = 10.0  # times critical damping: the strongest damper tried
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.auditing.observation import Observation, Progress, coarse_rate, observe
+from stiction.auditing.observation import LEAST_WORK, Observation, Progress, coarse_rate, observe
 from stiction.auditing.prediction import Prediction, predict
 from stiction.errors import DescriptionError
 from stiction.linear_stability import growth_rate
@@ -17,7 +17,6 @@ from stiction.system.springs import COMPLIANCES, STIFFNESSES, Spring, compliance
 from stiction.system.tensors import Matrix
 
 FACTORS = (2.0, inf)  # of the stiffness of a part that is replaced
-LEAST_WORK = 20_000  # steps: a trial with fewer would be cut
 SMALL = 0.01  # of the compliance: the mass of a part that adds less may be left out, (M77)
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from stiction import theory
+from stiction.analysis.limit_cycle import KICK
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.motion.regime.evidence import Regime
@@ -32,6 +33,7 @@ COARSE = 40.0  # samples in each swing on the soft spring
 ALMOST = 0.99  # of the drive's speed: the mass slides
 MOST_SAMPLES = 200_000
 MOST_WORK = 7_000_000  # steps and samples of all simulations of an audit: 2 s without states
+LEAST_WORK = 20_000  # steps: a trial with fewer would be cut
 SHARE = 0.35  # of that for each of the tests from rest and from sliding
 MANY = 50_000  # transverse periods above which fewer cycles are simulated
 
@@ -44,7 +46,6 @@ SLIDES, OSCILLATES, UNSETTLED = "slides", "oscillates", "unsettled"
 CALM = 0.02  # of the drive's speed: a smaller deviation is steady sliding
 DECAYED, KEPT = 0.5, 0.8  # of a deviation, a quarter of the run later: dies out, lasts
 LOADING = 0.5  # of the drive's speed: a mass that stays slower has not slipped
-KICK = 1e-2  # of the drive's speed: the initial disturbance of steady sliding
 
 
 class Shares(NamedTuple):

@@ -28,7 +28,7 @@ EVERY = 1.0  # s between lines of JSON
 def show_tally(quiet: bool, json_lines: bool) -> Iterator[tuple[Report | None, Conclude]]:
     """Yield two functions: one takes a study's tally while it runs, one its final summary."""
     if json_lines:
-        yield _each(EVERY, _print_tally), _print_summary
+        yield _now_and_then(_print_tally), _print_summary
     elif quiet:
         yield None, _tell_failures
     else:
@@ -36,12 +36,12 @@ def show_tally(quiet: bool, json_lines: bool) -> Iterator[tuple[Report | None, C
             yield report, _tell
 
 
-def _each(interval: float, report: Report) -> Report:
-    """Return a report that passes on one tally per interval (s)."""
-    last = [-interval]
+def _now_and_then(report: Report) -> Report:
+    """Return a report that passes on one tally per interval."""
+    last = [-EVERY]
 
     def sometimes(tally: Tally) -> None:
-        if monotonic() - last[0] >= interval:
+        if monotonic() - last[0] >= EVERY:
             last[0] = monotonic()
             report(tally)
 

@@ -14,12 +14,12 @@ from stiction.drive.pieces import DRIVE_PIECES, LEVELS, LOAD_PIECES, Modulation
 from stiction.friction import LAWS, Anisotropic
 from stiction.system.description import Settings
 from stiction.system.initial import Initial
+from stiction.system.parameter import LEVEL_UNITS
 from stiction.system.schema import schema
 from stiction.system.slider import Apparatus
 from stiction.text.units import hints_of, unit_of
 
 Field = dict[str, Any]
-LEVEL_UNITS = {"drive": "m/s", "load": "N"}
 
 
 def form() -> dict[str, Any]:

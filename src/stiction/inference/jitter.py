@@ -98,7 +98,6 @@ def move(
     random: np.random.Generator,
     *,
     cycle: float,
-    multiscale: bool = False,
     cycles: int | None = None,
 ) -> Motion:
     """Simulate a slider at equally spaced times, each cycle with friction of its own.
@@ -115,8 +114,6 @@ def move(
         Where they are drawn from.
     cycle : float
         First guess of a cycle's length, s.
-    multiscale : bool, optional
-        As of `stiction.simulate`, for drives so slow that transverse oscillations fill each cycle.
     cycles : int, optional
         End after so many troughs, or when no more come.
     """
@@ -135,7 +132,7 @@ def move(
         duration, part = stretch(times, begin, end)
         settings = Settings.model_construct(
             duration=duration, sample_rate=None, rtol=RTOL,
-            regularisation=None, smoothing="root", multiscale=multiscale,
+            regularisation=None, smoothing="root", multiscale=False,
         )  # fmt: skip
         rig = slider.model_copy(update={"friction": law})
         found = solve(Description(rig, initial, settings), part, max_steps=MOST_STEPS)

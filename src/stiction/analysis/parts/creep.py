@@ -9,7 +9,7 @@ import numpy as np
 
 from stiction.analysis.creep.findings import RESTS, drive_speed
 from stiction.analysis.motion.regime.kinds import STUCK
-from stiction.analysis.parts.wording import number
+from stiction.analysis.parts.wording import SLIGHT, number
 from stiction.friction import states
 from stiction.text.sections import Section
 from stiction.text.units import in_words, with_error
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from stiction.analysis.report import Analysis
 
 
-SLIGHT = 1e-3  # of a velocity: an error that is less is not worth a word
 RESTING = "it rests"
 SURE = 2.0  # standard errors that a fit must be away from nothing
 

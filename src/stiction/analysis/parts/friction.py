@@ -6,7 +6,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from stiction.analysis.motion.friction import Measured
-from stiction.analysis.parts.wording import number, with_spread
+from stiction.analysis.parts.wording import SLIGHT, number, with_spread
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words, with_error
 from stiction.trajectory import Trajectory
@@ -31,7 +31,6 @@ FRICTION = {
     "coefficient_error": "1",
     "coefficient_spread": "1",
 }
-SLIGHT = 1e-3  # of a value: an error that is less is not worth a word
 OVERSHOOT = 0.01  # of the peaks: a smaller one is not worth a word
 
 

@@ -9,6 +9,7 @@ from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 
 SHOWN = 8  # cycles in the terminal; files hold all
+SLIGHT = 1e-3  # of a value: an error that is less is not worth a word
 ALIKE = 1e-5  # of a value: a spread that is less is the solver's, not the motion's
 
 

@@ -14,13 +14,12 @@ from stiction.inference.features import USED
 from stiction.inference.fit import check, fit
 from stiction.inference.library import SIMULATIONS
 from stiction.inference.mechanism.comparison import SHARE, mechanism
-from stiction.inference.mechanism.odds import Odds
+from stiction.inference.mechanism.odds import RARE, Odds
 from stiction.inference.observation import Observation, observe
 from stiction.inference.posterior import Fit
 from stiction.inference.predictive import Predictive, predict
 from stiction.inference.priors import Rig
 
-RARE = 0.05  # share of simulations below which a record is not like them
 TAIL = 3.0  # normal score beyond which 0.27 % of a prior lie
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from stiction.auditing.measured.comparison import RARE, Comparison
-from stiction.inference.mechanism.odds import UNDECIDED, near_one
+from stiction.auditing.measured.comparison import Comparison
+from stiction.inference.mechanism.odds import RARE, UNDECIDED, near_one
 from stiction.inference.mechanism.rivals import ROTATION
 from stiction.inference.posterior import Estimate, Fit
 from stiction.inference.predictive import Predictive

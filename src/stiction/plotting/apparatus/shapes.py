@@ -12,7 +12,7 @@ from matplotlib.patches import FancyArrowPatch, Polygon
 from matplotlib.text import Text
 from numpy.typing import ArrayLike, NDArray
 
-from stiction.plotting.page.style import BLACK, PALE
+from stiction.plotting.page.style import BLACK
 
 Points = NDArray[np.float64]
 SIDEWAYS = 0.3  # of a unit vector: a smaller component does not shift a text beside a point
@@ -41,11 +41,9 @@ def line(
     return drawn
 
 
-def polygon(
-    ax: Axes, points: ArrayLike, face: str = PALE, edge: str = BLACK, zorder: float = 3.0
-) -> Polygon:
+def polygon(ax: Axes, points: ArrayLike, face: str, zorder: float = 3.0) -> Polygon:
     """Draw a filled polygon with the given corners, shape (n, 2)."""
-    drawn = Polygon(np.asarray(points), facecolor=face, edgecolor=edge, linewidth=0.8)
+    drawn = Polygon(np.asarray(points), facecolor=face, edgecolor=BLACK, linewidth=0.8)
     drawn.set_zorder(zorder)
     ax.add_patch(drawn)
     return drawn

@@ -24,6 +24,7 @@ from stiction.trajectory import Trajectory
 
 ROW = 0.8  # height of a filled row
 MANY, LAST = 8, 5  # cycles: of a run with more than the first, only the last ones are seen apart
+IN_TIME, BY_FORCE = 300, 120  # bins of a row over time and over force
 
 
 def draw_speeds(ax: Axes, curves: Sequence[Curve]) -> None:
@@ -69,11 +70,11 @@ def set_limits(ax: Axes, curves: Sequence[Curve]) -> None:
         say_only(ax, "no slip")
 
 
-def draw_rests(ax: Axes, curves: Sequence[Curve], bins: int = 300) -> None:
+def draw_rests(ax: Axes, curves: Sequence[Curve]) -> None:
     """Draw the share of time at zero slip over time, a filled row for each run."""
     first = curves[0].run.samples["time"]
     end = max(float(curve.run.samples["time"][-1]) for curve in curves)
-    edges = np.linspace(first[0], max(end, np.nextafter(first[0], np.inf)), bins + 1)
+    edges = np.linspace(first[0], max(end, np.nextafter(first[0], np.inf)), IN_TIME + 1)
     for row, curve in enumerate(curves):
         share = np.diff(stuck_until(edges, curve.run.stick_intervals)) / np.diff(edges)
         fill_row(ax, row, share, edges, curve)
@@ -83,21 +84,21 @@ def draw_rests(ax: Axes, curves: Sequence[Curve], bins: int = 300) -> None:
     ax.set_xlim(edges[0], edges[-1])
 
 
-def draw_held(ax: Axes, curves: Sequence[Curve], bins: int = 120) -> None:
+def draw_held(ax: Axes, curves: Sequence[Curve]) -> None:
     """Draw the share of time at zero slip over the spring force, a filled row for each run."""
     forces = [cell_force(curve.run) for curve in curves]
     factor, prefix = common(forces)
     finite = np.concatenate([force[np.isfinite(force)] for force in forces]) * factor
     low, high = (finite.min(), finite.max()) if len(finite) else (0.0, 1.0)
     pad = 0.04 * (high - low) or 1.0
-    edges = np.linspace(low - pad, high + pad, bins + 1)
+    edges = np.linspace(low - pad, high + pad, BY_FORCE + 1)
     for row, (curve, force) in enumerate(zip(curves, forces, strict=True)):
         times = curve.run.samples["time"]
         # however short: all are counted
         stuck = np.diff(stuck_until(times, curve.run.stick_intervals))
         total, _ = np.histogram(force[:-1] * factor, edges, weights=np.diff(times))
         held, _ = np.histogram(force[:-1] * factor, edges, weights=stuck)
-        share = np.divide(held, total, out=np.zeros(bins), where=total > 0)
+        share = np.divide(held, total, out=np.zeros(BY_FORCE), where=total > 0)
         fill_row(ax, row, share, edges, curve)
     finish_rows(ax, len(curves))
     ax.set_xlabel(f"{force_symbol(curves[0].run.slider)} ({prefix}N)")

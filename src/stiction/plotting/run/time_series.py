@@ -234,9 +234,9 @@ def name_time(ax: Axes) -> None:
     ax.set_xlabel(f"time $t$ ({prefix}s)")
 
 
-def draw_spring_force(ax: Axes, run: Trajectory, axis: str, color: str = RED) -> Line2D:
+def draw_spring_force(ax: Axes, run: Trajectory, axis: str) -> Line2D:
     """Draw the spring force along the principal axis ``"x"`` or ``"y"`` over time."""
-    return draw_quantity(ax, run, f"spring_{axis}", rf"$k_{axis} u_{axis}$", color)
+    return draw_quantity(ax, run, f"spring_{axis}", rf"$k_{axis} u_{axis}$", RED)
 
 
 def draw_friction(ax: Axes, run: Trajectory) -> Line2D:

@@ -84,7 +84,7 @@ def _split_quoted(line: str, separator: str) -> list[str]:
 
 
 def find_dialect(
-    path: object, lines: Sequence[str], decimal: str | None = None, separator: str | None = None
+    path: object, lines: Sequence[str], decimal: str | None, separator: str | None
 ) -> Dialect:
     """Return separator and decimal sign with which most lines are samples.
 
