@@ -35,7 +35,6 @@ from stiction.solver.smooth.coordinate import coordinate, damped_rise, slip_at, 
 from stiction.solver.smooth.dispatch import (
     Smoothed,
     SmoothedByArctan,
-    arctan_share,
     friction_and_gradient,
 )
 from stiction.solver.smooth.elimination import correct_states, residuals_without
@@ -652,7 +651,7 @@ def test_the_derivatives_of_a_smoothed_law(slip, surface, kind):
 def test_the_arc_tangent_of_a_smoothed_law(x):
     """h = (2/pi) atan(q/delta)/q and -h'/(q h), by hand; the series is off by x^4."""
     delta = 2e-3
-    h, fall = arctan_share(delta, (x * delta) ** 2)
+    h, fall = SmoothedByArctan(None, None, delta).slip_factor((x * delta) ** 2)
     exact = atan(x) / x if x else 1.0
     assert h == pytest.approx(2 / pi / delta * exact, rel=1e-11)
     if x >= 0.9e-3:

@@ -53,13 +53,8 @@ class Window(NamedTuple):
     duration: float
 
 
-def chebyshev(count: int) -> np.ndarray:
-    """Return the Chebyshev points of the first kind on [-1, 1], ascending."""
-    points: np.ndarray = -np.cos(pi * (np.arange(count) + 0.5) / count)
-    return points
-
-
-PHASE = chebyshev(PHASES)
+# Chebyshev points of the first kind on [-1, 1], ascending
+PHASE: np.ndarray = -np.cos(pi * (np.arange(PHASES) + 0.5) / PHASES)
 MONOMIALS = np.linalg.inv(np.vander(PHASE, increasing=True))  # from values to coefficients
 ENDS = np.vander([-1.0, 1.0], PHASES, increasing=True) @ MONOMIALS  # from values to both ends
 

@@ -19,6 +19,7 @@ from stiction.solver.compilation.pointer import address, caller, memory, pointee
 from stiction.solver.problem import (
     Elliptic,
     Isotropic,
+    by_type,
     change,
     coefficient_and_slope,
     force,
@@ -51,87 +52,63 @@ class Smoothed(NamedTuple):
     surface: Isotropic | Elliptic
     delta: float
 
+    def slip_factor(law, square: float) -> tuple[float, float]:
+        """Return h = 1/sqrt(q^2 + delta^2) and -h'/(q h), for q^2 = s.N s."""
+        h = 1.0 / sqrt(square + law.delta * law.delta)
+        return h, h * h
+
     def force(law, slip: Vector, load: float, state: tuple[float, ...]) -> Vector:
         """Return the friction force (N)."""
-        f = smoothed_friction(law, slip, load, root_share(law.delta, square(law, slip)))
+        f = friction_and_gradient(law, slip, load)
         return f[0], f[1]
 
     def grain(law, state: tuple[float, ...]) -> float:
-        """Return delta: friction is proportional to the slip velocity below."""
+        """Return delta: friction is proportional, or nearly so, to the slip velocity below."""
         return law.delta
 
-    def friction_and_gradient(law, slip: Vector, load: float) -> Friction:
-        """Return the friction force (N) and its derivatives by the slip velocity (N s/m)."""
-        return smoothed_friction(law, slip, load, root_share(law.delta, square(law, slip)))
 
-
-class SmoothedByArctan(NamedTuple):
+class SmoothedByArctan(Smoothed):
     """F N s/q (2/pi) atan(q/delta), q^2 = s.N s: as `Smoothed`, by the arc tangent.
 
     Leine et al., Nonlinear Dynamics 16 (1998), 41, doi:10.1023/A:1008289604683. It approaches F as
     delta/q only, (M60) as its square.
     """
 
-    law: Any
-    surface: Isotropic | Elliptic
-    delta: float
+    __slots__ = ()
 
-    def force(law, slip: Vector, load: float, state: tuple[float, ...]) -> Vector:
-        """Return the friction force (N)."""
-        f = smoothed_friction(law, slip, load, arctan_share(law.delta, square(law, slip)))
-        return f[0], f[1]
-
-    def grain(law, state: tuple[float, ...]) -> float:
-        """Return delta: friction is nearly proportional to the slip velocity below."""
-        return law.delta
-
-    def friction_and_gradient(law, slip: Vector, load: float) -> Friction:
-        """Return the friction force (N) and its derivatives by the slip velocity (N s/m)."""
-        return smoothed_friction(law, slip, load, arctan_share(law.delta, square(law, slip)))
+    def slip_factor(law, square: float) -> tuple[float, float]:
+        """Return h = (2/pi) atan(q/delta)/q and -h'/(q h), for q^2; a series where q is small."""
+        x = sqrt(square) / law.delta
+        if x < 1e-3:  # the first term left out is of the order x^4
+            h = 2.0 / (pi * law.delta) * (1.0 - x * x / 3.0)
+            return h, (2.0 / 3.0 - (4.0 / 5.0 - 2.0 / 9.0) * x * x) / (law.delta * law.delta)
+        share = atan(x) / x
+        h = 2.0 / (pi * law.delta) * share
+        return h, (share - 1.0 / (1.0 + x * x)) / (share * square)
 
 
 SMOOTHED: dict[str, Any] = {"root": Smoothed, "arctan": SmoothedByArctan}
 
 
-@register_jitable
-def square(law: Any, slip: Vector) -> float:
-    """Return s.N s."""
-    x, y, n = slip[0], slip[1], law.surface
-    n_x, n_y = n.xx * x + n.xy * y, n.xy * x + n.yy * y
-    found: float = x * n_x + y * n_y
-    return found
+def slip_factor(law: Smoothed, square: float) -> tuple[float, float]:
+    """Return h(q) and -h'/(q h), by which a slip s becomes friction, for q^2."""
+    return law.slip_factor(square)
+
+
+by_type(slip_factor)
 
 
 @register_jitable
-def root_share(delta: float, square: float) -> tuple[float, float]:
-    """Return h = 1/sqrt(q^2 + delta^2) and -h'/(q h), for q^2."""
-    h = 1.0 / sqrt(square + delta * delta)
-    return h, h * h
-
-
-@register_jitable
-def arctan_share(delta: float, square: float) -> tuple[float, float]:
-    """Return h = (2/pi) atan(q/delta)/q and -h'/(q h), for q^2; a series where q is small."""
-    x = sqrt(square) / delta
-    if x < 1e-3:  # the first term left out is of the order x^4
-        h = 2.0 / (pi * delta) * (1.0 - x * x / 3.0)
-        return h, (2.0 / 3.0 - (4.0 / 5.0 - 2.0 / 9.0) * x * x) / (delta * delta)
-    share = atan(x) / x
-    h = 2.0 / (pi * delta) * share
-    return h, (share - 1.0 / (1.0 + x * x)) / (share * square)
-
-
-@register_jitable
-def smoothed_friction(law: Any, slip: Vector, load: float, share: tuple[float, float]) -> Friction:
-    """Return mu(v) W h N s and its derivatives, for h(q) and -h'/(q h)."""
+def friction_and_gradient(law: Smoothed, slip: Vector, load: float) -> Friction:
+    """Return mu(v) W h N s (N) and its derivatives by the slip velocity (N s/m)."""
     x, y = slip
     n = law.surface
     n_x, n_y = n.xx * x + n.xy * y, n.xy * x + n.yy * y
-    v, per = sqrt(x * x + y * y), share[0]
+    v, (per, fall) = sqrt(x * x + y * y), slip_factor(law, x * n_x + y * n_y)
     mu, slope = coefficient_and_slope(law.law, v)
     f, along = mu * load * per, slope * load * per / v if v > 0.0 else 0.0
     # d(f n)/ds, n = N s: f N + n (mu'/mu s/v + n h'/(q h)) f
-    turn = f * share[1]
+    turn = f * fall
     by_x, by_y = along * x - turn * n_x, along * y - turn * n_y
     return (
         f * n_x,
@@ -254,12 +231,6 @@ def grain_at(law: Any, values: np.ndarray, i: int) -> float:
     return max(grain(found, states_in(found, values, i)), FINEST)
 
 
-def friction_and_gradient(law: Any, slip: Vector, load: float) -> Friction:
-    """Return the friction force (N) of a law without states, and its derivatives by slip."""
-    found: Friction = law.friction_and_gradient(slip, load)
-    return found
-
-
 def write_flow(
     law: Any, slip: Vector, load: float, per_mass: float, values: np.ndarray, i: int, to: np.ndarray
 ) -> None:
@@ -351,11 +322,6 @@ def _states(n: int) -> Callable[..., Any]:
 
 def _count(law: Any) -> int:
     return len(getattr(law.instance_class, "states", tuple)())
-
-
-@overload(friction_and_gradient, strict=False)
-def _friction_and_gradient(law: Any, slip: Any, load: Any) -> Any:
-    return law.instance_class.friction_and_gradient
 
 
 @overload(states_in, strict=False)
