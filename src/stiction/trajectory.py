@@ -16,7 +16,7 @@ from stiction.names import draw, picture
 from stiction.result.columns import VARIABLES, apparent_friction, cf_attributes, stick_table
 from stiction.result.file import ENDS, age, read_tables, write_result
 from stiction.result.table import Column, Table, as_dataset, as_table
-from stiction.storage.files import placeable, whole
+from stiction.storage.files import NETCDF, placeable, whole
 from stiction.storage.table_files import exportable, write_tables
 from stiction.system.description import Description
 from stiction.system.initial import Initial
@@ -182,7 +182,7 @@ class Trajectory:
         ResultError
             If the file cannot be written there.
         """
-        target = writable(path)
+        target = placeable(path, NETCDF)
         shown = "data" in vars(self)  # who has seen the dataset may have added to it
         samples = as_table(self.data) if shown else self.samples
         with whole(target) as part:
@@ -225,20 +225,6 @@ def export(result: Trajectory | str | Path, path: str | Path, *, trust: bool = F
         "status": run.status.name,
     }
     return write_tables({"samples": run.data, "sticks": run.sticks}, path, about)
-
-
-def writable(path: str | Path) -> Path:
-    """Return a path, if a result can be written there.
-
-    Raises
-    ------
-    ResultError
-        If its suffix is not .nc, its folder does not exist, or it is not a file.
-    """
-    target = Path(path)
-    if target.suffix != ".nc":
-        raise ResultError(f"{target}: a result is NetCDF; name it {target.with_suffix('.nc')}")
-    return placeable(target)
 
 
 def load(path: str | Path, *, trust: bool = False) -> Trajectory:

@@ -14,7 +14,6 @@ import stiction
 from stiction.auditing import figures
 from stiction.auditing.measured import words as measured
 from stiction.auditing.tolerance import words as tolerance
-from stiction.errors import ResultError
 from stiction.plotting.page.save import png
 from stiction.storage.files import placeable, whole
 from stiction.text.sections import join_units
@@ -68,20 +67,6 @@ DRAWN: dict[str, tuple[tuple[Callable[[Audit], Figure | None], str], ...]] = {
 }
 
 
-def writable(path: str | Path) -> Path:
-    """Return a path, if a page can be written there.
-
-    Raises
-    ------
-    ResultError
-        If its suffix is not .html, its folder does not exist, or it is not a file.
-    """
-    target = Path(path)
-    if target.suffix.lower() not in SUFFIXES:
-        raise ResultError(f"{target}: the report is a page; name it {target.with_suffix('.html')}")
-    return placeable(target)
-
-
 def write(found: Audit, path: str | Path, name: str) -> Path:
     """Write the report of an audit as a self-contained page; return the path.
 
@@ -90,7 +75,7 @@ def write(found: Audit, path: str | Path, name: str) -> Path:
     ResultError
         If it cannot be written there.
     """
-    target = writable(path)
+    target = placeable(path, SUFFIXES)
     text = page(found, name)
     with whole(target) as part:
         part.write_text(text, encoding="utf-8")

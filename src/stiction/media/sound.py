@@ -24,6 +24,7 @@ from stiction.text.units import Quantity, in_words
 from stiction.text.validation import read_arguments
 from stiction.trajectory import Trajectory, load
 
+WAV = (".wav",)
 RATE = 48_000  # samples of sound a second
 LOUD = 0.8  # of full scale
 LONGEST = 600.0  # s of sound
@@ -53,7 +54,7 @@ class Sound:
 
     def save(self, path: str | Path) -> Path:
         """Write the sound as a .wav file of 16 bits, whole or not at all; return the path."""
-        target = writable(path)
+        target = placeable(path, WAV)
         with whole(target) as part:
             part.write_bytes(self._content())
         return target
@@ -70,20 +71,6 @@ class Sound:
     def _repr_html_(self) -> str:
         content = b64encode(self._content()).decode("ascii")
         return f'<audio controls src="data:audio/wav;base64,{content}"></audio>'
-
-
-def writable(path: str | Path) -> Path:
-    """Return a path, if sound can be written there.
-
-    Raises
-    ------
-    ResultError
-        If its suffix is not .wav, or it cannot be written.
-    """
-    target = Path(path)
-    if target.suffix.lower() != ".wav":
-        raise ResultError(f"{target}: sound is WAV; name it {target.with_suffix('.wav')}")
-    return placeable(target)
 
 
 def listen(

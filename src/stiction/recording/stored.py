@@ -21,7 +21,7 @@ from stiction.result.checksums import SEAL, as_written, damaged_parts, seal_tabl
 from stiction.result.columns import cf_attributes
 from stiction.result.file import SIGNATURE, write_table
 from stiction.result.table import Column, Table, as_table
-from stiction.storage.files import placeable, whole
+from stiction.storage.files import NETCDF, placeable, whole
 from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files
 from stiction.storage.isolation import apart
 
@@ -51,10 +51,7 @@ def write_stored(
     ResultError
         If the file is not called .nc, or cannot be written there.
     """
-    target = Path(path)
-    if target.suffix != ".nc":
-        raise ResultError(f"{target}: a record is NetCDF; name it {target.with_suffix('.nc')}")
-    placeable(target)
+    target = placeable(path, NETCDF)
     columns = {
         name: Column(("time",), values, cf_attributes(CHANNELS[name].unit, CHANNELS[name].meaning))
         for name, values in channels.items()

@@ -10,7 +10,7 @@ import errno
 import os
 import shutil
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from functools import cache
@@ -25,18 +25,31 @@ except ImportError:  # Windows: a process cannot lock a folder
 
 WORKSHOP = ".stiction-"  # prefix of a workshop's name
 AT_ONCE = 32  # files synced at a time: this takes a disk hardly longer than one file
+NETCDF = (".nc",)  # suffix of results and of records
 UNSYNCABLE = (errno.EINVAL, errno.ENOTSUP)  # errors of file systems that cannot sync a folder
 
 
-def placeable(path: str | Path) -> Path:
+def placeable(path: str | Path, suffixes: Collection[str] = ()) -> Path:
     """Return a path, if a file can be written there or replaced.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    suffixes : collection of str, optional
+        Those that its name may have; any by default.
 
     Raises
     ------
     ResultError
-        If its folder does not exist, or something other than a file is there.
+        If its name has another one, its folder does not exist, or something other than a file is
+        there.
     """
     target = Path(path)
+    if suffixes and target.suffix.lower() not in suffixes:
+        first, *others = suffixes
+        remedy = f"use {first}, {', '.join(others)}" if others else f"name it {target.stem}{first}"
+        raise ResultError(f"{target}: unknown format {target.suffix!r}; {remedy}")
     if not target.parent.is_dir():
         raise ResultError(f"{target}: folder {target.parent} does not exist; make it first")
     if target.exists() and not target.is_file():

@@ -54,11 +54,7 @@ def write_tables(tables: Tables, path: str | Path, attributes: Mapping[str, str]
 
 def exportable(path: str | Path) -> Path:
     """Return a path, if `write_tables` can write there."""
-    target = Path(path)
-    if target.suffix.lower() not in FORMATS:
-        known = ", ".join(FORMATS)
-        raise ResultError(f"{target}: unknown format {target.suffix!r}; name it with {known}")
-    return placeable(target)
+    return placeable(path, FORMATS)
 
 
 def with_units(table: xr.Dataset) -> Any:

@@ -1,6 +1,7 @@
 """Files are written whole or not at all, and stay when the power fails."""
 
 import os
+import re
 import subprocess
 import sys
 
@@ -8,7 +9,7 @@ import pytest
 from tests.power import Disk
 
 import stiction as st
-from stiction.storage.files import WORKSHOP, whole, workshop
+from stiction.storage.files import WORKSHOP, placeable, whole, workshop
 
 OLD, NEW = b"the old content", b"what is new"
 
@@ -92,3 +93,20 @@ def test_what_a_killed_process_leaves_is_taken_away(tmp_path):
     with workshop(tmp_path):
         pass
     assert [each.name for each in tmp_path.iterdir()] == ["b.txt"]
+
+
+@pytest.mark.parametrize(
+    ("name", "suffixes", "remedy"),
+    [
+        ("run.toml", (".nc",), "unknown format '.toml'; name it run.nc"),
+        ("/", (".nc",), "unknown format ''; name it .nc"),  # was a traceback
+        ("run", (".png", ".pdf"), "unknown format ''; use .png, .pdf"),
+    ],
+)
+def test_a_name_of_another_format_is_refused(name, suffixes, remedy):
+    with pytest.raises(st.ResultError, match=re.escape(remedy)):
+        placeable(name, suffixes)
+
+
+def test_capitals_make_no_other_format(tmp_path):
+    assert placeable(tmp_path / "A.NC", (".nc",)) == tmp_path / "A.NC"

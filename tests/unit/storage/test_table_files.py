@@ -74,7 +74,7 @@ def test_parquet_without_its_library_says_what_to_install(run, tmp_path, monkeyp
 
 
 def test_what_cannot_be_written_is_said_before_anything_is_read(run, tmp_path):
-    with pytest.raises(st.ResultError, match=r"unknown format '.xlsx'; name it with .csv"):
+    with pytest.raises(st.ResultError, match=r"unknown format '.xlsx'; use .csv"):
         st.export(tmp_path / "none.nc", tmp_path / "run.xlsx")
     with pytest.raises(st.ResultError, match="make it first"):
         run.export(tmp_path / "no" / "run.csv")

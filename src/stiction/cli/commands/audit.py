@@ -73,9 +73,10 @@ def audit(
     rig = rig_from(config, preset, changes(set), trust)
     title = str(config or preset)
     if output is not None:
-        from stiction.auditing.page import writable
+        from stiction.auditing.page import SUFFIXES
+        from stiction.storage.files import placeable
 
-        writable(output)
+        placeable(output, SUFFIXES)
     seen = None
     if record is not None:
         said = (measured or Measured()).arguments()

@@ -51,11 +51,11 @@ def run(
     """
     from stiction import simulation
     from stiction.cli.progress import progress
-    from stiction.trajectory import writable
+    from stiction.storage.files import NETCDF, placeable
 
     given = changes(set)
     description = description_from(config, preset, given, trust)
-    writable(output)
+    placeable(output, NETCDF)
     with progress("simulating") as report:
         result = simulation.run(description, progress=report)
         result.save(output)

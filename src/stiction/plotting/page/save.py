@@ -8,7 +8,6 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from stiction.errors import ResultError
 from stiction.plotting.page.style import style
 from stiction.storage.files import placeable, whole
 
@@ -46,18 +45,8 @@ def write(fig: Figure, path: str | Path) -> Path:
 
 
 def drawable(path: str | Path) -> Path:
-    """Return a path, if a figure can be written there.
-
-    Raises
-    ------
-    ResultError
-        If the format is unknown, the folder does not exist, or the path is not a file.
-    """
-    target = Path(path)
-    suffix = target.suffix.lower()
-    if suffix not in FORMATS:
-        raise ResultError(f"{target}: unknown format {suffix!r}; use {', '.join(FORMATS)}")
-    return placeable(target)
+    """Return a path, if a figure can be written there."""
+    return placeable(path, FORMATS)
 
 
 def png(fig: Figure) -> bytes:

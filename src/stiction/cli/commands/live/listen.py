@@ -43,10 +43,11 @@ def listen(
         x.
     """
     from stiction.cli.progress import progress
+    from stiction.media.sound import WAV
     from stiction.media.sound import listen as sound_of
-    from stiction.media.sound import writable
+    from stiction.storage.files import placeable
 
-    target = writable(output)
+    target = placeable(output, WAV)
     with progress("listening") as report:
         sound = sound_of(
             result, speed=speed, window=window, axis=axis, trust=trust, progress=report
