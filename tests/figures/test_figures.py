@@ -33,7 +33,7 @@ from stiction.plotting.page.style import BLACK, BLUE, GREY, PURPLE, new_figure, 
 from stiction.plotting.page.words import plain
 from stiction.plotting.run.comparison import plot_comparison
 from stiction.plotting.run.overview import plot_run
-from stiction.plotting.run.time_series import cut_open, draw_line, envelope, swings
+from stiction.plotting.run.time_series import cut_open, draw_line, envelope, oscillations
 from stiction.plotting.stability.damping import draw_damping_map
 from stiction.reproduction.creep import creep
 from stiction.reproduction.figure3 import figure3
@@ -393,11 +393,11 @@ def test_a_slow_period_among_fast_ones_makes_no_bar() -> None:
     period[::40] = 55.0
     ends = np.cumsum(period)
     values = np.sin(2 * np.pi * np.interp(np.arange(15_000.0), ends, np.arange(len(ends))))
-    (fast,) = swings(np.arange(15_000.0), values, 60.0, 0.1)
+    (fast,) = oscillations(np.arange(15_000.0), values, 60.0, 0.1)
     assert fast.samples.start < 100  # the first period is a slow one
     assert fast.samples.stop == 15_000
     assert fast.period == pytest.approx(period[:490].mean(), rel=0.01)
-    assert not swings(np.arange(15_000.0), values, 30.0, 0.1)  # the mean period is longer
+    assert not oscillations(np.arange(15_000.0), values, 30.0, 0.1)  # the mean period is longer
 
 
 @pytest.mark.parametrize(

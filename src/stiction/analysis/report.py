@@ -18,7 +18,7 @@ from stiction.analysis.motion.cycle_summary import summary
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.doubts import taken_off, turns_round, unsteady, warnings
 from stiction.analysis.motion.friction import Friction, find_friction, without_loading
-from stiction.analysis.motion.metadata import LOADING_RATE, Comparison, compare_metadata
+from stiction.analysis.motion.metadata import LOADING_RATE, StatedQuantity, compare_metadata
 from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.oscillation import (
@@ -182,7 +182,7 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
         friction = friction.without_kinetic(turns)
     if "forth" in regime.evidence:
         friction = friction.without_any(turns)
-    stated: tuple[Comparison, ...] = ()
+    stated: tuple[StatedQuantity, ...] = ()
     if run is None:  # which is what it states
         stated = compare_metadata(record, regime.kind, cycles)
         doubts = warnings(record, regime.kind, cycles, friction, stated)
@@ -238,7 +238,7 @@ def _blank_meaningless(
     record: Record,
     cycles: xr.Dataset,
     regime: Regime,
-    stated: tuple[Comparison, ...],
+    stated: tuple[StatedQuantity, ...],
     missing: dict[str, str],
 ) -> xr.Dataset:
     """Blank the columns of a table that are meaningless for a motion, or as things are stated."""

@@ -31,7 +31,7 @@ STRAIGHT, OBLIQUE, STEEP = pi / 9.0, pi / 4.0, 0.5
 ROUNDED = 1e-9  # relative: static friction that exceeds the kinetic by less is the same
 
 
-class Loading(NamedTuple):
+class FirstLoading(NamedTuple):
     """The first loading of a spring.
 
     Parameters
@@ -47,7 +47,7 @@ class Loading(NamedTuple):
     end: int
 
 
-def loading(slider: Slider, elongation: Floats, drive: Floats) -> Loading:
+def first_loading(slider: Slider, elongation: Floats, drive: Floats) -> FirstLoading:
     """Find the start of the first slip.
 
     In a slip the mass gains on the drive, and the spring's elongation along the drive falls: by
@@ -72,8 +72,8 @@ def loading(slider: Slider, elongation: Floats, drive: Floats) -> Loading:
     gained = np.flatnonzero(np.maximum.accumulate(lag) - lag > least)
     if len(gained):
         slip = int(np.argmax(lag[: gained[0]]))
-        return Loading(slip, slip)
-    return Loading(-1, int(np.argmax(lag >= lag.max() - least)))
+        return FirstLoading(slip, slip)
+    return FirstLoading(-1, int(np.argmax(lag >= lag.max() - least)))
 
 
 def slips_at_once(slider: Slider) -> bool:
@@ -109,20 +109,20 @@ def _least_gain(slider: Slider) -> float:
     return max(GAINED / slow, SWUNG / fast) / (2.0 * pi)
 
 
-def _loading(run: Trajectory) -> Loading:
+def _first_loading(run: Trajectory) -> FirstLoading:
     samples = run.samples
     elongation = run.slider.along_drive(samples["u_x"], samples["u_y"])
-    return loading(run.slider, elongation, samples["drive_X"])
+    return first_loading(run.slider, elongation, samples["drive_X"])
 
 
 def first_slip_time(run: Trajectory) -> float:
-    """Return the start of the first slip (s), see `loading`; the run's last time if none."""
-    return float(run.samples["time"][_loading(run).slip])
+    """Return the start of the first slip (s), see `first_loading`; the run's last time if none."""
+    return float(run.samples["time"][_first_loading(run).slip])
 
 
 def creep_end(run: Trajectory) -> float:
-    """Return the end of the initial creep (s), with or without a slip: see `Loading`."""
-    return float(run.samples["time"][_loading(run).end])
+    """Return the end of the initial creep (s), with or without a slip: see `FirstLoading`."""
+    return float(run.samples["time"][_first_loading(run).end])
 
 
 def mean_creep_velocity(run: Trajectory, width: float = 0.02) -> xr.DataArray:

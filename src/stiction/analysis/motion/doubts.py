@@ -11,7 +11,7 @@ import numpy as np
 from stiction.analysis.motion.course import QUIET, change_of_period
 from stiction.analysis.motion.drift import Drift, find_drift
 from stiction.analysis.motion.friction import Friction
-from stiction.analysis.motion.metadata import FEW, LOADING_RATE, SWING, Comparison
+from stiction.analysis.motion.metadata import FEW, LOADING_RATE, SWING, StatedQuantity
 from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import even_grid, why_not
@@ -54,7 +54,7 @@ def warnings(
     kind: str,
     cycles: xr.Dataset,
     friction: Friction,
-    stated: Sequence[Comparison],
+    stated: Sequence[StatedQuantity],
 ) -> tuple[str, ...]:
     """Return warnings as sentences, the most important first; `stated` is what was compared."""
     wrong = {each.quantity: each for each in stated if each.agrees is False}
@@ -266,7 +266,7 @@ def _implausible_friction(record: Record, friction: Friction, cycles: xr.Dataset
     yield f"A friction coefficient of {mu:.3g} is implausible: {its}check the normal load, {load}."
 
 
-def _loading_too_fast(its: Comparison | None) -> Iterator[str]:
+def _loading_too_fast(its: StatedQuantity | None) -> Iterator[str]:
     if its is None:
         return
     yield (
@@ -286,7 +286,7 @@ def _remedy(ratio: float) -> str:
     return f"{asked}; or stiffness or drive velocity is stated {wrong}"
 
 
-def _mass(its: Comparison | None, kind: str) -> Iterator[str]:
+def _mass(its: StatedQuantity | None, kind: str) -> Iterator[str]:
     """Doubt k/m if the period of a swing, or the duration of a slip, contradicts it."""
     if its is None:
         return

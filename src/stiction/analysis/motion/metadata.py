@@ -25,7 +25,7 @@ AT_REST = 0.02  # of the largest force
 LOADING_RATE, SWING = "stiffness times drive velocity", "stiffness over mass"  # quantities
 
 
-class Comparison(NamedTuple):
+class StatedQuantity(NamedTuple):
     """A quantity as the record shows it, with its standard error, and as it is stated.
 
     NaN where it is not known. `low` and `high` bound the ratio of both where they agree.
@@ -51,7 +51,7 @@ class Comparison(NamedTuple):
         return self.low <= self.ratio <= self.high if isfinite(self.ratio) else None
 
 
-def compare_metadata(record: Record, kind: str, cycles: xr.Dataset) -> tuple[Comparison, ...]:
+def compare_metadata(record: Record, kind: str, cycles: xr.Dataset) -> tuple[StatedQuantity, ...]:
     """Return all that a record shows of its apparatus, beside what is stated.
 
     Parameters
@@ -75,7 +75,7 @@ def compare_metadata(record: Record, kind: str, cycles: xr.Dataset) -> tuple[Com
     return tuple(each for each in found if each is not None)
 
 
-def _loading_rate(record: Record, kind: str, cycles: xr.Dataset) -> Comparison | None:
+def _loading_rate(record: Record, kind: str, cycles: xr.Dataset) -> StatedQuantity | None:
     """Compare the rate of loading while the mass sticks with stiffness times drive velocity."""
     if kind not in (STICK_SLIP, TRANSITIONAL):
         return None
@@ -83,10 +83,10 @@ def _loading_rate(record: Record, kind: str, cycles: xr.Dataset) -> Comparison |
     stated = (record.stiffness or nan) * (record.drive_velocity or nan)
     how = "rate at which the force rises"
     seen, error = float(np.median(slopes)), _error(slopes)
-    return Comparison(LOADING_RATE, "N/s", seen, error, stated, SLOWER, FASTER, how)
+    return StatedQuantity(LOADING_RATE, "N/s", seen, error, stated, SLOWER, FASTER, how)
 
 
-def _stiffness_over_mass(record: Record, kind: str, cycles: xr.Dataset) -> Comparison | None:
+def _stiffness_over_mass(record: Record, kind: str, cycles: xr.Dataset) -> StatedQuantity | None:
     """Compare k/m by the period of a swing, or the duration of a slip, with that stated.
 
     A mass on its spring swings with the period T = 2 pi (m/k)^1/2; a slip under constant friction
@@ -104,14 +104,14 @@ def _stiffness_over_mass(record: Record, kind: str, cycles: xr.Dataset) -> Compa
     found = (2.0 * pi / swing) ** 2
     stated = (record.stiffness or nan) / (record.mass or nan)
     error = 2.0 * found * _error(swings) / swing
-    return Comparison(SWING, "1/s²", found, error, stated, lowest, LIGHTER, how)
+    return StatedQuantity(SWING, "1/s²", found, error, stated, lowest, LIGHTER, how)
 
 
 def _error(values: np.ndarray) -> float:
     return trimmed_mean(np.asarray(values, dtype=np.float64)).error
 
 
-def _drive_velocity(record: Record) -> Comparison | None:
+def _drive_velocity(record: Record) -> StatedQuantity | None:
     """Compare the slope of the drive's displacement with the stated velocity."""
     if record.drive_position is None or len(record) < FEW:
         return None
@@ -119,20 +119,20 @@ def _drive_velocity(record: Record) -> Comparison | None:
     found, error = abs(float(line[0])), float(np.sqrt(max(square[0, 0], 0.0)))
     stated = record.drive_velocity or nan
     how = "slope of the drive's displacement"
-    return Comparison("drive velocity", "m/s", found, error, stated, 1 - ALIKE, 1 + ALIKE, how)
+    return StatedQuantity("drive velocity", "m/s", found, error, stated, 1 - ALIKE, 1 + ALIKE, how)
 
 
-def _normal_load(record: Record) -> Comparison | None:
+def _normal_load(record: Record) -> StatedQuantity | None:
     """Compare the mean of the measured normal load with the stated one."""
     if record.load is None or not len(record):
         return None
     found, spread = float(record.load.mean()), float(record.load.std())
     stated = record.normal_load or nan
     how = "mean of its channel, with its spread"
-    return Comparison("normal load", "N", found, spread, stated, 1 - ALIKE, 1 + ALIKE, how)
+    return StatedQuantity("normal load", "N", found, spread, stated, 1 - ALIKE, 1 + ALIKE, how)
 
 
-def _transverse_frequency(record: Record) -> Comparison | None:
+def _transverse_frequency(record: Record) -> StatedQuantity | None:
     """Compare the highest frequency that the record shows with the transverse one.
 
     That is (k_across/m)^1/2 / 2 pi; near the first slip the oscillation is slower.
@@ -146,10 +146,10 @@ def _transverse_frequency(record: Record) -> Comparison | None:
     how = "0.4 of the sample rate, or the sensor's cut-off"
     shown = min([highest, *cuts])
     name = "frequencies up to, and the transverse one"
-    return Comparison(name, "Hz", shown, nan, frequency, 1.0, float("inf"), how)
+    return StatedQuantity(name, "Hz", shown, nan, frequency, 1.0, float("inf"), how)
 
 
-def _zero(record: Record) -> Comparison | None:
+def _zero(record: Record) -> StatedQuantity | None:
     """Return the reading with which a record begins, where that is constant: a zero perhaps."""
     some = record.force[: max(8, len(record) // 400)]
     if not len(some) or len(record) < 4 * len(some):
@@ -159,10 +159,10 @@ def _zero(record: Record) -> Comparison | None:
     if not abs(read) < AT_REST * largest or spread > AT_REST * largest:
         return None
     stated = 0.0 if record.zero is not None else nan
-    return Comparison("zero", "N", read, spread, stated, nan, nan, "reading at its beginning")
+    return StatedQuantity("zero", "N", read, spread, stated, nan, nan, "reading at its beginning")
 
 
-def _drift(record: Record, kind: str, cycles: xr.Dataset) -> Comparison | None:
+def _drift(record: Record, kind: str, cycles: xr.Dataset) -> StatedQuantity | None:
     """Return the steady change of the force."""
     if kind not in (STICK_SLIP, TRANSITIONAL, HARMONIC, STEADY):
         return None
@@ -170,4 +170,4 @@ def _drift(record: Record, kind: str, cycles: xr.Dataset) -> Comparison | None:
     if not isfinite(drift.error):
         return None
     how = "line through the middles of cycles" if cycles.sizes["cycle"] else "its second half"
-    return Comparison("drift of the force", "N/s", drift.rate, drift.error, nan, nan, nan, how)
+    return StatedQuantity("drift of the force", "N/s", drift.rate, drift.error, nan, nan, nan, how)

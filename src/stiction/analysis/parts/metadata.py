@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isfinite, isnan
 from typing import TYPE_CHECKING, Any
 
-from stiction.analysis.motion.metadata import LOADING_RATE, SWING, Comparison
+from stiction.analysis.motion.metadata import LOADING_RATE, SWING, StatedQuantity
 from stiction.analysis.parts.wording import number
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words, with_error
@@ -33,7 +33,7 @@ HEADINGS = ("quantity", "shown", "stated", "", "by the")
 
 def section(found: Analysis) -> Section | None:
     """Return them as a table, with a sentence on those that contradict each other."""
-    its: tuple[Comparison, ...] = found.parts["metadata"]
+    its: tuple[StatedQuantity, ...] = found.parts["metadata"]
     if all(each.agrees is None for each in its):  # nothing is stated
         return None
     known = [word for word in map(verdict, its) if word]
@@ -50,7 +50,7 @@ def section(found: Analysis) -> Section | None:
     return Section("What the record says of its apparatus", lines, Table(HEADINGS, _rows(its)))
 
 
-def verdict(each: Comparison) -> str:
+def verdict(each: StatedQuantity) -> str:
     """Return whether the record agrees with a stated value, only allows it, or contradicts it."""
     if not each.agrees:
         return "" if each.agrees is None else "contradicts"
@@ -60,7 +60,7 @@ def verdict(each: Comparison) -> str:
     return "agrees" if same else ALLOWED
 
 
-def _sentence(each: Comparison) -> str:
+def _sentence(each: StatedQuantity) -> str:
     """Return a contradiction in words."""
     if each.unit == "Hz":
         return (
@@ -72,7 +72,7 @@ def _sentence(each: Comparison) -> str:
     return f"{name}: by the {each.how} it is {each.ratio:.2g} times what is stated."
 
 
-def _rows(its: tuple[Comparison, ...]) -> list[tuple[str, ...]]:
+def _rows(its: tuple[StatedQuantity, ...]) -> list[tuple[str, ...]]:
     return [
         (
             each.quantity,
@@ -89,7 +89,7 @@ def tables(found: Analysis) -> dict[str, xr.Dataset | None]:
     """Return a row for each quantity, in SI."""
     import xarray as xr
 
-    its: tuple[Comparison, ...] = found.parts["metadata"]
+    its: tuple[StatedQuantity, ...] = found.parts["metadata"]
     columns = {name: ("quantity", [getattr(each, name) for each in its]) for name in NUMBERS}
     texts = {name: ("quantity", [getattr(each, name) for each in its]) for name in ("unit", "how")}
     rows = {"quantity": ("quantity", [each.quantity for each in its])}
@@ -98,7 +98,7 @@ def tables(found: Analysis) -> dict[str, xr.Dataset | None]:
 
 def numbers(found: Analysis) -> dict[str, Any]:
     """Return them for JSON."""
-    its: tuple[Comparison, ...] = found.parts["metadata"]
+    its: tuple[StatedQuantity, ...] = found.parts["metadata"]
     return {
         "metadata": {
             each.quantity: {name: number(getattr(each, name)) for name in NUMBERS}

@@ -7,7 +7,7 @@ from math import nan, sqrt
 
 import numpy as np
 
-from stiction.analysis.protocols.course import Floats, course
+from stiction.analysis.protocols.friction_test import Floats, friction_test
 from stiction.analysis.record import Record
 from stiction.drive import DriveProgram
 from stiction.errors import ResultError
@@ -91,7 +91,7 @@ def healing(source: Trajectory | Record, program: DriveProgram | None = None) ->
     >>> f"{found.gain[0]:.4f}"
     '0.0415'
     """
-    test = course(source, program)
+    test = friction_test(source, program)
     parts = test.stretches
     holds = [
         i

@@ -7,7 +7,7 @@ from math import nan
 
 import numpy as np
 
-from stiction.analysis.protocols.course import Course, Floats, Stretch, course
+from stiction.analysis.protocols.friction_test import Floats, FrictionTest, Stretch, friction_test
 from stiction.analysis.record import Record
 from stiction.drive import DriveProgram
 from stiction.errors import ResultError
@@ -86,7 +86,7 @@ def hysteresis(source: Trajectory | Record, program: DriveProgram | None = None)
     ResultError
         If the drive does not turn twice.
     """
-    test = course(source, program)
+    test = friction_test(source, program)
     legs = test.stretches
     turns = [i for i in range(1, len(legs)) if legs[i].velocity * legs[i - 1].velocity < 0.0]
     found = [
@@ -99,7 +99,7 @@ def hysteresis(source: Trajectory | Record, program: DriveProgram | None = None)
     return Hysteresis(tuple(found))
 
 
-def _loop(test: Course, back: Stretch, forth: Stretch) -> Loop:
+def _loop(test: FrictionTest, back: Stretch, forth: Stretch) -> Loop:
     at = test.within(back.start, forth.end)
     time, force = test.time[at], test.load * test.mu[at]
     turned = time > back.end

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stiction.analysis.protocols.course import SETTLED, Floats
+from stiction.analysis.protocols.friction_test import SETTLED, Floats
 from stiction.analysis.protocols.healing import line
 from stiction.analysis.record import Record
 from stiction.drive import ConstantLoad, LoadProgram, load_stretches

@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from stiction.analysis.protocols.course import Course, Floats, Stretch, course
+from stiction.analysis.protocols.friction_test import Floats, FrictionTest, Stretch, friction_test
 from stiction.analysis.record import Record
 from stiction.drive import DriveProgram
 from stiction.errors import ResultError
@@ -132,7 +132,7 @@ def velocity_steps(
     ResultError
         If the drive's velocity does not jump from one speed to another.
     """
-    test = course(source, program)
+    test = friction_test(source, program)
     pairs = zip(test.stretches, test.stretches[1:], strict=False)
     jumps = [(one, two) for one, two in pairs if one.velocity * two.velocity > 0.0]
     if not jumps:
@@ -142,7 +142,7 @@ def velocity_steps(
     return VelocitySteps(steps, float(np.nanmin(known)) if np.isfinite(known).any() else nan)
 
 
-def _step(test: Course, one: Stretch, two: Stretch, law: Law) -> VelocityStep:
+def _step(test: FrictionTest, one: Stretch, two: Stretch, law: Law) -> VelocityStep:
     way = float(np.sign(one.velocity))
     after = test.within(two.start, two.end)
     mu, before, steady = way * test.mu[after], way * test.steady(one), way * test.steady(two)

@@ -66,7 +66,7 @@ def envelope(time: ArrayLike, values: ArrayLike, bins: int = BINS) -> tuple[Floa
     return np.repeat(middle, 2), np.column_stack([low, high]).ravel()
 
 
-class Swings(NamedTuple):
+class Oscillation(NamedTuple):
     """An oscillation: the samples from its first turn to its last, and its mean period in s.
 
     An oscillation that begins or ends with the record has the samples beyond these turns, too.
@@ -76,7 +76,7 @@ class Swings(NamedTuple):
     period: float
 
 
-def swings(time: Floats, values: Floats, longest: float, least: float) -> list[Swings]:
+def oscillations(time: Floats, values: Floats, longest: float, least: float) -> list[Oscillation]:
     """Find the oscillations with short periods.
 
     Parameters
@@ -101,7 +101,7 @@ def swings(time: Floats, values: Floats, longest: float, least: float) -> list[S
             begins = time[group[0]] - time[first] <= 1.5 * gaps[0]
             goes_on = time[last] - time[group[-1]] <= 1.5 * gaps[-1]
             start, end = first if begins else group[0], last if goes_on else group[-1]
-            found.append(Swings(slice(start, end + 1), 2.0 * gaps.mean()))
+            found.append(Oscillation(slice(start, end + 1), 2.0 * gaps.mean()))
     return found
 
 
@@ -137,7 +137,7 @@ def draw_line(
         span, height = window or (times[-1] - times[0], height)
         across = POINT * ax.get_window_extent().width / ax.figure.get_dpi()
         longest = LINES * width / across * span
-        found = swings(times, shown, longest, THIN * height)
+        found = oscillations(times, shown, longest, THIN * height)
         if found:
             shown = _draw_range(ax, times, shown, found, color)
     (line,) = ax.plot(*envelope(times, shown), color=color, linewidth=width)
@@ -148,7 +148,9 @@ def draw_line(
     return line
 
 
-def _draw_range(ax: Axes, time: Floats, values: Floats, found: list[Swings], color: str) -> Floats:
+def _draw_range(
+    ax: Axes, time: Floats, values: Floats, found: list[Oscillation], color: str
+) -> Floats:
     """Draw the range of oscillations as a band; return the values with their mean in its place."""
     bins = min(BINS, len(time) // 2)
     starts = _bin_starts(len(time), bins)

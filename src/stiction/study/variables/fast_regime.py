@@ -124,7 +124,7 @@ def kind_of(
     if len(lasting.drop) >= FEWEST:
         return by_shape(lasting, own, still, sticks)
     dying = die_out(cycles, end)
-    kind = kinds.SETTLING if dying else course(found, start, end, drive)
+    kind = kinds.SETTLING if dying else by_course(found, start, end, drive)
     if kind not in (kinds.SETTLING, kinds.STEADY) or oscillation <= OSCILLATES:
         return kind
     # what dies out sets the stiffer spring in motion, too
@@ -169,7 +169,7 @@ def irregular(cycles: Swings) -> bool:
     return irregularity(cycles.period, cycles.drop) > 0.5
 
 
-def course(found: Features, start: float, end: float, drive: float) -> str:
+def by_course(found: Features, start: float, end: float, drive: float) -> str:
     """Return the kind of a force without cycles, by the rules of `analysis.motion.regime`."""
     f = found.means.tolist()
     span, change = max(f) - min(f), f[-1] - f[0]

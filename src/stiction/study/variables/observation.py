@@ -10,7 +10,7 @@ from math import ceil, nan, pi, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.creep.first_slip import loading
+from stiction.analysis.creep.first_slip import first_loading
 from stiction.analysis.motion.regime.kinds import STUCK
 from stiction.analysis.motion.rest import stick_shares, still_shares
 from stiction.drive import ConstantVelocity
@@ -136,7 +136,7 @@ class Observed:
         """Start of the first slip (s), and the distance of the mass until then (m)."""
         slider = self.description.slider
         drive = np.broadcast_to(self.drive, self.time.shape)
-        at = loading(slider, slider.along_drive(self.column(0), self.column(1)), drive).slip
+        at = first_loading(slider, slider.along_drive(self.column(0), self.column(1)), drive).slip
         if at < 0:
             return nan, nan
         positions = self.positions

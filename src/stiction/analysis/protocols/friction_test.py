@@ -1,4 +1,4 @@
-"""The course of a friction test: friction over time, and stretches of constant velocity."""
+"""A friction test: friction over time, and stretches of constant velocity."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Stretch(NamedTuple):
     velocity: float
 
 
-class Course(NamedTuple):
+class FrictionTest(NamedTuple):
     """Friction over time, and what the drive does meanwhile.
 
     Attributes
@@ -70,8 +70,8 @@ class Course(NamedTuple):
         return float(self.mu[near].mean()) if len(near) else nan
 
 
-def course(source: Trajectory | Record, program: DriveProgram | None = None) -> Course:
-    """Return the course of a run, or of a record of a test by a program.
+def friction_test(source: Trajectory | Record, program: DriveProgram | None = None) -> FrictionTest:
+    """Return a run, or a record of a test by a program, as a friction test.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def course(source: Trajectory | Record, program: DriveProgram | None = None) -> 
         lag = slider.along_drive(d["u_x"], d["u_y"])
         time, drive = d["time"], slider.motion
         mean, k_x = float(load.mean()), slider.k_x
-        return Course(time, force / load, lag, mean, k_x, stretches(drive, time))
+        return FrictionTest(time, force / load, lag, mean, k_x, stretches(drive, time))
     if source.normal_load is None:
         raise ResultError("friction needs the normal load; give the record its normal_load")
     if program is None:
@@ -104,7 +104,9 @@ def course(source: Trajectory | Record, program: DriveProgram | None = None) -> 
     lag = source.force / source.stiffness if source.stiffness else np.zeros(len(source.time))
     mu = source.force / source.normal_load
     k = source.stiffness or nan
-    return Course(source.time, mu, lag, source.normal_load, k, stretches(program, source.time))
+    return FrictionTest(
+        source.time, mu, lag, source.normal_load, k, stretches(program, source.time)
+    )
 
 
 def stretches(drive: ConstantVelocity | DriveProgram, time: Floats) -> list[Stretch]:
