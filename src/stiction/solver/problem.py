@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from numba.extending import overload, register_jitable
 
-from stiction.drive.recorded.spline import Recording, cubic_sum, place, place_one
+from stiction.drive.recorded.spline import Recording, cubic_sum, piece_at, piece_at_one
 from stiction.drive.signal import FUNCTIONS as SIGNAL_FUNCTIONS
 from stiction.drive.signal import Signal
 from stiction.friction import FUNCTIONS as LAW_FUNCTIONS
@@ -306,7 +306,7 @@ for _method in SIGNAL_FUNCTIONS:
     by_type(_method, Signal)
     by_type(_method, Recording, **SEPARATE)
 register_jitable(**SEPARATE)(cubic_sum)
-overload(place, strict=False, jit_options=SEPARATE)(lambda *_: place_one)
+overload(piece_at, strict=False, jit_options=SEPARATE)(lambda *_: piece_at_one)
 
 
 @overload(coefficient_and_slope, strict=False)

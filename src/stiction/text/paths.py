@@ -92,7 +92,7 @@ def put(owner: Any, keys: list[str], value: Any) -> None:
     if rest:
         put(member(owner, key), rest, value)
     elif isinstance(owner, list):
-        owner[place(owner, key)] = value
+        owner[index_in(owner, key)] = value
     elif isinstance(owner, dict):
         owner[key] = value
     else:
@@ -110,13 +110,13 @@ def first(owner: Any, keys: list[str]) -> tuple[str, list[str]]:
 def member(owner: Any, key: str) -> Any:
     """Return a part of a table, made if missing, or an element of a list."""
     if isinstance(owner, list):
-        return owner[place(owner, key)]
+        return owner[index_in(owner, key)]
     if not isinstance(owner, dict):
         raise TypeError(f"has no part {key!r}: it is {owner!r}")
     return owner.setdefault(key, {})
 
 
-def place(owner: list[Any], key: str) -> int:
+def index_in(owner: list[Any], key: str) -> int:
     """Return the index of an element that is counted from 1, or known by its name."""
     names = [slug(each["name"]) for each in owner if isinstance(each, dict) and "name" in each]
     if key in names:

@@ -8,7 +8,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 from pydantic import BeforeValidator, WithJsonSchema
 
-from stiction.drive.recorded.rows import Table, row_faults
+from stiction.drive.recorded.rows import Rows, row_faults
 from stiction.drive.recorded.spline import Recording, recording, spline
 from stiction.text.samples import Column, as_numbers, samples_to_si, unit_on
 from stiction.text.units import FORCE, VELOCITY, Kind, Number, fault
@@ -135,13 +135,13 @@ class RecordedLoad(NamedTuple):
 RECORDS = (Recorded, RecordedLoad)
 
 
-def _table(piece: Any) -> Table:
+def _table(piece: Any) -> Rows:
     """Return the rows of a piece for checking."""
     given = (name for name in KINDS if name != "time" and getattr(piece, name, None) is not None)
     name = next(given)
     values = getattr(piece, name).values
     unit = "N" if name == "load" else "m/s"
-    return Table(piece.time.values, values, name, unit, range(1, len(values) + 1))
+    return Rows(piece.time.values, values, name, unit, range(1, len(values) + 1))
 
 
 def length(time: Column) -> float:

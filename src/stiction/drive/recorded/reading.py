@@ -11,7 +11,7 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from stiction.drive.recorded.piece import KINDS, Recorded, RecordedLoad
-from stiction.drive.recorded.rows import Table, row_faults
+from stiction.drive.recorded.rows import Rows, row_faults
 from stiction.drive.recorded.table_file import (
     Heading,
     TextTable,
@@ -178,7 +178,7 @@ def rows_of(
     if not found:
         unit = "N" if quantity == "load" else "m/s"
         values = columns["time"].values, columns[quantity].values
-        rows = Table(*values, quantity, unit, table.lines, "line")
+        rows = Rows(*values, quantity, unit, table.lines, "line")
         found = [Fault(name, message) for name, message in row_faults(rows)]
     return columns, found
 

@@ -18,7 +18,7 @@ GAP = 10.0  # of the distances beside it
 SHOWN = 4  # rows of one fault
 
 
-class Table(NamedTuple):
+class Rows(NamedTuple):
     """Times (s) and values of a table in SI, as it is given.
 
     `name` is what the values are, `unit` the unit of what counts: the velocity's for positions;
@@ -33,7 +33,7 @@ class Table(NamedTuple):
     word: str = "row"
 
 
-def row_faults(table: Table) -> Iterator[tuple[str, str]]:
+def row_faults(table: Rows) -> Iterator[tuple[str, str]]:
     """Yield every fault of a table: the column, and what is wrong with it."""
     time, values = table.time, table.values
     if len(time) != len(values):
@@ -47,7 +47,7 @@ def row_faults(table: Table) -> Iterator[tuple[str, str]]:
         yield from gaps or _roughness(table)
 
 
-def _count(table: Table) -> Iterator[tuple[str, str]]:
+def _count(table: Rows) -> Iterator[tuple[str, str]]:
     count = len(table.time)
     if count < FEWEST:
         yield "time", f"has {count} rows; a smooth curve needs {FEWEST} at least"
@@ -55,7 +55,7 @@ def _count(table: Table) -> Iterator[tuple[str, str]]:
         yield "time", f"has {count:,} rows, more than {MOST:,}; thin them, or cut the record"
 
 
-def _numbers(table: Table) -> Iterator[tuple[str, str]]:
+def _numbers(table: Rows) -> Iterator[tuple[str, str]]:
     for name, column in (("time", table.time), (table.name, table.values)):
         wrong = np.flatnonzero(~(np.abs(column) <= LARGEST))
         if len(wrong):
@@ -63,7 +63,7 @@ def _numbers(table: Table) -> Iterator[tuple[str, str]]:
             yield name, f"{where}: {column[wrong[0]]:g} is not a number; leave the row out"
 
 
-def _order(table: Table) -> Iterator[tuple[str, str]]:
+def _order(table: Rows) -> Iterator[tuple[str, str]]:
     steps = np.diff(table.time)
     back, same = np.flatnonzero(steps < 0.0) + 1, np.flatnonzero(steps == 0.0) + 1
     if len(back):
@@ -77,7 +77,7 @@ def _order(table: Table) -> Iterator[tuple[str, str]]:
         yield "time", f"{where}: at {at:.9g} s as the row before; keep one row of each time"
 
 
-def _gaps(table: Table) -> Iterator[tuple[str, str]]:
+def _gaps(table: Rows) -> Iterator[tuple[str, str]]:
     steps = np.diff(table.time)
     padded = np.concatenate([[0.0], steps, [0.0]])
     beside = np.maximum(padded[:-2], padded[2:])
@@ -92,7 +92,7 @@ def _gaps(table: Table) -> Iterator[tuple[str, str]]:
         )
 
 
-def _roughness(table: Table) -> Iterator[tuple[str, str]]:
+def _roughness(table: Rows) -> Iterator[tuple[str, str]]:
     integrated = table.name == "position"
     made = spline(Column(table.time), Column(table.values), integrated)
     largest = float(np.abs(made.bounds[:, :2]).max())
@@ -102,7 +102,7 @@ def _roughness(table: Table) -> Iterator[tuple[str, str]]:
         yield table.name, advice(found, table.name, amount, [*table.numbers], table.word)
 
 
-def _where(table: Table, rows: Any) -> str:
+def _where(table: Rows, rows: Any) -> str:
     """Return the rows of a fault by number, the first ones if they are many."""
     shown = ", ".join(str(table.numbers[int(i)]) for i in rows[:SHOWN])
     more = f" and {len(rows) - SHOWN} more" if len(rows) > SHOWN else ""

@@ -2,7 +2,7 @@
 
 The value is a cubic between two rows (M78), of which the solver takes none in the middle of a step:
 its steps end at the rows. The plain functions here work on floats, on arrays of times, and in
-compiled code, for which `place_one` takes the place of `place`.
+compiled code, for which `piece_at_one` takes the place of `piece_at`.
 """
 
 from __future__ import annotations
@@ -52,42 +52,42 @@ class Recording(NamedTuple):
 
     def value_at(r, t: Any) -> Any:
         """Return the value at time `t`."""
-        i = place(r, t)
+        i = piece_at(r, t)
         c, x = r.cubics, t - r.rows[i]
         found = c[i, 0] + x * (c[i, 1] + x * (c[i, 2] + x * c[i, 3]))
         return found + value_at(r.wave, t)
 
     def change_at(r, t: Any) -> Any:
         """Return the derivative at time `t`."""
-        i = place(r, t)
+        i = piece_at(r, t)
         c, x = r.cubics, t - r.rows[i]
         found = c[i, 1] + x * (2.0 * c[i, 2] + x * (3.0 * c[i, 3]))
         return found + change_at(r.wave, t)
 
     def curve_at(r, t: Any) -> Any:
         """Return the second derivative at time `t`."""
-        i = place(r, t)
+        i = piece_at(r, t)
         c = r.cubics
         return 2.0 * c[i, 2] + (t - r.rows[i]) * (6.0 * c[i, 3]) + curve_at(r.wave, t)
 
     def sum_over(r, t: Any, dt: Any) -> Any:
         """Return the integral from `t` to `t + dt`, without cancellation for short `dt`."""
         end = t + dt
-        i, j = place(r, t), place(r, end)
+        i, j = piece_at(r, t), piece_at(r, end)
         begun = cubic_sum(r, i, t - r.rows[i], np.minimum(dt, r.rows[i + 1] - t))
         rest = r.sums[j] - r.sums[i + 1] + cubic_sum(r, j, 0.0, end - r.rows[j])
         return begun + (j > i) * rest + sum_over(r.wave, t, dt)
 
     def bounds_between(r, start: float, end: float) -> tuple[float, float, float, float]:
         """Return bounds of the magnitudes of the value and its first three derivatives."""
-        found = r.bounds[int(place(r, start)) : int(place(r, end)) + 1]
+        found = r.bounds[int(piece_at(r, start)) : int(piece_at(r, end)) + 1]
         most = np.column_stack([np.abs(found[:, :2]).max(axis=1), found[:, 2:]]).max(axis=0)
         wave = r.wave.bounds_between(start, end)
         return tuple(float(a) + b for a, b in zip(most, wave, strict=True))  # type: ignore[return-value]
 
     def bounds_at(r, rows: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """Return such bounds from each of some times to the next; the recording's rows are some."""
-        found = r.bounds[place(r, rows[:-1])]
+        found = r.bounds[piece_at(r, rows[:-1])]
         wave = r.wave.bounds_between(float(rows[0]), float(rows[-1]))
         value = np.abs(found[:, :2]).max(axis=1) + wave[0]
         return value, found[:, 2] + wave[1], found[:, 3] + wave[2], found[:, 4] + wave[3]
@@ -100,18 +100,18 @@ class Recording(NamedTuple):
     def may_vanish(r, start: float, end: float) -> Iterator[tuple[float, float]]:
         """Yield the intervals (s) in which the value may reach zero: some of the pieces."""
         least = r.bounds[:, 0] - r.wave.bounds_between(start, end)[0]
-        first, last = int(place(r, start)), int(place(r, end))
+        first, last = int(piece_at(r, start)), int(piece_at(r, end))
         for i in (np.flatnonzero(least[first : last + 1] <= 0.0) + first).tolist():
             yield max(start, float(r.rows[i])), min(end, float(r.rows[i + 1]))
 
 
-def place(r: Recording, t: Any) -> Any:
+def piece_at(r: Recording, t: Any) -> Any:
     """Return the piece that holds at time `t`, the later one at a row."""
     return np.clip(np.searchsorted(r.rows, t, side="right") - 1, 0, len(r.cubics) - 1)
 
 
-def place_one(r: Recording, t: float) -> int:
-    """Do as `place` for one time, in compiled code: in the same time for any number of rows.
+def piece_at_one(r: Recording, t: float) -> int:
+    """Do as `piece_at` for one time, in compiled code: in the same time for any number of rows.
 
     A part of the time tells between which two pieces it is; rows at equal distances leave one or
     two.

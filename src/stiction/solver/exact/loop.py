@@ -11,7 +11,7 @@ from stiction.solver.compilation.jit import compiled, inlined
 from stiction.solver.control import GROWTH, ease, step_factor, trend
 from stiction.solver.exact.newton import products
 from stiction.solver.exact.pursuit import land, pursuit
-from stiction.solver.exact.record import NoRecord, Record, keep_step
+from stiction.solver.exact.record import NoRecord, StepRecord, keep_step
 from stiction.solver.exact.sampling import sample_slip, sample_stick
 from stiction.solver.exact.slip_frame import (
     Frame,
@@ -129,7 +129,7 @@ def slip(
     times: np.ndarray,
     samples: np.ndarray,
     k: int,
-    record: NoRecord | Record,
+    record: NoRecord | StepRecord,
 ) -> tuple[bool, State, int]:
     """Take one step of slip and plan the next."""
     motion, memory, counts = state
@@ -201,7 +201,7 @@ def advance(
     samples: np.ndarray,
     k: int,
     sticks: np.ndarray,
-    record: NoRecord | Record,
+    record: NoRecord | StepRecord,
 ) -> tuple[int, State, int, int]:
     """Advance until `t_end`, until the budget of steps is used up, or until `sticks` is full.
 
@@ -221,7 +221,7 @@ def advance(
         The next row to fill.
     sticks : ndarray
         Rows (start, end) of stick intervals to fill, from ``state.counts.sticks`` on.
-    record : NoRecord or Record
+    record : NoRecord or StepRecord
         What keeps the steps for later.
 
     Returns

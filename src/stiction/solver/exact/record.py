@@ -39,7 +39,7 @@ class NoRecord(NamedTuple):
         """Do nothing."""
 
 
-class Record(NamedTuple):
+class StepRecord(NamedTuple):
     """Room for steps: `rows`, and how many are in use, or would be if they fitted."""
 
     rows: np.ndarray
@@ -63,7 +63,7 @@ class Record(NamedTuple):
 
 
 def keep_step(
-    record: NoRecord | Record,
+    record: NoRecord | StepRecord,
     frame: Frame,
     start: Outset,
     swing: Swing,
@@ -76,7 +76,7 @@ def keep_step(
 
 
 def keep_landing(
-    record: NoRecord | Record, frame: Frame, T: float, a_1: float, a_2: float, f: float
+    record: NoRecord | StepRecord, frame: Frame, T: float, a_1: float, a_2: float, f: float
 ) -> None:
     """Keep the end of a slip in closed form."""
     record.keep_landing(frame, T, a_1, a_2, f)

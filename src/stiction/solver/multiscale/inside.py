@@ -19,7 +19,7 @@ from stiction.solver.exact.record import (
     LANDING,
     OSCILLATOR,
     SIZE,
-    Record,
+    StepRecord,
     slip_within,
     start_of,
 )
@@ -126,7 +126,7 @@ def phase_of(piece: int, pieces: int, y: float) -> float:
 
 @inlined
 def evaluate_record(
-    problem: Problem, record: Record, window: Window, inside: Inside, pieces: int
+    problem: Problem, record: StepRecord, window: Window, inside: Inside, pieces: int
 ) -> None:
     """Evaluate a slip at the points of all pieces, and behind these at their ends."""
     i, last = 0, record.used[0] - 1

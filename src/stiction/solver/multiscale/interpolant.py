@@ -60,7 +60,7 @@ def interpolate(coefficients: np.ndarray, n: int, x: float) -> tuple[float, floa
 
 
 @inlined
-def place(known: Returns, theta: float) -> tuple[int, float]:
+def locate(known: Returns, theta: float) -> tuple[int, float]:
     """Return the row of the patch that contains an angle, or -1, and the place in it, -1 to 1."""
     for row in range(known.sizes[0]):
         x = (theta - known.patches[row, 0]) * known.patches[row, 1] - 1.0

@@ -10,7 +10,7 @@ from stiction.solver.compilation.jit import compiled, inlined
 from stiction.solver.exact.loop import at_rest
 from stiction.solver.multiscale.construction import advance, chart
 from stiction.solver.multiscale.history import recall, remember
-from stiction.solver.multiscale.interpolant import cycle_from, place
+from stiction.solver.multiscale.interpolant import cycle_from, locate
 from stiction.solver.multiscale.replay import (
     alike,
     hold_of,
@@ -90,7 +90,7 @@ def with_sticks(counts: Counts, sticks: int, stuck: float) -> Counts:
 @inlined
 def known_cycle(known: Returns, theta: float, last: Cycle) -> tuple[bool, Cycle, int]:
     """Return whether the cycle from an angle is known, the cycle, and the past one like it."""
-    row, x = place(known, theta)
+    row, x = locate(known, theta)
     if row >= 0:
         return True, cycle_from(known, row, x), -1
     row, cycle = recall(known, theta, last)

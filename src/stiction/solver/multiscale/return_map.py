@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.solver.exact.record import WIDTH, Record
+from stiction.solver.exact.record import WIDTH, StepRecord
 
 WIDEST = 1.0  # rad, of a patch
 NODES = 24  # of a patch at most
@@ -99,7 +99,7 @@ class Returns(NamedTuple):
     never: np.ndarray
     nowhere: np.ndarray
     closing: float
-    record: Record
+    record: StepRecord
     inside: Inside
 
 
@@ -118,7 +118,7 @@ def empty_map(rtol: float, samples: bool = False) -> Returns:
         np.empty(0),
         np.empty((0, 0)),
         CLOSING * rtol,
-        Record(np.empty((steps, WIDTH)), np.zeros(1, dtype=np.int64)),
+        StepRecord(np.empty((steps, WIDTH)), np.zeros(1, dtype=np.int64)),
         Inside(
             np.empty((rooms, NODES, PHASES * COLUMNS)),
             np.zeros((PATCHES, 4), dtype=np.int64),

@@ -9,7 +9,7 @@ import numpy as np
 from stiction.solver.compilation.jit import inlined, piece, switch
 from stiction.solver.exact.sampling import sample_stick
 from stiction.solver.multiscale.inside import write_cycle
-from stiction.solver.multiscale.interpolant import cycle_from, place
+from stiction.solver.multiscale.interpolant import cycle_from, locate
 from stiction.solver.multiscale.return_map import Cycle, Hold, Returns
 from stiction.solver.multiscale.section import elongation_held, wrap_angle
 from stiction.solver.problem import Problem, in_principal_axes, rate
@@ -47,7 +47,7 @@ def follow_patches(
         The next sample.
     """
     (start, end, theta), stuck = hold, 0.0
-    row, x = place(known, theta)
+    row, x = locate(known, theta)
     wanted = times[k] if k < len(times) else inf
     while row >= 0 and count < len(sticks):
         following = cycle_from(known, row, x)
@@ -71,7 +71,7 @@ def follow_patches(
         cycle = following
         x = (theta - known.patches[row, 0]) * known.patches[row, 1] - 1.0
         if not -1.0 <= x <= 1.0:
-            row, x = place(known, theta)
+            row, x = locate(known, theta)
     return Hold(start, end, theta), cycle, count, stuck, k
 
 

@@ -82,11 +82,11 @@ def test_a_short_travel_has_no_cancellation():
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("seed", range(5))
 def test_compiled_code_finds_the_same_piece(kind, seed):
-    """At rows, beside them and between; `place_one` is compiled in place of `place`."""
+    """At rows, beside them and between; `piece_at_one` is compiled in place of `piece_at`."""
     made, time, _ = table(kind, seed)
     beside = np.concatenate([np.nextafter(time, -9), time, np.nextafter(time, 9)])
     at = [*beside, *np.random.default_rng(seed).uniform(time[0], time[-1], 300), time[-1] + 1e-9]
-    assert [s.place_one(made, t) for t in at] == s.place(made, np.array(at)).tolist()
+    assert [s.piece_at_one(made, t) for t in at] == s.piece_at(made, np.array(at)).tolist()
 
 
 def test_compiled_code_returns_the_same_values():

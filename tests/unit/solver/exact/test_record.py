@@ -54,7 +54,7 @@ def test_the_loop_keeps_each_step():
 
 
 def test_steps_beyond_the_room_are_counted_only():
-    room = record.Record(np.zeros((0, record.WIDTH)), np.zeros(1, np.int64))
+    room = record.StepRecord(np.zeros((0, record.WIDTH)), np.zeros(1, np.int64))
     record.keep_step(room, None, None, None, 0.1, None, None)
     record.keep_landing(room, None, 0.1, 1.0, 2.0, 3.0)
     assert room.used[0] == 2

@@ -97,7 +97,7 @@ def test_a_patch_stands_for_the_cycles_over_it(reach, rtol):
     assert state.memory.plan != MEMORY.plan  # the last node's steps teach the next
     for part in (0.13, 0.5, 0.87):
         there = theta + part * reach
-        row, x = plain(interpolant.place)(known, there)
+        row, x = plain(interpolant.locate)(known, there)
         assert (row, x) == (0, pytest.approx(2 * part - 1.0))
         cycle = plain(interpolant.cycle_from)(known, row, x)
         found, wanted, swing, _ = plain(construction.solve_cycle)(

@@ -87,12 +87,12 @@ def sign_of_cubic(x):
 
 def test_the_patch_of_an_angle():
     known, _ = known_of(0.3, 1.0)
-    place = plain(interpolant.place)
-    assert place(known, 0.3) == (0, pytest.approx(-1.0))
-    assert place(known, 0.4) == (0, pytest.approx(-0.6))
-    assert place(known, 1.4999) == (1, pytest.approx(0.9996))
-    assert place(known, 0.29)[0] == place(known, 0.81)[0] == place(known, 1.51)[0] == -1
-    assert place(known, np.nan)[0] == -1
+    locate = plain(interpolant.locate)
+    assert locate(known, 0.3) == (0, pytest.approx(-1.0))
+    assert locate(known, 0.4) == (0, pytest.approx(-0.6))
+    assert locate(known, 1.4999) == (1, pytest.approx(0.9996))
+    assert locate(known, 0.29)[0] == locate(known, 0.81)[0] == locate(known, 1.51)[0] == -1
+    assert locate(known, np.nan)[0] == -1
 
 
 def test_a_square_below_zero_is_no_stick():
