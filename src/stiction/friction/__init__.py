@@ -21,7 +21,7 @@ from stiction.friction.law import (
 )
 from stiction.friction.laws import Anisotropic
 from stiction.friction.laws.anisotropic import anisotropy_table, read_anisotropy
-from stiction.friction.registry import FUNCTIONS, LAWS
+from stiction.friction.registry import FUNCTIONS, LAWS, METHODS
 from stiction.friction.user.loading import (
     Find,
     finder_for_descriptions,
@@ -81,6 +81,7 @@ def parameters(law: Any) -> dict[str, Any]:
 __all__ = [
     "FUNCTIONS",
     "LAWS",
+    "METHODS",
     "Anisotropic",
     "FrictionLaw",
     "Internal",

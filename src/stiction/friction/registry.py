@@ -10,6 +10,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 LAWS: dict[str, type[Any]] = {}  # by name
 FUNCTIONS: list[Any] = []  # plain functions that laws call
+METHODS: list[Any] = []  # functions that call a law's method of their name
 
 
 def register(name: str) -> Callable[[Kind], Kind]:
@@ -25,4 +26,10 @@ def register(name: str) -> Callable[[Kind], Kind]:
 def called_by_laws(function: Function) -> Function:
     """Mark a plain function that laws call: it is compiled with them."""
     FUNCTIONS.append(function)
+    return function
+
+
+def called_by_type(function: Function) -> Function:
+    """Mark a function that calls a law's method of its name: compiled, it is that method."""
+    METHODS.append(function)
     return function

@@ -19,6 +19,7 @@ from stiction.drive.recorded.spline import Recording, cubic_sum, piece_at, piece
 from stiction.drive.signal import FUNCTIONS as SIGNAL_FUNCTIONS
 from stiction.drive.signal import Signal
 from stiction.friction import FUNCTIONS as LAW_FUNCTIONS
+from stiction.friction import METHODS as LAW_METHODS
 from stiction.friction import FrictionLaw, StateLaw
 from stiction.friction.law import Vector, static_coefficient
 from stiction.solver.compilation.jit import inlined
@@ -297,6 +298,7 @@ for _function in (
     metric,
     into_axes,
     cross_damping,
+    *LAW_METHODS,
 ):
     by_type(_function)
 for _piece in LAW_FUNCTIONS:

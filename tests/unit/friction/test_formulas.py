@@ -324,7 +324,8 @@ def test_derivatives_at_zero_slip():
     """Bristles do not slip yet, and ln V of the slip law has no slope there."""
     law = st.laws.LuGre(0.15, 0.2, 1e-2, 1e5, 300.0, 0.4)
     assert bending_gradient(law, 0.0, 0.0, 10.0) == (0.0, 0.0)
-    assert rs.slipping_gradient(1.0, (0.0, 0.0), 1e-6, 1e-5) == (0.0, 0.0, 0.0)
+    slip_law = st.laws.RateStateSlip(0.01, 0.005, 1e-5, 0.6, 1e-6)
+    assert slip_law.evolution_gradient(1.0, (0.0, 0.0), 1e-5) == (0.0, 0.0, 0.0)
 
 
 def test_bristles_of_a_law_like_another_are_damped_critically_for_a_unit_mass():

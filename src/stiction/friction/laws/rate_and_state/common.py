@@ -1,4 +1,4 @@
-"""Shared parts of the rate-and-state laws: the coefficient and comparable parameters.
+"""Shared parts of the rate-and-state laws: coefficient, evolution, comparable parameters.
 
 The equations stand in `stiction.friction.laws.rate_and_state`.
 """
@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import asinh, exp, hypot, log, sqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from stiction.friction.registry import called_by_laws
+from stiction.friction.registry import called_by_laws, called_by_type
 
 SLOWEST = 1e-12  # m/s: steady sliding by 30 um a year, because there is no steady state at rest
 MOST_FOLDS = 680.0  # e-folds of slip speed between the smallest float and V*
@@ -66,55 +66,79 @@ def grain_of(a: float, V_star: float, psi: float) -> float:
     return 2.0 * V_star * exp(-psi / a)
 
 
-@called_by_laws
-def ageing(log_theta: float, V: float, V_star: float, D: float) -> float:
-    """Return d(log_theta)/dt by the ageing law, theta' = 1 - V theta/D."""
-    return (V_star * exp(-log_theta) - V) / D
+@called_by_type
+def evolution(law: Any, log_theta: float, V: float, D: float) -> float:
+    """Return d(log_theta)/dt, per second, by a law's equation for its states."""
+    rate: float = law.evolution(log_theta, V, D)
+    return rate
 
 
-@called_by_laws
-def slipping(log_theta: float, V: float, V_star: float, D: float) -> float:
-    """Return d(log_theta)/dt by the slip law, theta' = -(V theta/D) ln(V theta/D)."""
-    if V == 0.0:
-        return 0.0
-    return -V / D * (log(V / V_star) + log_theta)
-
-
-@called_by_laws
-def squaring(log_theta: float, V: float, V_star: float, D: float) -> float:
-    """Return d(log_theta)/dt by theta' = 1 - (V theta/2D)^2, log_theta = ln(V* theta/2D)."""
-    return 0.5 * (V_star * exp(-log_theta) - V * V / V_star * exp(log_theta)) / D
-
-
-@called_by_laws
-def squaring_gradient(
-    log_theta: float, slip: tuple[float, float], V_star: float, D: float
+@called_by_type
+def evolution_gradient(
+    law: Any, log_theta: float, slip: tuple[float, float], D: float
 ) -> tuple[float, float, float]:
-    """Return the derivatives of `squaring` by slip x, y and the state."""
-    square, aged = slip[0] * slip[0] + slip[1] * slip[1], exp(log_theta) / (V_star * D)
-    return -aged * slip[0], -aged * slip[1], -0.5 * (V_star * exp(-log_theta) / D + square * aged)
+    """Return the derivatives of `evolution` by slip x, y and the state."""
+    by: tuple[float, float, float] = law.evolution_gradient(log_theta, slip, D)
+    return by
 
 
-@called_by_laws
-def ageing_gradient(
-    log_theta: float, slip: tuple[float, float], V_star: float, D: float
-) -> tuple[float, float, float]:
-    """Return the derivatives of `ageing` by slip x, y and the state."""
-    V = hypot(slip[0], slip[1])
-    f = -1.0 / (D * V) if V > 0.0 else 0.0
-    return f * slip[0], f * slip[1], -V_star * exp(-log_theta) / D
+class Ageing:
+    """The ageing law, theta' = 1 - V theta/D."""
+
+    __slots__ = ()
+
+    def evolution(law: Any, log_theta: float, V: float, D: float) -> float:
+        """Return d(log_theta)/dt, per second."""
+        return (law.V_star * exp(-log_theta) - V) / D  # type: ignore[no-any-return]
+
+    def evolution_gradient(
+        law: Any, log_theta: float, slip: tuple[float, float], D: float
+    ) -> tuple[float, float, float]:
+        """Return its derivatives by slip x, y and the state."""
+        V = hypot(slip[0], slip[1])
+        f = -1.0 / (D * V) if V > 0.0 else 0.0
+        return f * slip[0], f * slip[1], -law.V_star * exp(-log_theta) / D
 
 
-@called_by_laws
-def slipping_gradient(
-    log_theta: float, slip: tuple[float, float], V_star: float, D: float
-) -> tuple[float, float, float]:
-    """Return the derivatives of `slipping` by slip x, y and the state; zero at zero slip."""
-    V = hypot(slip[0], slip[1])
-    if V == 0.0:
-        return 0.0, 0.0, 0.0
-    f = -(log(V / V_star) + log_theta + 1.0) / (D * V)
-    return f * slip[0], f * slip[1], -V / D
+class Slipping:
+    """The slip law, theta' = -(V theta/D) ln(V theta/D)."""
+
+    __slots__ = ()
+
+    def evolution(law: Any, log_theta: float, V: float, D: float) -> float:
+        """Return d(log_theta)/dt, per second."""
+        if V == 0.0:
+            return 0.0
+        return -V / D * (log(V / law.V_star) + log_theta)
+
+    def evolution_gradient(
+        law: Any, log_theta: float, slip: tuple[float, float], D: float
+    ) -> tuple[float, float, float]:
+        """Return its derivatives by slip x, y and the state; zero at zero slip."""
+        V = hypot(slip[0], slip[1])
+        if V == 0.0:
+            return 0.0, 0.0, 0.0
+        f = -(log(V / law.V_star) + log_theta + 1.0) / (D * V)
+        return f * slip[0], f * slip[1], -V / D
+
+
+class Squaring:
+    """The law of Perrin, Rice & Zheng, theta' = 1 - (V theta/2D)^2; log_theta = ln(V* theta/2D)."""
+
+    __slots__ = ()
+
+    def evolution(law: Any, log_theta: float, V: float, D: float) -> float:
+        """Return d(log_theta)/dt, per second."""
+        aged, worn = law.V_star * exp(-log_theta), V * V / law.V_star * exp(log_theta)
+        return 0.5 * (aged - worn) / D  # type: ignore[no-any-return]
+
+    def evolution_gradient(
+        law: Any, log_theta: float, slip: tuple[float, float], D: float
+    ) -> tuple[float, float, float]:
+        """Return its derivatives by slip x, y and the state."""
+        square, aged = slip[0] * slip[0] + slip[1] * slip[1], exp(log_theta) / (law.V_star * D)
+        by_state = -0.5 * (law.V_star * exp(-log_theta) / D + square * aged)
+        return -aged * slip[0], -aged * slip[1], by_state
 
 
 def least_direct_effect(b: float, mu_star: float) -> float:
@@ -170,6 +194,3 @@ def comparable(static: float, kinetic: float, speed: float) -> Comparable:
     weakening = (static - kinetic) / log(1e4)
     a = weakening if weakening > 0.0 else 0.01
     return Comparable(a, max(a + weakening, 0.0), 1e-5, kinetic, speed)
-
-
-# called by the laws' methods, compiled with them

@@ -1,4 +1,4 @@
-"""Rate-and-state friction with one state: ageing law and slip law."""
+"""Rate-and-state friction with one state: ageing law, slip law, and that of Perrin et al."""
 
 from __future__ import annotations
 
@@ -8,28 +8,27 @@ from typing import NamedTuple, Self
 
 from stiction.friction.law import Internal, Vector
 from stiction.friction.laws.rate_and_state.common import (
-    ageing,
-    ageing_gradient,
+    Ageing,
+    Slipping,
+    Squaring,
     comparable,
+    evolution,
+    evolution_gradient,
     faults,
     friction_force,
     friction_gradient,
     grain_of,
-    slipping,
-    slipping_gradient,
-    squaring,
-    squaring_gradient,
     steady,
     steady_log_theta,
 )
-from stiction.friction.registry import called_by_laws, register
+from stiction.friction.registry import register
 from stiction.text.units import Coefficient, PositiveLength, PositiveNumber, PositiveSpeed
 from stiction.text.validation import validate
 
 
 @validate
 class OneState(NamedTuple):
-    """Base of both laws; see `stiction.friction.laws.rate_and_state` for the symbols."""
+    """Base of these laws; see `stiction.friction.laws.rate_and_state` for the symbols."""
 
     a: PositiveNumber
     b: Coefficient
@@ -67,9 +66,22 @@ class OneState(NamedTuple):
         """Return the slip speed below which friction is proportional to slip (m/s)."""
         return grain_of(law.a, law.V_star, law.mu_star + law.b * state[0])
 
+    def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
+        """Return d(log_theta)/dt, per second."""
+        return (evolution(law, state[0], hypot(slip[0], slip[1]), law.D_c),)
+
+    def gradient(
+        law, slip: Vector, load: float, state: tuple[float, ...]
+    ) -> tuple[tuple[float, ...], ...]:
+        """Return the derivatives of force and change by slip x, y and the state."""
+        psi = law.mu_star + law.b * state[0]
+        xx, xy, yy, x, y = friction_gradient(law.a, law.V_star, psi, slip, load)
+        own = evolution_gradient(law, state[0], slip, law.D_c)
+        return ((xx, xy, law.b * x), (xy, yy, law.b * y), own)
+
 
 @register("rate-and-state-ageing")
-class RateStateAgeing(OneState):
+class RateStateAgeing(Ageing, OneState):
     """Rate-and-state friction, ageing law (Dieterich 1979).
 
         mu = a asinh[(V/2V*) exp((mu* + b ln(V* theta/D_c))/a)],
@@ -93,21 +105,9 @@ class RateStateAgeing(OneState):
 
     __slots__ = ()
 
-    def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
-        """Return d(log_theta)/dt, per second."""
-        V = hypot(slip[0], slip[1])
-        return (ageing(state[0], V, law.V_star, law.D_c),)
-
-    def gradient(
-        law, slip: Vector, load: float, state: tuple[float, ...]
-    ) -> tuple[tuple[float, ...], ...]:
-        """Return the derivatives of force and change by slip x, y and the state."""
-        own = ageing_gradient(state[0], slip, law.V_star, law.D_c)
-        return gradient_of(law, slip, load, state, own)
-
 
 @register("rate-and-state-slip")
-class RateStateSlip(OneState):
+class RateStateSlip(Slipping, OneState):
     """Rate-and-state friction, slip law (Ruina 1983).
 
         mu = a asinh[(V/2V*) exp((mu* + b ln(V* theta/D_c))/a)],
@@ -131,21 +131,9 @@ class RateStateSlip(OneState):
 
     __slots__ = ()
 
-    def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
-        """Return d(log_theta)/dt, per second."""
-        V = hypot(slip[0], slip[1])
-        return (slipping(state[0], V, law.V_star, law.D_c),)
-
-    def gradient(
-        law, slip: Vector, load: float, state: tuple[float, ...]
-    ) -> tuple[tuple[float, ...], ...]:
-        """Return the derivatives of force and change by slip x, y and the state."""
-        own = slipping_gradient(state[0], slip, law.V_star, law.D_c)
-        return gradient_of(law, slip, load, state, own)
-
 
 @register("rate-and-state-perrin")
-class RateStatePerrin(OneState):
+class RateStatePerrin(Squaring, OneState):
     """Rate-and-state friction, law of Perrin, Rice & Zheng (1995).
 
         mu = a asinh[(V/2V*) exp((mu* + b ln(V* theta/2D_c))/a)],
@@ -170,29 +158,3 @@ class RateStatePerrin(OneState):
     """
 
     __slots__ = ()
-
-    def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
-        """Return d(log_theta)/dt, per second."""
-        V = hypot(slip[0], slip[1])
-        return (squaring(state[0], V, law.V_star, law.D_c),)
-
-    def gradient(
-        law, slip: Vector, load: float, state: tuple[float, ...]
-    ) -> tuple[tuple[float, ...], ...]:
-        """Return the derivatives of force and change by slip x, y and the state."""
-        own = squaring_gradient(state[0], slip, law.V_star, law.D_c)
-        return gradient_of(law, slip, load, state, own)
-
-
-@called_by_laws
-def gradient_of(
-    law: OneState,
-    slip: Vector,
-    load: float,
-    state: tuple[float, ...],
-    own: tuple[float, float, float],
-) -> tuple[tuple[float, ...], ...]:
-    """Return a law's `gradient` from that of its state, by slip x, y and itself."""
-    psi = law.mu_star + law.b * state[0]
-    xx, xy, yy, x, y = friction_gradient(law.a, law.V_star, psi, slip, load)
-    return ((xx, xy, law.b * x), (xy, yy, law.b * y), own)

@@ -8,19 +8,19 @@ from typing import NamedTuple, Self
 
 from stiction.friction.law import Internal, Vector
 from stiction.friction.laws.rate_and_state.common import (
-    ageing,
-    ageing_gradient,
+    Ageing,
+    Slipping,
     comparable,
+    evolution,
+    evolution_gradient,
     faults,
     friction_force,
     friction_gradient,
     grain_of,
-    slipping,
-    slipping_gradient,
     steady,
     steady_log_theta,
 )
-from stiction.friction.registry import called_by_laws, register
+from stiction.friction.registry import register
 from stiction.text.units import Coefficient, PositiveLength, PositiveNumber, PositiveSpeed
 from stiction.text.validation import validate
 
@@ -74,9 +74,29 @@ class TwoStates(NamedTuple):
         psi = law.mu_star + law.b_1 * state[0] + law.b_2 * state[1]
         return grain_of(law.a, law.V_star, psi)
 
+    def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
+        """Return d(log_theta_i)/dt, per second."""
+        V = hypot(slip[0], slip[1])
+        return evolution(law, state[0], V, law.D_1), evolution(law, state[1], V, law.D_2)
+
+    def gradient(
+        law, slip: Vector, load: float, state: tuple[float, ...]
+    ) -> tuple[tuple[float, ...], ...]:
+        """Return the derivatives of force and change by slip x, y and the states."""
+        psi = law.mu_star + law.b_1 * state[0] + law.b_2 * state[1]
+        xx, xy, yy, x, y = friction_gradient(law.a, law.V_star, psi, slip, load)
+        one = evolution_gradient(law, state[0], slip, law.D_1)
+        two = evolution_gradient(law, state[1], slip, law.D_2)
+        return (
+            (xx, xy, law.b_1 * x, law.b_2 * x),
+            (xy, yy, law.b_1 * y, law.b_2 * y),
+            (one[0], one[1], one[2], 0.0),
+            (two[0], two[1], 0.0, two[2]),
+        )
+
 
 @register("rate-and-state-ageing-2")
-class RateStateAgeing2(TwoStates):
+class RateStateAgeing2(Ageing, TwoStates):
     """Rate-and-state friction with two states, ageing law (Dieterich 1979).
 
         mu = a asinh[(V/2V*) exp((mu* + b_1 ln(V* theta_1/D_1) + b_2 ln(V* theta_2/D_2))/a)],
@@ -101,25 +121,9 @@ class RateStateAgeing2(TwoStates):
 
     __slots__ = ()
 
-    def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
-        """Return d(log_theta_i)/dt, per second."""
-        V = hypot(slip[0], slip[1])
-        return (
-            ageing(state[0], V, law.V_star, law.D_1),
-            ageing(state[1], V, law.V_star, law.D_2),
-        )
-
-    def gradient(
-        law, slip: Vector, load: float, state: tuple[float, ...]
-    ) -> tuple[tuple[float, ...], ...]:
-        """Return the derivatives of force and change by slip x, y and the states."""
-        one = ageing_gradient(state[0], slip, law.V_star, law.D_1)
-        two = ageing_gradient(state[1], slip, law.V_star, law.D_2)
-        return gradient_of(law, slip, load, state, one, two)
-
 
 @register("rate-and-state-slip-2")
-class RateStateSlip2(TwoStates):
+class RateStateSlip2(Slipping, TwoStates):
     """Rate-and-state friction with two states, slip law (Ruina 1983).
 
         mu = a asinh[(V/2V*) exp((mu* + b_1 ln(V* theta_1/D_1) + b_2 ln(V* theta_2/D_2))/a)],
@@ -143,39 +147,3 @@ class RateStateSlip2(TwoStates):
     """
 
     __slots__ = ()
-
-    def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
-        """Return d(log_theta_i)/dt, per second."""
-        V = hypot(slip[0], slip[1])
-        return (
-            slipping(state[0], V, law.V_star, law.D_1),
-            slipping(state[1], V, law.V_star, law.D_2),
-        )
-
-    def gradient(
-        law, slip: Vector, load: float, state: tuple[float, ...]
-    ) -> tuple[tuple[float, ...], ...]:
-        """Return the derivatives of force and change by slip x, y and the states."""
-        one = slipping_gradient(state[0], slip, law.V_star, law.D_1)
-        two = slipping_gradient(state[1], slip, law.V_star, law.D_2)
-        return gradient_of(law, slip, load, state, one, two)
-
-
-@called_by_laws
-def gradient_of(
-    law: TwoStates,
-    slip: Vector,
-    load: float,
-    state: tuple[float, ...],
-    one: tuple[float, float, float],
-    two: tuple[float, float, float],
-) -> tuple[tuple[float, ...], ...]:
-    """Return a law's `gradient` from those of its states, each by slip x, y and itself."""
-    psi = law.mu_star + law.b_1 * state[0] + law.b_2 * state[1]
-    xx, xy, yy, x, y = friction_gradient(law.a, law.V_star, psi, slip, load)
-    return (
-        (xx, xy, law.b_1 * x, law.b_2 * x),
-        (xy, yy, law.b_1 * y, law.b_2 * y),
-        (one[0], one[1], one[2], 0.0),
-        (two[0], two[1], 0.0, two[2]),
-    )
