@@ -8,6 +8,7 @@ import pytest
 import stiction as st
 from stiction.analysis.creep.findings import calibrate
 from stiction.analysis.export import write
+from stiction.analysis.parts import creep
 from stiction.cli import main
 from stiction.plotting.analysis.overview import figures
 
@@ -172,6 +173,14 @@ def test_few_samples_show_no_creep(slider: st.Slider) -> None:
         assert found.misalignment is None
         if rate == 0:
             assert "enough samples" in found.missing["creep"]
+
+
+def test_a_fitted_friction_below_the_largest_force_is_doubted(found) -> None:
+    said = "\n".join(creep.section(found).sentences)
+    assert " ± " in said.partition("F_0 = ")[2]
+    assert "too small" not in said
+    small = found._replace(misalignment=found.misalignment._replace(F_0=1.9))
+    assert "too small: the force itself reaches 1.99" in "\n".join(creep.section(small).sentences)
 
 
 def test_an_aligned_run_implies_no_misalignment(slider: st.Slider) -> None:

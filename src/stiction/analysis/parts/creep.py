@@ -18,11 +18,23 @@ from stiction.trajectory import Trajectory
 if TYPE_CHECKING:
     import xarray as xr
 
+    from stiction.analysis.creep.misalignment import Misalignment
     from stiction.analysis.report import Analysis
 
 
 RESTING = "it rests"
 SURE = 2.0  # standard errors that a fit must be away from nothing
+
+
+def _below_peak(found: Analysis, its: Misalignment) -> str:
+    """Return a doubt on F_0 where the spring force exceeds it, which no rotation allows."""
+    peak = float(found.record.force.max())
+    if peak <= its.F_0 + SURE * its.F_0_error:
+        return ""
+    return (
+        f" That is too small: the force itself reaches {in_words(peak, 'N')}. Near slip the creep "
+        "is not that of Eq. (7), and the error of F_0 is larger than stated."
+    )
 
 
 def section(found: Analysis) -> Section:
@@ -54,7 +66,7 @@ def section(found: Analysis) -> Section:
         lines.append(
             "By Eq. (7) it implies a misalignment of "
             f"{with_error(phi.phi, phi.phi_error, 'rad')}{_true(found)}, and "
-            f"F_0 = {in_words(phi.F_0, 'N')}."
+            f"F_0 = {with_error(phi.F_0, phi.F_0_error, 'N')}.{_below_peak(found, phi)}"
         )
     fits = {"divergence": "Exponent of its divergence", "misalignment": "Implied misalignment"}
     lines += [
