@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise, takewhile
 from math import isnan, nan
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,9 +20,10 @@ from numpy.typing import NDArray
 from stiction.analysis.limit_cycle import KICK, OSCILLATING, REST, UNDECIDED, Found, settle
 from stiction.errors import DescriptionError, Fault
 from stiction.linear_stability import steady_sliding
+from stiction.names import draw
 from stiction.system.parameter import change_parameter, change_unchecked, read, unit
 from stiction.system.slider import Slider
-from stiction.text.units import Quantity
+from stiction.text.units import Quantity, with_error
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -73,6 +74,21 @@ class Onset(NamedTuple):
     data: xr.Dataset
     uncertainty: float = nan
     hysteresis_uncertainty: tuple[float, float] = (nan, nan)
+
+    def __repr__(self) -> str:
+        """Return a one-line summary."""
+        along = self.data["value"].attrs
+        unit, said = along["units"], ""
+        if self.kind == "hard":
+            pairs = zip(self.hysteresis, self.hysteresis_uncertainty, strict=True)
+            said = ", hysteresis from {} to {}".format(*(with_error(*x, unit) for x in pairs))
+        elif not isnan(self.threshold):
+            said = f" at {with_error(self.threshold, self.uncertainty, unit)}"
+        return f"<Onset along {along['long_name']}: {self.kind}{said}>"
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draw both sweeps; see `stiction.plotting.plot_onset`."""
+        return draw("plot_onset", self, None, ax)
 
 
 class Trial(NamedTuple):

@@ -93,6 +93,8 @@ def test_a_hard_onset_has_hysteresis(hard):
     """Steady sliding and stick-slip are both there above c."""
     _, c, found = hard
     assert found.kind == "hard"
+    assert repr(found).startswith("<Onset along c_x: hard, hysteresis from 10.5")
+    assert len(repr(found)) < 100
     (low, high), errors = found.hysteresis, found.hysteresis_uncertainty
     assert abs(low - c) <= errors[0] < 0.01 * c  # it cannot rest below c
     assert errors[1] < 0.02 * c
