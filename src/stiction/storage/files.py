@@ -48,7 +48,9 @@ def placeable(path: str | Path, suffixes: Collection[str] = ()) -> Path:
     target = Path(path)
     if suffixes and target.suffix.lower() not in suffixes:
         first, *others = suffixes
-        remedy = f"use {first}, {', '.join(others)}" if others else f"name it {target.stem}{first}"
+        remedy = f"name it {target.stem}{first}"
+        if others:
+            remedy = f"use {', '.join(suffixes)}, such as {target.stem}{first}"
         raise ResultError(f"{target}: unknown format {target.suffix!r}; {remedy}")
     if not target.parent.is_dir():
         raise ResultError(f"{target}: folder {target.parent} does not exist; make it first")

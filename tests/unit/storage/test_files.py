@@ -100,7 +100,7 @@ def test_what_a_killed_process_leaves_is_taken_away(tmp_path):
     [
         ("run.toml", (".nc",), "unknown format '.toml'; name it run.nc"),
         ("/", (".nc",), "unknown format ''; name it .nc"),  # was a traceback
-        ("run", (".png", ".pdf"), "unknown format ''; use .png, .pdf"),
+        ("run", (".png", ".pdf"), "unknown format ''; use .png, .pdf, such as run.png"),
     ],
 )
 def test_a_name_of_another_format_is_refused(name, suffixes, remedy):
