@@ -28,9 +28,9 @@ WORST = 1e-3  # of the drop: with a larger misfit, the rises do not have the sha
 # logarithms of k_x/k_y and of the weakening of friction at the drive velocity.
 TAILS = (0.0, log(1e-3), log(1e-2))
 WIDTHS = (0.02, 1.5, 1.3)
-THEORY = (
-    0.1  # relative accuracy of phi at the best: the transverse oscillation lowers friction, too
-)
+# Relative accuracy of phi at the best: the transverse oscillation lowers friction, too. Of 600 rigs
+# of `python -m benchmarks.explore.misalignment` the intervals hold 95 %, with 0.1 they held 94 %
+THEORY = 0.15
 KNOWN = 0.3  # relative standard error above which an angle is not determined
 EARLY = 0.5  # F_0 above the peak by this share
 SURELY = 20.0  # deg: a smaller upper limit is worth a word
