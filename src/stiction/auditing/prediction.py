@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction import theory
-from stiction.analysis.creep.first_slip import slips_at_once
+from stiction.analysis.creep.first_slip import along_force, slips_at_once
 from stiction.friction import Anisotropic, has_state
 from stiction.friction.law import static_coefficient
 from stiction.system.slider import Slider
@@ -116,11 +116,17 @@ def predict(slider: Slider) -> Prediction:
     if phi == 0.0:  # friction does not turn: rest until the spring carries the static friction
         peak = F_static
     distance = creep_distance(V, phi, l_x, load_up)
-    drop, mean = stick_slip(slider, peak) if fast else (nan, peak)
+    at_once = slips_at_once(s)  # both springs load together, until they carry the static friction
+    if at_once:
+        along = cos(float(theory.first_force_angle(phi, s.k_x, s.k_y)) - phi)
+        drop, mean = (along * each for each in stick_slip(s, F_static, *along_force(s)))
+        peak = along * F_static
+    else:
+        drop, mean = stick_slip(s, peak, s.k_x, m_x) if fast else (nan, peak)
     if not drop > 0.0:  # friction does not fall below the spring's force: steady sliding follows
         drop, mean = nan, s.law.coefficient(V) * s.normal_load * cos(phi)
         peak = max(peak, mean) if fast else mean
-    elif slips_at_once(s):  # both springs load together, until they carry the static friction
+    elif at_once:
         load_up, distance, creep = first_stick, 0.0, np.full(2, nan if phi > 0.0 else 0.0)
     return Prediction(
         F_0,
@@ -216,19 +222,19 @@ def creep_distance(V: float, phi: float, l_x: float, t: float) -> float:
     return V * t - float(theory.creep_elongation(t, V, phi, l_x)) * cos(phi)
 
 
-def stick_slip(slider: Slider, peak: float) -> tuple[float, float]:
+def stick_slip(slider: Slider, peak: float, stiffness: float, mass: float) -> tuple[float, float]:
     """Return the fall of the force in a slip from `peak`, and its mean in the slip (N).
 
-    This estimate takes the slip as half a free swing of the mass on the soft spring, s = v
-    sin(tau), about the mean friction along its path, F = (1/2) integral of F(v sin(tau)) sin(tau),
-    and solves this together with the fastest slip v = (peak - F)/sqrt(k_x m) + V. The slip ends as
-    far below the mean as it began above it.
+    This estimate takes the slip as half a free swing of the mass on a spring, s = v sin(tau), about
+    the mean friction along its path, F = (1/2) integral of F(v sin(tau)) sin(tau), and solves this
+    together with the fastest slip v = (peak - F)/sqrt(k m) + V. The slip ends as far below the mean
+    as it began above it.
     """
     V = hypot(*slider.motion.rate(0.0))
     tau = (np.arange(64) + 0.5) * (pi / 64)
     mean = 0.5 * peak
     for _ in range(60):  # damped by one half: steeply weakening friction would overshoot
-        v = max(peak - mean, 0.0) / sqrt(slider.k_x * slider.masses[0]) + V
+        v = max(peak - mean, 0.0) / sqrt(stiffness * mass) + V
         force = [slider.law.coefficient(v * sin(at)) * slider.normal_load for at in tau]
         mean = 0.5 * (mean + float(np.mean(force * np.sin(tau)) * pi / 2.0))
     return 2.0 * (peak - mean), mean

@@ -88,13 +88,13 @@ def _runs_away(slider: Slider) -> bool:
     law: Any = slider.law
     if has_state(law):
         return False
-    stiffness, mass = _along_force(slider)
+    stiffness, mass = along_force(slider)
     fall = -float(law.slope(0.0)) * slider.normal_load
     falls_at_once = static_coefficient(law) > float(law.coefficient(0.0)) * (1.0 + ROUNDED)
     return falls_at_once or fall > STEEP * 2.0 * sqrt(stiffness * mass)
 
 
-def _along_force(slider: Slider) -> tuple[float, float]:
+def along_force(slider: Slider) -> tuple[float, float]:
     """Return stiffness and mass of the swing along the force at the end of the first stick."""
     angle = float(theory.first_force_angle(slider.misalignment, slider.k_x, slider.k_y))
     c, s, (m_x, m_y) = cos(angle) ** 2, sin(angle) ** 2, slider.masses
@@ -103,10 +103,10 @@ def _along_force(slider: Slider) -> tuple[float, float]:
 
 def _least_gain(slider: Slider) -> float:
     """Return the least gain of a slip on the drive over the drive's speed, s."""
+    slow, fast = (2.0 * pi * each for each in slider.natural_frequencies)
     if slips_at_once(slider):
-        return GAINED / float(theory.natural_frequency(*_along_force(slider)))
-    slow, fast = slider.natural_frequencies
-    return max(GAINED / slow, SWUNG / fast) / (2.0 * pi)
+        slow = float(theory.natural_frequency(*along_force(slider)))
+    return max(GAINED / slow, SWUNG / fast)
 
 
 def _first_loading(run: Trajectory) -> FirstLoading:
