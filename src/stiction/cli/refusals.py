@@ -34,7 +34,8 @@ def _missing(error: MissingArgumentError) -> str:
     """Return what is missing, and an example."""
     assert error.argument is not None
     name = error.argument.name
-    typed = error.keyword or next((x.keyword for x in error.argument.tokens if x.keyword), None)
+    words = (word.partition("=")[0] for word in error.root_input_tokens or ())
+    typed = next((word for word in words if word in error.argument.names), None)
     if typed is None:
         rule = f"{name} is missing"
     else:
