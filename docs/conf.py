@@ -23,6 +23,7 @@ extensions = [
     "sphinx_copybutton",
     "sphinx_design",
     "sphinx_gallery.gen_gallery",
+    "sphinx-mathjax-offline",  # equations without a network
     "description_tables",
 ]
 exclude_patterns = ["_build", "gallery/**", "auto_gallery/**.ipynb"]
@@ -74,6 +75,7 @@ def legible(_, __):
 
 PARTS = ["paper", "friction", "protocols", "maps", "apparatus"]
 sphinx_gallery_conf = {
+    "write_computation_times": False,  # a page with scripts from elsewhere
     "examples_dirs": "gallery",
     "gallery_dirs": "auto_gallery",
     "subsection_order": [f"gallery/{part}" for part in PARTS],
