@@ -136,10 +136,20 @@ def nothing_to_change(found: Audit) -> bool:
 
 
 def numbers_in_words(found: Audit) -> bool:
-    """The period in words is that of the table."""
+    """Period and force drop in words are those of the table, within their errors."""
     shown = {row[0]: row[2] for row in numbers(found)}
     told = re.search(TOLD, sentences(found, "Verdict"))
-    return told is None or told.groups() == (shown["period"], shown["force drop"])
+    cells = shown.get("period", ""), shown.get("force drop", "")
+    return told is None or all(map(agree, told.groups(), cells))
+
+
+def agree(words: str, cell: str) -> bool:
+    """Return whether a value in words, perhaps with its error, is that of a cell."""
+    value, _, error = words.partition(" ± ")
+    if not error:
+        return words == cell
+    within, (_, unit) = registry().Quantity(error), error.split()
+    return bool(abs(registry().Quantity(f"{value} {unit}") - registry().Quantity(cell)) <= within)
 
 
 def vibration_is_no_creep(found: Audit) -> bool:

@@ -126,7 +126,8 @@ class Linearisation:
         Parameters
         ----------
         size : float, optional
-            Amplitude of the elongation rate, relative to the drive's speed.
+            Amplitude of the elongation rate, relative to the drive's speed; or of a logarithm of
+            internal state, if that is larger: ageing slowly, it hardly moves the mass.
         mode : int, optional
             The disturbed mode; by default the fastest growing.
         """
@@ -134,7 +135,9 @@ class Linearisation:
         speed = hypot(*self.slider.motion.rate(0.0))
         rates = np.abs(shape[2:4])
         shape = shape / np.exp(1j * np.angle(shape[2 + int(np.argmax(rates))]))
-        at = self.state + size * speed / hypot(*rates) * shape.real
+        aged = np.abs(shape[4:]) / np.maximum(np.abs(self.state[4:]), 1.0)
+        largest = max([hypot(*rates) / speed, *aged.tolist()])
+        at = self.state + size / largest * shape.real
         values: dict[str, Any] = dict(zip(self.names, map(float, at), strict=True))
         internal = {each.name: values.pop(each.name) for each in states(self.slider.law)}
         return Initial(**values, states=internal) if internal else Initial(**values)

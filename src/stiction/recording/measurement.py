@@ -94,11 +94,10 @@ def _measurements(path: Path, table: Table, asked: Request) -> list[Measurement]
     choice = choose_columns(path, table, reading.columns, timed=by_interval)
     clock, name = _clock(table, choice, interval)
     parts = blocks(path, table, clock, reading.times, name)
-    short = [part for part in parts if len(part.rows) < FEWEST]
     found = []
     before = -1
     for part in parts:
-        if part in short:
+        if len(part.rows) < FEWEST:
             continue
         its = _remarks(table, before, int(part.rows[0]))
         before = int(part.rows[-1])

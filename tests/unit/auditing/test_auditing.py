@@ -544,3 +544,8 @@ def test_a_test_lasts_until_the_softer_spring_has_settled():
     seen = observe(slider, prediction, growth, sample_rate=coarse_rate(prediction))
     assert prediction.f_y < prediction.f_x
     assert seen.comes_to == SLIDES
+
+
+def test_a_run_that_ended_before_its_second_half_is_not_settled():
+    run = st.simulate(PAPER, "10 ms", sample_rate=0)
+    assert observation.outcome(run) == observation.UNSETTLED

@@ -88,6 +88,20 @@ def test_simulations_on_either_side(degrees, rests):
     assert (late < 1e-9 * V) if rests else (late > 0.5 * V)
 
 
+def test_a_mode_of_slow_ageing_is_a_small_disturbance_of_the_state_too():
+    """It hardly moves the mass: by its rate alone, the state would change by e^-376."""
+    law = st.laws.RateStateAgeing2(
+        a=0.016, b_1=0.01, D_1=6e-5, b_2=0.01, D_2=6e-4, mu_star=0.5, V_star=1e-6
+    )
+    slider = PAPER.replace(friction=law, phi="0.1 deg", drive=st.ConstantVelocity(1e-6))
+    linear = steady_sliding(slider)
+    start = linear.disturbed_start(1e-2)
+    before = dict(zip(linear.names, linear.state, strict=True))
+    aged = [start.states[name] - before[name] for name in linear.names[4:]]
+    assert max(map(abs, aged)) == pytest.approx(1e-2)
+    assert abs(start.v_x) < 1e-2 * 1e-6
+
+
 @pytest.mark.parametrize("kind", [st.laws.RateStateAgeing, st.laws.RateStateSlip])
 def test_critical_stiffness_of_rate_and_state(kind):
     slider = PER_AREA.replace(friction=kind(*AGEING))

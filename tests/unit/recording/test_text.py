@@ -262,6 +262,14 @@ def test_blocks_that_restart_with_the_wall_clock_in_the_header_only(write):
         st.read_record(path, block=4)
 
 
+def test_a_block_of_one_sample_is_left_out(write):
+    """As a logger leaves one that is stopped at once."""
+    short = lines(columns=(TIME[-1:], FORCE[:1]))
+    path = write("time [s],force [N]\n" + short + lines() + lines())
+    records = st.read_records(path)
+    assert [len(record) for record in records] == [len(TIME), len(TIME)]
+
+
 def test_blocks_of_other_columns(write):
     text = f"time [s],force [N]\n{lines()}\nTime [ms],load [N],Force [mN]\n"
     first, second = st.read_records(write(text + lines(columns=(TIME, 5.0 + TIME, FORCE))))
