@@ -175,12 +175,13 @@ def outcome(run: Trajectory) -> str:
     times, speed = run.samples["time"], run.samples["V_X"] / run.slider.motion.rate(0.0)[0]
     late = times - times[0] >= 0.5 * (times[-1] - times[0])
     last = times - times[0] >= 0.75 * (times[-1] - times[0])
-    if not (late & ~last).any():  # it ended before
+    third = late & ~last
+    if not third.any():  # it ended before
         return UNSETTLED
     if speed[late].max() < LOADING:
         return STUCK
     deviation = np.minimum(np.abs(speed - 1.0), 1.0)
-    before, now = float(deviation[late & ~last].max()), float(deviation[last].max())
+    before, now = float(deviation[third].max()), float(deviation[last].max())
     if now < CALM or now <= DECAYED * before:
         return SLIDES
     return OSCILLATES if now >= KEPT * before else UNSETTLED

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction import theory
-from stiction.analysis.creep.first_slip import along_force, slips_at_once
+from stiction.analysis.creep.first_slip import along_force, force_off_drive, slips_at_once
 from stiction.friction import Anisotropic, has_state
 from stiction.friction.law import static_coefficient
 from stiction.system.slider import Slider
@@ -118,7 +118,7 @@ def predict(slider: Slider) -> Prediction:
     distance = creep_distance(V, phi, l_x, load_up)
     at_once = slips_at_once(s)  # both springs load together, until they carry the static friction
     if at_once:
-        along = cos(float(theory.first_force_angle(phi, s.k_x, s.k_y)) - phi)
+        along = cos(force_off_drive(s))
         drop, mean = (along * each for each in stick_slip(s, F_static, *along_force(s)))
         peak = along * F_static
     else:

@@ -78,9 +78,14 @@ def first_loading(slider: Slider, elongation: Floats, drive: Floats) -> FirstLoa
 
 def slips_at_once(slider: Slider) -> bool:
     """Return whether the first stick ends with a slip along the drive, without creep before it."""
-    phi = abs(slider.misalignment)
-    angle = abs(float(theory.first_force_angle(phi, slider.k_x, slider.k_y)) - phi)
+    angle = force_off_drive(slider)
     return angle < STRAIGHT or (angle < OBLIQUE and _runs_away(slider))
+
+
+def force_off_drive(slider: Slider) -> float:
+    """Return the angle between drive and force of both springs while the mass first rests, rad."""
+    phi = abs(slider.misalignment)
+    return abs(float(theory.first_force_angle(phi, slider.k_x, slider.k_y)) - phi)
 
 
 def _runs_away(slider: Slider) -> bool:

@@ -141,7 +141,8 @@ def swings(record: Record) -> Swings:
 
     A narrow line is subtracted first, if the rest shows slower swings that are larger, or that
     stick: then these are the motion, and the line is a disturbance. So is a line that the record
-    shows while the spring is first loaded, unless the slip speed is known.
+    shows while the spring is first loaded, unless the slip speed is known. So is a slower wave on
+    which there is more stick-slip than is seen beside it.
     """
     force = without_outliers(record.force)
     if force is not record.force:

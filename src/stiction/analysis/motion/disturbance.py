@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
 
 # A line beside the motion: swings without it have so many of its periods, and are as high or stick
 SLOWER, HIGHER = 2.0, 0.75
@@ -97,9 +98,7 @@ def may_be_carried(frequency: float, duration: float, left: Floats, seen: xr.Dat
     number = frequency * duration
     if of_mains(frequency) or number < MORE * seen.sizes["cycle"] + AND_MORE:
         return False
-    edges = np.linspace(0, len(left), min(int(MEANS * number), len(left)), endpoint=False)
-    means = np.add.reduceat(left, edges.astype(np.intp))
-    means /= np.diff(edges.astype(np.intp), append=len(left))
+    means = _means(left, _starts(len(left), int(MEANS * number)))
     return len(turning_points(means).index) > 2 * NEARLY_ALL * number
 
 
@@ -122,6 +121,16 @@ def _sticks(table: xr.Dataset) -> bool:
     """Return whether swings are stick-slip, by their typical shape."""
     shares = table["rise_share"].values
     return len(shares) > 0 and bool(rest_share(np.median(shares)) >= STICKING)
+
+
+def _starts(size: int, parts: int) -> Indices:
+    """Return where the equal parts of so many samples begin; no part is empty."""
+    return np.linspace(0, size, min(parts, size), endpoint=False).astype(np.intp)
+
+
+def _means(values: Floats, starts: Indices) -> Floats:
+    """Return the means of parts that begin at `starts`."""
+    return np.asarray(np.add.reduceat(values, starts) / np.diff(starts, append=len(values)))
 
 
 def is_residue(line: Line, table: xr.Dataset) -> bool:
@@ -177,9 +186,8 @@ def _end_of_loading(time: Floats, force: Floats, least: float) -> int | None:
     The force begins near zero, rises by more than `least` (N), and then stays, or rises more slowly
     by half.
     """
-    edges = np.linspace(0, len(force), min(PARTS, len(force)), endpoint=False).astype(np.intp)
-    size = np.diff(edges, append=len(force))
-    means, times = (np.add.reduceat(each, edges) / size for each in (force, time))
+    edges = _starts(len(force), PARTS)
+    means, times = (_means(each, edges) for each in (force, time))
     means = means if means.max() >= -means.min() else -means
     rise = means - means[0]
     if means[0] > UNLOADED * means.max() or not rise.max() > least:

@@ -63,10 +63,10 @@ def narrow_lines(time: Floats, force: Floats) -> list[Line]:
     time, force : ndarray
         (n,), s, and N.
     """
-    grid = even_grid(time)
-    if grid is None or not grid.serves or grid.size < 4 * PERIODS or np.ptp(force) == 0.0:
+    seen = _spectrum_on_grid(time, force)
+    if seen is None:
         return []
-    power, width = spectrum(grid.on(force))
+    grid, power, width = seen
     floor = beside(power)
     found = _peaks(power, floor, ALONE)
     return [_measure_line(force, grid, power, floor, width, at) for at in found]
@@ -77,12 +77,20 @@ def peak_frequencies(time: Floats, force: Floats) -> list[float]:
 
     The clearest first, as in `narrow_lines`; but these may be broad, and not alone.
     """
-    grid = even_grid(time)
-    if grid is None or not grid.serves or grid.size < 4 * PERIODS or np.ptp(force) == 0.0:
+    seen = _spectrum_on_grid(time, force)
+    if seen is None:
         return []
-    power, width = spectrum(grid.on(force))
+    grid, power, width = seen
     found = _peaks(power, beside(power), 1.0)
     return [_middle(power, at) * width / grid.step for at in found]
+
+
+def _spectrum_on_grid(time: Floats, force: Floats) -> tuple[EvenGrid, Floats, float] | None:
+    """Return the grid of a record, and its `spectrum` there; None if it can show no line."""
+    grid = even_grid(time)
+    if grid is None or not grid.serves or grid.size < 4 * PERIODS or np.ptp(force) == 0.0:
+        return None
+    return grid, *spectrum(grid.on(force))
 
 
 def _measure_line(
@@ -137,10 +145,10 @@ def beat_frequency(time: Floats, force: Floats) -> float | None:
 
     Noise in a band of frequencies has as many lines as the band is wide.
     """
-    grid = even_grid(time)
-    if grid is None or not grid.serves or grid.size < 4 * PERIODS or np.ptp(force) == 0.0:
+    seen = _spectrum_on_grid(time, force)
+    if seen is None:
         return None
-    power, width = spectrum(grid.on(force))
+    grid, power, width = seen
     power[:PERIODS] = 0.0
     total, lines = float(power.sum()), []
     for _ in range(2):

@@ -264,9 +264,9 @@ def _weigh(record: Record, table: xr.Dataset, shapes: Shapes, evidence: dict[str
     irregular = 0.0
     if kind == HARMONIC:
         irregular = irregularity(table["period"].values, table["drop"].values)
-    if irregular > 0.5 and (beat := beat_frequency(record.time, record.force)):
-        return Regime(kind, confidence, evidence | {"beat": beat})
     if irregular > 0.5:
+        if beat := beat_frequency(record.time, record.force):
+            return Regime(kind, confidence, evidence | {"beat": beat})
         return Regime(IRREGULAR, irregular * confidence, evidence, HARMONIC)
     confidence *= 1.0 - irregular
     if irregular > 1.0 - kinds.count(kind) / count:

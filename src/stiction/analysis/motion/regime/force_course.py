@@ -97,8 +97,9 @@ def _steady(record: Record, found: Swings, sure: float, evidence: dict[str, floa
     if evidence["span"] > least:
         return Regime(STEADY, 0.5 * sure, evidence | {"wanders": evidence["span"]}, STICK_SLIP)
     lines = narrow_lines(record.time, record.force)
-    for line in (line for line in lines if not of_mains(line.frequency)):
-        evidence = evidence | {"hidden": line.frequency, "hidden_height": line.height}
+    line = next((line for line in lines if not of_mains(line.frequency)), None)
+    if line is not None:
+        evidence |= {"hidden": line.frequency, "hidden_height": line.height}
         if line.height > HIDDEN * evidence["scatter"]:
             return Regime(UNDETERMINED, 0.0, evidence)
         return Regime(STEADY, sure * (1.0 - line.height / evidence["scatter"]), evidence)
