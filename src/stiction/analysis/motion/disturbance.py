@@ -106,11 +106,17 @@ def is_carried(frequency: float, duration: float, seen: xr.Dataset, left: xr.Dat
     """Return whether the swings that are left without a slow wave are stick-slip which it carries.
 
     They have the period that is sought, nearly all of them, and stick; and they are more than the
-    swings `seen` beside the wave, which are no larger stick-slip themselves.
+    swings `seen` beside the wave, which are no larger stick-slip themselves. If these stick, only
+    cycles among them count: before, while the spring is first loaded, the bends of a wave look like
+    some.
     """
-    count, number = left.sizes["cycle"], frequency * duration
-    enough = count > max(MORE * seen.sizes["cycle"] + AND_MORE, NEARLY_ALL * number)
+    enough = left.sizes["cycle"] > NEARLY_ALL * frequency * duration
     if not enough or not _sticks(left):
+        return False
+    among = left["peak_time"].values
+    if _sticks(seen):
+        among = among[(among > seen["start"].values[0]) & (among < seen["trough_time"].values[-1])]
+    if len(among) <= MORE * seen.sizes["cycle"] + AND_MORE:
         return False
     alike = np.abs(left["period"].values * frequency - 1.0) < NEAR
     larger = float(seen["drop"].median()) > NO_LARGER * float(left["drop"].median())

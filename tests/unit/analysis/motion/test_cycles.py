@@ -630,3 +630,22 @@ def test_stick_slip_that_a_larger_wave_carries_has_all_its_cycles(number: int) -
     with_hum = np.interp(found.cycles["peak_time"], record.time, record.force)
     drop = float(found.cycles["drop"].median())
     assert found.cycles["peak"].values == pytest.approx(with_hum, abs=0.5 * drop)
+
+
+@pytest.mark.parametrize("sample_rate", ["20 kHz", "50 kHz"])
+def test_the_bend_of_a_first_loading_is_no_cycle_on_a_wave(sample_rate: str) -> None:
+    """A force microscope, whose first loading lasts for several cycles: its force tells as many."""
+    slider = st.Slider(
+        mass=1e-11,
+        k_x=0.5,
+        k_y=40.0,
+        phi="5 deg",
+        normal_load="20 nN",
+        friction=st.ExponentialWeakening(mu_0=0.5, mu_inf=0.3, v_f="10 um/s"),
+        drive=st.ConstantVelocity("1 um/s"),
+    )
+    run = st.simulate(slider, "0.1 s", sample_rate=sample_rate)
+    samples = run.samples
+    found = swings(st.Record(time=samples["time"], force=slider.k_x * samples["u_x"]))
+    assert found.cycles.sizes["cycle"] == st.analysis.find_cycles(run).sizes["cycle"] > 30
+    assert found.wave == 0.0
