@@ -14,7 +14,7 @@ import { Panel } from "./views.js";
 
 const $ = (id) => document.getElementById(id);
 const data = {}; // of the run that is shown, for the views
-const page = { micro: null, wide: null, drawn: 0 };
+const page = { micro: null, wide: null, drawn: 0, get t() { return player.t; } };
 window.stictionPage = page; // what is shown, for tests and measurements
 let state, form, series, scene, microscope, panels = [], view = null;
 
@@ -232,7 +232,6 @@ function frame(time) {
   if (page.micro) $("micro").value = Math.round((4000 * (t - page.micro.start)) / (page.micro.end - page.micro.start || 1));
   $("clock").textContent = `t = ${t.toFixed(player.slow >= 100 ? 6 : 4)} s`;
   page.frames = player.frames.length;
-  page.t = t;
   page.drawn = (page.drawn ?? 0) + 1;
   if (page.redraw) { // when the curves of a request have been drawn
     page.latency = { asked: page.redraw, drawn: performance.now() };
