@@ -1,4 +1,4 @@
-"""Errors of runs at `rtol`, in steps and by the multiscale mode, against the bounds of `simulate`.
+"""Errors of runs at `rtol`, in steps, by default and with a map, against the bounds of `simulate`.
 
 The error is held against the response: what the apparatus itself would do if its mass, or its
 normal load, were greater by the share to which each step is kept. Where that alone changes
@@ -9,7 +9,8 @@ only if its reference is not known: it changes with its own tolerance as much as
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from operator import gt
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -17,11 +18,13 @@ from benchmarks.explore.deviation import FINER, FINEST, deviation, forces, respo
 from benchmarks.explore.systems import system
 from benchmarks.section import Section, Table
 from stiction.solver.integrate import tolerance
-from stiction.solver.multiscale.method import STEP_SHARE
+from stiction.solver.multiscale.return_map import STEP_SHARE
 
 IN_STEPS = 30.0  # the bound of the error over the response
-# a run by the multiscale mode holds its steps to a share of the tolerance; the map adds little
-BOUNDS = {"in steps": IN_STEPS, "multiscale": STEP_SHARE * IN_STEPS}
+# With `multiscale=True` steps are held to a share of the tolerance; the map adds little. By default
+# they are from where a map is tried
+BOUNDS = {"in steps": IN_STEPS, "by default": IN_STEPS, "multiscale": STEP_SHARE * IN_STEPS}
+MODES: tuple[bool | Literal["auto"], ...] = (False, "auto", True)
 # Of the response: by so much a reference may change with a tenth of its tolerance. That of a system
 # which is not chaotic changes by the bound times `FINER` at most, 0.03
 KNOWN = 0.1
@@ -33,31 +36,32 @@ CHAOTIC = "chaotic: the reference changes with its own tolerance as much as the 
 class Seen(NamedTuple):
     """What was seen of one system.
 
-    `off` is the error over the response of a run in steps and of one by the multiscale mode;
-    `left_out` is why they do not count, empty if they do.
+    `off` is the error over the response, `mapped` the sticks that were interpolated, of a run in
+    each of the modes; `left_out` is why they do not count, empty if they do.
     """
 
     number: int
     law: str
     rtol: float
     response: float
-    off: tuple[float, float]
-    mapped: int
+    off: tuple[float, ...]
+    mapped: tuple[int, ...]
     left_out: str
 
 
-def look(seed: int, number: int) -> Seen:
-    """Run one system in both ways, and as it would be if it were a little other."""
+def look(seed: int, number: int, longer: float = 1.0) -> Seen:
+    """Run one system in all modes, and as it would be if it were a little other."""
     slider, duration, rtol = system(seed, number)
+    duration *= longer
     finer = max(FINER * rtol, FINEST)
     sharp, reference = forces(slider, duration, finer)
     moved = response(slider, duration, tolerance(rtol), finer, sharp)
-    runs = [forces(slider, duration, rtol, multiscale) for multiscale in (False, True)]
+    runs = [forces(slider, duration, rtol, mode) for mode in MODES]
     left_out = "" if moved > FINEST else "nothing depends on mass or load: it never slipped"
     for run in (reference, *(run for _, run in runs)):
         left_out = left_out if run.status.ok else run.status.value
-    steps, mapped = (deviation(found, sharp) / (moved or 1.0) for found, _ in runs)
-    if not left_out and (steps > BOUNDS["in steps"] or mapped > BOUNDS["multiscale"]):
+    off = tuple(deviation(found, sharp) / (moved or 1.0) for found, _ in runs)
+    if not left_out and any(map(gt, off, BOUNDS.values())):
         sharper, _ = forces(slider, duration, finer / 10.0)
         if deviation(sharper, sharp) > KNOWN * moved:
             left_out = CHAOTIC
@@ -66,8 +70,8 @@ def look(seed: int, number: int) -> Seen:
         law=type(slider.law).__name__,
         rtol=rtol,
         response=moved,
-        off=(steps, mapped),
-        mapped=runs[1][1].statistics.mapped,
+        off=off,
+        mapped=tuple(run.statistics.mapped for _, run in runs),
         left_out=left_out,
     )
 
@@ -77,7 +81,9 @@ def section(seen: list[Seen]) -> tuple[Section, bool]:
     counted = [each for each in seen if not each.left_out]
     tables, kept = [left_out(seen)], True
     for place, (name, bound) in enumerate(BOUNDS.items()):
-        those = counted if name == "in steps" else [each for each in counted if each.mapped]
+        those = [each for each in counted if name == "in steps" or each.mapped[place]]
+        if not those:
+            continue
         ratios = np.array([each.off[place] for each in those])
         broken = int((ratios > bound).sum())
         kept = kept and not broken

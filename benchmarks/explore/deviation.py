@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 
 import stiction as st
@@ -13,7 +15,7 @@ CHANGED = ("mass", "normal_load")  # the clock of the oscillation, and the size 
 
 
 def forces(
-    slider: st.Slider, duration: float, rtol: float, multiscale: bool = False
+    slider: st.Slider, duration: float, rtol: float, multiscale: bool | Literal["auto"] = False
 ) -> tuple[np.ndarray, st.Trajectory]:
     """Return the force of the springs (N; 2 rows) at equal intervals of time, and the run."""
     rate = (SAMPLES - 1) / duration

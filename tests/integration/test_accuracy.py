@@ -36,9 +36,10 @@ WORST_MAPPED = (5661, 1492, 8596, 168, 8106, 1491, 2413, 1060)
 def test_an_error_is_that_of_an_apparatus_a_little_other(number):
     seen = look(SEED, number)
     assert not seen.left_out
-    in_steps, multiscale = seen.off
+    in_steps, by_default, multiscale = seen.off
     assert in_steps < BOUNDS["in steps"]
-    if seen.mapped:
+    assert by_default < BOUNDS["by default"]
+    if seen.mapped[2]:
         assert multiscale < BOUNDS["multiscale"]
 
 

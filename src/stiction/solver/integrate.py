@@ -13,6 +13,7 @@ from stiction.drive import jump
 from stiction.drive.bounds import load_bounds
 from stiction.friction import has_state
 from stiction.solver.exact.method import Exact
+from stiction.solver.multiscale.automatic import Automatic
 from stiction.solver.multiscale.method import Multiscale
 from stiction.solver.problem import Problem
 from stiction.solver.segments import (
@@ -157,6 +158,8 @@ def method_of(description: Description) -> Method:
     slider, delta = description.slider, description.run.regularisation
     if delta is not None or has_state(slider.law):
         return Smooth(slider, delta, description.run.smoothing)
+    if description.run.multiscale == "auto":
+        return Automatic(slider, description.run.rtol)
     return Multiscale(slider, description.run.rtol) if description.run.multiscale else Exact(slider)
 
 

@@ -48,7 +48,7 @@ class Settings(Described):
     smoothing : {"root", "arctan"}, optional
         The shape of the regularised law: as above, or ``F (2/pi) atan(|s|/delta)``, for comparison
         with other programs.
-    multiscale : bool, optional
+    multiscale : {"auto", True, False}, optional
         Whether to interpolate between cycles of stick and slip; see `stiction.simulate`.
     """
 
@@ -57,7 +57,7 @@ class Settings(Described):
     rtol: Number = Field(default=1e-6, ge=1e-13, le=1e-2)
     regularisation: Smoothing | None = None
     smoothing: Literal["root", "arctan"] = "root"
-    multiscale: StrictBool = False
+    multiscale: StrictBool | Literal["auto"] = "auto"
 
     @model_validator(mode="after")
     def _has_a_width(self) -> Self:

@@ -70,11 +70,12 @@ def solve_cycle(
     known: Returns,
     theta: float,
     longest: float,
-) -> tuple[bool, Cycle, float, State]:
-    """Solve the cycle from an angle, from time zero inside a stick on.
+    most: int,
+) -> tuple[bool, Cycle, float, State, int]:
+    """Solve the cycle from an angle, from time zero inside a stick on, in `most` turns at most.
 
     Returns whether it ends within `longest` (s), the cycle, the turn during the stick at its end,
-    and the final state. The record keeps its steps.
+    the final state, and the turns. The record keeps its steps.
     """
     fine, early = finer(accuracy), lead(problem, theta)
     u_x, u_y = elongation_held(problem, theta)
@@ -84,15 +85,16 @@ def solve_cycle(
     times, samples, stick = known.never, known.nowhere, known.stick
     record = known.record
     record.used[0] = 0
-    code, state, _, _ = advance(
-        problem, state, early + longest, fine, NODE_STEPS, times, samples, FIRST, stick, record
+    code, state, _, turns = advance(
+        problem, state, early + longest, fine, most, times, samples, FIRST, stick, record
     )
     end = state.motion
     held, _ = stick_duration(problem, end.t, end.u_x, end.u_y, inf)
     there = angle(problem, end.u_x + v_x * held, end.u_y + v_y * held)
     swing = wrap_angle(there - angle(problem, end.u_x, end.u_y))
     returns = code == RUNNING and state.counts.sticks == 1 and 0.0 < held < inf
-    return returns, Cycle(wrap_angle(there - theta), end.t - stick[0, 1] + held, held), swing, state
+    cycle = Cycle(wrap_angle(there - theta), end.t - stick[0, 1] + held, held)
+    return returns, cycle, swing, state, turns
 
 
 @inlined
@@ -142,9 +144,15 @@ def chart(
     patch[0] = theta
     for n in range(first, NODES):
         there = theta + 0.5 * (POINTS[n] + 1.0) * reach
-        returns, cycle, swing, end = solve_cycle(problem, accuracy, memory, known, there, longest)
+        most = int(min(NODE_STEPS, 1.0 + known.balance[0]))
+        returns, cycle, swing, end, turns = solve_cycle(
+            problem, accuracy, memory, known, there, longest, most
+        )
         memory, counts = end.memory, add_counts(counts, end.counts)
         known.sizes[3] += 1
+        known.balance[0] -= turns
+        if known.balance[0] < 0.0:  # it costs too much, wherever it would end
+            break
         if not returns:
             known.edges[known.sizes[1]] = there
             known.sizes[1] += 1
@@ -199,7 +207,9 @@ def resolve_motion(
     while n < NODES and in_progress(known):
         x = place_of_root(known, row, POINTS[n]) if at_edge else POINTS[n]
         there = theta + 0.5 * (x + 1.0) * reach
-        returns, cycle, _, end = solve_cycle(problem, accuracy, memory, known, there, longest)
+        returns, cycle, _, end, _ = solve_cycle(
+            problem, accuracy, memory, known, there, longest, NODE_STEPS
+        )
         memory, counts = end.memory, add_counts(counts, end.counts)
         if not returns:
             break

@@ -35,6 +35,7 @@ from stiction.solver.state import (
 PAYS = 8.0  # cycles that a patch must replace to pay
 VAIN = 30  # wasted nodes allowed at first, plus one for each so many solved cycles
 VAIN_EACH = 4
+SHORTER = 0.25  # of the steps beside a map: so many more are taken, 1 - STEP_SHARE^(1/4), (M39)
 
 
 @inlined
@@ -63,7 +64,8 @@ def reach(known: Returns, theta: float, turn: float) -> float:
 def pays(known: Returns, hold: Hold, cycle: Cycle, over: float, t_end: float) -> bool:
     """Return whether a patch over some angles pays, judged by the last cycle.
 
-    It must replace enough cycles, there must be room for it, and few nodes may have been wasted.
+    It must replace enough cycles, there must be room for it, few nodes may have been wasted, and
+    the map may still cost some steps.
     """
     left = (t_end - hold.end) / cycle.time
     return (
@@ -71,6 +73,7 @@ def pays(known: Returns, hold: Hold, cycle: Cycle, over: float, t_end: float) ->
         and left >= PAYS
         and max(known.sizes[0], known.sizes[1]) < PATCHES
         and known.sizes[3] <= VAIN + known.sizes[4] // VAIN_EACH
+        and known.balance[0] > 0.0
     )
 
 
@@ -150,6 +153,7 @@ def learn_and_follow(
         hold = Hold(landing, end, wrap_angle(hold.theta + following.turn))
         cycle = following
     if state.counts.mapped > found_before:
+        known.balance[0] += known.balance[1] * (state.counts.mapped - found_before)
         state = state_at_landing(problem, state, hold)
     known.last[0], known.last[1] = hold.theta, hold.end
     return COMPLETED, state, k
@@ -180,7 +184,7 @@ def stride(
     Returns
     -------
     code, state, k, turns
-        As there.
+        As there; it ends early where the map has cost too much.
     """
     turns = 0
     while True:
@@ -193,14 +197,16 @@ def stride(
             turns += state.counts.steps - steps
             if code > COMPLETED:
                 return code, plain(state), k, turns
-        if turns >= budget or state.counts.sticks == len(sticks):
+        if turns >= budget or state.counts.sticks == len(sticks) or known.balance[0] < 0.0:
             return RUNNING, plain(state), k, turns
         if rests:
             known.record.used[0] = 0
         room = sticks[: state.counts.sticks + (1 if rests else 0)]  # until the next landing
+        most = int(min(budget - turns, 1.0 + known.balance[0] / SHORTER))
         code, state, k, used = advance(
-            problem, state, t_end, accuracy, budget - turns, times, samples, k, room, known.record
+            problem, state, t_end, accuracy, most, times, samples, k, room, known.record
         )
         turns += used
+        known.balance[0] -= SHORTER * used
         if code != RUNNING:
             return code, plain(state), k, turns

@@ -8,13 +8,11 @@ import numpy as np
 
 from stiction.solver.exact.method import Exact, advance_compiled
 from stiction.solver.multiscale.loop import stride
-from stiction.solver.multiscale.return_map import Returns, empty_map
+from stiction.solver.multiscale.return_map import STEP_SHARE, Returns, empty_map
 from stiction.solver.problem import Problem, constant, steady
 from stiction.solver.state import Accuracy, Output, State
 from stiction.system.description import Description
 from stiction.system.slider import Slider
-
-STEP_SHARE = 0.3  # tolerance of steps for the return map, over that of others
 
 
 class Multiscale(Exact):
@@ -46,10 +44,7 @@ class Multiscale(Exact):
         """Advance until `end` (s) or until the budget is used up."""
         if not (steady(problem.drive) and constant(problem.load)):
             return super().advance(problem, state, end, held, budget, out)
-        if self.known is None or problem != self.problem:
-            first = int(np.searchsorted(out.times, self.span[0], "right"))
-            inside = first < len(out.times) and out.times[first] < self.span[1]
-            self.problem, self.known = problem, empty_map(self.rtol, bool(inside))
+        known = self.map_of(problem, out)
         fine = held._replace(
             tolerance=STEP_SHARE * held.tolerance,
             newton=STEP_SHARE * held.newton,
@@ -57,5 +52,13 @@ class Multiscale(Exact):
             touch=0.0,  # cycles are counted from one stick to the next, however short
         )
         return advance_compiled(
-            stride, self.point_law(problem), state, end, fine, budget, out, self.known
+            stride, self.point_law(problem), state, end, fine, budget, out, known
         )
+
+    def map_of(self, problem: Problem, out: Output) -> Returns:
+        """Return the known part of a problem's map."""
+        if self.known is None or problem != self.problem:
+            first = int(np.searchsorted(out.times, self.span[0], "right"))
+            inside = first < len(out.times) and out.times[first] < self.span[1]
+            self.problem, self.known = problem, empty_map(self.rtol, bool(inside))
+        return self.known

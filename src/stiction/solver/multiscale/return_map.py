@@ -13,7 +13,7 @@ each stick removes those, and the map is exact.
 
 from __future__ import annotations
 
-from math import nan
+from math import inf, nan
 from typing import NamedTuple
 
 import numpy as np
@@ -26,6 +26,7 @@ PATCHES = 256
 PAST = 256  # cycles remembered
 CLOSING = 0.03  # (M58): relative error of a patch's turn and time, over rtol; errors accumulate
 NEAR = 10.0  # over this: tolerance for remembered cycles, and for times of landing
+STEP_SHARE = 0.3  # tolerance of steps beside the map, over that of others
 FAR = 2.0  # a cycle so many times longer than those before is beyond an edge
 PHASES = 8  # Chebyshev points of a piece of a slip
 PIECES = 16  # of a slip at most
@@ -83,6 +84,8 @@ class Returns(NamedTuple):
     coefficients : of their polynomials for turn, time and the square of the time held; edges :
     angles beyond which there is no return; past : angle, turn, time and time held of cycles;
     width : of patches to try; sizes : of patches, edges and past, nodes in vain, cycles solved;
+    balance : steps that the map may still cost more than it saves, and those of a cycle without it,
+    whole numbers and quarters, so that sums are exact;
     last : angle and time (s) of the last take-off; stick, never, nowhere : room for the one stick
     of a cycle that is solved, and for no samples of it; closing : relative error; record : the
     steps of the last cycle that was solved; inside : the motion inside cycles.
@@ -94,6 +97,7 @@ class Returns(NamedTuple):
     past: np.ndarray
     width: np.ndarray
     sizes: np.ndarray
+    balance: np.ndarray
     last: np.ndarray
     stick: np.ndarray
     never: np.ndarray
@@ -113,6 +117,7 @@ def empty_map(rtol: float, samples: bool = False) -> Returns:
         np.empty((PAST, 4)),
         np.array([WIDEST]),
         np.zeros(5, dtype=np.int64),
+        np.array([inf, 0.0]),
         np.array([nan, nan]),
         np.empty((1, 2)),
         np.empty(0),

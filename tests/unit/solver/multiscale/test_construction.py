@@ -21,6 +21,7 @@ SOFT = st.presets.nakano_popov_2020().replace(k_y=1e5)
 MEMORY = COLD._replace(h=1e-5, plan=(1e-5, *[0.0] * 7))
 EXACT = held_to(1e-9)
 THETAS = [0.5, 1.0, 1.3]
+MOST = 10_000  # turns of the loop
 
 
 @cache
@@ -36,6 +37,11 @@ def taking_off(problem, theta, t=0.0):
     return State(Motion(t, *u, 0.0, 1.0, 0.0), MEMORY, NOTHING)
 
 
+def cycle_from(problem, known, theta):
+    """Return the cycle from an angle."""
+    return plain(construction.solve_cycle)(problem, EXACT, MEMORY, known, theta, 1.0, MOST)[1]
+
+
 def step_through(problem, theta, count):
     """Return the stick intervals after a take-off, by steps, and the angles at their ends."""
     sticks, state = np.zeros((count, 2)), taking_off(problem, theta)
@@ -49,8 +55,8 @@ def step_through(problem, theta, count):
 def test_a_cycle_from_an_angle(name, theta):
     """From one stick's end to the next one's, as steps find it; and nothing else is left behind."""
     problem, known = problem_of(name), empty_map(1e-6)
-    found, cycle, swing, end = plain(construction.solve_cycle)(
-        problem, EXACT, MEMORY, known, theta, 1.0
+    found, cycle, swing, end, turns = plain(construction.solve_cycle)(
+        problem, EXACT, MEMORY, known, theta, 1.0, MOST
     )
     assert found
     ((start, until),) = step_through(problem, theta, 1)
@@ -63,12 +69,13 @@ def test_a_cycle_from_an_angle(name, theta):
     landed = section_angle(problem, end.motion[1:3])
     assert swing == pytest.approx(section_angle(problem, u) - landed)
     assert end.counts.sticks == 1
+    assert turns >= end.counts.steps > 3
     # one that takes longer than it may, or does not stick, is none
     assert not plain(construction.solve_cycle)(
-        problem, EXACT, MEMORY, known, theta, 0.5 * (cycle.time - cycle.held)
+        problem, EXACT, MEMORY, known, theta, 0.5 * (cycle.time - cycle.held), MOST
     )[0]
     assert plain(construction.solve_cycle)(
-        problem, EXACT, MEMORY, known, theta, 1.01 * (cycle.time - cycle.held)
+        problem, EXACT, MEMORY, known, theta, 1.01 * (cycle.time - cycle.held), MOST
     )[0]
 
 
@@ -100,8 +107,8 @@ def test_a_patch_stands_for_the_cycles_over_it(reach, rtol):
         row, x = plain(interpolant.locate)(known, there)
         assert (row, x) == (0, pytest.approx(2 * part - 1.0))
         cycle = plain(interpolant.cycle_from)(known, row, x)
-        found, wanted, swing, _ = plain(construction.solve_cycle)(
-            problem, held, MEMORY, known, there, 1.0
+        found, wanted, swing, *_ = plain(construction.solve_cycle)(
+            problem, held, MEMORY, known, there, 1.0, MOST
         )
         assert found
         size = max(abs(wanted.turn), abs(swing))
@@ -114,8 +121,8 @@ def test_where_a_cycle_does_not_return_there_is_an_edge():
     """Its nodes were in vain, but the first is kept for the next attempt from the same angle."""
     problem, known = problem_of("soft"), empty_map(1e-4)
     begun = taking_off(problem, 1.3)
-    _, last, _, _ = plain(construction.solve_cycle)(problem, EXACT, MEMORY, known, 0.9, 1.0)
-    _, first, _, _ = plain(construction.solve_cycle)(problem, EXACT, MEMORY, known, 1.3, 1.0)
+    last = cycle_from(problem, known, 0.9)
+    first = cycle_from(problem, known, 1.3)
     longest = 0.5 * (last.time - last.held + first.time - first.held)
     held = held_to(1e-7)
     chart = plain(construction.chart)
@@ -136,6 +143,26 @@ def test_where_a_cycle_does_not_return_there_is_an_edge():
     assert nothing.sizes.tolist() == [0, 1, 0, 1, 0]
     assert nothing.edges[0] == 0.9
     assert np.isnan(nothing.patches[0, 0])
+
+
+def test_a_patch_that_costs_too_much_is_given_up_without_an_edge():
+    """In the middle of a node too; what it has cost is known."""
+    problem, known = problem_of("soft"), empty_map(1e-4)
+    begun = taking_off(problem, 1.2)
+    first = plain(construction.solve_cycle)(
+        problem, EXACT, MEMORY, empty_map(1e-4), 1.2, 1.0, MOST
+    )[4]
+    known.balance[:] = first + 2, 7
+    plain(construction.chart)(problem, EXACT, begun, known, 1.2, -0.1, 1.0)
+    assert known.sizes.tolist() == [0, 0, 0, 2, 0]
+    assert known.balance.tolist() == [-1, 7]
+    assert known.width[0] == 0.5 * WIDEST
+    # with as much as it takes, the rest is left
+    enough = empty_map(1e-4)
+    enough.balance[0] = 10_000
+    after = plain(construction.chart)(problem, EXACT, begun, enough, 1.2, -0.1, 1.0)
+    assert enough.sizes[0] == 1
+    assert 0 < enough.balance[0] <= 10_000 - after.counts.steps
 
 
 def test_where_the_map_is_not_smooth_the_next_patch_is_half_as_wide():
@@ -169,9 +196,9 @@ def test_when_a_patch_is_closed(misses, nodes, monkeypatch):
     chart, known, seen = plain(construction.chart), empty_map(1e-4), []
     begun, end = taking_off(problem_of("soft"), 1.2), taking_off(problem_of("soft"), 0.7)
 
-    def solved(problem, accuracy, memory, known, theta, longest):
+    def solved(problem, accuracy, memory, known, theta, longest, most):
         seen.append(theta)
-        return True, interpolant.Cycle(0.1, 1.0, 0.5), 0.2, end
+        return True, interpolant.Cycle(0.1, 1.0, 0.5), 0.2, end, 9
 
     left = iter(misses)
     monkeypatch.setitem(chart.__globals__, "solve_cycle", solved)

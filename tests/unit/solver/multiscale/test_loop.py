@@ -71,7 +71,7 @@ def test_how_far_a_patch_is_tried(way):
 
 
 def test_a_patch_pays_if_it_is_good_for_eight_cycles():
-    """Over its angles and in the time that is left; and if not too many were in vain."""
+    """Over its angles and in the time left; if not too many were in vain, nor cost too much."""
     known, pays = empty_map(1e-6), plain(loop.pays)
     assert pays(known, HOLD, CYCLE, 0.0801, 100.0)
     assert pays(known, HOLD, CYCLE, -0.0801, 100.0)
@@ -92,6 +92,10 @@ def test_a_patch_pays_if_it_is_good_for_eight_cycles():
     known.sizes[4] = loop.VAIN_EACH
     assert pays(known, HOLD, CYCLE, 1.0, 100.0)
     known.sizes[3] += 1
+    assert not pays(known, HOLD, CYCLE, 1.0, 100.0)
+    known.sizes[3] = 0
+    assert pays(known, HOLD, CYCLE, 1.0, 100.0)
+    known.balance[0] = 0.0
     assert not pays(known, HOLD, CYCLE, 1.0, 100.0)
 
 

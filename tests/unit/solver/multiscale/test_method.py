@@ -8,8 +8,8 @@ from tests.unit.solver.multiscale.test_construction import SOFT, problem_of, tak
 
 import stiction as st
 from stiction.solver.multiscale import method
-from stiction.solver.multiscale.method import STEP_SHARE, Multiscale
-from stiction.solver.multiscale.return_map import CLOSING
+from stiction.solver.multiscale.method import Multiscale
+from stiction.solver.multiscale.return_map import CLOSING, STEP_SHARE
 from stiction.solver.state import Output
 
 HELD = held_to(1e-4)._replace(touch=0.3)

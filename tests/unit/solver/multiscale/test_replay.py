@@ -7,12 +7,13 @@ from tests.unit.solver.multiscale.test_construction import (
     EXACT,
     MEMORY,
     problem_of,
+    cycle_from,
     taking_off,
 )
 
 from stiction.solver.exact import loop
 from stiction.solver.exact.record import NoRecord
-from stiction.solver.multiscale import construction, replay
+from stiction.solver.multiscale import replay
 from stiction.solver.multiscale.return_map import Hold, empty_map
 from stiction.solver.state import COMPLETED, Counts, State
 
@@ -24,7 +25,7 @@ T, THETA = 4.0, 1.1
 def test_samples_of_a_cycle(name):
     """They are those of steps from the same take-off; the state itself stays as it was."""
     problem, known = problem_of(name), empty_map(1e-6)
-    _, cycle, _, _ = plain(construction.solve_cycle)(problem, EXACT, MEMORY, known, THETA, 1.0)
+    cycle = cycle_from(problem, known, THETA)
     hold = Hold(T - 2e-3, T, THETA)
     landing = T + cycle.time - cycle.held
     parts = np.array([-1e-3, 0.0, *np.linspace(0.1, 0.97, 5) * (landing - T)])

@@ -1,0 +1,108 @@
+"""Steps, and the return map where it pays: what `stiction.solver.integrate` runs by default.
+
+Runs by `multiscale` cost more where little can be mapped: they take shorter steps, and solve cycles
+for patches in vain. So a map is tried only where many cycles are left, and only until it has cost
+a small share of the steps to be expected more than it has saved.
+
+All of this is decided after numbers of steps and at rests, never where a caller pauses the run, nor
+where there are samples: neither changes the motion.
+"""
+
+from __future__ import annotations
+
+from math import floor
+from typing import NamedTuple
+
+from stiction.solver.exact.method import Exact
+from stiction.solver.multiscale.method import Multiscale
+from stiction.solver.problem import Problem, constant, steady
+from stiction.solver.state import RUNNING, Accuracy, Output, State
+from stiction.system.slider import Slider
+
+LOOK = 512  # turns of the first leg, (M59c); each next one is twice as long
+CYCLES = 8  # sticks in a leg that make cycles, (M59c)
+WORTH = 5_000.0  # steps to be expected still, (M59c): a patch costs some hundred
+LOSS = 0.03  # of all expected steps, which maps that do not pay may cost, (M59c)
+STAKE = 0.5  # of the steps of the leg before, which one trial may cost, (M59c)
+
+
+class Leg(NamedTuple):
+    """A part of a run in steps, after which one looks at what they did.
+
+    turns : of the loop, its length; left : of these; start : the state at its start.
+    """
+
+    turns: int
+    left: int
+    start: State
+
+
+class MapTrial(NamedTuple):
+    """A map that is tried.
+
+    stake : steps that it may cost more than it saves; cycle : steps of a cycle without it; leg :
+    turns of the leg before.
+    """
+
+    stake: int
+    cycle: int
+    leg: int
+
+
+class Automatic(Multiscale):
+    """Like `Exact`, and like `Multiscale` from where many cycles are left, while it saves steps."""
+
+    def __init__(self, slider: Slider, rtol: float) -> None:
+        """Take the slider and the tolerance."""
+        super().__init__(slider, rtol)
+        self.at: Leg | MapTrial | None = None  # what the run is at
+        self.lost = 0  # steps, by maps that did not pay
+
+    def enter_segment(self, state: State, x: float, y: float) -> State:
+        """Return the state at the start of a stretch, where the slip velocity jumps by (x, y)."""
+        state = super().enter_segment(state, x, y)
+        self.at = Leg(LOOK, LOOK, state)
+        return state
+
+    def advance(
+        self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
+    ) -> tuple[int, State]:
+        """Advance until `end` (s) or until the budget is used up."""
+        if self.at is None or not (steady(problem.drive) and constant(problem.load)):
+            return Exact.advance(self, problem, state, end, held, budget, out)
+        if isinstance(self.at, MapTrial):
+            code, now = super().advance(problem, state, end, held, budget, out)
+            self.at = self.after_map(self.at, floor(self.map_of(problem, out).balance[0]), now)
+            return code, now
+        used, turns = out.used, min(budget, self.at.left)
+        code, now = Exact.advance(self, problem, state, end, held, turns, out)
+        self.at = self.at._replace(left=self.at.left - (out.used - used))
+        if code == RUNNING and self.at.left <= 0:
+            self.at = trial(self.at, now, end, self.lost) or next_leg(self.at.turns, now)
+            if isinstance(self.at, MapTrial):
+                self.map_of(problem, out).balance[:] = self.at.stake, self.at.cycle
+        return code, now
+
+    def after_map(self, tried: MapTrial, left: int, now: State) -> Leg | MapTrial:
+        """Return what comes next: another leg if the map has cost too much."""
+        if left >= 0:
+            return tried
+        self.lost += tried.stake - left
+        return next_leg(tried.leg, now)
+
+
+def next_leg(turns: int, now: State) -> Leg:
+    """Return the leg after one of so many turns."""
+    return Leg(2 * turns, 2 * turns, now)
+
+
+def trial(leg: Leg, now: State, end: float, lost: int) -> MapTrial | None:
+    """Return the map that is tried after a leg (M59c), if it is, when `lost` steps are lost."""
+    lasted, cycles = now.motion.t - leg.start.motion.t, now.counts.sticks - leg.start.counts.sticks
+    if cycles < CYCLES:
+        return None
+    expected = leg.turns * (end - now.motion.t) / lasted
+    stake = round(min(LOSS * expected - lost, STAKE * leg.turns))
+    if expected < WORTH or stake <= 0:
+        return None
+    return MapTrial(stake, round(leg.turns / cycles), leg.turns)
