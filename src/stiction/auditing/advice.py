@@ -7,15 +7,15 @@ from math import copysign, inf, isfinite, nan, pi, radians, sqrt
 from typing import Any, NamedTuple
 
 from stiction.auditing.chain import softest_path
-from stiction.auditing.observation import (
+from stiction.auditing.prediction import predict
+from stiction.auditing.simulated_test import (
     LEAST_WORK,
     SLIDES,
-    Observation,
     Progress,
+    SimulatedTest,
     coarse_rate,
     observe,
 )
-from stiction.auditing.prediction import predict
 from stiction.linear_stability import Critical, critical, growth_rate
 from stiction.system.parameter import change_parameter, read, unit
 from stiction.system.slider import Slider
@@ -54,7 +54,7 @@ class Advice(NamedTuple):
         none in the range.
     growth : float
         The growth rate (1/s) at the advised value.
-    tried : Observation or None
+    tried : SimulatedTest or None
         The simulation with the advised value.
     work : int
         Steps and samples of all simulations of this parameter.
@@ -69,7 +69,7 @@ class Advice(NamedTuple):
     critical: float
     then: float
     growth: float
-    tried: Observation | None
+    tried: SimulatedTest | None
     work: int = 0
     cut: bool = False
 
@@ -85,7 +85,7 @@ def advise(slider: Slider, stable: bool, work: int, progress: Progress = None) -
     """Yield, for each parameter, the nearest value with steady sliding, tried from rest.
 
     If steady sliding is already `stable`, only not reached from rest, ever larger values are tried.
-    `work` limits all simulations together, see `Observation.work`; each parameter passes the rest
+    `work` limits all simulations together, see `SimulatedTest.work`; each parameter passes the rest
     of its share on to the next. `progress` receives the fraction of parameters done.
     """
     told = progress or (lambda fraction: None)

@@ -11,16 +11,16 @@ from stiction.analysis.record import Record, as_record
 from stiction.auditing import chain
 from stiction.auditing.advice import LEVERS, Advice, advise, limits
 from stiction.auditing.chain_words import chain_sections
-from stiction.auditing.observation import (
+from stiction.auditing.prediction import Prediction, predict
+from stiction.auditing.simulated_test import (
     MOST_WORK,
     OSCILLATES,
     SLIDES,
-    Observation,
+    SimulatedTest,
     coarse_rate,
     from_sliding,
     observe,
 )
-from stiction.auditing.prediction import Prediction, predict
 from stiction.auditing.tolerance.budget import Budget, budget
 from stiction.auditing.tolerance.words import section
 from stiction.auditing.words.changes import changes
@@ -58,9 +58,9 @@ class Audit(NamedTuple):
         Steady sliding and its modes.
     misalignment : Critical
         Misalignments at which steady sliding changes between unstable and stable.
-    observation : Observation
+    observation : SimulatedTest
         The simulated test, from rest.
-    sliding_on : Observation
+    sliding_on : SimulatedTest
         The simulated test, from steady sliding with a small disturbance.
     advices : tuple of Advice
         Changes that would make it slide steadily, each tried from rest; empty if it does.
@@ -76,8 +76,8 @@ class Audit(NamedTuple):
     prediction: Prediction
     sliding: Linearisation
     misalignment: Critical
-    observation: Observation
-    sliding_on: Observation
+    observation: SimulatedTest
+    sliding_on: SimulatedTest
     advices: tuple[Advice, ...]
     chain: chain.Chain | None = None
     budget: Budget | None = None

@@ -58,7 +58,7 @@ class Known(Described):
 KNOWN = tuple(Known.model_fields)
 
 
-class Reading(Described):
+class ReadingOptions(Described):
     """How to read a file, as far as the user says so.
 
     Parameters
@@ -104,7 +104,7 @@ class Reading(Described):
 class Request(NamedTuple):
     """All that is said about a file: how to read it, numbers of the apparatus, sensors."""
 
-    reading: Reading
+    reading: ReadingOptions
     known: dict[str, Any]
     sensors: dict[str, Sensor]
     beside: Path | None = None
@@ -130,7 +130,7 @@ def request(path: Path, given: Mapping[str, Any], sidecar: Path | None = None) -
     known = stated["record"] | {name: value for name, value in said.items() if name in KNOWN}
     read = {name: value for name, value in said.items() if name not in KNOWN}
     wrong: list[Fault] = []
-    reading = _read(Reading, stated["reading"] | stated["columns"] | read, places, wrong)
+    reading = _read(ReadingOptions, stated["reading"] | stated["columns"] | read, places, wrong)
     apparatus = _read(Known, known, places, wrong)
     of_channels = {}
     for name, table in sensors.items():
@@ -169,7 +169,7 @@ def _tables(own: Path) -> dict[str, dict[str, Any]]:
     raw, wrong = read_toml(own), []
     allowed = {
         "columns": tuple(CHANNELS),
-        "reading": tuple(name for name in Reading.model_fields if name not in CHANNELS),
+        "reading": tuple(name for name in ReadingOptions.model_fields if name not in CHANNELS),
         "record": KNOWN,
         "sensors": tuple(name for name in CHANNELS if name != "time"),
     }

@@ -54,7 +54,7 @@ class Column:
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
+class FileTable:
     """Columns of one length, and what the file says about them.
 
     Parameters

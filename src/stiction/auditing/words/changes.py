@@ -6,7 +6,7 @@ from math import isfinite
 from typing import TYPE_CHECKING
 
 from stiction.auditing.advice import Advice, is_compliance
-from stiction.auditing.observation import (
+from stiction.auditing.simulated_test import (
     MOST_WORK,
     OSCILLATES,
 )

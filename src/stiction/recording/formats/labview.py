@@ -14,14 +14,14 @@ from stiction.errors import ResultError
 from stiction.recording.formats import Layout
 from stiction.recording.formats.dialect import Dialect
 from stiction.recording.formats.text import lines_of
-from stiction.recording.table import Column, Remark, Table
+from stiction.recording.table import Column, FileTable, Remark
 
 END = "***End_of_Header***"
 SEPARATORS = {"tab": "\t", "comma": ",", "semicolon": ";"}
 COLUMN_NAMES = "X_Value"
 
 
-def read(path: Path, layout: Layout) -> list[Table]:
+def read(path: Path, layout: Layout) -> list[FileTable]:
     """Return a table for each segment of a LabVIEW measurement file."""
     lines = lines_of(path)
     head, at = _header(path, lines, 0, None)
@@ -30,7 +30,7 @@ def read(path: Path, layout: Layout) -> list[Table]:
     dialect = Dialect(mark, sign)
     x_columns = (_first(head, "X_Columns") or "One").lower()
     start = f"{_first(head, 'Date')} {_first(head, 'Time')}".strip()
-    tables: list[Table] = []
+    tables: list[FileTable] = []
     while at < len(lines):
         if not lines[at].strip(mark + " "):
             at += 1
@@ -76,10 +76,10 @@ def _segment(
     dialect: Dialect,
     x_columns: str,
     start: str,
-) -> Table:
+) -> FileTable:
     """Return the table of a segment whose line of names stands at `at`."""
     if at >= len(lines):
-        return Table((), "LabVIEW measurement")
+        return FileTable((), "LabVIEW measurement")
     names = dialect.cells(lines[at])
     if names and names[-1] == "Comment":
         names.pop()
@@ -118,7 +118,7 @@ def _segment(
     promised = [int(each) for each in samples if each.isdigit()]
     began = f"{_first(header, 'Date')} {_first(header, 'Time')}".strip() or start
     remarks = tuple(Remark(0, f"{key}: {' '.join(cells)}") for key, cells in header.items())
-    return Table(
+    return FileTable(
         tuple(columns),
         "LabVIEW measurement",
         remarks=tuple(x for x in remarks if x.text.startswith(("Notes", "Operator", "Test_"))),

@@ -10,11 +10,11 @@ import numpy as np
 
 from stiction.errors import ResultError
 from stiction.recording.formats import Layout
-from stiction.recording.table import Column, Remark, Table
+from stiction.recording.table import Column, FileTable, Remark
 from stiction.storage.foreign import refuse_size
 
 
-def read(path: Path, layout: Layout) -> list[Table]:
+def read(path: Path, layout: Layout) -> list[FileTable]:
     """Return a table for each group of channels; each channel has its own clock."""
     try:
         nptdms: Any = import_module("nptdms")
@@ -35,7 +35,7 @@ def read(path: Path, layout: Layout) -> list[Table]:
     return tables
 
 
-def _table(group: Any, channels: list[Any], cut: bool) -> Table:
+def _table(group: Any, channels: list[Any], cut: bool) -> FileTable:
     """Return one group as a table of the length of its shortest channel."""
     lengths = {len(each) for each in channels}
     rows, notes = min(lengths), []
@@ -59,7 +59,7 @@ def _table(group: Any, channels: list[Any], cut: bool) -> Table:
         columns.append(Column(channel.name, values, number, unit, clock))
     remarks = [Remark(0, f"{name}: {value}") for name, value in group.properties.items()]
     begins = "" if first is None else str(first)[:23]
-    return Table(
+    return FileTable(
         tuple(columns),
         "TDMS",
         label=group.name,

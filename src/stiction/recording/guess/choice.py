@@ -9,7 +9,7 @@ import numpy as np
 
 from stiction.errors import Faults, ResultError
 from stiction.recording.channels import CHANNELS, LENGTH, OWN, RATIO, plain
-from stiction.recording.table import Column, Table
+from stiction.recording.table import Column, FileTable
 from stiction.recording.units import is_electric, is_ratio, size_of
 
 
@@ -38,14 +38,14 @@ class _Wish(NamedTuple):
     unit: str
 
 
-def choose_columns(path: object, table: Table, said: dict[str, str], *, timed: bool) -> Choice:
+def choose_columns(path: object, table: FileTable, said: dict[str, str], *, timed: bool) -> Choice:
     """Return the columns of channels.
 
     Parameters
     ----------
     path : object
         Of the file, for messages.
-    table : Table
+    table : FileTable
         The columns of the file.
     said : dict
         From a channel to a column, a unit, or both, as the user gives them.
@@ -101,7 +101,7 @@ def choose_columns(path: object, table: Table, said: dict[str, str], *, timed: b
     return Choice(found, tuple(notes))
 
 
-def _read_wish(path: object, table: Table, name: str, text: str) -> _Wish:
+def _read_wish(path: object, table: FileTable, name: str, text: str) -> _Wish:
     """Return column and unit of ``Fx``, ``mN``, ``Fx=mN`` or ``3=mN``."""
     head, equals, unit = text.rpartition("=")
     if equals:
@@ -124,7 +124,7 @@ def _read_wish(path: object, table: Table, name: str, text: str) -> _Wish:
     return _Wish(None, text.strip())
 
 
-def _find(path: object, table: Table, name: str, text: str) -> Column | None:
+def _find(path: object, table: FileTable, name: str, text: str) -> Column | None:
     """Return the column of a name, a heading or a number."""
     columns, small = table.columns, text.lower()
     for matches in (
@@ -147,7 +147,7 @@ def _fits(column: Column, name: str) -> bool:
 
 def _by_name(
     path: object,
-    table: Table,
+    table: FileTable,
     name: str,
     wish: _Wish,
     taken: Sequence[Column],
@@ -178,7 +178,7 @@ def _by_name(
 
 def _by_unit(
     path: object,
-    table: Table,
+    table: FileTable,
     name: str,
     wish: _Wish,
     taken: Sequence[Column],
@@ -207,11 +207,11 @@ def _is_other(column: Column, name: str) -> bool:
     return any(each.names.fullmatch(text) for each in others) or bool(LENGTH.fullmatch(text))
 
 
-def _has_no_names(table: Table) -> bool:
+def _has_no_names(table: FileTable) -> bool:
     return all(x.name == f"column {x.number}" for x in table.columns)
 
 
-def _ratio(path: object, table: Table, taken: Sequence[Column]) -> Chosen:
+def _ratio(path: object, table: FileTable, taken: Sequence[Column]) -> Chosen:
     """Return a friction coefficient in place of the force."""
     free = [each for each in table.columns if not any(each is one for one in taken)]
     matches = [x for x in free if RATIO.fullmatch(plain(x.name)) and is_ratio(x.unit or "-")]
@@ -227,7 +227,7 @@ def _ratio(path: object, table: Table, taken: Sequence[Column]) -> Chosen:
 
 def _times(
     path: object,
-    table: Table,
+    table: FileTable,
     force: Chosen | None,
     wish: _Wish,
     taken: Sequence[Column],
@@ -252,7 +252,7 @@ def _times(
     return first
 
 
-def own_clock(path: object, table: Table, column: Column, times: Sequence[Column]) -> Column:
+def own_clock(path: object, table: FileTable, column: Column, times: Sequence[Column]) -> Column:
     """Return the column of times that belongs to a channel, where each channel has one.
 
     Raises
@@ -268,7 +268,7 @@ def own_clock(path: object, table: Table, column: Column, times: Sequence[Column
     return before[-1]
 
 
-def _with_size(path: object, table: Table, name: str, column: Column, unit: str) -> Chosen:
+def _with_size(path: object, table: FileTable, name: str, column: Column, unit: str) -> Chosen:
     """Return a column with the size of its unit."""
     channel = CHANNELS[name]
     text = unit or column.unit
@@ -314,7 +314,7 @@ def _ambiguous(path: object, name: str, matches: Sequence[Column]) -> NoReturn:
     )
 
 
-def _refuse(path: object, table: Table, name: str, why: str, remedy: str = "") -> NoReturn:
+def _refuse(path: object, table: FileTable, name: str, why: str, remedy: str = "") -> NoReturn:
     columns = ", ".join(str(each) for each in table.columns) or "none"
     unit = CHANNELS[name].example
     raise ResultError(
