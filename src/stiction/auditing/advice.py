@@ -1,4 +1,4 @@
-"""Advice on changes of an apparatus, each tried in a simulation."""
+"""Remedies for an apparatus: changes of it, each tried in a simulation."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ MORE = {
     "k_x": (2.0, 4.0, 8.0, 16.0, 32.0),
 }
 LEVERS = ("phi", "drive.velocity", "c_x", "k_x")  # of springs in series, the softest one's
-NOT_TRIED = (nan, nan, nan, None)  # fields of an `Advice` without a better value so far
+NOT_TRIED = (nan, nan, nan, None)  # fields of a `Remedy` without a better value so far
 MOST_TURNED = 80.0  # degrees: near a right angle the soft spring no longer acts along the drive
 STRONGEST = 10.0  # times critical damping: the strongest damper tried
 
 
-class Advice(NamedTuple):
+class Remedy(NamedTuple):
     """One parameter, its value for steady sliding, and the simulation with that value.
 
     Parameters
@@ -81,7 +81,7 @@ class Advice(NamedTuple):
         return slides and self.growth < 0.0
 
 
-def advise(slider: Slider, stable: bool, work: int, progress: Progress = None) -> Iterator[Advice]:
+def advise(slider: Slider, stable: bool, work: int, progress: Progress = None) -> Iterator[Remedy]:
     """Yield, for each parameter, the nearest value with steady sliding, tried from rest.
 
     If steady sliding is already `stable`, only not reached from rest, ever larger values are tried.
@@ -103,15 +103,15 @@ def advise(slider: Slider, stable: bool, work: int, progress: Progress = None) -
 
 def advise_one(
     slider: Slider, path: str, stable: bool, work: int, progress: Callable[[float], None]
-) -> Advice:
+) -> Remedy:
     """Return the nearest value of one parameter with steady sliding, tried from rest."""
     if stable:
-        advice = Advice(path, unit(slider, path), read(slider, path), (nan, nan), *NOT_TRIED)
+        advice = Remedy(path, unit(slider, path), read(slider, path), (nan, nan), *NOT_TRIED)
         ways = [(nan, then) for then in further(slider, path)]
     else:
         found = critical(slider, path, limits(slider, path))
         now = read(slider, path)
-        advice = Advice(path, found.unit, now, found.between, *NOT_TRIED)
+        advice = Remedy(path, found.unit, now, found.between, *NOT_TRIED)
         ways = [nearest(found, now, beyond) for beyond in BEYOND]
     for number, (edge, then) in enumerate(ways):
 

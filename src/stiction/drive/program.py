@@ -19,7 +19,7 @@ from stiction.drive.signal import Signal
 from stiction.drive.steady import ConstantLoad, ConstantVelocity
 from stiction.drive.stretch import VaryingLoad, VaryingVelocity
 from stiction.machine import shortage
-from stiction.text.samples import Column
+from stiction.text.samples import FrozenColumn
 from stiction.text.units import FORCE, VELOCITY, Velocity
 from stiction.text.validation import Described
 
@@ -301,7 +301,7 @@ def describe_piece(piece: Any) -> dict[str, Any]:
     """
     values = {name: value for name, value in piece._asdict().items() if value is not None}
     if isinstance(piece, RECORDS):
-        values = {n: v.tolist() if isinstance(v, Column) else v for n, v in values.items()}
+        values = {n: v.tolist() if isinstance(v, FrozenColumn) else v for n, v in values.items()}
         values["checksum"] = checksum(values)
     if "phase" in values:
         values["phase"] = f"{values['phase']!r} rad"

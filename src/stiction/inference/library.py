@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from stiction.analysis.record import cell_axis
-from stiction.inference.features import BEND, Cycles, Part, features, find_cycles, parts
+from stiction.inference.features import BEND, Cycles, FeatureGroup, features, find_cycles, parts
 from stiction.inference.jitter import Jitter, SampledMotion, move
 from stiction.inference.observation import Conditions
 from stiction.inference.priors import Normal, Prior, Uniform
@@ -225,7 +225,7 @@ def bend_features(conditions: Conditions, slider: Slider) -> NDArray[np.bool_]:
 
 
 def which(
-    conditions: Conditions, slider: Slider, wanted: Callable[[Part], bool]
+    conditions: Conditions, slider: Slider, wanted: Callable[[FeatureGroup], bool]
 ) -> NDArray[np.bool_]:
     """Return which features of a record under these conditions belong to the wanted parts."""
     blank = dummy(conditions)

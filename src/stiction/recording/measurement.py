@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from stiction.errors import Faults, ResultError
 from stiction.recording.channels import CHANNELS, plain
-from stiction.recording.formats import Layout, read_tables
+from stiction.recording.formats import TextLayout, read_tables
 from stiction.recording.guess.choice import Choice, Chosen, choose_columns, own_clock
 from stiction.recording.guess.clock import Block, blocks, check_stated
 from stiction.recording.guess.displacement import unwrap
@@ -62,7 +62,7 @@ def read_measurements(
     """
     asked = request(path, given, sidecar)
     reading = asked.reading
-    layout = Layout(SIGNS.get(reading.decimal or ""), MARKS.get(reading.separator or ""))
+    layout = TextLayout(SIGNS.get(reading.decimal or ""), MARKS.get(reading.separator or ""))
     found: list[Measurement] = []
     faults, without = Faults(), Faults()  # a table beside those of samples may have no force
     for table in read_tables(path, layout):

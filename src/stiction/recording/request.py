@@ -44,7 +44,7 @@ def _wrap(value: object) -> object:
     return length
 
 
-class Known(Described):
+class KnownApparatus(Described):
     """What is known of the apparatus; the fields are those of a record."""
 
     normal_load: Force | None = None
@@ -55,7 +55,7 @@ class Known(Described):
     zero: SignedForce | None = None
 
 
-KNOWN = tuple(Known.model_fields)
+KNOWN = tuple(KnownApparatus.model_fields)
 
 
 class ReadingOptions(Described):
@@ -131,7 +131,7 @@ def request(path: Path, given: Mapping[str, Any], sidecar: Path | None = None) -
     read = {name: value for name, value in said.items() if name not in KNOWN}
     wrong: list[Fault] = []
     reading = _read(ReadingOptions, stated["reading"] | stated["columns"] | read, places, wrong)
-    apparatus = _read(Known, known, places, wrong)
+    apparatus = _read(KnownApparatus, known, places, wrong)
     of_channels = {}
     for name, table in sensors.items():
         at = {key: f"{own}: sensors.{name}.{key}" for key in table}

@@ -175,7 +175,7 @@ def test_no_value_is_tried_twice(monkeypatch):
         advice, "try_change", lambda slider, *_: tried.append(slider) or {"tried": None}
     )
     monkeypatch.setattr(advice, "LEVERS", ("phi",))
-    monkeypatch.setattr(advice.Advice, "works", False)
+    monkeypatch.setattr(advice.Remedy, "works", False)
     (found,) = [each._replace() for each in advise(soft, False, 10**6)]
     assert found.then == tried[-1].phi
     assert len({each.phi for each in tried}) == len(tried)

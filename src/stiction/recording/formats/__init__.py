@@ -15,7 +15,7 @@ from stiction.storage.foreign import opening
 HEAD = 512  # bytes by which a file is recognised
 
 
-class Layout(NamedTuple):
+class TextLayout(NamedTuple):
     """How a text file is laid out, as far as the user says so."""
 
     decimal: str | None = None
@@ -50,7 +50,7 @@ OTHERS = {
 }
 
 
-def read_tables(path: Path, layout: Layout) -> list[FileTable]:
+def read_tables(path: Path, layout: TextLayout) -> list[FileTable]:
     """Return the tables of a file, by its content and not by its suffix.
 
     Raises

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from stiction.recording.formats import Layout
+from stiction.recording.formats import TextLayout
 from stiction.recording.formats.members import Member, tables_of
 from stiction.recording.table import FileTable
 from stiction.storage.foreign import refuse_size
@@ -18,7 +18,7 @@ DEEPEST = 6  # structs inside one another
 UNITS = ("units", "unit", "Units")
 
 
-def read(path: Path, layout: Layout) -> list[FileTable]:
+def read(path: Path, layout: TextLayout) -> list[FileTable]:
     """Return the tables of a MATLAB file: vectors, matrices, and structs of these."""
     io: Any = import_module("scipy.io")  # slow to import
     kinds = io.whosmat(path)

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from stiction.errors import ResultError
-from stiction.recording.formats import Layout
-from stiction.recording.table import Column, FileTable, Remark
+from stiction.recording.formats import TextLayout
+from stiction.recording.table import FileColumn, FileTable, Remark
 from stiction.storage.foreign import refuse_size
 
 
-def read(path: Path, layout: Layout) -> list[FileTable]:
+def read(path: Path, layout: TextLayout) -> list[FileTable]:
     """Return a table for each group of channels; each channel has its own clock."""
     try:
         nptdms: Any = import_module("nptdms")
@@ -56,7 +56,7 @@ def _table(group: Any, channels: list[Any], cut: bool) -> FileTable:
         clock = offset + float(step) * np.arange(rows, dtype=np.float64) if step else None
         unit = str(its.get("unit_string") or its.get("NI_UnitDescription") or "")
         values = np.asarray(channel[:rows], dtype=np.float64)
-        columns.append(Column(channel.name, values, number, unit, clock))
+        columns.append(FileColumn(channel.name, values, number, unit, clock))
     remarks = [Remark(0, f"{name}: {value}") for name, value in group.properties.items()]
     begins = "" if first is None else str(first)[:23]
     return FileTable(

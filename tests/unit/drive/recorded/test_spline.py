@@ -14,7 +14,7 @@ from stiction.drive.signal import Signal
 from stiction.drive.stretch import VaryingLoad, VaryingVelocity
 from stiction.solver import problem
 from stiction.solver.compilation.jit import njit
-from stiction.text.samples import Column
+from stiction.text.samples import FrozenColumn
 
 KINDS = ("even", "uneven", "clustered")
 
@@ -34,7 +34,7 @@ def table(kind, seed=0, integrated=False, start=3.0):
     rng = np.random.default_rng(seed)
     time = rows_of(kind, rng)
     values = rng.normal(size=len(time))
-    made = s.recording(s.spline(Column(time), Column(values), integrated), start)
+    made = s.recording(s.spline(FrozenColumn(time), FrozenColumn(values), integrated), start)
     return made, start + time - time[0], values
 
 
@@ -142,7 +142,7 @@ def test_bounds_over_an_interval_are_those_of_its_pieces_and_of_the_wave():
 
 def test_the_frequency_of_a_recorded_harmonic_is_told():
     t = np.linspace(0.0, 1.0, 401)
-    made = s.spline(Column(t), Column(5.0 + np.sin(2 * np.pi * 9.0 * t)), False)
+    made = s.spline(FrozenColumn(t), FrozenColumn(5.0 + np.sin(2 * np.pi * 9.0 * t)), False)
     assert s.recording(made, 0.0).fastest() == pytest.approx(2 * np.pi * 9.0, rel=5e-3)
 
 
@@ -167,10 +167,10 @@ def test_a_silent_recording_is_its_wave():
 
 
 def test_a_column_is_one_value():
-    a, b = Column([1.0, 2.0]), Column(np.array([1.0, 2.0]))
+    a, b = FrozenColumn([1.0, 2.0]), FrozenColumn(np.array([1.0, 2.0]))
     assert a == b
     assert hash(a) == hash(b)
-    assert a != Column([1.0, 2.5])
+    assert a != FrozenColumn([1.0, 2.5])
     assert a != [1.0, 2.0]
     assert pickle.loads(pickle.dumps(a)) == a
     assert len(a) == a.size == 2
