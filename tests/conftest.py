@@ -1,6 +1,5 @@
 """Runs that many tests use, computed once."""
 
-import fcntl
 import os
 import shutil
 import sys
@@ -8,10 +7,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from tests.uncertain import SIMULATIONS, TEXT, record_of
+from tests.uncertain import libraries as libraries
+from tests.uncertain import record as record
+from tests.uncertain import record_file as record_file
+from tests.uncertain import rig as rig
 
 import stiction as st
-from stiction.inference.mechanism.comparison import SHARE
 from stiction.solver.compilation import machine_code
 
 os.environ["DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT"] = "30m"  # not 30 s: the machine may be busy
@@ -52,38 +53,3 @@ def code_cache(slider: st.Slider, tmp_path: Path) -> Path:
     for kept in full.glob("stiction.solver.exact.loop.steps-*"):
         shutil.copy(kept, place)
     return tmp_path / "cache"
-
-
-@pytest.fixture(scope="session")
-def rig() -> st.Rig:
-    """A rig of which some things are uncertain."""
-    return st.Rig.from_toml(TEXT)
-
-
-@pytest.fixture(scope="session")
-def record_file(rig: st.Rig, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A record of that rig, misaligned by 2.5 deg: ms and mN."""
-    path = tmp_path_factory.mktemp("record") / "data.csv"
-    record = record_of(rig.slider.replace(phi="2.5 deg"), 7, channels=("force",))
-    rows = zip(1e3 * record.time, 1e3 * record.force, strict=True)
-    path.write_text("t,F\n" + "".join(f"{t:.1f},{f:.3f}\n" for t, f in rows))
-    return path
-
-
-@pytest.fixture(scope="session")
-def record(record_file: Path) -> st.Record:
-    said = {"drive_velocity": "0.5 mm/s", "normal_load": "4 N"}
-    return st.read_record(record_file, time="t=ms", force="F=mN", **said)
-
-
-@pytest.fixture(scope="session")
-def libraries(record: st.Record, rig: st.Rig, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Simulations for audits of that record; one worker makes them, and the others wait for it."""
-    own = tmp_path_factory.getbasetemp()
-    folder = (own.parent if "PYTEST_XDIST_WORKER" in os.environ else own) / "libraries"
-    folder.mkdir(exist_ok=True)
-    with folder.with_suffix(".lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        st.fit(record, rig, simulations=SIMULATIONS, library=folder)
-        st.mechanism(record, rig, simulations=SIMULATIONS // SHARE, library=folder)
-    return folder

@@ -1,11 +1,17 @@
-"""A rig whose description states what is uncertain, and records of it, for fits."""
+"""A rig whose description states what is uncertain, and records and simulations of it, for fits."""
 
 from __future__ import annotations
 
+import fcntl
+import os
+from pathlib import Path
+
 import numpy as np
+import pytest
 
 import stiction as st
 from stiction.inference.jitter import Jitter, move
+from stiction.inference.mechanism.comparison import SHARE
 
 TEXT = """
 [slider]
@@ -43,3 +49,38 @@ def record_of(
         time=motion.time, drive_velocity=0.5e-3, normal_load=4.0,
         **{name: measured[name] for name in channels},
     )  # fmt: skip
+
+
+@pytest.fixture(scope="session")
+def rig() -> st.Rig:
+    """A rig of which some things are uncertain."""
+    return st.Rig.from_toml(TEXT)
+
+
+@pytest.fixture(scope="session")
+def record_file(rig: st.Rig, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A record of that rig, misaligned by 2.5 deg: ms and mN."""
+    path = tmp_path_factory.mktemp("record") / "data.csv"
+    record = record_of(rig.slider.replace(phi="2.5 deg"), 7, channels=("force",))
+    rows = zip(1e3 * record.time, 1e3 * record.force, strict=True)
+    path.write_text("t,F\n" + "".join(f"{t:.1f},{f:.3f}\n" for t, f in rows))
+    return path
+
+
+@pytest.fixture(scope="session")
+def record(record_file: Path) -> st.Record:
+    said = {"drive_velocity": "0.5 mm/s", "normal_load": "4 N"}
+    return st.read_record(record_file, time="t=ms", force="F=mN", **said)
+
+
+@pytest.fixture(scope="session")
+def libraries(record: st.Record, rig: st.Rig, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Simulations for audits of that record; one worker makes them, and the others wait for it."""
+    own = tmp_path_factory.getbasetemp()
+    folder = (own.parent if "PYTEST_XDIST_WORKER" in os.environ else own) / "libraries"
+    folder.mkdir(exist_ok=True)
+    with folder.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        st.fit(record, rig, simulations=SIMULATIONS, library=folder)
+        st.mechanism(record, rig, simulations=SIMULATIONS // SHARE, library=folder)
+    return folder

@@ -21,8 +21,8 @@ from benchmarks.explore.draw import Draw
 from benchmarks.explore.systems import LAWS as PLAIN
 from benchmarks.explore.systems import named_law
 from stiction.auditing import Audit
-from stiction.auditing.observation import OSCILLATES, SLIDES
 from stiction.auditing.page import page
+from stiction.auditing.simulated_test import OSCILLATES, SLIDES
 from stiction.auditing.words.stick import VIBRATES
 from stiction.linear_stability.linear import STABLE, UNSTABLE
 from stiction.text.unit_text import registry

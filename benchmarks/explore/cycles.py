@@ -23,7 +23,7 @@ from rich.table import Table
 
 import stiction as st
 from stiction.analysis.motion.regime.kinds import STICK_SLIP
-from stiction.auditing import observation
+from stiction.auditing import simulated_test
 from stiction.auditing.prediction import predict
 from stiction.linear_stability import growth_rate
 from stiction.study.variables.features import zigzag
@@ -115,8 +115,8 @@ def edges(cycles: xr.Dataset) -> Floats:
 def cycles_of_test(slider: st.Slider) -> xr.Dataset:
     """Return the cycles that an audit finds in its test from rest."""
     expected = predict(slider)
-    rate = max(expected.sample_rate, observation.coarse_rate(expected))
-    return observation.observe(slider, expected, growth_rate(slider), sample_rate=rate).cycles
+    rate = max(expected.sample_rate, simulated_test.coarse_rate(expected))
+    return simulated_test.observe(slider, expected, growth_rate(slider), sample_rate=rate).cycles
 
 
 def rigs(count: int, seed: int) -> Iterator[Counted]:

@@ -16,7 +16,7 @@ from stiction.drive.procedures import end
 from stiction.errors import STATUSES, DescriptionError, Fault, Status
 from stiction.friction import has_state, states
 from stiction.result.columns import VARIABLES, sample_table
-from stiction.result.table import Table
+from stiction.result.table import ColumnTable
 from stiction.solver.compilation.refusal import reasons
 from stiction.solver.integrate import Solution, integrate
 from stiction.system.description import Description, Settings, description_of
@@ -181,7 +181,7 @@ def run(
 
 def label(
     description: Description, solution: Solution, status: Status, statistics: Statistics
-) -> Table:
+) -> ColumnTable:
     """Return what a run found as named arrays, and how it was found."""
     attributes = {
         "stiction_version": version("stiction"),

@@ -15,15 +15,14 @@ from stiction.friction import states
 from stiction.names import draw, picture
 from stiction.result.columns import VARIABLES, apparent_friction, cf_attributes, stick_table
 from stiction.result.file import ENDS, age, read_tables, write_result
-from stiction.result.table import Column, Table, as_dataset, as_table
+from stiction.result.table import Column, ColumnTable, as_dataset, as_table
 from stiction.storage.files import NETCDF, placeable, whole
 from stiction.storage.table_files import exportable, write_tables
 from stiction.system.description import Description
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
 from stiction.system.writing import parameter_table, slider_tables
-from stiction.text.sections import Section, as_html
-from stiction.text.sections import Table as Rows
+from stiction.text.sections import Section, Table, as_html
 from stiction.text.units import Quantity, in_words
 from stiction.text.validation import read_arguments
 
@@ -77,7 +76,7 @@ class Trajectory:
     """
 
     description: Description
-    arrays: Callable[[], Table]
+    arrays: Callable[[], ColumnTable]
     stick_intervals: np.ndarray = field(compare=False)
     status: Status
     statistics: Statistics
@@ -93,7 +92,7 @@ class Trajectory:
         slider = Section("Slider", [], parameter_table(slider_tables(self.slider)))
         return as_html([head]) + picture("plot_glance", self) + as_html([slider])
 
-    def _facts(self) -> Rows:
+    def _facts(self) -> Table:
         """Return the numbers that one looks for first."""
         force = self.samples["spring_x"]
         peak = int(np.nanargmax(force)) if np.isfinite(force).any() else 0
@@ -104,10 +103,10 @@ class Trajectory:
             ("stick intervals", str(self.statistics.stick_count)),
             ("time at rest", in_words(self.statistics.time_stuck, "s")),
         ]
-        return Rows(("number", "value"), rows)
+        return Table(("number", "value"), rows)
 
     @cached_property
-    def samples(self) -> Table:
+    def samples(self) -> ColumnTable:
         """The samples as plain arrays, by name: ``run.samples["u_x"]``."""
         return self.arrays()
 
@@ -265,9 +264,9 @@ def load(path: str | Path, *, trust: bool = False) -> Trajectory:
     return Trajectory(description, arrays, intervals, status, statistics)
 
 
-def _with_mu(samples: Table, slider: Slider) -> Table:
+def _with_mu(samples: ColumnTable, slider: Slider) -> ColumnTable:
     """Add the apparent friction coefficient to samples of version 0.4."""
     if "mu" in samples.columns:
         return samples
     mu = Column(("time",), apparent_friction(slider, samples), cf_attributes(*VARIABLES["mu"]))
-    return Table({**samples.columns, "mu": mu}, samples.attributes)
+    return ColumnTable({**samples.columns, "mu": mu}, samples.attributes)

@@ -13,6 +13,7 @@ import pytest
 from tests.waiting import PATIENCE
 
 import stiction as st
+from stiction.analysis.motion.regime import kinds
 
 ROOT = Path(__file__).parents[2]
 HEAVY = {"numba", "scipy", "xarray", "matplotlib", "pint", "pandas"}
@@ -51,6 +52,24 @@ def test_public_names():
     assert callable(st.simulate)
     with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
         st.nonsense  # noqa: B018
+
+
+GLOSSARY = (ROOT / "docs/glossary.md").read_text("utf-8")
+IN_CODE = set(re.findall(r"\w+", " ".join(re.findall("`([^`]*)`", GLOSSARY))))
+
+
+def test_the_glossary_explains_every_public_class_part_of_an_analysis_and_kind_of_motion():
+    rooms = (st, st.analysis, st.laws, st.linear_stability, st.protocols, st.results)
+    public = {each: getattr(room, each) for room in rooms for each in dir(room)}
+    classes = {each for each, value in public.items() if isinstance(value, type)}
+    assert sorted((classes | {*st.analysis.__all__}) - IN_CODE) == []
+    names = {value for name, value in vars(kinds).items() if name.isupper() and type(value) is str}
+    assert sorted(each for each in names if f"\n| {each} |" not in GLOSSARY) == []
+
+
+def test_names_in_the_glossary_are_names_in_the_code():
+    texts = (path.read_text("utf-8") for path in (ROOT / "src").rglob("*.py"))
+    assert sorted(IN_CODE.difference(*(re.findall(r"\w+", text) for text in texts))) == []
 
 
 def test_names_survive_their_modules():

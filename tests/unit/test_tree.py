@@ -2,6 +2,7 @@
 
 import ast
 import re
+from collections import Counter
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -43,6 +44,13 @@ def test_what_a_benchmark_imports_of_ours_is_there(path):
 
 def test_each_part_of_the_benchmark_is_there():
     assert [part for part in PARTS.values() if find_spec(f"benchmarks.{part}") is None] == []
+
+
+def test_a_class_name_means_one_thing():
+    """Two rooms may have a `Table`: the friction law of a user, and the rows of a report."""
+    trees = (ast.parse(path.read_text("utf-8")) for path in (ROOT / TREES[0]).rglob("*.py"))
+    names = Counter(node.name for tree in trees for node in tree.body if type(node) is ast.ClassDef)
+    assert {name for name, count in names.items() if count > 1} == {"Table"}
 
 
 def functions_of(tree):

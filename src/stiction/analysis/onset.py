@@ -36,7 +36,7 @@ SHARP = 0.01  # of the least distance of two given values: so uncertain the onse
 APART = 1.4  # ratio of squared amplitudes, which have errors of 2 %
 FAR = 8.0  # times the nearest squared amplitude: beyond, the next says nothing of it
 ALIKE = 3.0  # ratio of two slopes of the squared amplitude: beyond, it is far from linear
-OPEN = 0.3  # of an end of hysteresis: so wide a gap between undecided trials is tried
+OPEN = 0.3  # of an end of hysteresis: so wide a gap between undecided points is tried
 ROUGH = 0.05  # of the distance to the nearest oscillation: an error of 1 % in two amplitudes
 
 
@@ -91,7 +91,7 @@ class Onset(NamedTuple):
         return draw("plot_onset", self, None, ax)
 
 
-class Trial(NamedTuple):
+class SweepPoint(NamedTuple):
     """The results at one value of the parameter, swept up and swept down."""
 
     value: float
@@ -119,7 +119,7 @@ class Trial(NamedTuple):
         return {self.up.outcome, self.down.outcome} == {REST, OSCILLATING}
 
 
-class Estimate(NamedTuple):
+class OnsetEstimate(NamedTuple):
     """A threshold, its uncertainty, and whether the amplitude goes to zero there."""
 
     threshold: float
@@ -177,19 +177,19 @@ def find_onset(
         raise DescriptionError([Fault(path, message)])
     up = sweep_sliders(sliders, most_blocks, rtol)
     down = sweep_sliders(sliders[::-1], most_blocks, rtol)[::-1]
-    trials = [Trial(*each) for each in zip(map(float, numbers), up, down, strict=True)]
+    points = [SweepPoint(*each) for each in zip(map(float, numbers), up, down, strict=True)]
     fine = SHARP * float(np.diff(numbers).min())
     for _ in range(MOST_ADDED):
-        value = next_value(trials, fine)
+        value = next_value(points, fine)
         if value is None:
             break
         at = change_unchecked(slider, path, value)
-        trials.append(try_value(at, value, trials, most_blocks, rtol))
-        trials.sort(key=lambda each: each.value)
+        points.append(try_value(at, value, points, most_blocks, rtol))
+        points.sort(key=lambda each: each.value)
     growth = [
-        steady_sliding(change_unchecked(slider, path, each.value)).growth_rate for each in trials
+        steady_sliding(change_unchecked(slider, path, each.value)).growth_rate for each in points
     ]
-    return judge_trials(trials, table(path, unit(slider, path), trials, np.array(growth)))
+    return judge_points(points, table(path, unit(slider, path), points, np.array(growth)))
 
 
 def sweep_sliders(sliders: Sequence[Slider], most_blocks: int, rtol: float) -> list[Found]:
@@ -203,24 +203,24 @@ def sweep_sliders(sliders: Sequence[Slider], most_blocks: int, rtol: float) -> l
 
 
 def try_value(
-    slider: Slider, value: float, trials: Sequence[Trial], most_blocks: int, rtol: float
-) -> Trial:
+    slider: Slider, value: float, points: Sequence[SweepPoint], most_blocks: int, rtol: float
+) -> SweepPoint:
     """Return the results from rest, and from the oscillation at the nearest value."""
 
-    def distance(each: Trial) -> float:
+    def distance(each: SweepPoint) -> float:
         return abs(each.value - value)
 
     rest = steady_sliding(slider).disturbed_start(KICK)
-    last = min((each for each in trials if each.oscillations), key=distance).oscillations[0].state
+    last = min((each for each in points if each.oscillations), key=distance).oscillations[0].state
     found = [settle(slider, start, most_blocks, rtol) for start in (rest, last)]
-    moving = min((each for each in trials if each.moves), key=distance)
+    moving = min((each for each in points if each.moves), key=distance)
     upward = moving.value < value  # an upward sweep comes from lower values
-    return Trial(value, *(found[::-1] if upward else found))
+    return SweepPoint(value, *(found[::-1] if upward else found))
 
 
-def change(trials: Sequence[Trial]) -> tuple[Trial, list[Trial]] | None:
+def change(points: Sequence[SweepPoint]) -> tuple[SweepPoint, list[SweepPoint]] | None:
     """Return the rest beside the first change, and the oscillations beyond it, nearest first."""
-    known = [each for each in trials if each.rests or each.moves]
+    known = [each for each in points if each.rests or each.moves]
     for one, other in pairwise(known):
         if one.rests and other.moves:
             return one, list(takewhile(lambda each: each.moves, known[known.index(other) :]))
@@ -230,22 +230,22 @@ def change(trials: Sequence[Trial]) -> tuple[Trial, list[Trial]] | None:
     return None
 
 
-def next_value(trials: Sequence[Trial], fine: float) -> float | None:
-    """Return the most informative value for another trial, or None.
+def next_value(points: Sequence[SweepPoint], fine: float) -> float | None:
+    """Return the most informative value for another point, or None.
 
-    Between rest and oscillation, where trials are decided, it is in the middle, or, once the onset
+    Between rest and oscillation, where points are decided, it is in the middle, or, once the onset
     is known, to either side of it. Where they are undecided, it lies among the next oscillations.
     Where there is hysteresis, it is in the middle of the wider of its two ends.
     """
-    if any(each.differs for each in trials):
-        return within(hysteresis_ends(trials), trials, fine)
-    found = change(trials)
+    if any(each.differs for each in points):
+        return within(hysteresis_ends(points), points, fine)
+    found = change(points)
     if found is None:
         return None
     rest, moving = found
     first, estimate = moving[0].value, extrapolate_onset(rest, moving)
     low, high = sorted((rest.value, first))
-    unsure = [each.value for each in trials if low < each.value < high]
+    unsure = [each.value for each in points if low < each.value < high]
     limit = min(unsure, key=lambda value: abs(value - first)) if unsure else rest.value
     if estimate.soft and estimate.uncertainty < fine:
         return None
@@ -257,43 +257,43 @@ def next_value(trials: Sequence[Trial], fine: float) -> float | None:
         return 0.5 * (first + limit) if high - low > 0.1 * fine else None
     if estimate.soft:
         return 0.5 * (first + limit) if abs(limit - first) > 0.3 * (high - low) else None
-    known = {each.value for each in trials}
+    known = {each.value for each in points}
     middles = (0.5 * (one.value + other.value) for one, other in pairwise(apart(moving)))
     return next((each for each in middles if each not in known), None)
 
 
-def hysteresis_ends(trials: Sequence[Trial]) -> list[tuple[float, float]]:
+def hysteresis_ends(points: Sequence[SweepPoint]) -> list[tuple[float, float]]:
     """Return the values outside and inside both ends of hysteresis; NaN outside if there is none.
 
-    Between them are at most undecided trials.
+    Between them are at most undecided points.
     """
-    inside = [each.value for each in trials if each.differs]
-    outside = [each.value for each in trials if each.rests or each.moves]
+    inside = [each.value for each in points if each.differs]
+    outside = [each.value for each in points if each.rests or each.moves]
     below = (value for value in reversed(outside) if value < inside[0])
     above = (value for value in outside if value > inside[-1])
     return [(next(below, nan), inside[0]), (next(above, nan), inside[-1])]
 
 
 def within(
-    ends: Sequence[tuple[float, float]], trials: Sequence[Trial], fine: float
+    ends: Sequence[tuple[float, float]], points: Sequence[SweepPoint], fine: float
 ) -> float | None:
     """Return a value inside the widest end that is not known well, in its widest gap.
 
-    Undecided trials leave gaps; where they fill an end, it cannot be known better.
+    Undecided points leave gaps; where they fill an end, it cannot be known better.
     """
     found: list[tuple[float, float]] = []
     for end in ends:
         low, high = sorted(end)
         if not high - low > fine:
             continue
-        values = [low, *(each.value for each in trials if low < each.value < high), high]
+        values = [low, *(each.value for each in points if low < each.value < high), high]
         gap, middle = max((two - one, 0.5 * (one + two)) for one, two in pairwise(values))
         if gap > OPEN * (high - low):
             found.append((high - low, middle))
     return max(found)[1] if found else None
 
 
-def apart(moving: Sequence[Trial]) -> list[Trial]:
+def apart(moving: Sequence[SweepPoint]) -> list[SweepPoint]:
     """Return up to three distinct oscillations, the nearest first."""
     found = [moving[0]]
     for each in moving:
@@ -302,12 +302,12 @@ def apart(moving: Sequence[Trial]) -> list[Trial]:
     return found
 
 
-def size(trial: Trial) -> float:
+def size(point: SweepPoint) -> float:
     """Return the amplitude of an oscillation, the mean of both sweeps (m)."""
-    return 0.5 * (trial.up.amplitude + trial.down.amplitude)
+    return 0.5 * (point.up.amplitude + point.down.amplitude)
 
 
-def extrapolate_onset(rest: Trial, moving: Sequence[Trial]) -> Estimate:
+def extrapolate_onset(rest: SweepPoint, moving: Sequence[SweepPoint]) -> OnsetEstimate:
     """Extrapolate the squared amplitude to zero by a parabola through three values.
 
     Its uncertainty is the difference from a straight line through two of them, plus the effect of
@@ -316,7 +316,7 @@ def extrapolate_onset(rest: Trial, moving: Sequence[Trial]) -> Estimate:
     """
     first = moving[0].value
     middle, half = 0.5 * (rest.value + first), 0.5 * abs(first - rest.value)
-    unknown = Estimate(middle, half, soft=False)
+    unknown = OnsetEstimate(middle, half, soft=False)
     three = apart(moving)
     if len(three) < 3:
         return unknown
@@ -340,31 +340,31 @@ def extrapolate_onset(rest: Trial, moving: Sequence[Trial]) -> Estimate:
     reach = rest.value - first
     if not 0.0 <= curved / reach <= 1.0 or uncertainty > half:
         return unknown
-    return Estimate(float(first + curved), uncertainty, soft=True)
+    return OnsetEstimate(float(first + curved), uncertainty, soft=True)
 
 
-def judge_trials(trials: Sequence[Trial], data: xr.Dataset) -> Onset:
-    """Return the onset seen in the trials."""
-    if any(each.differs for each in trials):
-        low, high = hysteresis_ends(trials)
+def judge_points(points: Sequence[SweepPoint], data: xr.Dataset) -> Onset:
+    """Return the onset seen in the points."""
+    if any(each.differs for each in points):
+        low, high = hysteresis_ends(points)
         middles = [inner if isnan(outer) else 0.5 * (outer + inner) for outer, inner in (low, high)]
         halves = [0.5 * abs(outer - inner) for outer, inner in (low, high)]
         return Onset("hard", nan, (middles[0], middles[1]), data, nan, (halves[0], halves[1]))
-    found = change(trials)
+    found = change(points)
     if found is None:
-        alike = all(each.rests for each in trials) or all(each.moves for each in trials)
+        alike = all(each.rests for each in points) or all(each.moves for each in points)
         return Onset("none" if alike else "not determined", nan, (nan, nan), data)
     estimate = extrapolate_onset(*found)
     kind: Kind = "soft" if estimate.soft else "not determined"
     return Onset(kind, estimate.threshold, (nan, nan), data, estimate.uncertainty)
 
 
-def table(path: str, unit: str, trials: Sequence[Trial], growth: Floats) -> xr.Dataset:
+def table(path: str, unit: str, points: Sequence[SweepPoint], growth: Floats) -> xr.Dataset:
     """Return the sweeps as labelled arrays."""
     import xarray as xr
 
-    values = np.array([each.value for each in trials])
-    sweeps = [[each.up for each in trials], [each.down for each in trials]]
+    values = np.array([each.value for each in points])
+    sweeps = [[each.up for each in points], [each.down for each in points]]
     amplitude = np.array([[found.amplitude for found in sweep] for sweep in sweeps])
     outcome = np.array([[found.outcome for found in sweep] for sweep in sweeps])
 

@@ -1,4 +1,4 @@
-"""Advice on changes of an apparatus, each tried in a simulation."""
+"""Remedies for an apparatus: changes of it, each tried in a simulation."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from math import copysign, inf, isfinite, nan, pi, radians, sqrt
 from typing import Any, NamedTuple
 
 from stiction.auditing.chain import softest_path
-from stiction.auditing.observation import (
+from stiction.auditing.prediction import predict
+from stiction.auditing.simulated_test import (
     LEAST_WORK,
     SLIDES,
-    Observation,
     Progress,
+    SimulatedTest,
     coarse_rate,
     observe,
 )
-from stiction.auditing.prediction import predict
 from stiction.linear_stability import Critical, critical, growth_rate
 from stiction.system.parameter import change_parameter, read, unit
 from stiction.system.slider import Slider
@@ -33,12 +33,12 @@ MORE = {
     "k_x": (2.0, 4.0, 8.0, 16.0, 32.0),
 }
 LEVERS = ("phi", "drive.velocity", "c_x", "k_x")  # of springs in series, the softest one's
-NOT_TRIED = (nan, nan, nan, None)  # fields of an `Advice` without a better value so far
+NOT_TRIED = (nan, nan, nan, None)  # fields of a `Remedy` without a better value so far
 MOST_TURNED = 80.0  # degrees: near a right angle the soft spring no longer acts along the drive
 STRONGEST = 10.0  # times critical damping: the strongest damper tried
 
 
-class Advice(NamedTuple):
+class Remedy(NamedTuple):
     """One parameter, its value for steady sliding, and the simulation with that value.
 
     Parameters
@@ -54,7 +54,7 @@ class Advice(NamedTuple):
         none in the range.
     growth : float
         The growth rate (1/s) at the advised value.
-    tried : Observation or None
+    tried : SimulatedTest or None
         The simulation with the advised value.
     work : int
         Steps and samples of all simulations of this parameter.
@@ -69,7 +69,7 @@ class Advice(NamedTuple):
     critical: float
     then: float
     growth: float
-    tried: Observation | None
+    tried: SimulatedTest | None
     work: int = 0
     cut: bool = False
 
@@ -81,11 +81,11 @@ class Advice(NamedTuple):
         return slides and self.growth < 0.0
 
 
-def advise(slider: Slider, stable: bool, work: int, progress: Progress = None) -> Iterator[Advice]:
+def advise(slider: Slider, stable: bool, work: int, progress: Progress = None) -> Iterator[Remedy]:
     """Yield, for each parameter, the nearest value with steady sliding, tried from rest.
 
     If steady sliding is already `stable`, only not reached from rest, ever larger values are tried.
-    `work` limits all simulations together, see `Observation.work`; each parameter passes the rest
+    `work` limits all simulations together, see `SimulatedTest.work`; each parameter passes the rest
     of its share on to the next. `progress` receives the fraction of parameters done.
     """
     told = progress or (lambda fraction: None)
@@ -103,15 +103,15 @@ def advise(slider: Slider, stable: bool, work: int, progress: Progress = None) -
 
 def advise_one(
     slider: Slider, path: str, stable: bool, work: int, progress: Callable[[float], None]
-) -> Advice:
+) -> Remedy:
     """Return the nearest value of one parameter with steady sliding, tried from rest."""
     if stable:
-        advice = Advice(path, unit(slider, path), read(slider, path), (nan, nan), *NOT_TRIED)
+        advice = Remedy(path, unit(slider, path), read(slider, path), (nan, nan), *NOT_TRIED)
         ways = [(nan, then) for then in further(slider, path)]
     else:
         found = critical(slider, path, limits(slider, path))
         now = read(slider, path)
-        advice = Advice(path, found.unit, now, found.between, *NOT_TRIED)
+        advice = Remedy(path, found.unit, now, found.between, *NOT_TRIED)
         ways = [nearest(found, now, beyond) for beyond in BEYOND]
     for number, (edge, then) in enumerate(ways):
 

@@ -8,8 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.auditing.observation import LEAST_WORK, Observation, Progress, coarse_rate, observe
 from stiction.auditing.prediction import Prediction, predict
+from stiction.auditing.simulated_test import (
+    LEAST_WORK,
+    Progress,
+    SimulatedTest,
+    coarse_rate,
+    observe,
+)
 from stiction.errors import DescriptionError
 from stiction.linear_stability import growth_rate
 from stiction.system.slider import Slider
@@ -53,7 +59,7 @@ class Replacement(NamedTuple):
         The apparatus with it; None if all parts together would be rigid along some axis.
     prediction : Prediction or None
         The theory of it.
-    tried : Observation or None
+    tried : SimulatedTest or None
         The simulation from rest; None if it was not done, since the work has a limit.
     """
 
@@ -61,7 +67,7 @@ class Replacement(NamedTuple):
     factor: float
     slider: Slider | None = None
     prediction: Prediction | None = None
-    tried: Observation | None = None
+    tried: SimulatedTest | None = None
 
 
 class Chain(NamedTuple):

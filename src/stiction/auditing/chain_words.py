@@ -6,8 +6,8 @@ from math import degrees, inf, isinf
 from typing import TYPE_CHECKING
 
 from stiction.auditing.chain import SMALL, Chain, Part, Replacement
-from stiction.auditing.observation import Observation
 from stiction.auditing.prediction import Prediction
+from stiction.auditing.simulated_test import SimulatedTest
 from stiction.auditing.words.numbers import apparent_stiffness, peak
 from stiction.auditing.words.verdict import final_motion
 from stiction.system.slider import Slider
@@ -122,7 +122,7 @@ def _change(each: Replacement) -> tuple[str, ...]:
     return _row(_name(each), each.slider, each.prediction, each.tried)
 
 
-def _row(name: str, slider: Slider, p: Prediction, seen: Observation | None) -> tuple[str, ...]:
+def _row(name: str, slider: Slider, p: Prediction, seen: SimulatedTest | None) -> tuple[str, ...]:
     motion = "not tried"
     if seen is not None:
         status = seen.run.status

@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.record import Record, as_record
 from stiction.auditing import chain
-from stiction.auditing.advice import LEVERS, Advice, advise, limits
+from stiction.auditing.advice import LEVERS, Remedy, advise, limits
 from stiction.auditing.chain_words import chain_sections
-from stiction.auditing.observation import (
+from stiction.auditing.prediction import Prediction, predict
+from stiction.auditing.simulated_test import (
     MOST_WORK,
     OSCILLATES,
     SLIDES,
-    Observation,
+    SimulatedTest,
     coarse_rate,
     from_sliding,
     observe,
 )
-from stiction.auditing.prediction import Prediction, predict
 from stiction.auditing.tolerance.budget import Budget, budget
 from stiction.auditing.tolerance.words import section
 from stiction.auditing.words.changes import changes
@@ -37,7 +37,7 @@ from stiction.system.slider import Slider
 from stiction.text.sections import Section, as_html, as_text
 
 if TYPE_CHECKING:  # a fit takes 0.3 s to import
-    from stiction.auditing.measured.comparison import Comparison
+    from stiction.auditing.measured.comparison import RecordComparison
 
 # parts of the work: two tests, the advices, critical misalignments, and springs replaced
 PARTS = 4 + len(LEVERS)
@@ -58,17 +58,17 @@ class Audit(NamedTuple):
         Steady sliding and its modes.
     misalignment : Critical
         Misalignments at which steady sliding changes between unstable and stable.
-    observation : Observation
+    observation : SimulatedTest
         The simulated test, from rest.
-    sliding_on : Observation
+    sliding_on : SimulatedTest
         The simulated test, from steady sliding with a small disturbance.
-    advices : tuple of Advice
+    advices : tuple of Remedy
         Changes that would make it slide steadily, each tried from rest; empty if it does.
     chain : Chain or None
         The springs in series, and each replaced; None for a single spring.
     budget : Budget or None
         The tolerance budget; None where the misalignment is not uncertain.
-    measured : Comparison or None
+    measured : RecordComparison or None
         A measured record beside simulations of the apparatus; None where none was given.
     """
 
@@ -76,12 +76,12 @@ class Audit(NamedTuple):
     prediction: Prediction
     sliding: Linearisation
     misalignment: Critical
-    observation: Observation
-    sliding_on: Observation
-    advices: tuple[Advice, ...]
+    observation: SimulatedTest
+    sliding_on: SimulatedTest
+    advices: tuple[Remedy, ...]
     chain: chain.Chain | None = None
     budget: Budget | None = None
-    measured: Comparison | None = None
+    measured: RecordComparison | None = None
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
@@ -192,7 +192,7 @@ def audit(
     return _examine(rig, measured, lambda fraction: told(before + (1.0 - before) * fraction))
 
 
-def _examine(rig: Rig, measured: Comparison | None, report: Callable[[float], None]) -> Audit:
+def _examine(rig: Rig, measured: RecordComparison | None, report: Callable[[float], None]) -> Audit:
     """Return the audit of a rig, whose record was compared with it before."""
     system = rig.slider
     parts = PARTS + (MORE if "phi" in rig.priors else 0)
@@ -211,7 +211,7 @@ def _examine(rig: Rig, measured: Comparison | None, report: Callable[[float], No
     if system.springs:
         springs = chain.examine(system, work // 2, part(2))
         work -= sum(each.tried.work for each in springs.replacements if each.tried)
-    advices: tuple[Advice, ...] = ()
+    advices: tuple[Remedy, ...] = ()
     if not sliding.stable or observation.comes_to != SLIDES:
         advices = tuple(advise(system, sliding.stable, work, part(3, len(LEVERS))))
     misalignment = critical(system, "phi", limits(system, "phi"))
@@ -234,7 +234,7 @@ def sections(found: Audit) -> list[Section]:
     ]
 
 
-def _of_record(measured: Comparison | None) -> list[Section]:
+def _of_record(measured: RecordComparison | None) -> list[Section]:
     """Return the sections on a measured record, none without one."""
     if measured is None:
         return []

@@ -73,7 +73,7 @@ Library = Annotated[
 
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
-class Measured:
+class RecordOptions:
     """What the user says about the file of a measured record.
 
     Parameters

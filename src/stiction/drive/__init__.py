@@ -13,7 +13,7 @@ from typing import Any
 
 from stiction.drive.program import DriveProgram, LoadProgram, pick
 from stiction.drive.steady import ConstantLoad, ConstantVelocity
-from stiction.drive.stretch import Course, Loading
+from stiction.drive.stretch import VaryingLoad, VaryingVelocity
 
 Drive = ConstantVelocity | DriveProgram
 Stretches = tuple[tuple[float, Any], ...]
@@ -70,11 +70,11 @@ def read_load(table: dict[str, Any]) -> LoadProgram:
 __all__ = [
     "ConstantLoad",
     "ConstantVelocity",
-    "Course",
     "Drive",
     "DriveProgram",
     "LoadProgram",
-    "Loading",
+    "VaryingLoad",
+    "VaryingVelocity",
     "ahead",
     "drive_stretches",
     "jump",

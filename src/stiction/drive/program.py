@@ -11,15 +11,15 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from stiction.drive.pieces import DRIVE_PIECES, LOAD_PIECES
-from stiction.drive.reading import Reading, as_modulation, as_pieces
+from stiction.drive.reading import as_modulation, as_pieces
 from stiction.drive.recorded.piece import RECORDS, Recorded
 from stiction.drive.recorded.reading import checksum
 from stiction.drive.recorded.spline import Recording
 from stiction.drive.signal import Signal
 from stiction.drive.steady import ConstantLoad, ConstantVelocity
-from stiction.drive.stretch import Course, Loading
+from stiction.drive.stretch import VaryingLoad, VaryingVelocity
 from stiction.machine import shortage
-from stiction.text.samples import Column
+from stiction.text.samples import FrozenColumn
 from stiction.text.units import FORCE, VELOCITY, Velocity
 from stiction.text.validation import Described
 
@@ -51,7 +51,7 @@ class DriveProgram(Described):
     """
 
     velocity: Velocity = 0.0
-    program: Annotated[tuple[Any, ...], as_pieces(Reading(DRIVE_PIECES, VELOCITY)), PIECES] = ()
+    program: Annotated[tuple[Any, ...], as_pieces(DRIVE_PIECES, VELOCITY), PIECES] = ()
     repeat: Repeat = 1
     along: Annotated[Any, as_modulation(VELOCITY), "Modulation | None"] = None
     across: Annotated[Any, as_modulation(VELOCITY), "Modulation | None"] = None
@@ -67,13 +67,13 @@ class DriveProgram(Described):
         """The smooth stretches: the end of each (s), and its velocity."""
         sideways = modulate(Signal(0.0, 0.0), self.across)
         return tuple(
-            (end, _course(modulate(signal, self.along), sideways))
+            (end, _velocity(modulate(signal, self.along), sideways))
             for end, signal in signals(self.program, self.repeat, self.velocity, still=0.0)
         )
 
     def rate(self, t: Times) -> tuple[Any, Any]:
         """Return the velocity (X, Y) at `t`, in m/s; at a jump, the value before."""
-        X, Y = pick(self.stretches, t, lambda course, at, _: course.rate(at))
+        X, Y = pick(self.stretches, t, lambda stretch, at, _: stretch.rate(at))
         return X, Y
 
     def travel(self, t: float, dt: Times) -> tuple[Any, Any]:
@@ -87,7 +87,7 @@ class DriveProgram(Described):
         times = np.asarray(t, dtype=np.float64)
         which = np.searchsorted(starts[1:], times, side="left")
         part = pick(
-            self.stretches, times, lambda course, at, start: course.travel(start, at - start)
+            self.stretches, times, lambda stretch, at, start: stretch.travel(start, at - start)
         )
         return X[which] + part[0], Y[which] + part[1]
 
@@ -95,9 +95,9 @@ class DriveProgram(Described):
     def _milestones(self) -> tuple[Any, Any, Any]:
         """The start of each stretch (s), and the drive's displacement until then (X, Y; m)."""
         rows = [(0.0, 0.0, 0.0)]
-        for end, course in self.stretches[:-1]:
+        for end, stretch in self.stretches[:-1]:
             start, X, Y = rows[-1]
-            part = course.travel(start, end - start)
+            part = stretch.travel(start, end - start)
             rows.append((end, X + float(part[0]), Y + float(part[1])))
         starts, X, Y = np.array(rows).T
         return starts, X, Y
@@ -122,7 +122,7 @@ class LoadProgram(Described):
         A harmonic force added from t = 0 on.
     """
 
-    program: Annotated[tuple[Any, ...], as_pieces(Reading(LOAD_PIECES, FORCE)), PIECES] = ()
+    program: Annotated[tuple[Any, ...], as_pieces(LOAD_PIECES, FORCE), PIECES] = ()
     repeat: Repeat = 1
     modulation: Annotated[Any, as_modulation(FORCE), "Modulation | None"] = None
 
@@ -135,7 +135,7 @@ class LoadProgram(Described):
     def stretches(self, base: float) -> tuple[tuple[float, Any], ...]:
         """Return the smooth stretches for a base load (N): the end of each (s), and its load."""
         return tuple(
-            (end, _loading(modulate(signal, self.modulation)))
+            (end, _load(modulate(signal, self.modulation)))
             for end, signal in signals(self.program, self.repeat, base, still=None)
         )
 
@@ -235,17 +235,17 @@ def modulate(signal: Any, modulation: Any) -> Any:
     )
 
 
-def _course(along: Signal | Recording, across: Signal) -> Any:
+def _velocity(along: Signal | Recording, across: Signal) -> Any:
     """Return the simplest type that describes a stretch, which computes fastest."""
     if _flat(along) and _flat(across) and across.value == 0.0:
         return ConstantVelocity._make([along.value])  # not validated again
-    return Course(along, across)
+    return VaryingVelocity(along, across)
 
 
-def _loading(force: Signal | Recording) -> Any:
+def _load(force: Signal | Recording) -> Any:
     if _flat(force) and force.value > 0.0:
         return ConstantLoad._make([force.value])
-    return Loading(force)
+    return VaryingLoad(force)
 
 
 def _flat(signal: Signal | Recording) -> TypeGuard[Signal]:
@@ -301,7 +301,7 @@ def describe_piece(piece: Any) -> dict[str, Any]:
     """
     values = {name: value for name, value in piece._asdict().items() if value is not None}
     if isinstance(piece, RECORDS):
-        values = {n: v.tolist() if isinstance(v, Column) else v for n, v in values.items()}
+        values = {n: v.tolist() if isinstance(v, FrozenColumn) else v for n, v in values.items()}
         values["checksum"] = checksum(values)
     if "phase" in values:
         values["phase"] = f"{values['phase']!r} rad"

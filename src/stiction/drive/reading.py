@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from pydantic import BeforeValidator
 from pydantic_core import PydanticCustomError
@@ -15,15 +15,8 @@ from stiction.text.units import Kind, fault, to_si
 from stiction.text.validation import faulty
 
 
-class Reading(NamedTuple):
-    """The pieces that a program may have, and the quantity of their levels."""
-
-    known: Mapping[str, type[Any]]
-    kind: Kind
-
-
-def as_pieces(reading: Reading) -> BeforeValidator:
-    """Return the validator that reads a program."""
+def as_pieces(known: Mapping[str, type[Any]], kind: Kind) -> BeforeValidator:
+    """Return the validator that reads a program of known pieces, with levels of one quantity."""
 
     def read(value: Any) -> tuple[Any, ...]:
         if not isinstance(value, Sequence) or isinstance(value, str):
@@ -31,7 +24,7 @@ def as_pieces(reading: Reading) -> BeforeValidator:
         made, found = [], []
         for i, each in enumerate(value):
             try:
-                piece = _in_si(_piece(each, reading.known), reading.kind)
+                piece = _in_si(_piece(each, known), kind)
                 if piece.duration is None and i < len(value) - 1:
                     message = "missing; only the last piece may have no end"
                     raise DescriptionError([Fault("piece.duration", message)])

@@ -13,8 +13,8 @@ from stiction.drive.recorded.spline import Recording
 from stiction.drive.signal import Signal, change_at, curve_at, sum_over, value_at
 
 
-class Course(NamedTuple):
-    """A stretch of a drive: its velocity along X and across it."""
+class VaryingVelocity(NamedTuple):
+    """A velocity that varies within a stretch of the drive: along X and across it."""
 
     along: Signal | Recording
     across: Signal
@@ -40,8 +40,8 @@ class Course(NamedTuple):
         return False
 
 
-class Loading(NamedTuple):
-    """A stretch of a normal load."""
+class VaryingLoad(NamedTuple):
+    """A normal load that varies within a stretch."""
 
     force: Signal | Recording
 

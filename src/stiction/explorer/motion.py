@@ -15,7 +15,7 @@ from stiction.explorer.decimation import columns_of, extremes, share_stuck
 from stiction.friction import Anisotropic, has_state
 from stiction.friction.law import static_coefficient
 from stiction.result.columns import sample_table
-from stiction.result.table import Table
+from stiction.result.table import ColumnTable
 from stiction.simulation import automatic_times, solve
 from stiction.solver.integrate import Solution
 from stiction.system.description import Description
@@ -34,7 +34,9 @@ Arrays = dict[str, np.ndarray]
 Reply = tuple[dict[str, Any], Arrays]
 
 
-def simulate(description: Description, times: np.ndarray, check: Check) -> tuple[Solution, Table]:
+def simulate(
+    description: Description, times: np.ndarray, check: Check
+) -> tuple[Solution, ColumnTable]:
     """Return a run sampled at `times` (s); `check` may end it."""
     solution = solve(description, times, progress=lambda _: check())
     return solution, sample_table(description, solution.times, solution.samples, {})
@@ -108,7 +110,7 @@ def fine(description: Description, time: float, width: float, check: Check) -> I
     yield {"at": values, "window": (low, low + width)}, as_track(table)
 
 
-def curves(table: Table, sticks: np.ndarray, window: Window, columns: int) -> Arrays:
+def curves(table: ColumnTable, sticks: np.ndarray, window: Window, columns: int) -> Arrays:
     """Return each curve as first, lowest, highest and last value of each column of pixels."""
     places, starts = columns_of(table["time"], window, columns)
     found: Arrays = {name: extremes(table[name], starts) for name in CURVES}
@@ -119,18 +121,18 @@ def curves(table: Table, sticks: np.ndarray, window: Window, columns: int) -> Ar
     }
 
 
-def track(table: Table) -> Arrays:
+def track(table: ColumnTable) -> Arrays:
     """Return the samples that the apparatus is animated with."""
     return {f"track_{name}": values for name, values in as_track(table).items()}
 
 
-def as_track(table: Table) -> Arrays:
+def as_track(table: ColumnTable) -> Arrays:
     """Return time, motion and forces sample by sample."""
     samples = {name: table[name].astype(np.float32) for name in (*TRACK, "v_x", "v_y")}
     return {"time": table["time"], **samples, "sticking": table["sticking"].astype(np.float32)}
 
 
-def about(description: Description, solution: Solution, table: Table) -> dict[str, Any]:
+def about(description: Description, solution: Solution, table: ColumnTable) -> dict[str, Any]:
     """Return what is to be read beside the curves, and what the drawing needs to know."""
     slider = description.slider
     status = STATUSES[solution.code]
@@ -152,7 +154,7 @@ def about(description: Description, solution: Solution, table: Table) -> dict[st
 
 
 def facts(
-    description: Description, solution: Solution, table: Table, times: np.ndarray | None
+    description: Description, solution: Solution, table: ColumnTable, times: np.ndarray | None
 ) -> list[dict[str, Any]]:
     """Return the numbers of a run: name, value in SI and as text; extremes are those at `times`."""
     reached = table["time"]
@@ -191,7 +193,7 @@ def text_of(value: float, unit: str) -> str:
     return in_words(value, unit, DIGITS)
 
 
-def limit(description: Description, table: Table) -> float:
+def limit(description: Description, table: ColumnTable) -> float:
     """Return the limit of friction over the load; of a law with state, the largest there was."""
     law = description.slider.law
     if has_state(law):

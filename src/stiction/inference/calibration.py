@@ -21,7 +21,13 @@ from stiction.inference.regression_abc import (
     rank,
     with_marginals,
 )
-from stiction.inference.summary import Regression, Standard, Summary, learn, single_threaded_algebra
+from stiction.inference.summary import (
+    FeatureSummary,
+    Regression,
+    Standard,
+    learn,
+    single_threaded_algebra,
+)
 from stiction.storage.arrays import read_arrays, write_arrays
 
 Floats = NDArray[np.float64]
@@ -35,7 +41,7 @@ class Learned(NamedTuple):
 
     Parameters
     ----------
-    summary : Summary
+    summary : FeatureSummary
         Estimates from features.
     truth : ndarray
         (n, p), scores of the library.
@@ -43,7 +49,7 @@ class Learned(NamedTuple):
         (m, p), of the truth in the posterior of each of some records, from all others.
     """
 
-    summary: Summary
+    summary: FeatureSummary
     truth: Floats
     ranks: Floats
 
@@ -62,7 +68,7 @@ class Learned(NamedTuple):
         return np.asarray(inside.mean(axis=0))
 
 
-def estimates(summary: Summary, truth: Floats) -> Iterator[Known]:
+def estimates(summary: FeatureSummary, truth: Floats) -> Iterator[Known]:
     """Yield what is known of each parameter of all records, each from all others."""
     for middles, spreads, scores in zip(
         *(each.T for each in summary.library), truth.T, strict=True
@@ -83,7 +89,7 @@ def study(features: Floats, truth: Floats, path: Path | None = None) -> Learned:
     return found
 
 
-def ranks(summary: Summary, truth: Floats) -> Floats:
+def ranks(summary: FeatureSummary, truth: Floats) -> Floats:
     """Return the ranks of the truth of the last records of the library, each from all others."""
     last = range(max(len(truth) - RANKED, 0), len(truth))
     columns = []
@@ -101,7 +107,7 @@ def write(path: Path, found: Learned) -> None:
     write_arrays(path, ranks=found.ranks, **summary.standard._asdict(), **own)
 
 
-def read(path: Path | None, features: Floats) -> tuple[Summary, Floats] | None:
+def read(path: Path | None, features: Floats) -> tuple[FeatureSummary, Floats] | None:
     """Return a stored summary and its ranks; None where there is none of these features."""
     arrays = read_arrays(path)
     try:
@@ -114,6 +120,6 @@ def read(path: Path | None, features: Floats) -> tuple[Summary, Floats] | None:
         ]
         if len(both[0].library) != len(features):
             return None
-        return Summary(standard, standard.scores(features), *both), arrays["ranks"]
+        return FeatureSummary(standard, standard.scores(features), *both), arrays["ranks"]
     except KeyError:
         return None

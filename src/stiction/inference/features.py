@@ -25,7 +25,7 @@ ABOVE = 1.003  # the friction force at rest over the largest force along the spr
 SMALL = 1e-9  # of the scale: replaces zero in a logarithm
 
 
-class Scale(NamedTuple):
+class FeatureScale(NamedTuple):
     """What features are relative to, from the middle of the priors.
 
     Parameters
@@ -70,7 +70,9 @@ def find_cycles(force: Floats) -> Cycles:
     return Cycles(whole[:-1:2], whole[1::2], whole[2::2])
 
 
-def features(step: float, channels: dict[str, Floats], scale: Scale, cycles: Cycles) -> Floats:
+def features(
+    step: float, channels: dict[str, Floats], scale: FeatureScale, cycles: Cycles
+) -> Floats:
     """Return the features of equally spaced samples.
 
     Parameters
@@ -79,7 +81,7 @@ def features(step: float, channels: dict[str, Floats], scale: Scale, cycles: Cyc
         Time between samples, s.
     channels : dict of str to ndarray
         (n,) each: ``force``, and where measured ``force_across`` and ``position``.
-    scale : Scale
+    scale : FeatureScale
         What they are relative to.
     cycles : Cycles
         Of the force.
@@ -87,7 +89,7 @@ def features(step: float, channels: dict[str, Floats], scale: Scale, cycles: Cyc
     return np.concatenate([part.values for part in parts(step, channels, scale, cycles)])
 
 
-class Part(NamedTuple):
+class FeatureGroup(NamedTuple):
     """Features of one kind: what they describe, the channels they need, and their values."""
 
     name: str
@@ -95,19 +97,21 @@ class Part(NamedTuple):
     values: list[float]
 
 
-def parts(step: float, channels: dict[str, Floats], scale: Scale, cycles: Cycles) -> Iterator[Part]:
+def parts(
+    step: float, channels: dict[str, Floats], scale: FeatureScale, cycles: Cycles
+) -> Iterator[FeatureGroup]:
     """Yield the features kind by kind."""
     loadings = Loadings(cycles)
     force, across, position = (frozenset({name} & set(channels)) for name in USED)
-    yield Part("cycles", force, of_cycles(step, channels["force"], scale, cycles))
-    yield Part("loading", force, of_loading(step, channels["force"], scale, loadings))
-    yield Part(BEND, force, of_bend(channels["force"], loadings))
+    yield FeatureGroup("cycles", force, of_cycles(step, channels["force"], scale, cycles))
+    yield FeatureGroup("loading", force, of_loading(step, channels["force"], scale, loadings))
+    yield FeatureGroup(BEND, force, of_bend(channels["force"], loadings))
     if across:
-        yield Part("force across", across, of_force_across(step, channels, scale, loadings))
+        yield FeatureGroup("force across", across, of_force_across(step, channels, scale, loadings))
     if position:
-        yield Part("position", position, of_position(step, channels, scale, loadings))
+        yield FeatureGroup("position", position, of_position(step, channels, scale, loadings))
     if across and position:
-        yield Part("both", across | position, of_both(step, channels, scale, loadings))
+        yield FeatureGroup("both", across | position, of_both(step, channels, scale, loadings))
 
 
 class Loadings:
@@ -154,7 +158,7 @@ class Loadings:
         return np.asarray(slopes, dtype=np.float64)
 
 
-def of_cycles(step: float, force: Floats, scale: Scale, cycles: Cycles) -> list[float]:
+def of_cycles(step: float, force: Floats, scale: FeatureScale, cycles: Cycles) -> list[float]:
     """Return size, length and scatter of the cycles, and how these hang together."""
     peak, trough = force[cycles.peak], force[cycles.after]
     rise, fall = cycles.peak - cycles.before, cycles.after - cycles.peak
@@ -175,7 +179,7 @@ def of_cycles(step: float, force: Floats, scale: Scale, cycles: Cycles) -> list[
     ]
 
 
-def of_loading(step: float, force: Floats, scale: Scale, loadings: Loadings) -> list[float]:
+def of_loading(step: float, force: Floats, scale: FeatureScale, loadings: Loadings) -> list[float]:
     """Return the loading rate, and by how much creep lowers it."""
     f = force[loadings.index]
     time = step * loadings.number
@@ -195,7 +199,7 @@ def of_bend(force: Floats, loadings: Loadings) -> list[float]:
 
 
 def of_force_across(
-    step: float, channels: dict[str, Floats], scale: Scale, loadings: Loadings
+    step: float, channels: dict[str, Floats], scale: FeatureScale, loadings: Loadings
 ) -> list[float]:
     """Return the course of the force across in a loading, and the misalignment from both forces.
 
@@ -217,7 +221,7 @@ def of_force_across(
 
 
 def of_position(
-    step: float, channels: dict[str, Floats], scale: Scale, loadings: Loadings
+    step: float, channels: dict[str, Floats], scale: FeatureScale, loadings: Loadings
 ) -> list[float]:
     """Return the creep in a loading, the stiffness, and the misalignment from both.
 
@@ -241,7 +245,7 @@ def of_position(
 
 
 def of_both(
-    step: float, channels: dict[str, Floats], scale: Scale, loadings: Loadings
+    step: float, channels: dict[str, Floats], scale: FeatureScale, loadings: Loadings
 ) -> list[float]:
     """Return the misalignment from the creep and the measured lean of the force.
 

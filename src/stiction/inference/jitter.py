@@ -54,7 +54,7 @@ class Jitter(NamedTuple):
     drift: float = 0.0
 
 
-class Motion(NamedTuple):
+class SampledMotion(NamedTuple):
     """A motion at `time` (n,), s: its samples (n, 4 + internal states), and where its troughs are.
 
     A sample is elongation x and y (m), slip velocity x and y (m/s), and the internal states.
@@ -99,7 +99,7 @@ def move(
     *,
     cycle: float,
     cycles: int | None = None,
-) -> Motion:
+) -> SampledMotion:
     """Simulate a slider at equally spaced times, each cycle with friction of its own.
 
     Parameters
@@ -137,7 +137,9 @@ def move(
         rig = slider.model_copy(update={"friction": law})
         found = solve(Description(rig, initial, settings), part, max_steps=MOST_STEPS)
         if found.code != 0:
-            return Motion(times[: begin + 1], rows[: begin + 1], np.array(troughs, np.int64), False)
+            return SampledMotion(
+                times[: begin + 1], rows[: begin + 1], np.array(troughs, np.int64), False
+            )
         rows[begin : end + 1] = found.samples[:, kept]
         trough = first_trough(rows[origin : end + 1, 0])
         if trough >= 0:
@@ -156,7 +158,7 @@ def move(
             begin, window = end, max(int(MORE * whole), FEWEST)
         initial = start(slider, rows[begin], float(times[begin]))
     until = begin + 1
-    return Motion(times[:until], rows[:until], np.array(troughs, dtype=np.int64), True)
+    return SampledMotion(times[:until], rows[:until], np.array(troughs, dtype=np.int64), True)
 
 
 def stretch(times: Floats, begin: int, end: int) -> tuple[float, Floats]:

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from stiction.analysis.record import cell_axis
-from stiction.inference.features import BEND, Cycles, Part, features, find_cycles, parts
-from stiction.inference.jitter import Jitter, Motion, move
+from stiction.inference.features import BEND, Cycles, FeatureGroup, features, find_cycles, parts
+from stiction.inference.jitter import Jitter, SampledMotion, move
 from stiction.inference.observation import Conditions
 from stiction.inference.priors import Normal, Prior, Uniform
 from stiction.storage.arrays import read_arrays, write_arrays
@@ -187,7 +187,7 @@ def synthesise(
 
 
 def measure(
-    conditions: Conditions, rig: Slider, motion: Motion, values: Mapping[str, float],
+    conditions: Conditions, rig: Slider, motion: SampledMotion, values: Mapping[str, float],
     random: np.random.Generator,
 ) -> dict[str, Floats]:  # fmt: skip
     """Return the channels of a motion as their sensors show them, along the load cell's axis."""
@@ -225,7 +225,7 @@ def bend_features(conditions: Conditions, slider: Slider) -> NDArray[np.bool_]:
 
 
 def which(
-    conditions: Conditions, slider: Slider, wanted: Callable[[Part], bool]
+    conditions: Conditions, slider: Slider, wanted: Callable[[FeatureGroup], bool]
 ) -> NDArray[np.bool_]:
     """Return which features of a record under these conditions belong to the wanted parts."""
     blank = dummy(conditions)

@@ -11,7 +11,14 @@ from numpy.typing import NDArray
 from stiction.analysis.record import Record
 from stiction.drive import ConstantVelocity
 from stiction.errors import ResultError
-from stiction.inference.features import LEAST_CYCLES, USED, Cycles, Scale, features, find_cycles
+from stiction.inference.features import (
+    LEAST_CYCLES,
+    USED,
+    Cycles,
+    FeatureScale,
+    features,
+    find_cycles,
+)
 from stiction.system.slider import Slider
 
 Floats = NDArray[np.float64]
@@ -78,10 +85,10 @@ class Conditions(NamedTuple):
         its = {"drive": drive, "normal_load": self.normal_load, "phi": slider.phi + self.yaw}
         return slider.model_copy(update=its)
 
-    def scale(self, slider: Slider) -> Scale:
+    def scale(self, slider: Slider) -> FeatureScale:
         """Return what features are relative to."""
         rig = self.slider_of(slider)
-        return Scale(
+        return FeatureScale(
             rig.F_0, rig.k_x * abs(self.velocity), 1.0 / rig.natural_frequencies[0],
             abs(self.velocity),
         )  # fmt: skip

@@ -87,7 +87,7 @@ class Regression(NamedTuple):
         return found + self.mean
 
 
-class Summary(NamedTuple):
+class FeatureSummary(NamedTuple):
     """What features say about parameters: where they lie, and how far they scatter about that.
 
     Parameters
@@ -127,7 +127,7 @@ class Summary(NamedTuple):
         return self.middle.library, np.exp(0.5 * self.spread.library)
 
 
-def learn(features: Floats, parameters: Floats) -> Summary:
+def learn(features: Floats, parameters: Floats) -> FeatureSummary:
     """Learn the summary of a library: features (n, f) and parameters (n, p)."""
     standard = Standard.of(features)
     scores = standard.scores(features)
@@ -136,7 +136,7 @@ def learn(features: Floats, parameters: Floats) -> Summary:
         middle = adapt_metrics(regression(parts, parameters, scores.shape[1]), scores, parameters)
         apart = parameters - middle.library
         spread = regression(parts, np.log(apart * apart + LEAST), scores.shape[1])
-    return Summary(standard, scores, middle, spread)
+    return FeatureSummary(standard, scores, middle, spread)
 
 
 def single_threaded_algebra() -> AbstractContextManager[object]:

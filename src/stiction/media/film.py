@@ -23,7 +23,7 @@ from stiction.media.sound import time_in, window_of
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, RED, style
 from stiction.plotting.run.time_series import envelope
 from stiction.result.columns import sample_table
-from stiction.result.table import Table
+from stiction.result.table import ColumnTable
 from stiction.simulation import automatic_times, solve
 from stiction.storage.files import placeable, whole
 from stiction.system.description import Description
@@ -175,13 +175,13 @@ def draw(
             yield np.asarray(canvas.buffer_rgba())[..., :3]
 
 
-def sample(description: Description, times: NDArray[np.float64]) -> Table:
+def sample(description: Description, times: NDArray[np.float64]) -> ColumnTable:
     """Return a run sampled at `times` (s)."""
     solution = solve(description, times)
     return sample_table(description, solution.times, solution.samples, {})
 
 
-def in_window(description: Description, times: NDArray[np.float64]) -> Table:
+def in_window(description: Description, times: NDArray[np.float64]) -> ColumnTable:
     """Return a run between the first and the last of `times`, with samples that show its motion."""
     every = automatic_times(description)
     inside = every[(every >= times[0]) & (every <= times[-1])]
@@ -189,7 +189,7 @@ def in_window(description: Description, times: NDArray[np.float64]) -> Table:
     return sample(description, np.linspace(times[0], times[-1], IN_WINDOW) if few else inside)
 
 
-def moving_at(seen: Table) -> float:
+def moving_at(seen: ColumnTable) -> float:
     """Return the time nearest to a third of the way at which the mass slips, s."""
     times = seen["time"]
     third = float(times[0] + (times[-1] - times[0]) / 3.0)
@@ -213,7 +213,7 @@ def slowness(slow: float) -> str:
     return f"{float(f'{times:.3g}'):,.15g} times {word}"
 
 
-def series(figure: Figure, run: Table, times: NDArray[np.float64]) -> list[Line2D]:
+def series(figure: Figure, run: ColumnTable, times: NDArray[np.float64]) -> list[Line2D]:
     """Draw spring forces, direction and slip speed over time; return the cursors."""
     force, prefix = metric_prefix(np.concatenate([run["spring_x"], run["spring_y"]]))
     rows: tuple[tuple[str, float, tuple[tuple[str, str, str], ...]], ...] = (
@@ -242,7 +242,7 @@ def series(figure: Figure, run: Table, times: NDArray[np.float64]) -> list[Line2
     return cursors
 
 
-def microscope(figure: Figure, fine: Table, length: float) -> Line2D:
+def microscope(figure: Figure, fine: ColumnTable, length: float) -> Line2D:
     """Draw the slip speed over a few fast periods; return the cursor."""
     ax = figure.add_axes((0.72, 0.47, 0.26, 0.44))
     rests = bool((fine["slip_speed"] < slowest_slip(fine)).all())
@@ -263,7 +263,7 @@ def microscope(figure: Figure, fine: Table, length: float) -> Line2D:
     return ax.axvline(places[0], color=BLACK, linewidth=1.0)
 
 
-def mark_at(fine: Table, index: int) -> float:
+def mark_at(fine: ColumnTable, index: int) -> float:
     """Return the place of a sample under the microscope, ms from its middle."""
     times = fine["time"]
     return float(1e3 * (times[index] - 0.5 * (times[0] + times[-1])))

@@ -30,7 +30,7 @@ from stiction.plotting.page.style import (
     RED,
 )  # fmt: skip
 from stiction.plotting.run.time_series import DEEPEST
-from stiction.result.table import Table
+from stiction.result.table import ColumnTable
 from stiction.system.slider import Slider
 from stiction.system.tensors import dampers_askew
 from stiction.text.units import in_words
@@ -52,7 +52,7 @@ INCH = 0.0254
 class Scene:
     """Artists that show the state of a run at any time, on given axes."""
 
-    def __init__(self, ax: Axes, slider: Slider, samples: Table) -> None:
+    def __init__(self, ax: Axes, slider: Slider, samples: ColumnTable) -> None:
         """Draw what stands, and make what moves."""
         self.slider, self.samples = slider, samples
         c, s = slider.direction
@@ -206,7 +206,7 @@ def away(angle: float) -> Floats:
     return -way if way.sum() > 0.0 else way
 
 
-def magnification(samples: Table) -> Floats:
+def magnification(samples: ColumnTable) -> Floats:
     """Return the factors of elongations (per metre) along x and y; nearly equal ones are one."""
     largest = np.array([np.nanmax(np.abs(samples[name])) for name in ("u_x", "u_y")])
     found = LARGEST / np.where(largest > 0.0, largest, largest.max() or 1.0)
@@ -214,12 +214,12 @@ def magnification(samples: Table) -> Floats:
     return np.full(2, found.min()) if found.max() < 12.0 * found.min() else found
 
 
-def slowest_slip(samples: Table) -> float:
+def slowest_slip(samples: ColumnTable) -> float:
     """Return the slip speed below which the mass is shown at rest, m/s."""
     return DEEPEST * float(np.nanmax(np.hypot(samples["drive_X"], samples["drive_Y"])))
 
 
-def largest_friction(slider: Slider, samples: Table) -> float:
+def largest_friction(slider: Slider, samples: ColumnTable) -> float:
     """Return the friction limit over the load; of a law with state, the largest there was."""
     ratio = samples["friction"] / samples["normal_load"]
     found = float(np.max(ratio[np.isfinite(ratio)], initial=0.0))

@@ -11,16 +11,16 @@ from numpy.typing import NDArray
 
 from stiction.errors import Faults, ResultError
 from stiction.recording.channels import CHANNELS, plain
-from stiction.recording.formats import Layout, read_tables
+from stiction.recording.formats import TextLayout, read_tables
 from stiction.recording.guess.choice import Choice, Chosen, choose_columns, own_clock
 from stiction.recording.guess.clock import Block, blocks, check_stated
 from stiction.recording.guess.displacement import unwrap
 from stiction.recording.guess.remarks import Said, what_is_said
 from stiction.recording.noise import noise_level
 from stiction.recording.origin import Origin, Use
-from stiction.recording.request import MARKS, SIGNS, Reading, Request, request
+from stiction.recording.request import MARKS, SIGNS, ReadingOptions, Request, request
 from stiction.recording.sensor import Sensor
-from stiction.recording.table import Remark, Table, number_of
+from stiction.recording.table import FileTable, Remark, number_of
 from stiction.text.units import in_words
 
 Floats = NDArray[np.float64]
@@ -49,7 +49,7 @@ def read_measurements(
     path : Path
         A file of any known format.
     given : mapping
-        What the user says, by the names of `Reading` and of the apparatus.
+        What the user says, by the names of `ReadingOptions` and of the apparatus.
     sidecar : Path, optional
         In place of the TOML file beside the file.
 
@@ -62,7 +62,7 @@ def read_measurements(
     """
     asked = request(path, given, sidecar)
     reading = asked.reading
-    layout = Layout(SIGNS.get(reading.decimal or ""), MARKS.get(reading.separator or ""))
+    layout = TextLayout(SIGNS.get(reading.decimal or ""), MARKS.get(reading.separator or ""))
     found: list[Measurement] = []
     faults, without = Faults(), Faults()  # a table beside those of samples may have no force
     for table in read_tables(path, layout):
@@ -83,7 +83,7 @@ def _place_among(origin: Origin, number: int, count: int) -> Origin:
     return Origin(**{**vars(origin), "block": number, "blocks": count})
 
 
-def _measurements(path: Path, table: Table, asked: Request) -> list[Measurement]:
+def _measurements(path: Path, table: FileTable, asked: Request) -> list[Measurement]:
     """Return the measurements of one table."""
     reading = asked.reading
     said = what_is_said(table.remarks)
@@ -108,14 +108,14 @@ def _measurements(path: Path, table: Table, asked: Request) -> list[Measurement]
     return found
 
 
-def _has_times(path: Path, table: Table, reading: Reading) -> bool:
+def _has_times(path: Path, table: FileTable, reading: ReadingOptions) -> bool:
     try:
         return "time" in choose_columns(path, table, reading.columns, timed=False).channels
     except ResultError as error:
         return "no column is the time" not in str(error)
 
 
-def _clock(table: Table, choice: Choice, interval: float | None) -> tuple[Floats, str]:
+def _clock(table: FileTable, choice: Choice, interval: float | None) -> tuple[Floats, str]:
     """Return the times of all rows, s, and the name of their column."""
     chosen = choice.channels.get("time")
     if chosen is not None:
@@ -127,7 +127,7 @@ def _clock(table: Table, choice: Choice, interval: float | None) -> tuple[Floats
     return np.arange(len(table), dtype=np.float64) * interval, "the clock"
 
 
-def _remarks(table: Table, before: int, first: int) -> Sequence[Remark]:
+def _remarks(table: FileTable, before: int, first: int) -> Sequence[Remark]:
     """Return the remarks between two rows."""
     if table.lines is None:
         return table.remarks
@@ -137,7 +137,7 @@ def _remarks(table: Table, before: int, first: int) -> Sequence[Remark]:
 
 def _measurement(
     path: Path,
-    table: Table,
+    table: FileTable,
     asked: Request,
     choice: Choice,
     part: Block,
@@ -199,7 +199,9 @@ def _measurement(
     return Measurement({"time": time, **channels}, known, sensors, origin)
 
 
-def _other_clock(path: Path, table: Table, choice: Choice, name: str, part: Block) -> Floats | None:
+def _other_clock(
+    path: Path, table: FileTable, choice: Choice, name: str, part: Block
+) -> Floats | None:
     """Return the times of a channel that has its own; None if they are those of the force."""
     column, force = choice.channels[name].column, choice.channels["force"].column
     if column.clock is not None and force.clock is not None:
@@ -320,7 +322,7 @@ def _weigh(
     sensors["force"] = _with_noise(None, channels["force"], "force")
 
 
-def _label(table: Table, part: Block) -> str:
+def _label(table: FileTable, part: Block) -> str:
     """Return the words that a block has in a column of its own, such as the name of a step."""
     for name, texts in table.labels:
         its = {str(x).strip() for x in texts[part.rows]}
@@ -334,7 +336,7 @@ def _label(table: Table, part: Block) -> str:
 
 
 def _uses(
-    table: Table, choice: Choice, channels: dict[str, Floats], time: Floats
+    table: FileTable, choice: Choice, channels: dict[str, Floats], time: Floats
 ) -> tuple[Use, ...]:
     """Return what each column was taken for."""
     known = {"time": time, **channels}

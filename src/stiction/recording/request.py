@@ -44,7 +44,7 @@ def _wrap(value: object) -> object:
     return length
 
 
-class Known(Described):
+class KnownApparatus(Described):
     """What is known of the apparatus; the fields are those of a record."""
 
     normal_load: Force | None = None
@@ -55,10 +55,10 @@ class Known(Described):
     zero: SignedForce | None = None
 
 
-KNOWN = tuple(Known.model_fields)
+KNOWN = tuple(KnownApparatus.model_fields)
 
 
-class Reading(Described):
+class ReadingOptions(Described):
     """How to read a file, as far as the user says so.
 
     Parameters
@@ -104,7 +104,7 @@ class Reading(Described):
 class Request(NamedTuple):
     """All that is said about a file: how to read it, numbers of the apparatus, sensors."""
 
-    reading: Reading
+    reading: ReadingOptions
     known: dict[str, Any]
     sensors: dict[str, Sensor]
     beside: Path | None = None
@@ -130,8 +130,8 @@ def request(path: Path, given: Mapping[str, Any], sidecar: Path | None = None) -
     known = stated["record"] | {name: value for name, value in said.items() if name in KNOWN}
     read = {name: value for name, value in said.items() if name not in KNOWN}
     wrong: list[Fault] = []
-    reading = _read(Reading, stated["reading"] | stated["columns"] | read, places, wrong)
-    apparatus = _read(Known, known, places, wrong)
+    reading = _read(ReadingOptions, stated["reading"] | stated["columns"] | read, places, wrong)
+    apparatus = _read(KnownApparatus, known, places, wrong)
     of_channels = {}
     for name, table in sensors.items():
         at = {key: f"{own}: sensors.{name}.{key}" for key in table}
@@ -169,7 +169,7 @@ def _tables(own: Path) -> dict[str, dict[str, Any]]:
     raw, wrong = read_toml(own), []
     allowed = {
         "columns": tuple(CHANNELS),
-        "reading": tuple(name for name in Reading.model_fields if name not in CHANNELS),
+        "reading": tuple(name for name in ReadingOptions.model_fields if name not in CHANNELS),
         "record": KNOWN,
         "sensors": tuple(name for name in CHANNELS if name != "time"),
     }

@@ -20,7 +20,7 @@ from stiction.recording.sensor import Sensor
 from stiction.result.checksums import SEAL, as_written, damaged_parts, seal_tables, sign
 from stiction.result.columns import cf_attributes
 from stiction.result.file import SIGNATURE, write_table
-from stiction.result.table import Column, Table, as_table
+from stiction.result.table import Column, ColumnTable, as_table
 from stiction.storage.files import NETCDF, placeable, whole
 from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files
 from stiction.storage.isolation import apart
@@ -61,11 +61,11 @@ def write_stored(
     attributes["units_of_attributes"] = ", ".join(f"{name}: {KNOWN[name]}" for name in known)
     attributes["sensors"] = json.dumps({name: _fields(each) for name, each in sensors.items()})
     attributes["origin"] = "" if origin is None else origin.to_json()
-    attributes[SEAL] = seal_tables({"record": Table(columns, attributes)})
+    attributes[SEAL] = seal_tables({"record": ColumnTable(columns, attributes)})
     h5netcdf: Any = import_module("h5netcdf")  # slow to import
     with whole(target) as part:
         with h5netcdf.File(part, "w") as file:
-            write_table(file, Table(columns, attributes))
+            write_table(file, ColumnTable(columns, attributes))
         sign(part)
     return target
 

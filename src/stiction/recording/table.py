@@ -20,7 +20,7 @@ class Remark(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Column:
+class FileColumn:
     """One column of a file.
 
     Parameters
@@ -54,12 +54,12 @@ class Column:
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
+class FileTable:
     """Columns of one length, and what the file says about them.
 
     Parameters
     ----------
-    columns : tuple of Column
+    columns : tuple of FileColumn
         In the order of the file.
     format : str
         The kind of file, in words.
@@ -81,7 +81,7 @@ class Table:
         Columns of words: the name and the texts, (n,), of each.
     """
 
-    columns: tuple[Column, ...]
+    columns: tuple[FileColumn, ...]
     format: str
     label: str = ""
     remarks: tuple[Remark, ...] = ()

@@ -18,7 +18,7 @@ from stiction.reproduction.figure4 import figure4
 from stiction.reproduction.figure5 import figure5
 from stiction.reproduction.numbers import numbers
 from stiction.reproduction.schematic import schematic
-from stiction.reproduction.table import Table
+from stiction.reproduction.table import NumberTable
 from stiction.reproduction.zero_slip import zero_slip
 from stiction.simulation import simulate
 from stiction.storage.files import make_folder, usable_folder
@@ -38,12 +38,12 @@ class Reproduction(NamedTuple):
     ----------
     files : list of Path
         The files written: figures and tables.
-    table : Table or None
+    table : NumberTable or None
         Every number beside the stated one; None if only one figure was requested.
     """
 
     files: list[Path]
-    table: Table | None
+    table: NumberTable | None
 
     @property
     def agrees(self) -> bool:
@@ -91,7 +91,7 @@ def paper(
 
 def reproduce(
     folder: Path, figure: int | None, report: Callable[[float], None]
-) -> tuple[list[Path], Table | None]:
+) -> tuple[list[Path], NumberTable | None]:
     """Write the paper's figures and numbers to `folder`; see `paper`."""
     usable_folder(folder)
     make_folder(folder)
@@ -124,7 +124,7 @@ def reproduce(
     if figure is not None:
         return written, None
     constant = slider.replace(friction=Coulomb(mu_0=slider.law.coefficient(0.0)))
-    table = Table(numbers(run, simulate(constant, 2 * DURATION, sample_rate=RATE, rtol=RTOL)))
+    table = NumberTable(numbers(run, simulate(constant, 2 * DURATION, sample_rate=RATE, rtol=RTOL)))
     report(1.0)
     return [*written, *table.save(folder)], table
 

@@ -9,14 +9,13 @@ from pathlib import Path
 
 from stiction.presets import Number
 from stiction.storage.files import whole
-from stiction.text.sections import Section
-from stiction.text.sections import Table as Rows
+from stiction.text.sections import Section, Table
 
 HEADER = ("where", "what", "stated", "computed", "deviation", "tolerance", "unit", "verdict")
 
 
 @dataclass(frozen=True)
-class Table:
+class NumberTable:
     """Numbers beside the stated ones.
 
     Parameters
@@ -52,7 +51,7 @@ class Table:
     @property
     def section(self) -> Section:
         """The table as a part of a report, with the line that counts the verdicts."""
-        return Section("The paper's numbers", [self.summary], Rows(HEADER, self.rows))
+        return Section("The paper's numbers", [self.summary], Table(HEADER, self.rows))
 
     @property
     def text(self) -> str:

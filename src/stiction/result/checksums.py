@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from stiction.errors import ResultError
-from stiction.result.table import Table
+from stiction.result.table import ColumnTable
 from stiction.storage.checksums import LENGTH, broken_parts, bytes_of, crc_of_file, seal
 from stiction.storage.foreign import opening
 
@@ -27,12 +27,12 @@ SEAL, DESCRIPTION = "checksums", "description"  # attributes of the file
 MARK = b"stiction crc-32c"  # precedes the checksum of a whole file
 
 
-def seal_tables(tables: Mapping[str, Table]) -> str:
+def seal_tables(tables: Mapping[str, ColumnTable]) -> str:
     """Return the checksums of tables as the text of an attribute."""
     return seal(_parts(tables))
 
 
-def damaged_parts(known: str | None, tables: Mapping[str, Table]) -> list[str]:
+def damaged_parts(known: str | None, tables: Mapping[str, ColumnTable]) -> list[str]:
     """Return the names of damaged parts, by the text of `seal_tables`."""
     return [SEAL] if known is None else broken_parts(known, _parts(tables))
 
@@ -55,7 +55,7 @@ def intact_description(path: str | Path) -> str:
     return text
 
 
-def _parts(tables: Mapping[str, Table]) -> dict[str, Any]:
+def _parts(tables: Mapping[str, ColumnTable]) -> dict[str, Any]:
     """Return the contents of tables: each array's numbers, and all attributes together."""
     numbers: dict[str, Any] = {}
     attributes: dict[str, Any] = {}

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from stiction.friction import states
-from stiction.result.table import Column, Table
+from stiction.result.table import Column, ColumnTable
 from stiction.system.description import Description
 from stiction.system.slider import Slider
 
@@ -50,7 +50,7 @@ def sample_table(
     times: np.ndarray,
     samples: np.ndarray,
     attributes: dict[str, Any],
-) -> Table:
+) -> ColumnTable:
     """Return the samples of a run as a table over ``time``.
 
     Parameters
@@ -103,10 +103,10 @@ def sample_table(
         columns[name] = Column(along, values[name], cf_attributes(*about))
     for state, value in zip(states(slider.law), internal, strict=True):
         columns[state.name] = Column(along, value, cf_attributes(state.unit, state.meaning))
-    return Table(columns, {"description": description.to_json(), **attributes})
+    return ColumnTable(columns, {"description": description.to_json(), **attributes})
 
 
-def apparent_friction(slider: Slider, values: Mapping[Any, Any] | Table) -> Any:
+def apparent_friction(slider: Slider, values: Mapping[Any, Any] | ColumnTable) -> Any:
     """Return the spring force along the load cell, by default along X, over the normal load.
 
     A friction test reports this ratio; in steady sliding it is the law's coefficient.
@@ -116,11 +116,11 @@ def apparent_friction(slider: Slider, values: Mapping[Any, Any] | Table) -> Any:
         return (values["spring_x"] * c + values["spring_y"] * s) / values["normal_load"]
 
 
-def stick_table(intervals: np.ndarray) -> Table:
+def stick_table(intervals: np.ndarray) -> ColumnTable:
     """Return stick intervals, (n, 2) in s, as a table over ``stick``."""
     start, end = intervals.T
     values = zip(STICKS.items(), (start.copy(), end.copy(), end - start), strict=True)
-    return Table(
+    return ColumnTable(
         {name: Column(("stick",), value, cf_attributes(*about)) for (name, about), value in values},
         {},
     )

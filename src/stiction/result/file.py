@@ -14,7 +14,7 @@ import numpy as np
 from stiction.errors import ResultError
 from stiction.result.checksums import SEAL, as_written, damaged_parts, seal_tables, sign
 from stiction.result.columns import STICKS, VARIABLES
-from stiction.result.table import Table, as_table
+from stiction.result.table import ColumnTable, as_table
 from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files
 from stiction.storage.isolation import apart
 
@@ -31,17 +31,17 @@ SHORTEST = 1e-100  # s, between two samples
 LATER = {"mu", "stick_duration"}  # columns that older versions did not write
 
 
-def write_result(samples: Table, sticks: Table, path: Path) -> None:
+def write_result(samples: ColumnTable, sticks: ColumnTable, path: Path) -> None:
     """Write samples and sticks with checksums."""
     h5netcdf: Any = import_module("h5netcdf")  # slow to import
     seal = seal_tables({"samples": samples, "sticks": sticks})
     with h5netcdf.File(path, "w") as file:
-        write_table(file, Table(samples.columns, {**samples.attributes, SEAL: seal}))
+        write_table(file, ColumnTable(samples.columns, {**samples.attributes, SEAL: seal}))
         write_table(file.create_group(STICK_GROUP), sticks)
     sign(path)
 
 
-def write_table(group: Any, table: Table) -> None:
+def write_table(group: Any, table: ColumnTable) -> None:
     """Write a table into a group of a file, with HDF5's checksum of each array."""
     group.attrs.update(table.attributes)
     for name, (dims, values, attributes) in table.columns.items():

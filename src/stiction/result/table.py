@@ -25,7 +25,7 @@ class Column(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
+class ColumnTable:
     """Columns by name, and attributes of the whole.
 
     Examples
@@ -44,17 +44,17 @@ class Table:
         return self.columns[name].values
 
 
-def as_dataset(table: Table) -> xr.Dataset:
+def as_dataset(table: ColumnTable) -> xr.Dataset:
     """Return a table for xarray; a column that is named as its dimension is a coordinate."""
     import xarray as xr
 
     return xr.Dataset(dict(table.columns), attrs=dict(table.attributes))
 
 
-def as_table(data: xr.Dataset) -> Table:
+def as_table(data: xr.Dataset) -> ColumnTable:
     """Return what a dataset holds; the arrays are shared."""
     columns = {
         str(name): Column(tuple(map(str, each.dims)), each.values, each.attrs)
         for name, each in data.variables.items()
     }
-    return Table(columns, data.attrs)
+    return ColumnTable(columns, data.attrs)

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.drive import Course, Loading, ahead, drive_stretches, load_stretches
+from stiction.drive import VaryingLoad, VaryingVelocity, ahead, drive_stretches, load_stretches
 from stiction.drive.bounds import drive_bounds, load_bounds, row_bounds, vanishes
 from stiction.drive.recorded.spline import Recording, silent
 from stiction.drive.signal import Signal
@@ -64,7 +64,7 @@ def alike(drive: Any, load: Any) -> tuple[Any, Any]:
     force = Signal(0.0, load.force) if load.constant() else load.force
     if isinstance(along, Recording) or isinstance(force, Recording):
         along, force = _as_recorded(along), _as_recorded(force)
-    return Course(along, across), Loading(force)
+    return VaryingVelocity(along, across), VaryingLoad(force)
 
 
 def _as_recorded(signal: Signal | Recording) -> Recording:

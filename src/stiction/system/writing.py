@@ -11,17 +11,17 @@ from stiction.drive.recorded.piece import RECORDS
 from stiction.drive.recorded.reading import checksum
 from stiction.friction import Anisotropic, law_table
 from stiction.text.quantity_text import quantity_text
-from stiction.text.sections import Table as Rows
+from stiction.text.sections import Table
 from stiction.text.units import FORCE, VELOCITY, Kind, hints_of, kind_of
 
 if TYPE_CHECKING:
     from stiction.system.slider import Slider
 
-Table = dict[str, Any]
+TomlTable = dict[str, Any]
 LONGEST = 100  # numbers of a list that are shown
 
 
-def slider_tables(slider: Slider) -> dict[str, Table]:
+def slider_tables(slider: Slider) -> dict[str, TomlTable]:
     """Return the tables [slider], [friction], [drive] and [load] of a description."""
     parts = {"friction", "drive", "load"}
     mechanical = [name for name in slider.own_fields() if name not in parts]
@@ -34,14 +34,14 @@ def slider_tables(slider: Slider) -> dict[str, Table]:
     }
 
 
-def parameter_table(tables: Mapping[str, Table]) -> Rows:
+def parameter_table(tables: Mapping[str, TomlTable]) -> Table:
     """Return the parameters of all tables of a description as rows of path and text."""
     rows = [
         (f"{name}.{key}", str(abbreviate(value)))
         for name, table in tables.items()
         for key, value in table.items()
     ]
-    return Rows(("parameter", "value"), rows)
+    return Table(("parameter", "value"), rows)
 
 
 def abbreviate(value: Any) -> Any:
@@ -55,7 +55,7 @@ def abbreviate(value: Any) -> Any:
     return [abbreviate(each) for each in value]
 
 
-def describe(value: Any, names: Iterable[str]) -> Table:
+def describe(value: Any, names: Iterable[str]) -> TomlTable:
     """Return the fields of a description that differ from their defaults, with units."""
     fields, hints = type(value).model_fields, hints_of(type(value))
     return {
@@ -73,7 +73,7 @@ def _write(value: Any, kind: Kind | None) -> Any:
     return value
 
 
-def _describe_tuple(value: Any) -> Table:
+def _describe_tuple(value: Any) -> TomlTable:
     """Return the fields of a NamedTuple that differ from their defaults, with units."""
     hints, defaults = hints_of(type(value)), value._field_defaults
     return {
@@ -83,20 +83,20 @@ def _describe_tuple(value: Any) -> Table:
     }
 
 
-def _law(law: Any) -> Table:
+def _law(law: Any) -> TomlTable:
     if isinstance(law, Anisotropic):
         surface = {name: each for name, each in _describe_tuple(law).items() if name != "law"}
         return {**_law(law.law), "anisotropy": surface}
     return {"law": law_table(law)["law"], **_describe_tuple(law)}
 
 
-def _drive(drive: Any) -> Table:
+def _drive(drive: Any) -> TomlTable:
     if isinstance(drive, ConstantVelocity):
         return _describe_tuple(drive)
     return _program(drive, DRIVE_PIECES, VELOCITY)
 
 
-def _program(program: Any, known: Mapping[str, type[Any]], kind: Kind) -> Table:
+def _program(program: Any, known: Mapping[str, type[Any]], kind: Kind) -> TomlTable:
     names = {each: name for name, each in known.items()}
     table = describe(program, type(program).model_fields)
     for name, value in table.items():
@@ -107,7 +107,7 @@ def _program(program: Any, known: Mapping[str, type[Any]], kind: Kind) -> Table:
     return table
 
 
-def _piece(piece: Any, kind: Kind) -> Table:
+def _piece(piece: Any, kind: Kind) -> TomlTable:
     """Return the parameters of a piece, whose levels have the unit of `kind`."""
     return {
         name: _write(value, kind) if name in LEVELS else value

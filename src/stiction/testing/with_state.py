@@ -21,7 +21,7 @@ SLOPE = 1e-5  # relative: how well derivatives agree with them
 SETTLED = 1e-4  # relative: how well friction after that slip is the steady one
 
 
-class Point(NamedTuple):
+class LawPoint(NamedTuple):
     """A point at which a law is checked: slip velocity (m/s) and normal load (N)."""
 
     slip: Vector
@@ -32,12 +32,12 @@ class Point(NamedTuple):
         return f"at slip ({self.slip[0]:g}, {self.slip[1]:g}) m/s and load {self.load:g} N"
 
 
-def points(speeds: Sequence[float]) -> Iterator[Point]:
+def points(speeds: Sequence[float]) -> Iterator[LawPoint]:
     """Yield all combinations of speed, direction and load."""
     for v in speeds:
         for angle in DIRECTIONS:
             for load in LOADS:
-                yield Point((v * cos(angle), v * sin(angle)), load)
+                yield LawPoint((v * cos(angle), v * sin(angle)), load)
 
 
 def finite(law: Any, speeds: Sequence[float]) -> Iterator[str]:
@@ -67,7 +67,7 @@ def _settled_faults(law: Any, speeds: Sequence[float]) -> Iterator[str]:
             yield f"settled({v:g}) is {state}; it must be {n} finite numbers, as states() names"
 
 
-def _vector_fault(law: Any, function: Callable[..., Any], point: Point, length: int) -> str:
+def _vector_fault(law: Any, function: Callable[..., Any], point: LawPoint, length: int) -> str:
     try:
         value = tuple(map(float, function(*point, _steady_state(law, point))))
     except Exception as error:
@@ -77,7 +77,7 @@ def _vector_fault(law: Any, function: Callable[..., Any], point: Point, length: 
     return "" if all(map(isfinite, value)) else f"is {value}; it must be finite"
 
 
-def _steady_state(law: Any, point: Point) -> tuple[float, ...]:
+def _steady_state(law: Any, point: LawPoint) -> tuple[float, ...]:
     state: tuple[float, ...] = law.settled(max(hypot(*point.slip), SLOWEST))
     return state
 
@@ -101,7 +101,7 @@ def dissipative(law: Any, speeds: Sequence[float]) -> Iterator[str]:
     yield from first(found)
 
 
-def steady_state(law: Any, point: Point) -> tuple[float, ...]:
+def steady_state(law: Any, point: LawPoint) -> tuple[float, ...]:
     """Return the state after a metre of steady slip."""
     from scipy.integrate import solve_ivp
 
@@ -144,7 +144,7 @@ def derivatives(law: Any, speeds: Sequence[float]) -> Iterator[str]:
     yield from first(found)
 
 
-def _differences(law: Any, point: Point, state: tuple[float, ...]) -> list[list[float]]:
+def _differences(law: Any, point: LawPoint, state: tuple[float, ...]) -> list[list[float]]:
     """Return the rows of `gradient` by central differences."""
     v = hypot(*point.slip)
 

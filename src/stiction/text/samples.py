@@ -54,7 +54,7 @@ def samples_to_si(values: Any, unit: str, kind: Kind) -> Any:
     return plain * factor if isinstance(plain, np.ndarray) else np.asarray(plain) * factor
 
 
-class Column:
+class FrozenColumn:
     """Numbers that never change, which compare, hash and print as one value.
 
     Parameters
@@ -64,7 +64,8 @@ class Column:
 
     Examples
     --------
-    >>> Column([0.0, 0.5]) == Column([0.0, 0.5]), Column([0.0, 0.5])
+    >>> column = FrozenColumn([0.0, 0.5])
+    >>> column == FrozenColumn([0.0, 0.5]), column
     (True, <2 values>)
     """
 
@@ -105,7 +106,7 @@ class Column:
         """Return whether another column has the same values."""
         if self is other:
             return True
-        return isinstance(other, Column) and np.array_equal(self.values, other.values)
+        return isinstance(other, FrozenColumn) and np.array_equal(self.values, other.values)
 
     def __hash__(self) -> int:
         """Return the checksum."""
@@ -115,6 +116,6 @@ class Column:
         """Return how many values there are."""
         return f"<{self.size} values>"
 
-    def __reduce__(self) -> tuple[type[Column], tuple[Floats]]:
+    def __reduce__(self) -> tuple[type[FrozenColumn], tuple[Floats]]:
         """Copy and pickle the values."""
-        return Column, (self.values,)
+        return FrozenColumn, (self.values,)

@@ -42,7 +42,7 @@ class Kind(NamedTuple):
     example: str
 
 
-class Measured(Protocol):
+class PintQuantity(Protocol):
     """A number with a unit, as pint has it."""
 
     @property
@@ -54,7 +54,8 @@ class Measured(Protocol):
         """Its unit."""
 
 
-Quantity = float | str | Measured  # what a public function takes: a number in SI, or with its unit
+# what a public function takes: a number in SI, or with its unit
+Quantity = float | str | PintQuantity
 
 # A field that is read from something else, such as a float from text. A type checker knows one type
 # for what a constructor takes and for the field: with Any beside it, text is taken, a float read.

@@ -12,13 +12,13 @@ import stiction as st
 from stiction import theory
 from stiction.analysis.motion.regime.kinds import HARMONIC, SETTLING, STICK_SLIP
 from stiction.analysis.record import record_of
-from stiction.auditing import advice, figures, observation, report
+from stiction.auditing import advice, figures, report, simulated_test
 from stiction.auditing.advice import advise, nearest
-from stiction.auditing.observation import OSCILLATES, SLIDES, coarse_rate, from_sliding, observe
 from stiction.auditing.page import page
 from stiction.auditing.prediction import predict, suppositions
 from stiction.auditing.report import Audit, sections
 from stiction.auditing.report import audit as examine
+from stiction.auditing.simulated_test import OSCILLATES, SLIDES, coarse_rate, from_sliding, observe
 from stiction.auditing.words.changes import _change
 from stiction.auditing.words.numbers import apparent_stiffness, numbers
 from stiction.auditing.words.stick import stick
@@ -141,7 +141,7 @@ def test_an_audit_takes_no_more_work_than_it_may_and_says_what_it_left_out(found
     """Enough for one trial a lever: the one that needs two is cut, and its bar moves within it."""
     tests = found.observation.work + found.sliding_on.work
     trials = sum(each.work for each in found.advices)
-    assert tests + trials < observation.MOST_WORK
+    assert tests + trials < simulated_test.MOST_WORK
     assert not any(each.cut for each in found.advices)
     few = 4 * 30_000
     assert trials > few
@@ -175,7 +175,7 @@ def test_no_value_is_tried_twice(monkeypatch):
         advice, "try_change", lambda slider, *_: tried.append(slider) or {"tried": None}
     )
     monkeypatch.setattr(advice, "LEVERS", ("phi",))
-    monkeypatch.setattr(advice.Advice, "works", False)
+    monkeypatch.setattr(advice.Remedy, "works", False)
     (found,) = [each._replace() for each in advise(soft, False, 10**6)]
     assert found.then == tried[-1].phi
     assert len({each.phi for each in tried}) == len(tried)
@@ -548,4 +548,4 @@ def test_a_test_lasts_until_the_softer_spring_has_settled():
 
 def test_a_run_that_ended_before_its_second_half_is_not_settled():
     run = st.simulate(PAPER, "10 ms", sample_rate=0)
-    assert observation.outcome(run) == observation.UNSETTLED
+    assert simulated_test.outcome(run) == simulated_test.UNSETTLED

@@ -1,7 +1,7 @@
 """The summary below the table of numbers counts what is listed above it."""
 
 from stiction.presets import Number
-from stiction.reproduction.table import Table
+from stiction.reproduction.table import NumberTable
 
 
 def test_findings_are_counted_among_the_numbers_listed():
@@ -11,10 +11,10 @@ def test_findings_are_counted_among_the_numbers_listed():
         Number("Results", "time at full stop", 0.0, 7.0, 0.0, finding=True),
     ]
     own = [Number("reference", "period", 0.9, 0.9, 0.1)]
-    assert Table([*agreeing, *findings, *own]).summary == (
+    assert NumberTable([*agreeing, *findings, *own]).summary == (
         "3 of 5 of the paper's numbers agree; 1 of 1 reference values of this project agree; "
         "2 are findings: Eq. (8) as printed, Results time at full stop"
     )
-    assert Table([*agreeing, findings[0]]).summary == (
+    assert NumberTable([*agreeing, findings[0]]).summary == (
         "3 of 4 of the paper's numbers agree; 1 is a finding: Eq. (8) as printed"
     )

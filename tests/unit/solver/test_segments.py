@@ -7,7 +7,7 @@ import pytest
 from tests.systems import ELLIPSE, PROGRAM, SPRING, STEADY, problem_of
 
 import stiction as st
-from stiction.drive import Course, Loading
+from stiction.drive import VaryingLoad, VaryingVelocity
 from stiction.drive.signal import Signal
 from stiction.solver import segments
 from stiction.solver.problem import System
@@ -48,8 +48,8 @@ def test_segments_end_where_drive_or_load_bend():
     assert found[2].problem.bend.value > 0.0
 
 
-def test_a_steady_drive_beside_a_load_that_changes_is_a_course():
-    load = Loading(Signal(0.0, 10.0, 1.0))
+def test_a_steady_drive_beside_a_load_that_varies_is_of_the_varying_type():
+    load = VaryingLoad(Signal(0.0, 10.0, 1.0))
     drive, same = segments.alike(st.ConstantVelocity(2e-3), load)
     assert same == load
     assert drive.rate(0.7) == (2e-3, 0.0)
@@ -72,8 +72,8 @@ def test_an_anisotropic_law_is_a_law_and_a_tensor():
 def test_the_fastest_swing():
     assert segments.fastest_swing(problem_of("steady")) == 0.0
     assert segments.fastest_swing(problem_of("program")) == pytest.approx(2 * pi * 70.0)
-    still = Course(Signal(0.0, 1.0, 0.0, 0.0, 50.0, 0.0, 2.0, -30.0), Signal(0.0, 0.0))
-    problem = problem_of("program")._replace(drive=still, load=Loading(Signal(0.0, 1.0)))
+    still = VaryingVelocity(Signal(0.0, 1.0, 0.0, 0.0, 50.0, 0.0, 2.0, -30.0), Signal(0.0, 0.0))
+    problem = problem_of("program")._replace(drive=still, load=VaryingLoad(Signal(0.0, 1.0)))
     assert segments.fastest_swing(problem) == 30.0
 
 
@@ -123,15 +123,15 @@ def test_a_constant_velocity_is_its_own_bound_and_does_not_change():
 
 def test_when_a_load_vanishes():
     """The first zero, by steps that cannot pass it."""
-    swinging = Loading(Signal(0.0, 1.0, -0.1, 0.5, 20.0, 0.3))
+    swinging = VaryingLoad(Signal(0.0, 1.0, -0.1, 0.5, 20.0, 0.3))
     times = np.linspace(0.0, 20.0, 200_001)
     first = times[np.argmax(np.array([swinging.at(t) for t in times]) <= 0.0)]
     assert segments.vanishes(swinging, 0.0, 20.0) == pytest.approx(first, abs=1e-4)
     assert segments.vanishes(swinging, 0.0, first - 0.1) == inf
-    line = Loading(Signal(1.0, 2.0, -0.5))
+    line = VaryingLoad(Signal(1.0, 2.0, -0.5))
     assert segments.vanishes(line, 1.0, 9.0) == pytest.approx(5.0)
-    assert segments.vanishes(Loading(Signal(1.0, 2.0, 0.5)), 1.0, 9.0) == inf
-    assert segments.vanishes(Loading(Signal(1.0, -2.0, 0.5)), 1.0, 9.0) == 1.0
+    assert segments.vanishes(VaryingLoad(Signal(1.0, 2.0, 0.5)), 1.0, 9.0) == inf
+    assert segments.vanishes(VaryingLoad(Signal(1.0, -2.0, 0.5)), 1.0, 9.0) == 1.0
     assert segments.vanishes(st.drive.ConstantLoad(1.0), 1.0, 9.0) == inf
 
 

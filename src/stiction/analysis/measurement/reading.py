@@ -17,7 +17,7 @@ from stiction.trajectory import Trajectory, load
 T = TypeVar("T")
 
 
-class Said(TypedDict, total=False):
+class ReadArguments(TypedDict, total=False):
     """What the user says about a file; see `read_record`."""
 
     time: str | None
@@ -42,7 +42,7 @@ class Said(TypedDict, total=False):
 
 
 def read_record(
-    path: str | Path, *, sidecar: str | Path | None = None, **said: Unpack[Said]
+    path: str | Path, *, sidecar: str | Path | None = None, **said: Unpack[ReadArguments]
 ) -> Record:
     """Read a measured record from a file.
 
@@ -107,7 +107,7 @@ def read_records(
     paths: str | Path | Iterable[str | Path],
     *,
     sidecar: str | Path | None = None,
-    **said: Unpack[Said],
+    **said: Unpack[ReadArguments],
 ) -> tuple[Record, ...]:
     """Read all records of one or several files: blocks, strokes, a file each.
 
@@ -160,7 +160,7 @@ def read_source(
     *,
     trust: bool = False,
     sidecar: str | Path | None = None,
-    **said: Unpack[Said],
+    **said: Unpack[ReadArguments],
 ) -> Trajectory | Record:
     """Return the run or the record of a file.
 

@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 SETTLED = 0.2  # of a stretch: its end, in which friction counts as steady
 
 
-class Stretch(NamedTuple):
+class ConstantStretch(NamedTuple):
     """An interval of constant drive velocity.
 
     Attributes
@@ -48,7 +48,7 @@ class FrictionTest(NamedTuple):
         Mean normal load, N.
     stiffness : float
         Of the soft spring, N/m; NaN if unknown.
-    stretches : list of Stretch
+    stretches : list of ConstantStretch
         In order of time.
     """
 
@@ -57,14 +57,14 @@ class FrictionTest(NamedTuple):
     lag: Floats
     load: float
     stiffness: float
-    stretches: list[Stretch]
+    stretches: list[ConstantStretch]
 
     def within(self, start: float, end: float) -> NDArray[np.intp]:
         """Return the indices of the samples from `start` to `end` (s)."""
         first, after = np.searchsorted(self.time, [start - 1e-9, end + 1e-9])
         return np.arange(first, after)
 
-    def steady(self, stretch: Stretch) -> float:
+    def steady(self, stretch: ConstantStretch) -> float:
         """Return the mean friction in the end of a stretch, NaN without samples."""
         near = self.within(stretch.end - SETTLED * (stretch.end - stretch.start), stretch.end)
         return float(self.mu[near].mean()) if len(near) else nan
@@ -109,10 +109,10 @@ def friction_test(source: Trajectory | Record, program: DriveProgram | None = No
     )
 
 
-def stretches(drive: ConstantVelocity | DriveProgram, time: Floats) -> list[Stretch]:
+def stretches(drive: ConstantVelocity | DriveProgram, time: Floats) -> list[ConstantStretch]:
     """Return the stretches of a drive's velocity while it is recorded; harmonics are left out."""
     first, last = float(time[0]), float(time[-1])
-    found: list[Stretch] = []
+    found: list[ConstantStretch] = []
     start = 0.0
     for end, _ in drive_stretches(drive):
         begin, until = max(start, first), min(end, last)
@@ -121,6 +121,6 @@ def stretches(drive: ConstantVelocity | DriveProgram, time: Floats) -> list[Stre
             if found and found[-1].velocity == velocity:
                 found[-1] = found[-1]._replace(end=until)
             else:
-                found.append(Stretch(begin, until, velocity))
+                found.append(ConstantStretch(begin, until, velocity))
         start = end
     return found

@@ -7,7 +7,12 @@ from math import nan
 
 import numpy as np
 
-from stiction.analysis.protocols.friction_test import Floats, FrictionTest, Stretch, friction_test
+from stiction.analysis.protocols.friction_test import (
+    ConstantStretch,
+    Floats,
+    FrictionTest,
+    friction_test,
+)
 from stiction.analysis.record import Record
 from stiction.drive import DriveProgram
 from stiction.errors import ResultError
@@ -99,7 +104,7 @@ def hysteresis(source: Trajectory | Record, program: DriveProgram | None = None)
     return Hysteresis(tuple(found))
 
 
-def _loop(test: FrictionTest, back: Stretch, forth: Stretch) -> Loop:
+def _loop(test: FrictionTest, back: ConstantStretch, forth: ConstantStretch) -> Loop:
     at = test.within(back.start, forth.end)
     time, force = test.time[at], test.load * test.mu[at]
     turned = time > back.end

@@ -8,7 +8,12 @@ from typing import Literal
 
 import numpy as np
 
-from stiction.analysis.protocols.friction_test import Floats, FrictionTest, Stretch, friction_test
+from stiction.analysis.protocols.friction_test import (
+    ConstantStretch,
+    Floats,
+    FrictionTest,
+    friction_test,
+)
 from stiction.analysis.record import Record
 from stiction.drive import DriveProgram
 from stiction.errors import ResultError
@@ -142,7 +147,7 @@ def velocity_steps(
     return VelocitySteps(steps, float(np.nanmin(known)) if np.isfinite(known).any() else nan)
 
 
-def _step(test: FrictionTest, one: Stretch, two: Stretch, law: Law) -> VelocityStep:
+def _step(test: FrictionTest, one: ConstantStretch, two: ConstantStretch, law: Law) -> VelocityStep:
     way = float(np.sign(one.velocity))
     after = test.within(two.start, two.end)
     mu, before, steady = way * test.mu[after], way * test.steady(one), way * test.steady(two)

@@ -24,7 +24,7 @@ TAIL = 3.0  # normal score beyond which 0.27 % of a prior lie
 
 
 @dataclass(frozen=True)
-class Comparison:
+class RecordComparison:
     """A record beside simulations of its rig.
 
     Parameters
@@ -83,7 +83,7 @@ def compare(
     simulations: int = SIMULATIONS,
     library: str | Path | None = None,
     progress: Callable[[float], None] | None = None,
-) -> Comparison:
+) -> RecordComparison:
     """Fit a rig to a record and simulate the record again with what was found.
 
     Raises
@@ -100,7 +100,7 @@ def compare(
             progress=lambda fraction: report(0.5 * fraction),
         )  # fmt: skip
     except ResultError as error:
-        return Comparison(record, reason=str(error))
+        return RecordComparison(record, reason=str(error))
     made = predict(found, seen, lambda fraction: report(0.5 + 0.05 * fraction))
     odds, why = None, ""
     try:
@@ -110,4 +110,4 @@ def compare(
         )  # fmt: skip
     except (ResultError, DescriptionError) as error:
         why = str(error)
-    return Comparison(record, seen, found, made, odds=odds, incomparable=why)
+    return RecordComparison(record, seen, found, made, odds=odds, incomparable=why)

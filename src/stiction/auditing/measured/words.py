@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from stiction.auditing.measured.comparison import Comparison
+from stiction.auditing.measured.comparison import RecordComparison
 from stiction.inference.mechanism.odds import RARE, UNDECIDED, near_one
 from stiction.inference.mechanism.rivals import ROTATION
 from stiction.inference.posterior import Estimate, Fit
@@ -20,7 +20,7 @@ GROUNDS, CHANGES = "What that rests on", "What would change it"
 NAMES = {"force_across": "force across the drive", "position": "displacement of the mass"}
 
 
-def sections(found: Comparison) -> list[Section]:
+def sections(found: RecordComparison) -> list[Section]:
     """Return the sections of a report."""
     if found.fit is None:
         return [Section(TITLE, [f"No verdict: {found.reason}."])]
@@ -32,7 +32,7 @@ def sections(found: Comparison) -> list[Section]:
     return [*parts, *(found.odds.tables() if found.odds else ()), *found.fit.tables()]
 
 
-def verdict(found: Comparison) -> str:
+def verdict(found: RecordComparison) -> str:
     """Return the verdict in one sentence."""
     claimed = "" if found.odds is None else found.odds.decision
     if found.odds is not None and claimed not in (ROTATION, UNDECIDED):
@@ -50,7 +50,7 @@ def verdict(found: Comparison) -> str:
     return f"{explanation(found)}; {alternatives(claimed)}."
 
 
-def explanation(found: Comparison) -> str:
+def explanation(found: RecordComparison) -> str:
     """Return how the rig explains the record, a clause."""
     phi = angle(found)
     if phi is None:
@@ -81,7 +81,7 @@ def alternatives(claimed: str) -> str:
     return "no static friction beyond that law is needed, and none is excluded"
 
 
-def angle(found: Comparison) -> Estimate | None:
+def angle(found: RecordComparison) -> Estimate | None:
     """Return the estimate of the misalignment; None where it was not fitted."""
     known = [] if found.fit is None else [x for x in found.fit.estimates if x.name == "phi"]
     return known[0] if known else None
@@ -93,7 +93,7 @@ def describe(x: Estimate) -> str:
     return f"{in_words(x.median, x.unit)} (95 %: {low} to {high})"
 
 
-def grounds(found: Comparison, fit: Fit) -> list[str]:
+def grounds(found: RecordComparison, fit: Fit) -> list[str]:
     """Return what the verdict rests on."""
     conditions = fit.plan.conditions[0]
     channels = " and ".join(NAMES.get(name, name) for name in conditions.noise)
@@ -133,7 +133,7 @@ def curve(found: Predictive | None) -> str:
     )
 
 
-def changes(found: Comparison, fit: Fit) -> list[str]:
+def changes(found: RecordComparison, fit: Fit) -> list[str]:
     """Return what would change the verdict."""
     lines = []
     if not found.like:

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.auditing.observation import coarse_rate, observe
 from stiction.auditing.prediction import predict
+from stiction.auditing.simulated_test import coarse_rate, observe
 from stiction.auditing.words.numbers import creep_before_slip, kinetic, peak
 from stiction.errors import StictionError
 from stiction.inference.priors import Rig, quantity

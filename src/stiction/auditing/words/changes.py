@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from stiction.auditing.advice import Advice, is_compliance
-from stiction.auditing.observation import (
+from stiction.auditing.advice import Remedy, is_compliance
+from stiction.auditing.simulated_test import (
     MOST_WORK,
     OSCILLATES,
 )
@@ -66,7 +66,7 @@ def name_of(found: Audit, path: str) -> str:
     return NAMES[path]
 
 
-def _change(found: Audit, advice: Advice) -> tuple[str, ...]:
+def _change(found: Audit, advice: Remedy) -> tuple[str, ...]:
     name, now = name_of(found, advice.path), in_words(advice.now, advice.unit)
     if advice.tried is None:
         low, high = (in_words(end, advice.unit) for end in advice.between)

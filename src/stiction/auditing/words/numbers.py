@@ -10,10 +10,10 @@ import numpy as np
 from stiction.analysis.creep.first_slip import first_slip_time
 from stiction.analysis.motion.friction import find_friction
 from stiction.analysis.record import cell_axis
-from stiction.auditing.observation import (
-    Observation,
-)
 from stiction.auditing.prediction import suppositions
+from stiction.auditing.simulated_test import (
+    SimulatedTest,
+)
 from stiction.friction import has_state
 from stiction.system.slider import Slider
 from stiction.text.sections import Table
@@ -74,26 +74,26 @@ def numbers(found: Audit) -> Table:
     return Table(("quantity", "theory", "simulated"), lines)
 
 
-def slip_time(seen: Observation) -> float:
+def slip_time(seen: SimulatedTest) -> float:
     """Return when the first slip begins, s; NaN if there is none."""
     slip = first_slip_time(seen.run)
     return slip if slip < seen.record.time[-1] else nan
 
 
-def creep_before_slip(seen: Observation) -> float:
+def creep_before_slip(seen: SimulatedTest) -> float:
     """Return the distance moved until the first slip, m; NaN if there is none."""
     samples, slip = seen.run.samples, slip_time(seen)
     along = np.abs(samples["X"] - samples["X"][0])
     return float(np.interp(slip, samples["time"], along)) if isfinite(slip) else nan
 
 
-def kinetic(seen: Observation) -> float:
+def kinetic(seen: SimulatedTest) -> float:
     """Return the apparent coefficient of kinetic friction."""
     found = find_friction(seen.record, seen.regime._replace(kind=seen.motion), seen.cycles).kinetic
     return nan if found is None else found.coefficient
 
 
-def loading(seen: Observation) -> float:
+def loading(seen: SimulatedTest) -> float:
     """Return the apparent stiffness, N/m; NaN if nothing sticks during loading."""
     return seen.mean("stiffness") if seen.motion == seen.regime.kind and seen.regime.loads else nan
 
@@ -108,7 +108,7 @@ def apparent_stiffness(slider: Slider) -> float:
     return cell.x * along / share if share else nan
 
 
-def peak(seen: Observation) -> float:
+def peak(seen: SimulatedTest) -> float:
     """Return the apparent coefficient of static friction."""
     largest = float(np.max(seen.record.force, initial=0.0))
     return largest / seen.run.slider.normal_load

@@ -6,7 +6,7 @@ from math import hypot, sin
 from typing import TYPE_CHECKING, Any
 
 from stiction.analysis.motion.regime.kinds import TRANSVERSE
-from stiction.auditing.observation import SLIDES
+from stiction.auditing.simulated_test import SLIDES
 from stiction.auditing.words.stick import HARDLY, VIBRATES
 from stiction.friction import has_state
 from stiction.system.slider import Slider

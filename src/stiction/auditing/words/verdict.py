@@ -14,12 +14,12 @@ from stiction.analysis.motion.regime.kinds import (
     TRANSITIONAL,
     UNDETERMINED,
 )
-from stiction.auditing.observation import (
+from stiction.auditing.simulated_test import (
     OSCILLATES,
     SLIDES,
     SMALL,
     UNSETTLED,
-    Observation,
+    SimulatedTest,
 )
 from stiction.linear_stability.linear import STABLE, UNSTABLE
 from stiction.text.units import in_words, with_error
@@ -87,7 +87,7 @@ def motions(found: Audit) -> list[str]:
     return [*lines, f"Started from rest, the load cell shows {describe_motion(rest)}."]
 
 
-def final_motion(seen: Observation) -> str:
+def final_motion(seen: SimulatedTest) -> str:
     """Return the final motion of a test, in words."""
     if seen.comes_to == SLIDES:
         return "steady sliding"
@@ -99,13 +99,13 @@ def final_motion(seen: Observation) -> str:
     )
 
 
-def short_rest(seen: Observation) -> str:
+def short_rest(seen: SimulatedTest) -> str:
     """Return how long a mass sticks that slides for most of its cycle of stick-slip, or ''."""
     named = seen.motion == seen.regime.kind and not seen.regime.loads
     return f", {seen.regime.rests}" if named and seen.regime.rests else ""
 
 
-def short_motion(seen: Observation) -> str:
+def short_motion(seen: SimulatedTest) -> str:
     """Return the final motion of a test in a few words, for the title of a figure."""
     if seen.comes_to == SLIDES:
         return STEADY
@@ -113,7 +113,7 @@ def short_motion(seen: Observation) -> str:
     return f"{name}, still changing" if seen.comes_to == UNSETTLED else name
 
 
-def describe_motion(seen: Observation) -> str:
+def describe_motion(seen: SimulatedTest) -> str:
     """Return a kind of motion with its cycles, in one line."""
     count = seen.cycles.sizes["cycle"]
     sure = SEEN.get(seen.motion, seen.motion)

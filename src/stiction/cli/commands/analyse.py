@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from stiction.cli.options import MaybeOutput, Measured, Trust
+from stiction.cli.options import MaybeOutput, RecordOptions, Trust
 from stiction.cli.terminal import say
 
 
@@ -17,7 +17,7 @@ def analyse(
     *,
     output: MaybeOutput = None,
     trust: Trust = False,
-    measured: Measured | None = None,
+    measured: RecordOptions | None = None,
 ) -> None:
     """Analyse a result or a measured record: kind of motion, cycles, creep, oscillation, energy.
 
@@ -55,7 +55,7 @@ def analyse(
     from stiction.text.sections import Section
 
     folder = result.with_name(f"{result.stem}-analysis") if output is None else output
-    source = read_source(result, trust=trust, **(measured or Measured()).arguments())
+    source = read_source(result, trust=trust, **(measured or RecordOptions()).arguments())
     usable_folder(folder)
     with progress("analysing"):
         found = understand(source)
@@ -79,7 +79,7 @@ def import_(
     *files: Path,
     output: MaybeOutput = None,
     json: Annotated[Path | None, Parameter(name="--json")] = None,
-    measured: Measured | None = None,
+    measured: RecordOptions | None = None,
 ) -> None:
     """Read measured records, show what was guessed, and store them as NetCDF.
 
@@ -121,7 +121,7 @@ def import_(
     from stiction.cli.tables import print_sections
     from stiction.storage.files import placeable, whole
 
-    said = (measured or Measured()).arguments()
+    said = (measured or RecordOptions()).arguments()
     number = said.pop("block", None)
     records = read_records([file, *files], **said)
     if number is not None:

@@ -9,7 +9,7 @@ from stiction.cli.options import (
     FromPreset,
     Library,
     MaybeOutput,
-    Measured,
+    RecordOptions,
     Simulations,
     Trust,
     changes,
@@ -29,7 +29,7 @@ def audit(
     record: Path | None = None,
     simulations: Simulations = 4000,
     library: Library = None,
-    measured: Measured | None = None,
+    measured: RecordOptions | None = None,
 ) -> int:
     """Audit the apparatus that CONFIG describes: will it measure friction, or itself?
 
@@ -79,7 +79,7 @@ def audit(
         placeable(output, SUFFIXES)
     seen = None
     if record is not None:
-        said = (measured or Measured()).arguments()
+        said = (measured or RecordOptions()).arguments()
         seen = as_record(read_source(record, trust=trust, **said))
     kept = cache_folder() if library is None else library
     with progress("auditing") as report:

@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, WithJsonSchema
 
 from stiction.drive.recorded.rows import Rows, row_faults
 from stiction.drive.recorded.spline import Recording, recording, spline
-from stiction.text.samples import Column, as_numbers, samples_to_si, unit_on
+from stiction.text.samples import FrozenColumn, as_numbers, samples_to_si, unit_on
 from stiction.text.units import FORCE, VELOCITY, Kind, Number, fault
 from stiction.text.validation import validate
 
@@ -20,13 +20,13 @@ COLUMN = {"anyOf": [{"type": "array", "items": {"type": "number"}}, {"type": "st
 PERIOD = 8.0  # rows of a period that a table shows well
 
 
-def _read_column(values: Any, kind: Kind) -> Column:
+def _read_column(values: Any, kind: Kind) -> FrozenColumn:
     """Return a column of numbers in SI, or with a unit of their own."""
-    if isinstance(values, Column):
+    if isinstance(values, FrozenColumn):
         return values
     if isinstance(values, str):
         raise fault(f"{values!r} names a column, and there is no file")
-    return Column(as_numbers(samples_to_si(values, unit_on(values) or kind.unit, kind)))
+    return FrozenColumn(as_numbers(samples_to_si(values, unit_on(values) or kind.unit, kind)))
 
 
 def _reader(kind: Kind) -> BeforeValidator:
@@ -144,11 +144,11 @@ def _table(piece: Any) -> Rows:
     return Rows(piece.time.values, values, name, unit, range(1, len(values) + 1))
 
 
-def length(time: Column) -> float:
+def length(time: FrozenColumn) -> float:
     """Return the time between the first and the last row, s."""
     return float(time.values[-1] - time.values[0])
 
 
-def highest_frequency(time: Column) -> float:
+def highest_frequency(time: FrozenColumn) -> float:
     """Return the frequency (Hz) of which a period has `PERIOD` rows."""
     return 1.0 / (PERIOD * float(np.median(np.diff(time.values))))

@@ -13,7 +13,7 @@ from pydantic_core import PydanticCustomError
 from stiction.drive.recorded.piece import KINDS, Recorded, RecordedLoad
 from stiction.drive.recorded.rows import Rows, row_faults
 from stiction.drive.recorded.table_file import (
-    Heading,
+    ColumnHeading,
     TextTable,
     find_column,
     heading,
@@ -23,7 +23,7 @@ from stiction.drive.recorded.table_file import (
 from stiction.errors import DescriptionError, Fault
 from stiction.storage.checksums import crc
 from stiction.storage.foreign import is_within
-from stiction.text.samples import Column
+from stiction.text.samples import FrozenColumn
 from stiction.text.units import to_si
 
 # from the name of a file in a description to its path, or a `DescriptionError`
@@ -150,7 +150,7 @@ def checksum(piece: Mapping[str, Any]) -> str:
     """Return the checksum of the rows of a piece."""
     columns = [piece[name] for name in KINDS if piece.get(name) is not None]
     try:
-        marks = [Column(getattr(each, "values", each)).mark for each in columns]
+        marks = [FrozenColumn(getattr(each, "values", each)).mark for each in columns]
     except (TypeError, ValueError):
         return "none"
     return f"{crc(b''.join(mark.to_bytes(4, 'little') for mark in marks)):08x}"
@@ -158,7 +158,7 @@ def checksum(piece: Mapping[str, Any]) -> str:
 
 def rows_of(
     path: Path, names: Mapping[str, str], quantities: tuple[str, ...]
-) -> tuple[dict[str, Column], list[Fault]]:
+) -> tuple[dict[str, FrozenColumn], list[Fault]]:
     """Return the columns of a file in SI by their quantity, and all faults.
 
     `names` are those of the columns, as far as they are told, `quantities` those that it may hold.
@@ -168,7 +168,7 @@ def rows_of(
         quantity = _quantity(table, names, quantities)
     except DescriptionError as error:
         return {}, list(error.faults)
-    columns: dict[str, Column] = {}
+    columns: dict[str, FrozenColumn] = {}
     found: list[Fault] = []
     for name in ("time", quantity):
         try:
@@ -193,11 +193,11 @@ def _quantity(table: TextTable, names: Mapping[str, str], quantities: tuple[str,
     if found:
         raise _fault(f"give either {' or '.join(found)}", found[0])
     has = ", ".join(map(str, table.headings)) or f"{len(table.rows[0])} columns without headings"
-    example = _with_unit(quantities[0], Heading("NAME", None))
+    example = _with_unit(quantities[0], ColumnHeading("NAME", None))
     raise _fault(f"missing; name the column, such as {example}; the file has {has}", quantities[0])
 
 
-def _column(table: TextTable, name: str, told: str | None) -> Column:
+def _column(table: TextTable, name: str, told: str | None) -> FrozenColumn:
     """Return a column in SI."""
     wanted = heading(told) if told is not None else _usual(table, name)
     index = find_column(table, wanted, name)
@@ -213,17 +213,17 @@ def _column(table: TextTable, name: str, told: str | None) -> Column:
         factor = to_si(f"1 {unit}", KINDS[name])
     except PydanticCustomError as error:
         raise _fault(error.message(), name) from None
-    return Column(np.array(numbers_in(table, index, name)) * factor)
+    return FrozenColumn(np.array(numbers_in(table, index, name)) * factor)
 
 
-def _usual(table: TextTable, name: str) -> Heading:
+def _usual(table: TextTable, name: str) -> ColumnHeading:
     """Return the heading by which a column goes if none is told."""
     names = [each.name.lower() for each in table.headings]
     usual = next((each for each in USUAL.get(name, ()) if each in names), name)
-    return Heading(usual, None)
+    return ColumnHeading(usual, None)
 
 
-def _with_unit(name: str, wanted: Heading) -> str:
+def _with_unit(name: str, wanted: ColumnHeading) -> str:
     return f'{name} = "{wanted.name} [{KINDS[name].unit}]"'
 
 

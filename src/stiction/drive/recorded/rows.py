@@ -9,7 +9,7 @@ import numpy as np
 
 from stiction.drive.recorded.resolution import advice, roughness
 from stiction.drive.recorded.spline import spline
-from stiction.text.samples import Column, Floats
+from stiction.text.samples import Floats, FrozenColumn
 from stiction.text.units import LARGEST, in_words
 
 FEWEST = 4  # rows, which fix a cubic
@@ -94,7 +94,7 @@ def _gaps(table: Rows) -> Iterator[tuple[str, str]]:
 
 def _roughness(table: Rows) -> Iterator[tuple[str, str]]:
     integrated = table.name == "position"
-    made = spline(Column(table.time), Column(table.values), integrated)
+    made = spline(FrozenColumn(table.time), FrozenColumn(table.values), integrated)
     largest = float(np.abs(made.bounds[:, :2]).max())
     found = roughness(table.time, table.values, largest, integrated)
     if found is not None:

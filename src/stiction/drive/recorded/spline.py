@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.drive.signal import Signal, change_at, curve_at, sum_over, value_at
-from stiction.text.samples import Column, Floats
+from stiction.text.samples import Floats, FrozenColumn
 
 KEPT = 8  # splines of tables, while their programs are made again with other parameters
 
@@ -152,7 +152,9 @@ class Spline(NamedTuple):
 
 
 @lru_cache(maxsize=KEPT)
-def spline(time: Column, values: Column, integrated: bool, scale: float = 1.0) -> Spline:
+def spline(
+    time: FrozenColumn, values: FrozenColumn, integrated: bool, scale: float = 1.0
+) -> Spline:
     """Return the spline through the rows of a table, its values times `scale`.
 
     If the values are `integrated`, it is that of its slope. Four rows fix its ends ("not-a-knot"):

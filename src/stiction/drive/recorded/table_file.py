@@ -19,7 +19,7 @@ WORD = re.compile(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?")
 COMMENT = "#"
 
 
-class Heading(NamedTuple):
+class ColumnHeading(NamedTuple):
     """A column's name and its unit, None if it has none: ``position [mm]``."""
 
     name: str
@@ -33,19 +33,19 @@ class Heading(NamedTuple):
 class TextTable(NamedTuple):
     """A file's headings, none if it has no line of them, its rows and their line numbers."""
 
-    headings: list[Heading]
+    headings: list[ColumnHeading]
     rows: list[list[str]]
     lines: list[int]
 
 
-def heading(text: str) -> Heading:
+def heading(text: str) -> ColumnHeading:
     """Return name and unit of a heading.
 
     >>> heading("speed (mm/s)"), heading("t")
-    (Heading(name='speed', unit='mm/s'), Heading(name='t', unit=None))
+    (ColumnHeading(name='speed', unit='mm/s'), ColumnHeading(name='t', unit=None))
     """
     found = NAME.fullmatch(text.strip().strip('"'))
-    return Heading(found[1], found[2]) if found else Heading(text.strip(), None)
+    return ColumnHeading(found[1], found[2]) if found else ColumnHeading(text.strip(), None)
 
 
 def read_text_table(path: Path) -> TextTable:
@@ -65,7 +65,7 @@ def read_text_table(path: Path) -> TextTable:
         raise _fault(f"{path.name} holds no rows")
     delimiter = next((each for each in DELIMITERS if each in told[0][1]), None)
     cut = [(i, _cells(line, delimiter)) for i, line in told]
-    headings: list[Heading] = []
+    headings: list[ColumnHeading] = []
     if not any(map(_is_number, cut[0][1])):
         headings = _headings(told[0][1], delimiter)
         cut = cut[1:]
@@ -78,7 +78,7 @@ def read_text_table(path: Path) -> TextTable:
     return TextTable(headings, [cells for _, cells in cut], [i for i, _ in cut])
 
 
-def find_column(table: TextTable, wanted: Heading, path: str) -> int:
+def find_column(table: TextTable, wanted: ColumnHeading, path: str) -> int:
     """Return the index of the column of a name, or of a number from 1 on.
 
     Raises
@@ -129,7 +129,7 @@ def _in_words(wrong: Sequence[tuple[int, str]]) -> str:
     return f"line {lines}{more}: {what}{comma}; mend the line, or leave it out"
 
 
-def _headings(line: str, delimiter: str | None) -> list[Heading]:
+def _headings(line: str, delimiter: str | None) -> list[ColumnHeading]:
     """Return the headings in a line; between blanks, a unit in brackets belongs to its name."""
     cells = _cells(line, delimiter) if delimiter else WORD.findall(line)
     return [heading(cell) for cell in cells]

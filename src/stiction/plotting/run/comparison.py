@@ -18,7 +18,7 @@ from stiction.plotting.page.words import (
     system_in_words,
     wrap_words,
 )
-from stiction.plotting.run.curves import Curve, curves_of, draw_over_time, force_symbol
+from stiction.plotting.run.curves import RunCurve, curves_of, draw_over_time, force_symbol
 from stiction.plotting.run.slip_speeds import (
     LAST,
     MANY,
@@ -88,7 +88,7 @@ def plot_comparison(
     return panels
 
 
-def _panels(curves: list[Curve], legend: list[str]) -> dict[str, Axes]:
+def _panels(curves: list[RunCurve], legend: list[str]) -> dict[str, Axes]:
     """Return the axes of a new figure, by their names."""
     lines = sum(text.count("\n") + 1.6 for text in legend) + 9
     top, strip = max(2.3, lines * LINE), 0.08 + 0.1 * len(curves)
@@ -111,7 +111,7 @@ def _align(ax: Mapping[str, Axes]) -> None:
     ax["force"].figure.align_ylabels([ax[name] for name in ("force", "X", "speed", "rest")])
 
 
-def legend_text(curve: Curve) -> str:
+def legend_text(curve: RunCurve) -> str:
     """Return the legend of a run: its name, its law's parameters, an early end."""
     law = curve.run.slider.law
     name = name_of(law)
@@ -129,7 +129,7 @@ def legend_text(curve: Curve) -> str:
     return "\n".join(lines)
 
 
-def write_legend(ax: Axes, curves: list[Curve], texts: list[str]) -> None:
+def write_legend(ax: Axes, curves: list[RunCurve], texts: list[str]) -> None:
     """Write the legend of lines and band, and the system that all runs share."""
     ax.set_axis_off()
     handles = [Line2D([], [], **curve.look) for curve in curves]

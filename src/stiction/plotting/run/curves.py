@@ -24,7 +24,7 @@ DASHES: tuple[Any, ...] = ("solid", (0, (5, 1.5)), (0, (7, 1.2, 1.2, 1.2)), (0, 
 UNITS = {"force": "N", "X": "m"}
 
 
-class Curve(NamedTuple):
+class RunCurve(NamedTuple):
     """One run, its label, its line style, and its slip averaged over short times."""
 
     label: str
@@ -38,13 +38,13 @@ class Curve(NamedTuple):
         return str(self.look["color"])
 
 
-def curves_of(runs: Mapping[str, Trajectory]) -> list[Curve]:
+def curves_of(runs: Mapping[str, Trajectory]) -> list[RunCurve]:
     """Return a curve for each run; no two of the first 28 look alike.
 
     The first is a broad line below the others, visible where they agree.
     """
     return [
-        Curve(
+        RunCurve(
             label,
             run,
             {
@@ -71,7 +71,7 @@ def force_symbol(slider: Slider) -> str:
     return f"${name}$" if "_" in name else name
 
 
-def draw_over_time(ax: Axes, curves: Sequence[Curve], variable: str, symbol: str) -> None:
+def draw_over_time(ax: Axes, curves: Sequence[RunCurve], variable: str, symbol: str) -> None:
     """Draw "force" or "X" of every run over time, with a cross where a run ended early."""
     factor, prefix = common(_without_rounding(curve.run, variable) for curve in curves)
     ax.set_ylabel(f"{symbol} ({prefix}{UNITS[variable]})")
@@ -85,13 +85,13 @@ def draw_over_time(ax: Axes, curves: Sequence[Curve], variable: str, symbol: str
         say_only(ax, "at rest")
 
 
-def draw_curve(ax: Axes, curve: Curve, time: Floats, values: Floats) -> None:
+def draw_curve(ax: Axes, curve: RunCurve, time: Floats, values: Floats) -> None:
     """Draw values of a run over time in its style; swings too fast for the panel are a band."""
     line = draw_line(ax, time, values, curve.color, curve.look["linewidth"])
     line.set(linestyle=curve.look["linestyle"], zorder=curve.look["zorder"])
 
 
-def fit_time(ax: Axes, curves: Sequence[Curve]) -> None:
+def fit_time(ax: Axes, curves: Sequence[RunCurve]) -> None:
     """Fit the axis of time to all runs: some may have ended early."""
     ends = [curve.run.samples["time"][[0, -1]] for curve in curves]
     if np.ptp(ends) > 0.0:
@@ -106,7 +106,7 @@ def _without_rounding(run: Trajectory, variable: str) -> Floats:
     return np.zeros(len(values)) if stays(run) else values
 
 
-def mark_early_end(ax: Axes, curve: Curve, x: float, y: float) -> None:
+def mark_early_end(ax: Axes, curve: RunCurve, x: float, y: float) -> None:
     """Mark the last point of a run that did not reach its duration."""
     if not curve.run.status.ok:
         ax.plot(x, y, "x", color=curve.color, markersize=5, markeredgewidth=1.2, zorder=4)

@@ -12,7 +12,7 @@ from stiction.analysis.motion.rest import stuck_until
 from stiction.analysis.slip import cell_force
 from stiction.plotting.page.style import GREY
 from stiction.plotting.run.curves import (
-    Curve,
+    RunCurve,
     common,
     draw_curve,
     fit_time,
@@ -27,7 +27,7 @@ MANY, LAST = 8, 5  # cycles: of a run with more than the first, only the last on
 IN_TIME, BY_FORCE = 300, 120  # bins of a row over time and over force
 
 
-def draw_speeds(ax: Axes, curves: Sequence[Curve]) -> None:
+def draw_speeds(ax: Axes, curves: Sequence[RunCurve]) -> None:
     """Draw the slip speed (m/s) over time: its mean, and a band up to its maximum.
 
     The minimum is not drawn: it is zero wherever the mass comes to rest.
@@ -52,7 +52,7 @@ def _portrayed_from(run: Trajectory) -> float:
     return float(starts[-LAST] if len(starts) > MANY else run.samples["time"][0])
 
 
-def draw_portrait(ax: Axes, curves: Sequence[Curve]) -> None:
+def draw_portrait(ax: Axes, curves: Sequence[RunCurve]) -> None:
     """Draw the mean slip speed (m/s) over the spring force; of many cycles, the last ones."""
     ax.set_yscale("log", nonpositive="mask")
     factor, _ = common(cell_force(curve.run) for curve in curves)
@@ -64,13 +64,13 @@ def draw_portrait(ax: Axes, curves: Sequence[Curve]) -> None:
         mark_early_end(ax, curve, slip.force[-1] * factor, mean[-1])
 
 
-def set_limits(ax: Axes, curves: Sequence[Curve]) -> None:
+def set_limits(ax: Axes, curves: Sequence[RunCurve]) -> None:
     """Fit the axis of slip speed to the lines; say so if nothing slips."""
     if not set_speed_limits(ax, [(curve.slip, fastest_drive(curve.run)) for curve in curves]):
         say_only(ax, "no slip")
 
 
-def draw_rests(ax: Axes, curves: Sequence[Curve]) -> None:
+def draw_rests(ax: Axes, curves: Sequence[RunCurve]) -> None:
     """Draw the share of time at zero slip over time, a filled row for each run."""
     first = curves[0].run.samples["time"]
     end = max(float(curve.run.samples["time"][-1]) for curve in curves)
@@ -84,7 +84,7 @@ def draw_rests(ax: Axes, curves: Sequence[Curve]) -> None:
     ax.set_xlim(edges[0], edges[-1])
 
 
-def draw_held(ax: Axes, curves: Sequence[Curve]) -> None:
+def draw_held(ax: Axes, curves: Sequence[RunCurve]) -> None:
     """Draw the share of time at zero slip over the spring force, a filled row for each run."""
     forces = [cell_force(curve.run) for curve in curves]
     factor, prefix = common(forces)
@@ -105,7 +105,7 @@ def draw_held(ax: Axes, curves: Sequence[Curve]) -> None:
     ax.set_xlim(edges[0], edges[-1])
 
 
-def fill_row(ax: Axes, row: int, share: np.ndarray, edges: np.ndarray, curve: Curve) -> None:
+def fill_row(ax: Axes, row: int, share: np.ndarray, edges: np.ndarray, curve: RunCurve) -> None:
     """Fill a row, counted from the top, to the height of the share 0 to 1."""
     ax.stairs(-row - 1 + ROW * share, edges, baseline=-row - 1, fill=True, color=curve.color)
 

@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 from stiction.errors import ResultError
-from stiction.recording.table import Table
+from stiction.recording.table import FileTable
 from stiction.storage.foreign import opening
 
 HEAD = 512  # bytes by which a file is recognised
 
 
-class Layout(NamedTuple):
+class TextLayout(NamedTuple):
     """How a text file is laid out, as far as the user says so."""
 
     decimal: str | None = None
@@ -50,7 +50,7 @@ OTHERS = {
 }
 
 
-def read_tables(path: Path, layout: Layout) -> list[Table]:
+def read_tables(path: Path, layout: TextLayout) -> list[FileTable]:
     """Return the tables of a file, by its content and not by its suffix.
 
     Raises
@@ -71,7 +71,7 @@ def read_tables(path: Path, layout: Layout) -> list[Table]:
     kind = next(each for each in FORMATS if each.matches(head))
     read = import_module(f"{__name__}.{kind.reader}").read
     with opening(path, f"is not a file of {kind.name} that can be read"):
-        tables: list[Table] = read(path, layout)
+        tables: list[FileTable] = read(path, layout)
     if not any(len(table) for table in tables):
         raise ResultError(f"{path}: no samples in it ({kind.name}); record it again")
     return [table for table in tables if len(table)]

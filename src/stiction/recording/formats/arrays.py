@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 
 from stiction.errors import ResultError
-from stiction.recording.formats import Layout
+from stiction.recording.formats import TextLayout
 from stiction.recording.formats.members import Member, tables_of
-from stiction.recording.table import Table
+from stiction.recording.table import FileTable
 from stiction.storage.foreign import refuse_size
 
 
-def read(path: Path, layout: Layout) -> list[Table]:
+def read(path: Path, layout: TextLayout) -> list[FileTable]:
     """Return the tables of a NumPy file; `unit` of a column may stand in its name."""
     with open(path, "rb") as file:
         packed = file.read(2) == b"PK"

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from stiction.recording.formats import Layout
+from stiction.recording.formats import TextLayout
 from stiction.recording.formats.members import Member, tables_of
-from stiction.recording.table import Table, natural_key
+from stiction.recording.table import FileTable, natural_key
 from stiction.storage.foreign import read_through, refuse_other_files
 from stiction.storage.isolation import apart
 
@@ -19,7 +19,7 @@ UNITS = ("units", "unit", "Units", "Unit")
 HIDDEN = ("#refs#", "#subsystem#")  # of MATLAB
 
 
-def read(path: Path, layout: Layout) -> list[Table]:
+def read(path: Path, layout: TextLayout) -> list[FileTable]:
     """Return the tables of an HDF5 file: a table for each group and length."""
     apart(read_through, path)  # damage may crash HDF5
     refuse_other_files(path)

@@ -11,17 +11,17 @@ from pathlib import Path
 import numpy as np
 
 from stiction.errors import ResultError
-from stiction.recording.formats import Layout
+from stiction.recording.formats import TextLayout
 from stiction.recording.formats.dialect import Dialect
 from stiction.recording.formats.text import lines_of
-from stiction.recording.table import Column, Remark, Table
+from stiction.recording.table import FileColumn, FileTable, Remark
 
 END = "***End_of_Header***"
 SEPARATORS = {"tab": "\t", "comma": ",", "semicolon": ";"}
 COLUMN_NAMES = "X_Value"
 
 
-def read(path: Path, layout: Layout) -> list[Table]:
+def read(path: Path, layout: TextLayout) -> list[FileTable]:
     """Return a table for each segment of a LabVIEW measurement file."""
     lines = lines_of(path)
     head, at = _header(path, lines, 0, None)
@@ -30,7 +30,7 @@ def read(path: Path, layout: Layout) -> list[Table]:
     dialect = Dialect(mark, sign)
     x_columns = (_first(head, "X_Columns") or "One").lower()
     start = f"{_first(head, 'Date')} {_first(head, 'Time')}".strip()
-    tables: list[Table] = []
+    tables: list[FileTable] = []
     while at < len(lines):
         if not lines[at].strip(mark + " "):
             at += 1
@@ -76,10 +76,10 @@ def _segment(
     dialect: Dialect,
     x_columns: str,
     start: str,
-) -> Table:
+) -> FileTable:
     """Return the table of a segment whose line of names stands at `at`."""
     if at >= len(lines):
-        return Table((), "LabVIEW measurement")
+        return FileTable((), "LabVIEW measurement")
     names = dialect.cells(lines[at])
     if names and names[-1] == "Comment":
         names.pop()
@@ -106,19 +106,19 @@ def _segment(
         if name == COLUMN_NAMES:
             if x_columns != "no":
                 unit = "s" if _x_is_time(header) else ""
-                columns.append(Column("X_Value", numbers[:, place], place + 1, unit))
+                columns.append(FileColumn("X_Value", numbers[:, place], place + 1, unit))
             continue
         step, offset = (_number(_at(each, channel), dialect) for each in (steps, starts))
         clock = None
         if x_columns == "no" and np.isfinite(step) and step > 0.0:
             number = np.arange(len(rows), dtype=np.float64)
             clock = (offset if np.isfinite(offset) else 0.0) + step * number
-        columns.append(Column(name, numbers[:, place], place + 1, _at(units, channel), clock))
+        columns.append(FileColumn(name, numbers[:, place], place + 1, _at(units, channel), clock))
         channel += 1
     promised = [int(each) for each in samples if each.isdigit()]
     began = f"{_first(header, 'Date')} {_first(header, 'Time')}".strip() or start
     remarks = tuple(Remark(0, f"{key}: {' '.join(cells)}") for key, cells in header.items())
-    return Table(
+    return FileTable(
         tuple(columns),
         "LabVIEW measurement",
         remarks=tuple(x for x in remarks if x.text.startswith(("Notes", "Operator", "Test_"))),

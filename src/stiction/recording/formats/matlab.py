@@ -9,16 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from stiction.recording.formats import Layout
+from stiction.recording.formats import TextLayout
 from stiction.recording.formats.members import Member, tables_of
-from stiction.recording.table import Table
+from stiction.recording.table import FileTable
 from stiction.storage.foreign import refuse_size
 
 DEEPEST = 6  # structs inside one another
 UNITS = ("units", "unit", "Units")
 
 
-def read(path: Path, layout: Layout) -> list[Table]:
+def read(path: Path, layout: TextLayout) -> list[FileTable]:
     """Return the tables of a MATLAB file: vectors, matrices, and structs of these."""
     io: Any = import_module("scipy.io")  # slow to import
     kinds = io.whosmat(path)

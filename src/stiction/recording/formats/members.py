@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.recording.table import Column, Remark, Table, natural_key
+from stiction.recording.table import FileColumn, FileTable, Remark, natural_key
 from stiction.recording.units import split_unit
 
 LONGEST = 400  # characters of a text in a file
@@ -23,7 +23,7 @@ class Member(NamedTuple):
     unit: str = ""
 
 
-def tables_of(members: Iterable[Member], kind: str) -> list[Table]:
+def tables_of(members: Iterable[Member], kind: str) -> list[FileTable]:
     """Return a table for each group and length of arrays, step 4 before step 10."""
     groups: dict[tuple[str, int], list[Member]] = {}
     said: list[Remark] = []
@@ -42,9 +42,9 @@ def tables_of(members: Iterable[Member], kind: str) -> list[Table]:
             values = np.asarray(each.values, dtype=np.float64)
             values = np.where(np.isfinite(values), values, np.nan)
             unit = split_unit(f"x [{each.unit}]")[1] if each.unit else inside
-            columns.append(Column(name, values, number, unit or each.unit))
+            columns.append(FileColumn(name, values, number, unit or each.unit))
         own = [x for x in said if "/" not in x.text.split(":")[0] or x.text.startswith(f"{group}/")]
-        tables.append(Table(tuple(columns), kind, label=group, remarks=tuple(own)))
+        tables.append(FileTable(tuple(columns), kind, label=group, remarks=tuple(own)))
     return tables
 
 

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from stiction.recording.formats import Layout
+from stiction.recording.formats import TextLayout
 from stiction.recording.formats.members import Member, tables_of
-from stiction.recording.table import Table
+from stiction.recording.table import FileTable
 from stiction.storage.foreign import refuse_size
 
 
-def read(path: Path, layout: Layout) -> list[Table]:
+def read(path: Path, layout: TextLayout) -> list[FileTable]:
     """Return the tables of a NetCDF 3 file."""
     refuse_size(path, 3.0 * path.stat().st_size)
     io: Any = import_module("scipy.io")  # slow to import

@@ -5,13 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 from stiction.errors import ResultError
-from stiction.recording.formats import Layout
+from stiction.recording.formats import TextLayout
 from stiction.recording.formats.members import Member, tables_of
-from stiction.recording.table import Table
+from stiction.recording.table import FileTable
 from stiction.storage.foreign import refuse_size
 
 
-def read(path: Path, layout: Layout) -> list[Table]:
+def read(path: Path, layout: TextLayout) -> list[FileTable]:
     """Return the table of a Parquet file."""
     try:
         from pyarrow import parquet, types

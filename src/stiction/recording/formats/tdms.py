@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from stiction.errors import ResultError
-from stiction.recording.formats import Layout
-from stiction.recording.table import Column, Remark, Table
+from stiction.recording.formats import TextLayout
+from stiction.recording.table import FileColumn, FileTable, Remark
 from stiction.storage.foreign import refuse_size
 
 
-def read(path: Path, layout: Layout) -> list[Table]:
+def read(path: Path, layout: TextLayout) -> list[FileTable]:
     """Return a table for each group of channels; each channel has its own clock."""
     try:
         nptdms: Any = import_module("nptdms")
@@ -35,7 +35,7 @@ def read(path: Path, layout: Layout) -> list[Table]:
     return tables
 
 
-def _table(group: Any, channels: list[Any], cut: bool) -> Table:
+def _table(group: Any, channels: list[Any], cut: bool) -> FileTable:
     """Return one group as a table of the length of its shortest channel."""
     lengths = {len(each) for each in channels}
     rows, notes = min(lengths), []
@@ -56,10 +56,10 @@ def _table(group: Any, channels: list[Any], cut: bool) -> Table:
         clock = offset + float(step) * np.arange(rows, dtype=np.float64) if step else None
         unit = str(its.get("unit_string") or its.get("NI_UnitDescription") or "")
         values = np.asarray(channel[:rows], dtype=np.float64)
-        columns.append(Column(channel.name, values, number, unit, clock))
+        columns.append(FileColumn(channel.name, values, number, unit, clock))
     remarks = [Remark(0, f"{name}: {value}") for name, value in group.properties.items()]
     begins = "" if first is None else str(first)[:23]
-    return Table(
+    return FileTable(
         tuple(columns),
         "TDMS",
         label=group.name,

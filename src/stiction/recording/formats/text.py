@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from stiction.errors import Faults, ResultError
 from stiction.machine import largest_object
-from stiction.recording.formats import Layout
+from stiction.recording.formats import TextLayout
 from stiction.recording.formats.dialect import (
     MISSING,
     Dialect,
@@ -26,7 +26,7 @@ from stiction.recording.formats.dialect import (
     seconds_of,
 )
 from stiction.recording.formats.heading import Heading, find_heading, repeats
-from stiction.recording.table import Column, Remark, Table, number_of
+from stiction.recording.table import FileColumn, FileTable, Remark, number_of
 from stiction.storage.foreign import refuse_size
 
 Floats = NDArray[np.float64]
@@ -46,7 +46,7 @@ MARKS = {  # byte-order marks, the longer first
 NUMERIC = 0.5  # of a column's cells: with fewer numbers it is one of words
 
 
-def read(path: Path, layout: Layout) -> list[Table]:
+def read(path: Path, layout: TextLayout) -> list[FileTable]:
     """Return the tables of a text file."""
     lines = lines_of(path)
     dialect = find_dialect(path, lines, layout.decimal, layout.separator)
@@ -112,7 +112,7 @@ class _Cells:
     wrong: NDArray[np.bool_]  # (rows, columns), cells with text
 
 
-def read_lines(path: Path, lines: Sequence[str], dialect: Dialect) -> list[Table]:
+def read_lines(path: Path, lines: Sequence[str], dialect: Dialect) -> list[FileTable]:
     """Return the tables in lines of text.
 
     Raises
@@ -127,7 +127,7 @@ def read_lines(path: Path, lines: Sequence[str], dialect: Dialect) -> list[Table
     faults = Faults()
     kinds = _kinds(path, lines, dialect, cells, numeric, faults)
     remarks = [Remark(at + 1, x) for at, x in enumerate(lines[:first]) if x.strip()]
-    tables: list[Table] = []
+    tables: list[FileTable] = []
     heading: Heading | None = None
     rows: list[Rows] = []
     skipped: list[str] = []
@@ -309,7 +309,7 @@ def _table(
     remarks: Sequence[Remark],
     skipped: Sequence[str],
     dialect: Dialect,
-) -> Table:
+) -> FileTable:
     """Return the table of some rows."""
     width = _width(cells, rows)
     above = [x for x in remarks if x.line < cells.first + rows[0] + 1]
@@ -328,9 +328,9 @@ def _table(
                 (str(x).strip() for x in texts if str(x).strip().lower() not in MISSING), ""
             )
             values, unit = seconds - seconds[np.isfinite(seconds)][0], "s"
-        columns.append(Column(name, values, at + 1, unit))
+        columns.append(FileColumn(name, values, at + 1, unit))
     lines = np.asarray(cells.first + rows + 1, dtype=np.intp)
-    return Table(
+    return FileTable(
         tuple(columns),
         "text",
         remarks=tuple(remarks),

@@ -9,7 +9,7 @@ import numpy as np
 
 from stiction.errors import Faults, ResultError
 from stiction.recording.channels import CHANNELS, LENGTH, OWN, RATIO, plain
-from stiction.recording.table import Column, Table
+from stiction.recording.table import FileColumn, FileTable
 from stiction.recording.units import is_electric, is_ratio, size_of
 
 
@@ -19,7 +19,7 @@ class Chosen(NamedTuple):
     The unit of a `ratio` is the normal load.
     """
 
-    column: Column
+    column: FileColumn
     size: float
     unit: str
     note: str = ""
@@ -34,18 +34,18 @@ class Choice(NamedTuple):
 
 
 class _Wish(NamedTuple):
-    column: Column | None
+    column: FileColumn | None
     unit: str
 
 
-def choose_columns(path: object, table: Table, said: dict[str, str], *, timed: bool) -> Choice:
+def choose_columns(path: object, table: FileTable, said: dict[str, str], *, timed: bool) -> Choice:
     """Return the columns of channels.
 
     Parameters
     ----------
     path : object
         Of the file, for messages.
-    table : Table
+    table : FileTable
         The columns of the file.
     said : dict
         From a channel to a column, a unit, or both, as the user gives them.
@@ -101,7 +101,7 @@ def choose_columns(path: object, table: Table, said: dict[str, str], *, timed: b
     return Choice(found, tuple(notes))
 
 
-def _read_wish(path: object, table: Table, name: str, text: str) -> _Wish:
+def _read_wish(path: object, table: FileTable, name: str, text: str) -> _Wish:
     """Return column and unit of ``Fx``, ``mN``, ``Fx=mN`` or ``3=mN``."""
     head, equals, unit = text.rpartition("=")
     if equals:
@@ -124,7 +124,7 @@ def _read_wish(path: object, table: Table, name: str, text: str) -> _Wish:
     return _Wish(None, text.strip())
 
 
-def _find(path: object, table: Table, name: str, text: str) -> Column | None:
+def _find(path: object, table: FileTable, name: str, text: str) -> FileColumn | None:
     """Return the column of a name, a heading or a number."""
     columns, small = table.columns, text.lower()
     for matches in (
@@ -139,7 +139,7 @@ def _find(path: object, table: Table, name: str, text: str) -> Column | None:
     return None
 
 
-def _fits(column: Column, name: str) -> bool:
+def _fits(column: FileColumn, name: str) -> bool:
     """Return whether a column's unit allows that it is a channel."""
     unit = column.unit
     return not unit or is_electric(unit) or size_of(unit, CHANNELS[name].unit) is not None
@@ -147,12 +147,12 @@ def _fits(column: Column, name: str) -> bool:
 
 def _by_name(
     path: object,
-    table: Table,
+    table: FileTable,
     name: str,
     wish: _Wish,
-    taken: Sequence[Column],
+    taken: Sequence[FileColumn],
     said: dict[str, str],
-) -> Column | None:
+) -> FileColumn | None:
     """Return the only free column with a usual name of a channel."""
     pattern = CHANNELS[name].names
     free = [each for each in table.columns if not any(each is one for one in taken)]
@@ -178,11 +178,11 @@ def _by_name(
 
 def _by_unit(
     path: object,
-    table: Table,
+    table: FileTable,
     name: str,
     wish: _Wish,
-    taken: Sequence[Column],
-) -> Column | None:
+    taken: Sequence[FileColumn],
+) -> FileColumn | None:
     """Return the only free column in a unit of a channel, or the only one without any name."""
     free = [each for each in table.columns if not any(each is one for one in taken)]
     unit = CHANNELS[name].unit
@@ -200,18 +200,18 @@ def _by_unit(
     return matches[0] if matches else None
 
 
-def _is_other(column: Column, name: str) -> bool:
+def _is_other(column: FileColumn, name: str) -> bool:
     """Return whether a column has the usual name of another channel."""
     text = plain(column.name)
     others = [each for key, each in CHANNELS.items() if key != name]
     return any(each.names.fullmatch(text) for each in others) or bool(LENGTH.fullmatch(text))
 
 
-def _has_no_names(table: Table) -> bool:
+def _has_no_names(table: FileTable) -> bool:
     return all(x.name == f"column {x.number}" for x in table.columns)
 
 
-def _ratio(path: object, table: Table, taken: Sequence[Column]) -> Chosen:
+def _ratio(path: object, table: FileTable, taken: Sequence[FileColumn]) -> Chosen:
     """Return a friction coefficient in place of the force."""
     free = [each for each in table.columns if not any(each is one for one in taken)]
     matches = [x for x in free if RATIO.fullmatch(plain(x.name)) and is_ratio(x.unit or "-")]
@@ -227,11 +227,11 @@ def _ratio(path: object, table: Table, taken: Sequence[Column]) -> Chosen:
 
 def _times(
     path: object,
-    table: Table,
+    table: FileTable,
     force: Chosen | None,
     wish: _Wish,
-    taken: Sequence[Column],
-) -> Column:
+    taken: Sequence[FileColumn],
+) -> FileColumn:
     """Return the column of times; of several, that which stands left of the force."""
     free = [each for each in table.columns if not any(each is one for one in taken)]
     pattern = CHANNELS["time"].names
@@ -252,7 +252,9 @@ def _times(
     return first
 
 
-def own_clock(path: object, table: Table, column: Column, times: Sequence[Column]) -> Column:
+def own_clock(
+    path: object, table: FileTable, column: FileColumn, times: Sequence[FileColumn]
+) -> FileColumn:
     """Return the column of times that belongs to a channel, where each channel has one.
 
     Raises
@@ -268,7 +270,7 @@ def own_clock(path: object, table: Table, column: Column, times: Sequence[Column
     return before[-1]
 
 
-def _with_size(path: object, table: Table, name: str, column: Column, unit: str) -> Chosen:
+def _with_size(path: object, table: FileTable, name: str, column: FileColumn, unit: str) -> Chosen:
     """Return a column with the size of its unit."""
     channel = CHANNELS[name]
     text = unit or column.unit
@@ -306,7 +308,7 @@ def _flag(name: str) -> str:
     return f"--{name.replace('_', '-')}"
 
 
-def _ambiguous(path: object, name: str, matches: Sequence[Column]) -> NoReturn:
+def _ambiguous(path: object, name: str, matches: Sequence[FileColumn]) -> NoReturn:
     choices = ", ".join(str(each) for each in matches)
     raise ResultError(
         f"{path}: {len(matches)} columns may be the {CHANNELS[name].meaning}: {choices}; say which "
@@ -314,7 +316,7 @@ def _ambiguous(path: object, name: str, matches: Sequence[Column]) -> NoReturn:
     )
 
 
-def _refuse(path: object, table: Table, name: str, why: str, remedy: str = "") -> NoReturn:
+def _refuse(path: object, table: FileTable, name: str, why: str, remedy: str = "") -> NoReturn:
     columns = ", ".join(str(each) for each in table.columns) or "none"
     unit = CHANNELS[name].example
     raise ResultError(

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.errors import Faults, ResultError
-from stiction.recording.table import Table, number_of
+from stiction.recording.table import FileTable, number_of
 from stiction.text.units import in_words
 
 Floats = NDArray[np.float64]
@@ -30,7 +30,9 @@ class Block(NamedTuple):
     notes: tuple[str, ...]
 
 
-def blocks(path: object, table: Table, time: Floats, said: str | None, name: str) -> list[Block]:
+def blocks(
+    path: object, table: FileTable, time: Floats, said: str | None, name: str
+) -> list[Block]:
     """Return the blocks of a table by its times (s): each restart begins another.
 
     Raises

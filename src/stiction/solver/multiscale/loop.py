@@ -13,12 +13,12 @@ from stiction.solver.multiscale.history import recall, remember
 from stiction.solver.multiscale.interpolant import cycle_from, locate
 from stiction.solver.multiscale.replay import (
     alike,
-    hold_of,
     sample_cycle,
     sample_remembered,
     state_at_landing,
+    stick_of,
 )
-from stiction.solver.multiscale.return_map import FAR, PATCHES, Cycle, Hold, Returns
+from stiction.solver.multiscale.return_map import FAR, PATCHES, Cycle, Returns, Stick
 from stiction.solver.multiscale.section import wrap_angle
 from stiction.solver.multiscale.walk import follow_patches
 from stiction.solver.problem import Problem
@@ -61,13 +61,13 @@ def reach(known: Returns, theta: float, turn: float) -> float:
 
 
 @inlined
-def pays(known: Returns, hold: Hold, cycle: Cycle, over: float, t_end: float) -> bool:
+def pays(known: Returns, stick: Stick, cycle: Cycle, over: float, t_end: float) -> bool:
     """Return whether a patch over some angles pays, judged by the last cycle.
 
     It must replace enough cycles, there must be room for it, few nodes may have been wasted, and
     the map may still cost some steps.
     """
-    left = (t_end - hold.end) / cycle.time
+    left = (t_end - stick.end) / cycle.time
     return (
         min(abs(over), abs(cycle.turn) * left) >= PAYS * abs(cycle.turn)
         and left >= PAYS
@@ -113,49 +113,49 @@ def learn_and_follow(
     known: Returns,
 ) -> tuple[int, State, int]:
     """Learn from the cycle that ends with the present stick, and follow the map from there."""
-    hold, found_before = hold_of(problem, state.motion), state.counts.mapped
+    stick, found_before = stick_of(problem, state.motion), state.counts.mapped
     theta, taken_off = known.last[0], known.last[1]
-    cycle = Cycle(wrap_angle(hold.theta - theta), hold.end - taken_off, hold.end - hold.start)
+    cycle = Cycle(wrap_angle(stick.theta - theta), stick.end - taken_off, stick.end - stick.start)
     known.sizes[4] += 1
     if cycle.turn < inf:  # a number: both ends are known
         remember(known, theta, cycle)
     while cycle.turn < inf and state.counts.sticks < len(sticks):
         count = state.counts.sticks
-        hold, cycle, count, stuck, k = follow_patches(
-            problem, known, hold, cycle, sticks, count, t_end, times, samples, k
+        stick, cycle, count, stuck, k = follow_patches(
+            problem, known, stick, cycle, sticks, count, t_end, times, samples, k
         )
         state = State(state.motion, state.memory, with_sticks(state.counts, count, stuck))
         if count == len(sticks):
             break
-        found, following, like = known_cycle(known, hold.theta, cycle)
+        found, following, like = known_cycle(known, stick.theta, cycle)
         if not found:
-            over = reach(known, hold.theta, cycle.turn)
-            if not pays(known, hold, cycle, over, t_end):
+            over = reach(known, stick.theta, cycle.turn)
+            if not pays(known, stick, cycle, over, t_end):
                 break
-            start, over = hold.theta - cycle.turn, over + cycle.turn  # no gap between patches
+            start, over = stick.theta - cycle.turn, over + cycle.turn  # no gap between patches
             state = chart(problem, accuracy, state, known, start, over, FAR * cycle.time)
             continue
-        landing, end = hold.end + (following.time - following.held), hold.end + following.time
-        if not hold.end < landing < end < t_end:
+        landing, end = stick.end + (following.time - following.held), stick.end + following.time
+        if not stick.end < landing < end < t_end:
             break
         if k < len(times) and times[k] <= landing:
-            if alike(known, like, hold.theta):
-                k = sample_remembered(problem, known, like, hold, landing, times, samples, k)
+            if alike(known, like, stick.theta):
+                k = sample_remembered(problem, known, like, stick, landing, times, samples, k)
             else:
                 code, state, k = sample_cycle(
-                    problem, state, hold, landing, accuracy, times, samples, k, known
+                    problem, state, stick, landing, accuracy, times, samples, k, known
                 )
                 if code > COMPLETED:
                     return code, state, k
-        sticks[count, 0], sticks[count, 1] = hold.start, hold.end
-        counts = with_sticks(state.counts, count + 1, hold.end - hold.start)
+        sticks[count, 0], sticks[count, 1] = stick.start, stick.end
+        counts = with_sticks(state.counts, count + 1, stick.end - stick.start)
         state = State(state.motion, state.memory, counts)
-        hold = Hold(landing, end, wrap_angle(hold.theta + following.turn))
+        stick = Stick(landing, end, wrap_angle(stick.theta + following.turn))
         cycle = following
     if state.counts.mapped > found_before:
         known.balance[0] += known.balance[1] * (state.counts.mapped - found_before)
-        state = state_at_landing(problem, state, hold)
-    known.last[0], known.last[1] = hold.theta, hold.end
+        state = state_at_landing(problem, state, stick)
+    known.last[0], known.last[1] = stick.theta, stick.end
     return COMPLETED, state, k
 
 

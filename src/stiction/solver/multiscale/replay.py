@@ -9,9 +9,9 @@ import numpy as np
 from stiction.solver.compilation.jit import inlined, number, piece
 from stiction.solver.multiscale.construction import add_counts, advance
 from stiction.solver.multiscale.inside import following_step, write_kept
-from stiction.solver.multiscale.return_map import NEAR, Hold, Returns
+from stiction.solver.multiscale.return_map import NEAR, Returns, Stick
 from stiction.solver.multiscale.section import angle
-from stiction.solver.multiscale.walk import elongation_at_landing, sample_hold
+from stiction.solver.multiscale.walk import elongation_at_landing, sample_known_stick
 from stiction.solver.problem import Problem, in_principal_axes, rate
 from stiction.solver.state import (
     COMPLETED,
@@ -29,22 +29,22 @@ SAME = 1e-3  # of a slip: landings closer than this are the same
 
 
 @inlined
-def hold_of(problem: Problem, motion: Motion) -> Hold:
+def stick_of(problem: Problem, motion: Motion) -> Stick:
     """Return the stick that begins at a landing; its angle is NaN if it does not stick."""
     t, u_x, u_y = motion.t, motion.u_x, motion.u_y
     duration, _ = stick_duration(problem, t, u_x, u_y, inf)
     if not 0.0 < duration < inf:
-        return Hold(t, t + duration, nan)
+        return Stick(t, t + duration, nan)
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, 0.0))
-    return Hold(t, t + duration, angle(problem, u_x + v_x * duration, u_y + v_y * duration))
+    return Stick(t, t + duration, angle(problem, u_x + v_x * duration, u_y + v_y * duration))
 
 
 @inlined
-def state_at_landing(problem: Problem, state: State, hold: Hold) -> State:
+def state_at_landing(problem: Problem, state: State, stick: Stick) -> State:
     """Return the state at the start of a stick."""
     motion, memory, counts = state
-    u_x, u_y = elongation_at_landing(problem, hold)
-    landing = Motion(hold.start, u_x, u_y, 0.0, motion.e_x, motion.e_y)
+    u_x, u_y = elongation_at_landing(problem, stick)
+    landing = Motion(stick.start, u_x, u_y, 0.0, motion.e_x, motion.e_y)
     return State(landing, at_takeoff(memory), counts)
 
 
@@ -52,7 +52,7 @@ def state_at_landing(problem: Problem, state: State, hold: Hold) -> State:
 def sample_cycle(
     problem: Problem,
     state: State,
-    hold: Hold,
+    stick: Stick,
     landing: float,
     accuracy: Accuracy,
     times: np.ndarray,
@@ -65,14 +65,14 @@ def sample_cycle(
     The steps find their own landing, which does not matter, because samples do not influence the
     motion. Later samples are those of the next stick.
     """
-    k = sample_hold(problem, hold, times, samples, k)
+    k = sample_known_stick(problem, stick, times, samples, k)
     if k == len(times) or times[k] > landing:
         return COMPLETED, state, k
-    motion, memory, _ = state_at_landing(problem, state, hold)
+    motion, memory, _ = state_at_landing(problem, state, stick)
     until = k
     while until < len(times) and times[until] <= landing:
         until += 1
-    slip, counts = landing - hold.end, state.counts
+    slip, counts = landing - stick.end, state.counts
     code, alone = RUNNING, State(motion, memory, NOTHING)
     # it may stick for a moment although the map just has no stick
     while code == RUNNING and k < until and alone.motion.t < landing - SAME * slip:
@@ -111,7 +111,7 @@ def sample_remembered(
     problem: Problem,
     known: Returns,
     place: int,
-    hold: Hold,
+    stick: Stick,
     landing: float,
     times: np.ndarray,
     samples: np.ndarray,
@@ -121,14 +121,14 @@ def sample_remembered(
 
     The phase is the time since take-off over the slip's duration.
     """
-    k = sample_hold(problem, hold, times, samples, k)
+    k = sample_known_stick(problem, stick, times, samples, k)
     rows, first = known.inside.kept, known.inside.spans[place, 0]
     last = first + known.inside.spans[place, 1] - 1
     begin = rows[first, 0]
-    ratio = (known.past[place, 2] - known.past[place, 3]) / (landing - hold.end)
+    ratio = (known.past[place, 2] - known.past[place, 3]) / (landing - stick.end)
     i = first
     while k < len(times) and times[k] <= landing:
-        t = begin + (times[k] - hold.end) * ratio
+        t = begin + (times[k] - stick.end) * ratio
         i = following_step(rows, i, last, t)
         k = write_kept(problem, rows, i, t - rows[i, 0], samples, k)
     return k

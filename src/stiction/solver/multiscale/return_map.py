@@ -43,7 +43,7 @@ class Cycle(NamedTuple):
     held: float
 
 
-class Hold(NamedTuple):
+class Stick(NamedTuple):
     """A stick not yet recorded in the run: start, end (s) and angle at its end."""
 
     start: float

@@ -10,7 +10,7 @@ from stiction.solver.compilation.jit import inlined, piece, switch
 from stiction.solver.exact.sampling import sample_stick
 from stiction.solver.multiscale.inside import write_cycle
 from stiction.solver.multiscale.interpolant import cycle_from, locate
-from stiction.solver.multiscale.return_map import Cycle, Hold, Returns
+from stiction.solver.multiscale.return_map import Cycle, Returns, Stick
 from stiction.solver.multiscale.section import elongation_held, wrap_angle
 from stiction.solver.problem import Problem, in_principal_axes, rate
 
@@ -21,7 +21,7 @@ HELD = switch(True)
 def follow_patches(
     problem: Problem,
     known: Returns,
-    hold: Hold,
+    stick: Stick,
     cycle: Cycle,
     sticks: np.ndarray,
     count: int,
@@ -29,7 +29,7 @@ def follow_patches(
     times: np.ndarray,
     samples: np.ndarray,
     k: int,
-) -> tuple[Hold, Cycle, int, float, int]:
+) -> tuple[Stick, Cycle, int, float, int]:
     """Follow the patches from a stick until they end, time `until` (s) is reached, or room ends.
 
     They end as well where samples are wanted of a cycle whose motion is not known. This is a
@@ -37,7 +37,7 @@ def follow_patches(
 
     Returns
     -------
-    hold, cycle
+    stick, cycle
         The last stick, and the cycle before it.
     count : int
         Number of sticks so far; those passed are written to `sticks`.
@@ -46,7 +46,7 @@ def follow_patches(
     k : int
         The next sample.
     """
-    (start, end, theta), stuck = hold, 0.0
+    (start, end, theta), stuck = stick, 0.0
     row, x = locate(known, theta)
     wanted = times[k] if k < len(times) else inf
     while row >= 0 and count < len(sticks):
@@ -56,7 +56,7 @@ def follow_patches(
             break
         landing = end + (time - held)
         if wanted <= landing:
-            k = sample_hold(problem, Hold(start, end, theta), times, samples, k)
+            k = sample_known_stick(problem, Stick(start, end, theta), times, samples, k)
             wanted = times[k] if k < len(times) else inf
         if wanted <= landing:
             if known.inside.shapes[row, 1] == 0:
@@ -72,24 +72,24 @@ def follow_patches(
         x = (theta - known.patches[row, 0]) * known.patches[row, 1] - 1.0
         if not -1.0 <= x <= 1.0:
             row, x = locate(known, theta)
-    return Hold(start, end, theta), cycle, count, stuck, k
+    return Stick(start, end, theta), cycle, count, stuck, k
 
 
 @inlined
-def sample_hold(
-    problem: Problem, hold: Hold, times: np.ndarray, samples: np.ndarray, k: int
+def sample_known_stick(
+    problem: Problem, stick: Stick, times: np.ndarray, samples: np.ndarray, k: int
 ) -> int:
     """Fill the samples of a stick; return the next row."""
-    if not (k < len(times) and times[k] <= hold.end):
+    if not (k < len(times) and times[k] <= stick.end):
         return k
-    u_x, u_y = elongation_at_landing(problem, hold)
-    return sample_stick(problem, hold.start, u_x, u_y, hold.end, HELD, times, samples, k)
+    u_x, u_y = elongation_at_landing(problem, stick)
+    return sample_stick(problem, stick.start, u_x, u_y, stick.end, HELD, times, samples, k)
 
 
 @inlined
-def elongation_at_landing(problem: Problem, hold: Hold) -> tuple[float, float]:
+def elongation_at_landing(problem: Problem, stick: Stick) -> tuple[float, float]:
     """Return the elongation (x, y) at the start of a stick."""
-    u_x, u_y = elongation_held(problem, hold.theta)
+    u_x, u_y = elongation_held(problem, stick.theta)
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, 0.0))
-    back = hold.end - hold.start
+    back = stick.end - stick.start
     return u_x - v_x * back, u_y - v_y * back

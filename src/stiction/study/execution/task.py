@@ -11,7 +11,7 @@ from stiction.errors import STATUSES, DescriptionError
 from stiction.study.plan.layout import Index, places, runs_of, size_of
 from stiction.study.plan.study import Study
 from stiction.study.store.kept import Kept, stored_variables
-from stiction.study.store.store import COMPLETED, ERROR, REFUSED, Block, Store
+from stiction.study.store.store import COMPLETED, ERROR, REFUSED, BlockResults, Store
 from stiction.study.variables.observation import observe
 
 
@@ -26,7 +26,7 @@ class Came(NamedTuple):
     failed: int
 
 
-class Outcome(NamedTuple):
+class StoredOutcome(NamedTuple):
     """The outcome of a run: its status, its message, and the kept values."""
 
     status: int
@@ -55,13 +55,13 @@ def do_block(study: Study, store: Store, task: int, unwanted: Callable[[], bool]
     except Unwanted:
         return Came(0, 0)
     if not store.has(region):
-        store.write(region, Block([*zip(wanted, arrays, strict=True)], status, message))
+        store.write(region, BlockResults([*zip(wanted, arrays, strict=True)], status, message))
     return Came(status.size, int(np.count_nonzero(status != COMPLETED)))
 
 
 def outcome(
     study: Study, wanted: Sequence[Kept], index: Index, unwanted: Callable[[], bool]
-) -> Outcome:
+) -> StoredOutcome:
     """Do one run; an error in it becomes its outcome."""
 
     def report(_: float) -> None:
@@ -73,11 +73,11 @@ def outcome(
         seen = observe(study.description(index), report)
         ended = STATUSES[seen.solution.code]
         if not ended.ok:
-            return Outcome(seen.solution.code, ended.value, ())
-        return Outcome(COMPLETED, "", tuple(each.of(seen) for each in wanted))
+            return StoredOutcome(seen.solution.code, ended.value, ())
+        return StoredOutcome(COMPLETED, "", tuple(each.of(seen) for each in wanted))
     except (Unwanted, OSError, MemoryError):
         raise
     except DescriptionError as error:
-        return Outcome(REFUSED, "; ".join(map(str, error.faults)), ())
+        return StoredOutcome(REFUSED, "; ".join(map(str, error.faults)), ())
     except Exception as error:  # a user's law may raise anything
-        return Outcome(ERROR, f"{type(error).__name__}: {error}", ())
+        return StoredOutcome(ERROR, f"{type(error).__name__}: {error}", ())

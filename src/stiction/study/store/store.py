@@ -43,7 +43,7 @@ COMPLETED, REFUSED, ERROR = 0, ENDS.index("refused"), ENDS.index("error")
 STATUS, MESSAGE = "status", "message"
 
 
-class Block(NamedTuple):
+class BlockResults(NamedTuple):
     """Results of a region's runs: arrays of the region's shape plus each value's shape."""
 
     values: Sequence[tuple[Kept, np.ndarray]]
@@ -129,7 +129,7 @@ class Store(NamedTuple):
         """Return why a run failed."""
         return str(store._array(MESSAGE)[index])
 
-    def write(store, region: Region, block: Block) -> None:
+    def write(store, region: Region, block: BlockResults) -> None:
         """Write a block to the disk, then the mark that it is done."""
         files = {
             store._file(each.name, region): store._whole(values, each.unknown).tobytes()

@@ -43,7 +43,7 @@ FEWEST = 1  # cycles needed for a kind, as for an analysis of one run
 OSCILLATES = 0.1  # of the largest amplitude of the fast oscillation without reversal of slip
 
 
-class Swings(NamedTuple):
+class SwingShapes(NamedTuple):
     """Complete swings of the force, from trough over peak to trough, (n,) each.
 
     Parameters
@@ -68,28 +68,28 @@ class Swings(NamedTuple):
         """Time of the trough before each, s."""
         return np.asarray(self.end - np.cumsum(self.period[::-1])[::-1])
 
-    def some(self, which: slice) -> Swings:
+    def some(self, which: slice) -> SwingShapes:
         """Return a subset."""
         end = self.end - float(self.period[which.stop :].sum())
-        return Swings(self.drop[which], self.period[which], self.rise_share[which], end)
+        return SwingShapes(self.drop[which], self.period[which], self.rise_share[which], end)
 
 
-Shares = Callable[[Swings], Floats]
+Shares = Callable[[SwingShapes], Floats]
 
 
-def swings(found: Features) -> Swings:
+def swings(found: Features) -> SwingShapes:
     """Return the complete swings between turning points, without hesitations."""
     ends = found.first, found.last
     kept = cycle_corners(found.turn_value, found.turn_time, ends, found.trough).kept
     time, value = found.turn_time[kept], found.turn_value[kept]
     start, peak, trough = time[:-1:2], time[1::2], time[2::2]
     period, end = trough - start, float(trough[-1]) if len(trough) else 0.0
-    return Swings(value[1::2] - value[2::2], period, (peak - start) / period, end)
+    return SwingShapes(value[1::2] - value[2::2], period, (peak - start) / period, end)
 
 
 def kind_of(
     found: Features,
-    cycles: Swings,
+    cycles: SwingShapes,
     start: float,
     end: float,
     drive: float,
@@ -105,7 +105,7 @@ def kind_of(
     ----------
     found : Features
         Features of the samples.
-    cycles : Swings
+    cycles : SwingShapes
         The complete swings that are cycles.
     start, end : float
         Start and end of the run, s.
@@ -132,18 +132,18 @@ def kind_of(
     return kind if swing > across else kinds.TRANSVERSE
 
 
-def cycles_among(found: Swings, end: float) -> Swings:
+def cycles_among(found: SwingShapes, end: float) -> SwingShapes:
     """Return the swings that are cycles by the rules of `stiction.analysis.find_cycles`."""
     none = is_over(found, end) or die_out(found, end)
     return found.some(slice(0, 0) if none else built_up(found.drop))
 
 
-def is_over(found: Swings, end: float) -> bool:
+def is_over(found: SwingShapes, end: float) -> bool:
     """Return whether the run goes on for long after its last swing."""
     return len(found.drop) > 0 and end - found.end > QUIET * float(found.period.max())
 
 
-def die_out(cycles: Swings, end: float) -> bool:
+def die_out(cycles: SwingShapes, end: float) -> bool:
     """Return whether swings die out until `end`: a transient, not cycles."""
     drop = cycles.drop
     # first a cheap necessary condition
@@ -151,7 +151,7 @@ def die_out(cycles: Swings, end: float) -> bool:
     return dying and dies_out(drop, cycles.period, end - cycles.end)
 
 
-def by_shape(cycles: Swings, own: float, still: Shares, sticks: Shares) -> str:
+def by_shape(cycles: SwingShapes, own: float, still: Shares, sticks: Shares) -> str:
     """Return the kind of cycles from their shape, size and period, and the rest in them."""
     count = len(cycles.drop)
     rise = float(np.sort(cycles.rise_share)[count // 2])
@@ -164,7 +164,7 @@ def by_shape(cycles: Swings, own: float, still: Shares, sticks: Shares) -> str:
     return kinds.IRREGULAR if kind == kinds.HARMONIC and irregular(cycles) else kind
 
 
-def irregular(cycles: Swings) -> bool:
+def irregular(cycles: SwingShapes) -> bool:
     """Return whether vibrations are irregular, by the rule of `stiction.analysis.motion.regime`."""
     return irregularity(cycles.period, cycles.drop) > 0.5
 

@@ -17,7 +17,7 @@ from stiction.drive import ConstantVelocity
 from stiction.drive.program import nominal_velocity
 from stiction.simulation import sample_times, solve
 from stiction.solver.integrate import Solution
-from stiction.study.variables.fast_regime import Swings, cycles_among, kind_of, swings
+from stiction.study.variables.fast_regime import SwingShapes, cycles_among, kind_of, swings
 from stiction.study.variables.features import Features, features
 from stiction.system.description import Description
 from stiction.system.slider import Slider
@@ -143,12 +143,12 @@ class Observed:
         return float(self.time[at]), float(positions[at] - positions[0])
 
     @cached_property
-    def swings(self) -> Swings:
+    def swings(self) -> SwingShapes:
         """Complete swings of the force."""
         return swings(self.features)
 
     @cached_property
-    def cycles(self) -> Swings:
+    def cycles(self) -> SwingShapes:
         """The swings that are cycles."""
         return cycles_among(self.swings, self.end)
 
@@ -190,14 +190,14 @@ class Observed:
             *shares,
         )  # fmt: skip
 
-    def rests(self, cycles: Swings) -> Floats:
+    def rests(self, cycles: SwingShapes) -> Floats:
         """Return for which share of each cycle the mass rests or creeps, in one piece."""
         V = abs(self.nominal)
         slip = np.hypot(self.column(2), self.column(3))
         peak = cycles.start + cycles.rise_share * cycles.period
         return still_shares(self.time, slip / V if V else slip, cycles.start, peak, cycles.period)
 
-    def sticks(self, cycles: Swings) -> Floats:
+    def sticks(self, cycles: SwingShapes) -> Floats:
         """Return for which share of each cycle the mass sticks."""
         peak = cycles.start + cycles.rise_share * cycles.period
         return stick_shares(self.solution.sticks, cycles.start, peak, cycles.period)

@@ -11,10 +11,10 @@ from stiction.drive.bounds import drive_bounds, load_bounds, vanishes
 from stiction.drive.program import modulate
 from stiction.drive.recorded import spline as s
 from stiction.drive.signal import Signal
-from stiction.drive.stretch import Course, Loading
+from stiction.drive.stretch import VaryingLoad, VaryingVelocity
 from stiction.solver import problem
 from stiction.solver.compilation.jit import njit
-from stiction.text.samples import Column
+from stiction.text.samples import FrozenColumn
 
 KINDS = ("even", "uneven", "clustered")
 
@@ -34,7 +34,7 @@ def table(kind, seed=0, integrated=False, start=3.0):
     rng = np.random.default_rng(seed)
     time = rows_of(kind, rng)
     values = rng.normal(size=len(time))
-    made = s.recording(s.spline(Column(time), Column(values), integrated), start)
+    made = s.recording(s.spline(FrozenColumn(time), FrozenColumn(values), integrated), start)
     return made, start + time - time[0], values
 
 
@@ -95,11 +95,13 @@ def test_compiled_code_returns_the_same_values():
     wave = st.protocols.Modulation(0.3, 7.0)
     rng = np.random.default_rng(5)
     for each in (made, modulate(made, wave), s.silent(Signal(0.0, 2.0, 0.1, 0.5, 3.0))):
-        course = Course(each, Signal(0.0, 0.0, 0.0, 0.4, 11.0))
+        stretch = VaryingVelocity(each, Signal(0.0, 0.0, 0.0, 0.4, 11.0))
         for t in rng.uniform(time[0], time[-1], 20):
             dt = rng.uniform(0, time[-1] - t)
-            found = np.array(compiled(course, t, dt))
-            assert found == pytest.approx(np.array(everything(course, t, dt)), rel=1e-12, abs=1e-12)
+            found = np.array(compiled(stretch, t, dt))
+            assert found == pytest.approx(
+                np.array(everything(stretch, t, dt)), rel=1e-12, abs=1e-12
+            )
 
 
 @pytest.mark.parametrize("integrated", [False, True], ids=["values", "positions"])
@@ -126,21 +128,21 @@ def test_bounds_over_an_interval_are_those_of_its_pieces_and_of_the_wave():
     with_wave = modulate(made, wave)
     start, end = time[10] + 1e-4, time[20] - 1e-4
     at = np.linspace(start, end, 5001)
-    course = Course(with_wave, Signal(0.0, 0.0))
-    found = [course.rate(at), course.rate_change(at), course.rate_curve(at)]
-    bounds = drive_bounds(course, start, end)
+    stretch = VaryingVelocity(with_wave, Signal(0.0, 0.0))
+    found = [stretch.rate(at), stretch.rate_change(at), stretch.rate_curve(at)]
+    bounds = drive_bounds(stretch, start, end)
     for (X, Y), (values, _) in zip(bounds, found, strict=False):
         assert np.abs(values).max() <= X
         assert Y == 0.0
     plain, both = made.bounds_between(start, end), with_wave.bounds_between(start, end)
     omega = 2 * np.pi * 7.0
     assert both == pytest.approx([b + 0.3 * omega**n for n, b in enumerate(plain)])
-    assert load_bounds(Loading(made), start, end) == plain[:3]
+    assert load_bounds(VaryingLoad(made), start, end) == plain[:3]
 
 
 def test_the_frequency_of_a_recorded_harmonic_is_told():
     t = np.linspace(0.0, 1.0, 401)
-    made = s.spline(Column(t), Column(5.0 + np.sin(2 * np.pi * 9.0 * t)), False)
+    made = s.spline(FrozenColumn(t), FrozenColumn(5.0 + np.sin(2 * np.pi * 9.0 * t)), False)
     assert s.recording(made, 0.0).fastest() == pytest.approx(2 * np.pi * 9.0, rel=5e-3)
 
 
@@ -154,21 +156,21 @@ def test_when_a_recorded_load_vanishes(seed):
     curve = CubicSpline(time, lifted.value_at(time))
     zeros = [t for t in curve.roots(extrapolate=False) if time[0] < t < time[-1]]
     first = time[0] if lifted.value_at(time[0]) <= 0.0 else min(zeros, default=np.inf)
-    assert vanishes(Loading(lifted), time[0], time[-1]) == pytest.approx(first, abs=1e-7)
+    assert vanishes(VaryingLoad(lifted), time[0], time[-1]) == pytest.approx(first, abs=1e-7)
 
 
 def test_a_silent_recording_is_its_wave():
     wave = Signal(0.0, 2.0, -0.3, 0.5, 3.0)
-    one, other = Loading(s.silent(wave)), Loading(wave)
+    one, other = VaryingLoad(s.silent(wave)), VaryingLoad(wave)
     assert vanishes(one, 0.0, 20.0) == vanishes(other, 0.0, 20.0)
     assert load_bounds(one, 1.0, 2.0) == load_bounds(other, 1.0, 2.0)
 
 
 def test_a_column_is_one_value():
-    a, b = Column([1.0, 2.0]), Column(np.array([1.0, 2.0]))
+    a, b = FrozenColumn([1.0, 2.0]), FrozenColumn(np.array([1.0, 2.0]))
     assert a == b
     assert hash(a) == hash(b)
-    assert a != Column([1.0, 2.5])
+    assert a != FrozenColumn([1.0, 2.5])
     assert a != [1.0, 2.0]
     assert pickle.loads(pickle.dumps(a)) == a
     assert len(a) == a.size == 2

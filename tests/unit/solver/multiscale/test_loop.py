@@ -17,7 +17,7 @@ from stiction.solver.multiscale.return_map import (
     PATCHES,
     WIDEST,
     Cycle,
-    Hold,
+    Stick,
     empty_map,
 )
 from stiction.solver.multiscale.section import elongation_held
@@ -32,7 +32,7 @@ from stiction.solver.state import (
     state_from_plain,
 )
 
-CYCLE, HOLD = Cycle(0.01, 1.0, 0.4), Hold(0.5, 1.0, 0.3)
+CYCLE, STICK = Cycle(0.01, 1.0, 0.4), Stick(0.5, 1.0, 0.3)
 
 
 def test_nothing_is_known_at_first():
@@ -73,30 +73,30 @@ def test_how_far_a_patch_is_tried(way):
 def test_a_patch_pays_if_it_is_good_for_eight_cycles():
     """Over its angles and in the time left; if not too many were in vain, nor cost too much."""
     known, pays = empty_map(1e-6), plain(loop.pays)
-    assert pays(known, HOLD, CYCLE, 0.0801, 100.0)
-    assert pays(known, HOLD, CYCLE, -0.0801, 100.0)
-    assert pays(known, HOLD, CYCLE._replace(turn=-0.01), -0.0801, 100.0)
-    assert not pays(known, HOLD, CYCLE, 0.0799, 100.0)
-    assert pays(known, HOLD, CYCLE, 1.0, 9.01)
-    assert not pays(known, HOLD, CYCLE, 1.0, 8.99)
+    assert pays(known, STICK, CYCLE, 0.0801, 100.0)
+    assert pays(known, STICK, CYCLE, -0.0801, 100.0)
+    assert pays(known, STICK, CYCLE._replace(turn=-0.01), -0.0801, 100.0)
+    assert not pays(known, STICK, CYCLE, 0.0799, 100.0)
+    assert pays(known, STICK, CYCLE, 1.0, 9.01)
+    assert not pays(known, STICK, CYCLE, 1.0, 8.99)
     for place in (0, 1):
         known.sizes[:] = 0
         known.sizes[place] = PATCHES
-        assert not pays(known, HOLD, CYCLE, 1.0, 100.0)
+        assert not pays(known, STICK, CYCLE, 1.0, 100.0)
         known.sizes[place] = PATCHES - 1
-        assert pays(known, HOLD, CYCLE, 1.0, 100.0)
+        assert pays(known, STICK, CYCLE, 1.0, 100.0)
     known.sizes[:] = [0, 0, 0, loop.VAIN, 0]
-    assert pays(known, HOLD, CYCLE, 1.0, 100.0)
+    assert pays(known, STICK, CYCLE, 1.0, 100.0)
     known.sizes[3] += 1
-    assert not pays(known, HOLD, CYCLE, 1.0, 100.0)
+    assert not pays(known, STICK, CYCLE, 1.0, 100.0)
     known.sizes[4] = loop.VAIN_EACH
-    assert pays(known, HOLD, CYCLE, 1.0, 100.0)
+    assert pays(known, STICK, CYCLE, 1.0, 100.0)
     known.sizes[3] += 1
-    assert not pays(known, HOLD, CYCLE, 1.0, 100.0)
+    assert not pays(known, STICK, CYCLE, 1.0, 100.0)
     known.sizes[3] = 0
-    assert pays(known, HOLD, CYCLE, 1.0, 100.0)
+    assert pays(known, STICK, CYCLE, 1.0, 100.0)
     known.balance[0] = 0.0
-    assert not pays(known, HOLD, CYCLE, 1.0, 100.0)
+    assert not pays(known, STICK, CYCLE, 1.0, 100.0)
 
 
 def test_counts_of_what_the_map_has_found():
@@ -121,21 +121,21 @@ def test_from_a_landing_to_the_angle_of_its_stick_and_back(name):
     u = plain(elongation_held)(problem, theta)
     v = problem.system.cos_phi * 2e-3, problem.system.sin_phi * 2e-3
     landing = Motion(0.7, u[0] - 0.01 * v[0], u[1] - 0.01 * v[1], 0.0, 0.6, 0.8)
-    hold = plain(replay.hold_of)(problem, landing)
-    assert hold == pytest.approx((0.7, 0.71, theta), rel=1e-9)
+    stick = plain(replay.stick_of)(problem, landing)
+    assert stick == pytest.approx((0.7, 0.71, theta), rel=1e-9)
     memory = Memory(1.0, (0.3,) * 8, 5, 2.0, 1.1, True, (1.0,) * 4, (2.0,) * 4)
     counts = Counts(1, 2, 3, 4, 5.0, 6)
     state = State(landing._replace(t=0.1, u_x=0.0, u_y=0.0), memory, counts)
-    found = plain(replay.state_at_landing)(problem, state, hold)
+    found = plain(replay.state_at_landing)(problem, state, stick)
     assert found.motion == pytest.approx(landing, rel=1e-9)
     assert found.memory == memory._replace(h=0.3, place=0, warm=False)
     assert found.counts == counts
     beyond = landing._replace(u_x=1.1 * u[0], u_y=1.1 * u[1])  # friction cannot hold
-    assert np.isnan(plain(replay.hold_of)(problem, beyond).theta)
+    assert np.isnan(plain(replay.stick_of)(problem, beyond).theta)
     standing = problem._replace(drive=problem.drive._replace(velocity=0.0))
-    hold = plain(replay.hold_of)(standing, landing)
-    assert np.isnan(hold.theta)
-    assert hold.end == np.inf
+    stick = plain(replay.stick_of)(standing, landing)
+    assert np.isnan(stick.theta)
+    assert stick.end == np.inf
 
 
 @pytest.mark.parametrize("name", ["soft", "damped"])

@@ -6,15 +6,15 @@ from tests.entry import plain
 from tests.unit.solver.multiscale.test_construction import (
     EXACT,
     MEMORY,
-    problem_of,
     cycle_from,
+    problem_of,
     taking_off,
 )
 
 from stiction.solver.exact import loop
 from stiction.solver.exact.record import NoRecord
 from stiction.solver.multiscale import replay
-from stiction.solver.multiscale.return_map import Hold, empty_map
+from stiction.solver.multiscale.return_map import Stick, empty_map
 from stiction.solver.state import COMPLETED, Counts, State
 
 COUNTS = Counts(7, 1, 20, 3, 0.5, 2)
@@ -26,14 +26,14 @@ def test_samples_of_a_cycle(name):
     """They are those of steps from the same take-off; the state itself stays as it was."""
     problem, known = problem_of(name), empty_map(1e-6)
     cycle = cycle_from(problem, known, THETA)
-    hold = Hold(T - 2e-3, T, THETA)
+    stick = Stick(T - 2e-3, T, THETA)
     landing = T + cycle.time - cycle.held
     parts = np.array([-1e-3, 0.0, *np.linspace(0.1, 0.97, 5) * (landing - T)])
     times = np.array([T - 3e-3, *(T + parts), landing + 1e-4])
     samples, state = np.full((len(times), 7), np.nan), taking_off(problem, 0.3, 1.0)
     state = State(state.motion, state.memory, COUNTS)
     code, found, k = plain(replay.sample_cycle)(
-        problem, state, hold, landing, EXACT, times, samples, 1, known
+        problem, state, stick, landing, EXACT, times, samples, 1, known
     )
     assert (code <= COMPLETED, k) == (True, len(times) - 1)
     assert found.motion == state.motion
@@ -57,11 +57,11 @@ def test_samples_of_a_cycle(name):
 @pytest.mark.parametrize("after", [None, 1e-4])
 def test_without_samples_of_the_slip_no_steps_are_taken(after):
     problem, known = problem_of("soft"), empty_map(1e-6)
-    hold, landing = Hold(T - 2e-3, T, THETA), T + 0.01
+    stick, landing = Stick(T - 2e-3, T, THETA), T + 0.01
     times = np.array([T - 1e-3] if after is None else [T - 1e-3, landing + after])
     samples, state = np.full((2, 7), np.nan), State(taking_off(problem, 0.3).motion, MEMORY, COUNTS)
     code, found, k = plain(replay.sample_cycle)(
-        problem, state, hold, landing, EXACT, times, samples, 0, known
+        problem, state, stick, landing, EXACT, times, samples, 0, known
     )
     assert (code, found, k) == (COMPLETED, state, 1)
     assert samples[0, 6] == 1.0

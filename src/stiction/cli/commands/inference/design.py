@@ -11,7 +11,7 @@ from stiction.cli.options import (
     Changes,
     Library,
     MaybeOutput,
-    Measured,
+    RecordOptions,
     Seed,
     Simulations,
     Trust,
@@ -40,7 +40,7 @@ def design(
     output: MaybeOutput = None,
     trust: Trust = False,
     set: Changes = None,
-    measured: Measured | None = None,
+    measured: RecordOptions | None = None,
 ) -> None:
     """Find what to measure next: which further test tells most of a parameter. Experimental.
 
@@ -98,7 +98,7 @@ def design(
     if output is not None:
         placeable(output)
     known = Rig.from_toml(rig, changes(set), trust=trust)
-    said = (measured or Measured()).arguments()
+    said = (measured or RecordOptions()).arguments()
     given = None if record is None else as_record(read_source(record, trust=trust, **said))
     with progress("simulating") as report:
         found = find(

@@ -10,8 +10,8 @@ from cyclopts import Parameter
 from stiction.cli.options import (
     Changes,
     Library,
-    Measured,
     Output,
+    RecordOptions,
     Seed,
     Simulations,
     Trust,
@@ -33,7 +33,7 @@ def fit(
     seed: Seed = 0,
     trust: Trust = False,
     set: Changes = None,
-    measured: Measured | None = None,
+    measured: RecordOptions | None = None,
 ) -> None:
     """Estimate a rig's parameters from RECORDS. Experimental.
 
@@ -95,7 +95,7 @@ def fit(
     if figures is not None:
         usable_folder(figures)
     known = Rig.from_toml(rig, changes(set), trust=trust)
-    said = (measured or Measured()).arguments()
+    said = (measured or RecordOptions()).arguments()
     given = [as_record(read_source(path, trust=trust, **said)) for path in records]
     kept = cache_folder() if library is None else library
     with progress("simulating") as report:

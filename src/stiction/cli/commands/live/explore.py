@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from stiction.cli.options import Measured, Trust
+from stiction.cli.options import RecordOptions, Trust
 
 
 def explore(
@@ -15,7 +15,7 @@ def explore(
     port: int = 0,
     browser: Annotated[bool, Parameter(negative="--no-browser")] = True,
     trust: Trust = False,
-    measured: Measured | None = None,
+    measured: RecordOptions | None = None,
 ) -> None:
     """Open the explorer: sliders for every parameter, and the whole motion at once.
 
@@ -43,7 +43,7 @@ def explore(
     from stiction.analysis.measurement.reading import is_run, read_source
     from stiction.explorer.door import explore as open_explorer
 
-    said = (measured or Measured()).arguments()
+    said = (measured or RecordOptions()).arguments()
     records = [each for each in source if said and each.suffix != ".toml" and not is_run(each)]
     read = {each: read_source(each, **said) for each in records}
     opened = [read.get(each, each) for each in source]

@@ -56,7 +56,7 @@ class Shares(NamedTuple):
     slip: float
 
 
-class Observation(NamedTuple):
+class SimulatedTest(NamedTuple):
     """A simulated test: the run, its record, and the analysis of the record.
 
     `comes_to` is the final state of the mass: it slides, oscillates, is stuck, or is still changing
@@ -108,7 +108,7 @@ def observe(
     start: Initial | None = None,
     most_steps: int = int(SHARE * MOST_WORK),
     progress: Progress = None,
-) -> Observation:
+) -> SimulatedTest:
     """Simulate a friction test, and analyse its record.
 
     Parameters
@@ -149,12 +149,12 @@ def observe(
     found = swings(record)
     cycles = found.cycles
     regime = regime_of(record, found)
-    return Observation(run, record, cycles, regime, shares(run, cycles), outcome(run))
+    return SimulatedTest(run, record, cycles, regime, shares(run, cycles), outcome(run))
 
 
 def from_sliding(
     linear: Linearisation, prediction: Prediction, progress: Progress = None
-) -> Observation:
+) -> SimulatedTest:
     """Simulate the test from steady sliding, disturbed by a hundredth of the speed."""
     return observe(
         linear.slider,
