@@ -83,7 +83,7 @@ class RecordOptions:
         "=": --time ms, --time 1=ms for the first column. Example: --time "Zeit=ms".
     force
         How the file gives the force along the drive, in the same way. A factor scales it: "CH1=2.5
-        N/V" turns volts into newtons, "-1 N" turns the sign. Example: --force Fx=mN.
+        N/V" turns volts into newtons, "Fx=-1 N" turns the sign. Example: --force Fx=mN.
     force_across
         How the file gives the force across the drive, as for --force. Example: --force-across
         Fy=mN.

@@ -110,7 +110,7 @@ def split_unit(heading: str) -> tuple[str, str]:
     for mark in ("/", "_", " in ", ";", ":", ","):
         name, at, unit = heading.rpartition(mark)
         name, unit = name.strip(), unit.strip()
-        weight = mark == "/" and unit in ("mg", "W", "g", "mN")  # F/mg is a coefficient
+        weight = mark == "/" and unit in ("mg", "W", "g")  # F/mg is a coefficient
         symbol = mark == "_" and len(name) == 1 and len(unit) == 1  # F_N is the normal force
         plain = bool(at and name and unit) and not weight and not symbol and not is_ratio(unit)
         if plain and (len(unit) <= 4 or unit.lower() in SPELLED) and is_unit(unit):

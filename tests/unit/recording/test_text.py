@@ -224,6 +224,17 @@ def test_a_load_alone_may_be_either_force(write):
     assert st.read_record(path, force="load").load is None
 
 
+@pytest.mark.parametrize(
+    ("header", "size"),
+    [("t/ms,F/mN", 1e-3), ("t / ms,F / mN", 1e-3), ("t (s),F (N)", 1.0), ("t in s,F in N", 1.0)],
+)
+def test_symbols_with_their_units_are_names(write, header, size):
+    # units of both columns as well: t/s is a tonne a second, F/N a farad a newton
+    record = st.read_record(write(f"{header}\n{lines()}"))
+    assert np.allclose(record.time, size * TIME, rtol=1e-15)
+    assert np.allclose(record.force, size * FORCE, rtol=1e-15)
+
+
 def test_a_friction_coefficient_needs_the_normal_load(write):
     path = write(f"time [s],F/mg [-]\n{lines()}")
     with pytest.raises(st.ResultError, match="is a friction coefficient"):

@@ -97,8 +97,12 @@ def _is_name(name: str) -> bool:
 
 
 def _is_units(cells: Sequence[str]) -> bool:
-    """Return whether cells are units, as in a second line of a header; ``t, F`` are names."""
+    """Return whether cells are units, as in a second line of a header.
+
+    ``t, F`` are names, and ``t/s, F/N`` names with units, not tonnes a second and farads a newton.
+    """
     filled = [cell for cell in cells if cell]
-    if not filled or all(map(_is_name, filled)) or not all(map(is_unit, filled)):
+    named = all(_is_name(split_unit(cell)[0]) for cell in filled)
+    if not filled or named or not all(map(is_unit, filled)):
         return False
     return not all(is_ratio(spell(cell)) for cell in filled)
