@@ -36,7 +36,7 @@ def points(progress: Progress, tolerances: Sequence[float]) -> list[Point]:
     cycles = DURATION * float(theory.natural_frequency(slider.k_y, slider.mass)) / (2.0 * np.pi)
 
     def forces(rtol: float) -> tuple[NDArray[np.float64], int]:
-        run = st.simulate(slider, DURATION, sample_rate=1e3, rtol=rtol)
+        run = st.simulate(slider, DURATION, sample_rate=1e3, rtol=rtol, multiscale=False)
         progress.advance(task)
         return np.array([run.data[name].values for name in FORCES]), run.statistics.steps
 

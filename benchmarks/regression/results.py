@@ -36,6 +36,7 @@ def runs() -> Iterator[tuple[str, dict[str, object]]]:
     for number in range(100):  # all laws without states
         drawn = system(SEED, number)
         common = {"slider": drawn.slider, "duration": drawn.duration, "rtol": drawn.rtol}
+        common["multiscale"] = False
         rate = 500.0 / drawn.duration
         yield f"system {number}", common | {"sample_rate": rate}
         if number < 40:
@@ -44,7 +45,7 @@ def runs() -> Iterator[tuple[str, dict[str, object]]]:
         draw = Draw(SEED, 1000 + number)
         phi = f"{draw.between(0.5, 8.0)!r} deg"
         slider = st.presets.nakano_popov_2020().replace(phi=phi)
-        common = {"duration": 0.4, "sample_rate": 2000.0}
+        common = {"duration": 0.4, "sample_rate": 2000.0, "multiscale": False}
         if number < 25:
             law = STATES[number % 5].like(0.5, draw.between(0.2, 0.4), draw.decades(1e-3, 1e-2))
             yield f"states {number}", common | {"slider": slider.replace(friction=law)}

@@ -18,13 +18,13 @@ import stiction as st
 def paper(rtol: float) -> Callable[[], object]:
     """Fig. 3 over 5 s: sticks, slips and landings, nothing else."""
     slider = st.presets.nakano_popov_2020()
-    return lambda: st.simulate(slider, 5.0, sample_rate=0.2, rtol=rtol)
+    return lambda: st.simulate(slider, 5.0, sample_rate=0.2, rtol=rtol, multiscale=False)
 
 
 def sample_paper() -> Callable[[], object]:
     """The same, sampled at 10 kHz: dense output, and the labelled arrays."""
     slider = st.presets.nakano_popov_2020()
-    return lambda: st.simulate(slider, 5.0, sample_rate=10e3)
+    return lambda: st.simulate(slider, 5.0, sample_rate=10e3, multiscale=False)
 
 
 def law_with_state() -> Callable[[], object]:

@@ -22,11 +22,11 @@ def test_the_default_tolerance_keeps_its_promise(paper_run, sharp_run):
 
 
 def test_rtol_means_something(slider, sharp_run):
-    """Each decade of rtol buys a decade of accuracy, over six decades."""
+    """Each decade of rtol buys a decade of accuracy in steps, over six decades."""
     tolerances = 10.0 ** -np.arange(3, 12)
     errors = []
     for rtol in tolerances:
-        run = st.simulate(slider, 5.0, sample_rate=1e3, rtol=rtol)
+        run = st.simulate(slider, 5.0, sample_rate=1e3, rtol=rtol, multiscale=False)
         same = sharp_run.data.sel(time=run.data["time"], method="nearest")
         errors.append(np.abs(run.data["spring_y"].values - same["spring_y"].values).max())
     errors = np.array(errors)

@@ -161,7 +161,7 @@ def test_without_sampling(slider):
 
 
 def test_too_many_steps_keeps_what_was_computed(slider):
-    run = st.simulate(slider, 5.0, sample_rate=1e4, max_steps=1000)
+    run = st.simulate(slider, 5.0, sample_rate=1e4, max_steps=1000, multiscale=False)
     assert run.status is st.Status.TOO_MANY_STEPS
     assert "max_steps" in run.status.value
     assert 0.05 < float(run.data["time"][-1]) < 1.0

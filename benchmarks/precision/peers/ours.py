@@ -38,15 +38,19 @@ def slider(phi):
     return st.presets.nakano_popov_2020().replace(phi=f"{degrees(phi)!r} deg")
 
 
-def solve(times, phi=PHI, **settings):
+def solve(times, phi=PHI, *, multiscale=False, **settings):
     """Run at the settings, which are those of `stiction.simulate`; samples only if wanted.
+
+    Every cycle is solved in steps, unless something else is said.
 
     Labelled arrays are made when they are asked for: a run that is only timed does not need them.
     """
     import stiction as st
 
     rate = round(1.0 / (times[1] - times[0])) if len(times) > 2 else 0
-    run = st.simulate(slider(phi), duration=float(times[-1]), sample_rate=rate, **settings)
+    run = st.simulate(
+        slider(phi), float(times[-1]), sample_rate=rate, multiscale=multiscale, **settings
+    )
     if not run.status.ok:
         raise Failed(str(run.status.value))
     if rate == 0:

@@ -173,7 +173,8 @@ def integrate(
     """Integrate a description, filling in the samples at `times` (ascending, s).
 
     If `take` is given, it gets the samples block by block, to be used before it returns: they are
-    not kept, and the memory that they take does not grow with their number.
+    not kept, and the memory that they take does not grow with their number in steps. All cycles
+    that a return map finds at once are in one block.
     """
     slider, initial, settings = description
     t, end = initial.time, initial.time + settings.duration

@@ -31,7 +31,8 @@ def test_states_are_gone_through_once_and_never_held_together(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Some ten thousand transverse periods: all of their states took hundreds of megabytes."""
-    run = st.simulate(st.presets.nakano_popov_2020(), duration=10.0, sample_rate=1e3)
+    slider = st.presets.nakano_popov_2020()
+    run = st.simulate(slider, duration=10.0, sample_rate=1e3, multiscale=False)
     blocks: list[int] = []
     passes = 0
     whole = quadrature.integrate

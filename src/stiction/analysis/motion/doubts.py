@@ -322,9 +322,11 @@ def _drift(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:
         return
     drift: Drift = find_drift(record, cycles)
     if drift.stands_out:
+        late = drift.start > float(record.time[0])
+        where = f"from {in_words(drift.start, 's')} on" if late else "in all"
         yield (
-            f"The force drifts by {in_words(drift.rate, 'N/s')}, {in_words(drift.change, 'N')} in "
-            "all, and friction coefficients with it. If it is the load cell, analyse "
+            f"The force drifts by {in_words(drift.rate, 'N/s')}, {in_words(drift.change, 'N')} "
+            f"{where}, and friction coefficients with it. If it is the load cell, analyse "
             "st.analysis.detrend(record)."
         )
 

@@ -23,11 +23,15 @@ STEADY = 1.0  # of its rate, by which that of the two halves may differ
 
 
 class Drift(NamedTuple):
-    """A steady change of the force (N/s), its standard error, and the total change (N)."""
+    """A steady change of the force (N/s), its standard error, and the total change (N).
+
+    start : when it is seen to begin, s: a force without cycles loads before its second half.
+    """
 
     rate: float
     error: float
     change: float
+    start: float
     stands_out: bool
 
 
@@ -39,19 +43,21 @@ def find_drift(record: Record, cycles: xr.Dataset) -> Drift:
     if cycles.sizes["cycle"] >= FEWEST:
         at = 0.5 * (cycles["peak_time"].values + cycles["trough_time"].values)
         middle = 0.5 * (cycles["peak"].values + cycles["trough"].values)
+        start = float(record.time[0])
     elif not cycles.sizes["cycle"] and len(record) >= 4 * PARTS:
         half = len(record) // 2
         at, middle = (
             np.array([part.mean() for part in np.array_split(each[half:], PARTS)])
             for each in (record.time, record.force)
         )
+        start = float(record.time[half])
     else:
-        return Drift(0.0, np.nan, 0.0, stands_out=False)
+        return Drift(0.0, np.nan, 0.0, np.nan, stands_out=False)
     rate, error = _fit_line(at, middle)
     change = rate * float(at[-1] - at[0])
     large = abs(change) > WORTH * abs(float(middle.mean()))
     sure = abs(rate) > SURE * error and _goes_on(at, middle, rate)
-    return Drift(rate, error, change, stands_out=bool(large and sure))
+    return Drift(rate, error, change, start, stands_out=bool(large and sure))
 
 
 def _fit_line(at: Floats, middle: Floats) -> tuple[float, float]:
@@ -76,8 +82,9 @@ def _goes_on(at: Floats, middle: Floats, rate: float) -> bool:
 def detrend(record: Record) -> Record:
     """Return a record without the steady drift of its force.
 
-    The line is zero at the first sample, which is taken as correct. Friction that changes steadily
-    is removed like drift.
+    The line is zero at the first sample, which is taken as correct. A force without cycles shows
+    its drift in the second half of the record only, and changes from there on only. Friction that
+    changes steadily is removed like drift.
 
     Parameters
     ----------
@@ -94,6 +101,8 @@ def detrend(record: Record) -> Record:
     True
     """
     drift = find_drift(record, find_cycles(record))
-    force = record.force - drift.rate * (record.time - record.time[:1])
+    if not np.isfinite(drift.start):
+        return record
+    force = record.force - drift.rate * np.maximum(record.time - drift.start, 0.0)
     force.setflags(write=False)
     return record.model_copy(update={"force": force})

@@ -10,7 +10,7 @@ where there are samples: neither changes the motion.
 
 from __future__ import annotations
 
-from math import floor
+from math import floor, nan
 from typing import NamedTuple
 
 from stiction.solver.exact.method import Exact
@@ -80,7 +80,9 @@ class Automatic(Multiscale):
         if code == RUNNING and self.at.left <= 0:
             self.at = trial(self.at, now, end, self.lost) or next_leg(self.at.turns, now)
             if isinstance(self.at, MapTrial):
-                self.map_of(problem, out).balance[:] = self.at.stake, self.at.cycle
+                known = self.map_of(problem, out)
+                known.balance[:] = self.at.stake, self.at.cycle
+                known.last[:] = nan  # the last take-off is not that of the cycle at hand
         return code, now
 
     def after_map(self, tried: MapTrial, left: int, now: State) -> Leg | MapTrial:

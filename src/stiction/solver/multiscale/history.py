@@ -32,7 +32,8 @@ def keep_steps(known: Returns, place: int) -> None:
     if count > len(kept):
         return
     if spans[PAST, 0] + count > len(kept):
-        spans[:] = 0
+        spans[:PAST] = 0
+        spans[PAST, 0] = 0  # but the pieces of patches stay where they are
     first = spans[PAST, 0]
     for i in range(count):
         for j in range(WIDTH):

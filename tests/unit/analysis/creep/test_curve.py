@@ -194,10 +194,14 @@ def test_where_there_is_no_stick_phase_there_is_no_curve():
         st.analysis.fit_misalignment(mean, V, K)
 
 
-def test_a_drive_the_other_way_creeps_alike(slider, curves):
+def test_a_drive_the_other_way_creeps_alike(slider):
+    """To the last bit in steps."""
     back = slider.replace(drive=st.ConstantVelocity(-V))
-    run = st.simulate(back, 5.0, sample_rate=10e3)
-    mirrored = st.analysis.creep_curves(run, st.analysis.find_cycles(st.analysis.record_of(run)))
+    runs = [st.simulate(each, 5.0, sample_rate=10e3, multiscale=False) for each in (slider, back)]
+    curves, mirrored = (
+        st.analysis.creep_curves(run, st.analysis.find_cycles(st.analysis.record_of(run)))
+        for run in runs
+    )
     np.testing.assert_array_equal(mirrored["velocity"], curves["velocity"])
 
 

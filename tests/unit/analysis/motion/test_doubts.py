@@ -63,6 +63,23 @@ def test_drift_is_seen_and_taken_off(force) -> None:
     assert mended.friction.static.coefficient == pytest.approx(0.1993, rel=2e-3)
 
 
+def test_a_drift_seen_in_the_second_half_is_taken_off_there_only() -> None:
+    """Without cycles the first half may be anything: a loading, running in."""
+    time = np.arange(0.0, 60.0, 0.01)
+    noise = 1e-4 * np.random.default_rng(3).standard_normal(time.size)
+    force = np.interp(time, [0.0, 30.0, 60.0], [0.1, 0.12, 0.108]) + noise
+    record = st.Record(time=time, force=force, normal_load="0.3 N", drive_velocity="42 um/s")
+    said = st.analyse(record).warnings[0]
+    assert "The force drifts by -" in said
+    assert "from 30 s on" in said
+    mended = st.analysis.detrend(record)
+    first = time < 30.0
+    assert mended.force[first].tolist() == record.force[first].tolist()
+    assert mended.force[~first].mean() == pytest.approx(0.12, abs=1e-4)
+    assert np.polyfit(time[~first], mended.force[~first], 1)[0] == pytest.approx(0.0, abs=2e-6)
+    assert "drifts" not in " ".join(st.analyse(mended).warnings)
+
+
 def test_a_zero_that_is_off_is_seen_and_taken_off(force) -> None:
     time, newtons = force
     assert "at 300 mN: if the spring was unloaded, give zero='0.3 N'" in doubts_in_words(

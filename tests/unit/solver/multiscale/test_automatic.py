@@ -82,7 +82,7 @@ def test_where_there_is_nothing_to_map_the_run_is_that_in_steps(slider):
 
 
 def test_neither_samples_nor_pauses_change_the_motion():
-    """Blocks pause a run every 5 000 turns, and samples cost nodes of their own."""
+    """Blocks pause a run every 5 000 turns, and samples take nodes of their own."""
     run = st.simulate(PAPER, LONG, sample_rate=0)
     sampled = st.simulate(PAPER, LONG, sample_rate=2e3)
     times, blocks = sampled.data["time"].values, []

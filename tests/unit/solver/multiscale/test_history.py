@@ -5,7 +5,7 @@ import pytest
 from tests.entry import plain
 
 from stiction.solver.multiscale import history
-from stiction.solver.multiscale.return_map import FAR, NEAR, PAST, Cycle, empty_map
+from stiction.solver.multiscale.return_map import FAR, NEAR, PAST, STEPS, Cycle, empty_map
 
 LAST = Cycle(0.01, 1e-3, 4e-4)  # so that a long cycle takes more than 2 ms
 BOUND = NEAR * empty_map(1e-6).closing
@@ -24,6 +24,17 @@ def test_the_oldest_is_forgotten():
     assert known.sizes[2] == PAST + 3
     assert sorted(known.past[:, 0]) == list(range(3, PAST + 3))
     assert known.past[2].tolist() == [PAST + 2, 0.1, 1.0, 0.5]
+
+
+def test_steps_that_are_forgotten_leave_the_pieces_of_patches():
+    """These lie elsewhere: another patch wrote over them once."""
+    known = empty_map(1e-6, samples=True)
+    known.inside.spans[PAST, 1] = 35
+    known.record.used[0] = STEPS // 3
+    for i in range(4):
+        plain(history.remember)(known, float(i), LAST)
+    assert known.inside.spans[:4, 1].tolist() == [0, 0, 0, STEPS // 3]
+    assert known.inside.spans[PAST].tolist() == [STEPS // 3, 35]
 
 
 def test_the_two_nearest():
