@@ -24,6 +24,8 @@ from stiction.trajectory import Trajectory
 
 LARGEST = 1e100  # of any sample, in SI: its square must not overflow
 SMALLEST = 1e-100  # smaller values are taken as zero, because their squares underflow
+SHARP = 1e-3  # of the load: noise of it that is averaged away
+LONGEST = 1 / 400  # of the record: over so much of it the load is averaged at most
 CHANNELS = (  # (n,), beside the time
     *("force", "force_across", "load", "position", "drive_position", "slip_speed"),
 )
@@ -81,7 +83,8 @@ class Record(Described):
     force : array
         (n,), N: the spring force, positive where the spring pulls the mass along the drive.
     normal_load : float or str, optional
-        W, N; needed for friction coefficients. By default the mean of `load`.
+        W, N; needed for friction coefficients. By default the mean of `load`; where `load` varies,
+        coefficients are force over load at the same instant.
     stiffness : float or str, optional
         Of the spring along the force, N/m. With `drive_velocity` it yields the mass's position.
     stiffness_across : float or str, optional
@@ -261,6 +264,23 @@ class Record(Described):
         """Samples per second, on average if they are unequally spaced; 0 for a single one."""
         return (len(self) - 1) / self.duration if len(self) > 1 else 0.0
 
+    def relative_load(self) -> Floats:
+        """Return the load over `normal_load`, (n,): 1 unless `load` varies; NaN where it lifts off.
+
+        It is averaged over neighbouring samples, as many as its noise requires. Fourth differences
+        show the noise of a sample: those of a load that varies slowly are nothing beside it.
+        """
+        if self.load is None or not self.normal_load or not np.ptp(self.load) > 0.0:
+            return np.ones(len(self))
+        from scipy.ndimage import uniform_filter1d  # type: ignore[attr-defined]
+
+        differences = np.abs(np.diff(self.load, 4))
+        noise = float(np.median(differences)) / 0.6745 / 70.0**0.5 if len(differences) else 0.0
+        wanted = (noise / (SHARP * float(self.load.mean()))) ** 2
+        width = int(max(1.0, min(wanted, LONGEST * len(self))))
+        load = uniform_filter1d(self.load, width, mode="nearest")
+        return np.asarray(np.where(load > 0.0, load, np.nan) / self.normal_load)
+
     def channels(self) -> dict[str, Floats]:
         """Return the measured channels by name, (n,) each, in SI; the force first."""
         found = {name: getattr(self, name) for name in CHANNELS}
@@ -336,9 +356,9 @@ def record_of(run: Trajectory) -> Record:
     x, y, way, along = cell.x, cell.y, cell.way, cell.velocity
     share = x * c + y * s
     stiffness = slider.k_x if share == 0.0 else (x * slider.k_x * c + y * slider.k_y * s) / share
-    names = ("time", "spring_x", "spring_y", "X", "slip_speed")
+    names = ("time", "spring_x", "spring_y", "X", "slip_speed", "normal_load")
     columns = np.stack([samples[name] for name in names])
-    time, f_x, f_y, X, slip_speed = columns[:, np.isfinite(columns).all(axis=0)]
+    time, f_x, f_y, X, slip_speed, load = columns[:, np.isfinite(columns).all(axis=0)]
     if not len(time):
         raise ResultError("no sample of the run is a number; simulate it again")
     record = Record(
@@ -350,6 +370,7 @@ def record_of(run: Trajectory) -> Record:
         mass=slider.masses[0],
         position=way * X,
         slip_speed=slip_speed,
+        load=None if slider.load is None else load,
     )
     record._sticks = run.stick_intervals
     record._own_period = 1.0 / slider.natural_frequency_x

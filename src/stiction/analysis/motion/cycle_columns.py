@@ -100,6 +100,9 @@ def _measure_cycles(record: Record, force: Floats, corners: Vertices) -> dict[st
     start_force, peak, trough = (corners.value[i:j:2] for i, j in _THREE)
     unknown = np.full(len(start), np.nan)
     load, velocity = record.normal_load, record.drive_velocity
+    relative = record.relative_load()
+    reduced_peak = peak / np.interp(peak_time, record.time, relative)
+    reduced_trough = trough / np.interp(trough_time, record.time, relative)
     slope = _loading_rate(record.time, force, start, peak_time)
     return {
         "start": start,
@@ -111,8 +114,8 @@ def _measure_cycles(record: Record, force: Floats, corners: Vertices) -> dict[st
         "drop": peak - trough,
         "period": trough_time - start,
         "rise_share": (peak_time - start) / (trough_time - start),
-        "mu_static": peak / load if load else unknown,
-        "mu_kinetic": 0.5 * (peak + trough) / load if load else unknown,
+        "mu_static": reduced_peak / load if load else unknown,
+        "mu_kinetic": 0.5 * (reduced_peak + reduced_trough) / load if load else unknown,
         "stick_slope": slope,
         "stiffness": slope / velocity if velocity else unknown,
         "creep_distance": _distance_moved(record, start, peak_time, peak - start_force),

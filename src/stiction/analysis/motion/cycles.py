@@ -66,9 +66,9 @@ def find_cycles(source: Trajectory | Record) -> xr.Dataset:
         ``rise_share``
             Of the period: 1 for a perfect sawtooth, 0.5 for a sine.
         ``mu_static, mu_kinetic``
-            Peak, and mean of peak and trough, over the normal load: a mass that slips against
-            constant friction swings as far below it as it was above. These are apparent
-            coefficients, not necessarily those of the interface.
+            Peak, and mean of peak and trough, each over the normal load at that instant: a mass
+            that slips against constant friction swings as far below it as it was above. These are
+            apparent coefficients, not necessarily those of the interface.
         ``stick_slope`` (N/s), ``stiffness`` (N/m)
             Of the straight line through the loading from a tenth to half of its time; creep in
             that time lowers them by its share of the drive velocity.

@@ -40,28 +40,15 @@ BLOCKS = 20  # means, whose scatter gives the standard error for correlated samp
 class Measured(NamedTuple):
     """A force (N), its standard error, and its spread (a standard deviation); NaN if not known.
 
-    `normal_load` (N), where it is known, makes coefficients of them.
+    So for the friction coefficient: the force over the load at the same instant.
     """
 
     force: float
     error: float
     spread: float
-    normal_load: float = np.nan
-
-    @property
-    def coefficient(self) -> float:
-        """Friction coefficient; NaN without a normal load."""
-        return self.force / self.normal_load
-
-    @property
-    def coefficient_error(self) -> float:
-        """Standard error of the coefficient."""
-        return self.error / self.normal_load
-
-    @property
-    def coefficient_spread(self) -> float:
-        """Spread of the coefficient."""
-        return self.spread / self.normal_load
+    coefficient: float = np.nan
+    coefficient_error: float = np.nan
+    coefficient_spread: float = np.nan
 
 
 class Friction(NamedTuple):
@@ -107,7 +94,7 @@ def find_friction(record: Record, regime: Regime, cycles: xr.Dataset) -> Frictio
         From `stiction.analysis.find_cycles`.
     """
     missing: dict[str, str] = {}
-    kind, load = regime.kind, record.normal_load or np.nan
+    kind, load, relative = regime.kind, record.normal_load or np.nan, record.relative_load()
     if len(record) < FEWEST:
         few = f"of the {FEWEST} samples that are needed the record has {len(record)}"
         return Friction(None, None, None, dict.fromkeys(("break_away", "static", "kinetic"), few))
@@ -117,22 +104,28 @@ def find_friction(record: Record, regime: Regime, cycles: xr.Dataset) -> Frictio
     if at is None:
         missing["break_away"] = reason
     else:
-        break_away = _break_away(record, forces, at, noise)
+        break_away = _break_away(record, forces, at, noise, relative)
     count = cycles.sizes["cycle"]
+    peak, trough = cycles["peak"].values, cycles["trough"].values
+    load_at_peak, load_at_trough = (
+        np.interp(cycles[name].values, record.time, relative)
+        for name in ("peak_time", "trough_time")
+    )
     static = None
     if regime.loads and count:
-        static = _over(cycles["peak"].values, load)
+        static = _over(peak, peak / load_at_peak, load)
     else:
         missing["static"] = (
             f"it is the mean of the peaks of stick-slip, and {without_loading(regime)}"
         )
     kinetic = None
     if kind in (STICK_SLIP, TRANSITIONAL, HARMONIC, TRANSVERSE, IRREGULAR) and count:
-        kinetic = _over(0.5 * (cycles["peak"].values + cycles["trough"].values), load)
+        reduced = 0.5 * (peak / load_at_peak + trough / load_at_trough)
+        kinetic = _over(0.5 * (peak + trough), reduced, load)
     elif comes_to_rest(record.slip_speed):
         missing["kinetic"] = "the mass comes to rest"
     elif kind in (STEADY, SETTLING, UNDETERMINED) and (at is not None or kind != UNDETERMINED):
-        kinetic = _sliding(record, times, at, kind, load)
+        kinetic = _sliding(record, times, at, kind, relative)
     else:
         unknown = kind == UNDETERMINED
         missing["kinetic"] = f"the mass {'may' if unknown else 'does'} not slide"
@@ -188,16 +181,21 @@ def _is_within(forces: Floats) -> bool:
     return bool(rise[np.argmax(rise > 0.5 * rise.max()) :].min() <= 0.0)
 
 
-def _break_away(record: Record, forces: Floats, at: int, noise: float) -> Measured:
+def _break_away(
+    record: Record, forces: Floats, at: int, noise: float, relative: Floats
+) -> Measured:
     """Return the largest force near a maximum, averaged as much as the noise requires."""
     size, first = -(-len(record) // len(forces)), at * len(record) // len(forces)
-    near = without_spikes(record.force)[max(0, first - 2 * size) : first + 3 * size]
+    begin = max(0, first - 2 * size)
+    near = without_spikes(record.force)[begin : first + 3 * size]
     rough = noise * size**0.5  # of a sample
     wanted = (rough / max(SHARP * float(np.ptp(forces)), 1e-300)) ** 2
     width = int(min(max(wanted, 1.0), size))
     smooth = np.convolve(near, np.full(width, 1.0 / width), "valid")
     error = float(np.hypot(rough / width**0.5, _peak_excess(smooth, width)))
-    return Measured(float(smooth.max()), error, np.nan, record.normal_load or np.nan)
+    force, load = float(smooth.max()), record.normal_load or np.nan
+    under = float(relative[begin + int(np.argmax(smooth)) + width // 2])
+    return Measured(force, error, np.nan, force / under / load, error / under / load)
 
 
 def _peak_excess(values: Floats, step: int) -> float:
@@ -216,17 +214,31 @@ def _peak_excess(values: Floats, step: int) -> float:
     return float(max(meet))
 
 
-def _over(values: Floats, load: float) -> Measured:
+def _over(forces: Floats, reduced: Floats, load: float) -> Measured:
+    """Return the friction of independent forces, and of those as they were under one load."""
+    return Measured(*_statistics(forces), *(each / load for each in _statistics(reduced)))
+
+
+def _statistics(values: Floats) -> tuple[float, float, float]:
     """Return mean, standard error and spread of independent values."""
     spread = float(values.std(ddof=1)) if len(values) > 1 else np.nan
-    return Measured(float(values.mean()), spread / len(values) ** 0.5, spread, load)
+    return float(values.mean()), spread / len(values) ** 0.5, spread
 
 
-def _sliding(record: Record, times: Floats, at: int | None, kind: str, load: float) -> Measured:
+def _sliding(
+    record: Record, times: Floats, at: int | None, kind: str, relative: Floats
+) -> Measured:
     """Return the mean force in the last half of the sliding after the break-away."""
     begin = record.time[0] if at is None else float(times[at])
     share = 0.5 if kind != STEADY or at is not None else 0.0
     begin += share * (float(record.time[-1]) - begin)
-    force = record.force[record.time >= begin]
-    blocks = np.array([part.mean() for part in np.array_split(force, min(BLOCKS, len(force)))])
-    return _over(force, load)._replace(error=_over(blocks, load).error)
+    slides, load = record.time >= begin, record.normal_load or np.nan
+    force, reduced = record.force[slides], record.force[slides] / relative[slides]
+    blocks = _over(_block_means(force), _block_means(reduced), load)
+    return _over(force, reduced, load)._replace(
+        error=blocks.error, coefficient_error=blocks.coefficient_error
+    )
+
+
+def _block_means(values: Floats) -> Floats:
+    return np.array([part.mean() for part in np.array_split(values, min(BLOCKS, len(values)))])

@@ -23,12 +23,15 @@ ALIKE = 0.1  # relative: a mean that was measured agrees so far with its stated 
 SEEN = 0.4  # of the sample rate: a faster oscillation is lost, or seen at another frequency
 AT_REST = 0.02  # of the largest force
 LOADING_RATE, SWING = "stiffness times drive velocity", "stiffness over mass"  # quantities
+BY_RISE, BY_SLIPS = "rate at which the force rises", "duration of its slips"
 
 
 class StatedQuantity(NamedTuple):
     """A quantity as the record shows it, with its standard error, and as it is stated.
 
-    NaN where it is not known. `low` and `high` bound the ratio of both where they agree.
+    NaN where it is not known. The error is that of the scatter; a value that is found in a rough
+    way, such as k/m by the duration of slips, may be farther off than that. `low` and `high` bound
+    the ratio of both where they agree.
     """
 
     quantity: str
@@ -81,9 +84,8 @@ def _loading_rate(record: Record, kind: str, cycles: xr.Dataset) -> StatedQuanti
         return None
     slopes = cycles["stick_slope"].values
     stated = (record.stiffness or nan) * (record.drive_velocity or nan)
-    how = "rate at which the force rises"
     seen, error = float(np.median(slopes)), _error(slopes)
-    return StatedQuantity(LOADING_RATE, "N/s", seen, error, stated, SLOWER, FASTER, how)
+    return StatedQuantity(LOADING_RATE, "N/s", seen, error, stated, SLOWER, FASTER, BY_RISE)
 
 
 def _stiffness_over_mass(record: Record, kind: str, cycles: xr.Dataset) -> StatedQuantity | None:
@@ -99,7 +101,7 @@ def _stiffness_over_mass(record: Record, kind: str, cycles: xr.Dataset) -> State
         return None
     swings = cycles["period"].values if kind == HARMONIC else 2.0 * falls
     swing = float(np.median(swings))
-    how = "period of its swings" if kind == HARMONIC else "duration of its slips"
+    how = "period of its swings" if kind == HARMONIC else BY_SLIPS
     lowest = HEAVIER if kind == HARMONIC else SLOW_SLIP
     found = (2.0 * pi / swing) ** 2
     stated = (record.stiffness or nan) / (record.mass or nan)

@@ -5,7 +5,13 @@ from __future__ import annotations
 from math import isfinite, isnan
 from typing import TYPE_CHECKING, Any
 
-from stiction.analysis.motion.metadata import LOADING_RATE, SWING, StatedQuantity
+from stiction.analysis.motion.metadata import (
+    BY_RISE,
+    BY_SLIPS,
+    LOADING_RATE,
+    SWING,
+    StatedQuantity,
+)
 from stiction.analysis.parts.wording import number
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words, with_error
@@ -19,12 +25,12 @@ SAME, SURE = 0.1, 3.0  # relative, and standard errors: values that differ by le
 ALLOWED = "possible"  # not the same, but the record gives a bound only, or a rough value
 NUMBERS = ("found", "error", "stated", "ratio")
 TOLD = (SWING, LOADING_RATE)  # among the warnings
-REASONS = {
-    SWING: (
-        "Stiffness over mass by the motion is rough: friction that changes with speed makes a slip "
-        "last longer than half a free swing."
+ROUGH = {  # why a value may be farther from the truth than its error says
+    BY_SLIPS: (
+        "Stiffness over mass by the motion is rough, its error is that of the scatter alone: "
+        "friction that changes with speed makes a slip last longer than half a free swing."
     ),
-    LOADING_RATE: (
+    BY_RISE: (
         "The force may rise more slowly than stiffness times drive velocity: the mass creeps."
     ),
 }
@@ -46,7 +52,7 @@ def section(found: Analysis) -> Section | None:
         else f"The record does not contradict the {'stated value' if len(known) == 1 else those}."
     ]
     lines += [_sentence(x) for x in its if x.agrees is False and x.quantity not in TOLD]
-    lines += [REASONS[x.quantity] for x in its if x.quantity in REASONS and verdict(x) == ALLOWED]
+    lines += [ROUGH[x.how] for x in its if x.how in ROUGH and verdict(x) in (ALLOWED, "")]
     return Section("What the record says of its apparatus", lines, Table(HEADINGS, _rows(its)))
 
 

@@ -102,7 +102,7 @@ def friction_test(source: Trajectory | Record, program: DriveProgram | None = No
             "st.protocols.velocity_steps(...)"
         )
     lag = source.force / source.stiffness if source.stiffness else np.zeros(len(source.time))
-    mu = source.force / source.normal_load
+    mu = source.force / source.normal_load / source.relative_load()
     k = source.stiffness or nan
     return FrictionTest(
         source.time, mu, lag, source.normal_load, k, stretches(program, source.time)

@@ -54,6 +54,13 @@ def test_a_rough_value_that_differs_is_possible_and_does_not_agree():
     assert "does not contradict the 2 stated values" in said
 
 
+def test_a_rough_value_is_called_so_where_nothing_is_stated_to_compare_it_with():
+    its, said = compare(sawtooth(), stiffness=STIFFNESS, drive_velocity=VELOCITY)
+    assert its["stiffness over mass"].agrees is None
+    assert "Stiffness over mass by the motion is rough" in said
+    assert "The force may rise more slowly" not in said  # the stated rate agrees
+
+
 @pytest.mark.parametrize(
     ("wrong", "quantity", "ratio"),
     [

@@ -1,0 +1,63 @@
+"""Friction coefficients are force over load at the same instant."""
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.analysis.protocols.friction_test import friction_test
+
+TIME = np.arange(0.0, 20.0, 1e-3)
+SWINGING = 10.0 + 3.0 * np.sin(0.7 * TIME)
+STATIC, KINETIC = 0.2, 0.15
+
+
+def stick_slip(load):
+    """Return a force that rises by 1 N/s to STATIC of the load, then falls about KINETIC of it."""
+    force, slips = np.zeros(len(load)), False
+    for i in range(1, len(load)):
+        slips = force[i - 1] > (2.0 * KINETIC - STATIC if slips else STATIC) * load[i]
+        force[i] = force[i - 1] + (-0.05 if slips else 1e-3)
+    return force
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.1])
+def test_a_load_that_varies_is_followed(noise):
+    load = SWINGING + noise * np.random.default_rng(1).standard_normal(len(TIME))
+    found = st.analyse(st.Record(time=TIME, force=stick_slip(SWINGING), load=load))
+    friction, cycles = found.friction, found.cycles
+    error = 0.006 + 0.1 * noise  # relative
+    assert cycles["mu_static"].values == pytest.approx(STATIC, rel=error)
+    assert cycles["mu_kinetic"].values == pytest.approx(KINETIC, rel=0.04 + error)
+    assert friction.break_away.coefficient == pytest.approx(STATIC, rel=error)
+    assert friction.static.coefficient == pytest.approx(STATIC, rel=error)
+    assert friction.static.coefficient_spread < 0.006 * STATIC
+    assert friction.static.spread > 0.1 * friction.static.force  # that of the load
+
+
+def test_a_mass_that_slides_under_a_load_that_varies():
+    load = np.where(TIME < 15.0, 10.0, 20.0)  # on average 12.5 N
+    found = st.analyse(st.Record(time=TIME, force=STATIC * load, load=load))
+    assert found.friction.kinetic.coefficient == pytest.approx(STATIC, rel=1e-3)
+
+
+def test_a_friction_test_under_a_load_that_varies():
+    record = st.Record(time=TIME, force=STATIC * SWINGING, load=SWINGING)
+    program = st.protocols.velocity_steps(["1 mm/s", "2 mm/s"], distance="20 mm")
+    assert friction_test(record, program).mu == pytest.approx(STATIC, rel=1e-12)
+
+
+def test_a_constant_load_is_the_stated_one_to_the_last_bit():
+    load = np.full(len(TIME), 10.1)
+    known = {"time": TIME, "force": stick_slip(load), "normal_load": 10.1}
+    stated, measured = (st.analyse(st.Record(**known, load=each)) for each in (None, load))
+    assert stated.friction == measured.friction
+    assert stated.cycles.identical(measured.cycles)
+
+
+def test_a_run_is_under_the_load_of_its_program(slider):
+    swings = st.protocols.LoadProgram(modulation=st.protocols.Modulation("3 N", "0.11 Hz"))
+    run = st.simulate(slider.replace(load=swings), "6 s", sample_rate="1 kHz")
+    cycles = st.analysis.find_cycles(run)
+    load = np.interp(cycles["peak_time"], run.data["time"], run.data["normal_load"])
+    assert np.ptp(load) > 3.0
+    assert cycles["mu_static"].values == pytest.approx(cycles["peak"].values / load, rel=1e-6)
