@@ -1,6 +1,6 @@
 import re
 from html import unescape
-from math import cos, degrees, isnan, pi, sin, sqrt
+from math import atan2, cos, degrees, isnan, pi, sin, sqrt
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ from stiction.auditing.report import Audit, sections
 from stiction.auditing.report import audit as examine
 from stiction.auditing.simulated_test import OSCILLATES, SLIDES, coarse_rate, from_sliding, observe
 from stiction.auditing.words.changes import _change
-from stiction.auditing.words.numbers import apparent_stiffness, numbers
+from stiction.auditing.words.numbers import apparent_stiffness, creep_before_slip, numbers
 from stiction.auditing.words.stick import stick
 from stiction.auditing.words.transverse import transverse
 from stiction.auditing.words.verdict import margin, motions, stability
@@ -351,6 +351,18 @@ STATIC_PEAK = st.Slider(
     friction=st.Coulomb(mu_0=0.45, mu_static=0.6),
     drive=st.ConstantVelocity("1 mm/s"),
 )
+
+
+@pytest.mark.parametrize("rate", [40.0, 4000.0])
+def test_creep_before_a_slip_does_not_depend_on_how_densely_a_test_is_sampled(rate):
+    """Aligned, it moves until it is as fast as the drive: u - u_k = A cos(wt) + V/w sin(wt)."""
+    slider = STATIC_PEAK.replace(phi="0 deg")
+    p, omega, V = predict(slider), sqrt(1.2e3 / 0.15), 1e-3
+    A = (0.6 - 0.45) * 8.0 / 1.2e3
+    until = atan2(V, omega * A) / omega
+    moved = V * until - (sqrt(A**2 + (V / omega) ** 2) - A)
+    seen = observe(slider, p, 0.0, sample_rate=rate * p.f_x)
+    assert creep_before_slip(seen) == pytest.approx(moved, rel=1e-3)
 
 
 def test_static_friction_above_kinetic_is_bistable():
