@@ -12,3 +12,38 @@ NEARLY_ISOTROPIC = st.Slider(
     friction=st.ExponentialWeakening(mu_0=0.3, mu_inf=0.2, v_f="20 mm/s"),
     drive=st.ConstantVelocity("5 mm/s"),
 )
+
+# a soft tensile tester with a sled: stable in a window of misalignments far from its own
+SOFT_TESTER = st.Slider(
+    mass="200 g",
+    k_x="150 N/m",
+    k_y="60 kN/m",
+    phi="0.5 deg",
+    normal_load="2 N",
+    friction=st.ExponentialWeakening(mu_0=0.35, mu_inf=0.22, v_f="5 mm/s"),
+    drive=st.ConstantVelocity("2 mm/s"),
+)
+
+# the soft spring hardly points along the drive: the misalignment lies in such a window
+TURNED_A_LOT = st.Slider(
+    mass="0.1 kg",
+    k_x="2 kN/m",
+    k_y="4 MN/m",
+    phi="40 deg",
+    normal_load="6 N",
+    friction=st.ExponentialWeakening(mu_0=0.25, mu_inf=0.15, v_f="10 mm/s"),
+    drive=st.ConstantVelocity("1 mm/s"),
+)
+
+# a stiff press, heavy, damped across: unstable in a window of drive velocities
+STIFF_PRESS = st.Slider(
+    mass="12 kg",
+    k_x="400 kN/m",
+    k_y="80 MN/m",
+    phi="1.5 deg",
+    normal_load="800 N",
+    c_x="40 N s/m",
+    c_y="800 N s/m",
+    friction=st.laws.Stribeck(mu_s=0.18, mu_c=0.11, v_s="20 mm/s"),
+    drive=st.ConstantVelocity("1 mm/s"),
+)

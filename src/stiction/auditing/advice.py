@@ -33,7 +33,7 @@ MORE = {
     "k_x": (2.0, 4.0, 8.0, 16.0, 32.0),
 }
 LEVERS = ("phi", "drive.velocity", "c_x", "k_x")  # of springs in series, the softest one's
-NOT_TRIED = (nan, nan, nan, None)  # fields of a `Remedy` without a better value so far
+NOT_TRIED = (nan, nan, None)  # fields of a `Remedy` without a better value so far
 MOST_TURNED = 80.0  # degrees: near a right angle the soft spring no longer acts along the drive
 STRONGEST = 10.0  # times critical damping: the strongest damper tried
 
@@ -47,11 +47,10 @@ class Remedy(NamedTuple):
         The parameter, and its SI unit.
     now : float
         Its value.
-    between : tuple of float
-        The range that was searched for a better value.
-    critical, then : float
-        The value beyond which steady sliding is stable, and the advised value; NaN if there is
-        none in the range.
+    critical : Critical or None
+        The searched range, and where in it steady sliding is stable; None where it is stable now.
+    then : float
+        The advised value; NaN if there is none in the range.
     growth : float
         The growth rate (1/s) at the advised value.
     tried : SimulatedTest or None
@@ -65,8 +64,7 @@ class Remedy(NamedTuple):
     path: str
     unit: str
     now: float
-    between: tuple[float, float]
-    critical: float
+    critical: Critical | None
     then: float
     growth: float
     tried: SimulatedTest | None
@@ -106,14 +104,14 @@ def advise_one(
 ) -> Remedy:
     """Return the nearest value of one parameter with steady sliding, tried from rest."""
     if stable:
-        advice = Remedy(path, unit(slider, path), read(slider, path), (nan, nan), *NOT_TRIED)
-        ways = [(nan, then) for then in further(slider, path)]
+        advice = Remedy(path, unit(slider, path), read(slider, path), None, *NOT_TRIED)
+        ways = list(further(slider, path))
     else:
         found = critical(slider, path, limits(slider, path))
         now = read(slider, path)
-        advice = Remedy(path, found.unit, now, found.between, *NOT_TRIED)
+        advice = Remedy(path, found.unit, now, found, *NOT_TRIED)
         ways = [nearest(found, now, beyond) for beyond in BEYOND]
-    for number, (edge, then) in enumerate(ways):
+    for number, then in enumerate(ways):
 
         def report(fraction: float, before: int = number) -> None:
             progress((before + fraction) / len(ways))
@@ -127,7 +125,7 @@ def advise_one(
             change_parameter(slider, path, with_unit(slider, path, then)), left, report
         )
         spent = advice.work + (seen["tried"].work if seen["tried"] else 0)
-        advice = advice._replace(critical=edge, then=then, work=spent, **seen)
+        advice = advice._replace(then=then, work=spent, **seen)
         if advice.tried is None or advice.works:
             break
     return advice
@@ -185,19 +183,18 @@ def with_unit(slider: Slider, path: str, value: float) -> float | str:
     return f"{value!r} rad" if unit(slider, path) == "rad" else value
 
 
-def nearest(found: Critical, now: float, beyond: float) -> tuple[float, float]:
-    """Return the critical value nearest to the present one, and a value `beyond` it.
+def nearest(found: Critical, now: float, beyond: float) -> float:
+    """Return a value `beyond` the critical one that is nearest to the present value.
 
-    The latter lies in the stable stretch, by the share `beyond` of the critical value, but not past
-    the middle of the stretch. Both are NaN if sliding is stable nowhere.
+    It lies in the stable stretch, by the share `beyond` of the critical value, but not past the
+    middle of the stretch. It is NaN if sliding is stable nowhere.
     """
-    borders = [found.between[0], *map(float, found.values), found.between[1]]
-    best, distance = (nan, nan), inf
-    for low, high, stable in zip(borders[:-1], borders[1:], found.stable, strict=True):
+    best, distance = nan, inf
+    for low, high, stable in found.stretches:
         edge, way = (low, 1) if now <= low else (high, -1)
         if stable and abs(edge - now) < distance and low < high:
             middle = 0.5 * (low + high)
             then = edge + way * beyond * abs(edge)
-            then = min(then, middle) if way > 0 else max(then, middle)
-            best, distance = (edge, then), abs(edge - now)
+            best = min(then, middle) if way > 0 else max(then, middle)
+            distance = abs(edge - now)
     return best

@@ -208,13 +208,12 @@ def stretches(found: Critical, now: float) -> Iterator[tuple[str, ...]]:
 
     The stretch that contains the value `now` is marked.
     """
-    borders = [found.between[0], *map(float, found.values), found.between[1]]
     sets_in = [in_words(f, "Hz") if f > 0.0 else "none" for f in map(float, found.frequencies)]
     here = int(np.searchsorted(found.values, now, side="right"))
-    here = here if borders[0] <= now <= borders[-1] else -1
-    for at, stable in enumerate(found.stable):
+    here = here if found.between[0] <= now <= found.between[1] else -1
+    for at, (*borders, stable) in enumerate(found.stretches):
         kind = BOUNDARY if found.neutral else STABLE if stable else UNSTABLE
-        ends = (in_words(end, found.unit, DIGITS) for end in borders[at : at + 2])
+        ends = (in_words(end, found.unit, DIGITS) for end in borders)
         mode = sets_in[at] if at < len(sets_in) else ""
         yield found.path if at == 0 else "", *ends, kind + " (now)" * (at == here), mode
 

@@ -46,6 +46,12 @@ class Critical(NamedTuple):
     stable: tuple[bool, ...]
     neutral: bool = False
 
+    @property
+    def stretches(self) -> list[tuple[float, float, bool]]:
+        """Both ends of each stretch of the range, and whether sliding is stable in between."""
+        borders = [self.between[0], *map(float, self.values), self.between[1]]
+        return list(zip(borders[:-1], borders[1:], self.stable, strict=True))
+
 
 def critical(
     slider: Slider, path: str, between: Sequence[Quantity] | None = None, *, points: int = POINTS

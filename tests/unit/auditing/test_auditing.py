@@ -1,29 +1,29 @@
 import re
 from html import unescape
-from math import cos, degrees, isnan, pi, sin, sqrt
+from math import atan2, cos, degrees, isnan, pi, sin, sqrt
 
 import numpy as np
 import pytest
 from benchmarks.explore.audits import RULES, rig
 from scipy.integrate import quad, solve_ivp
-from tests.rigs import NEARLY_ISOTROPIC
+from tests.rigs import NEARLY_ISOTROPIC, SOFT_TESTER, STIFF_PRESS, TURNED_A_LOT
 
 import stiction as st
 from stiction import theory
 from stiction.analysis.motion.regime.kinds import HARMONIC, SETTLING, STICK_SLIP
 from stiction.analysis.record import record_of
 from stiction.auditing import advice, figures, report, simulated_test
-from stiction.auditing.advice import advise, nearest
+from stiction.auditing.advice import advise, advise_one, limits, nearest
 from stiction.auditing.page import page
 from stiction.auditing.prediction import predict, suppositions
 from stiction.auditing.report import Audit, sections
 from stiction.auditing.report import audit as examine
 from stiction.auditing.simulated_test import OSCILLATES, SLIDES, coarse_rate, from_sliding, observe
 from stiction.auditing.words.changes import _change
-from stiction.auditing.words.numbers import apparent_stiffness, numbers
+from stiction.auditing.words.numbers import apparent_stiffness, creep_before_slip, numbers
 from stiction.auditing.words.stick import stick
 from stiction.auditing.words.transverse import transverse
-from stiction.auditing.words.verdict import motions, stability
+from stiction.auditing.words.verdict import margin, motions, stability
 from stiction.cli import main
 from stiction.linear_stability import Critical, critical, steady_sliding
 
@@ -113,7 +113,8 @@ def test_an_advised_damper_is_what_the_closed_form_says(found):
     law, c, s = PAPER.friction, cos(PAPER.phi) ** 2, sin(PAPER.phi) ** 2
     closed = -(law.slope(1e-3) * 10 * c + law.coefficient(1e-3) * 10 / 1e-3 * s) / c
     damper = next(each for each in found.advices if each.path == "c_x")
-    assert damper.critical == pytest.approx(closed, rel=2e-3)  # of order k_x/k_y and c_x^2/(m k_y)
+    (seen,) = damper.critical.values
+    assert seen == pytest.approx(closed, rel=2e-3)  # of order k_x/k_y and c_x^2/(m k_y)
 
 
 def test_what_slides_steadily_needs_nothing():
@@ -208,9 +209,61 @@ def test_the_nearest_stable_stretch_is_advised():
     found = Critical(
         "k", "", (1.0, 100.0), np.array([10.0, 50.0]), np.zeros(2), (True, False, True)
     )
-    assert nearest(found, 12.0, 0.15) == (10.0, 8.5)
-    assert nearest(found, 45.0, 0.15) == (50.0, pytest.approx(57.5))
-    assert nearest(found, 45.0, 9.0) == (50.0, 75.0)  # not past the middle of the stretch
+    assert nearest(found, 12.0, 0.15) == 8.5
+    assert nearest(found, 45.0, 0.15) == pytest.approx(57.5)
+    assert nearest(found, 45.0, 9.0) == 75.0  # not past the middle of the stretch
+
+
+@pytest.mark.parametrize(
+    ("slider", "said"),
+    [
+        (SOFT_TESTER, "It is stable from 20.73 deg to 23.78 deg."),
+        (SOFT_TESTER.replace(phi="-0.5 deg"), "It is stable from -23.78 deg to -20.73 deg."),
+        (SOFT_TESTER.replace(phi="30 deg"), "It is stable from 20.73 deg to 23.78 deg."),
+        (
+            SOFT_TESTER.replace(
+                phi="2.5 deg",
+                springs=[st.Spring("sled", k_x="150 N/m", k_y="60 kN/m", angle="2 deg")],
+            ),
+            "It is stable from 20.73 deg to 23.78 deg.",
+        ),
+        (TURNED_A_LOT, "It is unstable below 10.99 deg and above 62.16 deg."),
+        (STIFF_PRESS, "the present misalignment of 1.5 deg."),  # one end: nothing to add
+    ],
+)
+def test_every_end_of_a_window_of_misalignments_is_said(found, slider, said):
+    changed = found._replace(
+        slider=slider,
+        prediction=predict(slider),
+        sliding=steady_sliding(slider),
+        misalignment=critical(slider, "phi", limits(slider, "phi")),
+    )
+    assert margin(changed).endswith(said)
+
+
+@pytest.mark.parametrize(
+    ("slider", "path", "said"),
+    [
+        (SOFT_TESTER, "phi", "from 20.73 deg to 23.78 deg"),
+        (STIFF_PRESS, "drive.velocity", "below 593.3 µm/s and above 48.12 mm/s"),
+        (TURNED_A_LOT.replace(phi="70 deg"), "phi", "from 10.99 deg to 62.16 deg"),
+        (TURNED_A_LOT.replace(phi="5 deg"), "phi", "from 10.99 deg to 62.16 deg"),
+    ],
+)
+def test_every_end_of_a_window_of_changes_is_said_and_the_one_tried_lies_inside(
+    found, slider, path, said, monkeypatch
+):
+    growths = []
+
+    def failing(changed, *_):
+        growths.append(steady_sliding(changed).growth_rate)
+        return {"growth": growths[-1], "tried": found.observation}
+
+    monkeypatch.setattr(advice, "try_change", failing)
+    tried = advise_one(slider, path, False, simulated_test.MOST_WORK, lambda fraction: None)
+    assert _change(found, tried)[2] == said
+    assert growths
+    assert max(growths) < 0.0
 
 
 def test_the_page_needs_nothing_from_outside(found):
@@ -298,6 +351,18 @@ STATIC_PEAK = st.Slider(
     friction=st.Coulomb(mu_0=0.45, mu_static=0.6),
     drive=st.ConstantVelocity("1 mm/s"),
 )
+
+
+@pytest.mark.parametrize("rate", [40.0, 4000.0])
+def test_creep_before_a_slip_does_not_depend_on_how_densely_a_test_is_sampled(rate):
+    """Aligned, it moves until it is as fast as the drive: u - u_k = A cos(wt) + V/w sin(wt)."""
+    slider = STATIC_PEAK.replace(phi="0 deg")
+    p, omega, V = predict(slider), sqrt(1.2e3 / 0.15), 1e-3
+    A = (0.6 - 0.45) * 8.0 / 1.2e3
+    until = atan2(V, omega * A) / omega
+    moved = V * until - (sqrt(A**2 + (V / omega) ** 2) - A)
+    seen = observe(slider, p, 0.0, sample_rate=rate * p.f_x)
+    assert creep_before_slip(seen) == pytest.approx(moved, rel=1e-3)
 
 
 def test_static_friction_above_kinetic_is_bistable():

@@ -10,7 +10,7 @@ from stiction.auditing.simulated_test import (
     MOST_WORK,
     OSCILLATES,
 )
-from stiction.auditing.words.verdict import final_motion
+from stiction.auditing.words.verdict import final_motion, where
 from stiction.text.sections import Table
 from stiction.text.units import in_words
 
@@ -69,24 +69,22 @@ def name_of(found: Audit, path: str) -> str:
 def _change(found: Audit, advice: Remedy) -> tuple[str, ...]:
     name, now = name_of(found, advice.path), in_words(advice.now, advice.unit)
     if advice.tried is None:
-        low, high = (in_words(end, advice.unit) for end in advice.between)
-        tried = f"{low} to {high}" if isfinite(advice.between[0]) else "none"
         if advice.cut:
             return name, now, "", "none", "not tried"
+        tried = "none"
+        if advice.critical:
+            tried = " to ".join(in_words(end, advice.unit) for end in advice.critical.between)
         return name, now, "nowhere", tried, "no value in that range"
     then, seen = in_words(advice.then, advice.unit), advice.tried
-    side = "above" if advice.critical > advice.now else "below"
-    edge = (
-        f"{side} {in_words(advice.critical, advice.unit)}" if isfinite(advice.critical) else "now"
-    )
+    stable = where(advice.critical, True) if advice.critical else "now"
     if advice.works:
-        return name, now, edge, then, final_motion(seen)
+        return name, now, stable, then, final_motion(seen)
     if not seen.run.status.ok:
         until = in_words(float(seen.record.time[-1]), "s")
-        return name, now, edge, then, f"not known: the simulation was cut at {until}"
+        return name, now, stable, then, f"not known: the simulation was cut at {until}"
     what, drop = f"no remedy: {final_motion(seen)}", seen.mean("drop")
     if seen.comes_to == OSCILLATES and isfinite(drop):
         if drop < ALMOST * found.observation.mean("drop"):
             what = f"almost: {final_motion(seen)}"
         what += f", force drop {in_words(drop, 'N')}"
-    return name, now, edge, then, what
+    return name, now, stable, then, what

@@ -21,6 +21,7 @@ from stiction.auditing.simulated_test import (
     UNSETTLED,
     SimulatedTest,
 )
+from stiction.linear_stability import Critical
 from stiction.linear_stability.linear import STABLE, UNSTABLE
 from stiction.text.units import in_words, with_error
 
@@ -175,7 +176,28 @@ def margin(found: Audit) -> str:
     way = "more" if abs(nearest) > abs(phi) else "less"
     changes = {STABLE: "It becomes unstable", UNSTABLE: "It becomes stable"}
     what = changes.get(found.sliding.verdict, "Its stability changes")
-    return (
+    said = (
         f"{what} at φ_c = {at}{form} which is {in_words(abs(nearest - phi), 'rad')} {way} than "
         f"the present misalignment of {in_words(phi, 'rad')}."
     )
+    if len(values) == 1:
+        return said
+    other = found.sliding.verdict != STABLE
+    kind = STABLE if other else UNSTABLE
+    return f"{said} It is {kind} {where(found.misalignment, other, turn)}."
+
+
+def where(found: Critical, stable: bool, origin: float = 0.0) -> str:
+    """Return where sliding is stable, or where it is not, with every end inside the range."""
+    said = []
+    for low, high, kind in found.stretches:
+        first, last = (in_words(end - origin, found.unit) for end in (low, high))
+        if kind != stable:
+            continue
+        if low == found.between[0]:
+            said.append(f"below {last}")
+        elif high == found.between[1]:
+            said.append(f"above {first}")
+        else:
+            said.append(f"from {first} to {last}")
+    return " and ".join(said)
