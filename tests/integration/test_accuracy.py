@@ -43,6 +43,15 @@ def test_an_error_is_that_of_an_apparatus_a_little_other(number):
         assert multiscale < BOUNDS["multiscale"]
 
 
+@pytest.mark.parametrize("number", [187, 748])
+def test_a_long_run_is_as_right_by_default(number):
+    """Thirty times as long: most of its cycles come from a map."""
+    seen = look(71, number, 30.0)
+    assert not seen.left_out
+    assert seen.mapped[1] > 100
+    assert seen.off[1] < BOUNDS["by default"]
+
+
 def test_what_is_seen_is_the_same_each_time():
     """To the last bit on one machine: no state is left from one run to the next."""
     assert look(SEED, 7) == look(SEED, 7)
