@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 ALIKE = 0.1  # standard deviation of the drops over their mean
 SLOW_SWING = 2.0  # times the mass's own period on its spring: a slower swing is not its own
+OTHER_SIGN = 'or a file with --force="-1 N"'
 
 
 def section(found: Analysis) -> Section:
@@ -117,11 +118,11 @@ def plainly(found: Analysis) -> str:
         if float(found.record.force.mean()) <= 0.0:
             return (
                 f"{fast}: it is recorded with the other sign, in all likelihood. Analyse it with "
-                "force=-force."
+                f"force=-force, {OTHER_SIGN}."
             )
         return (
             f"{fast}: as where holds interrupt the sliding, or it is recorded with the other sign "
-            "and an untared zero; then analyse it with force=-force and zero=."
+            f"and an untared zero; then analyse it with force=-force and zero=, {OTHER_SIGN}."
         )
     slides = found.friction.kinetic
     at = f", at a force of {in_words(slides.force, 'N')}" if slides is not None else ""

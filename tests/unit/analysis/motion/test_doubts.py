@@ -250,7 +250,7 @@ def test_harmonics_of_few_cycles_and_of_changing_ones_are_no_oscillation(duratio
 def test_a_force_of_the_other_sign_is_told_in_words() -> None:
     time = np.arange(0.0, 40.0, 2e-3)
     text = str(st.analyse(st.Record(time=time, force=-sawtooth(time / 2.0))))
-    assert "Analyse it with force=-force" in text
+    assert 'Analyse it with force=-force, or a file with --force="-1 N".' in text
 
 
 def test_a_first_loading_is_no_drift():
