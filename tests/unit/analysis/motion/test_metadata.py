@@ -92,6 +92,26 @@ def test_the_drive_and_the_load_are_compared_with_their_channels():
     assert "Drive velocity: by the slope of the drive's displacement it is 0.5 times" in said
 
 
+@pytest.mark.parametrize("strokes", [2, 3, 10])
+def test_the_speed_of_a_drive_that_turns_is_that_between_its_turns(strokes):
+    """On the whole it hardly moves; that contradicted the stated velocity."""
+    noise = 1e-6 * np.random.default_rng(2).standard_normal(len(TIME))
+    length = VELOCITY * np.ptp(TIME) / strokes
+    travel = VELOCITY * (TIME - TIME[0])
+    there = length * (1.0 - np.abs(1.0 - travel / length % 2.0)) + noise
+    its, said = compare(sawtooth(), drive_velocity=VELOCITY, drive_position=there)
+    drive = its["drive velocity"]
+    assert drive.found == pytest.approx(VELOCITY, rel=0.01)
+    assert drive.agrees
+    assert "contradicts" not in said
+
+
+def test_a_drive_that_stands_in_noise_does_not_turn():
+    noise = 1e-6 * np.random.default_rng(2).standard_normal(len(TIME))
+    its, _ = compare(sawtooth(), drive_velocity=VELOCITY, drive_position=noise)
+    assert its["drive velocity"].found < 0.01 * VELOCITY
+
+
 @pytest.mark.parametrize(("across", "shown"), [(1e4, True), (1e7, False)])
 def test_a_transverse_oscillation_above_half_the_sample_rate_is_not_in_the_record(across, shown):
     its, said = compare(sawtooth(), mass=MASS, stiffness_across=across)
