@@ -189,6 +189,7 @@ def test_the_scrubbers_move_time_at_both_scales(page):
 def test_the_state_under_the_microscope_is_that_of_simulate(page):
     page.tab.focus("#macro")
     page.tab.keyboard.press("Home")
+    page.until("stictionPage.t === 0 && stictionPage.at?.time === 0")
     page.tab.keyboard.press("PageUp")
     page.until("stictionPage.t > 0 && stictionPage.at?.time === stictionPage.t")
     t = page.value("stictionPage.t")
