@@ -54,6 +54,14 @@ class Page:
         act()
         self.until(f"{SHOWN} && stictionPage.shown.asked > {before}")
 
+    def drawn_picture(self, canvas):
+        """Return the picture of a canvas when all that was asked for has been drawn."""
+        frames = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+        self.value(frames)  # in which a change of the layout is noticed
+        self.until("stictionPage.settled")
+        self.value(frames)
+        return self.picture(canvas)
+
     def number(self, name):
         return float(self.value(f"document.querySelector('[data-name=\"{name}\"]').dataset.value"))
 
@@ -129,14 +137,23 @@ def test_dampers_with_axes_of_their_own_are_drawn(page):
         field = page.row(path).locator("input[type=text]")
         field.fill(value)
         page.done_after(lambda: field.press("Enter"))
-        page.value(
-            "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
-        )
-        return page.picture("#scene")
+        return page.drawn_picture("#scene")
 
     along = picture_with("slider.c_x", "1e-9 N s/m")
     assert picture_with("slider.damping_angle", "40 deg") != along
     assert picture_with("slider.c_y", "1e-9 N s/m") == along  # equal ones have no axes
+
+
+def test_an_answer_leaves_what_is_being_typed(page):
+    """Another width of the window asks for other samples, whose answer shows all values."""
+    phi = page.row("slider.phi").locator("input[type=text]")
+    phi.fill("3 deg")
+    page.done_after(lambda: page.tab.set_viewport_size({"width": 1100, "height": 720}))
+    assert phi.input_value() == "3 deg"
+    page.done_after(lambda: phi.press("Enter"))
+    assert phi.input_value() == "3 deg"
+    page.done_after(lambda: page.tab.click("#undo"))
+    assert phi.input_value() == "1 deg"
 
 
 def test_a_fault_stands_beside_its_field_and_the_picture_stays(page):

@@ -164,7 +164,11 @@ export class Form {
     }
     const text = element("input", { type: "text", id, spellcheck: false, placeholder: placeholder(field) });
     text.setAttribute("aria-describedby", `${id}-fault`);
-    text.onchange = () => this.put(path, entered(field, text.value));
+    text.oninput = () => { text.edited = true; };
+    text.onchange = () => {
+      text.edited = false;
+      this.put(path, entered(field, text.value));
+    };
     text.onkeydown = (event) => {
       if (event.key === "Enter") { event.preventDefault(); text.onchange(); }
     };
@@ -180,7 +184,8 @@ export class Form {
     }
     return () => {
       const its = value(), words = shown(its);
-      if (text.value !== words && (document.activeElement !== text || its !== undefined)) text.value = words;
+      const typing = text.edited && document.activeElement === text; // nobody's words are taken away
+      if (text.value !== words && !typing) text.value = words;
       const number = this.numberAt(path) ?? (typeof field.default === "number" ? field.default : 0);
       const key = serverPath(path);
       if (!slider) return;

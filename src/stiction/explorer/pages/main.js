@@ -14,9 +14,15 @@ import { Panel } from "./views.js";
 
 const $ = (id) => document.getElementById(id);
 const data = {}; // of the run that is shown, for the views
-const page = { micro: null, wide: null, drawn: 0, get t() { return player.t; } };
+const page = {
+  micro: null, wide: null, drawn: 0,
+  get t() { return player.t; },
+  get settled() { // all that was asked for is shown, at both scales
+    return !patience && this.shown?.asked === this.asked && !this.shown.quick && (!data.track || Boolean(this.micro?.holds(this.t)));
+  },
+};
 window.stictionPage = page; // what is shown, for tests and measurements
-let state, form, series, scene, microscope, panels = [], view = null;
+let state, form, series, scene, microscope, panels = [], view = null, patience = 0;
 
 const player = new Player((what) => {
   $("play").textContent = player.playing ? "❚❚" : "▶";
@@ -91,10 +97,9 @@ function changed() {
   ask();
 }
 
-let patience;
 function later() {
   clearTimeout(patience);
-  patience = setTimeout(ask, 150);
+  patience = setTimeout(() => { patience = 0; ask(); }, 150);
 }
 
 function ask() {
