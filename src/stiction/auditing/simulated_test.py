@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import pi
+from math import isfinite, nan, pi
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from stiction import theory
+from stiction.analysis.creep.first_slip import first_slip_time
 from stiction.analysis.limit_cycle import KICK
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.regime.classify import regime_of
@@ -35,6 +36,7 @@ MOST_SAMPLES = 200_000
 MOST_WORK = 7_000_000  # steps and samples of all simulations of an audit: 2 s without states
 LEAST_WORK = 20_000  # steps: a trial with fewer would be cut
 SHARE = 0.35  # of that for each of the tests from rest and from sliding
+FINE = 1000.0  # samples from the one before the first slip to the one after it
 MANY = 50_000  # transverse periods above which fewer cycles are simulated
 
 
@@ -205,3 +207,33 @@ def shares(run: Trajectory, cycles: xr.Dataset) -> Shares:
     slip = float((speed[(times >= begin) & (times <= end)] > 1.0).mean())
     rest = float(np.diff(np.clip(run.stick_intervals, begin, end), axis=1).sum() / (end - begin))
     return Shares(rest, max(0.0, 1.0 - slip - rest), slip)
+
+
+def slip_time(seen: SimulatedTest) -> float:
+    """Return when the first slip begins, s; NaN if there is none."""
+    slip = first_slip_time(seen.run)
+    return slip if slip < seen.record.time[-1] else nan
+
+
+def creep_before_slip(seen: SimulatedTest) -> float:
+    """Return the distance moved until the first slip, m; NaN if there is none.
+
+    The mass is as fast as the drive when it slips, and may cover more between two samples than it
+    has crept before: what lies between the samples about the slip is simulated again.
+    """
+    run, slip = seen.run, slip_time(seen)
+    if not isfinite(slip):
+        return nan
+    time, X = run.samples["time"], run.samples["X"]
+    at = int(np.searchsorted(time, slip))
+    begin, end = max(at - 1, 0), at + 1
+    lasts = float(time[end] - time[begin])
+    start = run.state(float(time[begin]))
+    again = simulate(run.slider, lasts, initial=start, sample_rate=FINE / lasts).samples
+    drive = again["drive_X"]
+    loaded = np.sign(drive) * run.slider.along_drive(again["u_x"], again["u_y"])
+    largest = int(np.argmax(loaded))
+    near = slice(max(largest - 1, 0), largest + 2)
+    gain = np.abs(again["V_X"]) - np.abs(drive)
+    moved = np.abs(X[begin] - X[0] + again["X"] - again["X"][0])
+    return float(np.interp(0.0, gain[near], moved[near]))

@@ -18,9 +18,16 @@ from stiction.auditing.page import page
 from stiction.auditing.prediction import predict, suppositions
 from stiction.auditing.report import Audit, sections
 from stiction.auditing.report import audit as examine
-from stiction.auditing.simulated_test import OSCILLATES, SLIDES, coarse_rate, from_sliding, observe
+from stiction.auditing.simulated_test import (
+    OSCILLATES,
+    SLIDES,
+    coarse_rate,
+    creep_before_slip,
+    from_sliding,
+    observe,
+)
 from stiction.auditing.words.changes import _change
-from stiction.auditing.words.numbers import apparent_stiffness, creep_before_slip, numbers
+from stiction.auditing.words.numbers import apparent_stiffness, numbers
 from stiction.auditing.words.stick import stick
 from stiction.auditing.words.transverse import transverse
 from stiction.auditing.words.verdict import margin, motions, stability
@@ -486,17 +493,8 @@ def test_a_transverse_oscillation_is_said_to_die_out_where_it_does(friction, c_y
 
 def test_the_time_until_it_slides_ends_when_it_goes_on_sliding():
     """A transverse swing moves it faster than the drive for moments, long before."""
-    slider = st.Slider(
-        mass="0.1 kg",
-        k_x="2 kN/m",
-        k_y="4 MN/m",
-        phi="40 deg",
-        normal_load="6 N",
-        friction=st.ExponentialWeakening(mu_0=0.25, mu_inf=0.15, v_f="10 mm/s"),
-        drive=st.ConstantVelocity("1 mm/s"),
-    )
-    seen = short(slider).observation
-    run = st.simulate(slider, 3.0, sample_rate=2e4)
+    seen = short(TURNED_A_LOT).observation
+    run = st.simulate(TURNED_A_LOT, 3.0, sample_rate=2e4)
     times, speed = run.samples["time"], run.samples["V_X"] / 1e-3
     mean = np.convolve(speed, np.full(40, 1 / 40), "same")[:-40]  # two periods
     until = times[np.flatnonzero(mean <= 0.99)[-1]]

@@ -21,6 +21,7 @@ from stiction.analysis.motion.regime.kinds import (
 )
 from stiction.analysis.motion.rest import comes_to_rest
 from stiction.analysis.record import Record
+from stiction.analysis.signals.robust import block_means
 from stiction.analysis.signals.turning_points import without_spikes
 from stiction.text.quantity_text import percent
 
@@ -234,11 +235,7 @@ def _sliding(
     begin += share * (float(record.time[-1]) - begin)
     slides, load = record.time >= begin, record.normal_load or np.nan
     force, reduced = record.force[slides], record.force[slides] / relative[slides]
-    blocks = _over(_block_means(force), _block_means(reduced), load)
+    blocks = _over(block_means(force, BLOCKS), block_means(reduced, BLOCKS), load)
     return _over(force, reduced, load)._replace(
         error=blocks.error, coefficient_error=blocks.coefficient_error
     )
-
-
-def _block_means(values: Floats) -> Floats:
-    return np.array([part.mean() for part in np.array_split(values, min(BLOCKS, len(values)))])

@@ -1,4 +1,4 @@
-"""A robust mean, for values among which a few are wild."""
+"""Means: of equal parts, and of values among which a few are wild."""
 
 from __future__ import annotations
 
@@ -15,6 +15,11 @@ class Mean(NamedTuple):
 
     value: float
     error: float
+
+
+def block_means(values: NDArray[np.float64], blocks: int) -> NDArray[np.float64]:
+    """Return the means of equal parts of some values, fewer if there are not so many."""
+    return np.array([part.mean() for part in np.array_split(values, min(blocks, len(values)))])
 
 
 def trimmed_mean(values: NDArray[np.float64]) -> Mean:

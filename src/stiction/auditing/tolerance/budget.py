@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.auditing.prediction import predict
-from stiction.auditing.simulated_test import coarse_rate, observe
-from stiction.auditing.words.numbers import creep_before_slip, kinetic, peak
+from stiction.auditing.simulated_test import coarse_rate, creep_before_slip, observe
+from stiction.auditing.words.numbers import kinetic, peak
 from stiction.errors import StictionError
 from stiction.inference.priors import Rig, quantity
 from stiction.linear_stability import growth_rate

@@ -2,28 +2,22 @@
 
 from __future__ import annotations
 
-from math import isfinite, nan
+from math import nan
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stiction.analysis.creep.first_slip import first_slip_time
 from stiction.analysis.motion.friction import find_friction
 from stiction.analysis.record import cell_axis
 from stiction.auditing.prediction import suppositions
-from stiction.auditing.simulated_test import (
-    SimulatedTest,
-)
+from stiction.auditing.simulated_test import SimulatedTest, creep_before_slip, slip_time
 from stiction.friction import has_state
-from stiction.simulation import simulate
 from stiction.system.slider import Slider
 from stiction.text.sections import Table
 from stiction.text.units import in_words
 
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit
-
-FINE = 1000.0  # samples from the one before the first slip to the one after it
 
 
 def violated_assumptions(found: Audit) -> list[str]:
@@ -75,36 +69,6 @@ def numbers(found: Audit) -> Table:
         for name, theory, shown, unit, rough in rows
     ]
     return Table(("quantity", "theory", "simulated"), lines)
-
-
-def slip_time(seen: SimulatedTest) -> float:
-    """Return when the first slip begins, s; NaN if there is none."""
-    slip = first_slip_time(seen.run)
-    return slip if slip < seen.record.time[-1] else nan
-
-
-def creep_before_slip(seen: SimulatedTest) -> float:
-    """Return the distance moved until the first slip, m; NaN if there is none.
-
-    The mass is as fast as the drive when it slips, and may cover more between two samples than it
-    has crept before: what lies between the samples about the slip is simulated again.
-    """
-    run, slip = seen.run, slip_time(seen)
-    if not isfinite(slip):
-        return nan
-    time, X = run.samples["time"], run.samples["X"]
-    at = int(np.searchsorted(time, slip))
-    begin, end = max(at - 1, 0), at + 1
-    lasts = float(time[end] - time[begin])
-    start = run.state(float(time[begin]))
-    again = simulate(run.slider, lasts, initial=start, sample_rate=FINE / lasts).samples
-    drive = again["drive_X"]
-    loaded = np.sign(drive) * run.slider.along_drive(again["u_x"], again["u_y"])
-    largest = int(np.argmax(loaded))
-    near = slice(max(largest - 1, 0), largest + 2)
-    gain = np.abs(again["V_X"]) - np.abs(drive)
-    moved = np.abs(X[begin] - X[0] + again["X"] - again["X"][0])
-    return float(np.interp(0.0, gain[near], moved[near]))
 
 
 def kinetic(seen: SimulatedTest) -> float:

@@ -191,9 +191,9 @@ def where(found: Critical, stable: bool, origin: float = 0.0) -> str:
     """Return where sliding is stable, or where it is not, with every end inside the range."""
     said = []
     for low, high, kind in found.stretches:
-        first, last = (in_words(end - origin, found.unit) for end in (low, high))
         if kind != stable:
             continue
+        first, last = (in_words(end - origin, found.unit) for end in (low, high))
         if low == found.between[0]:
             said.append(f"below {last}")
         elif high == found.between[1]:

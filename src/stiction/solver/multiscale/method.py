@@ -15,6 +15,11 @@ from stiction.system.description import Description
 from stiction.system.slider import Slider
 
 
+def repeats(problem: Problem) -> bool:
+    """Return whether drive and load are steady, so that one map holds for all cycles."""
+    return steady(problem.drive) and constant(problem.load)
+
+
 class Multiscale(Exact):
     """Like `Exact`, but many cycles at once where the return map is smooth."""
 
@@ -42,7 +47,7 @@ class Multiscale(Exact):
         self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
     ) -> tuple[int, State]:
         """Advance until `end` (s) or until the budget is used up."""
-        if not (steady(problem.drive) and constant(problem.load)):
+        if not repeats(problem):
             return super().advance(problem, state, end, held, budget, out)
         known = self.map_of(problem, out)
         fine = held._replace(
