@@ -8,6 +8,8 @@ import numba
 from numba.extending import _Intrinsic
 
 from stiction.solver.compilation import pointer
+from stiction.solver.exact.loop import steps
+from stiction.solver.multiscale.return_map import empty_map
 
 
 def entry(part):
@@ -42,5 +44,10 @@ def itself(law):
     return law
 
 
-def call(function, law, arguments):
-    return function(law, *arguments)
+def call(function, first, others):
+    return function(first, *others)
+
+
+def map_of(rtol, samples=False):
+    """Return an empty map, of cycles in steps of plain Python."""
+    return empty_map(rtol, plain(steps), samples)

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.friction.law import static_coefficient
-from stiction.solver.compilation.interrupt import delay_interrupt
+from stiction.solver.compilation.interrupt import compiling
 from stiction.solver.compilation.jit import compiled
 from stiction.solver.compilation.pointer import address, caller, memory, pointee, types
 from stiction.solver.problem import coefficient, slope
@@ -44,7 +44,7 @@ class PointedLaw(NamedTuple):
 
 def point_to(law: Any) -> PointedLaw:
     """Return a set-valued law behind pointers."""
-    with delay_interrupt():
+    with compiling():
         code = address(coefficient_and_slope_at, law, types.float64)
         return PointedLaw(code, memory(law), static_coefficient(law))
 

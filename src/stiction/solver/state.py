@@ -7,6 +7,7 @@ from math import sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
+from numba.extending import register_jitable
 
 from stiction.errors import DescriptionError, Fault
 from stiction.machine import shortage
@@ -148,6 +149,7 @@ def plain(state: State) -> Plain:
     return state.motion[:], state.memory[:], state.counts[:]
 
 
+@register_jitable
 def state_from_plain(state: Plain) -> State:
     """Return the state from its plain tuples."""
     motion, memory, counts = state

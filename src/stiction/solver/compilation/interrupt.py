@@ -1,7 +1,8 @@
-"""Ctrl-C while compiled code runs."""
+"""What must not come between while code is compiled or loaded, or while it runs."""
 
 from __future__ import annotations
 
+import gc
 import signal
 import threading
 
@@ -36,3 +37,20 @@ def delay_interrupt() -> Iterator[None]:
         set_handler(signal.SIGINT, before if before is not None else signal.SIG_DFL)
         if arrived:
             signal.raise_signal(signal.SIGINT)
+
+
+@contextmanager
+def compiling() -> Iterator[None]:
+    """Delay an interrupt until the block ends, and the search for garbage too.
+
+    Half of what numba allocates lives until the end; to look through it again and again would take
+    a tenth of the time.
+    """
+    searched = gc.isenabled()
+    gc.disable()
+    try:
+        with delay_interrupt():
+            yield
+    finally:
+        if searched:
+            gc.enable()

@@ -12,7 +12,7 @@ from typing import Any, TypeVar, cast
 import numba
 import numpy as np
 
-from stiction.solver.compilation.interrupt import delay_interrupt
+from stiction.solver.compilation.interrupt import compiling
 from stiction.solver.compilation.machine_code import Shelf
 from stiction.solver.compilation.part import PartCompiler, compile_part
 
@@ -122,7 +122,7 @@ def call_compiled(function: Any, kinds: tuple[type, ...], *arguments: Any) -> An
     """
     if (function, kinds) in _met:
         return function(*arguments)
-    with delay_interrupt():
+    with compiling():
         found = function(*arguments)
         _met.add((function, kinds))
     return found

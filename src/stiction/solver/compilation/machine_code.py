@@ -26,6 +26,7 @@ from typing import Any, cast
 
 import numba
 from numba.core import compiler, types
+from numba.core.registry import cpu_target
 from numba.core.runtime import nrt
 from numba.core.serialize import dumps as _dumps
 from numba.core.sigutils import normalize_signature as _normalize
@@ -34,6 +35,7 @@ from platformdirs import user_cache_path
 from stiction.errors import ResultError
 from stiction.storage.files import whole
 
+context: Any = cpu_target.target_context
 rtsys: Any = nrt.rtsys
 rebuild: Any = compiler.CompileResult._rebuild
 dumps: Any = _dumps
@@ -89,6 +91,10 @@ class Shelf:
         path = self._path(signature, result.codegen)
         with suppress(ResultError), whole(path) as part:
             part.write_bytes(hashlib.sha256(code).digest() + code)
+
+    def holds(self, kinds: tuple[Any, ...]) -> bool:
+        """Return whether there is code for arguments of some types."""
+        return self._path(kinds, context.codegen()).exists()
 
     def flush(self) -> None:
         """Do nothing: code that is named after its origin is never out of date."""

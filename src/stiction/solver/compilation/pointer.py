@@ -53,9 +53,16 @@ def memory(law: Any) -> Any:
 
 @cache
 def _address(function: Any, kind: Any, *arguments: Any) -> int:
-    made, signature = _for_own(function, kind), (types.CPointer(kind), *arguments)
-    made.compile(signature)
-    result = made.overloads[signature]
+    return int(address_of(_for_own(function, kind), types.CPointer(kind), *arguments))
+
+
+@cache
+def address_of(function: Any, *kinds: Any) -> Any:
+    """Return the address of the machine code of a compiled function for arguments of some types."""
+    if INTERPRETED:
+        return function
+    function.compile(kinds)
+    result = function.overloads[kinds]
     return int(result.library.get_pointer_to_function(result.fndesc.llvm_func_name))
 
 
@@ -121,27 +128,54 @@ def caller(result: Any, *kinds: Any) -> Any:
     """
 
     def call(_: Any, code: Any, memory: Any, arguments: Any) -> Any:
-        signature = result(types.intp, memory, arguments)
-
         def generate(context: Any, builder: Any, _: Any, values: Any) -> Any:
             data = context.make_array(memory)(context, builder, values[1]).data
             given = zip(
                 cgutils.unpack_tuple(builder, values[2]), arguments.types, kinds, strict=True
             )
             passed = [data, *(context.cast(builder, *each) for each in given)]
-            taken, convention = (types.voidptr, *kinds), context.call_conv
-            shape = convention.get_function_type(result, taken).as_pointer()
-            function = builder.inttoptr(values[0], shape)
-            status, value = convention.call_function(builder, function, result, taken, passed)
-            with cgutils.if_unlikely(builder, status.is_error):
-                convention.return_status_propagate(builder, status)
-            return value
+            return _call_address(
+                context, builder, values[0], result, (types.voidptr, *kinds), passed
+            )
 
-        return signature, generate
+        return result(types.intp, memory, arguments), generate
 
     if INTERPRETED:
         return lambda code, memory, arguments: code(memory, *arguments)
     return intrinsic(call)
+
+
+def caller_of(result: Any, *kinds: Any) -> Any:
+    """Return a function (code, first, others) for compiled code, which calls an address.
+
+    It is that of a compiled function (see `address_of`) for a first argument of the given type, and
+    for others of the types `kinds`. Errors propagate.
+    """
+
+    def call(_: Any, code: Any, first: Any, others: Any) -> Any:
+        def generate(context: Any, builder: Any, _: Any, values: Any) -> Any:
+            given = zip(cgutils.unpack_tuple(builder, values[2]), others.types, kinds, strict=True)
+            passed = [values[1], *(context.cast(builder, *each) for each in given)]
+            return _call_address(context, builder, values[0], result, (first, *kinds), passed)
+
+        return result(types.intp, first, others), generate
+
+    if INTERPRETED:
+        return lambda code, first, others: code(first, *others)
+    return intrinsic(call)
+
+
+def _call_address(
+    context: Any, builder: Any, code: Any, result: Any, kinds: Any, passed: Any
+) -> Any:
+    """Generate the call of an address, and return its result."""
+    convention = context.call_conv
+    shape = convention.get_function_type(result, kinds).as_pointer()
+    function = builder.inttoptr(code, shape)
+    status, value = convention.call_function(builder, function, result, kinds, passed)
+    with cgutils.if_unlikely(builder, status.is_error):
+        convention.return_status_propagate(builder, status)
+    return value
 
 
 @cache

@@ -11,7 +11,7 @@ from stiction.solver.compilation.jit import compiled, inlined
 from stiction.solver.control import GROWTH, ease, step_factor, trend
 from stiction.solver.exact.newton import products
 from stiction.solver.exact.pursuit import land, pursuit
-from stiction.solver.exact.record import NoRecord, StepRecord, keep_step
+from stiction.solver.exact.record import StepRecord, keep_step
 from stiction.solver.exact.sampling import sample_slip, sample_stick
 from stiction.solver.exact.slip_frame import (
     Frame,
@@ -129,7 +129,7 @@ def slip(
     times: np.ndarray,
     samples: np.ndarray,
     k: int,
-    record: NoRecord | StepRecord,
+    record: StepRecord,
 ) -> tuple[bool, State, int]:
     """Take one step of slip and plan the next."""
     motion, memory, counts = state
@@ -201,7 +201,7 @@ def advance(
     samples: np.ndarray,
     k: int,
     sticks: np.ndarray,
-    record: NoRecord | StepRecord,
+    record: StepRecord,
 ) -> tuple[int, State, int, int]:
     """Advance until `t_end`, until the budget of steps is used up, or until `sticks` is full.
 
@@ -221,8 +221,8 @@ def advance(
         The next row to fill.
     sticks : ndarray
         Rows (start, end) of stick intervals to fill, from ``state.counts.sticks`` on.
-    record : NoRecord or StepRecord
-        What keeps the steps for later.
+    record : StepRecord
+        What keeps the steps for later, where it has room.
 
     Returns
     -------
@@ -275,9 +275,10 @@ def steps(
     samples: np.ndarray,
     k: int,
     sticks: np.ndarray,
+    record: StepRecord,
 ) -> tuple[int, Plain, int, int]:
     """Advance, and return the state as plain tuples for Python."""
     code, state, k, turns = advance(
-        problem, state, t_end, accuracy, budget, times, samples, k, sticks, NoRecord()
+        problem, state, t_end, accuracy, budget, times, samples, k, sticks, record
     )
     return code, plain(state), k, turns

@@ -7,6 +7,7 @@ from typing import Any
 
 from stiction.solver.compilation.jit import call_compiled, compiled
 from stiction.solver.exact.loop import steps
+from stiction.solver.exact.record import record_of
 from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.exact.slip_frame import friction
 from stiction.solver.law import point_to
@@ -35,6 +36,7 @@ class Exact:
     def __init__(self, slider: Slider) -> None:
         """Store the slider, and compile its law."""
         self.law = point_to(friction_of(slider)[0])
+        self.record = record_of(0)
 
     def begin(self, description: Description) -> State:
         """Return the initial state of a run."""
@@ -59,7 +61,8 @@ class Exact:
         self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
     ) -> tuple[int, State]:
         """Advance until `end` (s) or until the budget is used up."""
-        return advance_compiled(steps, self.point_law(problem), state, end, held, budget, out)
+        pointed = self.point_law(problem)
+        return advance_compiled(steps, pointed, state, end, held, budget, out, self.record)
 
     def last_row(self, problem: Problem, state: State) -> list[float]:
         """Return the sample of a state between two steps."""

@@ -19,7 +19,7 @@ from math import atan2, cos, inf, sin, sqrt, tan
 import numpy as np
 
 from stiction.solver.compilation.jit import inlined
-from stiction.solver.exact.record import NoRecord, StepRecord, keep_landing
+from stiction.solver.exact.record import StepRecord, keep_landing
 from stiction.solver.exact.sampling import fill
 from stiction.solver.exact.slip_frame import Frame, Outset, elongation
 from stiction.solver.problem import Problem, at, constant, drift, isotropic
@@ -133,7 +133,7 @@ def land(
     times: np.ndarray,
     samples: np.ndarray,
     k: int,
-    record: NoRecord | StepRecord,
+    record: StepRecord,
 ) -> tuple[State, int]:
     """End the slip by the pursuit curve."""
     motion, memory, counts = state

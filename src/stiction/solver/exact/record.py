@@ -1,8 +1,7 @@
 """Steps kept as rows of numbers, so that the motion inside them can be told later.
 
 A row holds what the step's own dense output needs (section 14 of the method): its start, its
-size, the oscillation under it, and its stages. The loop in steps keeps nothing; which of the two
-it does is known when it is compiled.
+size, the oscillation under it, and its stages. A record without rows keeps nothing.
 """
 
 from __future__ import annotations
@@ -16,7 +15,6 @@ from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.newton import products
 from stiction.solver.exact.oscillation import Oscillator, Swing, after, oscillator, swings
 from stiction.solver.exact.slip_frame import Frame, Outset
-from stiction.solver.problem import by_type
 from stiction.solver.radau import cubic, integral
 from stiction.solver.state import Motion
 
@@ -25,45 +23,21 @@ SIZE, KIND, OSCILLATOR, REST, TURN, PRODUCTS = 6, 7, 8, 14, 17, 20  # columns, a
 CUBIC, SWUNG, LANDING = 0.0, 1.0, 2.0  # kinds of rows
 
 
-class NoRecord(NamedTuple):
-    """What keeps no steps."""
-
-    one: float = 1.0  # compiled code needs a field
-
-    def keep_step(
-        record, frame: Frame, start: Outset, swing: Swing, h: float, p: Triple, w: Triple
-    ) -> None:
-        """Do nothing."""
-
-    def keep_landing(record, frame: Frame, T: float, a_1: float, a_2: float, f: float) -> None:
-        """Do nothing."""
-
-
 class StepRecord(NamedTuple):
     """Room for steps: `rows`, and how many are in use, or would be if they fitted."""
 
     rows: np.ndarray
     used: np.ndarray
 
-    def keep_step(
-        record, frame: Frame, start: Outset, swing: Swing, h: float, p: Triple, w: Triple
-    ) -> None:
-        """Write a step of slip to the next row."""
-        if record.used[0] < len(record.rows):
-            write_step(record.rows[record.used[0]], frame, start, swing, h, p, w)
-        record.used[0] += 1
 
-    def keep_landing(record, frame: Frame, T: float, a_1: float, a_2: float, f: float) -> None:
-        """Write a slip that ends in closed form after `T` (s) to the next row."""
-        if record.used[0] < len(record.rows):
-            row = record.rows[record.used[0]]
-            write_start(row, frame, T, LANDING)
-            row[OSCILLATOR], row[OSCILLATOR + 1], row[OSCILLATOR + 2] = a_1, a_2, f
-        record.used[0] += 1
+def record_of(steps: int) -> StepRecord:
+    """Return an empty record with room for a number of steps."""
+    return StepRecord(np.empty((steps, WIDTH)), np.zeros(1, dtype=np.int64))
 
 
+@inlined
 def keep_step(
-    record: NoRecord | StepRecord,
+    record: StepRecord,
     frame: Frame,
     start: Outset,
     swing: Swing,
@@ -71,19 +45,22 @@ def keep_step(
     p: Triple,
     w: Triple,
 ) -> None:
-    """Keep a step of slip."""
-    record.keep_step(frame, start, swing, h, p, w)
+    """Write a step of slip to the next row, if there is one."""
+    if record.used[0] < len(record.rows):
+        write_step(record.rows[record.used[0]], frame, start, swing, h, p, w)
+    record.used[0] += 1
 
 
+@inlined
 def keep_landing(
-    record: NoRecord | StepRecord, frame: Frame, T: float, a_1: float, a_2: float, f: float
+    record: StepRecord, frame: Frame, T: float, a_1: float, a_2: float, f: float
 ) -> None:
-    """Keep the end of a slip in closed form."""
-    record.keep_landing(frame, T, a_1, a_2, f)
-
-
-by_type(keep_step)
-by_type(keep_landing)
+    """Write a slip that ends in closed form after `T` (s) to the next row, if there is one."""
+    if record.used[0] < len(record.rows):
+        row = record.rows[record.used[0]]
+        write_start(row, frame, T, LANDING)
+        row[OSCILLATOR], row[OSCILLATOR + 1], row[OSCILLATOR + 2] = a_1, a_2, f
+    record.used[0] += 1
 
 
 @inlined

@@ -74,6 +74,7 @@ class Automatic(Multiscale):
             code, now = super().advance(problem, state, end, held, budget, out)
             self.at = self.after_map(self.at, floor(self.map_of(problem, out).balance[0]), now)
             return code, now
+        self.compile_map(problem)
         used, turns = out.used, min(budget, self.at.left)
         code, now = Exact.advance(self, problem, state, end, held, turns, out)
         self.at = self.at._replace(left=self.at.left - (out.used - used))

@@ -6,8 +6,7 @@ from math import inf, nan, sqrt
 
 import numpy as np
 
-from stiction.solver.compilation.jit import inlined, number, piece, python_of
-from stiction.solver.exact import loop
+from stiction.solver.compilation.jit import inlined, number
 from stiction.solver.multiscale.inside import (
     Window,
     add_motion,
@@ -21,6 +20,7 @@ from stiction.solver.multiscale.inside import (
 from stiction.solver.multiscale.interpolant import POINTS, interpolate
 from stiction.solver.multiscale.return_map import NEAR, NODES, Cycle, Returns
 from stiction.solver.multiscale.section import angle, elongation_held, lead, wrap_angle
+from stiction.solver.multiscale.steps import advance
 from stiction.solver.problem import Problem, in_principal_axes, rate
 from stiction.solver.state import (
     NOTHING,
@@ -37,9 +37,6 @@ from stiction.solver.stick import stick_duration
 NODE_STEPS = number(10_000)
 FIRST = number(0)  # row of samples
 NODE_SHARE = 0.1  # tolerance of a node's steps over that of others; their noise is below `closing`
-
-# compiled as a part of its caller, so that a user's law is cached only with that
-advance = piece(python_of(loop.advance))
 
 
 @inlined
@@ -83,10 +80,9 @@ def solve_cycle(
     motion = Motion(0.0, u_x - v_x * early, u_y - v_y * early, 0.0, 1.0, 0.0)
     state = State(motion, at_takeoff(memory), NOTHING)
     times, samples, stick = known.never, known.nowhere, known.stick
-    record = known.record
-    record.used[0] = 0
+    known.record.used[0] = 0
     code, state, _, turns = advance(
-        problem, state, early + longest, fine, most, times, samples, FIRST, stick, record
+        problem, state, early + longest, fine, most, times, samples, FIRST, stick, known
     )
     end = state.motion
     held, _ = stick_duration(problem, end.t, end.u_x, end.u_y, inf)

@@ -8,7 +8,7 @@ import numpy as np
 
 from stiction.solver.compilation.jit import compiled, inlined
 from stiction.solver.exact.loop import at_rest
-from stiction.solver.multiscale.construction import advance, chart
+from stiction.solver.multiscale.construction import chart
 from stiction.solver.multiscale.history import recall, remember
 from stiction.solver.multiscale.interpolant import cycle_from, locate
 from stiction.solver.multiscale.replay import (
@@ -20,6 +20,7 @@ from stiction.solver.multiscale.replay import (
 )
 from stiction.solver.multiscale.return_map import FAR, PATCHES, Cycle, Returns, Stick
 from stiction.solver.multiscale.section import wrap_angle
+from stiction.solver.multiscale.steps import advance
 from stiction.solver.multiscale.walk import follow_patches
 from stiction.solver.problem import Problem
 from stiction.solver.state import (
@@ -204,7 +205,7 @@ def stride(
         room = sticks[: state.counts.sticks + (1 if rests else 0)]  # until the next landing
         most = int(min(budget - turns, 1.0 + known.balance[0] / SHORTER))
         code, state, k, used = advance(
-            problem, state, t_end, accuracy, most, times, samples, k, room, known.record
+            problem, state, t_end, accuracy, most, times, samples, k, room, known
         )
         turns += used
         known.balance[0] -= SHORTER * used

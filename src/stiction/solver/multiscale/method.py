@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import inf, nan
+from typing import Any
 
 import numpy as np
 
+from stiction.solver.compilation.ahead import compile_beside, is_compiled
+from stiction.solver.compilation.pointer import typeof
+from stiction.solver.exact.loop import steps
 from stiction.solver.exact.method import Exact, advance_compiled
 from stiction.solver.multiscale.loop import stride
 from stiction.solver.multiscale.return_map import STEP_SHARE, Returns, empty_map
-from stiction.solver.problem import Problem, constant, steady
+from stiction.solver.multiscale.steps import address_of_steps, kinds_of_steps
+from stiction.solver.problem import Problem, constant, kinds_of, steady
 from stiction.solver.state import Accuracy, Output, State
 from stiction.system.description import Description
 from stiction.system.slider import Slider
+
+_met: set[tuple[Any, ...]] = set()
+_compiled_beside: dict[tuple[Any, ...], Callable[[], object]] = {}
 
 
 def repeats(problem: Problem) -> bool:
@@ -49,7 +58,11 @@ class Multiscale(Exact):
         """Advance until `end` (s) or until the budget is used up."""
         if not repeats(problem):
             return super().advance(problem, state, end, held, budget, out)
+        self.compile_map(problem)
         known = self.map_of(problem, out)
+        wait = _compiled_beside.pop(kinds_of(problem), None)
+        if wait is not None:
+            wait()
         fine = held._replace(
             tolerance=STEP_SHARE * held.tolerance,
             newton=STEP_SHARE * held.newton,
@@ -60,10 +73,23 @@ class Multiscale(Exact):
             stride, self.point_law(problem), state, end, fine, budget, out, known
         )
 
+    def compile_map(self, problem: Problem) -> None:
+        """Begin to compile the map beside the steps, if neither has been compiled yet."""
+        kinds = kinds_of(problem)
+        if kinds in _met:
+            return
+        _met.add(kinds)
+        pointed = self.point_law(problem)
+        steps_kinds = kinds_of_steps(pointed)
+        map_kinds = *steps_kinds[:-1], typeof(empty_map(self.rtol, 0))
+        if not is_compiled(steps, steps_kinds) and not is_compiled(stride, map_kinds):
+            _compiled_beside[kinds] = compile_beside(stride, map_kinds)
+
     def map_of(self, problem: Problem, out: Output) -> Returns:
         """Return the known part of a problem's map."""
         if self.known is None or problem != self.problem:
             first = int(np.searchsorted(out.times, self.span[0], "right"))
             inside = first < len(out.times) and out.times[first] < self.span[1]
-            self.problem, self.known = problem, empty_map(self.rtol, bool(inside))
+            steps = address_of_steps(self.point_law(problem))
+            self.problem, self.known = problem, empty_map(self.rtol, steps, bool(inside))
         return self.known

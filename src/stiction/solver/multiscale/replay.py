@@ -7,10 +7,11 @@ from math import inf, nan
 import numpy as np
 
 from stiction.solver.compilation.jit import inlined, number, piece
-from stiction.solver.multiscale.construction import add_counts, advance
+from stiction.solver.multiscale.construction import add_counts
 from stiction.solver.multiscale.inside import following_step, write_kept
 from stiction.solver.multiscale.return_map import NEAR, Returns, Stick
 from stiction.solver.multiscale.section import angle
+from stiction.solver.multiscale.steps import advance
 from stiction.solver.multiscale.walk import elongation_at_landing, sample_known_stick
 from stiction.solver.problem import Problem, in_principal_axes, rate
 from stiction.solver.state import (
@@ -87,7 +88,7 @@ def sample_cycle(
             samples,
             k,
             known.stick,
-            known.record,
+            known,
         )
         counts = add_counts(counts, alone.counts)
     return code, State(state.motion, state.memory, counts), k

@@ -14,11 +14,11 @@ each stick removes those, and the map is exact.
 from __future__ import annotations
 
 from math import inf, nan
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.solver.exact.record import WIDTH, StepRecord
+from stiction.solver.exact.record import WIDTH, StepRecord, record_of
 
 WIDEST = 1.0  # rad, of a patch
 NODES = 24  # of a patch at most
@@ -88,7 +88,8 @@ class Returns(NamedTuple):
     whole numbers and quarters, so that sums are exact;
     last : angle and time (s) of the last take-off; stick, never, nowhere : room for the one stick
     of a cycle that is solved, and for no samples of it; closing : relative error; record : the
-    steps of the last cycle that was solved; inside : the motion inside cycles.
+    steps of the last cycle that was solved; inside : the motion inside cycles; steps : address of
+    the loop in steps.
     """
 
     patches: np.ndarray
@@ -105,11 +106,15 @@ class Returns(NamedTuple):
     closing: float
     record: StepRecord
     inside: Inside
+    steps: Any
 
 
-def empty_map(rtol: float, samples: bool = False) -> Returns:
-    """Return an empty map, with room for the motion inside cycles if there are samples."""
-    rooms, steps = (ROOMS, STEPS) if samples else (0, 0)
+def empty_map(rtol: float, steps: Any, samples: bool = False) -> Returns:
+    """Return an empty map, with room for the motion inside cycles if there are samples.
+
+    `steps` is the address of the loop in steps, of which cycles are made.
+    """
+    rooms, kept = (ROOMS, STEPS) if samples else (0, 0)
     return Returns(
         np.full((PATCHES, 3), nan),
         np.empty((PATCHES, NODES, 3)),
@@ -123,12 +128,12 @@ def empty_map(rtol: float, samples: bool = False) -> Returns:
         np.empty(0),
         np.empty((0, 0)),
         CLOSING * rtol,
-        StepRecord(np.empty((steps, WIDTH)), np.zeros(1, dtype=np.int64)),
+        record_of(kept),
         Inside(
             np.empty((rooms, NODES, PHASES * COLUMNS)),
             np.zeros((PATCHES, 4), dtype=np.int64),
             np.empty((PATCHES, 2)),
-            np.empty((steps, WIDTH)),
+            np.empty((kept, WIDTH)),
             np.zeros((PAST + 1, 2), dtype=np.int64),
             np.empty((PIECES * PHASES + PIECES + 1, COLUMNS)),
             np.empty(COLUMNS),
@@ -137,4 +142,5 @@ def empty_map(rtol: float, samples: bool = False) -> Returns:
             np.empty(COLUMNS),
             np.empty(1),
         ),
+        steps,
     )

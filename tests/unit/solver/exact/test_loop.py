@@ -12,7 +12,7 @@ from tests.unit.solver.exact.test_step import held_to
 import stiction as st
 from stiction.solver import stick as sticking
 from stiction.solver.exact import loop, pursuit, slip_frame
-from stiction.solver.exact.record import NoRecord
+from stiction.solver.exact.record import record_of
 from stiction.solver.state import (
     COMPLETED,
     NON_FINITE,
@@ -38,7 +38,7 @@ def advance(name, state, t_end, budget=1000, accuracy=None, room=50):
     accuracy = accuracy or held_to(1e-4)
     problem = name if not isinstance(name, str) else problem_of(name)
     code, state, _, turns = plain(loop.advance)(
-        problem, state, t_end, accuracy, budget, *NONE, sticks, NoRecord()
+        problem, state, t_end, accuracy, budget, *NONE, sticks, record_of(0)
     )
     return code, state, sticks[: state.counts.sticks], turns
 
@@ -160,7 +160,7 @@ def test_the_loop_ends_where_it_is_to_and_goes_on(name):
     paused, table = state, np.zeros((50, 2))
     for _ in range(1000):
         code, paused, _, used = plain(loop.advance)(
-            problem_of(name), paused, 0.45, held_to(1e-4), 3, *NONE, table, NoRecord()
+            problem_of(name), paused, 0.45, held_to(1e-4), 3, *NONE, table, record_of(0)
         )
         assert used <= 3
         if code != RUNNING:
@@ -192,7 +192,7 @@ def test_a_landing_in_closed_form_and_its_samples():
     times, samples = t + T * np.array([-1.0, 0.4, 0.6, 2.0]), np.zeros((4, 7))
     state = at_rest_at((0.0, 0.0))
     found, k = plain(pursuit.land)(
-        problem, frame, start, state, closed, times, samples, 1, NoRecord()
+        problem, frame, start, state, closed, times, samples, 1, record_of(0)
     )
     assert k == 3
     u = plain(slip_frame.elongation)(problem, frame, *closed)

@@ -1,7 +1,5 @@
 """Steps kept as rows, and the motion inside them."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from tests.entry import plain
@@ -36,25 +34,24 @@ def test_the_motion_inside_a_kept_step(name, drawn, size):
 
 def test_the_loop_keeps_each_step():
     """One behind the other; a run that keeps none is the same."""
-    problem, kept = problem_of("steady"), []
-    keeper = SimpleNamespace(
-        keep_step=lambda frame, start, swing, h, p, w: kept.append((frame.t, h)),
-        keep_landing=lambda frame, T, *_: kept.append((frame.t, T)),
-    )
+    problem, kept = problem_of("steady"), record.record_of(200)
     begun = State(Motion(0.35, 1.9e-3, 1e-5, 0.0, 0.6, 0.8), MEMORY, NOTHING)
     ends = []
-    for keeps in (keeper, record.NoRecord()):
+    for keeps in (kept, record.record_of(0)):
         sticks = np.zeros((50, 2))
         advance = plain(loop.advance)
         ends.append(advance(problem, begun, 0.45, held_to(1e-4), 1000, *NONE, sticks, keeps))
     assert ends[0] == ends[1]
-    assert len(kept) >= ends[0][1].counts.steps > 5
-    landings = [k for k in range(1, len(kept)) if kept[k][0] != pytest.approx(sum(kept[k - 1]))]
-    assert len(landings) <= ends[0][1].counts.sticks
+    assert keeps.used[0] == kept.used[0]
+    rows = kept.rows[: kept.used[0]]
+    assert 200 > len(rows) >= ends[0][1].counts.steps > 5
+    gaps = rows[1:, 0] - (rows[:-1, 0] + rows[:-1, record.SIZE])
+    assert np.count_nonzero(gaps > 1e-12) <= ends[0][1].counts.sticks
+    assert gaps.min() > -1e-12
 
 
 def test_steps_beyond_the_room_are_counted_only():
-    room = record.StepRecord(np.zeros((0, record.WIDTH)), np.zeros(1, np.int64))
-    record.keep_step(room, None, None, None, 0.1, None, None)
-    record.keep_landing(room, None, 0.1, 1.0, 2.0, 3.0)
+    room = record.record_of(0)
+    plain(record.keep_step)(room, None, None, None, 0.1, None, None)
+    plain(record.keep_landing)(room, None, 0.1, 1.0, 2.0, 3.0)
     assert room.used[0] == 2

@@ -4,15 +4,15 @@ from functools import cache
 
 import numpy as np
 import pytest
-from tests.entry import plain
+from tests.entry import map_of, plain
 from tests.unit.solver.exact.test_predictor import COLD
 from tests.unit.solver.exact.test_step import held_to
 
 import stiction as st
 from stiction.solver.exact import loop
-from stiction.solver.exact.record import NoRecord
+from stiction.solver.exact.record import record_of
 from stiction.solver.multiscale import construction, interpolant, section
-from stiction.solver.multiscale.return_map import WIDEST, empty_map
+from stiction.solver.multiscale.return_map import WIDEST
 from stiction.solver.segments import stretches
 from stiction.solver.state import NOTHING, Counts, Motion, State
 
@@ -46,7 +46,7 @@ def step_through(problem, theta, count):
     """Return the stick intervals after a take-off, by steps, and the angles at their ends."""
     sticks, state = np.zeros((count, 2)), taking_off(problem, theta)
     advance, never = plain(loop.advance), (np.empty(0), np.empty((0, 7)))
-    advance(problem, state, 9.0, EXACT._replace(touch=0.0), 10**6, *never, 0, sticks, NoRecord())
+    advance(problem, state, 9.0, EXACT._replace(touch=0.0), 10**6, *never, 0, sticks, record_of(0))
     return sticks
 
 
@@ -54,7 +54,7 @@ def step_through(problem, theta, count):
 @pytest.mark.parametrize("theta", THETAS)
 def test_a_cycle_from_an_angle(name, theta):
     """From one stick's end to the next one's, as steps find it; and nothing else is left behind."""
-    problem, known = problem_of(name), empty_map(1e-6)
+    problem, known = problem_of(name), map_of(1e-6)
     found, cycle, swing, end, turns = plain(construction.solve_cycle)(
         problem, EXACT, MEMORY, known, theta, 1.0, MOST
     )
@@ -87,7 +87,7 @@ def section_angle(problem, u):
 @pytest.mark.parametrize("rtol", [1e-4, 1e-6])
 def test_a_patch_stands_for_the_cycles_over_it(reach, rtol):
     """(M58): anywhere in it, its cycle is the one solved there, to some times the closing error."""
-    problem, known, theta = problem_of("soft"), empty_map(rtol), 1.2
+    problem, known, theta = problem_of("soft"), map_of(rtol), 1.2
     begun = State(taking_off(problem, theta).motion, MEMORY, Counts(7, 1, 20, 3, 0.5, 2))
     held = held_to(1e-3 * rtol)
     state = plain(construction.chart)(problem, held, begun, known, theta, reach, 1.0)
@@ -119,7 +119,7 @@ def test_a_patch_stands_for_the_cycles_over_it(reach, rtol):
 
 def test_where_a_cycle_does_not_return_there_is_an_edge():
     """Its nodes were in vain, but the first is kept for the next attempt from the same angle."""
-    problem, known = problem_of("soft"), empty_map(1e-4)
+    problem, known = problem_of("soft"), map_of(1e-4)
     begun = taking_off(problem, 1.3)
     last = cycle_from(problem, known, 0.9)
     first = cycle_from(problem, known, 1.3)
@@ -138,7 +138,7 @@ def test_where_a_cycle_does_not_return_there_is_an_edge():
     assert known.coefficients[0, 0].tolist() == before.tolist()
     assert n > 3
     # where the first node does not return, nothing is kept
-    nothing = empty_map(1e-4)
+    nothing = map_of(1e-4)
     chart(problem, held, begun, nothing, 0.9, 0.4, longest)
     assert nothing.sizes.tolist() == [0, 1, 0, 1, 0]
     assert nothing.edges[0] == 0.9
@@ -147,18 +147,16 @@ def test_where_a_cycle_does_not_return_there_is_an_edge():
 
 def test_a_patch_that_costs_too_much_is_given_up_without_an_edge():
     """In the middle of a node too; what it has cost is known."""
-    problem, known = problem_of("soft"), empty_map(1e-4)
+    problem, known = problem_of("soft"), map_of(1e-4)
     begun = taking_off(problem, 1.2)
-    first = plain(construction.solve_cycle)(
-        problem, EXACT, MEMORY, empty_map(1e-4), 1.2, 1.0, MOST
-    )[4]
+    first = plain(construction.solve_cycle)(problem, EXACT, MEMORY, map_of(1e-4), 1.2, 1.0, MOST)[4]
     known.balance[:] = first + 2, 7
     plain(construction.chart)(problem, EXACT, begun, known, 1.2, -0.1, 1.0)
     assert known.sizes.tolist() == [0, 0, 0, 2, 0]
     assert known.balance.tolist() == [-1, 7]
     assert known.width[0] == 0.5 * WIDEST
     # with as much as it takes, the rest is left
-    enough = empty_map(1e-4)
+    enough = map_of(1e-4)
     enough.balance[0] = 10_000
     after = plain(construction.chart)(problem, EXACT, begun, enough, 1.2, -0.1, 1.0)
     assert enough.sizes[0] == 1
@@ -167,7 +165,7 @@ def test_a_patch_that_costs_too_much_is_given_up_without_an_edge():
 
 def test_where_the_map_is_not_smooth_the_next_patch_is_half_as_wide():
     """Too noisy steps never close it: it is given up, at half of the nodes or all."""
-    problem, known = problem_of("soft"), empty_map(1e-13)
+    problem, known = problem_of("soft"), map_of(1e-13)
     begun, rough = taking_off(problem, 1.2), held_to(1e-2)
     plain(construction.chart)(problem, rough, begun, known, 1.2, -0.1, 1.0)
     assert known.width[0] == 0.5 * WIDEST
@@ -193,7 +191,7 @@ CLOSED = 0.03 * 1e-4  # (M58) at a relative tolerance of 1e-4
 )
 def test_when_a_patch_is_closed(misses, nodes, monkeypatch):
     """By a node missed by less than the closing error, the one before by less than ten times."""
-    chart, known, seen = plain(construction.chart), empty_map(1e-4), []
+    chart, known, seen = plain(construction.chart), map_of(1e-4), []
     begun, end = taking_off(problem_of("soft"), 1.2), taking_off(problem_of("soft"), 0.7)
 
     def solved(problem, accuracy, memory, known, theta, longest, most):

@@ -2,18 +2,18 @@
 
 import numpy as np
 import pytest
-from tests.entry import plain
+from tests.entry import map_of, plain
 
 from stiction.solver.multiscale import history
-from stiction.solver.multiscale.return_map import FAR, NEAR, PAST, STEPS, Cycle, empty_map
+from stiction.solver.multiscale.return_map import FAR, NEAR, PAST, STEPS, Cycle
 
 LAST = Cycle(0.01, 1e-3, 4e-4)  # so that a long cycle takes more than 2 ms
-BOUND = NEAR * empty_map(1e-6).closing
+BOUND = NEAR * map_of(1e-6).closing
 
 
 def knowing(*cycles):
     """Return a map with cycles remembered: angle, turn, time, time held."""
-    known = empty_map(1e-6)
+    known = map_of(1e-6)
     for theta, *cycle in cycles:
         plain(history.remember)(known, theta, Cycle(*cycle))
     return known
@@ -28,7 +28,7 @@ def test_the_oldest_is_forgotten():
 
 def test_steps_that_are_forgotten_leave_the_pieces_of_patches():
     """These lie elsewhere: another patch wrote over them once."""
-    known = empty_map(1e-6, samples=True)
+    known = map_of(1e-6, samples=True)
     known.inside.spans[PAST, 1] = 35
     known.record.used[0] = STEPS // 3
     for i in range(4):

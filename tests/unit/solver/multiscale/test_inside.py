@@ -5,12 +5,12 @@ from math import factorial
 import numpy as np
 import pytest
 from numpy.polynomial import Chebyshev
-from tests.entry import plain
+from tests.entry import map_of, plain
 from tests.unit.solver.multiscale.test_construction import EXACT, problem_of
 
 from stiction.solver.multiscale import inside
 from stiction.solver.multiscale.interpolant import POINTS
-from stiction.solver.multiscale.return_map import COLUMNS, NEAR, PAST, PHASES, empty_map
+from stiction.solver.multiscale.return_map import COLUMNS, NEAR, PAST, PHASES
 
 PROBLEM = problem_of("soft")
 
@@ -25,7 +25,7 @@ def motion(x, phase):
 
 def known_of(pieces):
     """Return a map with a patch of this motion, and the error at each node."""
-    known, errors = empty_map(1e-6, samples=True), []
+    known, errors = map_of(1e-6, samples=True), []
     known.inside.bound[:] = 1e-9
     known.inside.shapes[0] = pieces, 0, 1, 0
     for n in range(24):
@@ -67,7 +67,7 @@ def test_the_points_of_a_piece_and_its_ends():
 @pytest.mark.parametrize("rtol", [1e-3, 1e-6, 1e-9])
 def test_pieces_resolve_a_swing_to_the_tolerance(rtol):
     """2 (a/2)^n/n! is left of cos(a x), behind n polynomials of Chebyshev."""
-    closing, s = empty_map(rtol).closing, PROBLEM.system
+    closing, s = map_of(rtol).closing, PROBLEM.system
     period = 2 * np.pi / np.sqrt(s.k_y / s.mass)
     pieces = plain(inside.resolution)(PROBLEM, period, closing)
     few = pieces, max(pieces - 1, 0.5)
@@ -78,7 +78,7 @@ def test_pieces_resolve_a_swing_to_the_tolerance(rtol):
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_the_root_of_the_distance_to_an_edge(side):
     """(M59b): from -1 to 1 over the patch; the root of the distance is linear in it."""
-    known = empty_map(1e-6, samples=True)
+    known = map_of(1e-6, samples=True)
     known.inside.ends[0] = side * 1.1, side
     there, back = plain(inside.root_of_place), plain(inside.place_of_root)
     x = np.linspace(-1.0, 1.0, 21)
@@ -91,7 +91,7 @@ def test_the_root_of_the_distance_to_an_edge(side):
 
 def test_where_the_edge_is():
     """Where the square of the time held would vanish."""
-    known = empty_map(1e-6, samples=True)
+    known = map_of(1e-6, samples=True)
     known.coefficients[0] = 0.0
     known.patches[0, 2] = 2
     known.coefficients[0, 0, 2], known.coefficients[0, 1, 2] = 2.1e-8, -1e-8  # over 1 + x
@@ -106,7 +106,7 @@ def test_where_the_edge_is():
 
 def test_bounds_of_errors():
     """Of the springs' forces a share of what friction can hold, of velocities one of the slip."""
-    known = empty_map(1e-6, samples=True)
+    known = map_of(1e-6, samples=True)
     known.inside.points[:9] = 0.0
     known.inside.points[3, 2:4] = 3e-3, -4e-3
     fine = EXACT._replace(tolerance=1e-9)

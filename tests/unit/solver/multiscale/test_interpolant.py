@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
-from tests.entry import plain
+from tests.entry import map_of, plain
 
 from stiction.solver.multiscale import construction, interpolant
 from stiction.solver.multiscale.interpolant import POINTS
-from stiction.solver.multiscale.return_map import NEAR, NODES, Cycle, empty_map
+from stiction.solver.multiscale.return_map import NEAR, NODES, Cycle
 
 TURN, TIME = Polynomial([0.02, 0.004, -0.001, 0.0003]), Polynomial([2.0, -0.3, 0.05, 0.01])
 SQUARE = Polynomial([0.5, 0.2, -0.03, 0.02])  # of the time held, s^2
@@ -20,7 +20,7 @@ def cycle(x):
 
 def known_of(*starts, reach=0.5, n=4):
     """Return a map with patches of the same polynomials, and by what each node missed."""
-    known, misses = empty_map(1e-6), []
+    known, misses = map_of(1e-6), []
     for row, start in enumerate(starts):
         known.coefficients[row] = 0.0
         for i in range(n):

@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
-from tests.entry import plain
+from tests.entry import map_of, plain
 from tests.systems import problem_of
 from tests.unit.solver.exact.test_step import held_to
 from tests.unit.solver.multiscale.test_construction import problem_of as soft
 from tests.unit.solver.multiscale.test_construction import taking_off
 
 from stiction.solver.exact import loop as exact_loop
-from stiction.solver.exact.record import NoRecord
+from stiction.solver.exact.record import record_of
 from stiction.solver.multiscale import construction, loop, replay
 from stiction.solver.multiscale.return_map import (
     CLOSING,
@@ -18,7 +18,6 @@ from stiction.solver.multiscale.return_map import (
     WIDEST,
     Cycle,
     Stick,
-    empty_map,
 )
 from stiction.solver.multiscale.section import elongation_held
 from stiction.solver.state import (
@@ -36,7 +35,7 @@ CYCLE, STICK = Cycle(0.01, 1.0, 0.4), Stick(0.5, 1.0, 0.3)
 
 
 def test_nothing_is_known_at_first():
-    known = empty_map(1e-6)
+    known = map_of(1e-6)
     assert known.closing == CLOSING * 1e-6
     assert known.patches.shape == (PATCHES, 3)
     assert known.coefficients.shape == (PATCHES, NODES, 3)
@@ -50,7 +49,7 @@ def test_nothing_is_known_at_first():
 @pytest.mark.parametrize("way", [1.0, -1.0])
 def test_how_far_a_patch_is_tried(way):
     """Half way to an edge, a quarter after a try in vain, and up to another patch."""
-    known, theta, turn = empty_map(1e-6), 0.3, way * 0.01
+    known, theta, turn = map_of(1e-6), 0.3, way * 0.01
     reach = plain(loop.reach)
     known.edges[:2] = theta + way * 0.5, theta - way * 0.1  # one of them behind
     assert reach(known, theta, turn) == way * WIDEST
@@ -72,7 +71,7 @@ def test_how_far_a_patch_is_tried(way):
 
 def test_a_patch_pays_if_it_is_good_for_eight_cycles():
     """Over its angles and in the time left; if not too many were in vain, nor cost too much."""
-    known, pays = empty_map(1e-6), plain(loop.pays)
+    known, pays = map_of(1e-6), plain(loop.pays)
     assert pays(known, STICK, CYCLE, 0.0801, 100.0)
     assert pays(known, STICK, CYCLE, -0.0801, 100.0)
     assert pays(known, STICK, CYCLE._replace(turn=-0.01), -0.0801, 100.0)
@@ -143,10 +142,10 @@ def test_from_a_landing_to_the_angle_of_its_stick_and_back(name):
 def test_strides_lead_to_the_same_sticks_as_steps(name, until):
     """With samples along the way, at a fraction of the steps."""
     problem, begun = soft(name), taking_off(soft(name), 1.0)
-    times, known = np.array([0.05, 0.25, 0.251, 0.255, 0.262, 0.37]), empty_map(1e-6)
+    times, known = np.array([0.05, 0.25, 0.251, 0.255, 0.262, 0.37]), map_of(1e-6)
     (code, state, k, _), sticks, samples = run(loop.stride, problem, begun, until, times, known)
     (_, wanted, _, _), exact, rows = run(
-        exact_loop.advance, problem, begun, until, times, NoRecord()
+        exact_loop.advance, problem, begun, until, times, record_of(0)
     )
     counts = Counts(*state[2])
     assert (code, k) == (COMPLETED, 6)
@@ -180,11 +179,11 @@ def run(function, problem, state, until, times, *more):
 
 
 def test_a_stride_stops_with_its_budget_or_room_and_goes_on():
-    problem, state, known = soft("soft"), taking_off(soft("soft"), 1.0), empty_map(1e-6)
+    problem, state, known = soft("soft"), taking_off(soft("soft"), 1.0), map_of(1e-6)
     (code, whole, _, steps), table, _ = run(loop.stride, problem, state, 0.5, np.empty(0), known)
     assert code == COMPLETED
     held, never = held_to(1e-7)._replace(touch=0.0), (np.empty(0), np.empty((0, 7)), 0)
-    sticks, known, paused, used = np.zeros((200, 2)), empty_map(1e-6), state, 0
+    sticks, known, paused, used = np.zeros((200, 2)), map_of(1e-6), state, 0
     for _ in range(1000):
         code, plainly, _, turns = plain(loop.stride)(
             problem, paused, 0.5, held, 60, *never, sticks, known
@@ -196,14 +195,14 @@ def test_a_stride_stops_with_its_budget_or_room_and_goes_on():
     assert sticks.tolist() == table.tolist()
     room = np.zeros((5, 2))
     code, plainly, _, _ = plain(loop.stride)(
-        problem, state, 0.5, held, 10**6, *never, room, empty_map(1e-6)
+        problem, state, 0.5, held, 10**6, *never, room, map_of(1e-6)
     )
     assert (code, plainly[2][3]) == (RUNNING, 5)
     assert room.tolist() == table[:5].tolist()
 
 
 def test_a_cycle_is_known_from_a_patch_or_from_the_past():
-    known, cycle = empty_map(1e-6), Cycle(0.01, 2.0, 0.5)
+    known, cycle = map_of(1e-6), Cycle(0.01, 2.0, 0.5)
     found, _, _ = plain(loop.known_cycle)(known, 0.3, cycle)
     assert not found
     known.coefficients[0] = 0.0

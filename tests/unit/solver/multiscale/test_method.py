@@ -80,7 +80,7 @@ def test_a_jump_ends_the_last_cycle():
     solver, problem = Multiscale(SOFT, 1e-5), problem_of("soft")
     state = taking_off(problem, 1.0)
     assert solver.enter_segment(state, 0.0, 0.0).motion == state.motion
-    solver.known = method.empty_map(1e-5)
+    solver.known = method.empty_map(1e-5, 0)
     solver.known.last[:] = 0.3, 1.0
     found = solver.enter_segment(state, 1e-3, 0.0)
     assert np.isnan(solver.known.last).all()

@@ -4,12 +4,12 @@ from math import pi
 
 import numpy as np
 import pytest
-from tests.entry import plain
+from tests.entry import map_of, plain
 
 import stiction as st
 from stiction.solver.multiscale.history import recall, remember
 from stiction.solver.multiscale.interpolant import POINTS, interpolate
-from stiction.solver.multiscale.return_map import Cycle, empty_map
+from stiction.solver.multiscale.return_map import Cycle
 from stiction.solver.multiscale.section import angle, elongation_held, lead, wrap_angle
 from stiction.solver.problem import Problem
 from stiction.solver.segments import stretches
@@ -273,7 +273,7 @@ def test_newton_s_form_through_leja_points(n):
 
 def recall_slips(theta: float, *begun: float) -> tuple[bool, float, float]:
     """What slips that began at these angles, and ended at 2, tell of one from `theta`."""
-    known, last = empty_map(1e-3), Cycle(0.01, 0.001, 1e-6)
+    known, last = map_of(1e-3), Cycle(0.01, 0.001, 1e-6)
     for start in begun:
         remember(known, start, Cycle(2.0 - start, 0.5 - 0.1 * start, 0.02))
     row, cycle = recall(known, theta, last)

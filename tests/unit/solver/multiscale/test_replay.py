@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests.entry import plain
+from tests.entry import map_of, plain
 from tests.unit.solver.multiscale.test_construction import (
     EXACT,
     MEMORY,
@@ -12,9 +12,9 @@ from tests.unit.solver.multiscale.test_construction import (
 )
 
 from stiction.solver.exact import loop
-from stiction.solver.exact.record import NoRecord
+from stiction.solver.exact.record import record_of
 from stiction.solver.multiscale import replay
-from stiction.solver.multiscale.return_map import Stick, empty_map
+from stiction.solver.multiscale.return_map import Stick
 from stiction.solver.state import COMPLETED, Counts, State
 
 COUNTS = Counts(7, 1, 20, 3, 0.5, 2)
@@ -24,7 +24,7 @@ T, THETA = 4.0, 1.1
 @pytest.mark.parametrize("name", ["soft", "damped"])
 def test_samples_of_a_cycle(name):
     """They are those of steps from the same take-off; the state itself stays as it was."""
-    problem, known = problem_of(name), empty_map(1e-6)
+    problem, known = problem_of(name), map_of(1e-6)
     cycle = cycle_from(problem, known, THETA)
     stick = Stick(T - 2e-3, T, THETA)
     landing = T + cycle.time - cycle.held
@@ -44,7 +44,7 @@ def test_samples_of_a_cycle(name):
     wanted = np.full((7, 7), np.nan)
     plain(loop.advance)(
         problem, taking_off(problem, THETA, T), landing, EXACT, 10**6,
-        times[2:-1], wanted, 0, np.zeros((2, 2)), NoRecord(),
+        times[2:-1], wanted, 0, np.zeros((2, 2)), record_of(0),
     )  # fmt: skip
     assert samples[3:-1, :6] == pytest.approx(wanted[1:6, :6], rel=1e-6, abs=1e-9)
     assert samples[1:-1, 6].tolist() == [1.0, 1.0, *[0.0] * 5]
@@ -56,7 +56,7 @@ def test_samples_of_a_cycle(name):
 
 @pytest.mark.parametrize("after", [None, 1e-4])
 def test_without_samples_of_the_slip_no_steps_are_taken(after):
-    problem, known = problem_of("soft"), empty_map(1e-6)
+    problem, known = problem_of("soft"), map_of(1e-6)
     stick, landing = Stick(T - 2e-3, T, THETA), T + 0.01
     times = np.array([T - 1e-3] if after is None else [T - 1e-3, landing + after])
     samples, state = np.full((2, 7), np.nan), State(taking_off(problem, 0.3).motion, MEMORY, COUNTS)

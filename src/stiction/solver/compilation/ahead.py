@@ -1,0 +1,70 @@
+"""Compilation of what comes next in a second process, while this one compiles something else.
+
+The code goes the usual way, over the cache on disk. Nothing depends on the second process: what it
+does not leave there is compiled here.
+"""
+
+from __future__ import annotations
+
+import atexit
+import pickle
+import subprocess
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from importlib import import_module
+from typing import Any
+
+from stiction.machine import CORES
+from stiction.solver.compilation.jit import INTERPRETED
+
+_begun: list[subprocess.Popen[bytes]] = []
+
+
+def is_compiled(function: Any, kinds: tuple[Any, ...]) -> bool:
+    """Return whether a `compiled` function is ready for arguments of some types, or on disk."""
+    return INTERPRETED or kinds in function.overloads or function._cache.holds(kinds)
+
+
+def compile_beside(function: Any, kinds: tuple[Any, ...]) -> Callable[[], object]:
+    """Begin to compile a `compiled` function for arguments of some types; return what waits for it.
+
+    On a single core nothing is begun.
+    """
+    if CORES < 2:
+        return lambda: None
+    made = function.py_func
+    task = pickle.dumps((made.__module__, made.__qualname__, kinds))
+    try:
+        begun = subprocess.Popen(
+            [sys.executable, "-P", "-m", __name__],  # -P: nothing from the working folder
+            stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,  # Ctrl-C is for this process, which ends the other
+        )
+    except OSError:
+        return lambda: None
+    _begun.append(begun)
+    assert begun.stdin is not None
+    with suppress(OSError), begun.stdin as given:
+        given.write(task)
+    return begun.wait
+
+
+@atexit.register
+def end() -> None:
+    """End the second processes."""
+    for begun in _begun:
+        begun.kill()
+        begun.wait()
+
+
+def main() -> None:
+    """Compile what is named on standard input."""
+    module, name, kinds = pickle.load(sys.stdin.buffer)
+    getattr(import_module(module), name).compile(kinds)
+
+
+if __name__ == "__main__":
+    main()
