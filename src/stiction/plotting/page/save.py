@@ -17,9 +17,17 @@ METADATA: dict[str, dict[str, Any]] = {".pdf": {"CreationDate": None}, ".svg": {
 
 
 def save(fig: Figure, path: str | Path) -> list[Path]:
-    """Write a figure as ``path.png``, to look at, and ``path.pdf``, to print; see `write`."""
-    bare = Path(path)
-    return [write(fig, bare.with_name(bare.name + suffix)) for suffix in (".png", ".pdf")]
+    """Write a figure as ``path.png``, to look at, and ``path.pdf``, to print; see `write`.
+
+    Both have the same layout, which is found once.
+    """
+    bare, layout = Path(path), fig.get_layout_engine()
+    image = write(fig, bare.with_name(f"{bare.name}.png"))
+    fig.set_layout_engine("none")
+    try:
+        return [image, write(fig, bare.with_name(f"{bare.name}.pdf"))]
+    finally:
+        fig.set_layout_engine(layout)
 
 
 def write(fig: Figure, path: str | Path) -> Path:
