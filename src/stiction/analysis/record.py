@@ -12,6 +12,7 @@ from pydantic_core import PydanticCustomError
 from stiction.drive.program import nominal_velocity
 from stiction.errors import Fault, ResultError
 from stiction.names import draw
+from stiction.recording.guess.clock import rate_of
 from stiction.recording.origin import Origin
 from stiction.recording.request import SignedForce
 from stiction.recording.sensor import Sensor
@@ -261,8 +262,11 @@ class Record(Described):
 
     @property
     def sample_rate(self) -> float:
-        """Samples per second, on average if they are unequally spaced; 0 for a single one."""
-        return (len(self) - 1) / self.duration if len(self) > 1 else 0.0
+        """Samples per second, gaps left out; 0 for a single sample.
+
+        It is the average if intervals differ at random.
+        """
+        return rate_of(self.time)
 
     def relative_load(self) -> Floats:
         """Return the load over `normal_load`, (n,): 1 unless `load` varies; NaN where it lifts off.

@@ -13,7 +13,7 @@ from stiction.errors import Faults, ResultError
 from stiction.recording.channels import CHANNELS, plain
 from stiction.recording.formats import TextLayout, read_tables
 from stiction.recording.guess.choice import Choice, Chosen, choose_columns, own_clock
-from stiction.recording.guess.clock import Block, blocks, check_stated
+from stiction.recording.guess.clock import Block, blocks, check_stated, rate_of
 from stiction.recording.guess.displacement import unwrap
 from stiction.recording.guess.remarks import Said, what_is_said
 from stiction.recording.noise import noise_level
@@ -191,7 +191,7 @@ def _measurement(
         table.format,
         _uses(table, choice, channels, time),
         len(time),
-        (len(time) - 1) / float(time[-1] - time[0]) if time[-1] > time[0] else 0.0,
+        rate_of(time),
         label=table.label or _label(table, part),
         start=said.start or table.start,
         notes=tuple(notes),

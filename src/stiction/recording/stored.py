@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from stiction.errors import DescriptionError, ResultError
 from stiction.recording.channels import CHANNELS
+from stiction.recording.guess.clock import rate_of
 from stiction.recording.measurement import Measurement
 from stiction.recording.origin import Origin
 from stiction.recording.sensor import Sensor
@@ -139,5 +140,4 @@ def _fields(sensor: Sensor) -> dict[str, Any]:
 def _origin(channels: Mapping[str, Floats]) -> Origin:
     """Return the origin of a record that was made in a session."""
     time = channels["time"]
-    span = float(time[-1] - time[0]) if len(time) else 0.0
-    return Origin("a session", "record", (), len(time), (len(time) - 1) / span if span else 0.0)
+    return Origin("a session", "record", (), len(time), rate_of(time))

@@ -58,8 +58,43 @@ def test_a_decimal_comma(write, separator):
 
 def test_commas_that_separate_and_are_decimal_signs_are_refused(write):
     path = write(f"time [s],force [N]\n{lines(',', ',')}")
-    with pytest.raises(st.ResultError, match="say --decimal point or --decimal comma"):
+    with pytest.raises(st.ResultError, match="if not, write the file with semicolons"):
         st.read_record(path)
+
+
+@pytest.mark.parametrize(
+    ("separator", "one", "many"),
+    [
+        (";", "1500.5", "1,500.5"),
+        ("\t", "1500.5", "1'500.5"),
+        (";", "1500,5", "1.500,5"),
+        ("\t", "1500,5", "1\u202f500,5"),
+        (",", "1500.5", '"1,500.5"'),
+        (";", "1234567", "1,234,567"),
+    ],
+)
+def test_thousands_in_groups(write, separator, one, many):
+    """They are told as such where nothing else can be meant; small numbers have none."""
+    small = "999.25" if "." in one else "999,25" if "," in one else "999"
+    rows = [(f"{i}", small if i % 2 else many) for i in range(40)]
+    path = write(
+        f"time [s]{separator}force [mN]\n" + "".join(f"{a}{separator}{b}\n" for a, b in rows)
+    )
+    record = st.read_record(path)
+    values = [1e-3 * float(x.replace(",", ".")) for x in (one, small)]
+    assert record.force[:2].tolist() == pytest.approx(values, rel=1e-15)
+    assert "thousands in groups" in notes(record)
+    assert st.read_record(write(path.read_text().replace(many, one))).force == pytest.approx(
+        record.force, rel=1e-15
+    )
+
+
+def test_no_group_is_seen_in_columns(write):
+    """Three digits after a comma may be a column of its own."""
+    path = write("t [ms],a,b\n" + "".join(f"{i},{100 + i},200.5\n" for i in range(50)))
+    record = st.read_record(path, force="3=N")
+    assert record.force.tolist() == [200.5] * 50
+    assert "thousands" not in notes(record)
 
 
 def test_a_comma_that_may_group_thousands_is_refused(write):

@@ -26,6 +26,7 @@ from stiction.solver.block_algebra import solve_blocks
 from stiction.solver.compilation.jit import call_compiled
 from stiction.solver.exact.loop import steps
 from stiction.solver.exact.pursuit import slip_before_landing
+from stiction.solver.exact.record import record_of
 from stiction.solver.integrate import accuracy, tolerance
 from stiction.solver.law import point_to
 from stiction.solver.problem import Elliptic, Isotropic, kinds_of
@@ -115,7 +116,7 @@ def turn(problem, held, state, times=()):
     samples = np.full((len(times), 7), np.nan)
     state = state._replace(counts=state.counts._replace(sticks=0, stuck=0.0))
     problem = problem._replace(law=point_to(problem.law))
-    arguments = problem, state, 1e9, held, 1, times, samples, 0, sticks
+    arguments = problem, state, 1e9, held, 1, times, samples, 0, sticks, record_of(0)
     _, after, _, _ = call_compiled(steps, kinds_of(problem), *arguments)
     return state_from_plain(after), samples
 
@@ -814,6 +815,7 @@ def test_every_constant_is_printed():
         "reference.py",
         "record.py",
         "sampling.py",
+        "turn.py",
         "workspace.py",
     }
     for path in SOLVER.rglob("*.py"):

@@ -37,18 +37,30 @@ NUMBER = {
     ".": re.compile(r"[+−-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?inf", re.I),
     ",": re.compile(r"[+−-]?(\d+(,\d+)?|,\d+)([eE][+-]?\d+)?|[+-]?inf", re.I),
 }
+GROUPS = {  # thousands in groups: 12,345.6 or 12'345.6
+    ".": re.compile(r"[+−-]?\d{1,3}([,'’ \u00a0\u202f]\d{3})+(\.\d*)?"),
+    ",": re.compile(r"[+−-]?\d{1,3}([.'’ \u00a0\u202f]\d{3})+(,\d*)?"),
+}
+SURELY = {  # groups and a decimal sign, or two groups: nothing else
+    ".": re.compile(r"\d([,'’ \u00a0\u202f]\d{3})+\.\d|\d([,'’]\d{3}){2}"),
+    ",": re.compile(r"\d([.'’ \u00a0\u202f]\d{3})+,\d|\d([.'’]\d{3}){2}"),
+}
 GROUPED = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")  # one and a half, or fifteen hundred?
 
 
 class Dialect(NamedTuple):
-    """Separator and decimal sign."""
+    """Separator and decimal sign, and whether thousands are grouped."""
 
     separator: str
     decimal: str
+    groups: bool = False
 
     def __str__(self) -> str:
         """Return them in words."""
-        return f"separated by {SEPARATORS[self.separator]}, decimal {DECIMALS[self.decimal]}"
+        groups = ", thousands in groups" if self.groups else ""
+        return (
+            f"separated by {SEPARATORS[self.separator]}, decimal {DECIMALS[self.decimal]}{groups}"
+        )
 
     def cells(self, line: str) -> list[str]:
         """Return the cells of a line."""
@@ -60,7 +72,17 @@ class Dialect(NamedTuple):
 
     def is_number(self, cell: str) -> bool:
         """Return whether a cell is a number."""
-        return NUMBER[self.decimal].fullmatch(cell) is not None
+        return NUMBER[self.decimal].fullmatch(cell) is not None or self._has_groups(cell)
+
+    def _has_groups(self, cell: str) -> bool:
+        return self.groups and GROUPS[self.decimal].fullmatch(cell) is not None
+
+    def as_python(self, cell: str) -> str:
+        """Return a number as Python writes it; another cell with points for decimal signs."""
+        if self._has_groups(cell):
+            whole, sign, rest = cell.partition(self.decimal)
+            cell = re.sub("[^0-9+−-]", "", whole) + sign + rest
+        return cell.replace("−", "-").replace(self.decimal, ".")
 
     def is_value(self, cell: str) -> bool:
         """Return whether a cell is a number, a time of day, or missing."""
@@ -95,10 +117,13 @@ def find_dialect(
     """
     filled = [line for line in lines if line.strip()]
     some = filled[: SAMPLE // 2] + filled[SAMPLE // 2 :][:: max(1, len(filled) // SAMPLE)][-SAMPLE:]
+    signs = [decimal] if decimal else list(DECIMALS)
+    kinds = [(sign, False) for sign in signs]
+    kinds += [(sign, True) for sign in signs if any(SURELY[sign].search(line) for line in some)]
     choices = [
-        Dialect(mark, sign)
+        Dialect(mark, sign, groups)
         for mark in ([separator] if separator else SEPARATORS)
-        for sign in ([decimal] if decimal else DECIMALS)
+        for sign, groups in kinds
         if mark != sign
     ]
     for labels in (False, True):
@@ -146,7 +171,7 @@ def _settle(
 ) -> Dialect:
     """Return the one of several good readings that the file supports, or refuse to choose."""
     width = {each: _score(each, lines, labels)[1] for each in near}
-    chosen = min(near, key=lambda each: (-width[each], each.decimal != "."))
+    chosen = min(near, key=lambda each: (-width[each], each.decimal != ".", each.groups))
     headed = _header_width(chosen, lines, labels)
     samples = next(line for line in lines if chosen.has_samples(line, labels)).strip()
     # '0,5' is one number, or two integers: the first line tells how many columns there are
@@ -156,8 +181,8 @@ def _settle(
             return commas[0]
         if (commas and headed != width[chosen]) or 2 * headed == width[chosen]:
             raise ResultError(
-                f"{path}: in {samples[:60]!r} commas separate columns, or are decimal signs; say "
-                "--decimal point or --decimal comma, or write the file with semicolons"
+                f"{path}: in {samples[:60]!r} commas separate {width[chosen]} columns, or are "
+                f"decimal signs; if they separate, say --decimal point; if not, {_remedy(commas)}"
             )
     if chosen.decimal == "," and decimal is None:
         lines = [line for line in lines if chosen.has_samples(line, labels)]
@@ -168,6 +193,13 @@ def _settle(
                 "--decimal comma, or write the numbers without groups"
             )
     return chosen
+
+
+def _remedy(commas: list[Dialect]) -> str:
+    """Return what helps where commas are decimal signs."""
+    if commas:
+        return "say --decimal comma"
+    return "write the file with semicolons between columns: here commas do both"
 
 
 def _header_width(dialect: Dialect, lines: Sequence[str], labels: bool) -> int:

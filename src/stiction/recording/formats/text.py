@@ -214,7 +214,7 @@ def _read_cells(path: Path, lines: Sequence[str], dialect: Dialect, first: int) 
         raw = column.to_numpy(dtype=object)
         known = np.asarray(column.notna())
         plain = [
-            str(x).strip().replace("−", "-").replace(dialect.decimal, ".") if yes else "nan"
+            dialect.as_python(str(x).strip()) if yes else "nan"
             for x, yes in zip(raw, known, strict=True)
         ]
         right = np.array(pd.to_numeric(pd.Series(plain, dtype=object), errors="coerce"), float)

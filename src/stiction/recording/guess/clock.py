@@ -20,6 +20,8 @@ STEADY = 30.0  # largest of intervals over the smallest
 FEW = 0.02  # of the samples: with so few different values a column is a clock or a period
 FIRST = 0.01  # relative: how far the first interval may differ from the others
 TIED = 0.5  # of the samples with the time of the one before
+GAP = 3.0  # medians: in a longer interval samples are missing
+EVEN = 0.5  # of their mean: how far the other intervals may spread for that to be sure
 
 
 class Block(NamedTuple):
@@ -88,6 +90,20 @@ def _are_periods(path: object, values: Floats, said: str | None, name: str) -> b
             "--times clock or --times intervals"
         )
     return False
+
+
+def rate_of(time: Floats) -> float:
+    """Return the samples per second, gaps left out; 0 if the times do not tell.
+
+    It is the average if intervals differ at random.
+    """
+    steps = np.diff(time)
+    if not len(steps) or time[-1] <= time[0]:
+        return 0.0
+    near = steps[steps <= GAP * np.median(steps)]
+    if len(near) < len(steps) and near.std() < EVEN * near.mean():
+        return len(near) / float(near.sum())
+    return len(steps) / float(time[-1] - time[0])
 
 
 def _first_interval(time: Floats) -> list[str]:

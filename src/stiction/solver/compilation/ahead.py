@@ -16,6 +16,7 @@ from importlib import import_module
 from typing import Any
 
 from stiction.machine import CORES
+from stiction.solver.compilation.interrupt import compiling
 from stiction.solver.compilation.jit import INTERPRETED
 
 _begun: list[subprocess.Popen[bytes]] = []
@@ -63,7 +64,8 @@ def end() -> None:
 def main() -> None:
     """Compile what is named on standard input."""
     module, name, kinds = pickle.load(sys.stdin.buffer)
-    getattr(import_module(module), name).compile(kinds)
+    with compiling():
+        getattr(import_module(module), name).compile(kinds)
 
 
 if __name__ == "__main__":

@@ -12,6 +12,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from stiction.solver.compilation.turn import end_turns
+
 
 @contextmanager
 def delay_interrupt() -> Iterator[None]:
@@ -41,7 +43,7 @@ def delay_interrupt() -> Iterator[None]:
 
 @contextmanager
 def compiling() -> Iterator[None]:
-    """Delay an interrupt until the block ends, and the search for garbage too.
+    """Delay an interrupt until the block ends, and the search for garbage too; then end all turns.
 
     Half of what numba allocates lives until the end; to look through it again and again would take
     a tenth of the time.
@@ -52,5 +54,6 @@ def compiling() -> Iterator[None]:
         with delay_interrupt():
             yield
     finally:
+        end_turns()
         if searched:
             gc.enable()

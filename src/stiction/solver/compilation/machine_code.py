@@ -33,6 +33,7 @@ from numba.core.sigutils import normalize_signature as _normalize
 from platformdirs import user_cache_path
 
 from stiction.errors import ResultError
+from stiction.solver.compilation.turn import take_turn
 from stiction.storage.files import whole
 
 context: Any = cpu_target.target_context
@@ -77,6 +78,9 @@ class Shelf:
         if code is None:
             if solver := _in_words(signature):  # other functions take less than a second
                 log.info("compiling %s, once", solver)
+            take_turn(path)
+            code = _read_code(path)
+        if code is None:
             return None
         if self._own:
             context.refresh()  # whatever a user's law calls, of NumPy's linear algebra for example

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from stiction.solver.compilation.ahead import compile_beside, is_compiled
+from stiction.solver.compilation.jit import INTERPRETED
 from stiction.solver.compilation.pointer import typeof
 from stiction.solver.exact.loop import steps
 from stiction.solver.exact.method import Exact, advance_compiled
@@ -76,7 +77,7 @@ class Multiscale(Exact):
     def compile_map(self, problem: Problem) -> None:
         """Begin to compile the map beside the steps, if neither has been compiled yet."""
         kinds = kinds_of(problem)
-        if kinds in _met:
+        if INTERPRETED or kinds in _met:
             return
         _met.add(kinds)
         pointed = self.point_law(problem)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from stiction.solver.compilation.interrupt import compiling
-from stiction.solver.compilation.jit import inlined
+from stiction.solver.compilation.jit import INTERPRETED, inlined
 from stiction.solver.compilation.pointer import address_of, caller_of, typeof, types
 from stiction.solver.exact.loop import steps
 from stiction.solver.exact.record import record_of
@@ -48,6 +48,8 @@ def kinds_of_steps(problem: Problem) -> tuple[Any, ...]:
 
 def address_of_steps(problem: Problem) -> Any:
     """Return the address of the loop in steps, compiled for a problem of this type."""
+    if INTERPRETED:
+        return steps
     kinds = kinds_of(problem)
     if kinds not in _addresses:
         with compiling():

@@ -13,7 +13,7 @@ import numpy as np
 from numba.extending import overload, register_jitable
 
 from stiction.friction.law import Vector, states
-from stiction.solver.compilation.interrupt import delay_interrupt
+from stiction.solver.compilation.interrupt import compiling
 from stiction.solver.compilation.jit import compiled, inlined
 from stiction.solver.compilation.pointer import address, caller, memory, pointee, types
 from stiction.solver.problem import (
@@ -144,7 +144,7 @@ def point_to_flow(law: Any) -> PointedFlow:
     """Return a law as the smooth solver takes it."""
     plain = np.array([True, True, *(state.unit == "1" for state in states(law))])
     own = (flow_at, *FLOW) if states(law) else (friction_at, *FRICTION)
-    with delay_interrupt():
+    with compiling():
         flows, grains = address(own[0], law, *own[1:]), address(grain_at, law, *GRAIN)
         return PointedFlow(flows, grains, memory(law), plain)
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from stiction.friction import states
-from stiction.solver.compilation.interrupt import delay_interrupt
+from stiction.solver.compilation.interrupt import compiling
 from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.problem import Isotropic, Problem, at, force
 from stiction.solver.segments import begin, friction_of, surface_of, system_of
@@ -67,7 +67,7 @@ class Smooth:
         smooth = problem._replace(law=self.flow, surface=Isotropic())  # the law knows its surface
         resolved = self.step_accuracy(held)
         times, samples = out.times, out.samples
-        with delay_interrupt():  # the state returns as named tuples and arrays
+        with compiling():  # the state returns as named tuples and arrays
             code, state, out.filled, turns = loop.advance(
                 smooth, state, end, resolved, budget, times, samples, out.filled
             )

@@ -109,7 +109,7 @@ def test_without_room_nothing_is_kept_and_all_is_computed(root, monkeypatch):
 
     monkeypatch.setattr(os, "replace", full)
     assert fresh()(1.5) == 3.0
-    assert not list(root.glob("*/*"))  # no half file either
+    assert not list(root.glob("*/*.code"))  # no half file either
 
 
 def test_the_folder_is_named_after_the_sources(tmp_path, monkeypatch):
