@@ -11,6 +11,7 @@ from zipfile import ZIP_DEFLATED, ZipFile
 from stiction.explorer.motion import Check
 from stiction.simulation import run
 from stiction.system.description import Description
+from stiction.text.samples import with_all_values
 
 NAMES = {
     "toml": "slider.toml",
@@ -73,8 +74,9 @@ def python_lines(description: Description) -> str:
     <BLANKLINE>
     """
     slider, initial, settings = description
+    with with_all_values():
+        calls = f"slider = {slider!r}\ninitial = {initial!r}\nsettings = {settings!r}\n"
     return (
-        "import stiction as st\n\n"
-        f"slider = {slider!r}\ninitial = {initial!r}\nsettings = {settings!r}\n"
+        f"import stiction as st\n\n{calls}"
         "run = st.run(st.Description(slider, initial, settings))\nrun.plot()\n"
     )

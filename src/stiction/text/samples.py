@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Any
 
 import numpy as np
@@ -11,6 +14,25 @@ from stiction.storage.checksums import bytes_of, crc
 from stiction.text.units import Kind, to_si
 
 Floats = NDArray[np.float64]
+
+_whole: ContextVar[bool] = ContextVar("_whole", default=False)
+
+
+@contextmanager
+def with_all_values() -> Iterator[None]:
+    """Print columns with all of their values inside the ``with`` block.
+
+    Examples
+    --------
+    >>> with with_all_values():
+    ...     print(FrozenColumn([0.0, 0.5]))
+    [0.0, 0.5]
+    """
+    before = _whole.set(True)
+    try:
+        yield
+    finally:
+        _whole.reset(before)
 
 
 def as_numbers(values: Any) -> Floats:
@@ -113,8 +135,8 @@ class FrozenColumn:
         return hash(self.mark)
 
     def __repr__(self) -> str:
-        """Return how many values there are."""
-        return f"<{self.size} values>"
+        """Return how many values there are, or all (see `with_all_values`)."""
+        return repr(self.tolist()) if _whole.get() else f"<{self.size} values>"
 
     def __reduce__(self) -> tuple[type[FrozenColumn], tuple[Floats]]:
         """Copy and pickle the values."""

@@ -125,7 +125,11 @@ def quote(value: Any, hint: Any) -> str:
         return repr(RIGID)
     if getattr(value, "shape", None) == ():  # a number of NumPy
         value = value.tolist()
-    return f"<{value.size} values>" if hasattr(value, "size") else repr(value)
+    if not hasattr(value, "size"):
+        return repr(value)
+    from stiction.text.samples import FrozenColumn
+
+    return repr(value if isinstance(value, FrozenColumn) else FrozenColumn(value))
 
 
 class _Annotation(str):

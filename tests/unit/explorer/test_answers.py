@@ -133,6 +133,22 @@ def test_exports(description, kind, tmp_path):
     assert python_lines(description).startswith("import stiction as st\n")
 
 
+def test_lines_of_python_hold_all_rows_of_a_recorded_drive_and_load():
+    """One can paste them; in a session only the number of rows is shown."""
+    time = np.linspace(0.0, 0.2, 41)
+    drive = st.protocols.Recorded(time=time, velocity=1e-3 * (1.0 + np.sin(20.0 * time)) / 3.0)
+    load = st.protocols.RecordedLoad(time=time, load=10.0 + time / 3.0)
+    slider = st.presets.nakano_popov_2020().replace(
+        drive=st.protocols.DriveProgram(program=[drive]),
+        load=st.protocols.LoadProgram(program=[load]),
+    )
+    description = st.Description(slider, st.Initial(), st.Settings(duration=0.1))
+    assert "<41 values>" in repr(slider)
+    scope = {}
+    exec(python_lines(description).replace("run.plot()", ""), scope)
+    assert scope["run"].description == description
+
+
 def test_what_is_heard_is_the_transverse_rate(description):
     ((head, arrays),) = answers({"do": "sound", "tables": tables_of(description)})
     run = st.simulate(description.slider, description.run.duration, sample_rate=head["rate"])
