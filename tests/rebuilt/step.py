@@ -51,7 +51,17 @@ class Step:
         rate, curve = run.v_d - self.r * self.e, -np.array([self.dp, self.a[1] - self.turn])
         square = rate @ rate + np.sum((curve @ self.axes) ** 2 / run.K)
         self.v_m = max(sqrt(square), run.v_min)  # (M42)
-        self.beta, self.P = (self.c[0, 0] + self.df) / 2, self.db[0] / self.k[0, 0]  # (M21)
+        turn, across = 0.0, self.a[1] - self.turn
+        if self.r > 0.0:
+            turn = across / self.r
+        self.beta = (self.c[0, 0] + self.df) / 2  # (M21)
+        self.G = (self.f * turn**2 - self.k[0, 1] * self.r * turn) / self.k[0, 0]
+        if self.r > 0.0:
+            damping = 2 * self.beta * self.k[0, 0]
+            damping += (self.c[1, 1] + self.f / self.r) * self.k[1, 1]
+            if damping <= 0.0 or abs(self.dp - self.G) > 0.5 * abs(self.dp):
+                self.G = 0.0
+        self.P = (self.db[0] - 2 * self.beta * self.G) / self.k[0, 0]
         self.weak = abs(self.beta) < 0.2 * sqrt(self.k[0, 0])
 
     def friction(self, p, w):
@@ -71,13 +81,13 @@ class Step:
 
     def oscillation(self, t):
         """Return p, its first two derivatives and the distance (M22), (M23)."""
-        k, beta, x_0, v_0 = self.k[0, 0], self.beta, self.r - self.P, self.dp
+        k, beta, x_0, v_0 = self.k[0, 0], self.beta, self.r - self.P, self.dp - self.G
         omega = sqrt(k - beta**2)
         U = np.exp(-beta * t) * np.cos(omega * t)
         S = np.exp(-beta * t) * np.sin(omega * t) / omega
         x, v = x_0 * U + (v_0 + beta * x_0) * S, v_0 * U - (beta * v_0 + k * x_0) * S
-        z = self.P * t + (v_0 - v + 2 * beta * (x_0 - x)) / k
-        return self.P + x, v, -2 * beta * v - k * x, z
+        z = self.P * t + self.G * t * t / 2 + (v_0 - v + 2 * beta * (x_0 - x)) / k
+        return self.P + self.G * t + x, self.G + v, -2 * beta * v - k * x, z
 
     def terms(self, h):
         """Return p and its derivative at the stages, R and Z (M25), and (M46)."""
@@ -91,11 +101,12 @@ class Step:
     def cut(self, h):
         """Return the size, less if one step cannot cover so much of the oscillation."""
         k, run = self.k[0, 0], self.run
-        if k * h * h < 0.99 * 6.25 or not self.weak:
+        most = 3.0 if self.G else 0.99 * 6.25
+        if k * h * h < most or not self.weak:
             return h
-        large = sqrt((self.r - self.P) ** 2 + self.dp**2 / k)
+        large = sqrt((self.r - self.P) ** 2 + (self.dp - self.G) ** 2 / k)
         small = run.tol * min(run.sigma + self.r, self.v_m)
-        return h if large < small else sqrt(0.99 * 6.25 / k)
+        return h if large < small else sqrt(most / k)
 
     # sections 7 and 9
 
@@ -168,6 +179,7 @@ class Step:
             rows = p[:, None] * D + h * h * self.k[1, 1] * A * p + h * np.diag(self.f + v)
             w = np.linalg.solve(rows, h * pull)
             push = 0.5 * self.f * w * w - h * self.k[0, 1] * (A @ (p * w))
+            push -= 0.5 * self.k[0, 0] * self.G * c * c
             return p + h * (A @ push), w
         if last:
             size, r, p, w, _ = last

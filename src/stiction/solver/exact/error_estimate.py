@@ -147,12 +147,12 @@ def dips(o: Oscillator, s: Swing, h: float, r: float, p: Triple, margin: float) 
     superposed on it. A cubic through the slip at the stages would miss the oscillation between
     them.
     """
-    if r == 0.0 or not o.v < 0.0:  # at take-off, a fall is rounding
+    if r == 0.0 or not o.v + o.drift < 0.0:  # at take-off, a fall is rounding
         return False
     laid, (q0, q1, q2) = swings(o, h), less(p, s.p)
     rest = (0.0 if laid else r, q0, q1, q2)
     left, right = 0.0, 1.0
-    falls, rises = h * o.v, s.dp[2] + cubic_slope(rest, 1.0)
+    falls, rises = h * (o.v + o.drift), s.dp[2] + cubic_slope(rest, 1.0)
     if p[0] < p[1] >= p[2]:  # it may have risen before, and fall again
         right, rises = C[1], s.dp[1] + cubic_slope(rest, C[1])
     if not rises > 0.0:

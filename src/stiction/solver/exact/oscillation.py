@@ -1,14 +1,16 @@
 """The oscillation along the slip in closed form, on which a step superposes its cubic.
 
-While friction keeps its direction, the slip p along it obeys a linear equation (M21),
+While the slip turns at a steady rate w', the slip p along its first direction obeys a linear
+equation (M21),
 
-    p'' + 2 beta p' + k (p - P) = 0,   k = k_11, 2 beta = c_11 + F'/m, P = (K v_d)_1/k,
+    p'' + 2 beta (p' - G) + k (p - P - G t) = 0,   k = k_11, 2 beta = c_11 + F'/m,
+    k P = (K v_d)_1 - 2 beta G,   k G = f w'^2 - k_12 r w',
 
 and its solution with the right p(0), p'(0) also has the right p''(0), unless the load changes or
 unequal dampers couple the turn. A step can be a large part of the oscillation's period if its
-collocation polynomial approximates only the remainder, p minus this solution, because friction
-turns little meanwhile (mixed collocation, e.g. Coleman & Duxbury 2000,
-doi:10.1016/S0377-0427(99)00340-4).
+collocation polynomial approximates only the remainder, p minus this solution (mixed collocation,
+e.g. Coleman & Duxbury 2000, doi:10.1016/S0377-0427(99)00340-4). Where nothing swings, the slip
+follows the level P + G t, and a step may be longer than a period.
 """
 
 from __future__ import annotations
@@ -24,16 +26,22 @@ from stiction.solver.state import Accuracy
 
 FIFTH, APART = 0.2, sqrt(6.0) / 10.0  # the stages are 2/5 -+ sqrt(6)/10 and 1
 LEAST, MOST = 1e-3, 6.25  # of k h^2: below, a cubic is as good; above, it replaces the swing
+CALM = 3.0  # of k h^2 over a drifting level: near MOST, the defect misses what is left of cos
+UNEXPLAINED = 0.5  # of the slip's change: a drift that leaves more of it is none
 STRONGEST = 0.2  # of |beta|/sqrt(k): with stronger damping it dies out within one swing
 
 
 class Oscillator(NamedTuple):
-    """Its k (1/s^2) and beta (1/s), level P and, at the start, p - P (m/s) and p' (m/s^2)."""
+    """Its k (1/s^2) and beta (1/s), its level P (m/s) and the drift G of that (m/s^2).
+
+    At the start: x, the slip p above the level (m/s), and v, its rate p' above the drift (m/s^2).
+    """
 
     k: float
     per_k: float
     beta: float
     level: float
+    drift: float
     x: float
     v: float
 
@@ -60,9 +68,28 @@ class Swing(NamedTuple):
 def oscillator(frame: Frame, start: Outset) -> Oscillator:
     """Return the oscillator that matches the slip at the step's start."""
     per_k = 1.0 / frame.k_11
-    level = start.da_1 * per_k
     beta = 0.5 * (frame.c_11 + start.gradient)
-    return Oscillator(frame.k_11, per_k, beta, level, frame.r - level, start.a_1 - start.f)
+    drift = drift_of_level(frame, start, beta)
+    level = (start.da_1 - 2.0 * beta * drift) * per_k
+    v = start.a_1 - start.f
+    return Oscillator(frame.k_11, per_k, beta, level, drift, frame.r - level, v - drift)
+
+
+@inlined
+def drift_of_level(frame: Frame, start: Outset, beta: float) -> float:
+    """Return the drift of the oscillation's level as the slip turns (m/s^2).
+
+    It counts where it explains the change of the slip, which then does not swing. At take-off the
+    slip is too small for its turn to matter; and where an oscillation grows, however small, the
+    slip does not follow its level for long.
+    """
+    if frame.r == 0.0:
+        return 0.0
+    across, change = start.a_2 - start.turn, start.a_1 - start.f
+    turn = across / frame.r
+    drift = (start.f * turn * turn - frame.k_12 * across) / frame.k_11
+    damping = 2.0 * beta * frame.k_11 + (frame.c_22 + start.f / frame.r) * frame.k_22
+    return drift if damping > 0.0 and abs(change - drift) <= UNEXPLAINED * abs(change) else 0.0
 
 
 @inlined
@@ -84,12 +111,13 @@ def within_reach(o: Oscillator, h: float, accuracy: Accuracy, motion: float) -> 
 
     `motion` is that about steady sliding, m/s.
     """
-    if o.k * h * h < 0.99 * MOST or not weakly_damped(o):
+    most = 0.99 * MOST if o.drift == 0.0 else CALM
+    if o.k * h * h < most or not weakly_damped(o):
         return h
     size = accuracy.tolerance * min(accuracy.speed + o.level + o.x, motion)
     if o.x * o.x + o.v * o.v * o.per_k < size * size:  # no oscillation
         return h
-    return sqrt(0.99 * MOST * o.per_k)
+    return sqrt(most * o.per_k)
 
 
 @inlined
@@ -115,7 +143,8 @@ def propagate(o: Oscillator, u: tuple[float, float], t: float) -> tuple[float, f
     """Return p, p' and the distance slipped after `t` (M22), (M23), given its propagator `u`."""
     x = o.x * u[0] + (o.v + o.beta * o.x) * u[1]
     v = o.v * u[0] - (o.beta * o.v + o.k * o.x) * u[1]
-    return o.level + x, v, o.level * t + (o.v - v + 2.0 * o.beta * (o.x - x)) * o.per_k
+    slid = (o.level + 0.5 * o.drift * t) * t + (o.v - v + 2.0 * o.beta * (o.x - x)) * o.per_k
+    return o.level + o.drift * t + x, o.drift + v, slid
 
 
 @inlined
@@ -130,11 +159,17 @@ NO_LANDING = switch(False)
 
 
 @inlined
+def still() -> Swing:
+    """Return the terms in a step that is not laid over an oscillation."""
+    nothing = (0.0, 0.0, 0.0)
+    return Swing(nothing, nothing, nothing, nothing, nothing, nothing, 0.0, 0.0, 0.0)
+
+
+@inlined
 def swing(o: Oscillator, h: float, landing: bool) -> Swing:
     """Return the oscillation's terms in the equations of a step of size `h` (M25), (M46)."""
     if not swings(o, h):
-        nothing = (0.0, 0.0, 0.0)
-        return Swing(nothing, nothing, nothing, nothing, nothing, nothing, 0.0, 0.0, 0.0)
+        return still()
     fifth = propagator(o, FIFTH * h)
     two = compose(o, fifth, fifth)
     p0, v0, z0 = propagate(o, compose(o, two, propagator(o, -APART * h)), C[0] * h)
@@ -147,11 +182,11 @@ def swing(o: Oscillator, h: float, landing: bool) -> Swing:
     rest_by_h = slid_by_h = (0.0, 0.0, 0.0)
     if landing:
         by_h = (C[0] * dp[0], C[1] * dp[1], C[2] * dp[2])
-        square, twice = o.k * h * h, 2.0 * o.beta * h
+        square, twice, gain = o.k * h * h, 2.0 * o.beta * h, h * o.drift
         bend = (  # h^2 p''
-            -twice * dp[0] - square * (p0 - o.level),
-            -twice * dp[1] - square * (p1 - o.level),
-            -twice * dp[2] - square * (p2 - o.level),
+            -twice * (dp[0] - gain) - square * (p0 - o.level - gain * C[0]),
+            -twice * (dp[1] - gain) - square * (p1 - o.level - gain * C[1]),
+            -twice * (dp[2] - gain) - square * (p2 - o.level - gain * C[2]),
         )
         rest_by_h = (
             (dp[0] + C[0] * bend[0] - dot(D[0], by_h)) * per_h,

@@ -66,7 +66,7 @@ def predict(
 ) -> tuple[Triple, Triple]:
     """Return a first guess of the stages (p, w)."""
     if swings(o, h):
-        return predict_by_oscillation(frame, start, s, h)
+        return predict_by_oscillation(frame, start, o, s, h)
     if memory.warm:
         x = h / memory.h_last
         c = (1.0 + C[0] * x, 1.0 + C[1] * x, 1.0 + C[2] * x)
@@ -94,7 +94,7 @@ def predict(
 
 @inlined
 def predict_by_oscillation(
-    frame: Frame, start: Outset, s: Swing, h: float
+    frame: Frame, start: Outset, o: Oscillator, s: Swing, h: float
 ) -> tuple[Triple, Triple]:
     """Return a first guess of the stages from the oscillation along the slip.
 
@@ -114,11 +114,11 @@ def predict_by_oscillation(
     )
     w = times(inverse(m), right)
     across = times(A, products(p, w))
-    x, f = h * k_12, 0.5 * start.f
+    x, f, known = h * k_12, 0.5 * start.f, 0.5 * o.k * o.drift * h * h
     push = (
-        f * w[0] * w[0] - x * across[0],
-        f * w[1] * w[1] - x * across[1],
-        f * w[2] * w[2] - x * across[2],
+        f * w[0] * w[0] - x * across[0] - known * C[0] * C[0],
+        f * w[1] * w[1] - x * across[1] - known * C[1] * C[1],
+        f * w[2] * w[2] - x * across[2] - known * C[2] * C[2],
     )
     more = times(A, push)
     return (p[0] + h * more[0], p[1] + h * more[1], p[2] + h * more[2]), w

@@ -18,8 +18,8 @@ from stiction.solver.exact.slip_frame import Frame, Outset
 from stiction.solver.radau import cubic, integral
 from stiction.solver.state import Motion
 
-WIDTH = 23
-SIZE, KIND, OSCILLATOR, REST, TURN, PRODUCTS = 6, 7, 8, 14, 17, 20  # columns, after the motion's
+WIDTH = 24
+SIZE, KIND, OSCILLATOR, REST, TURN, PRODUCTS = 6, 7, 8, 15, 18, 21  # columns, after the motion's
 CUBIC, SWUNG, LANDING = 0.0, 1.0, 2.0  # kinds of rows
 
 
@@ -78,7 +78,7 @@ def write_step(
     o = oscillator(frame, start)
     write_start(row, frame, h, SWUNG if swings(o, h) else CUBIC)
     rest, across = less(p, swing.p), products(p, w)
-    for i in range(6):
+    for i in range(7):
         row[OSCILLATOR + i] = o[i]
     for i in range(3):
         row[REST + i], row[TURN + i], row[PRODUCTS + i] = rest[i], w[i], across[i]
@@ -102,7 +102,7 @@ def slip_within(row: np.ndarray, dt: float) -> tuple[float, float, float, float]
     way = 0.0, row[TURN], row[TURN + 1], row[TURN + 2]
     p, slid = row[3], 0.0
     if row[KIND] == SWUNG:
-        o = Oscillator(row[8], row[9], row[10], row[11], row[12], row[13])
+        o = Oscillator(row[8], row[9], row[10], row[11], row[12], row[13], row[14])
         under, _, slid = after(o, dt)
         p = under + cubic((0.0, rest[0], rest[1], rest[2]), x)
     else:

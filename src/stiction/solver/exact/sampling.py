@@ -18,7 +18,15 @@ from stiction.solver.block_algebra import Triple, dot, less
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.error_estimate import moving
 from stiction.solver.exact.newton import products, solve
-from stiction.solver.exact.oscillation import NO_LANDING, Swing, after, oscillator, swing, swings
+from stiction.solver.exact.oscillation import (
+    NO_LANDING,
+    Swing,
+    after,
+    oscillator,
+    still,
+    swing,
+    swings,
+)
 from stiction.solver.exact.slip_frame import Frame, Outset, elongation, friction
 from stiction.solver.problem import Problem, in_principal_axes, travel
 from stiction.solver.radau import A, C, cubic, integral
@@ -46,11 +54,12 @@ def within(
     if dt <= 0.0:
         return 0.0, 0.0, frame.r, 0.0
     o, x = oscillator(frame, start), dt / h
-    s = swing(o, dt, NO_LANDING)
+    # in a step longer than an oscillation nothing swings, nor does it in a part of that step
+    s = swing(o, dt, NO_LANDING) if swings(o, h) else still()
     if dt == h:
         return end_of_step(h, s, p, w)
     rest, way = less(p, laid.p), (0.0, w[0], w[1], w[2])
-    if swings(o, dt) and swings(o, h):
+    if swings(o, h) and swings(o, dt):
         q = (
             s.p[0] + on_cubic(0.0, rest, C[0] * x),
             s.p[1] + on_cubic(0.0, rest, C[1] * x),

@@ -43,6 +43,7 @@ BLOCK = PHASES * COLUMNS
 STEEP = 2.0  # ratio of the times held at the ends of a patch that is near an edge
 NEWTON, NUDGE = 5, 1e-4  # iterations to find an edge, and difference of places for a slope
 FOLD = 4  # nodes summed side by side, for speed
+ROUGH = 4.0  # what interpolation may miss, over what steps of a node may: these are noise
 SPRINGS = 0.3  # error of the springs' forces over that of velocities and of friction
 
 
@@ -84,15 +85,16 @@ def following_step(rows: np.ndarray, i: int, last: int, t: float) -> int:
 
 @inlined
 def resolution(problem: Problem, duration: float, closing: float) -> int:
-    """Return how many pieces resolve a swing of the faster oscillation to the tolerance.
+    """Return twice as many pieces as resolve a swing of the faster oscillation to the tolerance.
 
-    The remainder of cos(a x) on [-1, 1] behind n Chebyshev polynomials is 2 (a/2)^n/n!.
+    The remainder of cos(a x) on [-1, 1] behind n Chebyshev polynomials is 2 (a/2)^n/n!. Towards a
+    landing friction may turn faster than that, and more so at a later node than at the first.
     """
     s = problem.system
     angle = sqrt(max(s.k_x, s.k_y) * s.per_mass) * duration
     half = 2.0 * (0.5 * FACTORIAL * NEAR * closing) ** (1.0 / PHASES)
     pieces: int = ceil(0.5 * angle / half)
-    return pieces
+    return 2 * pieces
 
 
 FACTORIAL = float(np.prod(np.arange(1, PHASES + 1)))
@@ -110,7 +112,7 @@ def bounds(
     for m in range(count):
         fastest = max(fastest, inside.points[m, 2] ** 2 + inside.points[m, 3] ** 2)
     force = static(problem.law) * at(problem.load, 0.0)
-    share = max(NEAR * closing, accuracy.tolerance)
+    share = max(NEAR * closing, ROUGH * accuracy.tolerance)
     inside.bound[0] = SPRINGS * share * force / problem.system.k_x
     inside.bound[1] = SPRINGS * share * force / problem.system.k_y
     inside.bound[2] = inside.bound[3] = share * (sqrt(fastest) + accuracy.speed)
@@ -201,7 +203,8 @@ def begin_again(known: Returns) -> None:
 def begin_at_edge(known: Returns) -> None:
     """Set the place of the edge for a patch that ends near one, for nodes in the root (M59b).
 
-    It is where the square of the time held would vanish, beyond the end where that is smaller.
+    It is where the square of the time held would vanish, beyond the end where that is smaller: of
+    the patch's polynomial, or where that has no such place near by, of a line through both ends.
     """
     row, inside = known.sizes[0], known.inside
     c, n = known.coefficients[row], int(known.patches[row, 2])
@@ -210,9 +213,14 @@ def begin_at_edge(known: Returns) -> None:
     for _ in range(NEWTON):
         _, _, square = interpolate(c, n, place)
         _, _, before = interpolate(c, n, place - side * NUDGE)
-        place += side * NUDGE * square / max(before - square, 1e-300)
+        if not square < before:
+            break
+        place += side * NUDGE * square / (before - square)
+    if not 1.0 < side * place < 2.0:
+        a, b = inside.ends[row, 0] ** 2, inside.ends[row, 1] ** 2
+        place = (a + b) / (a - b)
     inside.ends[row, 0], inside.ends[row, 1] = place, side
-    inside.shapes[row, 1], inside.shapes[row, 2] = 0, 1 if 1.0 < side * place < 2.0 else 0
+    inside.shapes[row, 1], inside.shapes[row, 2] = 0, 1
 
 
 @inlined

@@ -211,3 +211,23 @@ def test_a_landing_in_closed_form_and_its_samples():
     gone = driven * np.diff(times[1:3]) - np.diff(samples[1:3, :2], axis=0)[0]
     wanted = 0.5 * (samples[1, 2:4] + samples[2, 2:4]) * np.diff(times[1:3])
     assert gone == pytest.approx(wanted, rel=1e-2)
+
+
+def test_where_nothing_swings_a_step_follows_the_slow_motion():
+    """The slip swings slowly, and turns with it; that is not taken for a swing of the stiff spring.
+
+    A fast period takes 1 ms, a slow one 100 ms.
+    """
+    slider = st.presets.nakano_popov_2020().replace(phi="10 deg", drive=st.ConstantVelocity(0.01))
+    short, long = (
+        st.simulate(slider, duration, sample_rate=1.0, multiscale=False).statistics
+        for duration in (0.5, 1.0)
+    )
+    assert long.stick_count == short.stick_count
+    assert (
+        long.steps - short.steps < 5 * 140
+    )  # in 5 slow periods; 195 each without the drift of (M21)
+    sharp = st.simulate(slider, 1.0, sample_rate=1e3, multiscale=False, rtol=1e-10)
+    run = st.simulate(slider, 1.0, sample_rate=1e3, multiscale=False)
+    for name, size in (("spring_x", 1e-4), ("spring_y", 2e-3)):
+        assert np.abs(run.data[name] - sharp.data[name]).max() < size

@@ -6,24 +6,29 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 from tests.entry import plain
-from tests.unit.solver.exact.test_newton import held_to
+from tests.unit.solver.exact.test_collocation import begin
+from tests.unit.solver.exact.test_newton import SLIDES, held_to
 
 import stiction as st
 from stiction.solver.exact.error_estimate import dips
 from stiction.solver.exact.oscillation import (
+    CALM,
     MOST,
     STRONGEST,
     Oscillator,
     after,
+    drift_of_level,
+    oscillator,
     swing,
     within_reach,
 )
+from stiction.solver.exact.slip_frame import outset
 from stiction.solver.radau import A, C, D, cubic
 
 OSCILLATORS = [
-    Oscillator(4e7, 1 / 4e7, -50.0, 1.7e-5, -1e-5, 0.02),  # friction that weakens
-    Oscillator(4e7, 1 / 4e7, 1e3, 1.7e-5, 3e-5, -0.1),  # damped
-    Oscillator(1.0, 1.0, 0.19, 0.0, 1.0, 0.0),
+    Oscillator(4e7, 1 / 4e7, -50.0, 1.7e-5, -0.01, -1e-5, 0.02),  # friction that weakens
+    Oscillator(4e7, 1 / 4e7, 1e3, 1.7e-5, 0.02, 3e-5, -0.1),  # damped
+    Oscillator(1.0, 1.0, 0.19, 0.0, 0.0, 1.0, 0.0),
 ]
 
 
@@ -47,13 +52,16 @@ def _swing(o, h):
 @pytest.mark.parametrize("o", OSCILLATORS)
 @pytest.mark.parametrize("part", [0.1, 0.5, 1.0])
 def test_it_solves_its_equation(o, part):
-    """Of p - P, p' and the distance, by the exponential of the matrix."""
+    """(M21) for p, p' and the distance, by the exponential of the matrix; the force grows."""
     t = part * sqrt(0.99 * MOST / o.k)
-    generator = np.array([[0, 1, 0, 0], [-o.k, -2 * o.beta, 0, 0], [1, 0, 0, 1], [0, 0, 0, 0]])
-    x, v, slid, _ = expm(t * generator) @ [o.x, o.v, 0.0, o.level]
-    scale = abs(o.x) + abs(o.v) / sqrt(o.k) + abs(o.level)
+    generator = np.zeros((5, 5))
+    generator[0, 1] = generator[2, 0] = generator[3, 4] = 1.0
+    generator[1] = [-o.k, -2 * o.beta, 0, o.k * o.drift, o.k * o.level + 2 * o.beta * o.drift]
+    start = [o.level + o.x, o.drift + o.v, 0.0, 0.0, 1.0]
+    p, v, slid, _, _ = expm(t * generator) @ start
+    scale = abs(o.x) + abs(o.v) / sqrt(o.k) + abs(o.level) + abs(o.drift) * t
     got = np.array(_after(o, t)) / [scale, scale * sqrt(o.k), scale * t]
-    want = np.array([o.level + x, v, slid]) / [scale, scale * sqrt(o.k), scale * t]
+    want = np.array([p, v, slid]) / [scale, scale * sqrt(o.k), scale * t]
     assert got == pytest.approx(want, abs=1e-12)
 
 
@@ -62,7 +70,7 @@ def test_it_solves_its_equation(o, part):
 def test_a_dip_between_the_stages_is_seen(least, early):
     """Of the oscillation itself; of a cubic through its values both kinds look alike."""
     h = sqrt(0.98 * MOST)
-    o = Oscillator(1.0, 1.0, 0.0, 1.0 + least, -np.cos(early * h), -np.sin(early * h))
+    o = Oscillator(1.0, 1.0, 0.0, 1.0 + least, 0.0, -np.cos(early * h), -np.sin(early * h))
     p = tuple(_after(o, c * h)[0] for c in C)
     assert min(p) > 0.0
     x = np.linspace(0.0, 1.0, 1001)
@@ -83,7 +91,7 @@ def test_a_dip_before_another_fall_is_seen(least):
     p = tuple(float(slip(c)) for c in C)
     assert min(p) > 0.0
     assert p[1] > p[2]
-    o = Oscillator(1.0, 1.0, 0.0, 0.0, slip(0.0), slip.deriv()(0.0) / h)
+    o = Oscillator(1.0, 1.0, 0.0, 0.0, 0.3, slip(0.0), slip.deriv()(0.0) / h - 0.3)
     assert _dips(o, h, p, 0.0) == (least < 0.0)
 
 
@@ -102,6 +110,46 @@ def test_what_it_adds_to_the_equations_is_what_its_cubic_leaves(o):
     assert s.rest_by_h == pytest.approx(by_h, abs=1e-6 * scale / h)
     by_h = ((1 + 1e-5) * np.array(more.slid) - (1 - 1e-5) * np.array(less.slid)) / 2e-5
     assert s.slid_by_h == pytest.approx(by_h, abs=1e-6 * scale)
+
+
+def test_the_level_drifts_where_the_slip_turns_steadily():
+    """Of a slip along a line, in axes that turn with it: p'' = -k (p - P - G t) at any time."""
+    frame, start = turning()
+    drift = plain(drift_of_level)(frame, start, 0.0)
+    turn = (start.a_2 - start.turn) / frame.r
+    assert frame.k_11 * drift == pytest.approx(start.f * turn**2 - frame.k_12 * frame.r * turn)
+    o = plain(oscillator)(frame, start._replace(a_1=start.f + drift))
+    assert o.drift == drift
+    assert o.v == pytest.approx(0.0, abs=1e-14 * start.f)
+    assert o.level + o.x == frame.r
+
+
+@pytest.mark.parametrize("change", [0.4, 2.1, -1.0])
+def test_a_slip_that_swings_follows_no_drift(change):
+    """Where the drift leaves more than half of the slip's change."""
+    frame, start = turning()
+    drift = plain(drift_of_level)(frame, start, 0.0)
+    swung = start._replace(a_1=start.f + change * drift)
+    assert plain(drift_of_level)(frame, swung, 0.0) == 0.0
+    assert plain(drift_of_level)(frame, start._replace(a_1=start.f + 1.9 * drift), 0.0) == drift
+
+
+def test_nor_does_one_whose_oscillations_grow_or_at_take_off():
+    frame, start = turning()
+    drift = plain(drift_of_level)
+    damping = (frame.c_22 + start.f / frame.r) * frame.k_22 / frame.k_11
+    assert drift(frame, start, -0.49 * damping) != 0.0
+    assert drift(frame, start, -0.51 * damping) == 0.0
+    assert drift(frame._replace(r=0.0), start, 0.0) == 0.0
+
+
+def turning():
+    """Return a step's axes and outset, of a slip whose change is all by the drift."""
+    problem, frame, _, _, _ = begin("steady", SLIDES[0], "not")
+    start = plain(outset)(problem, frame)
+    turn = (start.a_2 - start.turn) / frame.r
+    drift = (start.f * turn * turn - frame.k_12 * frame.r * turn) / frame.k_11
+    return frame, start._replace(a_1=start.f + drift)
 
 
 def test_constant_friction_along_an_axis_is_exact_at_any_tolerance():
@@ -126,15 +174,16 @@ def test_constant_friction_along_an_axis_is_exact_at_any_tolerance():
 
 @pytest.mark.parametrize(("x", "v"), [(1.0, 0.0), (0.0, 1.0), (0.6, -0.8)])
 @pytest.mark.parametrize("motion", [inf, 1e-4])
-def test_a_step_covers_a_part_of_an_oscillation_that_can_be_seen(x, v, motion):
+@pytest.mark.parametrize(("drift", "square"), [(0.0, 0.99 * MOST), (7.0, CALM)])
+def test_a_step_covers_a_part_of_an_oscillation_that_can_be_seen(x, v, motion, drift, square):
     """One of less than the tolerance, of the slip or of the slower motion, is none."""
     k, accuracy = 400.0, held_to(1e-3)._replace(tolerance=1e-3)
-    reach, most = plain(within_reach), np.sqrt(0.99 * MOST / k)
+    reach, most = plain(within_reach), np.sqrt(square / k)
     for part, seen in ((0.99, False), (1.01, True)):
         level = 7e-3
         # its size, x^2 + v^2/k, over the tolerance times sigma + P + x or the motion
         scale = min(accuracy.speed + level, motion) * 1e-3 / (1.0 - 1e-3 * x * (motion == inf))
-        o = Oscillator(k, 1 / k, 0.0, level, part * scale * x, part * scale * v * 20.0)
+        o = Oscillator(k, 1 / k, 0.0, level, drift, part * scale * x, part * scale * v * 20.0)
         assert reach(o, 2 * most, accuracy, motion) == pytest.approx(most if seen else 2 * most)
         assert reach(o, 0.9 * most, accuracy, motion) == 0.9 * most
         damped = o._replace(beta=1.1 * STRONGEST * 20.0)

@@ -42,7 +42,7 @@ def test_when_a_parabola_falls_to_zero(change, curve):
 @pytest.mark.parametrize("off", [-0.1, 0.1])
 def test_a_better_time_to_landing(off):
     """A step of Newton's method on the oscillation: the error is squared, and it is not halved."""
-    o = oscillation.Oscillator(1.0, 1.0, 0.05, 0.3, 1.0, -0.5)
+    o = oscillation.Oscillator(1.0, 1.0, 0.05, 0.3, 0.0, 1.0, -0.5)
     after = plain(oscillation.after)
     low, high = 0.1, 2.4
     for _ in range(60):
@@ -163,13 +163,14 @@ def test_the_guess_over_the_oscillation_solves_the_turn_s_linear_equation(name, 
     """(M29) without w^2 and on no ellipse, for the oscillation's p; then its effect on p, once."""
     _, frame, start, o, h = outset_of(name, drawn, "laid over the oscillation")
     s = plain(oscillation.swing)(o, h, False)
-    found, w = map(np.array, plain(predictor.predict_by_oscillation)(frame, start, s, h))
+    found, w = map(np.array, plain(predictor.predict_by_oscillation)(frame, start, o, s, h))
     (a, c, d), p = (np.array(each) for each in (A, C, D)), np.array(s.p)
     k_12, k_22 = frame.k_12, frame.k_22
     pull = start.a_2 - start.turn + c * h * start.da_2 - h * k_12 * (a @ p + s.slid)
     matrix = np.diag(p) @ d + h * h * k_22 * a @ np.diag(p) + np.diag(h * start.f + s.dp)
     assert w == pytest.approx(np.linalg.solve(matrix, h * pull), rel=1e-9)
-    more = h * a @ (0.5 * start.f * w * w - h * k_12 * a @ (p * w))
+    known = 0.5 * o.k * o.drift * (c * h) ** 2
+    more = h * a @ (0.5 * start.f * w * w - h * k_12 * a @ (p * w) - known)
     assert found - p == pytest.approx(more, rel=1e-6, abs=1e-15)
     plainly = plain(predictor.predict)(frame, start, o, s, h, COLD)
     assert np.array(plainly) == pytest.approx(np.array([found, w]))

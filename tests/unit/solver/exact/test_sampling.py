@@ -60,6 +60,24 @@ def test_a_value_inside_a_step_is_the_end_of_a_shorter_one(name, drawn, size, pa
     assert sample(problem, frame, start, swing, h, p, w, EXACT, times, samples, 3) == 3
 
 
+@ALL
+def test_nothing_swings_in_a_part_of_a_step_longer_than_an_oscillation(name, drawn):
+    """Section 14 of the method: the error of a step laid over it would not have been estimated."""
+    problem, frame, o, _, _ = begin(name, drawn, "not")
+    h = 1.4 * np.sqrt(oscillation.MOST / o.k)
+    start, motion = plain(slip_frame.outset)(problem, frame), 1.0
+    still, flat = plain(oscillation.still)(), ((frame.r,) * 3, (0.0,) * 3)
+    assert not plain(oscillation.swings)(o, h)
+    for part in (0.3, 0.6):  # of a step whose stages are any
+        found = plain(newton.solve)(problem, frame, o, still, part * h, False, *flat, EXACT, motion)
+        if not (found[0] and min(found[2]) > 0.0):
+            continue
+        value = plain(sampling.within)(
+            problem, frame, start, still, h, *flat, part * h, EXACT, motion
+        )
+        assert value[2:] == pytest.approx((found[2][2], found[3][2]), rel=1e-9)
+
+
 def test_where_a_shorter_step_is_not_found_the_cubic_is_taken():
     """And the slip is no less than zero."""
     problem, frame, _, _, h, (swing, p, w) = step_of("steady", SLIDES[0], 0.02)

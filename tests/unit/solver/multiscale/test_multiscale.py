@@ -96,6 +96,19 @@ def test_samples_inside_mapped_cycles_cost_no_steps(slider, sharp_run, rtol, off
     )
 
 
+@pytest.mark.parametrize(
+    ("phi", "V"), [("0.5 deg", 1e-4), ("2.227 deg", 1e-4), ("5.68 deg", 1.23e-3)]
+)
+def test_few_samples_of_many_cycles_cost_no_steps_either(slider, phi, V):
+    """Each is in a cycle of its own, which by steps would be solved again for it."""
+    other = slider.replace(phi=phi, drive=st.ConstantVelocity(V))
+    few = st.simulate(other, 5.0, sample_rate=1.0, multiscale=True)
+    run = st.simulate(other, 5.0, sample_rate=700.0, multiscale=True)
+    assert few.statistics.mapped > 0.8 * few.statistics.stick_count
+    assert run.statistics.steps < 1.3 * few.statistics.steps
+    assert np.array_equal(run.stick_intervals, few.stick_intervals)
+
+
 def test_a_patch_begun_again_keeps_nothing_of_a_wider_one_but_its_first_node():
     """The motion of a patch may be resolved before its turn is, which then fails: found at random.
 
