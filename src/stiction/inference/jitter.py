@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.friction import Anisotropic, states
-from stiction.simulation import solve
+from stiction.simulation import solve_coarsely
 from stiction.study.variables.features import zigzag
 from stiction.system.description import Description, Settings
 from stiction.system.initial import Initial
@@ -135,7 +135,7 @@ def move(
             regularisation=None, smoothing="root", multiscale=False,
         )  # fmt: skip
         rig = slider.model_copy(update={"friction": law})
-        found = solve(Description(rig, initial, settings), part, max_steps=MOST_STEPS)
+        found = solve_coarsely(Description(rig, initial, settings), part, max_steps=MOST_STEPS)
         if found.code != 0:
             return SampledMotion(
                 times[: begin + 1], rows[: begin + 1], np.array(troughs, np.int64), False

@@ -24,7 +24,7 @@ from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, RED, style
 from stiction.plotting.run.time_series import envelope
 from stiction.result.columns import sample_table
 from stiction.result.table import ColumnTable
-from stiction.simulation import automatic_times, solve
+from stiction.simulation import automatic_times, solve_coarsely
 from stiction.storage.files import placeable, whole
 from stiction.system.description import Description
 from stiction.text.quantity_text import metric_prefix
@@ -177,7 +177,7 @@ def draw(
 
 def sample(description: Description, times: NDArray[np.float64]) -> ColumnTable:
     """Return a run sampled at `times` (s)."""
-    solution = solve(description, times)
+    solution = solve_coarsely(description, times)
     return sample_table(description, solution.times, solution.samples, {})
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from stiction.errors import DescriptionError, ResultError
 from stiction.result.columns import sample_table
-from stiction.simulation import solve
+from stiction.simulation import solve_coarsely
 from stiction.storage.files import placeable, whole
 from stiction.system.description import Description
 from stiction.system.initial import Initial
@@ -151,7 +151,7 @@ def rate_at(
     progress: Callable[[float], None] | None = None,
 ) -> NDArray[np.float64]:
     """Return the elongation rate (m/s) of a run at `times` (s), without its mean."""
-    solution = solve(description, times, progress=progress)
+    solution = solve_coarsely(description, times, progress=progress)
     values = sample_table(description, solution.times, solution.samples, {})[f"v_{axis}"]
     values = values[: len(times)]
     found: NDArray[np.float64] = np.nan_to_num(values - np.mean(values[np.isfinite(values)]))

@@ -109,7 +109,7 @@ def accuracy(
     touch = local * speed
     least = LEAST_MOTION * (along + across + free_x + free_y) / local
     return Accuracy(
-        local, newton, speed, free_x, free_y, longest, drive, square_x, square_y, touch, least
+        local, newton, speed, free_x, free_y, longest, drive, square_x, square_y, touch, 0.0, least
     )
 
 
@@ -169,12 +169,15 @@ def integrate(
     max_steps: int,
     progress: Report | None,
     take: Callable[[np.ndarray], None] | None = None,
+    inside: float = 0.0,
 ) -> Solution:
     """Integrate a description, filling in the samples at `times` (ascending, s).
 
     If `take` is given, it gets the samples block by block, to be used before it returns: they are
     not kept, and the memory that they take does not grow with their number in steps. All cycles
-    that a return map finds at once are in one block.
+    that a return map finds at once are in one block. `inside` is the relative error of the slip
+    that samples inside steps may have; if that is no less than the steps' `tolerance`, they take a
+    sixth of the time.
     """
     slider, initial, settings = description
     t, end = initial.time, initial.time + settings.duration
@@ -189,7 +192,7 @@ def integrate(
 
     for stretch in stretches(slider, t, end):
         state = method.enter_segment(state, *slip_jump(slider, t))
-        held = accuracy(slider, initial, stretch, t, settings.rtol)
+        held = accuracy(slider, initial, stretch, t, settings.rtol)._replace(inside=inside)
         code = RUNNING
         while code == RUNNING:
             budget = min(BUDGET if take is None else BLOCK, max_steps - out.used)

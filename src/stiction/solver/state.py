@@ -59,8 +59,9 @@ class Accuracy(NamedTuple):
     springs' own motion is resolved; longest : step size that still resolves drive and load, s;
     drive : its speed along x, or along y if it has none there, m/s, upper limit of a slip's scale;
     square_x, square_y : m/k, the square of the time in which each spring swings by a radian, s^2;
-    touch : least spare friction of a true stick, m/s; least : smallest motion about steady sliding
-    above rounding, m/s.
+    touch : least spare friction of a true stick, m/s; inside : relative error that samples inside
+    a step may have: below the tolerance they are solved for; least : smallest motion about steady
+    sliding above rounding, m/s.
     """
 
     tolerance: float
@@ -73,6 +74,7 @@ class Accuracy(NamedTuple):
     square_x: float
     square_y: float
     touch: float
+    inside: float
     least: float
 
 

@@ -5,7 +5,8 @@ force that holds) and 1 while sticking, else 0.
 
 The collocation polynomial of a step is less accurate inside than at the end, by two orders.
 Therefore a value inside is the end of a shorter step from the same start, with that polynomial as
-first guess. This mostly takes one iteration, and equals the result of a run that ends there.
+first guess. This mostly takes one iteration, and equals the result of a run that ends there. Where
+the polynomial is accurate enough, as for measures and pictures, it costs a sixth.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from stiction.solver.exact.error_estimate import moving
 from stiction.solver.exact.newton import products, solve
 from stiction.solver.exact.oscillation import (
     NO_LANDING,
+    Oscillator,
     Swing,
     after,
     oscillator,
@@ -58,6 +60,8 @@ def within(
     s = swing(o, dt, NO_LANDING) if swings(o, h) else still()
     if dt == h:
         return end_of_step(h, s, p, w)
+    if accuracy.inside >= accuracy.tolerance:
+        return on_polynomial(frame, o, laid, h, p, w, dt)
     rest, way = less(p, laid.p), (0.0, w[0], w[1], w[2])
     if swings(o, h) and swings(o, dt):
         q = (
@@ -78,17 +82,24 @@ def within(
             on_cubic(frame.r, rest, x),
         )
     turn = cubic(way, C[0] * x), cubic(way, C[1] * x), cubic(way, x)
-    first = q[2], turn[2]
     found, s, q, turn, _, _ = solve(problem, frame, o, s, dt, NO_LANDING, q, turn, accuracy, motion)
     if found and min(q) >= 0.0:
         return end_of_step(dt, s, q, turn)
-    slid = after(o, dt)[2] if swings(o, h) else 0.0
-    return (
-        slid + h * integral(rest, x),
-        h * integral(products(p, w), x),
-        max(first[0], 0.0),
-        first[1],
-    )
+    return on_polynomial(frame, o, laid, h, p, w, dt)
+
+
+@inlined
+def on_polynomial(
+    frame: Frame, o: Oscillator, laid: Swing, h: float, p: Triple, w: Triple, dt: float
+) -> tuple[float, float, float, float]:
+    """Return the same by the step's polynomial, laid over the oscillation."""
+    x, rest, way = dt / h, less(p, laid.p), (0.0, w[0], w[1], w[2])
+    slid, along = 0.0, on_cubic(frame.r, rest, x)
+    if swings(o, h):
+        under, _, slid = after(o, dt)
+        along = under + on_cubic(0.0, rest, x)
+    slid_1, slid_2 = slid + h * integral(rest, x), h * integral(products(p, w), x)
+    return slid_1, slid_2, max(along, 0.0), cubic(way, x)
 
 
 @inlined

@@ -15,7 +15,7 @@ from stiction.analysis.motion.regime.kinds import STUCK
 from stiction.analysis.motion.rest import stick_shares, still_shares
 from stiction.drive import ConstantVelocity
 from stiction.drive.program import nominal_velocity
-from stiction.simulation import sample_times, solve
+from stiction.simulation import sample_times, solve_coarsely
 from stiction.solver.integrate import Solution
 from stiction.study.variables.fast_regime import SwingShapes, cycles_among, kind_of, swings
 from stiction.study.variables.features import Features, features
@@ -217,7 +217,8 @@ def observe(description: Description, report: Callable[[float], None] | None) ->
     # over the last even samples, each step is divided into parts
     dense = even[fine] + np.arange(steps * parts + 1) / (rate * parts)
     times = np.minimum(np.concatenate([even[:fine], dense]), start + duration)
-    return Observed(description, solve(description, times, progress=report), fine, parts)
+    solution = solve_coarsely(description, times, progress=report)
+    return Observed(description, solution, fine, parts)
 
 
 def coupled_frequency(slider: Slider) -> float:

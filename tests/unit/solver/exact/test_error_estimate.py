@@ -18,7 +18,7 @@ LAGRANGE = [Polynomial.fromroots(np.delete(C, j)) for j in range(3)]
 LAGRANGE = [basis / basis(C[j]) for j, basis in enumerate(LAGRANGE)]
 PI = Polynomial.fromroots(C)
 FREE = 1e-6, 1e-3  # m/s
-ACCURACY = Accuracy(1e-6, 1e-8, 1e-4, *FREE, inf, 2e-3, 2.5e-4, 6e-6, 0.0, 1e-12)
+ACCURACY = Accuracy(1e-6, 1e-8, 1e-4, *FREE, inf, 2e-3, 2.5e-4, 6e-6, 0.0, 0.0, 1e-12)
 ALL = pytest.mark.parametrize(("name", "drawn"), [(n, d) for n in SLIDERS for d in SLIDES])
 
 

@@ -18,7 +18,7 @@ SPEED = 1e-4  # m/s, below which corrections are absolute
 
 def held_to(tolerance):
     """Return an accuracy of which only this counts."""
-    return Accuracy(1e-6, tolerance, SPEED, 0.0, 0.0, inf, inf, 1.0, 1.0, 0.0, 0.0)
+    return Accuracy(1e-6, tolerance, SPEED, 0.0, 0.0, inf, inf, 1.0, 1.0, 0.0, 0.0, 0.0)
 
 
 def solve_step(name, drawn, tolerance, share=0.3, motion=1.0, guess=1.0):

@@ -56,7 +56,7 @@ def test_the_slip_before_a_landing(r, a_1, a_2, part):
 
 def held_to(tolerance, speed):
     """Return an accuracy of which only this counts."""
-    return Accuracy(tolerance, 0.0, speed, 0.0, 0.0, inf, inf, 1.0, 1e-2, 0.0, 0.0)
+    return Accuracy(tolerance, 0.0, speed, 0.0, 0.0, inf, inf, 1.0, 1e-2, 0.0, 0.0, 0.0)
 
 
 def slow(name, angle=0.4, r=1e-9):

@@ -61,6 +61,24 @@ def test_a_value_inside_a_step_is_the_end_of_a_shorter_one(name, drawn, size, pa
 
 
 @ALL
+@pytest.mark.parametrize("size", [0.02, 0.035])
+def test_where_that_is_accurate_enough_the_polynomial_is_taken(name, drawn, size):
+    problem, frame, o, _, h, (swing, p, w) = step_of(name, drawn, size)
+    start, coarse = plain(slip_frame.outset)(problem, frame), EXACT._replace(inside=1e-6)
+    arguments = problem, frame, start, swing, h, p, w
+    for part in (0.2, 0.7):
+        found = plain(sampling.within)(*arguments, part * h, coarse, 1.0)
+        assert found == plain(sampling.on_polynomial)(frame, o, swing, h, p, w, part * h)
+        assert found == pytest.approx(
+            plain(sampling.within)(*arguments, part * h, EXACT, 1.0), rel=1e-3, abs=1e-5
+        )
+        finer = EXACT._replace(inside=0.9e-6)
+        assert plain(sampling.within)(*arguments, part * h, finer, 1.0) != found
+    ends = plain(sampling.within)(*arguments, h, coarse, 1.0)
+    assert ends == plain(sampling.within)(*arguments, h, EXACT, 1.0)
+
+
+@ALL
 def test_nothing_swings_in_a_part_of_a_step_longer_than_an_oscillation(name, drawn):
     """Section 14 of the method: the error of a step laid over it would not have been estimated."""
     problem, frame, o, _, _ = begin(name, drawn, "not")

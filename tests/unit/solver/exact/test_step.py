@@ -21,7 +21,9 @@ ALL = pytest.mark.parametrize(("name", "drawn"), [(n, d) for n in SLIDERS for d 
 def held_to(tolerance):
     """Return an accuracy with the speeds of these sliders."""
     speed, free = 1e-4, (0.1, 0.02)
-    return Accuracy(tolerance, 1e-3 * tolerance, speed, *free, inf, 2e-3, 2.5e-4, 6e-6, 0.0, 1e-12)
+    return Accuracy(
+        tolerance, 1e-3 * tolerance, speed, *free, inf, 2e-3, 2.5e-4, 6e-6, 0.0, 0.0, 1e-12
+    )
 
 
 def take_step(name, drawn, accuracy, h=1e-3, t_stop=inf):

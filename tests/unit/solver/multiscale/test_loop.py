@@ -107,10 +107,10 @@ def test_counts_of_what_the_map_has_found():
 
 
 def test_a_node_s_steps_are_finer():
-    accuracy = Accuracy(*range(1, 12))
+    accuracy = Accuracy(*range(1, 13))
     found = plain(construction.finer)(accuracy)
     part = construction.NODE_SHARE
-    wanted = accuracy._replace(tolerance=part * 1, newton=part * 2, least=11 / part)
+    wanted = accuracy._replace(tolerance=part * 1, newton=part * 2, least=12 / part)
     assert found == pytest.approx(wanted)
 
 
