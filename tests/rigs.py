@@ -47,3 +47,25 @@ STIFF_PRESS = st.Slider(
     friction=st.laws.Stribeck(mu_s=0.18, mu_c=0.11, v_s="20 mm/s"),
     drive=st.ConstantVelocity("1 mm/s"),
 )
+
+# a friction force microscope: the mass rests between slips, under a force far off the drive
+MICROSCOPE = st.Slider(
+    mass="1e-11 kg",
+    k_x="0.5 N/m",
+    k_y="40 N/m",
+    phi="5 deg",
+    normal_load="20 nN",
+    friction=st.ExponentialWeakening(mu_0=0.5, mu_inf=0.3, v_f="10 um/s"),
+    drive=st.ConstantVelocity("1 um/s"),
+)
+
+# driven slowly, with friction that weakens steeply: creep ends before theory has it
+VERY_SLOW = st.Slider(
+    mass="0.25 kg",
+    k_x="1 kN/m",
+    k_y="10 MN/m",
+    phi="1 deg",
+    normal_load="10 N",
+    friction=st.ExponentialWeakening(mu_0=0.2, mu_inf=0.15, v_f="1 mm/s"),
+    drive=st.ConstantVelocity("20 um/s"),
+)

@@ -32,7 +32,7 @@ LAWS = (
     "ageing", "slip", "two states", "lugre",
 )  # fmt: skip
 OFF = 0.5  # of a number that theory states without a doubt, by which the simulation may differ
-TIMES = ("time until the first slip", "period")
+TIMES = ("time until the first slip", "period, mean")
 TOLD = re.compile(r"cycles of (.+?) in which the force falls by (.+?)\.(?: |$)")
 NO_NUMBER = re.compile(r"\b(nan|inf)\b")
 
@@ -139,7 +139,7 @@ def numbers_in_words(found: Audit) -> bool:
     """Period and force drop in words are those of the table, within their errors."""
     shown = {row[0]: row[2] for row in numbers(found)}
     told = re.search(TOLD, sentences(found, "Verdict"))
-    cells = shown.get("period", ""), shown.get("force drop", "")
+    cells = shown.get("period, mean", ""), shown.get("force drop, mean", "")
     return told is None or all(map(agree, told.groups(), cells))
 
 

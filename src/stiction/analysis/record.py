@@ -18,6 +18,7 @@ from stiction.recording.request import SignedForce
 from stiction.recording.sensor import Sensor
 from stiction.recording.stored import KNOWN, write_stored
 from stiction.system.slider import Slider
+from stiction.system.springs import ROUND
 from stiction.text.samples import Floats, as_numbers, samples_to_si, unit_on
 from stiction.text.units import Force, Kind, Mass, PositiveSpeed, Stiffness
 from stiction.text.validation import Described, faulty, unknown_name
@@ -341,9 +342,15 @@ class CellAxis(NamedTuple):
 def cell_axis(slider: Slider) -> CellAxis:
     """Return the axis of a slider's load cell: the spring x, or that of its `cell_angle`."""
     x, y = (1.0, 0.0) if slider.cell_angle is None else slider.cell
-    c, s = slider.direction
-    along = nominal_velocity(slider.motion) * (x * c + y * s)
+    along = nominal_velocity(slider.motion) * _share(x, y, slider)
     return CellAxis(x, y, along, -1.0 if along < 0.0 else 1.0)
+
+
+def _share(x: float, y: float, slider: Slider) -> float:
+    """Return the cosine of the angle between the cell's axis and the drive."""
+    c, s = slider.direction
+    share = x * c + y * s
+    return 0.0 if abs(share) < ROUND else share  # at a right angle
 
 
 def record_of(run: Trajectory) -> Record:
@@ -358,8 +365,8 @@ def record_of(run: Trajectory) -> Record:
     cell = cell_axis(slider)
     c, s = slider.direction
     x, y, way, along = cell.x, cell.y, cell.way, cell.velocity
-    share = x * c + y * s
-    stiffness = slider.k_x if share == 0.0 else (x * slider.k_x * c + y * slider.k_y * s) / share
+    share = _share(x, y, slider)
+    stiffness = (x * slider.k_x * c + y * slider.k_y * s) / share if share else 0.0
     names = ("time", "spring_x", "spring_y", "X", "slip_speed", "normal_load")
     columns = np.stack([samples[name] for name in names])
     time, f_x, f_y, X, slip_speed, load = columns[:, np.isfinite(columns).all(axis=0)]
@@ -369,7 +376,7 @@ def record_of(run: Trajectory) -> Record:
         time=time,
         force=way * (f_x if y == 0.0 else x * f_x + y * f_y),
         normal_load=slider.normal_load,
-        stiffness=stiffness,
+        stiffness=stiffness if stiffness > 0.0 else None,  # loading across may unload the cell
         drive_velocity=abs(along) or None,
         mass=slider.masses[0],
         position=way * X,

@@ -19,7 +19,10 @@ if TYPE_CHECKING:
     from stiction.auditing.report import Audit
 
 HEADINGS = ("spring", "k_x", "k_y", "compliance along x", "along y")
-CHANGES = ("spring", "stiffness", "A", "ζ", "f_y", "static friction", "simulated from rest")
+CHANGES = (
+    *("spring", "stiffness", "A", "ζ", "f_y", "apparent static friction"),
+    "simulated from rest",
+)
 
 
 def chain_sections(found: Audit) -> list[Section]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, hypot, isfinite, nan, pi, sin, sqrt, tan
+from math import cos, hypot, isfinite, nan, pi, sin, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,18 +12,8 @@ from stiction.analysis.creep.first_slip import along_force, force_off_drive, sli
 from stiction.friction import Anisotropic, has_state
 from stiction.friction.law import static_coefficient
 from stiction.system.slider import Slider
-from stiction.text.quantity_text import percent
-from stiction.text.units import in_words
 
 SEEN = 10.0  # samples per transverse period, enough for its shape and not only its frequency
-# of the time until the slip: Eq. (7) supposes a shorter first stick
-SHORT = 0.1
-SLOWLY = 10.0  # rad of a free swing: faster loading is not quasistatic
-DAMPED = 0.2  # twice the damping ratio of a spring: a larger one matters beside friction
-# of the force's fall: friction that has lost so much of it to creep no longer drives a slip as it
-# would from F_0
-WEAKENED = 0.1
-QUARTER_TURN = pi / 4.0
 
 
 class Prediction(NamedTuple):
@@ -149,59 +139,6 @@ def predict(slider: Slider) -> Prediction:
         float(theory.transverse_amplitude_bound(V, phi, omega_y)),
         SEEN * omega_y / (2.0 * pi),
     )
-
-
-def suppositions(slider: Slider, p: Prediction) -> list[str]:
-    """Return the assumptions of Eqs. (7) and (10) that the apparatus violates, with its numbers."""
-    s, phi, V = slider, abs(slider.misalignment), hypot(*slider.motion.rate(0.0))
-    law: Any = s.law
-    if has_state(law):
-        return [f"friction has no internal state; here F_0 is that at {in_words(V, 'm/s')}"]
-    found = []
-    if isinstance(law, Anisotropic):
-        found.append("the surface has no grain")
-    if s.k_y <= s.k_x or phi > QUARTER_TURN:
-        found.append("the soft spring is the one along the drive")
-    elif phi != 0.0 and p.slips and slips_at_once(s):
-        found.append(
-            "friction turns before the first slip; here k_y tan φ is only "
-            f"{s.k_y * tan(phi) / s.k_x:.3g} k_x: both springs load together, and the first stick "
-            "ends in a slip"
-        )
-    elif phi != 0.0 and p.first_stick > SHORT * p.load_up:
-        ratio, share = s.k_y * tan(phi) / s.k_x, p.first_stick / p.load_up
-        found.append(
-            f"the transverse spring is loaded at once, k_y tan φ ≫ k_x; here k_y tan φ is only "
-            f"{ratio:.3g} k_x, and the first stick takes {percent(share)} of the time until the "
-            "predicted slip"
-        )
-    if 2.0 * pi * p.f_x * p.load_up < SLOWLY:
-        found.append(
-            f"loading takes many natural periods; here it takes {in_words(p.load_up, 's')}, and a "
-            f"period {in_words(1.0 / p.f_x, 's')}"
-        )
-    if phi != 0.0 and p.F_static > p.F_0 * (1.0 + 1e-9):
-        found.append(
-            "static friction does not exceed F_0; here it is larger, and each rest ends with a jump"
-        )
-    weakening = -float(law.slope(0.0)) * s.normal_load
-    if phi != 0.0 and weakening > 2.0 * sqrt(s.masses[1] * s.k_y):
-        found.append("friction weakens gently; here so steeply that each rest ends in a rapid slip")
-    creeps = phi != 0.0 and isfinite(p.creep_at_slip)
-    lost = s.F_0 - float(law.coefficient(p.creep_at_slip)) * s.normal_load if creeps else 0.0
-    if p.slips and lost > WEAKENED * p.drop:
-        found.append(
-            f"friction is still F_0 when creep turns into slip; here, at "
-            f"{in_words(p.creep_at_slip, 'm/s')}, it has lost {in_words(lost, 'N')}"
-        )
-    m_x, m_y = s.masses
-    if max(s.c_x / sqrt(s.k_x * m_x), s.c_y / sqrt(s.k_y * m_y)) > DAMPED:
-        found.append("nothing but friction damps")
-    if not s.aligned:
-        found.append(
-            "the mass is the same along x and y, and dampers lie along the axes; here they do not"
-        )
-    return found
 
 
 def critical_misalignment(slider: Slider, V: float) -> float:

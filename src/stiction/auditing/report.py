@@ -24,6 +24,8 @@ from stiction.auditing.simulated_test import (
 from stiction.auditing.tolerance.budget import Budget, budget
 from stiction.auditing.tolerance.words import section
 from stiction.auditing.words.changes import changes
+from stiction.auditing.words.load_cell import TITLE as LOAD_CELL
+from stiction.auditing.words.load_cell import load_cell
 from stiction.auditing.words.numbers import numbers, violated_assumptions
 from stiction.auditing.words.stick import stick
 from stiction.auditing.words.transverse import transverse
@@ -229,6 +231,7 @@ def sections(found: Audit) -> list[Section]:
         Section("Verdict", verdict(found)),
         Section("Predicted and simulated", violated_assumptions(found), numbers(found)),
         Section("Is it stick?", stick(found)),
+        Section(LOAD_CELL, load_cell(found)),
         Section("Transverse oscillation", transverse(found)),
         Section("What to change", *changes(found)),
     ]

@@ -12,8 +12,8 @@ from stiction.text.units import in_words
 
 TITLE = "How well to align"
 ROWS = (  # label and unit of each reading
-    ("apparent static friction", ""),
-    ("apparent kinetic friction", ""),
+    ("apparent static friction, largest force", ""),
+    ("apparent kinetic friction, mean", ""),
     ("creep before the first slip", "m"),
     ("transverse oscillation, up to V sin φ/ω_y", "m"),
 )

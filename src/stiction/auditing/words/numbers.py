@@ -9,7 +9,7 @@ import numpy as np
 
 from stiction.analysis.motion.friction import find_friction
 from stiction.analysis.record import cell_axis
-from stiction.auditing.prediction import suppositions
+from stiction.auditing.assumptions import creep_suppositions, suppositions
 from stiction.auditing.simulated_test import SimulatedTest, creep_before_slip, slip_time
 from stiction.friction import has_state
 from stiction.system.slider import Slider
@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
 def violated_assumptions(found: Audit) -> list[str]:
     """Return the assumptions of the theory that this apparatus violates."""
-    unmet = suppositions(found.slider, found.prediction)
+    on = found.slider, found.prediction
+    unmet = [*suppositions(*on), *creep_suppositions(*on)]
     if not unmet:
         return []
     return [
@@ -39,34 +40,36 @@ def numbers(found: Audit) -> Table:
     slip = slip_time(seen)
     creep_at_slip, creep_distance = (p.creep_at_slip, p.creep_distance) if p.slips else (nan, nan)
     theta_c = p.theta_c if p.zeta < 1.0 else nan  # else friction never turns so far
+    rough = bool(suppositions(s, p))
+    creep_rough = rough or bool(creep_suppositions(s, p))
+    creep = "creep before the first slip", creep_distance, creep_before_slip(seen), "m", creep_rough
     held = [("static friction", p.F_static, None, "N", False)]
     rows = [
         ("friction F_0 at vanishing slip", p.F_0, None, "N", False),
         *(held if p.F_static > p.F_0 * (1.0 + 1e-9) else []),
         ("natural frequency along x", p.f_x, None, "Hz", False),
         ("natural frequency along y", p.f_y, None, "Hz", False),
-        ("damping number A, Eq. (10)", p.A, None, "", True),
-        ("damping ratio ζ at θ = φ, Eq. (10)", p.zeta, None, "", True),
-        ("θ at which ζ = 1: slow slip turns fast", theta_c, None, "rad", True),
+        ("damping number A, Eq. (10)", p.A, None, "", rough),
+        ("damping ratio ζ at θ = φ, Eq. (10)", p.zeta, None, "", rough),
+        ("θ at which ζ = 1: slow slip turns fast", theta_c, None, "rad", rough),
         ("first stick (true rest)", nan if has_state(s.law) else p.first_stick, first, "s", False),
-        ("time until the first slip", p.load_up if p.slips else nan, slip, "s", True),
-        ("creep velocity at first, V sin² φ", p.creep_at_start, None, "m/s", True),
-        ("creep velocity when it slips, Eq. (7)", creep_at_slip, None, "m/s", True),
-        ("creep before the first slip", creep_distance, creep_before_slip(seen), "m", True),
-        ("apparent coefficient of static friction", p.mu_static, peak(seen), "", True),
-        ("apparent coefficient of kinetic friction", p.mu_kinetic, kinetic(seen), "", True),
-        ("force drop", p.drop, seen.mean("drop"), "N", True),
-        ("period", p.period, seen.mean("period"), "s", True),
-        ("apparent stiffness", apparent_stiffness(s), loading(seen), "N/m", True),
+        ("time until the first slip", p.load_up if p.slips else nan, slip, "s", rough),
+        ("creep velocity at first, V sin² φ", p.creep_at_start, None, "m/s", rough),
+        ("creep velocity when it slips, Eq. (7)", creep_at_slip, None, "m/s", rough),
+        creep,
+        ("apparent static friction, largest force", p.mu_static, peak(seen), "", rough),
+        ("apparent kinetic friction, mean", p.mu_kinetic, kinetic(seen), "", rough),
+        ("force drop, mean", p.drop, seen.mean("drop"), "N", rough),
+        ("period, mean", p.period, seen.mean("period"), "s", rough),
+        ("apparent stiffness, mean", apparent_stiffness(s), loading(seen), "N/m", rough),
     ]
-    mark = "~ " if suppositions(s, p) else ""
     lines = [
         (
             name,
-            (mark if rough else "") + in_words(theory, unit),
+            ("~ " if guide else "") + in_words(theory, unit),
             "" if shown is None else in_words(shown, unit),
         )
-        for name, theory, shown, unit, rough in rows
+        for name, theory, shown, unit, guide in rows
     ]
     return Table(("quantity", "theory", "simulated"), lines)
 

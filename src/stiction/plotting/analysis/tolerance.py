@@ -15,8 +15,8 @@ from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PALE, style
 from stiction.text.quantity_text import percent
 
 LABELS = (
-    "apparent static friction",
-    "apparent kinetic friction",
+    "apparent static friction,\nlargest force",
+    "apparent kinetic friction,\nmean",
     "creep before slip",
     "transverse oscillation",
 )
