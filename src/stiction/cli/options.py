@@ -127,7 +127,11 @@ class RecordOptions:
         Length after which a displacement starts again at its beginning, as that of a rotary
         encoder does; "none" leaves it as it is. By default it is guessed. Example: --wrap "10 mm".
     block
-        Number of the block or stroke to read, from 1, where a file has several. Example: --block 2.
+        Number of the block to read, from 1, where a file has several: a block begins where the
+        times of the file begin again. Example: --block 2.
+    stroke
+        Number of the stroke to read, from 1, where the drive goes to and fro and the record has its
+        displacement. On a way back, forces and displacements are turned round. Example: --stroke 2.
     sidecar
         TOML file that says all this, so that it need not be repeated. By default it is the file
         beside the record, data.toml for data.csv. Example: --sidecar rig/sensors.toml.
@@ -152,6 +156,7 @@ class RecordOptions:
     separator: Literal["tab", "comma", "semicolon", "space", "bar"] | None = None
     wrap: str | None = None
     block: int | None = None
+    stroke: int | None = None
     sidecar: Path | None = None
 
     def arguments(self) -> dict[str, Any]:

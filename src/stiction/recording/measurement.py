@@ -37,6 +37,7 @@ class Measurement(NamedTuple):
     known: dict[str, Any]
     sensors: dict[str, Sensor]
     origin: Origin
+    stroke: int | None = None  # of it, if only one is wanted: see `stiction.recording.strokes`
 
 
 def read_measurements(
@@ -196,7 +197,7 @@ def _measurement(
         start=said.start or table.start,
         notes=tuple(notes),
     )
-    return Measurement({"time": time, **channels}, known, sensors, origin)
+    return Measurement({"time": time, **channels}, known, sensors, origin, asked.reading.stroke)
 
 
 def _other_clock(

@@ -77,7 +77,9 @@ class ReadingOptions(Described):
     wrap : float or str, optional
         The length after which a displacement starts again, m, or ``"none"``.
     block : int, optional
-        Which of several blocks or strokes, counted from 1.
+        Which of several blocks, counted from 1: a block begins where the times begin again.
+    stroke : int, optional
+        Which stroke of a drive that goes to and fro, counted from 1.
     """
 
     time: str | None = None
@@ -93,6 +95,7 @@ class ReadingOptions(Described):
     separator: Literal["tab", "comma", "semicolon", "space", "bar"] | None = None
     wrap: Annotated[Read[float] | None, BeforeValidator(_wrap)] = None
     block: Annotated[int, Field(ge=1)] | None = None
+    stroke: Annotated[int, Field(ge=1)] | None = None
 
     @property
     def columns(self) -> dict[str, str]:

@@ -9,7 +9,9 @@ from typing import Any, TypedDict, TypeVar, Unpack
 from stiction.analysis.record import Record
 from stiction.errors import DescriptionError, Fault, Faults, ResultError
 from stiction.recording.measurement import Measurement, read_measurements
+from stiction.recording.request import ReadingOptions
 from stiction.recording.stored import is_stored, read_stored, root_attributes
+from stiction.recording.strokes import stroke_of
 from stiction.recording.table import natural_key, number_of
 from stiction.text.units import Quantity
 from stiction.trajectory import Trajectory, load
@@ -33,6 +35,7 @@ class ReadArguments(TypedDict, total=False):
     separator: str | None
     wrap: str | None
     block: int | None
+    stroke: int | None
     normal_load: Quantity | None
     stiffness: Quantity | None
     stiffness_across: Quantity | None
@@ -72,7 +75,10 @@ def read_record(
     wrap : str, optional
         The length after which a displacement starts again, or "none".
     block : int, optional
-        Which of several blocks or strokes, from 1.
+        Which of several blocks, from 1: a block begins where the times of the file begin again.
+    stroke : int, optional
+        Which stroke of a drive that goes to and fro, from 1, between two turns of its displacement.
+        Forces and displacements of a way back are turned round.
 
     Raises
     ------
@@ -109,7 +115,7 @@ def read_records(
     sidecar: str | Path | None = None,
     **said: Unpack[ReadArguments],
 ) -> tuple[Record, ...]:
-    """Read all records of one or several files: blocks, strokes, a file each.
+    """Read all records of one or several files: blocks, a file each.
 
     Parameters
     ----------
@@ -150,7 +156,9 @@ def block_of(path: str | Path, found: Sequence[T], number: int) -> T:
     """
     if not 1 <= number <= len(found):
         raise ResultError(
-            f"{path}: has {number_of(len(found), 'block')}; there is no block {number}"
+            f"{path}: has {number_of(len(found), 'block')}; there is no block {number}. A block "
+            "begins where the times of the file begin again; a stroke of a drive that goes to and "
+            f"fro is read by --stroke {number}"
         )
     return found[number - 1]
 
@@ -205,6 +213,7 @@ def _measurements(
         return read_measurements(file, said, None if sidecar is None else Path(sidecar))
     stored = read_stored(file)
     changed = {name: value for name, value in said.items() if value is not None}
+    stroke = ReadingOptions(stroke=changed.pop("stroke", None)).stroke
     strange = [
         name for name in changed if name not in Record.model_fields or name in stored.channels
     ]
@@ -213,11 +222,13 @@ def _measurements(
         raise ResultError(
             f"{path}: is a stored record, in SI already: leave out {what}, or read its source again"
         )
-    return [stored._replace(known={**stored.known, **changed})]
+    return [stored._replace(known={**stored.known, **changed}, stroke=stroke)]
 
 
 def _record(path: str | Path, found: Measurement) -> Record:
-    """Return the record of a measurement, with faults that name the file."""
+    """Return the record of a measurement, or of a stroke of it, with faults that name the file."""
+    if found.stroke is not None:
+        found = stroke_of(path, found, found.stroke)
     try:
         return Record(**found.channels, **found.known, sensors=found.sensors, origin=found.origin)
     except DescriptionError as error:

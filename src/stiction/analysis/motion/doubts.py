@@ -364,7 +364,8 @@ def _zero(record: Record, friction: Friction, cycles: xr.Dataset) -> Iterator[st
     plateau = float(np.ptp(some)) < max(NOISE * noise, 1e-9 * largest) * 2.0
     read = float(np.median(some)) if plateau else first
     if abs(read) > max(AT_REST * largest, NOISE * noise):
+        turned = "; just after a turn of the drive it is not" if read < 0.0 else ""
         yield (
             f"The record begins before the first loading, at {in_words(read, 'N')}: if the spring "
-            f"was unloaded, give zero='{read:.4g} N'."
+            f"was unloaded, give zero='{read:.4g} N'{turned}."
         )

@@ -31,6 +31,11 @@ if TYPE_CHECKING:
 
 ALIKE = 0.1  # standard deviation of the drops over their mean
 SLOW_SWING = 2.0  # times the mass's own period on its spring: a slower swing is not its own
+BY_STROKES = (
+    "Analyse the strokes by themselves: where a file has the drive's displacement, --stroke 1 "
+    "(stroke=1 of st.read_record) reads the first. Of a run, or with the position, "
+    "st.analysis.hysteresis gives the loops."
+)
 OTHER_SIGN = 'or a file with --force="-1 N"'
 
 
@@ -76,9 +81,8 @@ def plainly(found: Analysis) -> str:
         )
     if "forth" in evidence:
         return (
-            "The force goes back and forth between both signs, as where the drive does so. Analyse "
-            "the strokes by themselves; of a run, or with the position, st.analysis.hysteresis "
-            "gives the loops."
+            "The force goes back and forth between both signs, as where the drive does so. "
+            f"{BY_STROKES}"
         )
     if "straight" in evidence:
         return (
@@ -88,8 +92,7 @@ def plainly(found: Analysis) -> str:
     if "plateaus" in evidence:
         return (
             "The force goes back and forth between two levels, as where the drive does so, or the "
-            "load changes in steps. Analyse the strokes by themselves; of a run, or with the "
-            "position, st.analysis.hysteresis gives the loops."
+            f"load changes in steps. {BY_STROKES}"
         )
     if count:
         drop, period = (float(found.cycles[name].mean()) for name in ("drop", "period"))

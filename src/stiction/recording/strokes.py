@@ -1,0 +1,116 @@
+"""Strokes of a drive that goes to and fro: parts of a record between two turns."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.errors import ResultError
+from stiction.recording.guess.clock import rate_of
+from stiction.recording.measurement import Measurement
+from stiction.recording.table import number_of
+from stiction.text.units import in_words
+
+Floats = NDArray[np.float64]
+
+ENDS = 0.25  # of the reach, about its middle: beyond it the drive is at one end or at the other
+AT_AN_END = 0.02  # of the reach: so near its end a drive turns, or dwells
+WHOLE = 0.5  # of the reach: a part at the beginning or the end of a record that is less is left out
+DIRECTED = ("force", "force_across", "position", "drive_position")  # channels with a sign
+
+
+class Stroke(NamedTuple):
+    """A part of a record between two turns of the drive: its samples, and which way it goes."""
+
+    samples: slice
+    way: float
+
+
+def strokes(position: Floats) -> list[Stroke]:
+    """Return the strokes of a displacement, one if it does not turn.
+
+    A turn is the middle of the samples near an end, so that a dwell there is divided.
+
+    Examples
+    --------
+    >>> strokes(np.array([0.0, 1.0, 2.0, 1.0, 0.0]))
+    [Stroke(samples=slice(0, 3, None), way=1.0), Stroke(samples=slice(2, 5, None), way=-1.0)]
+    """
+    low, high = float(position.min()), float(position.max())
+    reach, middle = high - low, 0.5 * (low + high)
+    edges = [0, *_turns(position - middle, reach), len(position) - 1]
+    found = []
+    for begin, end in pairwise(edges):
+        travel = float(position[end] - position[begin])
+        if end > begin and abs(travel) >= WHOLE * reach:
+            found.append(Stroke(slice(begin, end + 1), -1.0 if travel < 0.0 else 1.0))
+    return found
+
+
+def _turns(position: Floats, reach: float) -> list[int]:
+    """Return the samples at which a displacement about its middle turns."""
+    out = np.flatnonzero(np.abs(position) > ENDS * reach)
+    if not len(out):
+        return []
+    side = np.sign(position[out])
+    parts = np.split(out, np.flatnonzero(np.diff(side)) + 1)
+    found = []
+    for part in parts:  # at one end, and then at the other
+        far = np.abs(position[part])
+        near = part[far >= far.max() - AT_AN_END * reach]
+        found.append(int(near[0] + near[-1]) // 2)
+    return found
+
+
+def stroke_of(path: object, found: Measurement, number: int) -> Measurement:
+    """Return one stroke of a record, counted from 1, in the direction of its drive.
+
+    On the way back, forces and displacements along the drive have the other sign: they are turned
+    round, as a test of one direction has them.
+
+    Raises
+    ------
+    ResultError
+        If the record has no displacement, or not so many strokes.
+    """
+    name = next((x for x in ("drive_position", "position") if x in found.channels), None)
+    if name is None:
+        raise ResultError(
+            f"{path}: which samples are stroke {number} follows from the displacement of the "
+            "drive; say --drive-position with its column and unit, such as 'stage=mm'"
+        )
+    parts = strokes(found.channels[name])
+    if not 1 <= number <= len(parts):
+        one = "" if len(parts) > 1 else ": the drive does not turn"
+        raise ResultError(
+            f"{path}: has {number_of(len(parts), 'stroke')}{one}; there is no stroke {number}"
+        )
+    samples, way = parts[number - 1]
+    channels = {
+        key: (way if key in DIRECTED else 1.0) * values[samples]
+        for key, values in found.channels.items()
+    }
+    time = channels["time"]
+    back = "; on this way back, forces and displacements were turned round" if way < 0.0 else ""
+    note = (
+        f"stroke {number} of {len(parts)}, from {in_words(float(time[0]), 's')} to "
+        f"{in_words(float(time[-1]), 's')}{back}"
+    )
+    used = [
+        replace(use, least=float(channels[x].min()), largest=float(channels[x].max()))
+        if (x := use.channel) in channels
+        else use
+        for use in found.origin.uses
+    ]
+    origin = replace(
+        found.origin,
+        uses=tuple(used),
+        samples=len(time),
+        rate=rate_of(time),
+        notes=(note, *found.origin.notes),
+    )
+    return found._replace(channels=channels, origin=origin, stroke=None)

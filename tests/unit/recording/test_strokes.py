@@ -1,0 +1,110 @@
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.cli import main
+from stiction.recording.strokes import strokes
+
+REACH, PERIOD = 4.0, 8.0  # mm, s
+TIME = np.arange(0.0, 20.0, 0.01)
+
+
+def to_and_fro(time: np.ndarray, dwell: float = 0.0) -> np.ndarray:
+    """Return a displacement between 0 and 4 mm at 1 mm/s, which turns at 0, 4, 8, ... s."""
+    there = PERIOD / 2.0 + dwell
+    at = time % (2.0 * there)
+    way = np.clip(at, 0.0, REACH) - np.clip(at - there, 0.0, REACH)
+    return np.asarray(way)
+
+
+@pytest.fixture
+def path(tmp_path):
+    """A force that follows the direction of the drive, 0.2 N to 0.25 N."""
+    stage = to_and_fro(TIME)
+    force = np.sign(np.gradient(stage)) * (0.2 + 0.05 * (TIME % 1.0))
+    rows = "".join(f"{t:.2f},{x:.4f},{f:.5f}\n" for t, x, f in zip(TIME, stage, force, strict=True))
+    target = tmp_path / "to-and-fro.csv"
+    target.write_text(f"time [s],stage [mm],Fx [N]\n{rows}")
+    return target
+
+
+@pytest.mark.parametrize(("dwell", "noise"), [(0.0, 0.0), (0.0, 0.01), (1.0, 0.01)])
+def test_a_stroke_is_what_lies_between_two_turns(dwell, noise):
+    scatter = noise * np.random.default_rng(3).standard_normal(len(TIME))
+    found = strokes(to_and_fro(TIME, dwell) + scatter)
+    assert [each.way for each in found] == ([1.0, -1.0] * 3)[: len(found)]
+    assert len(found) == (5 if dwell == 0.0 else 4)
+    # 2 % of the reach is 0.08 mm: the middle of what lies so near an end is the turn
+    turns = [float(TIME[each.samples][-1]) for each in found[:-1]]
+    expected = [4.0, 8.0, 12.0, 16.0] if dwell == 0.0 else [4.5, 9.5, 14.5]
+    assert turns == pytest.approx(expected, abs=0.08)
+
+
+def test_a_stroke_that_is_cut_by_the_beginning_counts_from_half_of_its_length_on():
+    later = TIME + 1.5  # 2.5 mm of 4 are left of it
+    assert len(strokes(to_and_fro(later))) == 5
+    latest = TIME + 2.5
+    first = strokes(to_and_fro(latest))[0]
+    assert first.way == -1.0
+    assert TIME[first.samples][0] == pytest.approx(1.5, abs=0.08)
+
+
+def test_a_drive_that_does_not_turn_makes_one_stroke():
+    assert len(strokes(TIME)) == 1
+    assert len(strokes(np.zeros(10))) == 1
+
+
+def test_a_way_back_is_read_as_a_way_there(path):
+    there, back = (st.read_record(path, stroke=number) for number in (1, 2))
+    for record in (there, back):
+        assert record.force[50:-50].min() >= 0.2
+        assert np.diff(record.drive_position[50:-50]).min() > 0.0
+    assert there.time[-1] == pytest.approx(4.0, abs=0.08)
+    assert back.time[0] == there.time[-1]
+    assert "Stroke 2 of 5" in str(back.origin)
+    assert "turned round" in str(back.origin)
+    assert "turned round" not in str(there.origin)
+    uses = {use.channel: use for use in back.origin.uses}
+    assert uses["drive_position"].largest == pytest.approx(0.0, abs=1e-4)
+    assert uses["force"].least == back.force.min()
+
+
+def test_a_stored_record_and_the_toml_beside_a_file_have_strokes_too(path, tmp_path):
+    st.read_record(path).save(tmp_path / "whole.nc")
+    stored = st.read_record(tmp_path / "whole.nc", stroke=2)
+    path.with_suffix(".toml").write_text("[reading]\nstroke = 2\n")
+    assert np.array_equal(st.read_record(path).force, stored.force)
+
+
+def test_strokes_that_are_not_there_are_refused_with_a_remedy(path, tmp_path, capsys):
+    with pytest.raises(st.ResultError, match="has 5 strokes; there is no stroke 6"):
+        st.read_record(path, stroke=6)
+    with pytest.raises(st.DescriptionError, match="stroke: must not be below 1, is 0"):
+        st.read_record(path, stroke=0)
+    alone = tmp_path / "force.csv"
+    alone.write_text("time [s],Fx [N]\n" + "".join(f"{t},0.2\n" for t in range(9)))
+    with pytest.raises(st.ResultError, match="displacement of the drive; say --drive-position"):
+        st.read_record(alone, stroke=1)
+    with pytest.raises(SystemExit) as ended:
+        main(["analyse", str(path), "--block", "2"])
+    assert ended.value.code == 2
+    said = " ".join(capsys.readouterr().err.split())
+    assert "has 1 block; there is no block 2. A block begins where the times of the file" in said
+    assert "is read by --stroke 2" in said
+
+
+def test_an_analysis_of_a_record_to_and_fro_says_how_to_read_a_stroke(path):
+    whole = str(st.analyse(st.read_record(path)))
+    assert "--stroke 1" in " ".join(whole.split())
+    found = st.analyse(st.read_record(path, stroke=2))
+    assert "back and forth" not in str(found)
+
+
+def test_a_spring_that_is_loaded_backwards_after_a_turn_is_no_zero_that_is_off():
+    """From -0.2 N up at 0.1 N/s, then stick-slip."""
+    time = np.arange(0.0, 30.0, 0.01)
+    force = np.where(time < 4.0, -0.2 + 0.1 * time, 0.2 - 0.05 * ((time - 4.0) % 1.0 > 0.5))
+    noise = 1e-4 * np.random.default_rng(2).standard_normal(len(time))
+    said = " ".join(st.analyse(st.Record(time=time, force=force + noise)).warnings)
+    assert "give zero='-0.2" in said
+    assert "just after a turn of the drive it is not" in said
