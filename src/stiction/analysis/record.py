@@ -27,6 +27,9 @@ from stiction.trajectory import Trajectory
 LARGEST = 1e100  # of any sample, in SI: its square must not overflow
 SMALLEST = 1e-100  # smaller values are taken as zero, because their squares underflow
 SHARP = 1e-3  # of the load: noise of it that is averaged away
+# errors of the variance of noise, by which a load varies for sure; by fourth differences, which are
+# correlated, that is known half as well as by the noise itself
+CERTAIN = 10.0
 LONGEST = 1 / 400  # of the record: over so much of it the load is averaged at most
 CHANNELS = (  # (n,), beside the time
     *("force", "force_across", "load", "position", "drive_position", "slip_speed"),
@@ -209,6 +212,7 @@ class Record(Described):
             raise ValueError(f"load must press the bodies together, its mean is {mean:g} N")
         if self.normal_load is None:
             self.__dict__.update(normal_load=mean)
+            self.__pydantic_fields_set__.discard("normal_load")
         return self
 
     @model_validator(mode="after")
@@ -241,6 +245,11 @@ class Record(Described):
     def same_time(self) -> int:
         """Number of samples that were given the same time as the one before."""
         return self._same_time
+
+    @property
+    def stated_load(self) -> float | None:
+        """Normal load as it was stated, N; None where `normal_load` is the mean of `load`."""
+        return self.normal_load if "normal_load" in self.model_fields_set else None
 
     @property
     def sticks(self) -> Floats | None:
@@ -286,6 +295,20 @@ class Record(Described):
         load = uniform_filter1d(self.load, width, mode="nearest")
         return np.asarray(np.where(load > 0.0, load, np.nan) / self.normal_load)
 
+    def load_variation(self) -> float:
+        """Return how far `load` varies beyond its noise, from least to largest, over its mean.
+
+        It is that of a sine with the same standard deviation; 0 where there is no `load`, or where
+        its noise may be all.
+        """
+        if self.load is None or not len(self):
+            return 0.0
+        differences = np.diff(self.load, 4)
+        noise = float(differences @ differences) / 70.0 / max(len(differences), 1)
+        rest = float(self.load.var()) - noise
+        sure = rest > CERTAIN * (2.0 / len(self)) ** 0.5 * noise
+        return float((8.0 * rest) ** 0.5 / self.load.mean()) if sure else 0.0
+
     def channels(self) -> dict[str, Floats]:
         """Return the measured channels by name, (n,) each, in SI; the force first."""
         found = {name: getattr(self, name) for name in CHANNELS}
@@ -299,7 +322,7 @@ class Record(Described):
         ResultError
             If the file cannot be written there.
         """
-        known = {name: getattr(self, name) for name in KNOWN}
+        known = {name: getattr(self, name) for name in KNOWN} | {"normal_load": self.stated_load}
         numbers = {name: value for name, value in known.items() if value is not None}
         channels = {"time": self.time, **self.channels()}
         return write_stored(path, channels, numbers, self.sensors or {}, self.origin)

@@ -16,6 +16,7 @@ from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, 
 from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import even_grid, why_not
 from stiction.analysis.signals.hum import Line, of_mains
+from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
@@ -33,6 +34,7 @@ FLAT = 4  # times as many samples at the largest value as at any other, and so m
 ENOUGH_VALUES = 16  # that are all repeated as often
 TIMES = 3  # that a force stays at its least value: at rest it does so once
 QUIET_SHARE = 0.15  # of the record
+VARIES = 0.05  # of the mean of a measured load: less is not worth a sentence
 IMPOSED = {"drive": ("drive_X", "drive_Y"), "load": ("normal_load",)}  # columns of a run
 # By which power of 1000 the rate of a force is off in another unit: quantity, unit, remedy
 CAUSES = {
@@ -59,6 +61,7 @@ def warnings(
     """Return warnings as sentences, the most important first; `stated` is what was compared."""
     wrong = {each.quantity: each for each in stated if each.agrees is False}
     found = [
+        *_doubt_load(record),
         *_implausible_friction(record, friction, cycles),
         *_doubt_clipping(record),
         *_doubt_mean_period(cycles),
@@ -88,12 +91,26 @@ def taken_off(lines: tuple[Line, ...]) -> tuple[str, ...]:
     return tuple(found)
 
 
+def _doubt_load(record: Record) -> Iterator[str]:
+    """Say that a measured load varies, and which analysis suits it."""
+    varies = record.load_variation()
+    if varies > VARIES:
+        yield (
+            f"The normal load varies by {percent(varies)} of its mean. Coefficients of "
+            "friction are force over load at the same instant; kind of motion, cycles and forces "
+            "are those of a steady test, which this is not; st.analysis.load_dependence suits such "
+            "a test."
+        )
+
+
 def unsteady(run: Trajectory) -> tuple[str, ...]:
     """Return a sentence if the drive or the load of a run varies, and which analysis suits it."""
     varies = [name for name, of in IMPOSED.items() if _varies(run, of)]
     if not varies:
         return ()
     remedy = "st.analysis.velocity_steps, healing or hysteresis suit such a test"
+    if varies == ["load"]:
+        remedy = "st.analysis.load_dependence suits such a test"
     if turns_round(run):
         remedy = "st.analysis.hysteresis gives the loops of force over travel"
     return (

@@ -153,11 +153,11 @@ def _speeds_of_parts(time: Floats, position: Floats) -> tuple[Floats, float]:
 
 
 def _normal_load(record: Record) -> StatedQuantity | None:
-    """Compare the mean of the measured normal load with the stated one."""
+    """Compare the mean of the measured normal load with the stated one, not with itself."""
     if record.load is None or not len(record):
         return None
     found, spread = float(record.load.mean()), float(record.load.std())
-    stated = record.normal_load or nan
+    stated = record.stated_load or nan
     how = "mean of its channel, with its spread"
     return StatedQuantity("normal load", "N", found, spread, stated, 1 - ALIKE, 1 + ALIKE, how)
 

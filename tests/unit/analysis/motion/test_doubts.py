@@ -350,3 +350,43 @@ def test_words_say_no_more_than_a_force_shows() -> None:
         (holds, {}, "as where holds interrupt the sliding"),
     ):
         assert words in str(st.analyse(st.Record(time=time, force=force + noise, **known)))
+
+
+def varying_load(share: float, noise: float, **stated: float) -> st.Record:
+    """Return stick-slip under a load that varies by a share to both sides in 7 s, with noise."""
+    time = np.arange(0.0, 20.0, 1e-3)
+    random = np.random.default_rng(0)
+    load = 10.0 * (1.0 + share * np.sin(2.0 * np.pi * time / 7.0))
+    force = load * (0.2 - 0.05 * (1.0 - time % 1.0)) + 5e-3 * random.standard_normal(len(time))
+    measured = load + 10.0 * noise * random.standard_normal(len(time))
+    return st.Record(time=time, force=force, load=measured, **stated)
+
+
+@pytest.mark.parametrize(("share", "noise"), [(0.2, 0.0), (0.2, 0.05), (0.04, 0.05)])
+def test_a_measured_load_that_varies_is_told_first(share, noise):
+    """As that of a simulated run is."""
+    record = varying_load(share, noise)
+    assert record.load_variation() == pytest.approx(2.0 * share, rel=0.2)
+    first = st.analyse(record).warnings[0]
+    assert first.startswith("The normal load varies by ")
+    assert "st.analysis.load_dependence suits such a test" in first
+    run = st.simulate(
+        st.presets.nakano_popov_2020().replace(
+            load=st.protocols.LoadProgram(program=[st.protocols.Ramp(to="12 N", duration="1 s")])
+        ),
+        "1 s",
+        sample_rate="1 kHz",
+    )
+    assert "st.analysis.load_dependence suits such a test" in st.analyse(run).warnings[0]
+
+
+@pytest.mark.parametrize(("share", "noise"), [(0.0, 0.0), (0.0, 0.2), (0.02, 0.01)])
+def test_noise_of_a_load_cell_is_no_load_that_varies(share, noise):
+    assert not [x for x in st.analyse(varying_load(share, noise)).warnings if "load varies" in x]
+
+
+def test_short_records_of_noise_have_a_steady_load():
+    many = varying_load(0.0, 0.2)
+    for first in range(0, 4000, 40):
+        few = {name: values[first : first + 40] for name, values in many.channels().items()}
+        assert st.Record(time=many.time[:40], **few).load_variation() == 0.0

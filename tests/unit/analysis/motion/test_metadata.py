@@ -147,3 +147,22 @@ def test_the_measured_records(name, low, high):
     """At V = 4300 um/s k/m comes out 1.5 to 1.7 times as stated, at 42 um/s as stated."""
     its = {each.quantity: each for each in st.analyse(read_measured(name)).parts["metadata"]}
     assert low < its["stiffness over mass"].ratio < high
+
+
+def test_a_channel_of_the_load_is_not_confirmed_by_its_own_mean(tmp_path):
+    """Nothing is stated, not even by a record that was stored and read again."""
+    time = np.arange(0.0, 10.0, 1e-2)
+    arrays = {"time": time, "force": 1.0 + 0.2 * (time % 2.0), "load": 10.0 + 0.1 * (time % 3.0)}
+    alone = st.Record(**arrays)
+    again = st.read_record(alone.save(tmp_path / "alone.nc"))
+    for record in (alone, again, st.Record(**arrays, normal_load=None)):
+        assert record.normal_load == arrays["load"].mean()
+        assert record.stated_load is None
+        (load,) = (x for x in st.analyse(record).parts["metadata"] if x.quantity == "normal load")
+        assert load.agrees is None
+        assert "What the record says of its apparatus" not in str(st.analyse(record))
+    stated = st.Record(**arrays, normal_load="20 N")
+    for record in (stated, st.read_record(stated.save(tmp_path / "stated.nc"))):
+        (load,) = (x for x in st.analyse(record).parts["metadata"] if x.quantity == "normal load")
+        assert load.stated == 20.0
+        assert load.agrees is False
