@@ -5,9 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from enum import Enum
+from reprlib import Repr
 from typing import NamedTuple
 
 LONGEST = 2000  # characters of a message
+LONGEST_PATH = 400  # characters of the path of a fault, or of a file
+ECHOED = 80  # characters of a value in a message
+ITEMS = 4  # of a list in a message
+MOST = 100  # faults of a description in its message
+
+_shortened = Repr()
+_shortened.maxlevel = 3
+_shortened.maxlist = _shortened.maxtuple = _shortened.maxset = _shortened.maxfrozenset = ITEMS
+_shortened.maxdict = _shortened.maxdeque = _shortened.maxarray = ITEMS
+_shortened.maxstring = _shortened.maxother = _shortened.maxlong = ECHOED + 2  # quotation marks
 
 
 def one_line(error: BaseException) -> str:
@@ -21,6 +32,35 @@ def visible(text: str) -> str:
     Names and values in a file come from whoever wrote it.
     """
     return "".join(x if x.isprintable() or x == "\n" else ascii(x)[1:-1] for x in text)
+
+
+def echo(value: object) -> str:
+    """Return a value for a message: in one line, and shortened.
+
+    Examples
+    --------
+    >>> echo("1 kg"), echo(range(3)), echo([0.5] * 100)
+    ("'1 kg'", 'range(0, 3)', '[0.5, 0.5, 0.5, 0.5, ...]')
+    >>> import numpy as np
+    >>> echo(np.zeros(3)), echo(np.zeros(2000))
+    ('array([0., 0., 0.])', '<2000 values>')
+    """
+    try:
+        shape, size = getattr(value, "shape", None), getattr(value, "size", None)
+        if shape and isinstance(size, int) and size > ITEMS:
+            return f"<{size} values>"  # an array, which need not be printed to be shortened
+        if shape == ():  # a number of NumPy
+            value = value.item()  # type: ignore[attr-defined]
+        text = " ".join(_shortened.repr(value).split())
+    except Exception:  # the value is a stranger's, and so is its way to print itself
+        text = f"a {type(value).__name__}"
+    return _without_middle(text, ECHOED + 2)  # with quotation marks
+
+
+def _without_middle(text: str, most: int) -> str:
+    """Return a text of at most so many characters, without its middle."""
+    half = (most - 3) // 2
+    return text if len(text) <= most else f"{text[:half]}...{text[-half:]}"
 
 
 class StictionError(Exception):
@@ -50,10 +90,8 @@ class Fault(NamedTuple):
 
     def __str__(self) -> str:
         """Return ``path: message``, shortened if very long."""
-        text = f"{self.path}: {self.message}" if self.path else self.message
-        return (
-            text if len(text) <= LONGEST else f"{text[: LONGEST // 2]} ... {text[-LONGEST // 2 :]}"
-        )
+        path = _without_middle(self.path, LONGEST_PATH)
+        return _without_middle(f"{path}: {self.message}" if path else self.message, LONGEST)
 
 
 class DescriptionError(StictionError, ValueError):
@@ -68,7 +106,10 @@ class DescriptionError(StictionError, ValueError):
     def __init__(self, faults: Sequence[Fault]) -> None:
         """Join the faults into one message, a line each."""
         self.faults = tuple(faults)
-        super().__init__("\n".join(str(fault) for fault in self.faults))
+        lines = [str(fault) for fault in self.faults[:MOST]]
+        if len(self.faults) > MOST:
+            lines.append(f"and {len(self.faults) - MOST} more faults")
+        super().__init__("\n".join(lines))
 
     def __reduce__(self) -> tuple[type[DescriptionError], tuple[tuple[Fault, ...]]]:
         """Pickle the faults, not the text."""

@@ -13,7 +13,7 @@ import numpy as np
 from numba.core.errors import NumbaError
 
 from stiction.drive.procedures import end
-from stiction.errors import STATUSES, DescriptionError, Fault, Status
+from stiction.errors import STATUSES, DescriptionError, Fault, Status, echo
 from stiction.friction import has_state, states
 from stiction.result.columns import VARIABLES, sample_table
 from stiction.result.table import ColumnTable
@@ -116,7 +116,10 @@ def simulate(
         remedy = "make one with st.Slider(...) or read one with st.Slider.from_toml(path)"
         if isinstance(slider, Description):
             remedy = "st.run(description) simulates a whole description, duration and all"
-        raise DescriptionError([Fault("slider", f"{slider!r} is not a Slider; {remedy}")])
+        raise DescriptionError([Fault("slider", f"{echo(slider)} is not a Slider; {remedy}")])
+    if not isinstance(initial, Initial | None):
+        remedy = "write for example st.Initial(u_x='1 mm')"
+        raise DescriptionError([Fault("initial", f"{echo(initial)} is not an Initial; {remedy}")])
     if duration is None:
         duration = time_to_end(slider, initial or PAPERS)
     given: dict[str, Any] = {
@@ -211,8 +214,8 @@ def solve(
         If it cannot be simulated.
     """
     _, initial, settings = description
-    if max_steps < 1:
-        raise DescriptionError([Fault("max_steps", f"must be at least 1, is {max_steps}")])
+    if not isinstance(max_steps, int) or max_steps < 1:
+        raise DescriptionError([Fault("max_steps", f"must be at least 1, is {echo(max_steps)}")])
     if settings.regularisation is not None and has_state(description.slider.law):
         message = "the law is smooth at zero slip by itself; leave regularisation out"
         raise DescriptionError([Fault("run.regularisation", message)])

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from stiction.analysis.quadrature import integrals, states_at
 from stiction.drive import drive_stretches, jump
 from stiction.drive.program import pick
-from stiction.errors import ResultError
+from stiction.errors import ResultError, echo
 from stiction.solver.integrate import tolerance
 from stiction.system.slider import Slider
 from stiction.system.tensors import damping_tensor, mass_tensor
@@ -122,9 +122,12 @@ def _edges(run: Trajectory, edges: ArrayLike | None) -> Floats:
     first, last = (float(run.samples["time"][i]) for i in (0, -1))
     if edges is None:
         return np.array([first, last])
-    found = np.asarray(edges, dtype=np.float64)
+    try:
+        found = np.asarray(edges, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        found = np.zeros(0)
     if found.ndim != 1 or len(found) < 2 or not (np.diff(found) > 0.0).all():
-        raise ResultError(f"edges must be two times or more that ascend, are {edges!r}")
+        raise ResultError(f"edges must be two times or more that ascend, are {echo(edges)}")
     if found[0] < first or found[-1] > last:
         raise ResultError(
             f"the run goes from {first:g} s to {last:g} s, the edges from {found[0]:g} s to "

@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
 from pydantic_core import PydanticCustomError
 
 from stiction.drive.program import nominal_velocity
-from stiction.errors import Fault, ResultError
+from stiction.errors import Fault, ResultError, echo
 from stiction.names import draw
 from stiction.recording.guess.clock import rate_of
 from stiction.recording.origin import Origin
@@ -168,7 +168,9 @@ class Record(Described):
             unit, kind = unit_on(values), KINDS[name]
             said = given.get(key)
             if unit is not None and said is not None and said != unit:
-                wrong.append(Fault(key, f"is {said!r}, but {name} carries {unit!r}; give one"))
+                wrong.append(
+                    Fault(key, f"is {echo(said)}, but {name} carries {echo(unit)}; give one")
+                )
                 continue
             try:
                 read[name] = samples_to_si(values, unit or str(said or kind.unit), kind)

@@ -10,6 +10,7 @@ from stiction.auditing.prediction import Prediction
 from stiction.auditing.simulated_test import SimulatedTest
 from stiction.auditing.words.numbers import apparent_stiffness, peak
 from stiction.auditing.words.verdict import final_motion
+from stiction.errors import echo
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table
@@ -72,7 +73,7 @@ def masses(slider: Slider, chain: Chain) -> list[str]:
 
 def _mass(part: Part, number: int) -> str:
     mass, name = in_words(part.spring.mass or 0.0, "kg"), part.spring.name
-    start = f"The mass of {mass} that moves with {name!r} is left out"
+    start = f"The mass of {mass} that moves with {echo(name)} is left out"
     if part.more < SMALL:
         more = percent(part.more)
         return f"{start}: with it the springs would yield at most {more} more, which is little."

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from stiction.errors import StictionError
+from stiction.errors import StictionError, echo
 
 if TYPE_CHECKING:
     from stiction.inference.priors import Rig
@@ -229,7 +229,9 @@ def parse_assignment(text: str, option: str) -> tuple[str, str]:
     """Return name and value of an option's ``NAME=VALUE``."""
     name, equals, value = text.partition("=")
     if not equals or not name.strip():
-        raise StictionError(f"{option} {text!r} is not NAME=VALUE; write for example 'phi = 1 deg'")
+        raise StictionError(
+            f"{option} {echo(text)} is not NAME=VALUE; write for example 'phi = 1 deg'"
+        )
     return name.strip(), value.strip()
 
 

@@ -8,6 +8,8 @@ from inspect import getdoc
 from cyclopts import CycloptsError, MissingArgumentError
 from cyclopts.exceptions import UnusedCliTokensError
 
+from stiction.errors import echo
+
 EXAMPLE = re.compile(r"Example:\s+(.+?)\.?\s*$", re.S)  # at the end of the help of an option
 SHOWN = re.compile(r"^ +(stiction .+)$", re.M)  # in the help of a command
 
@@ -19,7 +21,8 @@ def in_words(error: CycloptsError) -> str:
             return _missing(error)
         case UnusedCliTokensError(unused_tokens=[first, *_]):
             return (
-                f"{first!r} is one argument too many; put a value that holds blanks in quotation "
+                f"{echo(first)} is one argument too many; put a value that holds blanks in "
+                "quotation "
                 'marks: --set "V = 2 mm/s"'
             )
     return str(error)

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from stiction.drive.pieces import Constant, Hold, Ramp, Reversal, Step
 from stiction.drive.program import DriveProgram, LoadProgram
 from stiction.drive.steady import ConstantVelocity
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, echo
 from stiction.text.units import FORCE, VELOCITY, Kind, Quantity, to_si
 
 TIME, LENGTH = Kind("a time", "s", "5 s"), Kind("a length", "m", "0.1 mm")
@@ -104,7 +104,7 @@ def reversal_loops(velocity: Quantity, travel: Quantity, *, loops: int = 3) -> D
     V = _positive("velocity", velocity, VELOCITY)
     leg = _positive("travel", travel, LENGTH) / V
     if loops < 1:
-        raise _fault("loops", f"must be at least 1, is {loops}")
+        raise _fault("loops", f"must be at least 1, is {echo(loops)}")
     turns = [Reversal(duration=leg)] * (2 * loops)
     return DriveProgram(velocity=V, program=[Constant(duration=0.5 * leg), *turns])
 
@@ -146,7 +146,7 @@ def _end(program: DriveProgram | LoadProgram) -> float | None:
 
 def _at_least_one(path: str, values: Sequence[Quantity]) -> Sequence[Quantity]:
     if isinstance(values, str) or not len(values):
-        raise _fault(path, f"{values!r} must be a list of at least one value")
+        raise _fault(path, f"{echo(values)} must be a list of at least one value")
     return values
 
 
@@ -159,7 +159,7 @@ def _read_all(path: str, values: Sequence[Quantity], kind: Kind) -> list[float]:
 def _positive(path: str, value: Quantity | None, kind: Kind) -> float:
     number = _read(path, value, kind)
     if not number > 0.0:
-        raise _fault(path, f"must be greater than 0, is {value!r}")
+        raise _fault(path, f"must be greater than 0, is {echo(value)}")
     return number
 
 

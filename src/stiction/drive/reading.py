@@ -9,7 +9,7 @@ from pydantic import BeforeValidator
 from pydantic_core import PydanticCustomError
 
 from stiction.drive.pieces import LEVELS, Modulation
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, echo
 from stiction.text.toml import choose
 from stiction.text.units import Kind, fault, to_si
 from stiction.text.validation import faulty
@@ -20,7 +20,7 @@ def as_pieces(known: Mapping[str, type[Any]], kind: Kind) -> BeforeValidator:
 
     def read(value: Any) -> tuple[Any, ...]:
         if not isinstance(value, Sequence) or isinstance(value, str):
-            raise fault(f"{value!r} is not a list of pieces")
+            raise fault(f"{echo(value)} is not a list of pieces")
         made, found = [], []
         for i, each in enumerate(value):
             try:
@@ -47,7 +47,9 @@ def as_modulation(kind: Kind) -> BeforeValidator:
         try:
             made = Modulation(**value) if isinstance(value, Mapping) else value
             if not isinstance(made, Modulation):
-                raise fault(f"{value!r} is not a modulation; it has an amplitude and a frequency")
+                raise fault(
+                    f"{echo(value)} is not a modulation; it has an amplitude and a frequency"
+                )
             done: Modulation = _in_si(made, kind)
         except DescriptionError as error:
             raise faulty([fault.at() for fault in error.faults]) from None
@@ -60,7 +62,7 @@ def _piece(value: Any, known: Mapping[str, type[Any]]) -> Any:
     if isinstance(value, Mapping):
         return choose(dict(value), "piece", known)
     if type(value) not in known.values():
-        raise DescriptionError([Fault("piece", f"{value!r} is none of {', '.join(known)}")])
+        raise DescriptionError([Fault("piece", f"{echo(value)} is none of {', '.join(known)}")])
     return value
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 import stiction
 from stiction.comparison import comparable, exchange_law
-from stiction.errors import StictionError
+from stiction.errors import StictionError, echo
 from stiction.explorer import motion
 from stiction.explorer.decimation import columns_of, extremes
 from stiction.explorer.exports import NAMES, export
@@ -43,7 +43,7 @@ def answer(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
     """
     known = ANSWERS.get(str(request.get("do")))
     if known is None:
-        raise StictionError(f"{request.get('do')!r} is unknown; known: {', '.join(ANSWERS)}")
+        raise StictionError(f"{echo(request.get('do'))} is unknown; known: {', '.join(ANSWERS)}")
     yield from known(opened, request, check)
 
 
@@ -159,7 +159,7 @@ def law(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
     """Yield the tables with another friction law, comparable with the present one."""
     description, name = description_in(opened, request), str(request["name"])
     if name not in LAWS:
-        raise StictionError(f"no law {name!r}; known: {', '.join(LAWS)}")
+        raise StictionError(f"no law {echo(name)}; known: {', '.join(LAWS)}")
     yield {"tables": tables_of(exchange_law(description, comparable(LAWS[name], description)))}, {}
 
 
@@ -186,7 +186,7 @@ def file(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
     """Yield a file to keep."""
     kind = str(request.get("kind"))
     if kind not in NAMES:
-        raise StictionError(f"no export {kind!r}; known: {', '.join(NAMES)}")
+        raise StictionError(f"no export {echo(kind)}; known: {', '.join(NAMES)}")
     name, content = export(description_in(opened, request), kind, check)
     yield {"name": name}, {"content": np.frombuffer(content, np.uint8)}
 

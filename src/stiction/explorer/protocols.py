@@ -11,7 +11,7 @@ from typing import Any
 from stiction.drive import ConstantVelocity, Drive, DriveProgram, LoadProgram
 from stiction.drive.pieces import Harmonic, Modulation
 from stiction.drive.procedures import load_ramp, reversal_loops, slide_hold_slide, velocity_steps
-from stiction.errors import StictionError
+from stiction.errors import StictionError, echo
 from stiction.system.description import Description
 
 SPEED = 1e-3  # m/s, where the drive stands
@@ -26,7 +26,7 @@ def protocol(description: Description, table: str, name: str) -> Description:
         If there is no such test.
     """
     if name not in TESTS.get(table, {}):
-        raise StictionError(f"no protocol {name!r} of {table!r}; known: {names()}")
+        raise StictionError(f"no protocol {echo(name)} of {echo(table)}; known: {names()}")
     slider = description.slider.replace(**{table: TESTS[table][name](description)})
     return description._replace(slider=slider)
 

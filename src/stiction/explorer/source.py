@@ -11,7 +11,7 @@ import numpy as np
 
 from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.record import Record
-from stiction.errors import DescriptionError, Fault, ResultError
+from stiction.errors import DescriptionError, Fault, ResultError, echo
 from stiction.explorer.motion import CURVES
 from stiction.friction.user.loading import Find, is_own
 from stiction.presets import nakano_popov_2020
@@ -73,7 +73,8 @@ class Opened:
             if name == known and text is None:
                 return type(law)
             message = (
-                f"{name!r} is a law from a file, and the page loads none; name it on the command "
+                f"{echo(name)} is a law from a file, and the page loads none; name it on the "
+                "command "
                 "line: stiction explore my.toml"
             )
             raise DescriptionError([Fault("friction.law", message)])

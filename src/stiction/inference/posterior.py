@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from stiction.errors import ResultError
+from stiction.errors import ResultError, echo
 from stiction.inference.calibration import Learned
 from stiction.inference.library import Library, Plan
 from stiction.inference.regression_abc import Sample, quantiles
@@ -126,7 +126,7 @@ class Fit:
         found = [x for x in self.estimates if name in (x.name, x.name.split(".")[-1])]
         if not found:
             known = ", ".join(x.name for x in self.estimates)
-            raise ResultError(f"no parameter {name!r} was fitted; known: {known}")
+            raise ResultError(f"no parameter {echo(name)} was fitted; known: {known}")
         return found[0]
 
     def tables(self) -> list[Section]:

@@ -25,7 +25,7 @@ from pydantic_core import PydanticCustomError
 from scipy.special import ndtr, ndtri
 
 from stiction.drive.recorded.reading import locator, with_rows
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, echo
 from stiction.friction import read_law
 from stiction.friction.user.loading import finder_for_descriptions, is_own
 from stiction.system.parameter import change_parameter, change_parameters, unit
@@ -237,7 +237,7 @@ def read_prior(table: Mapping[str, Any], kind: Kind) -> Prior:
         share = re.fullmatch(r"\s*(.+?)\s*%\s*", said) if isinstance(said, str) else None
         width = abs(mean) * to_si(float(share[1]), PLAIN) / 100.0 if share else to_si(said, kind)
         if not width > 0.0:
-            raise ValueError(f"uncertainty must be greater than 0, is {said!r}")
+            raise ValueError(f"uncertainty must be greater than 0, is {echo(said)}")
         return Normal(mean, width)
     if not UNIFORM <= keys <= UNIFORM | {"scale"}:
         listed = ", ".join(sorted(keys - NORMAL - UNIFORM)) or "both ways at once"
@@ -247,11 +247,13 @@ def read_prior(table: Mapping[str, Any], kind: Kind) -> Prior:
     low, high = to_si(table["low"], kind), to_si(table["high"], kind)
     scale = table.get("scale", "linear")
     if scale not in SCALES:
-        raise ValueError(f"scale is {scale!r}; write one of {', '.join(SCALES)}")
+        raise ValueError(f"scale is {echo(scale)}; write one of {', '.join(SCALES)}")
     if not low < high:
-        raise ValueError(f"low must be below high, is {table['low']!r} and {table['high']!r}")
+        raise ValueError(
+            f"low must be below high, is {echo(table['low'])} and {echo(table['high'])}"
+        )
     if scale == "log" and not low > 0.0:
-        raise ValueError(f"low must be above 0 for scale = 'log', is {table['low']!r}")
+        raise ValueError(f"low must be above 0 for scale = 'log', is {echo(table['low'])}")
     return Uniform(low, high, scale)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import exp, inf, log
 from typing import NamedTuple
 
-from stiction.errors import DescriptionError, Fault, Faults
+from stiction.errors import DescriptionError, Fault, Faults, echo
 from stiction.system.parameter import change_parameter, change_unchecked, read, unit
 from stiction.system.slider import Slider
 from stiction.text.paths import canonical_path
@@ -71,7 +71,7 @@ def axis(slider: Slider, path: str, between: Sequence[Quantity] | None = None) -
     path = canonical_path(path)
     ends = default(slider, path) if between is None else between
     if isinstance(ends, str) or len(ends) != 2:
-        raise DescriptionError([Fault(path, f"{ends!r} is not a range; give its two ends")])
+        raise DescriptionError([Fault(path, f"{echo(ends)} is not a range; give its two ends")])
     faults, values = Faults(), []
     for end in ends:
         with faults.of_part():
@@ -85,7 +85,9 @@ def axis(slider: Slider, path: str, between: Sequence[Quantity] | None = None) -
         raise DescriptionError([Fault(path, message)]) from None
     low, high = values
     if not low < high:
-        raise DescriptionError([Fault(path, f"{ends!r} is not a range; give its low end first")])
+        raise DescriptionError(
+            [Fault(path, f"{echo(ends)} is not a range; give its low end first")]
+        )
     return Axis(path, unit(slider, path), low, high)
 
 

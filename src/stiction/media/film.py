@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from stiction.errors import ResultError
+from stiction.errors import ResultError, echo
 from stiction.media.encoder import KINDS, encode
 from stiction.media.scene import Scene, slowest_slip
 from stiction.media.sound import time_in, window_of
@@ -125,7 +125,7 @@ def animate(
             f"length must lie between {1 / RATE:g} s and {LONGEST:g} s, is {length:g}"
         )
     if kind not in KINDS:
-        raise ResultError(f"kind must be one of {', '.join(KINDS)}, is {kind!r}")
+        raise ResultError(f"kind must be one of {', '.join(KINDS)}, is {echo(kind)}")
     start, end = window_of(found.description, window)
     middle = None if at is None else time_in(found.description, at)
     times = np.linspace(start, end, ceil(length * RATE))

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal, NamedTuple, TypeVar
 
 from pydantic import BeforeValidator, Field
 
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, echo
 from stiction.recording.channels import CHANNELS
 from stiction.recording.sensor import Sensor
 from stiction.text.toml import read_toml
@@ -40,7 +40,7 @@ def _wrap(value: object) -> object:
         return 0.0 if value == WHOLE else None
     length = to_si(value, Kind("a length", "m", "10 mm"))
     if length <= 0.0:
-        raise fault(f"must be greater than 0, is {value!r}; or write {WHOLE!r}")
+        raise fault(f"must be greater than 0, is {echo(value)}; or write {WHOLE!r}")
     return length
 
 
@@ -180,7 +180,9 @@ def _tables(own: Path) -> dict[str, dict[str, Any]]:
         if section not in SECTIONS:
             wrong.append(Fault(f"{own}: {section}", unknown_name("table", section, SECTIONS)))
         elif not isinstance(table, Mapping):
-            wrong.append(Fault(f"{own}: {section}", f"must be a table [{section}], is {table!r}"))
+            wrong.append(
+                Fault(f"{own}: {section}", f"must be a table [{section}], is {echo(table)}")
+            )
         else:
             strange = [name for name in table if name not in allowed[section]]
             wrong += [

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from stiction.errors import Fault, ResultError
+from stiction.errors import Fault, ResultError, echo
 from stiction.text.units import Kind, Number, Rate, to_si
 from stiction.text.validation import Described, faulty
 
@@ -76,7 +76,9 @@ class Sensor(Described):
         read, wrong = dict(given), []
         kind = KINDS.get(str(read.get("unit", "N")))
         if kind is None:
-            raise faulty([Fault("unit", f"is {read['unit']!r}; write one of {', '.join(KINDS)}")])
+            raise faulty(
+                [Fault("unit", f"is {echo(read['unit'])}; write one of {', '.join(KINDS)}")]
+            )
         for name in LEVELS:
             if not isinstance(read.get(name), str):
                 continue

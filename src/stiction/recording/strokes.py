@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.errors import ResultError
+from stiction.errors import ResultError, echo
 from stiction.recording.guess.clock import rate_of
 from stiction.recording.measurement import Measurement
 from stiction.recording.table import number_of
@@ -80,14 +80,14 @@ def stroke_of(path: object, found: Measurement, number: int) -> Measurement:
     name = next((x for x in ("drive_position", "position") if x in found.channels), None)
     if name is None:
         raise ResultError(
-            f"{path}: which samples are stroke {number} follows from the displacement of the "
+            f"{path}: which samples are stroke {echo(number)} follows from the displacement of the "
             "drive; say --drive-position with its column and unit, such as 'stage=mm'"
         )
     parts = strokes(found.channels[name])
     if not 1 <= number <= len(parts):
         one = "" if len(parts) > 1 else ": the drive does not turn"
         raise ResultError(
-            f"{path}: has {number_of(len(parts), 'stroke')}{one}; there is no stroke {number}"
+            f"{path}: has {number_of(len(parts), 'stroke')}{one}; there is no stroke {echo(number)}"
         )
     samples, way = parts[number - 1]
     channels = {

@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple
 from matplotlib.figure import Figure
 
 from stiction import presets
-from stiction.errors import StictionError
+from stiction.errors import StictionError, echo
 from stiction.friction.laws import Coulomb
 from stiction.plotting.page.save import save
 from stiction.reproduction.creep import creep
@@ -97,7 +97,7 @@ def reproduce(
     usable_folder(folder)
     make_folder(folder)
     if figure not in (None, 3, 4, 5):
-        raise StictionError(f"figure must be 3, 4 or 5, is {figure!r}")
+        raise StictionError(f"figure must be 3, 4 or 5, is {echo(figure)}")
     slider = presets.nakano_popov_2020()
     if figure == 5:
         return save(figure5(slider), folder / "figure-5"), None

@@ -16,7 +16,7 @@ from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 
-from stiction.errors import ResultError
+from stiction.errors import ResultError, echo
 
 try:
     import fcntl
@@ -51,7 +51,7 @@ def placeable(path: str | Path, suffixes: Collection[str] = ()) -> Path:
         remedy = f"name it {target.stem}{first}"
         if others:
             remedy = f"use {', '.join(suffixes)}, such as {target.stem}{first}"
-        raise ResultError(f"{target}: unknown format {target.suffix!r}; {remedy}")
+        raise ResultError(f"{target}: unknown format {echo(target.suffix)}; {remedy}")
     if not target.parent.is_dir():
         raise ResultError(f"{target}: folder {target.parent} does not exist; make it first")
     if target.exists() and not target.is_file():

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, TypeVar, cast, get_args
 
 from stiction.drive.pieces import LEVELS
-from stiction.errors import DescriptionError, Fault, Faults
+from stiction.errors import DescriptionError, Fault, Faults, echo
 from stiction.friction import Anisotropic
 from stiction.system.description import Description
 from stiction.system.slider import FROM_SPRINGS, Slider
@@ -169,7 +169,7 @@ def _unit(owner: Slider | Description, name: str) -> str:
     value = _member(owner, part, field, name)
     its = _unit_of(part, rooms, field)
     if not _is_number(value) and (value is not None or not its):
-        raise DescriptionError([Fault(name, f"is not one number, it is {value!r}")])
+        raise DescriptionError([Fault(name, f"is not one number, it is {echo(value)}")])
     return its
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property, partial
 from math import cos, pi, sin, sqrt
 from pathlib import Path
@@ -22,7 +22,7 @@ from stiction.drive import (
     read_load,
 )
 from stiction.drive.recorded.reading import locator, with_rows
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, echo
 from stiction.friction import Law, has_state, read_law
 from stiction.friction.user.loading import finder_for_descriptions, is_own
 from stiction.friction.user.validation import is_law
@@ -47,7 +47,9 @@ def _within_a_right_angle(phi: float) -> float:
 
 def _is_law(value: Any) -> Any:
     if isinstance(value, type) or not isinstance(value, tuple):
-        raise ValueError(f"{value!r} is not a friction law; write for example st.Coulomb(mu_0=0.2)")
+        raise ValueError(
+            f"{echo(value)} is not a friction law; write for example st.Coulomb(mu_0=0.2)"
+        )
     try:
         is_law(type(value), type(value).__name__)
     except DescriptionError as error:
@@ -58,7 +60,7 @@ def _is_law(value: Any) -> Any:
 def _is_drive(value: Any) -> Any:
     if not isinstance(value, ConstantVelocity | DriveProgram):
         raise ValueError(
-            f"{value!r} is not a drive; write for example st.ConstantVelocity('1 mm/s')"
+            f"{echo(value)} is not a drive; write for example st.ConstantVelocity('1 mm/s')"
         )
     return value
 
@@ -66,10 +68,15 @@ def _is_drive(value: Any) -> Any:
 def _is_load(value: Any) -> Any:
     if value is not None and not isinstance(value, LoadProgram):
         raise ValueError(
-            f"{value!r} is not a program of the load; write for example "
+            f"{echo(value)} is not a program of the load; write for example "
             "st.protocols.LoadProgram(program=[st.protocols.Ramp('20 N', '1 s')])"
         )
     return value
+
+
+def _are_several(springs: Any) -> bool:
+    """Return whether springs are given, or what cannot be springs."""
+    return springs is not None and not (isinstance(springs, Sequence) and not springs)
 
 
 ANGLES = ("phi", "mass_angle", "damping_angle", "cell_angle")
@@ -102,7 +109,7 @@ class Apparatus(Described):
     @classmethod
     def _make_one_spring(cls, values: Any) -> Any:
         """Fill in the stiffnesses of springs in series; their own faults come with the rest."""
-        if not isinstance(values, Mapping) or not values.get("springs"):
+        if not isinstance(values, Mapping) or not _are_several(values.get("springs")):
             return values
         try:
             along, across, _ = whole(read_springs(values["springs"]))
@@ -325,7 +332,7 @@ class Slider(Apparatus):
         """Return the same slider with some parameters changed, e.g. ``phi="3 deg"``."""
         values = {name: getattr(self, name) for name in self.own_fields()}
         values |= {name: f"{values[name]!r} rad" for name in ANGLES if values[name] is not None}
-        if changes.get("springs"):
+        if _are_several(changes.get("springs")):
             values = {name: each for name, each in values.items() if name not in FROM_SPRINGS}
         return type(self)(**(values | changes))
 

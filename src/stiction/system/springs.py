@@ -16,7 +16,7 @@ from typing import Annotated, Any, NamedTuple
 
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
 
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, echo
 from stiction.system.tensors import Matrix, principal
 from stiction.text.paths import slug
 from stiction.text.quantity_text import RIGID, angle_text
@@ -35,7 +35,7 @@ def _stiffness(value: object, kind: Kind, words: tuple[str, ...] = ()) -> float:
 
 def _has_a_letter(name: str) -> str:
     if not re.search(LETTER, name):
-        raise ValueError(f"must have a letter, is {name!r}; write for example 'load cell'")
+        raise ValueError(f"must have a letter, is {echo(name)}; write for example 'load cell'")
     return name
 
 
@@ -154,7 +154,7 @@ def read_springs(value: Any) -> tuple[Spring, ...]:
         With every fault.
     """
     if not isinstance(value, Sequence) or isinstance(value, str | Spring):
-        raise fault(f"{value!r} is not a list of springs; write tables [[slider.springs]]")
+        raise fault(f"{echo(value)} is not a list of springs; write tables [[slider.springs]]")
     made: list[Spring] = []
     found: list[Fault] = []
     for number, each in enumerate(value, 1):
@@ -164,7 +164,9 @@ def read_springs(value: Any) -> tuple[Spring, ...]:
             found += [fault.at(str(number)) for fault in error.faults]
     names = [each.slug for each in made]
     twice = sorted({each.name for each in made if names.count(each.slug) > 1})
-    found += [Fault("name", f"{name!r} stands twice; name each spring otherwise") for name in twice]
+    found += [
+        Fault("name", f"{echo(name)} stands twice; name each spring otherwise") for name in twice
+    ]
     if found:
         raise faulty(found)
     springs = tuple(made)
@@ -179,7 +181,7 @@ def _spring(value: Any) -> Spring:
     if isinstance(value, dict):
         return make(Spring, value)
     remedy = "write st.Spring('load cell', k_x='20 kN/m', k_y='rigid')"
-    raise DescriptionError([Fault("spring", f"{value!r} is not a spring; {remedy}")])
+    raise DescriptionError([Fault("spring", f"{echo(value)} is not a spring; {remedy}")])
 
 
 def compliance(spring: Spring) -> Matrix:

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from copy import deepcopy
 from typing import Any
 
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, echo
 from stiction.text.validation import unknown_name
 
 ALIASES = {
@@ -96,7 +96,7 @@ def put(owner: Any, keys: list[str], value: Any) -> None:
     elif isinstance(owner, dict):
         owner[key] = value
     else:
-        raise TypeError(f"has no part {key!r}: it is {owner!r}")
+        raise TypeError(f"has no part {echo(key)}: it is {echo(owner)}")
 
 
 def first(owner: Any, keys: list[str]) -> tuple[str, list[str]]:
@@ -112,7 +112,7 @@ def member(owner: Any, key: str) -> Any:
     if isinstance(owner, list):
         return owner[index_in(owner, key)]
     if not isinstance(owner, dict):
-        raise TypeError(f"has no part {key!r}: it is {owner!r}")
+        raise TypeError(f"has no part {echo(key)}: it is {echo(owner)}")
     return owner.setdefault(key, {})
 
 
@@ -124,7 +124,7 @@ def index_in(owner: list[Any], key: str) -> int:
     if not key.isdigit() or not 1 <= int(key) <= len(owner):
         known = f", known as {', '.join(names)}" if names else ""
         raise IndexError(
-            f"{key!r} is not an element of a list of {len(owner)}; elements count from 1{known}"
+            f"{echo(key)} is not an element of a list of {len(owner)}; elements count from 1{known}"
         )
     return int(key) - 1
 

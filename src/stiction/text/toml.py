@@ -10,7 +10,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, echo
 from stiction.text.paths import with_changes
 from stiction.text.validation import unknown_name
 
@@ -73,7 +73,7 @@ def read_json(text: str) -> dict[str, Any]:
     except (ValueError, RecursionError, TypeError) as error:
         raise DescriptionError([Fault("description", f"is not JSON: {error}")]) from None
     if not isinstance(raw, dict):
-        raise DescriptionError([Fault("description", f"must be tables, is {raw!r:.60}")])
+        raise DescriptionError([Fault("description", f"must be tables, is {echo(raw)}")])
     return tame(raw, "description")
 
 
@@ -174,7 +174,7 @@ def gather(
         if table is None:
             found.append(Fault(name, f"missing; write a table [{name}]"))
         elif not isinstance(table, Mapping):
-            found.append(Fault(name, f"must be a table [{name}], is {table!r}"))
+            found.append(Fault(name, f"must be a table [{name}], is {echo(table)}"))
         else:
             try:
                 parts[name] = read(dict(table))

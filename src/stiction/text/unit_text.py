@@ -13,6 +13,8 @@ from collections.abc import Iterator
 from functools import cache, lru_cache
 from typing import Any
 
+from stiction.errors import echo
+
 LONGEST = 60  # characters
 TOKEN = re.compile(
     r"\s*(?:(?P<name>[^\W\d_][^\W\d]*|°)"
@@ -77,7 +79,7 @@ def factor(text: str, wanted: str) -> float | None:
     except Exception as error:  # whatever the registry raises: logarithmic units, "nan"
         if isinstance(error, UnitError):
             raise
-        raise UnitError(f"{text!r} is not a unit that can be converted") from error
+        raise UnitError(f"{echo(text)} is not a unit that can be converted") from error
     return float(one.magnitude / other.magnitude) if one.units == other.units else None
 
 
@@ -112,7 +114,7 @@ def plain(text: str) -> str:
     powers = _product(tokens, text, closing="")
     for name in powers:
         if name not in registry():
-            raise UnitError(f"{name!r} is not a known unit (capitals matter)")
+            raise UnitError(f"{echo(name)} is not a known unit (capitals matter)")
     return " * ".join(f"{name}**{power}" for name, power in powers.items())
 
 
@@ -136,7 +138,7 @@ def _product(tokens: Iterator[re.Match[str]], text: str, closing: str) -> Counte
             return powers
         if token["sign"] and token["sign"] != "(":
             if token["sign"] == ")" or wanted or (not powers and token["sign"] != "/"):
-                raise UnitError(f"{token['sign']!r} is in the place of a unit")
+                raise UnitError(f"{echo(token['sign'])} is in the place of a unit")
             sign, wanted = token["sign"], True
             continue
         if divided and sign not in ("/", "*"):

@@ -30,6 +30,7 @@ from typing import (
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
 from pydantic_core import PydanticCustomError
 
+from stiction.errors import echo
 from stiction.text.quantity_text import DIGITS, MEASURABLE, angle_text, suited_unit
 from stiction.text.unit_text import UnitError, factor, short
 
@@ -105,19 +106,21 @@ def to_si(value: object, kind: Kind) -> float:
     value = bare(value)
     angle = kind.unit == "rad"
     if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise fault(f"{value!r} is not {kind.name}; write for example {kind.example!r}")
+        raise fault(f"{echo(value)} is not {kind.name}; write for example {kind.example!r}")
     if isinstance(value, str):
         number = _parse(value, kind)
     elif angle:
-        raise fault(f"degree or radian? write '{value} deg' or '{value} rad'")
+        raise fault(f"degree or radian? write '{echo(value)} deg' or '{echo(value)} rad'")
     else:
         number = as_float(value)
     if not isfinite(number):
         value = value if isinstance(value, str) else number  # an integer may have a million digits
-        raise fault(f"{value!r} is not finite; write for example {kind.example!r}")
+        raise fault(f"{echo(value)} is not finite; write for example {kind.example!r}")
     if abs(number) > LARGEST:
         unit = f" {kind.unit}".rstrip()
-        raise fault(f"{value!r} is beyond {LARGEST:g}{unit}; write for example {kind.example!r}")
+        raise fault(
+            f"{echo(value)} is beyond {LARGEST:g}{unit}; write for example {kind.example!r}"
+        )
     return number if abs(number) >= SMALLEST else 0.0
 
 
@@ -125,7 +128,7 @@ def unread(value: object) -> object:
     """Return a number, or text with a unit, that is read when its unit is known."""
     value = bare(value)
     if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise ValueError(f"{value!r} is not a number or a string with its unit")
+        raise ValueError(f"{echo(value)} is not a number or a string with its unit")
     return value
 
 
@@ -151,7 +154,8 @@ def _parse(text: str, kind: Kind) -> float:
     if not found:
         comma = " (the decimal sign is a point)" if "," in text else ""
         raise fault(
-            f"{text!r} is not one number and its unit{comma}; write for example {kind.example!r}"
+            f"{echo(text)} is not one number and its unit{comma}; write for example "
+            f"{kind.example!r}"
         )
     number, unit = float(found[1].replace("−", "-")), found[2].strip()
     if unit == kind.unit:
@@ -159,18 +163,21 @@ def _parse(text: str, kind: Kind) -> float:
     if unit == "deg" and kind.unit == "rad":
         return number * radians(1.0)
     if not unit:
-        raise fault(f"{text!r} has no unit; write for example {kind.example!r}")
+        raise fault(f"{echo(text)} has no unit; write for example {kind.example!r}")
     if not kind.unit:
-        raise fault(f"{text!r} must be a number without a unit; write for example {kind.example}")
+        raise fault(
+            f"{echo(text)} must be a number without a unit; write for example {kind.example}"
+        )
     try:
         size = factor(unit, kind.unit)
     except UnitError as error:
         raise fault(
-            f"{text!r} is not one number and its unit: {error}; write for example {kind.example!r}"
+            f"{echo(text)} is not one number and its unit: {error}; write for example "
+            f"{kind.example!r}"
         ) from error
     if size is None:
         raise fault(
-            f"{text!r} is in {short(unit) or 'no unit'}, not a unit of {kind.name}; "
+            f"{echo(text)} is in {short(unit) or 'no unit'}, not a unit of {kind.name}; "
             f"write for example {kind.example!r}"
         )
     return _times(found[1].replace("−", "-"), size)
@@ -225,7 +232,7 @@ def _as_list(value: object) -> object:
     """Return an array as a list; refuse a single value."""
     value = value.tolist() if hasattr(value, "tolist") else value
     if not isinstance(value, list | tuple):
-        raise fault(f"{value!r} is not a list of values; write them in brackets: [..., ...]")
+        raise fault(f"{echo(value)} is not a list of values; write them in brackets: [..., ...]")
     return value
 
 

@@ -14,7 +14,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, cr
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, echo
 from stiction.names import session_name
 from stiction.text.quantity_text import RIGID, angle_text
 from stiction.text.units import as_float, hints_of, kind_of, unit_of
@@ -213,17 +213,17 @@ def _message(detail: ErrorDetails, known: tuple[str, ...]) -> str:
         case "unexpected_keyword_argument":
             return unknown_name("parameter", str(detail["loc"][-1]), known)
         case "greater_than":
-            return f"must be greater than {limit['gt']:g}, is {value!r}"
+            return f"must be greater than {limit['gt']:g}, is {echo(value)}"
         case "greater_than_equal":
-            return f"must not be below {limit['ge']:g}, is {value!r}"
+            return f"must not be below {limit['ge']:g}, is {echo(value)}"
         case "less_than_equal":
-            return f"must not be above {limit['le']:g}, is {value!r}"
+            return f"must not be above {limit['le']:g}, is {echo(value)}"
         case "less_than":
-            return f"must be below {limit['lt']:g}, is {value!r}"
+            return f"must be below {limit['lt']:g}, is {echo(value)}"
         case "unit" | "value_error":
             return detail["msg"].removeprefix("Value error, ")
         case _:
-            return f"{detail['msg']}, is {value!r}"
+            return f"{detail['msg']}, is {echo(value)}"
 
 
 def unknown_name(what: str, name: str, known: Iterable[str]) -> str:
@@ -231,7 +231,7 @@ def unknown_name(what: str, name: str, known: Iterable[str]) -> str:
     known = sorted(known)
     near = get_close_matches(name, known, 1)
     remedy = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(known)}"
-    return f"unknown {what} {name!r}; {remedy}"
+    return f"unknown {what} {echo(name)}; {remedy}"
 
 
 def _no_faults(made: object) -> Iterable[tuple[str, str]]:
@@ -276,7 +276,8 @@ def _number(value: object) -> object:
     if isinstance(value, bool) or not isinstance(value, Real):
         raise PydanticCustomError(
             "unit",
-            f"{value!r} is not a number; it is a plain float: write a number in SI, or annotate "
+            f"{echo(value)} is not a number; it is a plain float: write a number in SI, or "
+            "annotate "
             "it with a type of stiction.text.units, e.g. PositiveSpeed".replace("{", "(").replace(
                 "}", ")"
             ),

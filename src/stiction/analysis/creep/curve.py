@@ -11,7 +11,7 @@ from stiction.analysis.creep.binning import Bins, between_halves, between_rests,
 from stiction.analysis.creep.first_slip import creep_end
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.robust import trimmed_mean
-from stiction.errors import ResultError
+from stiction.errors import ResultError, echo
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -80,7 +80,9 @@ def creep_curves(
     import xarray as xr
 
     if width is not None and not width > 0.0:
-        raise ResultError(f"width must be above 0 s, is {width!r}; leave it out for one that suits")
+        raise ResultError(
+            f"width must be above 0 s, is {echo(width)}; leave it out for one that suits"
+        )
 
     record = as_record(source)
     position = _position(record)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, TypedDict, TypeVar, Unpack
 
 from stiction.analysis.record import Record
-from stiction.errors import DescriptionError, Fault, Faults, ResultError
+from stiction.errors import DescriptionError, Fault, Faults, ResultError, echo
 from stiction.recording.measurement import Measurement, read_measurements
 from stiction.recording.request import ReadingOptions
 from stiction.recording.stored import is_stored, read_stored, root_attributes
@@ -156,9 +156,9 @@ def block_of(path: str | Path, found: Sequence[T], number: int) -> T:
     """
     if not 1 <= number <= len(found):
         raise ResultError(
-            f"{path}: has {number_of(len(found), 'block')}; there is no block {number}. A block "
-            "begins where the times of the file begin again; a stroke of a drive that goes to and "
-            f"fro is read by --stroke {number}"
+            f"{path}: has {number_of(len(found), 'block')}; there is no block {echo(number)}. "
+            "A block begins where the times of the file begin again; a stroke of a drive that goes "
+            "to and fro is read by --stroke 2"
         )
     return found[number - 1]
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.record import Record, cell_axis, record_of
-from stiction.errors import ResultError
+from stiction.errors import ResultError, echo
 from stiction.recording.sensor import Sensor
 from stiction.text.units import Quantity, SampleRate
 from stiction.text.validation import Described, read_arguments
@@ -69,7 +69,7 @@ def measure(
     values = {"force": plain.force, **_others(run, plain)}
     unknown = [name for name in sensors if name not in values]
     if unknown or "force" not in sensors:
-        what = f"{unknown[0]!r} is not a channel" if unknown else "the force has no sensor"
+        what = f"{echo(unknown[0])} is not a channel" if unknown else "the force has no sensor"
         raise ResultError(f"{what}; channels of a run: {', '.join(values)}")
     count = int(np.floor(plain.duration * rate * (1.0 + 1e-12))) + 1
     time = plain.time[0] + np.arange(count) / rate

@@ -10,6 +10,7 @@ from pydantic import BeforeValidator, WithJsonSchema
 
 from stiction.drive.recorded.rows import Rows, row_faults
 from stiction.drive.recorded.spline import Recording, recording, spline
+from stiction.errors import echo
 from stiction.text.samples import FrozenColumn, as_numbers, samples_to_si, unit_on
 from stiction.text.units import FORCE, VELOCITY, Kind, Number, fault
 from stiction.text.validation import validate
@@ -25,7 +26,7 @@ def _read_column(values: Any, kind: Kind) -> FrozenColumn:
     if isinstance(values, FrozenColumn):
         return values
     if isinstance(values, str):
-        raise fault(f"{values!r} names a column, and there is no file")
+        raise fault(f"{echo(values)} names a column, and there is no file")
     return FrozenColumn(as_numbers(samples_to_si(values, unit_on(values) or kind.unit, kind)))
 
 

@@ -20,7 +20,7 @@ from stiction.drive.recorded.table_file import (
     numbers_in,
     read_text_table,
 )
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, echo
 from stiction.storage.checksums import crc
 from stiction.storage.foreign import is_within
 from stiction.text.samples import FrozenColumn
@@ -80,12 +80,12 @@ def locator(folder: Path, trust: bool = False) -> Locate:
         path = Path(os.path.realpath(folder / file))
         if not trust and not is_within(folder, path):
             raise _fault(
-                f"{file!r} lies outside the folder of the description, {folder}: put the table "
+                f"{echo(file)} lies outside the folder of the description, {folder}: put the table "
                 "into it; or, if you trust who wrote this, allow it: trust=True, on the command "
                 "line --trust"
             )
         if not path.is_file():
-            raise _fault(f"no file {file!r} in {folder}; write its path from there")
+            raise _fault(f"no file {echo(file)} in {folder}; write its path from there")
         return path
 
     return locate
@@ -93,7 +93,7 @@ def locator(folder: Path, trust: bool = False) -> Locate:
 
 def locate_nothing(file: str) -> Path:
     """Refuse every file: what is stored holds its tables."""
-    raise _fault(f"the rows of {file!r} are not stored here; read the description it came from")
+    raise _fault(f"the rows of {echo(file)} are not stored here; read the description it came from")
 
 
 def with_rows(raw: Mapping[str, Any], locate: Locate) -> tuple[Mapping[str, Any], list[Fault]]:
@@ -128,11 +128,13 @@ def _with_own_rows(
     if file is None or inside:
         found = []
     elif not isinstance(file, str):
-        found = [Fault("file", f"{file!r} is not the name of a file")]
+        found = [Fault("file", f"{echo(file)} is not the name of a file")]
     else:
         names = {name: piece.pop(name) for name in ("time", *quantities) if name in piece}
         wrong = [name for name, each in names.items() if not isinstance(each, str)]
-        found = [Fault(name, f"{names[name]!r} is not a column; write 't [ms]'") for name in wrong]
+        found = [
+            Fault(name, f"{echo(names[name])} is not a column; write 't [ms]'") for name in wrong
+        ]
         if not found:
             try:
                 columns, found = rows_of(locate(file), names, quantities)
@@ -141,7 +143,9 @@ def _with_own_rows(
             own = Path(file).name if Path(file).is_absolute() else file  # as of a law's file
             piece |= {**columns, "file": own}
     if stated is not None and not found and checksum(piece) != stated:
-        message = f"the rows have the checksum {checksum(piece)}, not {stated!r}: they have changed"
+        message = (
+            f"the rows have the checksum {checksum(piece)}, not {echo(stated)}: they have changed"
+        )
         found = [Fault("checksum", f"{message}; leave it out, if that is meant")]
     return piece, found
 
@@ -205,7 +209,7 @@ def _column(table: TextTable, name: str, told: str | None) -> FrozenColumn:
     unit = wanted.unit or stated
     if unit is None:
         remedy = f"write {_with_unit(name, wanted)}"
-        raise _fault(f"the column {wanted.name!r} has no unit; {remedy}", name)
+        raise _fault(f"the column {echo(wanted.name)} has no unit; {remedy}", name)
     if wanted.unit is not None and stated is not None and wanted.unit != stated:
         message = f"is to be in {wanted.unit}, and the file says {stated}; leave the unit out"
         raise _fault(message, name)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, echo
 from stiction.machine import shortage
 
 LARGEST = 2**26  # bytes of a file: more than a million rows of two columns
@@ -92,12 +92,12 @@ def find_column(table: TextTable, wanted: ColumnHeading, path: str) -> int:
         if len(found) == 1:
             return found[0]
         if found:
-            raise _fault(f"{len(found)} columns are named {wanted.name!r}; rename one", path)
+            raise _fault(f"{len(found)} columns are named {echo(wanted.name)}; rename one", path)
     count = len(table.rows[0])
     if wanted.name.isdigit() and 1 <= int(wanted.name) <= count:
         return int(wanted.name) - 1
     known = f"it has {', '.join(names)}" if names else f"it names none: count, 1 to {count}"
-    raise _fault(f"no column {wanted.name!r} in the file; {known}", path)
+    raise _fault(f"no column {echo(wanted.name)} in the file; {known}", path)
 
 
 def numbers_in(table: TextTable, index: int, path: str) -> list[float]:
@@ -124,7 +124,7 @@ def _in_words(wrong: Sequence[tuple[int, str]]) -> str:
     lines = ", ".join(str(line) for line, _ in wrong[:SHOWN])
     more = f" and {len(wrong) - SHOWN} more" if len(wrong) > SHOWN else ""
     cell = wrong[0][1][:40]
-    what = f"{cell!r} is not a number" if cell else "has no number in this column"
+    what = f"{echo(cell)} is not a number" if cell else "has no number in this column"
     comma = "; the decimal sign is a point" if re.fullmatch(r"[+-]?\d+,\d+.*", cell) else ""
     return f"line {lines}{more}: {what}{comma}; mend the line, or leave it out"
 

@@ -6,7 +6,7 @@ from typing import Annotated, Any, NamedTuple, cast
 
 from pydantic import AfterValidator, Field
 
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, echo
 from stiction.friction.law import FrictionLaw, Law, has_state
 from stiction.text.units import Angle, Read, reader
 from stiction.text.validation import validate
@@ -14,7 +14,7 @@ from stiction.text.validation import validate
 
 def _is_set_valued(law: Any) -> Any:
     if has_state(law) or isinstance(law, Anisotropic) or not hasattr(law, "slope"):
-        raise ValueError(f"{law!r} cannot be made anisotropic; only a set-valued law can")
+        raise ValueError(f"{echo(law)} cannot be made anisotropic; only a set-valued law can")
     return law
 
 
@@ -70,7 +70,7 @@ class Anisotropic(NamedTuple):
 def read_anisotropy(law: Law, table: Any) -> Law:
     """Read the table [friction.anisotropy]."""
     if not isinstance(table, dict) or "law" in table:
-        message = f"must be a table with ratio and angle, is {table!r}"
+        message = f"must be a table with ratio and angle, is {echo(table)}"
         raise DescriptionError([Fault("friction.anisotropy", message)])
     try:
         made: Any = Anisotropic(law, **table)

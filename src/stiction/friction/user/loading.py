@@ -16,7 +16,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from stiction.errors import DescriptionError, one_line
+from stiction.errors import DescriptionError, echo, one_line
 from stiction.friction.user.source import Text, member, module_name, module_of, read, text_of
 from stiction.friction.user.validation import fault, is_law, law_in, try_law
 from stiction.storage.foreign import is_within
@@ -50,7 +50,8 @@ def finder_for_results(trust: bool = False) -> Find:
         file, kind = split(name)
         if text is None:
             raise fault(
-                f"the text of {name!r} was not stored: it came from a prompt, or its file changed "
+                f"the text of {echo(name)} was not stored: it came from a prompt, or its file "
+                "changed "
                 "after it was imported; write the law in a file, and describe or import it anew; "
                 "the arrays can be read with xarray.open_dataset"
             )
@@ -59,7 +60,8 @@ def finder_for_results(trust: bool = False) -> Find:
         if trust:
             return law_in(run(Text(_relative(file), text), f"<{file}>"), kind, name)
         raise fault(
-            f"{name!r} is a user's law, and the code stored with it is not run without permission: "
+            f"{echo(name)} is a user's law, and the code stored with it is not run without "
+            "permission: "
             "import its module first; or, if you trust the source, run the stored text: "
             "trust=True, on the command line --trust; the arrays can be read without it: "
             "xarray.open_dataset"
@@ -72,9 +74,9 @@ def read_own(table: dict[str, Any], find: Find) -> Any:
     """Make a law from a table [friction] that names a file and a class."""
     name, text = table.pop("law"), table.pop("source", None)
     if not isinstance(text, str | None):
-        raise fault(f"must be text, is {text!r}; leave it out", "source")
+        raise fault(f"must be text, is {echo(text)}; leave it out", "source")
     kind = find(name, text)
-    with errors_as_faults(f"{name!r} cannot be made"):
+    with errors_as_faults(f"{echo(name)} cannot be made"):
         return try_law(make(kind, table), name)
 
 
@@ -97,7 +99,7 @@ def split(name: str) -> tuple[str, str]:
     """Return file and class of ``file:class``."""
     file, _, kind = name.rpartition(":")
     if not file or not kind:
-        raise fault(f"{name!r} must name a file and a class in it; write 'mylaw.py:MyLaw'")
+        raise fault(f"{echo(name)} must name a file and a class in it; write 'mylaw.py:MyLaw'")
     return file, kind
 
 
@@ -106,11 +108,12 @@ def _there(folder: Path, file: str, trust: bool) -> Path:
     path = os.path.realpath(folder / file)
     if not trust and not is_within(folder, path):
         raise fault(
-            f"{file!r} lies outside the folder of the description, {folder}: put the law into it; "
+            f"{echo(file)} lies outside the folder of the description, {folder}: put the law "
+            "into it; "
             "or, if you trust who wrote this, allow it: trust=True, on the command line --trust"
         )
     if not os.path.isfile(path):
-        raise fault(f"no file {file!r} in {folder}; write its path from there")
+        raise fault(f"no file {echo(file)} in {folder}; write its path from there")
     return Path(path)
 
 

@@ -7,7 +7,7 @@ from math import isfinite
 from types import ModuleType
 from typing import Any
 
-from stiction.errors import DescriptionError, Fault, one_line
+from stiction.errors import DescriptionError, Fault, echo, one_line
 from stiction.friction.law import has_state
 from stiction.friction.user.bounded import endless
 from stiction.friction.user.source import member
@@ -35,10 +35,12 @@ def law_in(module: ModuleType, kind: str, name: str) -> type[Any]:
     found = member(module, kind)
     if found is None:
         classes = [n for n, value in vars(module).items() if _is_its_own(value, module)]
-        raise fault(f"{name!r}: {unknown_name('class', kind, classes or ['none'])}")
+        raise fault(f"{echo(name)}: {unknown_name('class', kind, classes or ['none'])}")
     law = is_law(found, name)
     for field in sorted(RESERVED.intersection(law._fields)):
-        raise fault(f"{name!r} has a parameter {field!r}, which is a reserved key; rename it")
+        raise fault(
+            f"{echo(name)} has a parameter {echo(field)}, which is a reserved key; rename it"
+        )
     return law
 
 
@@ -46,11 +48,11 @@ def is_law(found: Any, name: str) -> type[Any]:
     """Return a class, if it is a friction law; `name` is the user's name for it."""
     write = WRITE.format(name=name.rpartition(":")[2].rpartition(".")[2])
     if not (inspect.isclass(found) and issubclass(found, tuple) and hasattr(found, "_fields")):
-        raise fault(f"{name!r} is not a NamedTuple; {write}")
+        raise fault(f"{echo(name)} is not a NamedTuple; {write}")
     wanted = WITH_STATE if hasattr(found, "states") else SET_VALUED
     lacking = [method for method in wanted if not callable(getattr(found, method, None))]
     if lacking:
-        raise fault(f"{name!r} is not a friction law, it lacks {', '.join(lacking)}; {write}")
+        raise fault(f"{echo(name)} is not a friction law, it lacks {', '.join(lacking)}; {write}")
     law: type[Any] = found
     return law
 
@@ -58,7 +60,7 @@ def is_law(found: Any, name: str) -> type[Any]:
 def try_law(law: Any, name: str) -> Any:
     """Return the law, if its methods return numbers at a few speeds."""
     if said := endless(law):
-        raise fault(f"{name!r}: {said}; {ENDING}")
+        raise fault(f"{echo(name)}: {said}; {ENDING}")
     probes = [("coefficient", v) for v in PROBED] + [("slope", v) for v in PROBED]
     for method, v in [("coefficient", PROBED[1])] if has_state(law) else probes:
         try:
@@ -66,10 +68,12 @@ def try_law(law: Any, name: str) -> Any:
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # whatever the user's law raises
-            what = f"{method}(law, {v:g}) of {name!r} raises {one_line(error)}; correct it there"
+            what = (
+                f"{method}(law, {v:g}) of {echo(name)} raises {one_line(error)}; correct it there"
+            )
             raise fault(what) from None
         if not isfinite(value):
-            raise fault(f"{method}(law, {v:g}) of {name!r} is {value}; it must be finite")
+            raise fault(f"{method}(law, {v:g}) of {echo(name)} is {echo(value)}; it must be finite")
     return law
 
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.errors import ResultError
+from stiction.errors import ResultError, echo
 
 SAMPLE = 400  # lines by which they are found
 SEPARATORS = {"\t": "a tab", ";": "a semicolon", ",": "a comma", "|": "a bar", " ": "spaces"}
@@ -189,7 +189,8 @@ def _settle(
         cells = [x for line in lines for x in chosen.cells(line) if "," in x]
         if cells and all(GROUPED.fullmatch(cell) for cell in cells):
             raise ResultError(
-                f"{path}: in {cells[0]!r} the comma is a decimal sign, or groups thousands; say "
+                f"{path}: in {echo(cells[0])} the comma is a decimal sign, or groups "
+                "thousands; say "
                 "--decimal comma, or write the numbers without groups"
             )
     return chosen

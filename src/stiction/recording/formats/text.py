@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.errors import Faults, ResultError
+from stiction.errors import Faults, ResultError, echo
 from stiction.machine import largest_object
 from stiction.recording.formats import TextLayout
 from stiction.recording.formats.dialect import (
@@ -279,7 +279,7 @@ def _lines_above(above: Sequence[Remark], heading: Heading | None) -> list[str]:
         return []
     first = above[0].text.strip()[:60]
     many = number_of(len(above) - used, "line")
-    return [f"{many} above the samples beside names and units, first {first!r}"]
+    return [f"{many} above the samples beside names and units, first {echo(first)}"]
 
 
 def _note_longer_rows(

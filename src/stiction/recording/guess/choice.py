@@ -7,7 +7,7 @@ from typing import NamedTuple, NoReturn
 
 import numpy as np
 
-from stiction.errors import Faults, ResultError
+from stiction.errors import Faults, ResultError, echo
 from stiction.recording.channels import CHANNELS, LENGTH, OWN, RATIO, plain
 from stiction.recording.table import FileColumn, FileTable
 from stiction.recording.units import is_electric, is_ratio, size_of
@@ -107,20 +107,23 @@ def _read_wish(path: object, table: FileTable, name: str, text: str) -> _Wish:
     if equals:
         column = _find(path, table, name, head.strip()) if head.strip() else None
         if head.strip() and column is None:
-            _refuse(path, table, name, f"no column is called {head.strip()!r}, for")
+            _refuse(path, table, name, f"no column is called {echo(head.strip())}, for")
         return _Wish(column, unit.strip())
     column = _find(path, table, name, text.strip())
     is_unit = size_of(text, CHANNELS[name].unit) is not None
     if column is not None and is_unit and not text.strip().isdigit():
         raise ResultError(
-            f"{path}: {text!r} is a column and a unit; say {_flag(name)} '{text}=' for the column, "
+            f"{path}: {echo(text)} is a column and a unit; say {_flag(name)} '{text}=' for the "
+            "column, "
             f"or '={text}' for the unit"
         )
     if column is not None:
         return _Wish(column, "")
     if not is_unit:
         example = CHANNELS[name].example
-        _refuse(path, table, name, f"{text!r} is neither a column nor a unit such as {example} of")
+        _refuse(
+            path, table, name, f"{echo(text)} is neither a column nor a unit such as {example} of"
+        )
     return _Wish(None, text.strip())
 
 
@@ -295,7 +298,8 @@ def _with_size(path: object, table: FileTable, name: str, column: FileColumn, un
             f"{_flag(name)} '{column.number}=2.5 {channel.unit}/{text}'{hint}"
         )
     raise ResultError(
-        f"{path}: column {column} is in {text!r}, not a unit of {_article(channel.meaning)}; say "
+        f"{path}: column {column} is in {echo(text)}, not a unit of "
+        f"{_article(channel.meaning)}; say "
         f"{example}"
     )
 

@@ -14,7 +14,7 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from stiction.deprecation import by_new_names
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, echo
 from stiction.storage.files import place, workshop
 from stiction.study.execution.engines import Engine
 from stiction.study.execution.intervals import Intervals, changes, half_way, halve, widest
@@ -134,7 +134,7 @@ def _requested_width(study: Study, along: str, to: Quantity) -> float:
     except PydanticCustomError as error:
         raise DescriptionError([Fault("to", error.message())]) from None
     if not width > 0.0:
-        raise DescriptionError([Fault("to", f"must be greater than 0, is {to!r}")])
+        raise DescriptionError([Fault("to", f"must be greater than 0, is {echo(to)}")])
     return width
 
 

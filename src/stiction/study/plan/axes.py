@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import AfterValidator, BeforeValidator, Field
 
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, echo
 from stiction.text.units import Read, unread
 from stiction.text.validation import Described, unknown_name
 
@@ -21,7 +21,9 @@ MOST = 1_000_000_000  # values of an axis
 def _list(value: Any) -> Any:
     value = value.tolist() if hasattr(value, "tolist") else value
     if isinstance(value, str) or not isinstance(value, Sequence) or not value:
-        raise ValueError(f"{value!r} is not a list of values; write them in brackets: [..., ...]")
+        raise ValueError(
+            f"{echo(value)} is not a list of values; write them in brackets: [..., ...]"
+        )
     return tuple(value)
 
 
@@ -173,7 +175,7 @@ def read_axis(value: Any, name: str) -> Axis:
         return value
     path = f"axes.{name}"
     if not isinstance(value, Mapping):
-        message = f"{value!r} is not an axis; write for example st.Grid('1 deg', '10 deg', 10)"
+        message = f"{echo(value)} is not an axis; write for example st.Grid('1 deg', '10 deg', 10)"
         raise DescriptionError([Fault(path, message)])
     fields = {written: name for name, written in WRITTEN.items()}
     table = {fields.get(str(key), str(key)): each for key, each in value.items()}

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from pydantic_core import PydanticCustomError
 
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, echo
 from stiction.study.plan.axes import Axis, Floats, Range
 from stiction.study.variables.measures import MEASURES
 from stiction.system import parameter
@@ -108,9 +108,13 @@ def coordinate_faults(base: Description, axes: Mapping[str, Axis], seed: int) ->
     for place, (path, axis) in enumerate(axes.items()):
         for name in path.split(","):
             if taken.setdefault(name.strip(), path) != path:
-                yield Fault(path, f"{name.strip()} has an axis already: {taken[name.strip()]!r}")
+                yield Fault(
+                    path, f"{name.strip()} has an axis already: {echo(taken[name.strip()])}"
+                )
         if axis.along is not None and (axis.along in TAKEN or not NAME.fullmatch(axis.along)):
-            yield Fault(f"{path}.along", f"cannot be {axis.along!r}; write a name such as 'sample'")
+            yield Fault(
+                f"{path}.along", f"cannot be {echo(axis.along)}; write a name such as 'sample'"
+            )
         try:
             its = unit(base, path)
         except DescriptionError as error:
@@ -147,6 +151,6 @@ def zip_faults(axes: Mapping[str, Axis]) -> Iterator[Fault]:
         if axis.count != count:
             yield Fault(
                 path,
-                f"has {axis.count} values and {known} has {count} along {axis.along!r}; "
+                f"has {axis.count} values and {known} has {count} along {echo(axis.along)}; "
                 "axes along one dimension go through their values together: give as many",
             )

@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from stiction.deprecation import by_new_names
-from stiction.errors import DescriptionError
+from stiction.errors import DescriptionError, echo
 from stiction.study.plan.axes import Axis, read_axis
 from stiction.study.variables.measures import FORMERLY, MEASURES, TRACES
 from stiction.system.description import Description
@@ -18,7 +18,7 @@ def is_description(value: Any) -> Any:
     """Return a description; refuse anything else."""
     if not isinstance(value, Description):
         raise ValueError(
-            f"{value!r} is not a description; write for example "
+            f"{echo(value)} is not a description; write for example "
             "st.Description(slider, st.Initial(), st.Settings(duration='5 s'))"
         )
     return value
@@ -42,7 +42,7 @@ def axes_of(value: Any) -> dict[str, Axis]:
 def named_ones(value: Any, what: str, known: Collection[str]) -> tuple[str, ...]:
     """Return distinct names; refuse unknown ones."""
     if isinstance(value, str) or not hasattr(value, "__iter__"):
-        raise ValueError(f"{value!r} is not a list of {what}s; known: {', '.join(known)}")
+        raise ValueError(f"{echo(value)} is not a list of {what}s; known: {', '.join(known)}")
     wanted = tuple(dict.fromkeys(str(each) for each in value))
     strange = [name for name in wanted if name not in known]
     if strange:

@@ -13,7 +13,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from stiction.deprecation import old_method
 from stiction.drive.recorded.reading import Locate, locate_nothing, locator
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, echo
 from stiction.friction.user.loading import Find, finder_for_descriptions, finder_for_results
 from stiction.study.plan.axes import axis_table
 from stiction.study.plan.coordinates import (
@@ -201,7 +201,7 @@ class Study(Described):
         found: list[Fault] = []
         own, axes = raw.get("study", {}), raw.get("axes")
         if not isinstance(own, Mapping):
-            found.append(Fault("study", f"must be a table [study], is {own!r}"))
+            found.append(Fault("study", f"must be a table [study], is {echo(own)}"))
         elif strange := sorted({"base", "axes"} & own.keys()):
             found += [
                 Fault(f"study.{key}", "is not a key of this table; leave it out") for key in strange
