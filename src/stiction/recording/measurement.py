@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.errors import Faults, ResultError
+from stiction.errors import Faults, ResultError, echo
 from stiction.recording.channels import CHANNELS, plain
 from stiction.recording.formats import TextLayout, read_tables
 from stiction.recording.guess.choice import Choice, Chosen, choose_columns, own_clock
@@ -24,6 +24,7 @@ from stiction.recording.table import FileTable, Remark, number_of
 from stiction.text.units import in_words
 
 Floats = NDArray[np.float64]
+T = TypeVar("T")
 DISPLACEMENTS = ("position", "drive_position")
 FEWEST = 2  # samples of a block
 STEPS = ("step", "stroke", "cycle", "block", "segment", "pass", "schritt", "zyklus", "hub")
@@ -43,7 +44,7 @@ class Measurement(NamedTuple):
 def read_measurements(
     path: Path, given: Mapping[str, Any], sidecar: Path | None = None
 ) -> list[Measurement]:
-    """Return a measurement for each block of a file.
+    """Return a measurement for each block of a file, or the one that is asked for.
 
     Parameters
     ----------
@@ -74,10 +75,28 @@ def read_measurements(
     faults.refuse()
     if not found:
         without.refuse()
-    return [
+    numbered = [
         each._replace(origin=_place_among(each.origin, number, len(found)))
         for number, each in enumerate(found, 1)
     ]
+    return numbered if reading.block is None else [block_of(path, numbered, reading.block)]
+
+
+def block_of(path: str | Path, found: Sequence[T], number: int) -> T:
+    """Return one of several blocks of a file, counted from 1.
+
+    Raises
+    ------
+    ResultError
+        If there are not so many.
+    """
+    if not 1 <= number <= len(found):
+        raise ResultError(
+            f"{path}: has {number_of(len(found), 'block')}; there is no block {echo(number)}. "
+            "A block begins where the times of the file begin again; a stroke of a drive that goes "
+            "to and fro is read by --stroke 2"
+        )
+    return found[number - 1]
 
 
 def _place_among(origin: Origin, number: int, count: int) -> Origin:

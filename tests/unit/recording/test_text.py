@@ -306,6 +306,11 @@ def test_blocks_that_restart_with_the_wall_clock_in_the_header_only(write):
     assert st.read_record(path, block=2).origin.start == "2024-05-03 12:01:07"
     with pytest.raises(st.ResultError, match="has 3 blocks; there is no block 4"):
         st.read_record(path, block=4)
+    (second,) = st.read_records(path, block=2)
+    path.with_suffix(".toml").write_text("[reading]\nblock = 2\n")
+    for record in (second, st.read_record(path), *st.read_records(path)):
+        assert record.origin.start == "2024-05-03 12:01:07"
+        assert (record.origin.block, record.origin.blocks) == (2, 3)
 
 
 def test_a_block_of_one_sample_is_left_out(write):

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any, TypedDict, TypeVar, Unpack
+from typing import Any, TypedDict, Unpack
 
 from stiction.analysis.record import Record
-from stiction.errors import DescriptionError, Fault, Faults, ResultError, echo
+from stiction.errors import DescriptionError, Fault, Faults, ResultError
 from stiction.recording.measurement import Measurement, read_measurements
 from stiction.recording.request import ReadingOptions
 from stiction.recording.stored import is_stored, read_stored, root_attributes
 from stiction.recording.strokes import stroke_of
-from stiction.recording.table import natural_key, number_of
+from stiction.recording.table import natural_key
 from stiction.text.units import Quantity
 from stiction.trajectory import Trajectory, load
-
-T = TypeVar("T")
 
 
 class ReadArguments(TypedDict, total=False):
@@ -98,8 +96,6 @@ def read_record(
     ([0.0015, 0.0025, 0.0005], 2.0)
     """
     found = _measurements(path, sidecar, dict(said))
-    if (number := said.get("block")) is not None:
-        return _record(path, block_of(path, found, number))
     if len(found) > 1:
         listed = "; ".join(_name(each) for each in found[:6]) + ("; ..." if len(found) > 6 else "")
         raise ResultError(
@@ -144,23 +140,6 @@ def read_records(
             found += [_record(path, each) for each in _measurements(path, sidecar, dict(said))]
     faults.refuse()
     return tuple(found)
-
-
-def block_of(path: str | Path, found: Sequence[T], number: int) -> T:
-    """Return one of several blocks of a file, counted from 1.
-
-    Raises
-    ------
-    ResultError
-        If there are not so many.
-    """
-    if not 1 <= number <= len(found):
-        raise ResultError(
-            f"{path}: has {number_of(len(found), 'block')}; there is no block {echo(number)}. "
-            "A block begins where the times of the file begin again; a stroke of a drive that goes "
-            "to and fro is read by --stroke 2"
-        )
-    return found[number - 1]
 
 
 def read_source(

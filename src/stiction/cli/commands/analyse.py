@@ -122,12 +122,7 @@ def import_(
     from stiction.storage.files import placeable, whole
 
     said = (measured or RecordOptions()).arguments()
-    number = said.pop("block", None)
     records = read_records([file, *files], **said)
-    if number is not None:
-        from stiction.analysis.measurement.reading import block_of
-
-        records = (block_of(file, records, number),)
     targets: list[Path] = []
     if output is not None:
         several = len(records) > 1
