@@ -65,6 +65,7 @@ def test_a_load_cell_across_the_drive_reads_nothing_of_sliding():
     off, why = _sliding(friction_test(slider))
     assert "multiply" not in off
     assert "of friction" not in why
+    assert "the springs carry the rest across it, 1.44" in why
     assert record_of(st.simulate(slider, "1 ms", sample_rate="20 kHz")).stiffness is None
 
 
@@ -105,3 +106,9 @@ def test_largest_force_and_means_are_told_apart():
     assert peak(test) > 1.005 * float(np.mean(test.cycles["mu_static"]))
     calm = _readings(friction_test(PAPER.replace(phi="10 deg")))
     assert "cycles" not in calm
+
+
+def test_a_test_that_ended_before_the_spring_was_loaded_reads_nothing():
+    test = friction_test(PAPER)
+    none = test.record.model_copy(update={"force": np.zeros(len(test.record))})
+    assert _largest(test._replace(record=none)) == []

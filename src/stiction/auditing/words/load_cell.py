@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import acos
+from math import acos, isfinite
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -111,6 +111,8 @@ def _largest(seen: SimulatedTest) -> list[str]:
     """Return how the largest force differs from friction, and why."""
     friction, before, at = largest_force(seen)
     read, true = peak(seen), friction.coefficient
+    if not (read > 0.0 and true > 0.0):  # a test that ended before it began
+        return []
     shown = f"{_number(read)} of the normal load"
     if abs(read / true - 1.0) <= RIGHT:
         return [
@@ -136,16 +138,17 @@ def _largest(seen: SimulatedTest) -> list[str]:
             "cell, which measures only the part along it; that is largest at another moment of the "
             "slip, in which friction turns and the inertia of the mass takes part.",
         ]
-    return [off, f"When the mass slips, friction stands {_part(friction)}"]
+    return [off, f"When the mass slips, friction stands {_part(seen, friction)}"]
 
 
-def _part(friction: FrictionBeside) -> str:
+def _part(seen: SimulatedTest, friction: FrictionBeside) -> str:
     """Return the direction of friction, and the part of it that the load cell measures."""
     share = f", {_number(friction.share)} of friction" if friction.share > LITTLE else ""
+    on_x = seen.run.slider.cell_angle is None
+    rest = "the spring across carries the rest" if on_x else "the springs carry the rest across it"
     return (
         f"at {in_words(friction.angle, 'rad')} to the axis of the load cell, which measures only "
-        f"the part along it{share}; the spring across carries the rest, "
-        f"{in_words(friction.across, 'N')}."
+        f"the part along it{share}; {rest}, {in_words(friction.across, 'N')}."
     )
 
 
@@ -161,7 +164,8 @@ def _sliding(seen: SimulatedTest) -> list[str]:
     friction = friction_at(seen, len(seen.record) - 1)
     if seen.comes_to != SLIDES or abs(friction.share - 1.0) <= RIGHT:
         return []
-    read = f"{_number(kinetic(seen))} of the normal load"
+    mean = kinetic(seen)
+    read = f"{_number(mean if isfinite(mean) else friction.read)} of the normal load"
     _, before, at = largest_force(seen)
     if _slides(seen, before, at):
         read += f" on average and {_number(peak(seen))} at most"
@@ -169,7 +173,7 @@ def _sliding(seen: SimulatedTest) -> list[str]:
     return [
         f"The force of steady sliding is not the friction of the surfaces: the load cell reads "
         f"{read}, where the true coefficient is {_number(friction.coefficient)}{factor}.",
-        f"Friction then points along the drive, {_part(friction)}",
+        f"Friction then points along the drive, {_part(seen, friction)}",
     ]
 
 
