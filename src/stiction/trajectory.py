@@ -164,13 +164,15 @@ class Trajectory:
             If `time` lies outside the run.
         """
         wanted = read_arguments(Initial, time=time).time
-        first, last = (float(self.data["time"][i]) for i in (0, -1))
+        times = self.samples["time"]
+        first, last = float(times[0]), float(times[-1])
         if not first <= wanted <= last:
             raise ResultError(f"the run goes from {first:g} s to {last:g} s, not to {wanted:g} s")
-        at = self.data.sel(time=wanted, method="nearest")
+        at = len(times) - 1 - int(np.argmin(np.abs(times[::-1] - wanted)))  # of two, the later one
         names = ("u_x", "u_y", "v_x", "v_y", "time")
-        values: dict[str, Any] = {name: float(at[name]) for name in names}
-        internal = {each.name: float(at[each.name]) for each in states(self.slider.law)}
+        values: dict[str, Any] = {name: float(self.samples[name][at]) for name in names}
+        own = [each.name for each in states(self.slider.law)]
+        internal = {name: float(self.samples[name][at]) for name in own}
         return Initial(**values, states=internal) if internal else Initial(**values)
 
     def save(self, path: str | Path) -> Path:

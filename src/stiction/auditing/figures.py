@@ -39,7 +39,7 @@ def test(found: Audit) -> Figure | None:
 def creep(found: Audit) -> Figure | None:
     """Draw the creep before slip with Eqs. (7) and (8); None if there is hardly any creep."""
     seen, slider = found.observation, found.slider
-    if seen.motion in VIBRATES or seen.shares.creep < HARDLY or not seen.cycles.sizes["cycle"]:
+    if seen.motion in VIBRATES or seen.shares.creep < HARDLY or not len(seen.table):
         return None
     curves = creep_curves(seen.run, seen.cycles)
     if slider.misalignment == 0.0 or not np.isfinite(curves["velocity"].values).any():

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
 from math import isfinite, nan, pi
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -11,7 +13,8 @@ import numpy as np
 from stiction import theory
 from stiction.analysis.creep.first_slip import first_slip_time
 from stiction.analysis.limit_cycle import KICK
-from stiction.analysis.motion.cycles import swings
+from stiction.analysis.motion.cycle_columns import CycleTable
+from stiction.analysis.motion.cycles import Swings, swings
 from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK
@@ -58,19 +61,49 @@ class Shares(NamedTuple):
     slip: float
 
 
-class SimulatedTest(NamedTuple):
-    """A simulated test: the run, its record, and the analysis of the record.
+@dataclass(frozen=True)
+class SimulatedTest:
+    """A simulated test: the run, its record, and the analysis of the record where it is asked for.
 
-    `comes_to` is the final state of the mass: it slides, oscillates, is stuck, or is still changing
-    when the test ends ("unsettled").
+    Of most changes that are tried only the final state is wanted: the analysis of a record takes as
+    long as its simulation.
     """
 
     run: Trajectory
     record: Record
-    cycles: xr.Dataset
-    regime: Regime
-    shares: Shares
-    comes_to: str
+
+    @cached_property
+    def swings(self) -> Swings:
+        """The swings of the force."""
+        return swings(self.record)
+
+    @cached_property
+    def table(self) -> CycleTable:
+        """The cycles."""
+        return self.swings.lasting
+
+    @cached_property
+    def cycles(self) -> xr.Dataset:
+        """The cycles for xarray, as `stiction.analysis.find_cycles` returns them."""
+        return self.table.as_dataset()
+
+    @cached_property
+    def regime(self) -> Regime:
+        """The kind of motion."""
+        return regime_of(self.record, self.swings)
+
+    @cached_property
+    def shares(self) -> Shares:
+        """Shares of time at rest, in creep and in slip."""
+        return shares(self.run, self.table)
+
+    @cached_property
+    def comes_to(self) -> str:
+        """The final state of the mass.
+
+        It slides, oscillates, is stuck, or is still changing when the test ends ("unsettled").
+        """
+        return outcome(self.run)
 
     @property
     def motion(self) -> str:
@@ -97,8 +130,7 @@ class SimulatedTest(NamedTuple):
 
     def mean(self, name: str) -> float:
         """Return the mean of a quantity over the cycles; NaN if there are none."""
-        values = self.cycles[name].values
-        return float(values.mean()) if len(values) else float("nan")
+        return self.table.mean(name)
 
 
 def observe(
@@ -111,7 +143,7 @@ def observe(
     most_steps: int = int(SHARE * MOST_WORK),
     progress: Progress = None,
 ) -> SimulatedTest:
-    """Simulate a friction test, and analyse its record.
+    """Simulate a friction test.
 
     Parameters
     ----------
@@ -147,11 +179,7 @@ def observe(
         max_steps=most_steps,
         progress=progress,
     )
-    record = record_of(run)
-    found = swings(record)
-    cycles = found.cycles
-    regime = regime_of(record, found)
-    return SimulatedTest(run, record, cycles, regime, shares(run, cycles), outcome(run))
+    return SimulatedTest(run, record_of(run))
 
 
 def from_sliding(
@@ -194,13 +222,13 @@ def coarse_rate(prediction: Prediction) -> float:
     return COARSE * prediction.f_x
 
 
-def shares(run: Trajectory, cycles: xr.Dataset) -> Shares:
+def shares(run: Trajectory, cycles: CycleTable) -> Shares:
     """Return the shares of time in whole cycles, or in the loading if there are none."""
     times, (drive, _) = run.samples["time"], run.slider.motion.rate(0.0)
     speed = run.samples["V_X"] / drive
     slower = np.flatnonzero(speed <= ALMOST)  # a transverse swing exceeds the drive's speed before
     begin, end = times[0], times[min(slower[-1] + 1, len(times) - 1)] if len(slower) else times[0]
-    if cycles.sizes["cycle"]:
+    if len(cycles):
         begin, end = float(cycles["start"][0]), float(cycles["trough_time"][-1])
     if not end > begin:  # started sliding
         return Shares(0.0, 0.0, 1.0)

@@ -22,7 +22,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
-from scipy.special import ndtr, ndtri
 
 from stiction.drive.recorded.reading import locator, with_rows
 from stiction.errors import DescriptionError, Fault, echo
@@ -58,12 +57,16 @@ class Normal:
 
     def quantile(self, share: Floats) -> Floats:
         """Return the values below which these shares of the distribution lie."""
+        from scipy.special import ndtr, ndtri
+
         below, until = (ndtr((x - self.mean) / self.deviation) for x in (self.low, self.high))
         inner = np.clip(below + share * (until - below), EDGE, 1.0 - EDGE)
         return np.asarray(np.clip(self.mean + self.deviation * ndtri(inner), self.low, self.high))
 
     def share(self, value: Floats) -> Floats:
         """Return the shares of the distribution below these values."""
+        from scipy.special import ndtr
+
         below, until = (ndtr((x - self.mean) / self.deviation) for x in (self.low, self.high))
         inside = ndtr((np.asarray(value) - self.mean) / self.deviation)
         return np.asarray(np.clip((inside - below) / (until - below), 0.0, 1.0))

@@ -1,4 +1,5 @@
 import re
+from copy import copy
 from html import unescape
 from math import atan2, cos, degrees, isnan, pi, sin, sqrt
 
@@ -10,6 +11,7 @@ from tests.rigs import NEARLY_ISOTROPIC, SOFT_TESTER, STIFF_PRESS, TURNED_A_LOT
 
 import stiction as st
 from stiction import theory
+from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.regime.kinds import HARMONIC, SETTLING, STICK_SLIP
 from stiction.analysis.record import record_of
 from stiction.auditing import advice, figures, report, simulated_test
@@ -22,6 +24,7 @@ from stiction.auditing.report import audit as examine
 from stiction.auditing.simulated_test import (
     OSCILLATES,
     SLIDES,
+    SimulatedTest,
     coarse_rate,
     creep_before_slip,
     from_sliding,
@@ -528,11 +531,18 @@ def test_what_mostly_rests_is_said_to():
     assert "artefact" not in text
 
 
+def seen_otherwise(seen: SimulatedTest, **findings: object) -> SimulatedTest:
+    """Return a test of which the analysis has found something else."""
+    other = copy(seen)
+    vars(other).update(findings)
+    return other
+
+
 def test_a_stability_that_lasts_no_test_is_said_to():
     """Where a disturbance of 1 % oscillates in the test, "stable" says which are meant."""
     found = short(PAPER.replace(phi="10 deg"))
     assert stability(found).startswith("Steady sliding is stable: small disturbances decay")
-    kicked = found._replace(sliding_on=found.sliding_on._replace(comes_to=OSCILLATES))
+    kicked = found._replace(sliding_on=seen_otherwise(found.sliding_on, comes_to=OSCILLATES))
     assert not kicked.bistable
     assert "stable only to disturbances far below 1 %" in stability(kicked)
     assert "in a test it does not last" in stability(kicked)
@@ -549,7 +559,8 @@ def test_a_sliding_that_lasts_a_test_only_is_said_to():
 def test_a_change_that_leaves_little_is_no_failure(found):
     """Where the force still falls, by a hundredth of what it did, that is nearly a remedy."""
     rest = found.observation
-    small = rest._replace(cycles=rest.cycles.assign(drop=0.01 * rest.cycles["drop"]))
+    columns = dict(rest.table.columns) | {"drop": 0.01 * rest.table["drop"]}
+    small = seen_otherwise(rest, table=CycleTable(columns, rest.table.least))
     tried = found.advices[0]._replace(tried=small)
     assert _change(found, tried)[-1].startswith("almost: stick-slip, force drop ")
     again = found.advices[0]._replace(tried=rest)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -46,7 +48,65 @@ QUARTER = 4  # of a fall, to each side: cubics through so much of half a sine ar
 _THREE = ((0, -1), (1, None), (2, None))  # of troughs and peaks in turn: start, peak, trough
 
 
-def tabulate(record: Record, corners: Vertices, dips: Vertices, least: float) -> xr.Dataset:
+@dataclass(frozen=True, eq=False)
+class CycleTable:
+    """A row for each cycle: columns as plain arrays, for all that only reads numbers.
+
+    xarray, and the libraries that it looks for, take longer to import than most runs to simulate.
+
+    Parameters
+    ----------
+    columns : mapping
+        The columns by name, with `COLUMNS`, (n,) each.
+    least : float
+        Depth of a hesitation that is seen, N.
+    """
+
+    columns: Mapping[str, Floats]
+    least: float
+
+    def __getitem__(self, name: str) -> Floats:
+        """Return a column."""
+        return self.columns[name]
+
+    def __len__(self) -> int:
+        """Return the number of cycles."""
+        return len(self.columns["start"])
+
+    def part(self, rows: slice) -> CycleTable:
+        """Return some of the rows."""
+        return CycleTable({name: each[rows] for name, each in self.columns.items()}, self.least)
+
+    def mean(self, name: str) -> float:
+        """Return the mean of a column; NaN without cycles."""
+        return float(self[name].mean()) if len(self) else np.nan
+
+    def median(self, name: str) -> float:
+        """Return the median of a column; NaN without cycles."""
+        return float(np.median(self[name])) if len(self) else np.nan
+
+    def as_dataset(self) -> xr.Dataset:
+        """Return the table for xarray, over ``cycle``, 1, 2, ..., with units."""
+        import xarray as xr
+
+        table = xr.Dataset(
+            {
+                name: ("cycle", self[name], {"units": unit, "long_name": meaning})
+                for name, (unit, meaning) in COLUMNS.items()
+            },
+            {"cycle": ("cycle", np.arange(1, len(self) + 1), {"long_name": "cycle"})},
+        )
+        table["hesitation_depth"].attrs["least"] = self.least
+        return table
+
+
+def table_of(cycles: xr.Dataset) -> CycleTable:
+    """Return the table of a dataset as `find_cycles` returns it; the arrays are shared."""
+    columns = {name: cycles[name].values for name in COLUMNS if name in cycles}
+    return CycleTable(columns, cycles["hesitation_depth"].attrs.get("least", np.nan))
+
+
+def tabulate(record: Record, corners: Vertices, dips: Vertices, least: float) -> CycleTable:
     """Return a row for each cycle, with `COLUMNS`; a cycle that a gap hides has none.
 
     Parameters
@@ -60,8 +120,6 @@ def tabulate(record: Record, corners: Vertices, dips: Vertices, least: float) ->
     least : float
         Depth of a hesitation that is seen, N.
     """
-    import xarray as xr
-
     columns = dict.fromkeys(COLUMNS, np.zeros(0))
     if len(corners.time) >= 3:
         with np.errstate(divide="ignore", invalid="ignore"):  # of corners that fall together
@@ -72,15 +130,7 @@ def tabulate(record: Record, corners: Vertices, dips: Vertices, least: float) ->
         seen = ~gap | (longest < JUMP * np.median(np.diff(record.time)))
         seen &= (columns["rise_share"] > 0.0) & (columns["rise_share"] < 1.0)
         columns = {name: values[seen] for name, values in columns.items()}
-    table = xr.Dataset(
-        {
-            name: ("cycle", columns[name], {"units": unit, "long_name": meaning})
-            for name, (unit, meaning) in COLUMNS.items()
-        },
-        {"cycle": ("cycle", np.arange(1, len(columns["start"]) + 1), {"long_name": "cycle"})},
-    )
-    table["hesitation_depth"].attrs["least"] = least
-    return table
+    return CycleTable(columns, least)
 
 
 def _count_hesitations(corners: Vertices, dips: Vertices) -> dict[str, Floats]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.motion.course import built_up, dies_out
-from stiction.analysis.motion.cycle_columns import tabulate
+from stiction.analysis.motion.cycle_columns import CycleTable, tabulate
 from stiction.analysis.motion.disturbance import (
     is_beside,
     is_carried,
@@ -102,7 +102,7 @@ class Swings(NamedTuple):
 
     Parameters
     ----------
-    table : Dataset
+    table : CycleTable
         A row for each swing, with the columns of `find_cycles`.
     dying : bool
         Whether they die out: then they are a transient, not cycles.
@@ -119,7 +119,7 @@ class Swings(NamedTuple):
         From crest to trough of a slower wave that carries the cycles, N; 0 if there is none.
     """
 
-    table: xr.Dataset
+    table: CycleTable
     dying: bool
     turns: int
     noise: float
@@ -129,11 +129,14 @@ class Swings(NamedTuple):
     wave: float = 0.0
 
     @property
-    def cycles(self) -> xr.Dataset:
+    def lasting(self) -> CycleTable:
         """The swings that are cycles: none if they die out, and none that only build up."""
-        left = slice(0) if self.dying else built_up(self.table["drop"].values)
-        table = self.table.isel(cycle=left)
-        return table.assign_coords(cycle=self.table["cycle"][: table.sizes["cycle"]].values)
+        return self.table.part(slice(0) if self.dying else built_up(self.table["drop"]))
+
+    @property
+    def cycles(self) -> xr.Dataset:
+        """The same for xarray, as `find_cycles` returns them."""
+        return self.lasting.as_dataset()
 
 
 def swings(record: Record) -> Swings:
@@ -190,8 +193,8 @@ def _without_line(record: Record, found: Swings) -> tuple[Record, Swings] | None
         rest, without = swings_without(line, record)
         without = without._replace(lines=(*found.lines, line))
         if is_beside(line, without.table):
-            number = line.frequency * float(without.table["period"].median())
-            count, left = (each.table.sizes["cycle"] for each in (found, without))
+            number = line.frequency * without.table.median("period")
+            count, left = len(found.table), len(without.table)
             own = left < 2 * count <= 2 * left + 2 or is_subharmonic(line, without.table)
             if number >= OWN or not own:
                 return rest, without
@@ -205,7 +208,7 @@ def swings_without(line: Line, record: Record) -> tuple[Record, Swings]:
     rest = record.model_copy(update={"force": record.force - line.values})
     found = _swings(rest)._replace(lines=(line,))
     if is_residue(line, found.table):
-        found = found._replace(table=found.table.isel(cycle=slice(0)), dying=False, turns=0)
+        found = found._replace(table=found.table.part(slice(0)), dying=False, turns=0)
     return rest, found
 
 
@@ -217,8 +220,8 @@ def _swings(record: Record, wave: Floats | None = None) -> Swings:
         there = np.interp(corners.time, record.time, wave)
         corners = corners._replace(value=np.asarray(corners.value + there))
     table = tabulate(record, corners, dips, points.least)
-    rest = record.time[-1] - table["trough_time"].values[-1] if table.sizes["cycle"] else 0.0
-    dying = dies_out(table["drop"].values, table["period"].values, rest)
+    rest = record.time[-1] - table["trough_time"][-1] if len(table) else 0.0
+    dying = dies_out(table["drop"], table["period"], rest)
     return Swings(table, dying, len(points.index), points.noise, points.clearness, record.force)
 
 

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.motion.course import UNLOADED
+from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.rest import STICKING, rest_share
 from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import Line, of_mains
 from stiction.analysis.signals.turning_points import turning_points
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -37,25 +33,25 @@ RESIDUE = 0.05  # of a line's height: so much of it may be left where it was sub
 AS_LARGE = 0.6  # the smaller amplitude over the larger one, while it is loaded and afterwards
 
 
-def is_beside(line: Line, table: xr.Dataset) -> bool:
+def is_beside(line: Line, table: CycleTable) -> bool:
     """Return whether a line is a disturbance of the motion, by the swings without it.
 
     Then they are slower and larger; or they stick, at any size of the line, because a sticking mass
     does not vibrate.
     """
-    period, drop, rise = (table[name].values for name in ("period", "drop", "rise_share"))
+    period, drop, rise = (table[name] for name in ("period", "drop", "rise_share"))
     motion = (drop > HIGHER * line.height) | (rest_share(rise) >= STICKING)
     aside = (period * line.frequency > SLOWER) & motion
     return len(aside) >= 2 and bool(np.median(aside) == 1.0)
 
 
-def is_subharmonic(line: Line, table: xr.Dataset) -> bool:
+def is_subharmonic(line: Line, table: CycleTable) -> bool:
     """Return whether swings are a subharmonic of the line.
 
     If every second slip is larger, the rest without the line has twice the line's period, or
     another whole multiple of it. Independent swings have no such period.
     """
-    period, drop = table["period"].values, table["drop"].values
+    period, drop = table["period"], table["drop"]
     whole = float(np.median(np.cos(2.0 * np.pi * line.frequency * period)))
     return whole > WHOLE and float(np.median(drop)) < line.height
 
@@ -90,19 +86,19 @@ def _means_over(force: Floats, length: int) -> Floats:
     return np.asarray(uniform_filter1d(longer, length, mode="nearest")[length:-length])
 
 
-def may_be_carried(frequency: float, duration: float, left: Floats, seen: xr.Dataset) -> bool:
+def may_be_carried(frequency: float, duration: float, left: Floats, seen: CycleTable) -> bool:
     """Return whether a force has about as many swings as periods, which are more than are `seen`.
 
     The force (N) is what is left without a slow wave. Few means of each period tell, quickly.
     """
     number = frequency * duration
-    if of_mains(frequency) or number < MORE * seen.sizes["cycle"] + AND_MORE:
+    if of_mains(frequency) or number < MORE * len(seen) + AND_MORE:
         return False
     means = _means(left, _starts(len(left), int(MEANS * number)))
     return len(turning_points(means).index) > 2 * NEARLY_ALL * number
 
 
-def is_carried(frequency: float, duration: float, seen: xr.Dataset, left: xr.Dataset) -> bool:
+def is_carried(frequency: float, duration: float, seen: CycleTable, left: CycleTable) -> bool:
     """Return whether the swings that are left without a slow wave are stick-slip which it carries.
 
     They have the period that is sought, nearly all of them, and stick; and they are more than the
@@ -110,22 +106,22 @@ def is_carried(frequency: float, duration: float, seen: xr.Dataset, left: xr.Dat
     cycles among them count: before, while the spring is first loaded, the bends of a wave look like
     some.
     """
-    enough = left.sizes["cycle"] > NEARLY_ALL * frequency * duration
+    enough = len(left) > NEARLY_ALL * frequency * duration
     if not enough or not _sticks(left):
         return False
-    among = left["peak_time"].values
+    among = left["peak_time"]
     if _sticks(seen):
-        among = among[(among > seen["start"].values[0]) & (among < seen["trough_time"].values[-1])]
-    if len(among) <= MORE * seen.sizes["cycle"] + AND_MORE:
+        among = among[(among > seen["start"][0]) & (among < seen["trough_time"][-1])]
+    if len(among) <= MORE * len(seen) + AND_MORE:
         return False
-    alike = np.abs(left["period"].values * frequency - 1.0) < NEAR
-    larger = float(seen["drop"].median()) > NO_LARGER * float(left["drop"].median())
+    alike = np.abs(left["period"] * frequency - 1.0) < NEAR
+    larger = seen.median("drop") > NO_LARGER * left.median("drop")
     return bool(np.mean(alike) > NEARLY_ALL) and not (_sticks(seen) and larger)
 
 
-def _sticks(table: xr.Dataset) -> bool:
+def _sticks(table: CycleTable) -> bool:
     """Return whether swings are stick-slip, by their typical shape."""
-    shares = table["rise_share"].values
+    shares = table["rise_share"]
     return len(shares) > 0 and bool(rest_share(np.median(shares)) >= STICKING)
 
 
@@ -139,9 +135,9 @@ def _means(values: Floats, starts: Indices) -> Floats:
     return np.asarray(np.add.reduceat(values, starts) / np.diff(starts, append=len(values)))
 
 
-def is_residue(line: Line, table: xr.Dataset) -> bool:
+def is_residue(line: Line, table: CycleTable) -> bool:
     """Return whether swings are no larger than what may be left of a line that was subtracted."""
-    drop = table["drop"].values
+    drop = table["drop"]
     return len(drop) > 0 and float(np.median(drop)) < RESIDUE * line.height
 
 

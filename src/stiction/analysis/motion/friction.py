@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.motion.course import UNLOADED
+from stiction.analysis.motion.cycle_columns import CycleTable, table_of
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.regime.kinds import (
     HARMONIC,
@@ -94,6 +95,11 @@ def find_friction(record: Record, regime: Regime, cycles: xr.Dataset) -> Frictio
     cycles : Dataset
         From `stiction.analysis.find_cycles`.
     """
+    return friction_of(record, regime, table_of(cycles))
+
+
+def friction_of(record: Record, regime: Regime, cycles: CycleTable) -> Friction:
+    """Return the friction of a record with known cycles: see `find_friction`."""
     missing: dict[str, str] = {}
     kind, load, relative = regime.kind, record.normal_load or np.nan, record.relative_load()
     if len(record) < FEWEST:
@@ -106,11 +112,9 @@ def find_friction(record: Record, regime: Regime, cycles: xr.Dataset) -> Frictio
         missing["break_away"] = reason
     else:
         break_away = _break_away(record, forces, at, noise, relative)
-    count = cycles.sizes["cycle"]
-    peak, trough = cycles["peak"].values, cycles["trough"].values
+    count, peak, trough = len(cycles), cycles["peak"], cycles["trough"]
     load_at_peak, load_at_trough = (
-        np.interp(cycles[name].values, record.time, relative)
-        for name in ("peak_time", "trough_time")
+        np.interp(cycles[name], record.time, relative) for name in ("peak_time", "trough_time")
     )
     static = None
     if regime.loads and count:

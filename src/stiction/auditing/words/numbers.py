@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stiction.analysis.motion.friction import find_friction
+from stiction.analysis.motion.friction import friction_of
 from stiction.analysis.record import cell_axis
 from stiction.auditing.assumptions import creep_suppositions, suppositions
 from stiction.auditing.simulated_test import SimulatedTest, creep_before_slip, slip_time
@@ -76,7 +76,7 @@ def numbers(found: Audit) -> Table:
 
 def kinetic(seen: SimulatedTest) -> float:
     """Return the apparent coefficient of kinetic friction."""
-    found = find_friction(seen.record, seen.regime._replace(kind=seen.motion), seen.cycles).kinetic
+    found = friction_of(seen.record, seen.regime._replace(kind=seen.motion), seen.table).kinetic
     return nan if found is None else found.coefficient
 
 

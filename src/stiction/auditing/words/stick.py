@@ -20,7 +20,7 @@ HARDLY = 0.05  # of the time: a smaller share of creep or rest is negligible
 def stick(found: Audit) -> list[str]:
     """Return how much of the apparent stick is creep."""
     seen, s = found.observation, found.slider
-    whole = "of each cycle" if seen.cycles.sizes["cycle"] else "of the time until it slides"
+    whole = "of each cycle" if len(seen.table) else "of the time until it slides"
     vibrates, state = seen.motion in VIBRATES, has_state(s.law)
     slowly = "creeps" if s.misalignment or state else "slides slowly"
     slow = ("rests", seen.shares.rest), (slowly, seen.shares.creep)

@@ -116,13 +116,13 @@ def short_motion(seen: SimulatedTest) -> str:
 
 def describe_motion(seen: SimulatedTest) -> str:
     """Return a kind of motion with its cycles, in one line."""
-    count = seen.cycles.sizes["cycle"]
+    count = len(seen.table)
     sure = SEEN.get(seen.motion, seen.motion)
     if seen.motion == seen.regime.kind:
         sure = seen.regime.surely.replace(seen.motion, sure, 1)
     if not count or seen.comes_to == SLIDES:
         return sure
-    period, drop = (mean_in_words(seen.cycles[name].values, unit) for name, unit in MEANS)
+    period, drop = (mean_in_words(seen.table[name], unit) for name, unit in MEANS)
     return f"{sure}, {count} cycles of {period} in which the force falls by {drop}"
 
 

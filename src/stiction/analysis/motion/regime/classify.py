@@ -59,17 +59,17 @@ def regime_of(record: Record, found: Swings) -> Regime:
     if found.lines:
         record = record.model_copy(update={"force": found.force})
     per_cycle = 2.0 * len(record) / max(found.turns, 1)
-    if not found.table.sizes["cycle"] or per_cycle < MANY_SAMPLES:
+    if not len(found.table) or per_cycle < MANY_SAMPLES:
         per_cycle = min(per_cycle, samples_per_period(record.force))
     if per_cycle < FEWEST:
         needed = ENOUGH / per_cycle * record.sample_rate
         return Regime(UNDETERMINED, 0.0, {"samples_per_cycle": per_cycle, "rate_needed": needed})
     if found.dying or _is_over(record, found):
-        drop = found.table["drop"].values
+        drop = found.table["drop"]
         sure = (len(drop) + 1) / (len(drop) + 3)
         return Regime(SETTLING, sure, {"swings": len(drop), "last_over_first": drop[-1] / drop[0]})
-    if found.table.sizes["cycle"]:
-        period = float(found.cycles["period"].mean())
+    if len(found.table):
+        period = found.lasting.mean("period")
         return _or_hum(record, period, SAME, by_parts(record, found))
     seen = by_course(record, found)
     frequency = seen.evidence.get("hump")
@@ -78,7 +78,7 @@ def regime_of(record: Record, found: Swings) -> Regime:
 
 def _is_over(record: Record, found: Swings) -> bool:
     """Return whether swings have ended for good: mass and drive are known to rest."""
-    drop = found.table["drop"].values
+    drop = found.table["drop"]
     ended = record.drive_velocity is None and comes_to_rest(record.slip_speed)
     return ended and len(drop) > 0 and bool(drop[-1] <= drop[0])
 

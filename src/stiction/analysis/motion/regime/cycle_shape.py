@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from math import pi, sqrt
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.motion.course import MANY, ORDERED, change_of_period, order
+from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.regime.irregular import drop_spread, irregularity
@@ -27,9 +28,6 @@ from stiction.analysis.motion.regime.kinds import (
 from stiction.analysis.motion.rest import TOUCHES, rest_share, stick_shares, still_shares
 from stiction.analysis.record import Record
 from stiction.analysis.signals.hum import beat_frequency
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Floats = NDArray[np.float64]
 
@@ -107,10 +105,10 @@ class Shapes(NamedTuple):
 
 def by_parts(record: Record, found: Swings) -> Regime:
     """Classify cycles whose period may change once: then each part has a kind of its own."""
-    seen, at = by_shape(record, found), change_of_period(found.cycles["period"].values)
+    seen, at = by_shape(record, found), change_of_period(found.lasting["period"])
     if at is None:
         return seen
-    tables = [found.cycles.isel(cycle=part) for part in (slice(at), slice(at, None))]
+    tables = [found.lasting.part(part) for part in (slice(at), slice(at, None))]
     early, late = (by_shape(record, found._replace(table=table)) for table in tables)
     lasts = [float(table["period"].sum()) for table in tables]
     changed = {"changed_at": float(tables[1]["start"][0])}
@@ -124,35 +122,35 @@ def by_parts(record: Record, found: Swings) -> Regime:
 
 def by_shape(record: Record, found: Swings) -> Regime:
     """Classify cycles of one kind."""
-    table, shapes = found.cycles, _shapes(record, found.cycles)
-    if shapes.kind == UNDETERMINED and float(table["hesitations"].median()) >= 1.0:
-        turns_back = {"cycles": table.sizes["cycle"], "rise_share": shapes.typical[0]}
+    table, shapes = found.lasting, _shapes(record, found.lasting)
+    if shapes.kind == UNDETERMINED and table.median("hesitations") >= 1.0:
+        turns_back = {"cycles": len(table), "rise_share": shapes.typical[0]}
         return Regime(UNDETERMINED, 0.0, turns_back)  # two swings in one, or a ringing
     evidence = _evidence(record, table, shapes)
     own = record.own_period
-    if own is not None and couples(shapes.by_rise, float(table["period"].mean()), own):
+    if own is not None and couples(shapes.by_rise, table.mean("period"), own):
         return _transverse(table, shapes, own, evidence)
     evidence |= _sizes(found)
     return _no_vibration(record, found, shapes) or _weigh(record, table, shapes, evidence)
 
 
-def _shapes(record: Record, table: xr.Dataset) -> Shapes:
-    step, period = float(np.median(np.diff(record.time))), float(table["period"].mean())
-    rise, other = table["rise_share"].values, ""
+def _shapes(record: Record, table: CycleTable) -> Shapes:
+    step, period = float(np.median(np.diff(record.time))), table.mean("period")
+    rise, other = table["rise_share"], ""
     if period < ENOUGH * step:
         share, as_well = _coarse_shares(table, step)
-        rise = np.full(table.sizes["cycle"], share)
+        rise = np.full(len(table), share)
         other = shape(as_well) if shape(as_well) != shape(share) else ""
     return Shapes(rise, _still(record, table), _sticking(record, table), step / period, other)
 
 
-def _coarse_shares(table: xr.Dataset, step: float) -> tuple[float, float]:
+def _coarse_shares(table: CycleTable, step: float) -> tuple[float, float]:
     """Return the mean rise share in cycles of few samples, and an alternative value.
 
     A fall quicker than a sample is seen from the last sample before it to the first after it:
     one sample longer than it is, on average. A fall of some samples may be so or not.
     """
-    period = float(table["period"].mean())
+    period = table.mean("period")
     fall = float((table["trough_time"] - table["peak_time"]).mean())
     slow, quick = 1.0 - fall / period, 1.0 - max(fall - step, 0.0) / period
     if fall < QUICK * step:
@@ -160,26 +158,26 @@ def _coarse_shares(table: xr.Dataset, step: float) -> tuple[float, float]:
     return slow, quick if fall < SLOWEST * step else slow
 
 
-def _still(record: Record, table: xr.Dataset) -> Floats:
+def _still(record: Record, table: CycleTable) -> Floats:
     """Return for which share of each cycle the mass is known to rest or creep."""
     if record.slip_speed is None or record.drive_velocity is None:
-        return np.zeros(table.sizes["cycle"])
+        return np.zeros(len(table))
     speed = record.slip_speed / record.drive_velocity
-    ends = (table[name].values for name in ("start", "peak_time", "period"))
+    ends = (table[name] for name in ("start", "peak_time", "period"))
     return still_shares(record.time, speed, *ends)
 
 
-def _sticking(record: Record, table: xr.Dataset) -> Floats:
+def _sticking(record: Record, table: CycleTable) -> Floats:
     """Return for which share of each cycle the mass is known to stick."""
     if record.sticks is None:
-        return np.zeros(table.sizes["cycle"])
-    ends = (table[name].values for name in ("start", "peak_time", "period"))
+        return np.zeros(len(table))
+    ends = (table[name] for name in ("start", "peak_time", "period"))
     return stick_shares(record.sticks, *ends)
 
 
-def _evidence(record: Record, table: xr.Dataset, shapes: Shapes) -> dict[str, float]:
+def _evidence(record: Record, table: CycleTable, shapes: Shapes) -> dict[str, float]:
     """Return what the shape of the cycles says, and how alike they are."""
-    count, (rise, still, sticks) = table.sizes["cycle"], shapes.typical
+    count, (rise, still, sticks) = len(table), shapes.typical
     alike = shapes.kinds.count(shapes.kind) / count
     evidence = {"cycles": count, "rise_share": rise}
     if shapes.kind == UNDETERMINED:
@@ -194,18 +192,18 @@ def _evidence(record: Record, table: xr.Dataset, shapes: Shapes) -> dict[str, fl
         evidence["cycles_alike"] = alike
         evidence["period_spread"] = float(table["period"].std() / table["period"].mean())
     if shapes.kind == HARMONIC and count > 1:
-        evidence["drop_spread"] = drop_spread(table["drop"].values)
+        evidence["drop_spread"] = drop_spread(table["drop"])
     if record.mass is not None and record.stiffness is not None:
         own = 2.0 * pi * sqrt(record.mass / record.stiffness)
-        evidence["natural_period"] = float(table["period"].median()) / own
+        evidence["natural_period"] = table.median("period") / own
     return evidence
 
 
 def _transverse(
-    table: xr.Dataset, shapes: Shapes, own: float, evidence: dict[str, float]
+    table: CycleTable, shapes: Shapes, own: float, evidence: dict[str, float]
 ) -> Regime:
     """Return the transverse oscillation, as sure as its periods are too short for the spring."""
-    quick = table["period"].values / own
+    quick = table["period"] / own
     alike = int((quick < COUPLED).sum())
     if len(quick) > 1:
         evidence |= {"cycles_alike": alike / len(quick)}
@@ -215,7 +213,7 @@ def _transverse(
 
 def _sizes(found: Swings) -> dict[str, float]:
     """Return what is to be said of the sizes of the cycles: over the noise, and over time."""
-    drop = found.cycles["drop"].values
+    drop = found.lasting["drop"]
     evidence, grown = {}, float(drop[-1] / drop[0])
     if found.noise > NOISE_SHOWS * np.median(drop):
         evidence["drop_over_noise"] = float(np.median(drop)) / found.noise
@@ -232,38 +230,36 @@ def _no_vibration(record: Record, found: Swings, shapes: Shapes) -> Regime | Non
     """Return that nothing is determined if the shape is no vibration's and no stick-slip's."""
     if shapes.by_speed not in (TRANSITIONAL, HARMONIC):
         return None
-    stays, count = _near_ends(record, found.cycles), found.cycles.sizes["cycle"]
+    stays, count = _near_ends(record, found.lasting), len(found.lasting)
     if min(stays) > PLATEAU:
         return Regime(UNDETERMINED, 0.0, {"cycles": count, "plateaus": 2.0 * min(stays)})
-    clear = found.noise < QUIET * np.median(found.cycles["drop"])
+    clear = found.noise < QUIET * np.median(found.lasting["drop"])
     known = record.slip_speed is not None or shapes.by_speed != HARMONIC
     if not known and max(stays) < STRAIGHT and clear:
         return Regime(UNDETERMINED, 0.0, {"cycles": count, "straight": sum(stays)})
     return None
 
 
-def _near_ends(record: Record, table: xr.Dataset) -> tuple[float, float]:
+def _near_ends(record: Record, table: CycleTable) -> tuple[float, float]:
     """Return the shares of time for which a force stays near its troughs and near its peaks."""
-    start, peak, end = (table[name].values for name in ("start", "peak_time", "trough_time"))
+    start, peak, end = (table[name] for name in ("start", "peak_time", "trough_time"))
     inside = (record.time >= start[0]) & (record.time <= end[-1])
     time, force = record.time[inside], record.force[inside]
-    low = np.interp(
-        time, [start[0], *end], [table["start_force"].values[0], *table["trough"].values]
-    )
-    high = np.interp(time, peak, table["peak"].values)
+    low = np.interp(time, [start[0], *end], [table["start_force"][0], *table["trough"]])
+    high = np.interp(time, peak, table["peak"])
     place = (force - low) / np.maximum(high - low, 1e-300)
     return float(np.mean(place < NEAR)), float(np.mean(place > 1.0 - NEAR))
 
 
-def _weigh(record: Record, table: xr.Dataset, shapes: Shapes, evidence: dict[str, float]) -> Regime:
+def _weigh(record: Record, table: CycleTable, shapes: Shapes, evidence: dict[str, float]) -> Regime:
     """Return the kind of the cycles with its confidence: from their number, and their scatter."""
-    kinds, kind, count = shapes.kinds, shapes.kind, table.sizes["cycle"]
+    kinds, kind, count = shapes.kinds, shapes.kind, len(table)
     confidence = max((kinds.count(kind) + 1) / (count + 3), shapes.chance)
     if shapes.other:  # as likely
         return Regime(kind, 0.5 * confidence, evidence, shapes.other)
     irregular = 0.0
     if kind == HARMONIC:
-        irregular = irregularity(table["period"].values, table["drop"].values)
+        irregular = irregularity(table["period"], table["drop"])
     if irregular > 0.5:
         if beat := beat_frequency(record.time, record.force):
             return Regime(kind, confidence, evidence | {"beat": beat})
