@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from stiction.plotting.apparatus import shapes
 from stiction.plotting.page.style import BLUE, GREEN, GREY, PALE, PURPLE
 from stiction.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def friction_vector(data: xr.Dataset) -> shapes.Points:
