@@ -160,7 +160,13 @@ def try_change(slider: Slider, most_steps: int, progress: Progress) -> dict[str,
     growth, prediction = growth_rate(slider), predict(slider)
     rate = coarse_rate(prediction)
     seen = observe(
-        slider, prediction, growth, sample_rate=rate, most_steps=most_steps, progress=progress
+        slider,
+        prediction,
+        growth,
+        sample_rate=rate,
+        multiscale="auto",
+        most_steps=most_steps,
+        progress=progress,
     )
     return {"growth": growth, "tried": seen}
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite, nan, pi
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
@@ -70,7 +70,11 @@ class SimulatedTest:
     """
 
     run: Trajectory
-    record: Record
+
+    @cached_property
+    def record(self) -> Record:
+        """The record of its load cell."""
+        return record_of(self.run)
 
     @cached_property
     def swings(self) -> Swings:
@@ -119,7 +123,7 @@ class SimulatedTest:
     def work(self) -> int:
         """The work of the simulation: solver steps, accepted or rejected, and samples."""
         steps = self.run.statistics
-        return steps.steps + steps.rejected + len(self.record)
+        return steps.steps + steps.rejected + len(self.run.samples["time"])
 
     @property
     def coarse(self) -> bool:
@@ -140,6 +144,7 @@ def observe(
     *,
     sample_rate: float,
     start: Initial | None = None,
+    multiscale: bool | Literal["auto"] | None = None,
     most_steps: int = int(SHARE * MOST_WORK),
     progress: Progress = None,
 ) -> SimulatedTest:
@@ -158,6 +163,8 @@ def observe(
         Hz; reduced if there would be too many samples.
     start : Initial, optional
         The initial state; by default rest with unloaded springs.
+    multiscale : {"auto", True, False}, optional
+        As of `stiction.simulate`; by default True for a test of very many transverse periods.
     most_steps : int, optional
         Limit of the solver's steps.
     progress : callable, optional
@@ -170,16 +177,18 @@ def observe(
     wait = DECAYS / abs(growth) if growth != 0.0 else 0.0
     longest = LOAD_UPS * load_up + LONGEST / min(prediction.f_x, prediction.f_y)
     duration = min(max(LOAD_UPS * load_up, 1.2 * load_up + max(slips, wait)), longest)
+    if multiscale is None:
+        multiscale = duration * prediction.f_y > MANY
     run = simulate(
         slider,
         duration,
         initial=start,
         sample_rate=min(sample_rate, MOST_SAMPLES / duration),
-        multiscale=duration * prediction.f_y > MANY,
+        multiscale=multiscale,
         max_steps=most_steps,
         progress=progress,
     )
-    return SimulatedTest(run, record_of(run))
+    return SimulatedTest(run)
 
 
 def from_sliding(
