@@ -27,8 +27,15 @@ Since ds/dw = sin^2(theta) falls as w grows, s(w) is concave, and Newton's metho
 bound of w climbs to the root and never passes it: no bracket, no failure.
 """
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from stiction.system.slider import Slider
 
 Floats = NDArray[np.float64]
 
@@ -215,6 +222,21 @@ def damping_number(
     """
     F_0, V, phi, m, k_x = _floats(F_0, V, phi, m, k_x)
     return F_0 / (2.0 * V * np.sin(phi) * np.sqrt(m * k_x))
+
+
+def damping_number_of(slider: Slider, V: float, phi: float | None = None) -> float:
+    """Damping number A of Eq. (10) of a slider that is driven at `V` (m/s), dimensionless.
+
+    `phi` (rad) is by default the slider's misalignment. The signs of both do not matter.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> round(damping_number_of(st.presets.nakano_popov_2020(), 1e-3), 1)
+    3623.9
+    """
+    angle = abs(slider.misalignment if phi is None else phi)
+    return float(damping_number(slider.F_0, abs(V), angle, slider.masses[0], slider.k_x))
 
 
 def damping_ratio(A: ArrayLike, theta: ArrayLike) -> Floats:

@@ -15,6 +15,6 @@ figure, ax = plt.subplots(figsize=(5, 4), layout="constrained")
 st.plotting.plot_damping(ax=ax)
 for phi, colour in ((1.0, "#D55E00"), (10.0, "#0072B2")):
     s = st.presets.nakano_popov_2020().replace(phi=f"{phi} deg")
-    A = st.theory.damping_number(s.F_0, s.mass, s.k_x, s.motion.velocity, s.phi)
+    A = st.theory.damping_number_of(s, s.motion.velocity)
     ax.plot([A, A], [90.0, np.degrees(s.phi)], color=colour, linewidth=2.5)
     ax.text(1.1 * A, 2.0 * phi, f"{phi:g} deg", color=colour)

@@ -93,7 +93,7 @@ def predict(slider: Slider) -> Prediction:
     omega_x, omega_y = (
         float(theory.natural_frequency(*kin)) for kin in ((s.k_x, m_x), (s.k_y, m_y))
     )
-    A = float(theory.damping_number(F_0, V, phi, m_x, s.k_x))
+    A = theory.damping_number_of(s, V)
     zeta = float(theory.damping_ratio(A, phi)) if isfinite(A) else 0.0
     theta_c = float(theory.critical_angle(A)) if isfinite(A) else 0.0
     first_stick = float(theory.first_stick_duration(F_static, V, phi, s.k_x, s.k_y))

@@ -136,6 +136,7 @@ def about(description: Description, solution: Solution, table: ColumnTable) -> d
     """Return what is to be read beside the curves, and what the drawing needs to know."""
     slider = description.slider
     status = STATUSES[solution.code]
+    velocity = nominal_velocity(slider.motion)
     return {
         "ok": status.ok,
         "status": status.value,
@@ -144,8 +145,8 @@ def about(description: Description, solution: Solution, table: ColumnTable) -> d
             "limit": limit(description, table),
             "ellipse": ellipse(description),
             "k": (slider.k_x, slider.k_y),
-            "velocity": nominal_velocity(slider.motion),
-            "damping": damping_number(description),
+            "velocity": velocity,
+            "damping": theory.damping_number_of(slider, velocity),
             "frequencies": slider.natural_frequencies,
             "dampers": [*dampers_askew(slider).items()],
             "driven": slider.driven,
@@ -157,12 +158,13 @@ def facts(
     description: Description, solution: Solution, table: ColumnTable, times: np.ndarray | None
 ) -> list[dict[str, Any]]:
     """Return the numbers of a run: name, value in SI and as text; extremes are those at `times`."""
-    reached = table["time"]
+    reached, slider = table["time"], description.slider
     counted = np.full(len(reached), True) if times is None else np.isin(reached, times)
     counted[-1] = True  # where it ended
     force, counts = table["spring_x"][counted], solution.counts
     peak = int(np.nanargmax(force)) if np.isfinite(force).any() else 0
-    slow, fast = description.slider.natural_frequencies
+    slow, fast = slider.natural_frequencies
+    A = theory.damping_number_of(slider, nominal_velocity(slider.motion))
     duration = float(solution.times[-1] - solution.times[0]) or 1.0
     listed: list[tuple[str, float, str]] = [
         ("largest k_x u_x", float(force[peak]), "N"),
@@ -173,7 +175,7 @@ def facts(
         ("stick intervals", float(counts.sticks), "1"),
         ("time at rest", float(counts.stuck), "s"),
         ("share at rest", 100.0 * float(counts.stuck) / duration, "%"),
-        ("damping number A", damping_number(description), "1"),
+        ("damping number A", A, "1"),
         ("slow, natural", slow, "Hz"),
         ("fast, natural", fast, "Hz"),
         ("solver's steps", float(counts.steps), "1"),
@@ -208,12 +210,3 @@ def ellipse(description: Description) -> tuple[float, float]:
     """Return the ratio and the angle (rad, from X) of the ellipse of friction; a circle has 1."""
     law: Any = description.slider.law
     return (law.ratio, law.angle) if isinstance(law, Anisotropic) else (1.0, 0.0)
-
-
-def damping_number(description: Description) -> float:
-    """Return the damping number A of Eq. (10) at the drive's base velocity."""
-    slider = description.slider
-    speed = abs(nominal_velocity(slider.motion))
-    angle, mass = abs(slider.misalignment), slider.masses[0]
-    found = theory.damping_number(slider.F_0, speed, angle, mass, slider.k_x)
-    return float(found)

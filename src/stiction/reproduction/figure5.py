@@ -94,7 +94,7 @@ def damping_number(slider: Slider, phi: float) -> float:
     V = abs(slider.motion.rate(0.0)[0])
     if V == 0 or sin(phi) == 0:
         raise ValueError(f"A needs a drive and a misalignment; V is {V:g} m/s, phi {phi:g} rad")
-    return float(theory.damping_number(slider.F_0, V, abs(phi), slider.mass, slider.k_x))
+    return theory.damping_number_of(slider, V, phi)
 
 
 def _label(A: float, phi: float) -> str:

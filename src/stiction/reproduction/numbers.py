@@ -42,10 +42,10 @@ def from_theory(slider: Slider) -> list[Number]:
     """Return the numbers that follow from the parameters alone."""
     s, V = slider, slider.motion.rate(0.0)[0]
     omega_y = float(theory.natural_frequency(s.k_y, s.mass))
-    A = float(theory.damping_number(s.F_0, V, s.phi, s.mass, s.k_x))
+    A = theory.damping_number_of(s, V)
     zeta = float(theory.damping_ratio(A, s.phi))
     wide = radians(10)
-    A_wide = float(theory.damping_number(s.F_0, V, wide, s.mass, s.k_x))
+    A_wide = theory.damping_number_of(s, V, wide)
     least = float(theory.damping_ratio(A_wide, wide))
     return [
         Number("Results", "stiffness anisotropy k_y/k_x", 1e4, s.k_y / s.k_x, 0.5),

@@ -174,7 +174,7 @@ def scales_in_words(slider: Slider) -> list[str]:
     ]
     V, phi = abs(base_velocity(slider)), abs(slider.misalignment)
     if V > 0 and sin(phi) > 0:
-        A = float(theory.damping_number(slider.F_0, V, phi, slider.masses[0], slider.k_x))
+        A = theory.damping_number_of(slider, V)
         zeta = plain(A * sin(phi) ** 3, 2)
         lines.append(rf"$A$ = {plain(A)}, $\zeta(\theta=\varphi)$ = {zeta}")
     return lines

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction import linear_stability as stability
-from stiction import theory as closed_forms
+from stiction import theory
 from stiction.drive import ConstantVelocity
 from stiction.errors import StictionError
 from stiction.study.plan.axes import Floats
@@ -94,11 +94,4 @@ def damping_ratio(slider: Slider) -> float:
     motion, phi = slider.motion, abs(slider.misalignment)
     if not isinstance(motion, ConstantVelocity) or motion.velocity == 0.0 or sin(phi) == 0.0:
         return nan
-    A = damping_number(slider)
-    return float(closed_forms.damping_ratio(A, phi))
-
-
-def damping_number(slider: Slider) -> float:
-    """Return A of Eq. (10)."""
-    V, phi = abs(slider.motion.velocity), abs(slider.misalignment)
-    return float(closed_forms.damping_number(slider.F_0, V, phi, slider.masses[0], slider.k_x))
+    return float(theory.damping_ratio(theory.damping_number_of(slider, motion.velocity), phi))

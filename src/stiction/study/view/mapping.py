@@ -27,10 +27,11 @@ from stiction.plotting.page.picture import picture
 from stiction.plotting.page.style import COLUMN, PAGE, style
 from stiction.plotting.stability.damping import draw_damping_map
 from stiction.study.plan.layout import Index
-from stiction.study.view.boundaries import Plane, damping_number, plane
+from stiction.study.view.boundaries import Plane, plane
 from stiction.study.view.view import REGIME, View, choose_measures, kinds, view_study
 from stiction.text.units import Quantity
 from stiction.text.units import in_words as value_in_words
+from stiction.theory import damping_number_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -240,7 +241,8 @@ def _points(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
         lacking = f"needs samples of {' and '.join(DAMPING)}, and the measure 'regime'"
         raise DescriptionError([Fault(str(dim), f"{lacking}; draw it from xarray.open_zarr")])
     indices: list[Index] = [(i,) for i in range(view.data.sizes[dim])]
-    A = np.array([damping_number(view.study.description(index).slider) for index in indices])
+    sliders = (view.study.description(index).slider for index in indices)
+    A = np.array([damping_number_of(each, each.motion.velocity) for each in sliders])
     phi = known["phi"].values
     ax = panel(None if axes is None else as_list(axes)[0], 3.4)
     draw_damping_map(ax, (A.min() / 2, A.max() * 2), (phi.min() / 1.5, 90.0))
