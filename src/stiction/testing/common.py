@@ -46,6 +46,22 @@ def error_line(error: Exception) -> str:
     return f"{type(error).__name__}: {lines[0]}" if lines else type(error).__name__
 
 
+def run_compiled(
+    law: Any, function: Callable[..., Any], inputs: Iterable[Sequence[Any]]
+) -> tuple[list[Any], list[str]]:
+    """Return the compiled results of a function of a law, or none and why it does not compile."""
+    import numba
+
+    from stiction.solver.compilation import refusal
+
+    fast = numba.njit(error_model="numpy")(lambda law, *given: function(law, *given))
+    prepared = getattr(law, "prepare", lambda: law)()
+    try:
+        return [fast(prepared, *each) for each in inputs], []
+    except Exception:
+        return [], [why for why in refusal.reasons(law) if why.startswith(function.__name__)]
+
+
 def check_storage(law: Any, speeds: Sequence[float]) -> Iterator[str]:
     """Check that a law pickles, copies, compares and hashes."""
     ways: dict[str, Callable[[], Any]] = {

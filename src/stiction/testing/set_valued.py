@@ -9,7 +9,7 @@ from typing import Any
 from warnings import catch_warnings, simplefilter
 
 from stiction.friction.law import static_coefficient
-from stiction.testing.common import ROUNDING, attempt, fault_of, first
+from stiction.testing.common import ROUNDING, attempt, fault_of, first, run_compiled
 
 EPS = 2.2e-16
 REACHES = tuple(10.0 ** (-i / 2) for i in range(1, 13))  # of a difference, relative
@@ -89,31 +89,19 @@ def _difference(function: Callable[[float], float], v: float, h: float) -> float
 
 def check_compiled(law: Any, speeds: Sequence[float]) -> Iterator[str]:
     """Check that compiled results equal Python's."""
-    import numba
-
     from stiction.solver import problem
-    from stiction.solver.compilation import refusal
 
-    prepared = getattr(law, "prepare", lambda: law)()
     for function in (problem.coefficient, problem.slope):
         name = function.__name__
-        fast = numba.njit(error_model="numpy")(_calling(function))
         python = [attempt(getattr(law, name), v)[0] for v in speeds]
-        try:
-            machine = [float(fast(prepared, v)) for v in speeds]
-        except Exception:
-            yield from (why for why in refusal.reasons(law) if why.startswith(name))
-            continue
+        machine, reasons = run_compiled(law, function, ((v,) for v in speeds))
+        yield from reasons
         scale = max(map(abs, python))
         yield from first(
             f"{name}({v:g}) is {one!r} in Python and {other!r} compiled"
-            for v, one, other in zip(speeds, python, machine, strict=True)
+            for v, one, other in zip(speeds, python, machine, strict=bool(machine))
             if abs(one - other) > ROUNDING * scale
         )
-
-
-def _calling(function: Callable[..., float]) -> Callable[..., float]:
-    return lambda law, v: function(law, v)
 
 
 def comparable(law: Any, speeds: Sequence[float]) -> Iterator[str]:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from stiction.friction import states
 from stiction.friction.law import Vector
-from stiction.testing.common import ROUNDING, attempt, error_line, fault_of, first
+from stiction.testing.common import ROUNDING, attempt, error_line, fault_of, first, run_compiled
 
 LOADS = (1.0, 100.0)  # N
 DIRECTIONS = (0.0, 2.5)  # rad
@@ -165,33 +165,23 @@ def _differences(law: Any, point: LawPoint, state: tuple[float, ...]) -> list[li
 
 def check_compiled(law: Any, speeds: Sequence[float]) -> Iterator[str]:
     """Check that compiled results equal Python's."""
-    import numba
-
     from stiction.solver import problem
-    from stiction.solver.compilation import refusal
 
-    prepared = getattr(law, "prepare", lambda: law)()
+    at = [*points(speeds)]
+    # apart from steady sliding, where a change of zero would be all rounding
+    inputs = [(*point, tuple(OFF * each for each in _steady_state(law, point))) for point in at]
     for function in (problem.force, problem.change):
         name = function.__name__
-        fast = numba.njit(error_model="numpy")(_calling(function))
-        found = []
-        for point in points(speeds):
-            # apart from steady sliding, where a change of zero would be all rounding
-            state = tuple(OFF * each for each in _steady_state(law, point))
-            one = getattr(law, name)(*point, state)
-            try:
-                other = fast(prepared, *point, state)
-            except Exception:
-                yield from (why for why in refusal.reasons(law) if why.startswith(name))
-                break
-            scale = hypot(*one)
-            if not all(abs(a - b) <= ROUNDING * scale for a, b in zip(one, other, strict=True)):
-                found.append(f"{name} {point} is {one} in Python and {other} compiled")
-        yield from first(found)
-
-
-def _calling(function: Callable[..., Any]) -> Callable[..., Any]:
-    return lambda law, slip, load, state: function(law, slip, load, state)
+        python = [getattr(law, name)(*each) for each in inputs]
+        machine, reasons = run_compiled(law, function, inputs)
+        yield from reasons
+        yield from first(
+            f"{name} {point} is {one} in Python and {other} compiled"
+            for point, one, other in zip(at, python, machine, strict=bool(machine))
+            if not all(
+                abs(a - b) <= ROUNDING * hypot(*one) for a, b in zip(one, other, strict=True)
+            )
+        )
 
 
 WITH_STATE = {
