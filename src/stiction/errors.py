@@ -111,6 +111,10 @@ class DescriptionError(StictionError, ValueError):
             lines.append(f"and {len(self.faults) - MOST} more faults")
         super().__init__("\n".join(lines))
 
+    def at(self, place: str = "") -> DescriptionError:
+        """Return the error with its faults at another place, see `Fault.at`."""
+        return DescriptionError([fault.at(place) for fault in self.faults])
+
     def __reduce__(self) -> tuple[type[DescriptionError], tuple[tuple[Fault, ...]]]:
         """Pickle the faults, not the text."""
         return type(self), (self.faults,)

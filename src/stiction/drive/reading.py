@@ -30,7 +30,7 @@ def as_pieces(known: Mapping[str, type[Any]], kind: Kind) -> BeforeValidator:
                     raise DescriptionError([Fault("piece.duration", message)])
                 made.append(piece)
             except DescriptionError as error:
-                found += [fault.at(str(i + 1)) for fault in error.faults]
+                found += [*error.at(str(i + 1)).faults]
         if found:
             raise faulty(found)
         return tuple(made)
@@ -52,7 +52,7 @@ def as_modulation(kind: Kind) -> BeforeValidator:
                 )
             done: Modulation = _in_si(made, kind)
         except DescriptionError as error:
-            raise faulty([fault.at() for fault in error.faults]) from None
+            raise faulty(error.at().faults) from None
         return done
 
     return BeforeValidator(read)

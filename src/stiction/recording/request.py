@@ -153,7 +153,7 @@ def _read(
     try:
         return kind(**values)
     except DescriptionError as error:
-        for each in (fault.at() for fault in error.faults):
+        for each in error.at().faults:
             wrong.append(Fault(places.get(each.path, each.path), each.message))
         return kind()
 

@@ -245,7 +245,7 @@ def _remake_at(path: str, part: Any, changes: Mapping[str, Any]) -> Any:
     try:
         return _remake(part, changes)
     except DescriptionError as error:
-        raise DescriptionError([fault.at(path) for fault in error.faults]) from None
+        raise error.at(path) from None
 
 
 def _remake(part: Any, changes: Mapping[str, Any]) -> Any:

@@ -161,7 +161,7 @@ def read_springs(value: Any) -> tuple[Spring, ...]:
         try:
             made.append(_spring(each))
         except DescriptionError as error:
-            found += [fault.at(str(number)) for fault in error.faults]
+            found += error.at(str(number)).faults
     names = [each.slug for each in made]
     twice = sorted({each.name for each in made if names.count(each.slug) > 1})
     found += [

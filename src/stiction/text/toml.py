@@ -179,7 +179,7 @@ def gather(
             try:
                 parts[name] = read(dict(table))
             except DescriptionError as error:
-                found += [fault.at(name) for fault in error.faults]
+                found += error.at(name).faults
     if found:
         raise DescriptionError(found)
     return parts

@@ -183,7 +183,7 @@ def read_arguments(kind: Callable[..., T], **given: Any) -> T:
     try:
         return kind(**given)
     except DescriptionError as error:
-        raise DescriptionError([fault.at() for fault in error.faults]) from None
+        raise error.at() from None
 
 
 def faults(error: ValidationError, path: str, known: Iterable[str]) -> list[Fault]:

@@ -76,9 +76,7 @@ def read_anisotropy(law: Law, table: Any) -> Law:
         made: Any = Anisotropic(law, **table)
         return cast(Law, made)
     except DescriptionError as error:
-        raise DescriptionError(
-            [Fault(f"friction.anisotropy.{f.path.split('.')[-1]}", f.message) for f in error.faults]
-        ) from None
+        raise error.at("friction.anisotropy") from None
 
 
 def anisotropy_table(law: Anisotropic) -> dict[str, Any]:

@@ -33,7 +33,7 @@ def axes_of(value: Any) -> dict[str, Axis]:
         try:
             axes[canonical_path(str(path))] = read_axis(each, str(path))
         except DescriptionError as error:
-            found += [fault.at() for fault in error.faults]
+            found += [*error.at().faults]
     if found:
         raise faulty(found)
     return axes
