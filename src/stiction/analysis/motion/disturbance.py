@@ -10,10 +10,10 @@ from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.rest import STICKING, rest_share
 from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import Line, of_mains
+from stiction.analysis.signals.robust import part_means, part_starts
 from stiction.analysis.signals.turning_points import turning_points
 
 Floats = NDArray[np.float64]
-Indices = NDArray[np.intp]
 
 # A line beside the motion: swings without it have so many of its periods, and are as high or stick
 SLOWER, HIGHER = 2.0, 0.75
@@ -94,7 +94,7 @@ def may_be_carried(frequency: float, duration: float, left: Floats, seen: CycleT
     number = frequency * duration
     if of_mains(frequency) or number < MORE * len(seen) + AND_MORE:
         return False
-    means = _means(left, _starts(len(left), int(MEANS * number)))
+    means = part_means(left, int(MEANS * number))
     return len(turning_points(means).index) > 2 * NEARLY_ALL * number
 
 
@@ -123,16 +123,6 @@ def _sticks(table: CycleTable) -> bool:
     """Return whether swings are stick-slip, by their typical shape."""
     shares = table["rise_share"]
     return len(shares) > 0 and bool(rest_share(np.median(shares)) >= STICKING)
-
-
-def _starts(size: int, parts: int) -> Indices:
-    """Return where the equal parts of so many samples begin; no part is empty."""
-    return np.linspace(0, size, min(parts, size), endpoint=False).astype(np.intp)
-
-
-def _means(values: Floats, starts: Indices) -> Floats:
-    """Return the means of parts that begin at `starts`."""
-    return np.asarray(np.add.reduceat(values, starts) / np.diff(starts, append=len(values)))
 
 
 def is_residue(line: Line, table: CycleTable) -> bool:
@@ -188,8 +178,7 @@ def _end_of_loading(time: Floats, force: Floats, least: float) -> int | None:
     The force begins near zero, rises by more than `least` (N), and then stays, or rises more slowly
     by half.
     """
-    edges = _starts(len(force), PARTS)
-    means, times = (_means(each, edges) for each in (force, time))
+    means, times = (part_means(each, PARTS) for each in (force, time))
     means = means if means.max() >= -means.min() else -means
     rise = means - means[0]
     if means[0] > UNLOADED * means.max() or not rise.max() > least:
@@ -199,4 +188,4 @@ def _end_of_loading(time: Floats, force: Floats, least: float) -> int | None:
         return None
     rate, later = rise[at] / (times[at] - times[0]), rise[-1] - rise[at]
     slides = later < SLIDES * rate * (times[-1] - times[at])
-    return int(edges[at]) if slides else None
+    return int(part_starts(len(force), PARTS)[at]) if slides else None

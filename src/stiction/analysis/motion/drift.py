@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from stiction.analysis.motion.cycles import find_cycles
 from stiction.analysis.record import Record
-from stiction.analysis.signals.robust import block_means
+from stiction.analysis.signals.robust import part_means
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -47,7 +47,7 @@ def find_drift(record: Record, cycles: xr.Dataset) -> Drift:
         start = float(record.time[0])
     elif not cycles.sizes["cycle"] and len(record) >= 4 * PARTS:
         half = len(record) // 2
-        at, middle = (block_means(each[half:], PARTS) for each in (record.time, record.force))
+        at, middle = (part_means(each[half:], PARTS) for each in (record.time, record.force))
         start = float(record.time[half])
     else:
         return Drift(0.0, np.nan, 0.0, np.nan, stands_out=False)

@@ -22,7 +22,7 @@ from stiction.analysis.motion.regime.kinds import (
 )
 from stiction.analysis.motion.rest import comes_to_rest
 from stiction.analysis.record import Record
-from stiction.analysis.signals.robust import block_means
+from stiction.analysis.signals.robust import part_means, part_starts
 from stiction.analysis.signals.turning_points import without_spikes
 from stiction.text.quantity_text import percent
 
@@ -146,14 +146,10 @@ def without_loading(regime: Regime) -> str:
 
 def _means(record: Record) -> tuple[Floats, Floats, float]:
     """Return means over equal parts of a record, their times, and the noise of each (N)."""
-    count = min(PARTS, len(record))
-    edges = np.linspace(0, len(record), count, endpoint=False).astype(np.intp)
-    size = np.diff(edges, append=len(record))
-    forces, times = (
-        np.add.reduceat(x, edges) / size for x in (without_spikes(record.force), record.time)
-    )
+    forces, times = (part_means(x, PARTS) for x in (without_spikes(record.force), record.time))
     bent = np.diff(record.force, 2)
-    noise = float(np.median(np.abs(bent))) / 0.6745 / 6.0**0.5 / float(np.median(size)) ** 0.5
+    size = float(np.median(np.diff(part_starts(len(record), PARTS), append=len(record))))
+    noise = float(np.median(np.abs(bent))) / 0.6745 / 6.0**0.5 / size**0.5
     return forces, times, noise
 
 
@@ -239,7 +235,7 @@ def _sliding(
     begin += share * (float(record.time[-1]) - begin)
     slides, load = record.time >= begin, record.normal_load or np.nan
     force, reduced = record.force[slides], record.force[slides] / relative[slides]
-    blocks = _over(block_means(force, BLOCKS), block_means(reduced, BLOCKS), load)
+    blocks = _over(part_means(force, BLOCKS), part_means(reduced, BLOCKS), load)
     return _over(force, reduced, load)._replace(
         error=blocks.error, coefficient_error=blocks.coefficient_error
     )

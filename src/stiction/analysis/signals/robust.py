@@ -17,9 +17,15 @@ class Mean(NamedTuple):
     error: float
 
 
-def block_means(values: NDArray[np.float64], blocks: int) -> NDArray[np.float64]:
-    """Return the means of equal parts of some values, fewer if there are not so many."""
-    return np.array([part.mean() for part in np.array_split(values, min(blocks, len(values)))])
+def part_starts(size: int, parts: int) -> NDArray[np.intp]:
+    """Return where equal parts of so many samples begin: fewer parts, if some would be empty."""
+    return np.linspace(0, size, min(parts, size), endpoint=False).astype(np.intp)
+
+
+def part_means(values: NDArray[np.float64], parts: int) -> NDArray[np.float64]:
+    """Return the means of equal parts of some values, see `part_starts`."""
+    starts = part_starts(len(values), parts)
+    return np.asarray(np.add.reduceat(values, starts) / np.diff(starts, append=len(values)))
 
 
 def trimmed_mean(values: NDArray[np.float64]) -> Mean:
