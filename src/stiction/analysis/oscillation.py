@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from stiction import theory
 from stiction.analysis.motion.rest import sticks_until, stuck_until
 from stiction.analysis.signals.ridge import follow_ridge
-from stiction.analysis.signals.spectrum import spectrogram
+from stiction.analysis.signals.spectrum import rate_spectrogram
 from stiction.errors import ResultError
 from stiction.trajectory import Trajectory
 
@@ -100,10 +100,7 @@ def oscillation_spectrogram(run: Trajectory) -> xr.DataArray:
             f"{5 * natural:.4g} Hz or more and for {width:.3g} s at least; it has "
             f"{rate:.4g} Hz and {span:.3g} s"
         )
-    lines = spectrogram(
-        run.samples["v_y"], rate, width=width, step=width / STEPS, start=float(times[0])
-    )
-    return lines.assign_attrs(units="m/s", long_name="amplitude of v_y")
+    return rate_spectrogram(run, "y", width=width, steps=STEPS)
 
 
 def oscillation_by_phase(oscillation: xr.Dataset, run: Trajectory, phases: Floats) -> xr.Dataset:

@@ -30,7 +30,7 @@ def chain_sections(found: Audit) -> list[Section]:
     """Return the sections on springs in series; none for a single spring."""
     if found.chain is None:
         return []
-    lines = [*softest(found.chain), *axes(found.slider), *masses(found.slider, found.chain)]
+    lines = [*softest(found.chain), *axes(found.slider), *masses(found.chain)]
     return [
         Section(
             "Springs in series", lines, Table(HEADINGS, [*map(_describe_part, found.chain.parts)])
@@ -66,7 +66,7 @@ def axes(slider: Slider) -> list[str]:
     ]
 
 
-def masses(slider: Slider, chain: Chain) -> list[str]:
+def masses(chain: Chain) -> list[str]:
     """Return whether the masses of parts, which the model leaves out, matter."""
     return [_mass(part, number) for number, part in enumerate(chain.parts) if part.spring.mass]
 

@@ -164,7 +164,7 @@ def test_frequencies_are_lower_by_half_of_it(mass):
     # and by the bound of (M77)
     share = mass / 0.25 * (4e3 / 6e3)
     assert more <= share / (1.0 - share)
-    (line,) = masses(slider, st.audit(slider).chain) if mass == 3e-3 else ("",)
+    (line,) = masses(st.audit(slider).chain) if mass == 3e-3 else ("",)
     assert not line or ("which is little" in line) == (more < SMALL)
 
 

@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
-Indices = NDArray[np.intp]
 
 LINES = 4  # taken off at most
 SAME = 0.01  # of a line's frequency: so far apart are two lines at least

@@ -190,20 +190,17 @@ def _blocks(blocks: Any) -> Iterator[Floats]:
             yield np.asarray(block, dtype=np.float64).ravel()
 
 
-def rate_spectrogram(run: Trajectory, axis: str, *, width: float = 0.1) -> xr.DataArray:
+def rate_spectrogram(
+    run: Trajectory, axis: str, *, width: float = 0.1, steps: int = 10
+) -> xr.DataArray:
     """Return the spectrogram of the elongation rate (m/s) along ``"x"`` or ``"y"`` of a run.
 
-    See `spectrogram`; `width` is the width of the window, s.
+    See `spectrogram`; `width` is the width of the window, s, and `steps` windows overlap at any
+    time.
     """
     times = run.samples["time"]
     rate = (len(times) - 1) / (times[-1] - times[0])
     found = spectrogram(
-        run.samples[f"v_{axis}"], rate, width=width, step=width / 10, start=times[0]
+        run.samples[f"v_{axis}"], rate, width=width, step=width / steps, start=float(times[0])
     )
     return found.assign_attrs(units="m/s", long_name=f"amplitude of v_{axis}")
-
-
-def ridge(amplitude: xr.DataArray, above: float = 0.0) -> xr.DataArray:
-    """Return the frequency (Hz) of the largest amplitude at each time, from `above` (Hz) on."""
-    part = amplitude.sel(frequency=slice(above, None))
-    return part["frequency"][part.argmax("frequency")].drop_vars("frequency")

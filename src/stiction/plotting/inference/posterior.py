@@ -17,8 +17,6 @@ from stiction.text.quantity_text import metric_prefix
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
-
 ACROSS = 4  # panels in a row
 BINS = 40
 FEW_BINS = 24  # of a posterior, whose draws repeat

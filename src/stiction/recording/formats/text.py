@@ -125,7 +125,7 @@ def read_lines(path: Path, lines: Sequence[str], dialect: Dialect) -> list[FileT
     words = _word_columns(cells)
     numeric = np.array([at not in words for at in range(cells.numbers.shape[1])])
     faults = Faults()
-    kinds = _kinds(path, lines, dialect, cells, numeric, faults)
+    kinds = _kinds(path, cells, numeric, faults)
     remarks = [Remark(at + 1, x) for at, x in enumerate(lines[:first]) if x.strip()]
     tables: list[FileTable] = []
     heading: Heading | None = None
@@ -236,12 +236,7 @@ def _word_columns(cells: _Cells) -> set[int]:
 
 
 def _kinds(
-    path: Path,
-    lines: Sequence[str],
-    dialect: Dialect,
-    cells: _Cells,
-    numeric: NDArray[np.bool_],
-    faults: Faults,
+    path: Path, cells: _Cells, numeric: NDArray[np.bool_], faults: Faults
 ) -> NDArray[np.int8]:
     """Return which lines hold samples; a wrong cell among numbers is a fault."""
     wrong = cells.wrong & numeric
