@@ -23,11 +23,11 @@ from rich.table import Table
 
 import stiction as st
 from stiction.analysis.motion.regime.kinds import STICK_SLIP
-from stiction.auditing import simulated_test
 from stiction.auditing.prediction import predict
+from stiction.auditing.simulated_test import coarse_rate, simulate_test
 from stiction.linear_stability import growth_rate
 from stiction.study.variables.features import zigzag
-from stiction.study.variables.observation import observe
+from stiction.study.variables.observed_run import observe_run
 
 Floats = NDArray[np.float64]
 
@@ -115,8 +115,8 @@ def edges(cycles: xr.Dataset) -> Floats:
 def cycles_of_test(slider: st.Slider) -> xr.Dataset:
     """Return the cycles that an audit finds in its test from rest."""
     expected = predict(slider)
-    rate = max(expected.sample_rate, simulated_test.coarse_rate(expected))
-    return simulated_test.observe(slider, expected, growth_rate(slider), sample_rate=rate).cycles
+    rate = max(expected.sample_rate, coarse_rate(expected))
+    return simulate_test(slider, expected, growth_rate(slider), sample_rate=rate).cycles
 
 
 def rigs(count: int, seed: int) -> Iterator[Counted]:
@@ -135,7 +135,7 @@ def rigs(count: int, seed: int) -> Iterator[Counted]:
         swing = float(np.ptp(record.force[-len(record) // 3 :]))
         falls = [troughs(record.time, record.force, share * swing) for share in (0.4, 0.5, 0.6)]
         settings = st.Settings(duration=duration)
-        observed = observe(st.Description(slider, st.Initial(), settings), None)
+        observed = observe_run(st.Description(slider, st.Initial(), settings), None)
         seen = observed.swings
         analysed = edges(found)
         studied = seen.end - np.append(np.cumsum(seen.period[::-1])[::-1], 0.0)

@@ -27,8 +27,8 @@ from pathlib import Path
 from time import perf_counter, process_time
 import stiction as st
 from stiction.study.execution.engines import Threads
-from stiction.study.variables.observation import observe
-from stiction.study.variables import observation
+from stiction.study.variables.observed_run import observe_run
+from stiction.study.variables import observed_run
 from benchmarks.speed.peak import peak
 
 def study(side, other, duration):
@@ -63,16 +63,16 @@ from concurrent.futures import ThreadPoolExecutor
 side, threads = int(sys.argv[1]), int(sys.argv[2])
 made = study(side, side, 5.0)
 asked = []
-solve = observation.solve
+solve = observed_run.solve
 
 def note(description, times, progress=None):
     asked.append((description, times))
     raise st.StictionError
 
-observation.solve = note
+observed_run.solve = note
 for index in ((i, j) for i in range(side) for j in range(side)):
     try:
-        observe(made.description(index), None)
+        observe_run(made.description(index), None)
     except st.StictionError:
         pass
 from stiction.solver.integrate import integrate

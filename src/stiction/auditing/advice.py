@@ -14,7 +14,7 @@ from stiction.auditing.simulated_test import (
     Progress,
     SimulatedTest,
     coarse_rate,
-    observe,
+    simulate_test,
 )
 from stiction.linear_stability import Critical, critical, growth_rate
 from stiction.system.parameter import change_parameter, read, unit
@@ -159,7 +159,7 @@ def try_change(slider: Slider, most_steps: int, progress: Progress) -> dict[str,
     """Return growth rate and simulation of a changed slider."""
     growth, prediction = growth_rate(slider), predict(slider)
     rate = coarse_rate(prediction)
-    seen = observe(
+    seen = simulate_test(
         slider,
         prediction,
         growth,

@@ -14,7 +14,7 @@ from stiction.auditing.simulated_test import (
     Progress,
     SimulatedTest,
     coarse_rate,
-    observe,
+    simulate_test,
 )
 from stiction.errors import DescriptionError
 from stiction.linear_stability import growth_rate
@@ -170,7 +170,7 @@ def replace_one(
     if work < LEAST_WORK:
         return Replacement(spring, factor, other, p)
     rate = coarse_rate(p)
-    seen = observe(
+    seen = simulate_test(
         other, p, growth_rate(other), sample_rate=rate, most_steps=work, progress=progress
     )
     return Replacement(spring, factor, other, p, seen)

@@ -19,7 +19,7 @@ from stiction.auditing.simulated_test import (
     SimulatedTest,
     coarse_rate,
     from_sliding,
-    observe,
+    simulate_test,
 )
 from stiction.auditing.tolerance.budget import Budget, budget
 from stiction.auditing.tolerance.words import section
@@ -206,7 +206,7 @@ def _examine(rig: Rig, measured: RecordComparison | None, report: Callable[[floa
     sliding, prediction = steady_sliding(system), predict(system)
     growth = sliding.growth_rate
     rate = max(prediction.sample_rate, coarse_rate(prediction))
-    observation = observe(system, prediction, growth, sample_rate=rate, progress=part(0))
+    observation = simulate_test(system, prediction, growth, sample_rate=rate, progress=part(0))
     sliding_on = from_sliding(sliding, prediction, part(1))
     work = MOST_WORK - observation.work - sliding_on.work
     springs = None

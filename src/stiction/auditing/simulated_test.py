@@ -137,7 +137,7 @@ class SimulatedTest:
         return self.table.mean(name)
 
 
-def observe(
+def simulate_test(
     slider: Slider,
     prediction: Prediction,
     growth: float,
@@ -195,7 +195,7 @@ def from_sliding(
     linear: Linearisation, prediction: Prediction, progress: Progress = None
 ) -> SimulatedTest:
     """Simulate the test from steady sliding, disturbed by a hundredth of the speed."""
-    return observe(
+    return simulate_test(
         linear.slider,
         prediction,
         linear.growth_rate,

@@ -28,7 +28,7 @@ from stiction.auditing.simulated_test import (
     coarse_rate,
     creep_before_slip,
     from_sliding,
-    observe,
+    simulate_test,
 )
 from stiction.auditing.words.changes import _change
 from stiction.auditing.words.numbers import apparent_stiffness, numbers
@@ -372,7 +372,7 @@ def test_creep_before_a_slip_does_not_depend_on_how_densely_a_test_is_sampled(ra
     A = (0.6 - 0.45) * 8.0 / 1.2e3
     until = atan2(V, omega * A) / omega
     moved = V * until - (sqrt(A**2 + (V / omega) ** 2) - A)
-    seen = observe(slider, p, 0.0, sample_rate=rate * p.f_x)
+    seen = simulate_test(slider, p, 0.0, sample_rate=rate * p.f_x)
     assert creep_before_slip(seen) == pytest.approx(moved, rel=1e-3)
 
 
@@ -445,7 +445,7 @@ def short(slider: st.Slider) -> Audit:
     """Return an audit without advice."""
     prediction, sliding = predict(slider), steady_sliding(slider)
     rate = coarse_rate(prediction)
-    rest = observe(slider, prediction, sliding.growth_rate, sample_rate=rate)
+    rest = simulate_test(slider, prediction, sliding.growth_rate, sample_rate=rate)
     both = rest, from_sliding(sliding, prediction)
     return Audit(slider, prediction, sliding, critical(slider, "phi"), *both, ())
 
@@ -602,7 +602,7 @@ def test_a_test_is_long_enough_for_cycles_that_theory_does_not_predict():
     """Friction with state: the stick-slip of Leine's belt, whose period the preset states."""
     slider = st.presets.leine_lugre().slider
     growth = steady_sliding(slider).growth_rate
-    seen = observe(slider, predict(slider), growth, sample_rate=10.0)
+    seen = simulate_test(slider, predict(slider), growth, sample_rate=10.0)
     assert growth > 0.0
     assert seen.motion == STICK_SLIP
     (period,) = (
@@ -616,7 +616,7 @@ def test_a_test_lasts_until_the_softer_spring_has_settled():
     slider = st.presets.friction_force_microscope().slider
     growth = steady_sliding(slider).growth_rate
     prediction = predict(slider)
-    seen = observe(slider, prediction, growth, sample_rate=coarse_rate(prediction))
+    seen = simulate_test(slider, prediction, growth, sample_rate=coarse_rate(prediction))
     assert prediction.f_y < prediction.f_x
     assert seen.comes_to == SLIDES
 

@@ -8,7 +8,7 @@ import xarray as xr
 
 import stiction as st
 from stiction.study.variables.fast_regime import KINDS
-from stiction.study.variables.observation import REVERSAL
+from stiction.study.variables.observed_run import REVERSAL
 
 PAPER = st.presets.nakano_popov_2020()
 BASE = st.Description(PAPER, st.Initial(), st.Settings(duration="6 s"))

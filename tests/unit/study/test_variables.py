@@ -11,21 +11,21 @@ from stiction.analysis.motion.regime.kinds import TRANSVERSE, shape
 from stiction.study.variables.fast_regime import KINDS
 from stiction.study.variables.features import features, zigzag
 from stiction.study.variables.measures import MEASURES
-from stiction.study.variables.observation import observe
+from stiction.study.variables.observed_run import observe_run
 
 PAPER = st.presets.nakano_popov_2020()
 SYSTEMS = 0, 1, 8, 25, 42, 115  # of benchmarks.explore.rigs.first_slip: k_y over k_x of 2 to 1/890
 
 
-def observe_run(slider, duration, **settings):
+def run_in_study(slider, duration, **settings):
     """Return a run as a study sees it."""
     run = st.Settings(duration=duration, **settings)
-    return observe(st.Description(slider, st.Initial(), run), None)
+    return observe_run(st.Description(slider, st.Initial(), run), None)
 
 
 @pytest.fixture(scope="module")
 def paper():
-    return observe_run(PAPER, "5 s")
+    return run_in_study(PAPER, "5 s")
 
 
 def value(name, run):
@@ -72,7 +72,7 @@ def test_a_transverse_swing_is_no_slip_at_any_angle(phi, law):
     """At 40 deg and more the mass swings faster than the drive, and stays where it was."""
     slider = PAPER.replace(phi=f"{phi} deg", friction=law)
     for sample_rate in (None, "10 kHz"):
-        run = observe_run(slider, "1 s", sample_rate=sample_rate)
+        run = run_in_study(slider, "1 s", sample_rate=sample_rate)
         assert np.isnan(value("first_slip_time", run))
         assert np.isnan(value("creep_distance", run))
     run = st.simulate(slider, "1 s", sample_rate="10 kHz")
@@ -85,7 +85,7 @@ def test_the_first_slip_of_a_mass_that_rests_begins_where_the_spring_can_hold_no
         drive = st.ConstantVelocity(V)
         slider = PAPER.replace(phi="0 deg", friction=law, drive=drive)
         at = 0.5 * 10.0 / 1e3 / 1e-3  # s: until the spring carries what holds the mass
-        run = observe_run(slider, "6 s")
+        run = run_in_study(slider, "6 s")
         assert value("first_slip_time", run) == pytest.approx(at, rel=1e-2)
         assert value("creep_distance", run) == pytest.approx(0.0, abs=1e-5)
 
@@ -101,7 +101,7 @@ def test_the_first_slip_is_found_whichever_spring_is_softer(number):
 @pytest.mark.parametrize("multiscale", [False, True])
 def test_the_mode_of_the_solver_does_not_matter(paper, multiscale):
     """To 1e-6, the tolerance, of the largest value."""
-    other = observe_run(PAPER, "5 s", multiscale=multiscale)
+    other = run_in_study(PAPER, "5 s", multiscale=multiscale)
     for name in ("regime", "peak_force", "period", "creep_distance"):
         assert value(name, other) == pytest.approx(value(name, paper), rel=1e-5)
 
@@ -111,7 +111,7 @@ def test_the_mode_of_the_solver_does_not_matter(paper, multiscale):
 def test_regimes_are_those_of_records(phi, V):
     """Noise-free rules and those for any record agree where both see enough cycles."""
     slider = PAPER.replace(phi=f"{phi} deg", drive=st.ConstantVelocity(V))
-    run = observe_run(slider, 8e-3 / V + 4.0)
+    run = run_in_study(slider, 8e-3 / V + 4.0)
     rate = 1.0 / float(run.time[1] - run.time[0])
     found = st.analysis.classify(st.simulate(slider, 8e-3 / V + 4.0, sample_rate=rate))
     if run.regime != found.kind:  # then on the bound between two kinds of cycles
@@ -123,12 +123,12 @@ def test_regimes_are_those_of_records(phi, V):
 def test_a_transverse_oscillation_goes_on_when_the_slow_motion_has_settled():
     """Drawn nearly along the stiff axis, the fast oscillation is the one that weakening drives."""
     slider = PAPER.replace(phi="80 deg")
-    run = observe_run(slider, "5 s")
+    run = run_in_study(slider, "5 s")
     assert run.regime == TRANSVERSE
     late = st.simulate(slider, "5 s", sample_rate="100 kHz").data.sel(time=slice(4.97, None))
     rate = 0.5 * float(np.ptp(late["v_y"].values)) / (1e-3 * np.sin(np.radians(80.0)))
     assert run.transverse_oscillation == pytest.approx(rate, rel=0.05)  # 16 samples a period
-    slow = observe_run(PAPER.replace(phi="30 deg"), "5 s")
+    slow = run_in_study(PAPER.replace(phi="30 deg"), "5 s")
     assert slow.transverse_oscillation == pytest.approx(0.0, abs=1e-3)
 
 
@@ -143,7 +143,7 @@ def test_swings_that_die_out_on_two_springs_alike_are_no_transverse_oscillation(
         friction=law, drive=st.ConstantVelocity(V),
     )  # fmt: skip
     found = st.analyse(st.simulate(slider, "10 s", sample_rate="2 kHz")).regime
-    assert observe_run(slider, "10 s").regime == found.kind
+    assert run_in_study(slider, "10 s").regime == found.kind
     if (stiffness, phi, V) in ((1e4, 5, 0.2), (1.5e4, 10, 0.2)):
         assert found.kind == "settling"
 
@@ -167,19 +167,19 @@ def test_what_does_not_turn_has_no_turning_points(values):
 
 @pytest.mark.parametrize("name", MEASURES)
 def test_every_measure_of_a_run_that_hardly_began(name):
-    run = observe_run(PAPER, "1 us")
+    run = run_in_study(PAPER, "1 us")
     assert np.isscalar(value(name, run))
     assert run.regime in ("stuck", "undetermined")
 
 
 def test_what_never_slips_is_stuck():
-    assert observe_run(PAPER.replace(drive=st.ConstantVelocity(0.0)), "5 s").regime == "stuck"
+    assert run_in_study(PAPER.replace(drive=st.ConstantVelocity(0.0)), "5 s").regime == "stuck"
 
 
 def test_swings_after_which_it_is_quiet_are_a_transient():
     """They are seen down to the tolerance; none follows in many periods."""
     slider = PAPER.replace(phi="14.5 deg", drive=st.ConstantVelocity("3.16 mm/s"))
-    run = observe_run(slider, "6.5 s")
+    run = run_in_study(slider, "6.5 s")
     assert run.end - run.swings.end > 20 * run.swings.period.max()
     assert run.regime == "settling"
     assert len(run.swings.drop) > 0 == len(run.cycles.drop)
@@ -202,7 +202,7 @@ def test_a_small_vibration_on_both_springs(phi, V):
     reach half of the median, on which the smallest that either sees have a part.
     """
     slider = PIN.replace(phi=f"{phi} deg", drive=st.ConstantVelocity(V))
-    run = observe_run(slider, "8 s")
+    run = run_in_study(slider, "8 s")
     assert run.regime == TRANSVERSE
     found = st.analyse(st.simulate(slider, "8 s", sample_rate="10 kHz"))
     assert found.regime.kind == TRANSVERSE  # though it sticks in each of these cycles
@@ -219,12 +219,12 @@ def test_swings_that_grow_with_the_load_and_then_die_out_are_a_transient():
     slider = PIN.replace(phi="20 deg", drive=st.ConstantVelocity("2 mm/s"))
     assert st.linear_stability.growth_rate(slider) < -5.0
     assert st.analysis.classify(st.simulate(slider, "8 s", sample_rate="10 kHz")).kind == "settling"
-    assert observe_run(slider, "8 s").regime == "settling"
+    assert run_in_study(slider, "8 s").regime == "settling"
 
 
 def test_a_coarse_sample_rate_of_the_description_changes_no_measure():
     """It says what a run's file holds; samples too far apart would show other, slower cycles."""
-    run, coarse = observe_run(PIN, "4 s"), observe_run(PIN, "4 s", sample_rate="70 Hz")
+    run, coarse = run_in_study(PIN, "4 s"), run_in_study(PIN, "4 s", sample_rate="70 Hz")
     assert coarse.regime == run.regime
     assert value("cycles", coarse) == value("cycles", run)
     assert value("period", coarse) == value("period", run)
@@ -234,7 +234,7 @@ def test_a_single_cycle_after_the_loading_is_no_transverse_oscillation():
     """Its drop is a tenth of the loading: the force seems to settle as the stiff spring moves."""
     drive = st.ConstantVelocity("0.5 mm/s")
     slider = NEARLY_ISOTROPIC.replace(phi="10 deg", drive=drive)
-    run = observe_run(slider, "2 s", sample_rate="5 kHz")
+    run = run_in_study(slider, "2 s", sample_rate="5 kHz")
     assert len(run.cycles.drop) == 1
     found = st.analysis.classify(st.simulate(slider, "2 s", sample_rate="5 kHz"))
     assert run.regime == found.kind == "stick-slip"

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.auditing.prediction import predict
-from stiction.auditing.simulated_test import coarse_rate, creep_before_slip, observe
+from stiction.auditing.simulated_test import coarse_rate, creep_before_slip, simulate_test
 from stiction.auditing.words.numbers import kinetic, peak
 from stiction.errors import StictionError
 from stiction.inference.priors import Rig, quantity
@@ -107,7 +107,7 @@ def read(slider: Slider) -> Reading:
     prediction = predict(slider)
     try:
         rate, growth = coarse_rate(prediction), growth_rate(slider)
-        seen = observe(slider, prediction, growth, sample_rate=rate, most_steps=MOST_STEPS)
+        seen = simulate_test(slider, prediction, growth, sample_rate=rate, most_steps=MOST_STEPS)
     except StictionError:
         return Reading(nan, nan, nan, prediction.amplitude)
     if not seen.run.status.ok:

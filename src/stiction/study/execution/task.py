@@ -12,7 +12,7 @@ from stiction.study.plan.layout import Index, places, runs_of, size_of
 from stiction.study.plan.study import Study
 from stiction.study.store.kept import Kept, stored_variables
 from stiction.study.store.store import COMPLETED, ERROR, REFUSED, BlockResults, Store
-from stiction.study.variables.observation import observe
+from stiction.study.variables.observed_run import observe_run
 
 
 class Unwanted(Exception):
@@ -70,7 +70,7 @@ def outcome(
 
     report(0.0)
     try:
-        seen = observe(study.description(index), report)
+        seen = observe_run(study.description(index), report)
         ended = STATUSES[seen.solution.code]
         if not ended.ok:
             return StoredOutcome(seen.solution.code, ended.value, ())

@@ -11,7 +11,7 @@ import numpy as np
 from stiction.study.plan.axes import Floats
 from stiction.study.plan.study import Study
 from stiction.study.variables.measures import MEASURES, TRACES
-from stiction.study.variables.observation import Observed
+from stiction.study.variables.observed_run import ObservedRun
 
 UNKNOWN = "unknown"  # the meaning of -1 in the code of a kind
 TIME = "time"  # dimension of traces
@@ -37,7 +37,7 @@ class Kept(NamedTuple):
     """
 
     name: str
-    of: Callable[[Observed], Any]
+    of: Callable[[ObservedRun], Any]
     shape: tuple[int, ...]
     dtype: type[np.generic]
     unknown: float
@@ -73,7 +73,7 @@ def _measure(name: str) -> Kept:
 def _trace(name: str, count: int) -> Kept:
     known = TRACES[name]
 
-    def decimate(run: Observed) -> Floats:
+    def decimate(run: ObservedRun) -> Floats:
         at = np.linspace(run.start, run.end, count)
         return np.interp(at, run.time, known.of(run))
 

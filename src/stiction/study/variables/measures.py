@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.study.variables.fast_regime import KINDS
-from stiction.study.variables.observation import Observed
+from stiction.study.variables.observed_run import ObservedRun
 
 
 class Measure(NamedTuple):
@@ -28,7 +28,7 @@ class Measure(NamedTuple):
 
     unit: str
     long_name: str
-    of: Callable[[Observed], float]
+    of: Callable[[ObservedRun], float]
     flags: tuple[str, ...] = ()
 
 
@@ -94,7 +94,7 @@ class Trace(NamedTuple):
 
     unit: str
     long_name: str
-    of: Callable[[Observed], NDArray[np.float64]]
+    of: Callable[[ObservedRun], NDArray[np.float64]]
 
 
 TRACES: dict[str, Trace] = {

@@ -20,7 +20,7 @@ from stiction.analysis.signals.reversals import all_heights, standing_out, taken
 from stiction.analysis.signals.turning_points import _locate, turning_points
 from stiction.plotting.analysis.cycles import plot_cycles
 from stiction.plotting.page.canvas import figure_of
-from stiction.study.variables.observation import observe
+from stiction.study.variables.observed_run import observe_run
 from stiction.text.units import in_words
 
 Floats = NDArray[np.float64]
@@ -187,7 +187,7 @@ def test_a_dip_before_a_slip_is_a_hesitation_and_no_cycle(phi: str) -> None:
     share = cycles["period"] / cycles["period"].median()
     assert ((share > 0.6) & (share < 1.5)).all()  # neither a dip nor two cycles in one
     assert st.analysis.classify(run).kind == "stick-slip"
-    seen = observe(st.Description(rig, st.Initial(), st.Settings(duration="10 s")), None)
+    seen = observe_run(st.Description(rig, st.Initial(), st.Settings(duration="10 s")), None)
     assert len(seen.swings.period) == cycles.sizes["cycle"]
     assert seen.swings.period.mean() == pytest.approx(float(cycles["period"].mean()), rel=1e-3)
 

@@ -33,7 +33,7 @@ from stiction.analysis.motion.course import dies_out
 from stiction.analysis.motion.regime.band import highest_hump
 from stiction.analysis.motion.rest import rest_share
 from stiction.plotting.analysis.overview import figures
-from stiction.study.variables.observation import observe
+from stiction.study.variables.observed_run import observe_run
 
 TRANSITIONAL = "transitional oscillation"
 
@@ -418,7 +418,7 @@ def test_a_run_that_sticks_in_each_cycle_sticks_and_slips_however_shortly() -> N
         period = 2.0 * pi if vibrates else stuck + 2.0 * (pi - np.arctan((peak - 1.0) / V))
         run = st.simulate(slider, 8.5 * period, initial=start, sample_rate=400.0 / period)
         seen = st.analysis.classify(run)
-        studied = observe(run.description, None).regime
+        studied = observe_run(run.description, None).regime
         if vibrates:
             assert run.sticks.sizes["stick"] == 0
             assert (seen.kind, studied) == ("harmonic vibration", "harmonic vibration")
@@ -667,7 +667,7 @@ def test_a_vibration_along_a_stiff_spring_is_not_across_the_drive() -> None:
     assert found.cycles["period"].mean() < 0.5 / slider.natural_frequencies[0]
     assert found.regime.kind != "transverse oscillation"
     assert "across the drive" not in str(found)
-    assert observe(run.description, None).regime == found.regime.kind
+    assert observe_run(run.description, None).regime == found.regime.kind
     assert "oscillation" not in figures(found)  # of which nothing stands out
 
 

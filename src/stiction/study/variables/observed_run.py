@@ -39,7 +39,7 @@ REVERSAL = 1e-3
 
 
 @dataclass(frozen=True)
-class Observed:
+class ObservedRun:
     """A run as the solver returns it: evenly spaced samples, denser near its end.
 
     Parameters
@@ -203,7 +203,7 @@ class Observed:
         return stick_shares(self.solution.sticks, cycles.start, peak, cycles.period)
 
 
-def observe(description: Description, report: Callable[[float], None] | None) -> Observed:
+def observe_run(description: Description, report: Callable[[float], None] | None) -> ObservedRun:
     """Run a description, sampled as measures need it: at least as often as it says."""
     start, duration = description.initial.time, description.run.duration
     slow, fast = description.slider.natural_frequencies
@@ -218,7 +218,7 @@ def observe(description: Description, report: Callable[[float], None] | None) ->
     dense = even[fine] + np.arange(steps * parts + 1) / (rate * parts)
     times = np.minimum(np.concatenate([even[:fine], dense]), start + duration)
     solution = solve_coarsely(description, times, progress=report)
-    return Observed(description, solution, fine, parts)
+    return ObservedRun(description, solution, fine, parts)
 
 
 def coupled_frequency(slider: Slider) -> float:
