@@ -15,7 +15,7 @@ from stiction.analysis.export import export
 from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.motion.cycle_summary import summary
-from stiction.analysis.motion.cycles import swings
+from stiction.analysis.motion.cycles import Swings, swings
 from stiction.analysis.motion.doubts import taken_off, turns_round, unsteady, warnings
 from stiction.analysis.motion.friction import Friction, find_friction, without_loading
 from stiction.analysis.motion.metadata import LOADING_RATE, StatedQuantity, compare_metadata
@@ -155,7 +155,6 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     ('stick-slip', 3)
     """
     missing: dict[str, str] = {}
-
     if isinstance(source, str | Path):
         source = read_source(source, trust=trust)
     run = source if isinstance(source, Trajectory) else None
@@ -163,36 +162,19 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     found = swings(record)
     cycles, regime = found.cycles, regime_of(record, found)
     sticking = cycles if regime.loads else cycles.isel(cycle=slice(0))
-    if run is not None:
-        oscillation = attempt(
-            missing, "oscillation", lambda: apart(transverse_oscillation(run), cycles)
-        )
-        width = None
-    else:
-        oscillation = attempt(
-            missing,
-            "oscillation",
-            lambda: strongest_line(record, _above(record, cycles), cycles=cycles),
-        )
-        width = _free_of_hum(oscillation, sticking)
-    clean = record.model_copy(update={"force": found.force}) if found.lines else record
-    friction = find_friction(clean, regime, cycles)
+    oscillation = attempt(missing, "oscillation", lambda: _oscillation(record, run, cycles))
     turns = _turns_round(run, regime)
-    if turns:
-        friction = friction.without_kinetic(turns)
-    if "forth" in regime.evidence:
-        friction = friction.without_any(turns)
-    stated: tuple[StatedQuantity, ...] = ()
-    if run is None:  # which is what it states
-        stated = compare_metadata(record, regime.kind, cycles)
-        doubts = warnings(record, regime.kind, cycles, friction, stated)
-    else:
-        doubts = unsteady(run)
-    doubts += taken_off(found.lines)
+    friction = _friction(record, found, regime, turns)
+    # a run is what it states
+    stated = compare_metadata(record, regime.kind, cycles) if run is None else ()
+    doubts = (
+        warnings(record, regime.kind, cycles, friction, stated) if run is None else unsteady(run)
+    ) + taken_off(found.lines)
     cycles = _blank_meaningless(record, cycles, regime, stated, missing)
     if turns and cycles.sizes["cycle"]:
         missing["mu_kinetic"] = turns
         cycles = cycles.assign(mu_kinetic=cycles["mu_kinetic"].where(False))
+    width = _free_of_hum(oscillation, sticking) if run is None else None
     creep = find_creep(source, record, sticking, width)
     missing |= creep.missing
     phases = None
@@ -221,6 +203,22 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
 
 
 analyze = analyse
+
+
+def _oscillation(record: Record, run: Trajectory | None, cycles: xr.Dataset) -> xr.Dataset:
+    """Follow the transverse oscillation of a run, or the strongest line of a record."""
+    if run is not None:
+        return apart(transverse_oscillation(run), cycles)
+    return strongest_line(record, _above(record, cycles), cycles=cycles)
+
+
+def _friction(record: Record, found: Swings, regime: Regime, turns: str) -> Friction:
+    """Find the friction of a record without its hum, as far as what `turns` round leaves any."""
+    clean = record.model_copy(update={"force": found.force}) if found.lines else record
+    friction = find_friction(clean, regime, found.cycles)
+    if "forth" in regime.evidence:
+        return friction.without_any(turns)
+    return friction.without_kinetic(turns) if turns else friction
 
 
 def _turns_round(run: Trajectory | None, regime: Regime) -> str:

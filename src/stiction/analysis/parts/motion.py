@@ -37,6 +37,16 @@ BY_STROKES = (
     "st.analysis.hysteresis gives the loops."
 )
 OTHER_SIGN = 'or a file with --force="-1 N"'
+IMPOSED = {  # by the evidence
+    "unchanging": "The force is the same in all samples, as no measured force is: the channel is "
+    "dead, or at an end of its range.",
+    "forth": f"The force goes back and forth between both signs, as where the drive does so. "
+    f"{BY_STROKES}",
+    "straight": "The force rises and falls evenly, as where a drive goes back and forth and the "
+    "mass sticks, or the load changes so. No vibration has such a shape.",
+    "plateaus": "The force goes back and forth between two levels, as where the drive does so, or "
+    f"the load changes in steps. {BY_STROKES}",
+}
 
 
 def section(found: Analysis) -> Section:
@@ -60,10 +70,19 @@ def numbers(found: Analysis) -> dict[str, Any]:
 
 def plainly(found: Analysis) -> str:
     """Describe the motion in a sentence that needs no theory."""
-    count, kind = found.cycles.sizes["cycle"], found.regime.kind
+    return (
+        _describe_imposed_force(found)
+        or _describe_cycles(found)
+        or _describe_unclear_force(found)
+        or _describe_course(found)
+    )
+
+
+def _describe_imposed_force(found: Analysis) -> str:
+    """Describe a force that something other than friction shapes or changes; '' for others."""
+    evidence, kind = found.regime.evidence, found.regime.kind
     if isinstance(found.source, Trajectory) and turns_round(found.source):
         return "The drive goes back and forth, and the force with it."
-    evidence = found.regime.evidence
     if (mains := evidence.get("mains")) is not None:
         return (
             f"The force swings at {in_words(mains, 'Hz')}, as the mains do: either the mass "
@@ -74,70 +93,66 @@ def plainly(found: Analysis) -> str:
             f"The motion changes at {in_words(change, 's')}: one part is {kind}, the other "
             f"{found.regime.runner_up}. Analyse each by itself: means over both mean little."
         )
-    if "unchanging" in evidence:
-        return (
-            "The force is the same in all samples, as no measured force is: the channel is dead, "
-            "or at an end of its range."
-        )
-    if "forth" in evidence:
-        return (
-            "The force goes back and forth between both signs, as where the drive does so. "
-            f"{BY_STROKES}"
-        )
-    if "straight" in evidence:
-        return (
-            "The force rises and falls evenly, as where a drive goes back and forth and the mass "
-            "sticks, or the load changes so. No vibration has such a shape."
-        )
-    if "plateaus" in evidence:
-        return (
-            "The force goes back and forth between two levels, as where the drive does so, or the "
-            f"load changes in steps. {BY_STROKES}"
-        )
-    if count:
-        drop, period = (float(found.cycles[name].mean()) for name in ("drop", "period"))
-        times = {1: "once", 2: "twice"}.get(count, f"{count} times")
-        every = f", every {in_words(period, 's')}" if count > 1 else ""
-        size = f"the force drops by {in_words(drop, 'N')}"
-        plain = {
-            STICK_SLIP: f"The mass sticks and slips {times}{every}{_stick_share(found)}; {size}",
-            TRANSITIONAL: f"The mass slips {times}{every}, between stick-slip and plain "
-            f"vibration; {size}",
-            HARMONIC: f"The {_swinging(found)} swings {times}{every}{_stick_share(found)}; {size}",
-            TRANSVERSE: f"The mass oscillates across the drive {times}{every}"
-            f"{_stick_share(found)}; {size}",
-        }
-        if kind in plain:
-            said = f"{plain[kind]}{_each_time(found)}."
-            return f"{said}{_why_transverse(found)}{_slow_swing(found)}{_on_a_wave(found)}"
-    if kind == UNDETERMINED and "hidden" in evidence:
+    return next((sentence for name, sentence in IMPOSED.items() if name in evidence), "")
+
+
+def _describe_cycles(found: Analysis) -> str:
+    """Describe cycles: how often they come, and by how much the force drops; '' without any."""
+    count = found.cycles.sizes["cycle"]
+    if not count:
+        return ""
+    drop, period = (float(found.cycles[name].mean()) for name in ("drop", "period"))
+    times = {1: "once", 2: "twice"}.get(count, f"{count} times")
+    every = f", every {in_words(period, 's')}" if count > 1 else ""
+    share = _stick_share(found)
+    plain = {
+        STICK_SLIP: f"The mass sticks and slips {times}{every}{share}",
+        TRANSITIONAL: f"The mass slips {times}{every}, between stick-slip and plain vibration",
+        HARMONIC: f"The {_swinging(found)} swings {times}{every}{share}",
+        TRANSVERSE: f"The mass oscillates across the drive {times}{every}{share}",
+    }.get(found.regime.kind)
+    if plain is None:
+        return ""
+    falls = f"the force drops by {in_words(drop, 'N')}{_each_time(found)}."
+    return f"{plain}; {falls}{_why_transverse(found)}{_slow_swing(found)}{_on_a_wave(found)}"
+
+
+def _describe_unclear_force(found: Analysis) -> str:
+    """Describe a motion that noise hides, or whose force may have the other sign; '' for others."""
+    evidence = found.regime.evidence
+    if found.regime.kind == UNDETERMINED and "hidden" in evidence:
         swings, by = in_words(evidence["hidden"], "Hz"), in_words(evidence["hidden_height"], "N")
         return (
             f"Noise hides what the mass does. By its spectrum the force swings at {swings}, by "
             f"{by} from crest to trough: average neighbouring samples, or measure with less noise."
         )
-    if evidence.get("backward", 0.0) > 0.5:
-        fast = "The force falls slowly and rises fast"
-        if float(found.record.force.mean()) <= 0.0:
-            return (
-                f"{fast}: it is recorded with the other sign, in all likelihood. Analyse it with "
-                f"force=-force, {OTHER_SIGN}."
-            )
+    if evidence.get("backward", 0.0) <= 0.5:
+        return ""
+    fast = "The force falls slowly and rises fast"
+    if float(found.record.force.mean()) <= 0.0:
         return (
-            f"{fast}: as where holds interrupt the sliding, or it is recorded with the other sign "
-            f"and an untared zero; then analyse it with force=-force and zero=, {OTHER_SIGN}."
+            f"{fast}: it is recorded with the other sign, in all likelihood. Analyse it with "
+            f"force=-force, {OTHER_SIGN}."
         )
+    return (
+        f"{fast}: as where holds interrupt the sliding, or it is recorded with the other sign "
+        f"and an untared zero; then analyse it with force=-force and zero=, {OTHER_SIGN}."
+    )
+
+
+def _describe_course(found: Analysis) -> str:
+    """Describe a motion by the course of its force."""
     slides = found.friction.kinetic
     at = f", at a force of {in_words(slides.force, 'N')}" if slides is not None else ""
     plain = {
-        STEADY: _slides(evidence, at),
+        STEADY: _slides(found.regime.evidence, at),
         SETTLING: _settles(found, at),
         STUCK: "The mass does not slip, it rests or creeps: the force only rises."
         if found.regime.runner_up != STEADY
         else "The force only rises: either the mass sticks, or it slides and the force drifts.",
         IRREGULAR: "The mass vibrates irregularly.",
     }
-    return plain.get(kind, "This record does not show what the mass does.")
+    return plain.get(found.regime.kind, "This record does not show what the mass does.")
 
 
 def _swinging(found: Analysis) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -116,12 +117,17 @@ def fit(
     print_sections(", ".join(map(str, records)), sections)
     say(f"wrote {found.save(output, **groups)}")
     if figures is not None:
-        from stiction import plotting
-        from stiction.plotting.page.canvas import figure_of
-        from stiction.plotting.page.save import write
-        from stiction.storage.files import make_folder
+        write_figures(plots, figures)
 
-        make_folder(figures)
-        for name, what in plots.items():
-            drawn = figure_of(getattr(plotting, f"plot_{name}"), what)
-            say(f"wrote {write(drawn, figures / f'{name}.png')}")
+
+def write_figures(plots: Mapping[str, Any], folder: Path) -> None:
+    """Write figures by their names, as `stiction.plotting` draws what belongs to each."""
+    from stiction import plotting
+    from stiction.plotting.page.canvas import figure_of
+    from stiction.plotting.page.save import write
+    from stiction.storage.files import make_folder
+
+    make_folder(folder)
+    for name, what in plots.items():
+        drawn = figure_of(getattr(plotting, f"plot_{name}"), what)
+        say(f"wrote {write(drawn, folder / f'{name}.png')}")
