@@ -13,7 +13,7 @@ from stiction.errors import DescriptionError, Fault, ResultError
 from stiction.friction import has_state
 from stiction.inference.calibration import study
 from stiction.inference.library import SIMULATIONS, Library, Plan, build, plan
-from stiction.inference.observation import Conditions, Observation, observe
+from stiction.inference.observation import Conditions, Observation, observe_all
 from stiction.inference.posterior import Fit
 from stiction.inference.priors import Normal, Prior, Rig
 
@@ -69,11 +69,8 @@ def fit(
         If nothing is uncertain, or the rig is not of a kind that can be fitted.
     """
     known = rig if isinstance(rig, Rig) else Rig.from_toml(rig)
-    given = [records] if isinstance(records, Record) else [*records]
-    if not given:
-        raise ResultError("no record is given; name one or several")
     check(known)
-    seen = [observe(each, known.slider, f"record {number}") for number, each in enumerate(given, 1)]
+    seen = observe_all(records, known.slider)
     plan_of = plan_for(known, [each.conditions for each in seen])
     folder = None if library is None else Path(library) / f"{plan_of.key}-{seed}"
     simulated = build(plan_of, simulations, folder, seed=seed, progress=progress)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import floor, log10
 from typing import Any, NamedTuple
 
@@ -145,6 +146,14 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     )  # fmt: skip
     seen = features(step * block, thin, conditions.scale(slider), found)
     return Observation(conditions, seen, thin["force"], found)
+
+
+def observe_all(records: Record | Sequence[Record], slider: Slider) -> list[Observation]:
+    """Observe one or several records of a rig."""
+    given = [records] if isinstance(records, Record) else [*records]
+    if not given:
+        raise ResultError("no record is given; name one or several")
+    return [observe(each, slider, f"record {number}") for number, each in enumerate(given, 1)]
 
 
 def noise_of(record: Record, channel: str, values: Floats) -> Noise:

@@ -19,7 +19,7 @@ from stiction.inference.mechanism.odds import CLAIM, Odds
 from stiction.inference.mechanism.rivals import Mechanism, mechanisms
 from stiction.inference.mechanism.simulations import Simulations, simulate
 from stiction.inference.mechanism.steadiness import trend
-from stiction.inference.observation import Observation, observe
+from stiction.inference.observation import Observation, observe_all
 from stiction.inference.priors import Rig
 
 Floats = NDArray[np.float64]
@@ -76,14 +76,11 @@ def mechanism(
         If the rig is not of a kind that can be fitted, or is exactly aligned.
     """
     known = rig if isinstance(rig, Rig) else Rig.from_toml(rig)
-    given = [records] if isinstance(records, Record) else [*records]
-    if not given:
-        raise ResultError("no record is given; name one or several")
     check(known)
     if known.slider.phi == 0.0 and "phi" not in known.priors:
         message = 'is 0 for certain, so that nothing rotates; write for example phi = "0 +- 2 deg"'
         raise DescriptionError([Fault("phi", message)])
-    seen = [observe(each, known.slider, f"record {number}") for number, each in enumerate(given, 1)]
+    seen = observe_all(records, known.slider)
     rivals = mechanisms(known, [each.conditions for each in seen])
     place = None if library is None else Path(library)
     simulated = simulate(rivals, simulations, place, seed=seed, progress=progress)

@@ -10,11 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator, NullFormatter
 from numpy.typing import NDArray
 
-from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
+from stiction.plotting.page.canvas import stack
 from stiction.plotting.page.style import (
     BLACK,
     BLUE,
-    COLUMN,
     GREEN,
     GREY,
     ORANGE,
@@ -104,12 +103,7 @@ def plot_energy(budget: xr.Dataset, axes: Sequence[Axes] | None = None) -> NDArr
         The two.
     """
     with style():
-        if axes is None:
-            fig = canvas(COLUMN, 4.3)
-            panels = fix_ticks(list(fig.subplots(2, 1, sharex=True, height_ratios=[1.8, 1.0])))
-            fig.align_ylabels(panels)
-        else:
-            panels = as_list(axes)
+        panels = stack(axes, 4.3, (1.8, 1.0))
         draw_budget(panels[0], budget)
         draw_closure(panels[1], budget)
         for ax, letter in zip(panels, "ab", strict=True):

@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 
 from stiction.analysis.oscillation import oscillation_spectrogram
 from stiction.plotting.analysis.spectrogram import draw_spectrogram, frequency_unit
-from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
+from stiction.plotting.page.canvas import stack
 from stiction.plotting.page.style import (
     BLACK,
     BLUE,
-    COLUMN,
     GREY,
     ORANGE,
     RED,
@@ -96,12 +95,7 @@ def plot_oscillation(
     """
     natural = oscillation.attrs["natural_frequency"]
     with style():
-        if axes is None:
-            fig = canvas(COLUMN, 4.6)
-            panels = fix_ticks(list(fig.subplots(3, 1, sharex=True, height_ratios=[2.0, 1.2, 1.0])))
-            fig.align_ylabels(panels)
-        else:
-            panels = as_list(axes)
+        panels = stack(axes, 4.6, (2.0, 1.2, 1.0))
         amplitude = oscillation_spectrogram(run)
         top = max(40.0, 10.0 * np.ceil(2.0 * np.log10(float(amplitude.max()) / 1e-6)))
         mesh = draw_spectrogram(

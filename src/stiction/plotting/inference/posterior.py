@@ -43,17 +43,17 @@ def plot_posterior(fit: Any, axes: Sequence[Axes] | None = None) -> NDArray[np.o
     """
     names = [*fit.data.data_vars]
     with style():
-        if axes is None:
-            axes = panels_of(len(names), 1.5)
-        panels = as_list(axes)
+        panels = panels_of(axes, len(names), 1.5)
         for ax, name, estimate in zip(panels, names, fit.estimates, strict=True):
             draw_parameter(ax, fit.data[name], fit.prior[name], estimate.identified)
         panels[0].legend(loc="upper right", handlelength=1.0)
     return np.array(panels, dtype=object)
 
 
-def panels_of(count: int, height: float) -> Sequence[Axes]:
-    """Return a panel for each parameter on a new page, in rows of a height (inches)."""
+def panels_of(axes: Sequence[Axes] | None, count: int, height: float) -> Sequence[Axes]:
+    """Return the given axes, or one for each parameter on a new page, in rows of a height (in)."""
+    if axes is not None:
+        return as_list(axes)
     rows = ceil(count / ACROSS)
     grid = canvas(PAGE, height * rows + 0.3).subplots(rows, ACROSS, squeeze=False).ravel()
     for ax in grid[count:]:

@@ -96,9 +96,7 @@ def plot_ranks(fit: Any, axes: Sequence[Axes] | None = None) -> NDArray[np.objec
     names = [*fit.data.data_vars]
     low, high = binom.ppf([0.025, 0.975], len(fit.ranks), 1.0 / BINS)
     with style():
-        if axes is None:
-            axes = panels_of(len(names), 1.3)
-        panels = as_list(axes)
+        panels = panels_of(axes, len(names), 1.3)
         for ax, name, ranks in zip(panels, names, fit.ranks.T, strict=True):
             ax.axhspan(low, high, color=PALE, zorder=0)
             edges = np.linspace(0.0, 1.0, BINS + 1).tolist()

@@ -36,6 +36,19 @@ def panel(ax: Axes | None, height: float) -> Axes:
     return fix_ticks([canvas(COLUMN, height).subplots()])[0] if ax is None else ax
 
 
+def stack(axes: Any, height: float, ratios: Sequence[float]) -> Sequence[Axes]:
+    """Return the given axes, or those of a new figure of this height (in), as wide as a column.
+
+    They stand above each other on one x axis, their heights in these ratios.
+    """
+    if axes is not None:
+        return as_list(axes)
+    figure = canvas(COLUMN, height)
+    panels = fix_ticks(list(figure.subplots(len(ratios), 1, sharex=True, height_ratios=ratios)))
+    figure.align_ylabels(panels)
+    return panels
+
+
 def as_list(axes: Any) -> list[Axes]:
     """Return a single axes, or an array or a mapping of axes, as a list."""
     if isinstance(axes, Axes):

@@ -11,9 +11,9 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from stiction.linear_stability import Critical
-from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
+from stiction.plotting.page.canvas import stack
 from stiction.plotting.page.parameter import PLAIN, Scale, label_decades, scale_of
-from stiction.plotting.page.style import BLUE, COLUMN, GREY, ORANGE, UNSTABLE, style
+from stiction.plotting.page.style import BLUE, GREY, ORANGE, UNSTABLE, style
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -46,12 +46,7 @@ def plot_modes(
     scale = scale_of(values.attrs["long_name"], values.attrs["units"], ends, logarithmic=log)
     marked = scale.in_unit(() if critical is None else critical.values)
     with style():
-        if axes is None:
-            fig = canvas(COLUMN, 3.6)
-            above, below = fix_ticks(list(fig.subplots(2, 1, sharex=True)))
-            fig.align_ylabels([above, below])
-        else:
-            above, below = as_list(axes)
+        above, below = stack(axes, 3.6, (1.0, 1.0))
         draw_growth_rates(above, modes, scale)
         draw_frequencies(below, modes, scale)
         for ax in (above, below):
