@@ -14,6 +14,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, NamedTuple, Protocol, Self, TypeGuard
 
+from stiction.errors import DescriptionError, Fault
+
 Vector = tuple[float, float]
 
 
@@ -120,3 +122,19 @@ def static_fault(law: FrictionLaw) -> Iterator[tuple[str, str]]:
             f"must not be below the coefficient at vanishing slip speed, {kinetic:g}, "
             f"is {static:g}; leave it out to have no separate static coefficient",
         )
+
+
+def refuse_strengthening(kind: str, static: float, kinetic: float) -> None:
+    """Refuse to make a law that can only weaken comparable with one that does not.
+
+    Raises
+    ------
+    DescriptionError
+        If the kinetic coefficient is not below the static one.
+    """
+    if kinetic >= static:
+        message = (
+            f"cannot strengthen or stay, from {static:g} to {kinetic:g}; compare it at a "
+            "kinetic coefficient below the static one"
+        )
+        raise DescriptionError([Fault(kind, message)])

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from stiction.errors import DescriptionError, Fault
-from stiction.friction.law import static_fault
+from stiction.friction.law import refuse_strengthening, static_fault
 from stiction.friction.registry import register
 from stiction.text.units import Coefficient, PositiveSpeed
 from stiction.text.validation import validate
@@ -45,12 +44,7 @@ class HyperbolicWeakening(NamedTuple):
 
         The slope is -(static - kinetic)/speed, because this law has no plateau to fall to.
         """
-        if kinetic >= static:
-            message = (
-                f"cannot strengthen or stay, from {static:g} to {kinetic:g}; compare it at a "
-                "kinetic coefficient below the static one"
-            )
-            raise DescriptionError([Fault("HyperbolicWeakening", message)])
+        refuse_strengthening("HyperbolicWeakening", static, kinetic)
         return kind(static, speed * static / (static - kinetic))
 
     def faults(law) -> Iterator[tuple[str, str]]:

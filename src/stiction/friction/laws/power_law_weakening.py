@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from math import exp, log
 from typing import NamedTuple
 
-from stiction.errors import DescriptionError, Fault
-from stiction.friction.law import static_fault
+from stiction.friction.law import refuse_strengthening, static_fault
 from stiction.friction.registry import register
 from stiction.text.units import Coefficient, PositiveNumber, PositiveSpeed
 from stiction.text.validation import validate
@@ -46,12 +45,7 @@ class PowerLawWeakening(NamedTuple):
 
         The slope is -(static - kinetic)/speed, because this law has no plateau to fall to.
         """
-        if kinetic >= static:
-            message = (
-                f"cannot strengthen or stay, from {static:g} to {kinetic:g}; compare it at a "
-                "kinetic coefficient below the static one"
-            )
-            raise DescriptionError([Fault("PowerLawWeakening", message)])
+        refuse_strengthening("PowerLawWeakening", static, kinetic)
         return kind(static, 0.5 * speed * static / (static - kinetic), 0.5)
 
     def faults(law) -> Iterator[tuple[str, str]]:

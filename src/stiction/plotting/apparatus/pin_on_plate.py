@@ -49,11 +49,7 @@ def draw_apparatus(ax: Axes, slider: Slider) -> Axes:
         shapes.name(ax, _project(2.45 * middle), r"$\varphi$")
     note = misalignment_note(slider.misalignment)
     ax.text(0.98, 0.0, note, transform=ax.transAxes, ha="right", va="bottom", fontsize=7)
-    ax.update_datalim([(0.0, -2.0)])
-    ax.margins(0.03)
-    ax.autoscale_view()
-    ax.set_aspect("equal", adjustable="datalim")
-    ax.set_axis_off()
+    shapes.fit_view(ax, [(0.0, -2.0)], (0.03, 0.03))
     return ax
 
 

@@ -116,6 +116,15 @@ def polar(radius: float, angle: float) -> Points:
     return radius * np.array([np.cos(angle), np.sin(angle)])
 
 
+def fit_view(ax: Axes, points: ArrayLike, margins: tuple[float, float]) -> None:
+    """Fit a drawing without frame, and some more points, into axes of equal aspect."""
+    ax.update_datalim(np.asarray(points))
+    ax.margins(*margins)
+    ax.autoscale_view()
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_axis_off()
+
+
 def _between(start: ArrayLike, end: ArrayLike, along: Points, across: Points) -> Points:
     """Points from fractions `along` the way from start to end and lengths `across` it."""
     tail, way = np.asarray(start, float), np.asarray(end, float) - np.asarray(start, float)

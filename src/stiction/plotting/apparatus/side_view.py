@@ -39,11 +39,7 @@ def draw_side_view(ax: Axes, slider: Slider) -> Axes:
     shapes.name(ax, (4.05, 0.8), "$V$" if velocity else "$V = 0$", BLUE)
     shapes.arrow(ax, [(3.9, -0.45), (4.9, -0.45)], BLUE, 0.7)
     shapes.name(ax, (5.1, -0.45), "$X$", BLUE)
-    ax.update_datalim([(-0.6, -0.6), (5.3, 1.85)])
-    ax.margins(0.03)
-    ax.autoscale_view()
-    ax.set_aspect("equal", adjustable="datalim")
-    ax.set_axis_off()
+    shapes.fit_view(ax, [(-0.6, -0.6), (5.3, 1.85)], (0.03, 0.03))
     return ax
 
 

@@ -55,11 +55,7 @@ def draw_velocity_triangle(ax: Axes, slider: Slider) -> Axes:
     ends = [beside * 1.9, foot, drive + beside * 1.9, knee]
     if not straight:
         ends += _draw_angles(ax, lab, phi, theta, knee)
-    ax.margins(0.15, 0.38)
-    ax.update_datalim(lab(np.vstack(ends)))
-    ax.autoscale_view()
-    ax.set_aspect("equal", adjustable="datalim")
-    ax.set_axis_off()
+    shapes.fit_view(ax, lab(np.vstack(ends)), (0.15, 0.38))
     return ax
 
 

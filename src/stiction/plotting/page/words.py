@@ -73,11 +73,6 @@ def _base(slider: Slider) -> str:
     return f", $V$ = {in_words(V, 'm/s')}"
 
 
-def base_velocity(slider: Slider) -> float:
-    """Return the velocity of a constant drive, or the nominal one of a program, in m/s."""
-    return nominal_velocity(slider.motion)
-
-
 def protocol_in_words(slider: Slider) -> list[str]:
     """Return the programs of drive and load in words, nothing if they are constant."""
     lines: list[str] = []
@@ -172,7 +167,7 @@ def scales_in_words(slider: Slider) -> list[str]:
         rf"$F_0 = \mu_0 W$ = {in_words(slider.F_0, 'N')}",
         rf"$\omega_x/2\pi$ = {in_words(f_x, 'Hz')}, $\omega_y/2\pi$ = {in_words(f_y, 'Hz')}",
     ]
-    V, phi = abs(base_velocity(slider)), abs(slider.misalignment)
+    V, phi = abs(nominal_velocity(slider.motion)), abs(slider.misalignment)
     if V > 0 and sin(phi) > 0:
         A = theory.damping_number_of(slider, V)
         zeta = plain(A * sin(phi) ** 3, 2)

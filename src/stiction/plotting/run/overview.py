@@ -10,11 +10,11 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
+from stiction.drive.program import nominal_velocity
 from stiction.plotting.apparatus.schematic import draw_schematic
 from stiction.plotting.page.canvas import canvas, find_drawing, fix_ticks
 from stiction.plotting.page.style import BLACK, BLUE, GREY, ORANGE, PAGE, RED, style
 from stiction.plotting.page.words import (
-    base_velocity,
     law_in_words,
     outcome_in_words,
     scales_in_words,
@@ -94,7 +94,7 @@ def _system(ax: Axes, run: Trajectory) -> None:
 
 
 def _law(ax: Axes, run: Trajectory) -> None:
-    drive = abs(base_velocity(run.slider))  # the slip speed of steady sliding
+    drive = abs(nominal_velocity(run.slider.motion))  # the slip speed of steady sliding
     draw_law(ax, run.slider, max(drive, float(run.data["slip_speed"].max())))
 
 
