@@ -89,9 +89,8 @@ def predict(slider: Slider) -> Prediction:
     V = hypot(*s.motion.rate(0.0))
     F_0, l_x = s.F_0, s.F_0 / s.k_x
     F_static = F_0 if has_state(s.law) else static_coefficient(s.law) * s.normal_load
-    m_x, m_y = s.masses
     omega_x, omega_y = (
-        float(theory.natural_frequency(*kin)) for kin in ((s.k_x, m_x), (s.k_y, m_y))
+        float(theory.natural_frequency(k, m)) for k, m in zip((s.k_x, s.k_y), s.masses, strict=True)
     )
     A = theory.damping_number_of(s, V)
     zeta = float(theory.damping_ratio(A, phi)) if isfinite(A) else 0.0
@@ -102,21 +101,9 @@ def predict(slider: Slider) -> Prediction:
     creeps = fast and phi > 0.0 and theta_c > phi  # A < 1: underdamped from the start
     load_up = float(theory.creep_time(turn, V, phi, l_x)) if creeps else l_x / V
     creep = theory.creep_velocity(np.array([0.0, load_up]), V, phi, l_x)
-    peak = F_0 * cos(turn)
-    if phi == 0.0:  # friction does not turn: rest until the spring carries the static friction
-        peak = F_static
     distance = creep_distance(V, phi, l_x, load_up)
-    at_once = slips_at_once(s)  # both springs load together, until they carry the static friction
-    if at_once:
-        along = cos(force_off_drive(s))
-        drop, mean = (along * each for each in stick_slip(s, F_static, *along_force(s)))
-        peak = along * F_static
-    else:
-        drop, mean = stick_slip(s, peak, s.k_x, m_x) if fast else (nan, peak)
-    if not drop > 0.0:  # friction does not fall below the spring's force: steady sliding follows
-        drop, mean = nan, s.law.coefficient(V) * s.normal_load * cos(phi)
-        peak = max(peak, mean) if fast else mean
-    elif at_once:
+    peak, mean, drop = _forces(s, F_static, turn, fast)
+    if isfinite(drop) and slips_at_once(s):
         load_up, distance, creep = first_stick, 0.0, np.full(2, nan if phi > 0.0 else 0.0)
     return Prediction(
         F_0,
@@ -139,6 +126,27 @@ def predict(slider: Slider) -> Prediction:
         float(theory.transverse_amplitude_bound(V, phi, omega_y)),
         SEEN * omega_y / (2.0 * pi),
     )
+
+
+def _forces(slider: Slider, F_static: float, turn: float, fast: bool) -> tuple[float, float, float]:
+    """Return the peak and the mean of the force, and its fall in a slip, N; NaN without a slip.
+
+    `turn` is the force angle at slip, rad; `fast`, whether slow motion turns fast before friction
+    points along the drive.
+    """
+    s, phi = slider, abs(slider.misalignment)
+    if slips_at_once(s):  # both springs load together, until they carry the static friction
+        along = cos(force_off_drive(s))
+        drop, mean = (along * each for each in stick_slip(s, F_static, *along_force(s)))
+        peak = along * F_static
+    else:  # without misalignment friction does not turn, and the mass rests until the spring slips
+        peak = F_static if phi == 0.0 else s.F_0 * cos(turn)
+        drop, mean = stick_slip(s, peak, s.k_x, s.masses[0]) if fast else (nan, peak)
+    if drop > 0.0:
+        return peak, mean, drop
+    # friction does not fall below the spring's force: steady sliding follows
+    steady = s.law.coefficient(hypot(*s.motion.rate(0.0))) * s.normal_load * cos(phi)
+    return max(peak, steady) if fast else steady, steady, nan
 
 
 def critical_misalignment(slider: Slider, V: float) -> float:

@@ -167,16 +167,7 @@ def _measurement(
 ) -> Measurement:
     """Return the measurement of one block."""
     notes = [*table.notes, *choice.notes, *part.notes]
-    if by_interval:
-        notes.append(f"times are the number of the sample times {said.stated or 'the interval'}")
-    else:
-        stated = table.stated or said.stated
-        notes += check_stated(part.time, table.interval or said.interval, stated)
-    promised = said.promised or table.promised
-    if promised is not None and promised > len(part.rows) and (parts == 1 or said.promised):
-        notes.append(
-            f"the file promises {promised} samples and has {len(part.rows)}: it is cut off"
-        )
+    notes += _notes_on_clock(table, part, said, by_interval, parts)
     time, channels = part.time, {}
     raw = {
         name: each.column.values[part.rows] * each.size
@@ -217,6 +208,21 @@ def _measurement(
         notes=tuple(notes),
     )
     return Measurement({"time": time, **channels}, known, sensors, origin, asked.reading.stroke)
+
+
+def _notes_on_clock(
+    table: FileTable, part: Block, said: Said, by_interval: bool, parts: int
+) -> list[str]:
+    """Return how times are found, and whether as many are there as the file says."""
+    if by_interval:
+        notes = [f"times are the number of the sample times {said.stated or 'the interval'}"]
+    else:
+        stated = table.stated or said.stated
+        notes = [*check_stated(part.time, table.interval or said.interval, stated)]
+    promised, count = said.promised or table.promised, len(part.rows)
+    if promised is not None and promised > count and (parts == 1 or said.promised):
+        notes.append(f"the file promises {promised} samples and has {count}: it is cut off")
+    return notes
 
 
 def _other_clock(

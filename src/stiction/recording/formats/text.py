@@ -179,15 +179,8 @@ def _read_cells(path: Path, lines: Sequence[str], dialect: Dialect, first: int) 
     while part and not part[-1].strip():
         part.pop()
     by_space = dialect.separator == " "
-    counts = [len(x.split()) if by_space else x.count(dialect.separator) + 1 for x in part]
-    width = max(counts, default=1)
-    if width > WIDEST:
-        line = first + counts.index(width) + 1
-        raise ResultError(f"{path}: line {line} has {width} columns; a record has {WIDEST} at most")
+    width = _columns_of(path, part, dialect, first)
     refuse_size(path, 8.0 * 3.0 * width * len(part))
-    for at, text in enumerate(part):
-        if '"' in text and text.count('"') % 2:
-            raise ResultError(f"{path}: line {first + at + 1} opens a quotation without end")
     # a blank line must remain a row: the numbers of lines are those of rows
     text = "\n".join(x.strip() or (dialect.separator * (not by_space) or "-") for x in part)
     frame = pd.read_csv(
@@ -210,22 +203,43 @@ def _read_cells(path: Path, lines: Sequence[str], dialect: Dialect, first: int) 
         column = frame[at]
         if column.dtype.kind in "fiu":
             numbers[:, at] = column.to_numpy(dtype=np.float64)
-            continue
-        raw = column.to_numpy(dtype=object)
-        known = np.asarray(column.notna())
-        plain = [
-            dialect.as_python(str(x).strip()) if yes else "nan"
-            for x, yes in zip(raw, known, strict=True)
-        ]
-        right = np.array(pd.to_numeric(pd.Series(plain, dtype=object), errors="coerce"), float)
-        odd = [x.lower() in ("true", "false") or "_" in x or "x" in x for x in plain]
-        right[odd] = np.nan
-        numbers[:, at] = right
-        missing = np.array([x.lower() in MISSING for x in plain])
-        wrong[:, at] = known & np.isnan(right) & ~missing
-        texts[at] = raw
+        else:
+            texts[at] = column.to_numpy(dtype=object)
+            known = np.asarray(column.notna())
+            numbers[:, at], wrong[:, at] = _numbers_among(texts[at], known, dialect)
     numbers[np.isinf(numbers)] = np.nan
     return _Cells(first, numbers, texts, wrong)
+
+
+def _columns_of(path: Path, lines: Sequence[str], dialect: Dialect, first: int) -> int:
+    """Return the largest number of cells in a line; refuse lines that cannot be cut into cells."""
+    by_space = dialect.separator == " "
+    counts = [len(x.split()) if by_space else x.count(dialect.separator) + 1 for x in lines]
+    width = max(counts, default=1)
+    if width > WIDEST:
+        line = first + counts.index(width) + 1
+        raise ResultError(f"{path}: line {line} has {width} columns; a record has {WIDEST} at most")
+    for at, text in enumerate(lines):
+        if '"' in text and text.count('"') % 2:
+            raise ResultError(f"{path}: line {first + at + 1} opens a quotation without end")
+    return width
+
+
+def _numbers_among(
+    texts: NDArray[Any], known: NDArray[np.bool_], dialect: Dialect
+) -> tuple[Floats, NDArray[np.bool_]]:
+    """Return the numbers among the texts of a column, NaN elsewhere, and which texts are wrong."""
+    import pandas as pd
+
+    plain = [
+        dialect.as_python(str(x).strip()) if yes else "nan"
+        for x, yes in zip(texts, known, strict=True)
+    ]
+    numbers = np.array(pd.to_numeric(pd.Series(plain, dtype=object), errors="coerce"), float)
+    odd = [x.lower() in ("true", "false") or "_" in x or "x" in x for x in plain]
+    numbers[odd] = np.nan
+    missing = np.array([x.lower() in MISSING for x in plain])
+    return numbers, known & np.isnan(numbers) & ~missing
 
 
 def _word_columns(cells: _Cells) -> set[int]:
