@@ -13,6 +13,7 @@ from stiction.drive.program import nominal_velocity
 from stiction.errors import Fault, ResultError, echo
 from stiction.names import draw
 from stiction.recording.guess.clock import rate_of
+from stiction.recording.noise import ORDER, white_noise
 from stiction.recording.origin import Origin
 from stiction.recording.request import SignedForce
 from stiction.recording.sensor import Sensor
@@ -290,8 +291,7 @@ class Record(Described):
             return np.ones(len(self))
         from scipy.ndimage import uniform_filter1d  # type: ignore[attr-defined]
 
-        differences = np.abs(np.diff(self.load, 4))
-        noise = float(np.median(differences)) / 0.6745 / 70.0**0.5 if len(differences) else 0.0
+        noise = white_noise(self.load) if len(self) > ORDER else 0.0
         wanted = (noise / (SHARP * float(self.load.mean()))) ** 2
         width = int(max(1.0, min(wanted, LONGEST * len(self))))
         load = uniform_filter1d(self.load, width, mode="nearest")

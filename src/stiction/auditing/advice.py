@@ -17,7 +17,7 @@ from stiction.auditing.simulated_test import (
     simulate_test,
 )
 from stiction.linear_stability import Critical, critical, growth_rate
-from stiction.system.parameter import change_parameter, read, unit
+from stiction.system.parameter import change_parameter, quantity, read, unit
 from stiction.system.slider import Slider
 from stiction.system.springs import COMPLIANCES
 
@@ -122,7 +122,7 @@ def advise_one(
         if left < LEAST_WORK:
             return advice._replace(cut=True)
         seen = try_change(
-            change_parameter(slider, path, with_unit(slider, path, then)), left, report
+            change_parameter(slider, path, quantity(slider, path, then)), left, report
         )
         spent = advice.work + (seen["tried"].work if seen["tried"] else 0)
         advice = advice._replace(then=then, work=spent, **seen)
@@ -182,11 +182,6 @@ def limits(slider: Slider, path: str) -> tuple[float | str, float | str] | None:
     if path == "c_x":
         return 0.0, max(STRONGEST * 2.0 * sqrt(slider.k_x * slider.masses[0]), 2.0 * slider.c_x)
     return None
-
-
-def with_unit(slider: Slider, path: str, value: float) -> float | str:
-    """Return a value that a slider reads: an angle with its unit."""
-    return f"{value!r} rad" if unit(slider, path) == "rad" else value
 
 
 def nearest(found: Critical, now: float, beyond: float) -> float:

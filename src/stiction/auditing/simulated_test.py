@@ -18,6 +18,7 @@ from stiction.analysis.motion.cycles import Swings, swings
 from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK
+from stiction.analysis.motion.rest import stuck_share
 from stiction.analysis.record import Record, record_of
 from stiction.auditing.prediction import SEEN, Prediction
 from stiction.linear_stability import Linearisation
@@ -242,7 +243,7 @@ def shares(run: Trajectory, cycles: CycleTable) -> Shares:
     if not end > begin:  # started sliding
         return Shares(0.0, 0.0, 1.0)
     slip = float((speed[(times >= begin) & (times <= end)] > 1.0).mean())
-    rest = float(np.diff(np.clip(run.stick_intervals, begin, end), axis=1).sum() / (end - begin))
+    rest = stuck_share(begin, end, run.stick_intervals)
     return Shares(rest, max(0.0, 1.0 - slip - rest), slip)
 
 

@@ -20,6 +20,7 @@ from stiction.inference.features import (
     features,
     find_cycles,
 )
+from stiction.recording.noise import white_noise
 from stiction.system.slider import Slider
 
 Floats = NDArray[np.float64]
@@ -42,9 +43,6 @@ LADDER = (
 MANTISSAS = (1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.3, 4.0, 5.0, 6.0, 7.5, 9.0, 10.0)
 SAME = 0.02  # of the drive velocity: a record's differs by less if a cell lies 10 deg askew
 UNEVEN = 0.01  # of the sample interval, by which intervals may differ
-DIFFERENCES = 4  # order: leaves noise, cancels what is smooth over five samples
-WEIGHTS = 70.0**0.5  # of such a difference: root of the sum of their squares
-NORMAL = 0.6744897501960817  # median of |x| for a standard normal x
 
 
 class Noise(NamedTuple):
@@ -164,16 +162,6 @@ def noise_of(record: Record, channel: str, values: Floats) -> Noise:
         (0.0, 0.0) if sensor is None else (sensor.gain_uncertainty, sensor.zero_uncertainty)
     )
     return Noise(level or white_noise(values), gain, zero)
-
-
-def white_noise(values: Floats) -> float:
-    """Return the standard deviation of white noise on something smooth.
-
-    From differences of fourth order, by their median size, which slips do not move (T. Gasser,
-    L. Sroka & C. Jennen-Steinmetz, Biometrika 73, 625 (1986)).
-    """
-    typical = float(np.median(np.abs(np.diff(values, DIFFERENCES))))
-    return typical / (NORMAL * WEIGHTS)
 
 
 def block_means(values: Floats, block: int) -> Floats:

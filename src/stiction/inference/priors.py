@@ -27,7 +27,7 @@ from stiction.drive.recorded.reading import locator, with_rows
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.friction import read_law
 from stiction.friction.user.loading import finder_for_descriptions, is_own
-from stiction.system.parameter import change_parameter, change_parameters, unit
+from stiction.system.parameter import change_parameter, change_parameters, quantity, unit
 from stiction.system.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider, slider_of
 from stiction.text.paths import canonical
 from stiction.text.toml import folder_of, gather, read_toml
@@ -281,11 +281,6 @@ def within_range(slider: Slider, path: str, prior: Prior) -> Prior:
     except DescriptionError:
         return Normal(prior.mean, prior.deviation, low=0.0)
     return prior
-
-
-def quantity(slider: Slider, path: str, value: float) -> float | str:
-    """Return a value in SI as a slider reads it: an angle with its unit."""
-    return f"{value!r} rad" if unit(slider, path) == "rad" else value
 
 
 def middle(prior: Prior) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import exp, inf, log
+from math import exp, inf, log, nan
 from typing import NamedTuple
 
 from stiction.errors import DescriptionError, Fault, Faults, echo
@@ -101,3 +101,11 @@ def default(slider: Slider, path: str) -> tuple[float | str, float | str]:
         raise DescriptionError([Fault(path, message)])
     low, high = sorted((value * 10.0**-DECADES, value * 10.0**DECADES))
     return low, high
+
+
+def present_value(slider: Slider, path: str) -> float:
+    """Return the value of a parameter in SI; NaN if joined parameters differ."""
+    try:
+        return read(slider, path)
+    except DescriptionError:
+        return nan

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from math import nan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from stiction.errors import DescriptionError, Fault
-from stiction.linear_stability.axis import Axis, axis
+from stiction.linear_stability.axis import Axis, axis, present_value
 from stiction.linear_stability.derivatives import Floats
 from stiction.linear_stability.following import Growth, Point, both_ways, near, orient
 from stiction.linear_stability.linear import growth_rate, steady_sliding
 from stiction.linear_stability.roots import sign_changes, signed_growth
-from stiction.system.parameter import read
 from stiction.system.slider import Slider
 from stiction.text.units import Quantity
 
@@ -82,20 +80,12 @@ def boundary(
         return growth_rate(at(point))
 
     branches: list[Floats] = []
-    places = (each.fraction(own(slider, each.path)) for each in (across, up))
+    places = (each.fraction(present_value(slider, each.path)) for each in (across, up))
     for seed in seeds(lambda point: signed_growth(at(point)), *places):
         if not any(near(seed, branch) for branch in branches):
             curve = both_ways(growth, seed)
             branches += [orient(growth, curve)] if len(curve) > 1 else []
     return table(slider, across, up, branches, at)
-
-
-def own(slider: Slider, path: str) -> float:
-    """Return a slider's own value of a parameter, SI; NaN if joined parameters differ."""
-    try:
-        return read(slider, path)
-    except DescriptionError:
-        return nan
 
 
 def seeds(growth: Growth, x: float, y: float) -> Iterator[Point]:
@@ -131,7 +121,7 @@ def table(
     branch = ("point", np.array(count, dtype=np.int64), {"long_name": "connected curve"})
     attributes: dict[str, Any] = {"x": x.path, "y": y.path, "growth_rate": growth_rate(slider)}
     for name, each in (("x", x), ("y", y)):
-        attributes[f"{name}_own"] = own(slider, each.path)
+        attributes[f"{name}_own"] = present_value(slider, each.path)
         attributes[f"{name}_range"] = np.array([each.low, each.high])
         attributes[f"{name}_scale"] = "log" if each.logarithmic else "linear"
     return xr.Dataset({**data, "branch": branch}, attrs=attributes)

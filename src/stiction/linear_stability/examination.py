@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import isfinite, nan
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from stiction.deprecation import old_attributes
-from stiction.errors import DescriptionError, StictionError
+from stiction.errors import StictionError
+from stiction.linear_stability.axis import present_value
 from stiction.linear_stability.curve import boundary
 from stiction.linear_stability.linear import (
     BOUNDARY,
@@ -24,7 +25,6 @@ from stiction.linear_stability.linear import (
 from stiction.linear_stability.roots import Critical, critical
 from stiction.linear_stability.spectrum import modes_over
 from stiction.names import draw
-from stiction.system.parameter import read
 from stiction.system.slider import Slider, slider_of
 from stiction.text.sections import Section, Table, as_html, as_text
 from stiction.text.units import Quantity, in_words
@@ -184,7 +184,7 @@ def modes_section(linear: Linearisation) -> Section:
 
 def critical_section(slider: Slider, found: Sequence[Critical]) -> Section:
     """Return, for each parameter, the ranges in which steady sliding is stable or not."""
-    own = {each.path: present(slider, each.path) for each in found}
+    own = {each.path: present_value(slider, each.path) for each in found}
     now = ", ".join(
         f"{each.path} = {in_words(own[each.path], each.unit, DIGITS)}"
         for each in found
@@ -193,14 +193,6 @@ def critical_section(slider: Slider, found: Sequence[Critical]) -> Section:
     rows = [row for each in found for row in stretches(each, own[each.path])]
     headings = ("parameter", "from", "to", "steady sliding", "oscillation at the upper end")
     return Section("Where that changes", [f"Now: {now}."] if now else [], Table(headings, rows))
-
-
-def present(slider: Slider, path: str) -> float:
-    """Return the value of a parameter; NaN if joined parameters differ."""
-    try:
-        return read(slider, path)
-    except DescriptionError:
-        return nan
 
 
 def stretches(found: Critical, now: float) -> Iterator[tuple[str, ...]]:

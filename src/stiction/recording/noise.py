@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import comb
+from math import comb, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -30,9 +30,7 @@ class NoiseLevel(NamedTuple):
 def noise_level(values: Floats) -> NoiseLevel:
     """Estimate noise and quantisation of equally spaced samples.
 
-    The noise follows from differences of fourth order, which cancel whatever is smooth over five
-    samples (T. Gasser, L. Sroka & C. Jennen-Steinmetz, Biometrika 73, 625 (1986)), by the median of
-    their size, which a few slips do not move. A quantisation of step q adds q^2/12 to the
+    See `white_noise`. A quantisation of step q adds q^2/12 to the
     variance (B. Widrow & I. Kollar, Quantization Noise, Cambridge 2008, chapter 4). Noise below a
     third of a step is not resolved and comes out as 0. Noise that a filter has taken away
     near half the sample rate is not seen either.
@@ -48,12 +46,21 @@ def noise_level(values: Floats) -> NoiseLevel:
     if len(values) < FEWEST:
         return NoiseLevel(0.0, 0.0)
     step = lattice(values)
-    differences = np.abs(np.diff(values, ORDER))
-    power = comb(2 * ORDER, ORDER)  # of the weights of the differences
-    total = _median(differences, step) / NORMAL / power**0.5
+    total = white_noise(values, step)
     left = total**2 - step**2 / 12.0
     resolved = left > (step / 3.0) ** 2
     return NoiseLevel(left**0.5 if resolved else 0.0, step)
+
+
+def white_noise(values: Floats, step: float = 0.0) -> float:
+    """Return the standard deviation of white noise on something smooth, in multiples of a `step`.
+
+    It follows from differences of fourth order, which cancel whatever is smooth over five samples
+    (T. Gasser, L. Sroka & C. Jennen-Steinmetz, Biometrika 73, 625 (1986)), by the median of their
+    size, which a few slips do not move.
+    """
+    weights = sqrt(comb(2 * ORDER, ORDER))  # root of the sum of their squares
+    return _median(np.abs(np.diff(values, ORDER)), step) / (NORMAL * weights)
 
 
 def _median(values: Floats, step: float) -> float:

@@ -72,6 +72,7 @@ def from_theory(slider: Slider) -> list[Number]:
 def from_simulation(run: Trajectory) -> list[Number]:
     """Return the numbers that the paper reads off its simulation."""
     from stiction.analysis.creep.first_slip import first_slip_time
+    from stiction.analysis.motion.rest import stuck_share
 
     d, slider = run.data, run.slider
     time, slip = d["time"].values, first_slip_time(run)
@@ -110,7 +111,7 @@ def from_simulation(run: Trajectory) -> list[Number]:
             "Results",
             "time at full stop until first slip ('never')",
             0,
-            100 * float(_stick_share(run, run.stick_intervals[0, 1], slip)),
+            100 * stuck_share(first, slip, run.stick_intervals),
             0,
             "%",
             finding=True,
@@ -125,12 +126,6 @@ def from_simulation(run: Trajectory) -> list[Number]:
             0.01,
         ),
     ]
-
-
-def _stick_share(run: Trajectory, start: float, end: float) -> float:
-    """Return the fraction of the time between two times (s) at zero slip."""
-    within = np.clip(run.stick_intervals, start, end)
-    return float(np.diff(within, axis=1).sum() / (end - start))
 
 
 def _ridge(run: Trajectory, start: float, end: float) -> float:

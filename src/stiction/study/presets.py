@@ -21,7 +21,6 @@ from stiction.system.slider import Slider
 from stiction.text.validation import unknown_name
 from stiction.theory import natural_frequency
 
-MEASURES = ("regime", "peak_force", "amplitude", "period", "creep_distance", "time_stuck")
 TRAVEL = 4.0  # least travel of the drive, in slip lengths: load-up, then some cycles
 PERIODS = 40.0  # least duration, in slow periods, in which motion grows or dies out
 
@@ -97,7 +96,7 @@ def preset(name: str) -> Study:
 def study(slider: Slider, axes: dict[str, Axis]) -> Study:
     """Return a study that keeps the measures of the maps; an axis sets the durations."""
     base = Description(slider, Initial(), Settings(duration="5 s"))
-    return Study(base=base, axes=axes, measures=MEASURES)
+    return Study(base=base, axes=axes)
 
 
 def durations(slider: Slider, V: Floats) -> Floats:

@@ -161,6 +161,11 @@ def _keys(owner: Slider | Description, name: str) -> list[str]:
     return keys if isinstance(owner, Slider) or keys[0] in ("initial", "run") else ["slider", *keys]
 
 
+def quantity(slider: Slider, path: str, value: float) -> float | str:
+    """Return the value of a parameter in SI as a slider reads it: an angle with its unit."""
+    return f"{value!r} rad" if unit(slider, path) == "rad" else value
+
+
 def _unit(owner: Slider | Description, name: str) -> str:
     *rooms, field = _keys(owner, name)
     part: Any = owner

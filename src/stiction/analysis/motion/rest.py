@@ -114,6 +114,12 @@ def stuck_until(time: ArrayLike, sticks: ArrayLike) -> Floats:
     return stuck
 
 
+def stuck_share(start: float, end: float, sticks: ArrayLike) -> float:
+    """Return the share of the time between two times (s) that is spent stuck, see `stuck_until`."""
+    within = np.clip(np.asarray(sticks, dtype=np.float64).reshape(-1, 2), start, end)
+    return float((within[:, 1] - within[:, 0]).sum()) / (end - start)
+
+
 def sticks_until(time: ArrayLike, sticks: ArrayLike) -> Indices:
     """Return how many stick intervals, of shape (n, 2), have begun before each `time`."""
     begins = np.asarray(sticks, dtype=np.float64).reshape(-1, 2)[:, 0]

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from stiction.analysis.motion.doubts import turns_round
 from stiction.analysis.motion.regime.kinds import (
     HARMONIC,
@@ -18,7 +16,7 @@ from stiction.analysis.motion.regime.kinds import (
     TRANSVERSE,
     UNDETERMINED,
 )
-from stiction.analysis.motion.rest import comes_to_rest, stuck_until
+from stiction.analysis.motion.rest import comes_to_rest, stuck_share
 from stiction.analysis.parts.wording import number
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
@@ -236,8 +234,8 @@ def _stick_share(found: Analysis) -> str:
     run, ends = found.source, found.cycles
     if not isinstance(run, Trajectory) or found.regime.loads:
         return ""
-    time = np.array([ends["start"].values[0], ends["trough_time"].values[-1]])
-    share = float(np.diff(stuck_until(time, run.stick_intervals))[0] / np.diff(time)[0])
+    begin, end = float(ends["start"][0]), float(ends["trough_time"][-1])
+    share = stuck_share(begin, end, run.stick_intervals)
     return f", and sticks for {percent(share)} of that time" if share else ", without sticking"
 
 

@@ -14,10 +14,10 @@ from stiction.auditing.prediction import predict
 from stiction.auditing.simulated_test import coarse_rate, creep_before_slip, simulate_test
 from stiction.auditing.words.numbers import kinetic, peak
 from stiction.errors import StictionError
-from stiction.inference.priors import Rig, quantity
+from stiction.inference.priors import Rig
 from stiction.linear_stability import growth_rate
 from stiction.study.execution.engines import Threads
-from stiction.system.parameter import change_parameters
+from stiction.system.parameter import change_parameters, quantity
 from stiction.system.slider import Slider
 
 Floats = NDArray[np.float64]

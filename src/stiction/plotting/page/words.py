@@ -9,6 +9,7 @@ from textwrap import wrap
 from typing import Any
 
 from stiction import theory
+from stiction.analysis.motion.rest import stuck_share
 from stiction.analysis.slip import is_undersampled
 from stiction.drive import ConstantVelocity
 from stiction.drive.pieces import DRIVE_PIECES, LOAD_PIECES, Modulation
@@ -190,7 +191,7 @@ def outcome_in_words(run: Trajectory, width: int = 38) -> list[str]:
     """Return how the run ended, in lines of at most `width` characters, and how it stuck."""
     times = run.samples["time"]
     lasted, stuck = float(times[-1] - times[0]), run.stick_intervals
-    share = float((stuck[:, 1] - stuck[:, 0]).sum()) / lasted if lasted > 0 else 0.0
+    share = stuck_share(float(times[0]), float(times[-1]), stuck) if lasted > 0 else 0.0
     count = f"{len(stuck)} stick{'s' * (len(stuck) != 1)}, {percent(share, 3)} of the time"
     simulated = f"{in_words(lasted, 's')} simulated"
     none = "no true rest: the law has a state" if states(run.slider.law) else "no stick"
