@@ -7,7 +7,6 @@ from scipy.stats import kstest
 from stiction.inference.regression_abc import posterior, quantiles, rank
 from stiction.inference.summary import learn
 
-RANDOM = np.random.default_rng(20)
 COUNT, ERROR = 1500, 0.5
 
 

@@ -15,6 +15,7 @@ from stiction.drive.recorded.rows import Rows, row_faults
 from stiction.drive.recorded.table_file import (
     ColumnHeading,
     TextTable,
+    file_fault,
     find_column,
     heading,
     numbers_in,
@@ -79,13 +80,13 @@ def locator(folder: Path, trust: bool = False) -> Locate:
     def locate(file: str) -> Path:
         path = Path(os.path.realpath(folder / file))
         if not trust and not is_within(folder, path):
-            raise _fault(
+            raise file_fault(
                 f"{echo(file)} lies outside the folder of the description, {folder}: put the table "
                 "into it; or, if you trust who wrote this, allow it: trust=True, on the command "
                 "line --trust"
             )
         if not path.is_file():
-            raise _fault(f"no file {echo(file)} in {folder}; write its path from there")
+            raise file_fault(f"no file {echo(file)} in {folder}; write its path from there")
         return path
 
     return locate
@@ -93,7 +94,9 @@ def locator(folder: Path, trust: bool = False) -> Locate:
 
 def locate_nothing(file: str) -> Path:
     """Refuse every file: what is stored holds its tables."""
-    raise _fault(f"the rows of {echo(file)} are not stored here; read the description it came from")
+    raise file_fault(
+        f"the rows of {echo(file)} are not stored here; read the description it came from"
+    )
 
 
 def with_rows(raw: Mapping[str, Any], locate: Locate) -> tuple[Mapping[str, Any], list[Fault]]:
@@ -195,10 +198,12 @@ def _quantity(table: TextTable, names: Mapping[str, str], quantities: tuple[str,
     if len(found) == 1:
         return found[0]
     if found:
-        raise _fault(f"give either {' or '.join(found)}", found[0])
+        raise file_fault(f"give either {' or '.join(found)}", found[0])
     has = ", ".join(map(str, table.headings)) or f"{len(table.rows[0])} columns without headings"
     example = _with_unit(quantities[0], ColumnHeading("NAME", None))
-    raise _fault(f"missing; name the column, such as {example}; the file has {has}", quantities[0])
+    raise file_fault(
+        f"missing; name the column, such as {example}; the file has {has}", quantities[0]
+    )
 
 
 def _column(table: TextTable, name: str, told: str | None) -> FrozenColumn:
@@ -209,14 +214,14 @@ def _column(table: TextTable, name: str, told: str | None) -> FrozenColumn:
     unit = wanted.unit or stated
     if unit is None:
         remedy = f"write {_with_unit(name, wanted)}"
-        raise _fault(f"the column {echo(wanted.name)} has no unit; {remedy}", name)
+        raise file_fault(f"the column {echo(wanted.name)} has no unit; {remedy}", name)
     if wanted.unit is not None and stated is not None and wanted.unit != stated:
         message = f"is to be in {wanted.unit}, and the file says {stated}; leave the unit out"
-        raise _fault(message, name)
+        raise file_fault(message, name)
     try:
         factor = to_si(f"1 {unit}", KINDS[name])
     except PydanticCustomError as error:
-        raise _fault(error.message(), name) from None
+        raise file_fault(error.message(), name) from None
     return FrozenColumn(np.array(numbers_in(table, index, name)) * factor)
 
 
@@ -229,7 +234,3 @@ def _usual(table: TextTable, name: str) -> ColumnHeading:
 
 def _with_unit(name: str, wanted: ColumnHeading) -> str:
     return f'{name} = "{wanted.name} [{KINDS[name].unit}]"'
-
-
-def _fault(message: str, path: str = "file") -> DescriptionError:
-    return DescriptionError([Fault(path, message)])

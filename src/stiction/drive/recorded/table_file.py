@@ -62,7 +62,7 @@ def read_text_table(path: Path) -> TextTable:
     numbered = [(i, line.strip()) for i, line in enumerate(text.splitlines(), 1) if line.strip()]
     told = [(i, line) for i, line in numbered if not line.startswith(COMMENT)]
     if not told:
-        raise _fault(f"{path.name} holds no rows")
+        raise file_fault(f"{path.name} holds no rows")
     delimiter = next((each for each in DELIMITERS if each in told[0][1]), None)
     cut = [(i, _cells(line, delimiter)) for i, line in told]
     headings: list[ColumnHeading] = []
@@ -74,7 +74,7 @@ def read_text_table(path: Path) -> TextTable:
         found = _headings(above[-1].lstrip(f"{COMMENT} "), delimiter) if above else []
         headings = found if len(found) == len(cut[0][1]) else []
     if not cut:
-        raise _fault(f"{path.name} holds headings and no rows")
+        raise file_fault(f"{path.name} holds headings and no rows")
     return TextTable(headings, [cells for _, cells in cut], [i for i, _ in cut])
 
 
@@ -92,12 +92,14 @@ def find_column(table: TextTable, wanted: ColumnHeading, path: str) -> int:
         if len(found) == 1:
             return found[0]
         if found:
-            raise _fault(f"{len(found)} columns are named {echo(wanted.name)}; rename one", path)
+            raise file_fault(
+                f"{len(found)} columns are named {echo(wanted.name)}; rename one", path
+            )
     count = len(table.rows[0])
     if wanted.name.isdigit() and 1 <= int(wanted.name) <= count:
         return int(wanted.name) - 1
     known = f"it has {', '.join(names)}" if names else f"it names none: count, 1 to {count}"
-    raise _fault(f"no column {echo(wanted.name)} in the file; {known}", path)
+    raise file_fault(f"no column {echo(wanted.name)} in the file; {known}", path)
 
 
 def numbers_in(table: TextTable, index: int, path: str) -> list[float]:
@@ -116,7 +118,7 @@ def numbers_in(table: TextTable, index: int, path: str) -> list[float]:
         except (ValueError, IndexError):
             wrong.append((line, cells[index] if index < len(cells) else ""))
     if wrong:
-        raise _fault(_in_words(wrong), path)
+        raise file_fault(_in_words(wrong), path)
     return found
 
 
@@ -152,18 +154,21 @@ def _text(path: Path) -> str:
     try:
         size = path.stat().st_size
         if size > LARGEST:
-            raise _fault(f"{path.name} has {size:,} bytes, more than {LARGEST:,}; thin its rows")
+            raise file_fault(
+                f"{path.name} has {size:,} bytes, more than {LARGEST:,}; thin its rows"
+            )
         if short := shortage(IN_MEMORY * size):
-            raise _fault(f"{path.name}: reading it {short}; thin its rows")
+            raise file_fault(f"{path.name}: reading it {short}; thin its rows")
         with path.open("rb") as file:
             return file.read(LARGEST + 1).decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise _fault(f"{path.name} is not text in UTF-8; export the table as CSV") from None
+        raise file_fault(f"{path.name} is not text in UTF-8; export the table as CSV") from None
     except (OSError, ValueError) as error:
         if isinstance(error, DescriptionError):
             raise
-        raise _fault(f"{path.name}: {getattr(error, 'strerror', None) or error}") from None
+        raise file_fault(f"{path.name}: {getattr(error, 'strerror', None) or error}") from None
 
 
-def _fault(message: str, path: str = "file") -> DescriptionError:
+def file_fault(message: str, path: str = "file") -> DescriptionError:
+    """Return the error for a fault of a file, or of the entry of a piece that names it."""
     return DescriptionError([Fault(path, message)])
