@@ -59,7 +59,8 @@ def transverse_oscillation(run: Trajectory) -> xr.Dataset:
     ResultError
         If the run is too short or too coarsely sampled for it, or nothing moves along y.
     """
-    natural, width = _scales(run)
+    natural = run.slider.natural_frequency_y
+    width = WIDTH / natural
     if not run.samples["v_y"].any():
         raise ResultError("nothing moves across the drive: there is no misalignment")
     found = follow_ridge(oscillation_spectrogram(run), LOWEST * natural, HIGHEST * natural)
@@ -91,7 +92,8 @@ def transverse_oscillation(run: Trajectory) -> xr.Dataset:
 def oscillation_spectrogram(run: Trajectory) -> xr.DataArray:
     """Return the spectrogram of v_y (m/s), see `transverse_oscillation`."""
     times = run.samples["time"]
-    natural, width = _scales(run)
+    natural = run.slider.natural_frequency_y
+    width = WIDTH / natural
     span = float(times[-1] - times[0])
     rate = (len(times) - 1) / span if span > 0.0 else 0.0
     if rate < 2.0 * HIGHEST * natural or span < width:
@@ -184,12 +186,6 @@ def _label(dimension: str, rows: Rows) -> dict[str, tuple[str, Any, dict[str, st
         name: (dimension, values, {"units": unit, "long_name": meaning})
         for name, (values, unit, meaning) in rows.items()
     }
-
-
-def _scales(run: Trajectory) -> tuple[float, float]:
-    """Return the transverse natural frequency (Hz), and how wide windows are (s)."""
-    omega_y = float(theory.natural_frequency(run.slider.k_y, run.slider.masses[1]))
-    return omega_y / (2.0 * pi), WIDTH * 2.0 * pi / omega_y
 
 
 def _frequencies(oscillation: xr.Dataset, start: float, end: float) -> tuple[float, float]:

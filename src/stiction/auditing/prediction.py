@@ -89,9 +89,7 @@ def predict(slider: Slider) -> Prediction:
     V = hypot(*s.motion.rate(0.0))
     F_0, l_x = s.F_0, s.F_0 / s.k_x
     F_static = F_0 if has_state(s.law) else static_coefficient(s.law) * s.normal_load
-    omega_x, omega_y = (
-        float(theory.natural_frequency(k, m)) for k, m in zip((s.k_x, s.k_y), s.masses, strict=True)
-    )
+    f_x, f_y = s.natural_frequency_x, s.natural_frequency_y
     A = theory.damping_number_of(s, V)
     zeta = float(theory.damping_ratio(A, phi)) if isfinite(A) else 0.0
     theta_c = float(theory.critical_angle(A)) if isfinite(A) else 0.0
@@ -108,8 +106,8 @@ def predict(slider: Slider) -> Prediction:
     return Prediction(
         F_0,
         F_static,
-        omega_x / (2.0 * pi),
-        omega_y / (2.0 * pi),
+        f_x,
+        f_y,
         A,
         zeta,
         theta_c,
@@ -122,9 +120,9 @@ def predict(slider: Slider) -> Prediction:
         peak / s.normal_load,
         mean / s.normal_load,
         drop,
-        drop / (s.k_x * V * cos(phi)) + pi / omega_x,
-        float(theory.transverse_amplitude_bound(V, phi, omega_y)),
-        SEEN * omega_y / (2.0 * pi),
+        drop / (s.k_x * V * cos(phi)) + 0.5 / f_x,
+        float(theory.transverse_amplitude_bound(V, phi, 2.0 * pi * f_y)),
+        SEEN * f_y,
     )
 
 

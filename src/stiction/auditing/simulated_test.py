@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from math import isfinite, nan, pi
+from math import isfinite, nan
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
-from stiction import theory
 from stiction.analysis.creep.first_slip import first_slip_time
 from stiction.analysis.limit_cycle import KICK
 from stiction.analysis.motion.cycle_columns import CycleTable
@@ -129,9 +128,8 @@ class SimulatedTest:
     @property
     def coarse(self) -> bool:
         """Whether the sampling is too coarse for the transverse oscillation."""
-        slider = self.run.slider
-        f_y = theory.natural_frequency(slider.k_y, slider.masses[1]) / (2.0 * pi)
-        return bool(self.record.sample_rate < 0.9 * SEEN * f_y)
+        least = 0.9 * SEEN * self.run.slider.natural_frequency_y
+        return bool(self.record.sample_rate < least)
 
     def mean(self, name: str) -> float:
         """Return the mean of a quantity over the cycles; NaN if there are none."""

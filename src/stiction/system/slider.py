@@ -289,6 +289,11 @@ class Slider(Apparatus):
         return sqrt(self.k_x / self.masses[0]) / (2 * pi)
 
     @property
+    def natural_frequency_y(self) -> float:
+        """Natural frequency of the mass on the spring along y, in Hz."""
+        return sqrt(self.k_y / self.masses[1]) / (2 * pi)
+
+    @property
     def masses(self) -> tuple[float, float]:
         """The mass that swings on each spring, in kg: k over its natural frequency squared.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from math import degrees, pi, sin
+from math import degrees, sin
 from textwrap import wrap
 from typing import Any
 
@@ -160,10 +160,7 @@ def printed_text(text: str) -> str:
 
 def scales_in_words(slider: Slider) -> list[str]:
     """Return derived parameters: F_0, natural frequencies, damping number."""
-    f_x, f_y = (
-        float(theory.natural_frequency(k, m)) / (2 * pi)
-        for k, m in zip((slider.k_x, slider.k_y), slider.masses, strict=True)
-    )
+    f_x, f_y = slider.natural_frequency_x, slider.natural_frequency_y
     lines = [
         rf"$F_0 = \mu_0 W$ = {in_words(slider.F_0, 'N')}",
         rf"$\omega_x/2\pi$ = {in_words(f_x, 'Hz')}, $\omega_y/2\pi$ = {in_words(f_y, 'Hz')}",
