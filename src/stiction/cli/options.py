@@ -12,6 +12,7 @@ from cyclopts import Parameter
 from stiction.errors import StictionError, echo
 
 if TYPE_CHECKING:
+    from stiction.analysis.record import Record
     from stiction.inference.priors import Rig
     from stiction.presets import Preset
     from stiction.system.description import Description
@@ -162,6 +163,15 @@ class RecordOptions:
     def arguments(self) -> dict[str, Any]:
         """Return what is given, by name."""
         return {name: value for name, value in vars(self).items() if value is not None}
+
+
+def record_in(path: Path, measured: RecordOptions | None, trust: bool) -> Record:
+    """Read a measured record, or a run as if it was measured."""
+    from stiction.analysis.measurement.reading import read_source
+    from stiction.analysis.record import as_record
+
+    said = (measured or RecordOptions()).arguments()
+    return as_record(read_source(path, trust=trust, **said))
 
 
 Window = Annotated[tuple[str, str] | None, Parameter(negative=())]

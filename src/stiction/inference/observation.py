@@ -26,20 +26,8 @@ from stiction.system.slider import Slider
 Floats = NDArray[np.float64]
 
 PER_CYCLE = 200  # samples: more are averaged
-LADDER = (
-    6,
-    7,
-    8,
-    10,
-    12,
-    14,
-    17,
-    20,
-    24,
-    28,
-    34,
-    40,
-)  # numbers of cycles, so that a library serves many records
+# numbers of cycles, so that a library serves many records
+LADDER = (6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40)
 MANTISSAS = (1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.3, 4.0, 5.0, 6.0, 7.5, 9.0, 10.0)
 SAME = 0.02  # of the drive velocity: a record's differs by less if a cell lies 10 deg askew
 UNEVEN = 0.01  # of the sample interval, by which intervals may differ

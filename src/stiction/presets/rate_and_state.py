@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from stiction.drive.protocols import Constant, DriveProgram, Hold
@@ -11,7 +12,7 @@ from stiction.friction.laws import (
     RateStatePerrin,
     RateStateSlip,
 )
-from stiction.presets.preset import Published, on_a_line, preset
+from stiction.presets.preset import Make, Published, on_a_line, preset
 from stiction.presets.samples import crest
 from stiction.system.description import Description, Settings
 from stiction.system.initial import Initial
@@ -55,28 +56,33 @@ def _steps(run: Trajectory) -> list[float]:
     return [*map(float, mu), *map(float, v)]
 
 
-def _table(mu: tuple[float, ...], v: tuple[float, ...]) -> tuple[Published, ...]:
-    """Return the printed rows of a case, each to half a unit of its eighth decimal, or its last."""
-    return (
-        *(
-            Published(f"mu, {t:g} s after the step", x, 1e-8)
-            for t, x in zip(AFTER, mu, strict=True)
-        ),
-        *(Published(f"v, {t:g} s after", x, 1e-6, "um/s") for t, x in zip(AFTER, v, strict=True)),
+def rsfmodel(
+    shows: str,
+    mu: tuple[float, ...],
+    v: tuple[float, ...],
+    reference: str = REFERENCE,
+    doi: str = DOI,
+) -> Callable[[Make], Make]:
+    """Decorate the function that makes a case of rsfmodel, with its printed rows.
+
+    Each number is printed to half a unit of its eighth decimal, or its last.
+    """
+    forces = (
+        Published(f"mu, {t:g} s after the step", x, 1e-8) for t, x in zip(AFTER, mu, strict=True)
     )
+    speeds = (
+        Published(f"v, {t:g} s after", x, 1e-6, "um/s") for t, x in zip(AFTER, v, strict=True)
+    )
+    return preset(
+        _steps, shows=shows, reference=reference, doi=doi, grade="solid", assumed=ASSUMED,
+        published=(*forces, *speeds),
+    )  # fmt: skip
 
 
-@preset(
-    _steps,
-    shows="a step of the speed, ageing law: k twice critical, ringing",
-    reference=REFERENCE,
-    doi=DOI,
-    grade="solid",
-    assumed=ASSUMED,
-    published=_table(
-        (0.60720485, 0.60186637, 0.58400910, 0.58563096, 0.58858313, 0.58848708),
-        (5.98760938, 29.06408439, 13.87639287, 6.26688086, 9.82182937, 10.0000074),
-    ),
+@rsfmodel(
+    "a step of the speed, ageing law: k twice critical, ringing",
+    (0.60720485, 0.60186637, 0.58400910, 0.58563096, 0.58858313, 0.58848708),
+    (5.98760938, 29.06408439, 13.87639287, 6.26688086, 9.82182937, 10.0000074),
 )
 def velocity_step_ageing() -> Description:
     """Velocity step A of rsfmodel: from 1 to 10 um/s, ageing law, a = 0.005, b = 0.01.
@@ -88,51 +94,32 @@ def velocity_step_ageing() -> Description:
     return step(RateStateAgeing(0.005, 0.01, 10 * UM, 0.6, UM), 1e3)
 
 
-@preset(
-    _steps,
-    shows="a step of the speed, slip law, strengthening",
-    reference=REFERENCE,
-    doi=DOI,
-    grade="solid",
-    assumed=ASSUMED,
-    published=_table(
-        (0.60839299, 0.61462880, 0.61663335, 0.61451424, 0.61149781, 0.61151293),
-        (2.40532918, 5.50394141, 10.60027612, 12.69404325, 9.97125078, 9.99999999),
-    ),
+@rsfmodel(
+    "a step of the speed, slip law, strengthening",
+    (0.60839299, 0.61462880, 0.61663335, 0.61451424, 0.61149781, 0.61151293),
+    (2.40532918, 5.50394141, 10.60027612, 12.69404325, 9.97125078, 9.99999999),
 )
 def velocity_step_slip() -> Description:
     """Velocity step B of rsfmodel: from 1 to 10 um/s, slip law, a = 0.01, b = 0.005."""
     return step(RateStateSlip(0.010, 0.005, 10 * UM, 0.6, UM), 1e3)
 
 
-@preset(
-    _steps,
-    shows="a step of the speed, law of Perrin, Rice and Zheng",
+@rsfmodel(
+    "a step of the speed, law of Perrin, Rice and Zheng",
+    (0.60839207, 0.61456074, 0.61610039, 0.61386731, 0.61150337, 0.61151293),
+    (2.41090004, 5.71219864, 11.15638292, 12.3913343, 9.97758477, 10.0),
     reference=f"{REFERENCE}; law: Perrin et al., J. Mech. Phys. Solids 43, 1461 (1995)",
     doi="10.1016/0022-5096(95)00036-I",
-    grade="solid",
-    assumed=ASSUMED,
-    published=_table(
-        (0.60839207, 0.61456074, 0.61610039, 0.61386731, 0.61150337, 0.61151293),
-        (2.41090004, 5.71219864, 11.15638292, 12.3913343, 9.97758477, 10.0),
-    ),
 )
 def velocity_step_perrin() -> Description:
     """Velocity step C of rsfmodel: from 1 to 10 um/s, theta' = 1 - (V theta/2 D_c)^2."""
     return step(RateStatePerrin(0.010, 0.005, 10 * UM, 0.6, UM), 1e3)
 
 
-@preset(
-    _steps,
-    shows="a step of the speed, two ageing states",
-    reference=REFERENCE,
-    doi=DOI,
-    grade="solid",
-    assumed=ASSUMED,
-    published=_table(
-        (0.61777816, 0.56719338, 0.57926411, 0.58134415, 0.57046462, 0.56488327),
-        (11.24366669, 9.27431239, 6.24880306, 12.6979352, 10.3510415, 10.00791305),
-    ),
+@rsfmodel(
+    "a step of the speed, two ageing states",
+    (0.61777816, 0.56719338, 0.57926411, 0.58134415, 0.57046462, 0.56488327),
+    (11.24366669, 9.27431239, 6.24880306, 12.6979352, 10.3510415, 10.00791305),
 )
 def velocity_step_two_states() -> Description:
     """Velocity step D of rsfmodel: two ageing states, over 5 um and over 50 um.

@@ -51,20 +51,8 @@ def from_theory(slider: Slider) -> list[Number]:
         Number("Results", "stiffness anisotropy k_y/k_x", 1e4, s.k_y / s.k_x, 0.5),
         Number("Fig. 4", "natural frequency omega_y/2pi", 1.0, omega_y / 2e3 / pi, 0.05, "kHz"),
         Number("Eq. (10)", "zeta = A at theta = 90 deg", 3.6e3, A, 50),
-        Number(
-            "Eq. (10)",
-            "zeta at theta = phi = 1 deg",
-            1.9e-2,
-            zeta,
-            5e-4,
-        ),
-        Number(
-            "Fig. 5",
-            "times that zeta crosses 1, phi = 1 deg",
-            1,
-            int(zeta < 1 < A),
-            0,
-        ),
+        Number("Eq. (10)", "zeta at theta = phi = 1 deg", 1.9e-2, zeta, 5e-4),
+        Number("Fig. 5", "times that zeta crosses 1, phi = 1 deg", 1, int(zeta < 1 < A), 0),
         Number("Fig. 5", "times that zeta crosses 1, phi = 10 deg", 0, int(least < 1 < A_wide), 0),
     ]
 
@@ -92,14 +80,7 @@ def from_simulation(run: Trajectory) -> list[Number]:
             2,
             "deg",
         ),
-        Number(
-            "Results",
-            "drop of F in stick ('constant', to 2 %)",
-            0,
-            float(drop),
-            2,
-            "%",
-        ),
+        Number("Results", "drop of F in stick ('constant', to 2 %)", 0, float(drop), 2, "%"),
         Number(
             "Eq. (9)",
             "mean k_y u_y at the start of creep over F_0",
@@ -149,11 +130,7 @@ def of_creep(run: Trajectory) -> list[Number]:
     exact = float(theory.creep_velocity(1.0, V, s.phi, l_x))
     return [
         Number(
-            "Eq. (7)",
-            "creep at 1 s, simulated over Eq. (7), to 1 %",
-            1,
-            simulated / exact,
-            0.01,
+            "Eq. (7)", "creep at 1 s, simulated over Eq. (7), to 1 %", 1, simulated / exact, 0.01
         ),
         Number(
             "Eq. (8)",

@@ -13,6 +13,7 @@ from stiction.cli.options import (
     Simulations,
     Trust,
     changes,
+    record_in,
     rig_from,
 )
 from stiction.cli.terminal import say
@@ -63,8 +64,6 @@ def audit(
         verdict, grounds, prior against posterior, and what would change it. Example: --record
         data.csv.
     """
-    from stiction.analysis.measurement.reading import read_source
-    from stiction.analysis.record import as_record
     from stiction.auditing.report import audit as examine
     from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
@@ -79,8 +78,7 @@ def audit(
         placeable(output, SUFFIXES)
     seen = None
     if record is not None:
-        said = (measured or RecordOptions()).arguments()
-        seen = as_record(read_source(record, trust=trust, **said))
+        seen = record_in(record, measured, trust)
     kept = cache_folder() if library is None else library
     with progress("auditing") as report:
         found = examine(rig, report, record=seen, simulations=simulations, library=kept)

@@ -16,6 +16,7 @@ from stiction.cli.options import (
     Simulations,
     Trust,
     changes,
+    record_in,
 )
 from stiction.cli.terminal import say
 
@@ -85,8 +86,6 @@ def design(
     output
         A figure: PNG, PDF or SVG. Example: -o design.png.
     """
-    from stiction.analysis.measurement.reading import read_source
-    from stiction.analysis.record import as_record
     from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
     from stiction.inference.library import cache_folder
@@ -98,8 +97,7 @@ def design(
     if output is not None:
         placeable(output)
     known = Rig.from_toml(rig, changes(set), trust=trust)
-    said = (measured or RecordOptions()).arguments()
-    given = None if record is None else as_record(read_source(record, trust=trust, **said))
+    given = None if record is None else record_in(record, measured, trust)
     with progress("simulating") as report:
         found = find(
             known,

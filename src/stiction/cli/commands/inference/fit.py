@@ -17,6 +17,7 @@ from stiction.cli.options import (
     Simulations,
     Trust,
     changes,
+    record_in,
 )
 from stiction.cli.terminal import say
 
@@ -81,8 +82,6 @@ def fit(
         Give the odds of mechanisms too, from a quarter as many simulations of each; they are
         written in the group "mechanism" of the output.
     """
-    from stiction.analysis.measurement.reading import read_source
-    from stiction.analysis.record import as_record
     from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
     from stiction.inference.fit import fit as infer
@@ -96,8 +95,7 @@ def fit(
     if figures is not None:
         usable_folder(figures)
     known = Rig.from_toml(rig, changes(set), trust=trust)
-    said = (measured or RecordOptions()).arguments()
-    given = [as_record(read_source(path, trust=trust, **said)) for path in records]
+    given = [record_in(path, measured, trust) for path in records]
     kept = cache_folder() if library is None else library
     with progress("simulating") as report:
         found = infer(
