@@ -21,6 +21,7 @@ PARTS = {
     "calibration": "accuracy.calibration",
     "conservation": "accuracy.conservation",
     "scaling": "speed.scaling",
+    "roofline": "speed.roofline",
     "startup": "speed.startup",
     "studies": "speed.studies",
 }
