@@ -7,7 +7,12 @@ from tests.rigs import VERY_SLOW
 import stiction as st
 from stiction.auditing.assumptions import creep_suppositions, suppositions, weakening_angle
 from stiction.auditing.prediction import creep_distance, predict
-from stiction.auditing.simulated_test import coarse_rate, creep_before_slip, observe, slip_time
+from stiction.auditing.simulated_test import (
+    coarse_rate,
+    creep_before_slip,
+    simulate_test,
+    slip_time,
+)
 from stiction.auditing.words.numbers import numbers
 from stiction.linear_stability import growth_rate
 
@@ -18,7 +23,7 @@ GRID = radians(90.0) / 2000.0  # between two angles that are tried
 def creep_of(slider: st.Slider) -> tuple[float, float]:
     """Return the creep before the first slip of a test, and by Eq. (7) until the same time, m."""
     p = predict(slider)
-    seen = observe(slider, p, growth_rate(slider), sample_rate=coarse_rate(p))
+    seen = simulate_test(slider, p, growth_rate(slider), sample_rate=coarse_rate(p))
     V = hypot(*slider.motion.rate(0.0))
     by_eq_7 = creep_distance(V, slider.phi, slider.F_0 / slider.k_x, slip_time(seen))
     return creep_before_slip(seen), by_eq_7
@@ -95,7 +100,7 @@ def test_only_the_creep_is_marked_where_only_it_is_off():
 
 def test_every_number_of_eqs_7_and_10_is_marked_where_creep_ends_early():
     p = predict(VERY_SLOW)
-    seen = observe(VERY_SLOW, p, growth_rate(VERY_SLOW), sample_rate=coarse_rate(p))
+    seen = simulate_test(VERY_SLOW, p, growth_rate(VERY_SLOW), sample_rate=coarse_rate(p))
     found = st.audit(PAPER)._replace(slider=VERY_SLOW, prediction=p, observation=seen)
     rows = {row[0]: row[1] for row in numbers(found).rows}
     assert rows["creep before the first slip"].startswith("~ 39.8")

@@ -90,12 +90,14 @@ def take_out(values: Floats) -> Hesitations:
         (n,) alternating peaks and troughs. The first and last value are extremes before and after
         them, lower bounds of the movements that the record cuts.
     """
-    found, shallow = _below(values, HALF), _below(values, LEAST)
+    found = _below(values, HALF)
     change = np.diff(values[found.kept])
     fall = -change[change < 0.0]
+    if _alike(fall):
+        return found
+    shallow = _below(values, LEAST)
     deep = (len(shallow.kept) - len(found.kept)) // 2
-    halves = deep >= OFTEN * len(fall) > 0 or _alike(fall) or _is_divided(values)
-    return found if halves else shallow
+    return found if deep >= OFTEN * len(fall) > 0 or _is_divided(values) else shallow
 
 
 def level(values: Floats, time: Floats) -> Floats:

@@ -93,7 +93,7 @@ def load_cell(found: Audit) -> list[str]:
 
 def _readings(seen: SimulatedTest) -> str:
     """Return what the apparent coefficients are."""
-    count = seen.cycles.sizes["cycle"]
+    count = len(seen.table)
     if not count:
         return (
             "The apparent static friction is the largest force of the test over the normal load, "

@@ -76,7 +76,12 @@ class ObservedRun:
 
     def column(self, i: int) -> Floats:
         """Return a column of the samples at `time`, as in `stiction.solver.exact.sampling`."""
-        return self._thin_out(self.solution.samples[:, i])
+        column: Floats = self._columns[i]
+        return column
+
+    @cached_property
+    def _columns(self) -> Floats:
+        return np.ascontiguousarray(self._thin_out(self.solution.samples).T)
 
     def _thin_out(self, values: Floats) -> Floats:
         return np.concatenate([values[: self.fine], values[self.fine :: self.parts]])
