@@ -13,6 +13,7 @@ from stiction.solver.multiscale.inside import (
     add_node,
     begin_again,
     begin_at_edge,
+    begin_finer,
     finish_motion,
     in_progress,
     place_of_root,
@@ -34,6 +35,7 @@ from stiction.solver.state import (
 )
 from stiction.solver.stick import stick_duration
 
+TRIES = 3  # with twice the pieces each
 NODE_STEPS = number(10_000)
 FIRST = number(0)  # row of samples
 NODE_SHARE = 0.1  # tolerance of a node's steps over that of others; their noise is below `closing`
@@ -200,16 +202,20 @@ def resolve_motion(
     if at_edge:
         begin_at_edge(known)
         n = 0
-    while n < NODES and in_progress(known):
-        x = place_of_root(known, row, POINTS[n]) if at_edge else POINTS[n]
-        there = theta + 0.5 * (x + 1.0) * reach
-        returns, cycle, _, end, _ = solve_cycle(
-            problem, accuracy, memory, known, there, longest, NODE_STEPS
-        )
-        memory, counts = end.memory, add_counts(counts, end.counts)
-        if not returns:
+    for _ in range(TRIES):
+        while n < NODES and in_progress(known):
+            x = place_of_root(known, row, POINTS[n]) if at_edge else POINTS[n]
+            there = theta + 0.5 * (x + 1.0) * reach
+            returns, cycle, _, end, _ = solve_cycle(
+                problem, accuracy, memory, known, there, longest, NODE_STEPS
+            )
+            memory, counts = end.memory, add_counts(counts, end.counts)
+            if not returns:
+                break
+            add_node(problem, finer(accuracy), known, n, window_of(known, cycle))
+            n += 1
+        if not begin_finer(known):
             break
-        add_node(problem, finer(accuracy), known, n, window_of(known, cycle))
-        n += 1
+        n = 0
     finish_motion(known)
     return counts

@@ -85,16 +85,15 @@ def following_step(rows: np.ndarray, i: int, last: int, t: float) -> int:
 
 @inlined
 def resolution(problem: Problem, duration: float, closing: float) -> int:
-    """Return twice as many pieces as resolve a swing of the faster oscillation to the tolerance.
+    """Return how many pieces resolve a swing of the faster oscillation to the tolerance.
 
-    The remainder of cos(a x) on [-1, 1] behind n Chebyshev polynomials is 2 (a/2)^n/n!. Towards a
-    landing friction may turn faster than that, and more so at a later node than at the first.
+    The remainder of cos(a x) on [-1, 1] behind n Chebyshev polynomials is 2 (a/2)^n/n!.
     """
     s = problem.system
     angle = sqrt(max(s.k_x, s.k_y) * s.per_mass) * duration
     half = 2.0 * (0.5 * FACTORIAL * NEAR * closing) ** (1.0 / PHASES)
     pieces: int = ceil(0.5 * angle / half)
-    return 2 * pieces
+    return pieces
 
 
 FACTORIAL = float(np.prod(np.arange(1, PHASES + 1)))
@@ -251,13 +250,15 @@ def add_node(
 ) -> None:
     """Add the motion of node `n`, of the angle or of the time held.
 
-    The number of pieces is chosen at the first node, none if that is not resolved. The nodes of the
-    motion are enough when a fresh one is predicted, and the one before it nearly so. Later ones are
-    left out; a patch whose motion is not resolved has none.
+    The number of pieces is chosen at the first node, none if that is not resolved; if it does not
+    resolve a later one, where friction turns faster towards the landing, it is twice as large from
+    then on. The nodes of the motion are enough when a fresh one is predicted, and the one before it
+    nearly so. Later ones are left out; a patch whose motion is not resolved has none.
     """
     inside, shape = known.inside, known.inside.shapes[known.sizes[0]]
     if n == 0:
-        shape[0], shape[1], shape[2] = resolution(problem, window.duration, known.closing), 0, 1
+        pieces = resolution(problem, window.duration, known.closing)
+        shape[0], shape[1], shape[2] = inside.finer[0] * pieces, 0, 1
     if shape[2] == 0 or shape[1] > 0:
         return
     pieces = resolved_pieces(problem, accuracy, known, n, window)
@@ -265,6 +266,8 @@ def add_node(
     if n == 0:
         shape[0] = pieces
     if pieces == 0:
+        if n > 0:
+            inside.finer[0] *= 2
         return
     miss = added_motion(inside, n, pieces)
     if miss < 1.0 and inside.missed[0] < 10.0:
@@ -320,6 +323,16 @@ def in_progress(known: Returns) -> bool:
     """Return whether more nodes may still tell the motion inside a patch."""
     shape = known.inside.shapes[known.sizes[0]]
     return bool(shape[1] == 0 and shape[2] == 1)
+
+
+@inlined
+def begin_finer(known: Returns) -> bool:
+    """Begin the motion of a patch again if it had too few pieces; return whether it had."""
+    shape = known.inside.shapes[known.sizes[0]]
+    if shape[0] == 0 or shape[1] > 0 or shape[2] == 1:
+        return False
+    shape[2], known.inside.missed[0] = 1, inf
+    return True
 
 
 @piece

@@ -61,6 +61,7 @@ class Inside(NamedTuple):
     first the times held at both ends; kept : steps of the cycles
     of `past`; spans : first and number of the steps of each, and behind all the next
     free row, and the next free piece;
+    finer : how many times as many pieces as a swing needs;
     points, bound, basis, block, row, missed : room for the work.
     """
 
@@ -69,6 +70,7 @@ class Inside(NamedTuple):
     ends: np.ndarray
     kept: np.ndarray
     spans: np.ndarray
+    finer: np.ndarray
     points: np.ndarray
     bound: np.ndarray
     basis: np.ndarray
@@ -135,6 +137,7 @@ def empty_map(rtol: float, steps: Any, samples: bool = False) -> Returns:
             np.empty((PATCHES, 2)),
             np.empty((kept, WIDTH)),
             np.zeros((PAST + 1, 2), dtype=np.int64),
+            np.ones(1, dtype=np.int64),
             np.empty((PIECES * PHASES + PIECES + 1, COLUMNS)),
             np.empty(COLUMNS),
             np.empty(NODES),

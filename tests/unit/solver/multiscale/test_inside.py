@@ -66,13 +66,29 @@ def test_the_points_of_a_piece_and_its_ends():
 
 @pytest.mark.parametrize("rtol", [1e-3, 1e-6, 1e-9])
 def test_pieces_resolve_a_swing_to_the_tolerance(rtol):
-    """2 (a/2)^n/n! is left of cos(a x), behind n polynomials of Chebyshev; by half the pieces."""
+    """2 (a/2)^n/n! is left of cos(a x), behind n polynomials of Chebyshev."""
     closing, s = map_of(rtol).closing, PROBLEM.system
     period = 2 * np.pi / np.sqrt(s.k_y / s.mass)
     pieces = plain(inside.resolution)(PROBLEM, period, closing)
-    few = pieces // 2, max(pieces // 2 - 1, 0.5)
+    few = pieces, max(pieces - 1, 0.5)
     left = [2 * (0.5 * np.pi / n) ** PHASES / factorial(PHASES) for n in few]
     assert left[0] <= NEAR * closing < left[1]
+
+
+def test_a_motion_of_too_few_pieces_begins_again():
+    """Where the first node was resolved and a later one was not."""
+    known = map_of(1e-6, samples=True)
+    begin, shape = plain(inside.begin_finer), known.inside.shapes[0]
+    known.inside.missed[0] = 3.0
+    for shape[:3], again in (
+        ((3, 0, 0), True),
+        ((3, 0, 1), False),
+        ((3, 7, 0), False),
+        ((0, 0, 0), False),
+    ):
+        assert begin(known) == again
+        assert shape[2] == (1 if again else shape[2])
+    assert np.isinf(known.inside.missed[0])
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
