@@ -110,9 +110,7 @@ def samples(
     times: NDArray[np.float64], *, multiscale: bool = False, **settings: Any
 ) -> NDArray[np.float64]:
     """Return the elongations (m) at some times, without labels; in steps unless asked."""
-    run = st.Settings(
-        duration=float(times[-1]), sample_rate=0.0, multiscale=multiscale, **settings
-    )
+    run = st.Settings(duration=float(times[-1]), sample_rate=0.0, multiscale=multiscale, **settings)
     description = st.Description(slider(PHI), st.Initial(), run)
     return solve_description(description, times).samples[:, :2]
 

@@ -44,6 +44,7 @@ STEEP = 2.0  # ratio of the times held at the ends of a patch that is near an ed
 NEWTON, NUDGE = 5, 1e-4  # iterations to find an edge, and difference of places for a slope
 FOLD = 4  # nodes summed side by side, for speed
 ROUGH = 4.0  # what interpolation may miss, over what steps of a node may: these are noise
+FINEST = 4  # times the pieces that a swing needs
 SPRINGS = 0.3  # error of the springs' forces over that of velocities and of friction
 
 
@@ -258,7 +259,7 @@ def add_node(
     inside, shape = known.inside, known.inside.shapes[known.sizes[0]]
     if n == 0:
         pieces = resolution(problem, window.duration, known.closing)
-        shape[0], shape[1], shape[2] = inside.finer[0] * pieces, 0, 1
+        shape[0], shape[1], shape[2] = min(inside.finer[0] * pieces, max(pieces, PIECES)), 0, 1
     if shape[2] == 0 or shape[1] > 0:
         return
     pieces = resolved_pieces(problem, accuracy, known, n, window)
@@ -267,7 +268,7 @@ def add_node(
         shape[0] = pieces
     if pieces == 0:
         if n > 0:
-            inside.finer[0] *= 2
+            inside.finer[0] = min(2 * inside.finer[0], FINEST)
         return
     miss = added_motion(inside, n, pieces)
     if miss < 1.0 and inside.missed[0] < 10.0:
