@@ -251,8 +251,12 @@ def _blank_meaningless(
             return cycles.assign({name: cycles[name].where(False) for name in BY_STIFFNESS})
         if not float(cycles["creep_distance"].median()) < 0.0:
             return cycles
+        agrees = any(each.quantity == LOADING_RATE and each.agrees for each in stated)
         missing["creep_distance"] = (
-            "the force rises faster than the stated stiffness and drive velocity allow"
+            "the force rises as fast as the stated stiffness and drive velocity allow, within "
+            "their errors"
+            if agrees
+            else "the force rises faster than the stated stiffness and drive velocity allow"
         )
         return cycles.assign(creep_distance=cycles["creep_distance"].where(False))
     why = f"they are defined for stick-slip, and {without_loading(regime)}"

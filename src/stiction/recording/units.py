@@ -63,6 +63,20 @@ def size_of(text: str, unit: str, stated: str = "") -> Size | None:
     return None
 
 
+def with_other_sign(text: str) -> str:
+    """Return the unit that reads the same column with the other sign.
+
+    Examples
+    --------
+    >>> with_other_sign("mN"), with_other_sign("2.5 N/V"), with_other_sign("-1 gf")
+    ('-1 mN', '-2.5 N/V', '1 gf')
+    """
+    found = QUANTITY.fullmatch(text)
+    number, name = (found[1].replace("−", "-"), found[2]) if found else ("1", text)
+    number = f"{number}1" if number in ("+", "-") else number
+    return f"{number[1:]} {name}" if number[0] == "-" else f"-{number.lstrip('+')} {name}"
+
+
 def is_electric(text: str) -> bool:
     """Return whether a unit is that of a raw signal: a voltage, a current, counts."""
     return _raw_units(spell(text), spell(text)) is not None

@@ -123,6 +123,17 @@ def test_a_ridge_is_finer_than_its_lines_and_keeps_to_its_own():
     assert float(found["amplitude"].median()) == pytest.approx(1.0, abs=0.06)
 
 
+def test_a_mass_at_rest_has_no_line():
+    """Rounding errors and zeros stand beside each other in its spectrum."""
+    lines = np.full((60, 40), 1e-38)
+    lines[::7] = 0.0
+    lines[:, :3] = 1e-4 * (1.0 + 0.1 * np.random.default_rng(1).random((60, 3)))  # a slip
+    axes = {"frequency": 10.0 * np.arange(60), "time": np.arange(40.0)}
+    found = st.analysis.follow_ridge(xr.DataArray(lines, axes), 50.0, 550.0)
+    assert not np.isfinite(found["frequency"].values).any()
+    assert float(found["amplitude"].max()) < 2e-4
+
+
 def test_the_best_path_is_the_best_of_all():
     """By trying every path of a small table."""
     draw = np.random.default_rng(2)

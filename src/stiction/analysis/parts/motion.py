@@ -18,6 +18,7 @@ from stiction.analysis.motion.regime.kinds import (
 )
 from stiction.analysis.motion.rest import comes_to_rest, stuck_share
 from stiction.analysis.parts.wording import number
+from stiction.recording.units import with_other_sign
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
 from stiction.text.units import in_words
@@ -34,7 +35,6 @@ BY_STROKES = (
     "(stroke=1 of st.read_record) reads the first. Of a run, or with the position, "
     "st.analysis.hysteresis gives the loops."
 )
-OTHER_SIGN = 'or a file with --force="-1 N"'
 IMPOSED = {  # by the evidence
     "unchanging": "The force is the same in all samples, as no measured force is: the channel is "
     "dead, or at an end of its range.",
@@ -130,12 +130,23 @@ def _describe_unclear_force(found: Analysis) -> str:
     if float(found.record.force.mean()) <= 0.0:
         return (
             f"{fast}: it is recorded with the other sign, in all likelihood. Analyse it with "
-            f"force=-force, {OTHER_SIGN}."
+            f"force=-force, {_with_other_sign(found)}."
         )
     return (
         f"{fast}: as where holds interrupt the sliding, or it is recorded with the other sign "
-        f"and an untared zero; then analyse it with force=-force and zero=, {OTHER_SIGN}."
+        f"and an untared zero; then analyse it with force=-force and zero=, "
+        f"{_with_other_sign(found)}."
     )
+
+
+def _with_other_sign(found: Analysis) -> str:
+    """Return the option that reads the force of the same column with the other sign."""
+    origin = found.record.origin
+    uses = [use for use in origin.uses if use.channel == "force"] if origin is not None else []
+    if not uses:
+        return 'or a file with --force="-1 N"'
+    column = f"{uses[0].column}=" if uses[0].column else ""
+    return f'or the file with --force="{column}{with_other_sign(uses[0].unit)}"'
 
 
 def _describe_course(found: Analysis) -> str:

@@ -56,7 +56,7 @@ def follow_ridge(
             f"{band.sizes['frequency']} lines lie between {low:g} Hz and {high:g} Hz and at "
             "least 3 are needed; widen the windows of the spectrogram"
         )
-    level = np.log(np.maximum(band.values, np.finfo(float).tiny))
+    level = np.log(np.maximum(band.values, _rounding(band.values)))
     path = best_path(level, jump, stiffness)
     peak, offset = _summits(level, path)
     lines = band["frequency"].values
@@ -73,6 +73,15 @@ def follow_ridge(
         },
         {"time": amplitude["time"]},
     )
+
+
+def _rounding(amplitudes: Floats) -> float:
+    """Return the amplitude below which lines are rounding errors, and as good as equal.
+
+    A parabola through the logarithms of one of these and of a zero would rise far above both.
+    """
+    known = np.finfo(float)
+    return float(max(known.eps * amplitudes.max(), known.tiny))
 
 
 def _surroundings(level: Floats, lines: Floats, path: NDArray[np.intp]) -> Floats:

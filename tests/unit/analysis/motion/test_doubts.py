@@ -253,6 +253,30 @@ def test_a_force_of_the_other_sign_is_told_in_words() -> None:
     assert 'Analyse it with force=-force, or a file with --force="-1 N".' in text
 
 
+@pytest.mark.parametrize("unit", ["N", "gf", "mN"])
+def test_the_option_that_turns_the_sign_of_a_file_keeps_its_unit(tmp_path, unit) -> None:
+    time, path = np.arange(0.0, 40.0, 2e-3), tmp_path / "data.csv"
+    rows = np.column_stack([time, -sawtooth(time / 2.0)])
+    np.savetxt(path, rows, delimiter=",", header=f"time [s],force [{unit}]", comments="")
+    record = st.read_record(path)
+    option = re.search(r'--force="(.*?)"', str(st.analyse(record)))
+    assert option is not None
+    turned = st.read_record(path, force=option[1])
+    assert turned.force == pytest.approx(-record.force, rel=1e-12)
+
+
+def test_a_force_that_rises_as_fast_as_stated_leaves_no_creep_to_be_seen() -> None:
+    time = np.arange(0.0, 60.0, 2e-3)
+    noise = 0.02 * np.random.default_rng(4).normal(size=len(time))
+    force = sawtooth(time / 2.0)
+    slope = float(np.median(np.gradient(force, time)))
+    stated = slope / 1.004  # less than its rise is known to
+    record = st.Record(time=time, force=force + noise, stiffness=stated, drive_velocity=1.0)
+    text = " ".join(str(st.analyse(record)).split())
+    assert "creep; the force rises as fast as the stated stiffness" in text
+    assert "faster than the stated" not in text
+
+
 def test_a_first_loading_is_no_drift():
     """Under hum, the force is loaded once, and then stays."""
     time = np.arange(0.0, 8.0, 5e-4)
