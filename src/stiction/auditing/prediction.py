@@ -12,6 +12,7 @@ from stiction.analysis.creep.first_slip import along_force, force_off_drive, sli
 from stiction.friction import Anisotropic, has_state
 from stiction.friction.law import static_coefficient
 from stiction.system.slider import Slider
+from stiction.system.tensors import damping_tensor
 
 SEEN = 10.0  # samples per transverse period, enough for its shape and not only its frequency
 
@@ -93,7 +94,7 @@ def predict(slider: Slider) -> Prediction:
     A = theory.damping_number_of(s, V)
     zeta = float(theory.damping_ratio(A, phi)) if isfinite(A) else 0.0
     theta_c = float(theory.critical_angle(A)) if isfinite(A) else 0.0
-    first_stick = float(theory.first_stick_duration(F_static, V, phi, s.k_x, s.k_y))
+    first_stick = first_stick_duration(s, F_static)
     turn = theta_c if theta_c > phi else phi
     fast = zeta < 1.0
     creeps = fast and phi > 0.0 and theta_c > phi  # A < 1: underdamped from the start
@@ -124,6 +125,28 @@ def predict(slider: Slider) -> Prediction:
         float(theory.transverse_amplitude_bound(V, phi, 2.0 * pi * f_y)),
         SEEN * f_y,
     )
+
+
+def first_stick_duration(slider: Slider, F_static: float) -> float:
+    """Return how long the mass rests from unloaded springs on (s), dampers and grain included.
+
+    While it rests springs and dampers carry |K v t + C v|, v the drive's velocity, until this is
+    the static friction. Along and across a grain each component counts in its own coefficient.
+    """
+    s, law = slider, slider.law
+    v = s.motion.rate(0.0)[0] * np.array(s.direction)
+    loading, held = np.array([s.k_x, s.k_y]) * v, damping_tensor(s) @ v
+    if isinstance(law, Anisotropic):
+        angle = s.misalignment + law.angle
+        along, across = np.array([cos(angle), sin(angle)]), np.array([-sin(angle), cos(angle)])
+        limit = np.stack([along, across / law.ratio])
+        loading, held = limit @ loading, limit @ held
+    rate, first = hypot(*loading), hypot(*held)
+    if first >= F_static:
+        return 0.0
+    mean = float(loading @ held) / rate
+    # (rate t)^2 + 2 mean (rate t) + first^2 = F_static^2
+    return (sqrt(mean**2 + F_static**2 - first**2) - mean) / rate
 
 
 def _forces(slider: Slider, F_static: float, turn: float, fast: bool) -> tuple[float, float, float]:

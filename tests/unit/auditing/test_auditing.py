@@ -74,6 +74,24 @@ def test_a_slip_is_half_a_swing_that_friction_stops():
     assert p.drop == pytest.approx(2.0 * (peak - mean), rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"c_x": 4.0},
+        {"c_x": 300.0, "c_y": 40.0, "damping_angle": "20 deg", "phi": "-3 deg"},
+        {"c_x": 3000.0},  # the damper alone is stronger than friction: the mass never rests
+        {"friction": st.laws.Anisotropic(PAPER.friction, ratio=1.5, angle="60 deg")},
+        {"friction": st.laws.Anisotropic(PAPER.friction, ratio=0.7, angle="-20 deg"), "c_x": 300.0},
+    ],
+)
+def test_the_first_stick_of_dampers_and_grain_is_the_simulated_one(changes):
+    slider = PAPER.replace(**changes)
+    run = st.simulate(slider, "20 ms", rtol=1e-10)
+    sticks = run.stick_intervals
+    length = sticks[0, 1] - sticks[0, 0] if len(sticks) else 0.0
+    assert predict(slider).first_stick == pytest.approx(length, rel=1e-6, abs=1e-9)
+
+
 def test_theory_beside_the_simulation(found):
     p, seen = found.prediction, found.observation
     sticks = seen.run.stick_intervals
