@@ -6,11 +6,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from tests.waiting import INTERRUPTIBLE, PATIENCE
 
 import stiction as st
 from stiction.cli import COMMANDS, app, main
+from stiction.cli.commands.run import report_lines
 
 # runs the command, and says so once the simulation is on its way
 TOLD = """
@@ -145,6 +147,18 @@ def test_run_and_plot(config, tmp_path):
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
     assert {path.name for path in tmp_path.iterdir()} == {"slider.toml", "a.nc", "a.png"}
+
+
+def test_the_largest_force_is_told_beside_the_load_at_that_time(config, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    ramp = '[{piece = "ramp", to = "30 N", duration = "0.05 s"}]'
+    config.write_text(f"{config.read_text()}\n[load]\nprogram = {ramp}\n")
+    result = st.run(config)
+    lines = " ".join(report_lines(result, tmp_path / "a.nc"))
+    at = int(np.abs(result.samples["spring_x"]).argmax())
+    share = abs(result.samples["spring_x"][at]) / result.samples["normal_load"][at]
+    assert result.samples["normal_load"][at] > 1.1 * result.slider.normal_load
+    assert f"{share:.4g} of the normal load at that time" in lines
 
 
 def test_a_bad_description_leaves_nothing_behind(config, tmp_path):

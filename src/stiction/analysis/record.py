@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
 from pydantic_core import PydanticCustomError
 
+from stiction.drive import ConstantVelocity
 from stiction.drive.program import nominal_velocity
 from stiction.errors import Fault, ResultError, echo
 from stiction.names import draw
@@ -154,6 +155,7 @@ class Record(Described):
     _same_time: int = PrivateAttr(0)
     _sticks: Floats | None = PrivateAttr(None)
     _own_period: float | None = PrivateAttr(None)
+    _drive_travel: Floats | None = PrivateAttr(None)
 
     @model_validator(mode="before")
     @classmethod
@@ -263,6 +265,13 @@ class Record(Described):
     def own_period(self) -> float | None:
         """Period of the mass on the spring along x alone, s, where the record is that of a run."""
         return self._own_period
+
+    @property
+    def drive_travel(self) -> Floats | None:
+        """(n,), m: how far the drive has moved along the force, of a run whose drive varies."""
+        if self._drive_travel is None:
+            return None
+        return np.asarray(np.interp(self.time, *self._drive_travel))
 
     def __len__(self) -> int:
         """Return the number of samples."""
@@ -410,4 +419,7 @@ def record_of(run: Trajectory) -> Record:
     )
     record._sticks = run.stick_intervals
     record._own_period = 1.0 / slider.natural_frequency_x
+    if not isinstance(slider.motion, ConstantVelocity):
+        d_X, d_Y = slider.motion.travel(time[0], time - time[0])
+        record._drive_travel = np.stack([time, way * (share * d_X + (y * c - x * s) * d_Y)])
     return record

@@ -149,7 +149,7 @@ def _measure_cycles(record: Record, force: Floats, corners: Vertices) -> dict[st
     start, peak_time, trough_time = (corners.time[i:j:2] for i, j in _THREE)
     start_force, peak, trough = (corners.value[i:j:2] for i, j in _THREE)
     unknown = np.full(len(start), np.nan)
-    load, velocity = record.normal_load, record.drive_velocity
+    load = record.normal_load
     relative = record.relative_load()
     reduced_peak = peak / np.interp(peak_time, record.time, relative)
     reduced_trough = trough / np.interp(trough_time, record.time, relative)
@@ -167,7 +167,7 @@ def _measure_cycles(record: Record, force: Floats, corners: Vertices) -> dict[st
         "mu_static": reduced_peak / load if load else unknown,
         "mu_kinetic": 0.5 * (reduced_peak + reduced_trough) / load if load else unknown,
         "stick_slope": slope,
-        "stiffness": slope / velocity if velocity else unknown,
+        "stiffness": slope / _drive_velocity(record, start, peak_time),
         "creep_distance": _distance_moved(record, start, peak_time, peak - start_force),
         "slip_distance": _distance_moved(record, peak_time, trough_time, trough - peak),
         "peak_slip_speed": _fastest(record, force, peak_time, trough_time),
@@ -188,6 +188,14 @@ def _loading_rate(time: Floats, force: Floats, start: Floats, peak_time: Floats)
     fit = fit_pieces(time, force, begin, np.maximum(end, begin + 1), 1)
     slope: Floats = fit.coefficients[:, 1] / fit.half
     return slope
+
+
+def _drive_velocity(record: Record, start: Floats, peak_time: Floats) -> Floats:
+    """Return the velocity of the drive while the force is loaded; NaN where it is not known."""
+    if (travel := record.drive_travel) is None:
+        return np.full(len(start), record.drive_velocity or np.nan)
+    velocity = _loading_rate(record.time, travel, start, peak_time)
+    return np.where(velocity > 0.0, velocity, np.nan)
 
 
 def _from(time: Floats, begin: Floats) -> Indices:

@@ -88,7 +88,10 @@ def report_lines(result: Trajectory, output: Path) -> list[str]:
     if not result.status.ok:
         reached = float(result.samples["time"][-1])
         lines.append(f"ended early at t = {reached:.6g} s: {result.status.value}")
-    peak = float(np.abs(result.samples["spring_x"]).max())
+    force = np.abs(result.samples["spring_x"])
+    at = int(np.argmax(force))
+    peak, load = float(force[at]), float(result.samples["normal_load"][at])
+    then = "" if result.slider.load is None else " at that time"
     mapped = f", {statistics.mapped} intervals without any" if statistics.mapped else ""
     count = len(result.samples["time"])
     sampled = " at start and end (sample_rate = 0)" if count <= 2 else ""
@@ -96,8 +99,8 @@ def report_lines(result: Trajectory, output: Path) -> list[str]:
         f"{output}: {count} samples, stick intervals: "
         f"{statistics.stick_count}, {in_words(statistics.time_stuck, 's')} in all"
         f"{share(result)}; {statistics.steps} steps{mapped}",
-        f"largest force of the spring along x, k_x u_x{sampled}: {in_words(peak, 'N')}, "
-        f"{peak / result.slider.normal_load:.4g} of the normal load",
+        f"largest force of the spring along x, k_x u_x{sampled}: {in_words(peak, 'N')}"
+        f"{f', {peak / load:.4g} of the normal load{then}' if load > 0.0 else ''}",
         f"next: stiction plot {output} --output {output.with_suffix('.png')}, "
         f"stiction analyse {output}",
     ]

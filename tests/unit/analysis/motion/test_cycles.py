@@ -649,3 +649,13 @@ def test_the_bend_of_a_first_loading_is_no_cycle_on_a_wave(sample_rate: str) -> 
     found = swings(st.Record(time=samples["time"], force=slider.k_x * samples["u_x"]))
     assert found.cycles.sizes["cycle"] == st.analysis.find_cycles(run).sizes["cycle"] > 30
     assert found.wave == 0.0
+
+
+def test_the_stiffness_of_a_run_is_by_the_speed_of_its_drive_at_each_cycle(slider: st.Slider):
+    drive = st.protocols.velocity_steps(["1 mm/s", "3 mm/s"], duration="5 s")
+    run = st.simulate(slider.replace(drive=drive), sample_rate="5 kHz")
+    cycles = st.analyse(run).cycles
+    slopes = cycles["stick_slope"].values
+    assert slopes.max() > 2.0 * slopes.min()  # cycles at both speeds
+    # creep takes 2 % of the rise, as in a steady test
+    assert cycles["stiffness"].values == pytest.approx(slider.k_x, rel=0.03)
