@@ -14,6 +14,7 @@ from scipy.optimize import brentq
 from tests.entry import plain
 
 import stiction as st
+from stiction.solver import reference
 from stiction.solver.exact.pursuit import landing_slip, landing_time
 from stiction.solver.integrate import tolerance
 from stiction.solver.radau import (
@@ -143,6 +144,98 @@ def test_the_twin_starts_and_ends_where_it_is_told():
     assert run.t.tolist() == [0.5, 0.501]
     assert run.sticks == pytest.approx(np.array([[0.5, 0.501]]), rel=EPS)
     assert run.u_x == pytest.approx([1e-6, 1e-6 + 1e-6 * c], rel=1e-12)
+
+
+FORCES = [(1.0, 0.0), (0.6, 0.8), (-0.8, 0.3), (0.0, -1.0), (0.7, -0.7)]
+ALONG = pytest.mark.parametrize("force", FORCES)
+RIGS = {"alike all around": SOFTER, "a grain": SOFTER.replace(friction=GRAIN), "stages": STAGES}
+RIGS["all askew"] = ASKEW.replace(friction=GRAIN)
+
+
+@ALONG
+@pytest.mark.parametrize("beyond", [1.0, 1.0001, 1.2, 3.0])
+@pytest.mark.parametrize("rig", RIGS)
+def test_where_the_twin_s_slip_begins(rig, force, beyond):
+    """Along n(s) = g/F_0 at the friction limit; beyond it the mass accelerates along its slip."""
+    equations = reference.equations_of(RIGS[rig])
+    F_0 = RIGS[rig].F_0
+    g = np.array(force) * beyond * F_0 / np.sqrt(equations.use(np.array(force), np.array(force)))
+    e = reference.first_direction(equations, g)
+    assert e @ e == pytest.approx(1.0, rel=1e-14)
+    if beyond == 1.0:
+        assert equations.toward(e) * F_0 == pytest.approx(g, rel=1e-12, abs=1e-12 * F_0)
+        return
+    a = equations.acceleration(g, e, F_0)
+    assert a @ e > 0.0
+    # its angle is a root to 1e-15, of a function that changes by F_0/m per radian
+    assert e[0] * a[1] - e[1] * a[0] == pytest.approx(0.0, abs=1e-13 * beyond * F_0 / 0.1)
+    if rig == "alike all around":
+        assert e == pytest.approx(g / np.hypot(*g), rel=1e-12, abs=1e-12)
+
+
+@ALONG
+@pytest.mark.parametrize("rig", RIGS)
+def test_how_long_the_twin_sticks(rig, force):
+    """Until g.N^-1 g is F_0^2 again, from any force below; no time at all from one beyond."""
+    slider, equations = RIGS[rig], reference.equations_of(RIGS[rig])
+    limit = np.array(force) * slider.F_0 / np.sqrt(equations.use(np.array(force), np.array(force)))
+    rest = limit - equations.drive @ equations.damping
+    u = np.linalg.solve(equations.stiffness, 0.9 * limit - equations.drive @ equations.damping)
+    held = reference.time_held(equations, u)
+    assert held > 0.0
+    g = equations.pull(u + equations.drive * held, np.zeros(2))
+    assert equations.use(g, g) == pytest.approx(slider.F_0**2, rel=1e-10)
+    change = equations.drive @ equations.stiffness
+    assert equations.use(g, change) > 0.0  # it would grow beyond
+    beyond = np.linalg.solve(equations.stiffness, rest + 1e-3 * limit)
+    assert reference.time_held(equations, beyond) == 0.0
+
+
+@pytest.mark.parametrize("share", [0.3, 0.9, 1.5])
+def test_how_long_the_twin_takes_to_land(share):
+    """As s' = a - f s/|s| says: (f^2 - |a|^2) T = r (f + a.e), or (f + |a|) T = r against it."""
+    equations = reference.equations_of(SOFTER)
+    f, r = SOFTER.F_0 / SOFTER.mass, 1e-3
+    e = np.array([0.6, -0.8])
+    for turned in (pi,) if share > 1.0 else (0.0, 2.0, pi):
+        c, s = np.cos(turned), np.sin(turned)
+        a = share * f * np.array([c * e[0] - s * e[1], s * e[0] + c * e[1]])
+        slip = r * e
+        damper = (equations.drive - slip) @ equations.damping
+        u = np.linalg.solve(equations.stiffness, a * SOFTER.mass - damper)
+        T = r * (f + a @ e) / (f * f - a @ a) if share < 1.0 else r / (f * (1.0 + share))
+        phase = reference.landing(equations, 0.0, 1.0, u, slip)
+        assert phase.end == pytest.approx(T, rel=1e-12)
+        there, left = phase.state(phase.end)
+        assert not left.any()
+        assert phase.state(0.5 * phase.end)[1] == pytest.approx(0.5 * slip)
+        gone = equations.drive * T - 0.5 * slip * T
+        assert there == pytest.approx(u + gone, rel=0.0, abs=4 * EPS * largest(u))
+    assert reference.landing(equations, 0.0, 0.5 * T, u, slip).end == 0.5 * T
+
+
+@ALONG
+@pytest.mark.parametrize("rig", RIGS)
+def test_the_twin_s_take_off_obeys_its_equation(rig, force):
+    """M ds/dt = g - F n and du/dt = v_d - s, by differences, of a force beyond the limit."""
+    slider, equations = RIGS[rig], reference.equations_of(RIGS[rig])
+    g = 1.1 * np.array(force) * slider.F_0 / np.sqrt(equations.use(*np.array([force, force])))
+    u = np.linalg.solve(equations.stiffness, g - equations.drive @ equations.damping)
+    phase = reference.take_off(equations, 0.3, 1.0, u)
+    assert 0.3 < phase.end <= 0.3 + reference.TAKE_OFF / equations.rate
+    start, slip = phase.state(0.3)
+    assert start == pytest.approx(u, rel=1e-12)
+    assert slip == pytest.approx([0.0, 0.0], abs=1e-12 * slider.F_0 / slider.mass)
+    for part in (0.2, 0.5, 0.8):
+        t, step = 0.3 + part * (phase.end - 0.3), 1e-3 * (phase.end - 0.3)
+        (u_0, s_0), (u_1, s_1), (u_2, s_2) = (phase.state(t + k * step) for k in (-1, 0, 1))
+        assert u_2 - u_0 == pytest.approx(
+            2 * step * (equations.drive - s_1), abs=1e-5 * step * np.hypot(*s_1)
+        )
+        a = equations.acceleration(
+            equations.pull(u_1, s_1), s_1, equations.friction(np.hypot(*s_1))
+        )
+        assert (s_2 - s_0) / (2 * step) == pytest.approx(a, abs=1e-5 * np.hypot(*a))
 
 
 def test_the_twin_refuses_a_drive_that_is_not_steady():

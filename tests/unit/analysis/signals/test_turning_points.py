@@ -366,3 +366,16 @@ def test_fits_of_pieces(degree):
         assert (fits.middle[i], fits.half[i]) == pytest.approx(
             (0.5 * (time[a] + time[b]), 0.5 * (time[b] - time[a]))
         )
+
+
+@pytest.mark.parametrize("last", range(-2, 3))
+def test_a_signal_turns_wherever_it_ends(last):
+    """Its first value counts, whatever the last one is."""
+    values = np.array([0, 5, last])
+    assert reversals.extrema(values).tolist() == turns_of(values) == [0, 1, 2]
+    assert reversals.extrema(-values).tolist() == [0, 1, 2]
+
+
+@pytest.mark.parametrize(("heights", "step"), [([], 1.0), ([1.0, 2.0], 1.0), ([5.0], 0.0)])
+def test_without_heights_above_two_steps_there_is_no_gap(heights, step):
+    assert gap.widest_gap(heights, step, 3.0) == (0.0, 0.0, 0.0)

@@ -54,6 +54,29 @@ def test_the_slip_before_a_landing(r, a_1, a_2, part):
     assert (speed * along, speed * across) == pytest.approx(s, abs=1e-8 * r)
 
 
+@pytest.mark.parametrize(("r", "a_1", "a_2"), CASES)
+@pytest.mark.parametrize("part", [0.1, 0.6])
+def test_a_sample_before_a_landing(r, a_1, a_2, part):
+    """The springs' elongation, the slip and the friction, each of the same equation in steps."""
+    problem, motion = problem_of("steady"), motion_of(5e-4, 1e-5, 0.6 * r, 0.8 * r)
+    T = plain(pursuit.landing_time)(r, a_1, a_1**2 + a_2**2, F)
+    closed = T, *plain(pursuit.landing_slip)(r, a_1, a_2, F)
+    samples, gone = np.zeros((1, 7)), part * T
+    arguments = problem, motion, a_1, a_2, F, closed, T - gone, gone, samples, 0
+    assert plain(pursuit.write_landing)(*arguments) == 1
+    z_1, z_2, *s = follow(r, a_1, a_2, gone)
+    along, across = np.array([0.6, 0.8]), np.array([-0.8, 0.6])
+    c, sine = problem.system.cos_phi, problem.system.sin_phi
+    driven = problem.drive.velocity * gone * np.array([c, sine])
+    u = np.array([5e-4, 1e-5]) + driven - z_1 * along - z_2 * across
+    assert samples[0, :2] == pytest.approx(u, abs=1e-8 * r * T)
+    slip = s[0] * along + s[1] * across
+    assert samples[0, 2:4] == pytest.approx(slip, abs=1e-8 * r)
+    force = F * problem.system.mass * slip / hypot(*s)
+    assert samples[0, 4:6] == pytest.approx(force, abs=1e-7 * F * problem.system.mass)
+    assert samples[0, 6] == 0.0
+
+
 def held_to(tolerance, speed):
     """Return an accuracy of which only this counts."""
     return Accuracy(tolerance, 0.0, speed, 0.0, 0.0, inf, inf, 1.0, 1e-2, 0.0, 0.0, 0.0)

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from numpy.polynomial import Chebyshev
 from tests.entry import map_of, plain
-from tests.unit.solver.multiscale.test_construction import EXACT, problem_of
+from tests.unit.solver.exact.test_step import held_to
+from tests.unit.solver.multiscale.test_construction import EXACT, problem_of, taking_off
 
-from stiction.solver.multiscale import inside
+from stiction.solver.multiscale import construction, inside, interpolant, replay
 from stiction.solver.multiscale.interpolant import POINTS
-from stiction.solver.multiscale.return_map import COLUMNS, NEAR, PAST, PHASES
+from stiction.solver.multiscale.return_map import COLUMNS, NEAR, PAST, PHASES, Stick
 
 PROBLEM = problem_of("soft")
 
@@ -139,3 +140,80 @@ def test_bounds_of_errors():
     assert found[4:] == pytest.approx([share * force] * 2)
     plain(inside.bounds)(PROBLEM, fine._replace(tolerance=1e-3), known.inside, 9, known.closing)
     assert known.inside.bound[4] == pytest.approx(inside.ROUGH * 1e-3 * force)
+
+
+@pytest.mark.parametrize(
+    ("name", "theta", "reach", "at_edge"),
+    [
+        ("soft", 1.2, -0.1, 0),
+        ("damped", 1.2, 0.1, 0),
+        ("soft", 1.0, 0.5, 0),
+        ("soft", 1.3, -0.6, 1),  # in the root of the distance to an edge, by nodes of its own
+    ],
+)
+def test_a_patch_knows_the_motion_inside_its_cycles(name, theta, reach, at_edge):
+    """As steps from the same angle find it, within the error to which its nodes agree."""
+    problem, known, rtol = problem_of(name), empty(), 1e-4
+    held = held_to(1e-3 * rtol)
+    begun = taking_off(problem, theta)
+    plain(construction.chart)(problem, held, begun, known, theta, reach, 1.0)
+    pieces, nodes, first, edge = known.inside.shapes[0]
+    assert (known.sizes[0], first, edge) == (1, 0, at_edge)
+    assert 3 < nodes < 16
+    assert known.inside.spans[PAST, 1] == pieces
+    for part in (0.0, 0.13, 0.5, 0.87):
+        off = miss_inside(problem, held, known, theta + part * reach)
+        assert off.max() < 1.0
+
+
+def test_the_first_node_s_motion_serves_the_next_attempt():
+    """At a narrower patch from the same angle, after one that has met an edge."""
+    problem, known, held = problem_of("soft"), empty(), held_to(1e-7)
+    begun, chart = taking_off(problem, 1.3), plain(construction.chart)
+    solve = plain(construction.solve_cycle)
+    near, far = (
+        solve(problem, held, begun.memory, known, theta, 1.0, 10_000)[1] for theta in (1.3, 0.9)
+    )
+    longest = 0.5 * (near.time - near.held + far.time - far.held)
+    chart(problem, held, begun, known, 1.3, -0.4, longest)
+    assert known.sizes.tolist() == [0, 1, 0, 2, 0]
+    known.inside.missed[0] = 0.0  # as if a narrower patch were nearly known, which it is not
+    chart(problem, held, begun, known, 1.3, -0.1, longest)
+    assert known.sizes[:2].tolist() == [1, 1]
+    assert known.inside.shapes[0, 1] > 3
+    assert miss_inside(problem, held, known, 1.26).max() < 1.0
+
+
+def empty():
+    """Return a map with room for samples, where nothing can be read that was not written."""
+    known = map_of(1e-4, samples=True)
+    for each in known.inside:
+        if each.dtype.kind == "f":
+            each[:] = np.nan
+    return known
+
+
+def miss_inside(problem, held, known, theta):
+    """Return the samples of a slip by a patch less those by steps, over what they may miss."""
+    row, x = plain(interpolant.locate)(known, theta)
+    cycle = plain(interpolant.cycle_from)(known, row, x)
+    landing = 4.0 + cycle.time - cycle.held
+    times = np.linspace(4.0, landing, 9)[1:-1]
+    found, wanted = np.full((2, 7, 7), np.nan)
+    assert plain(inside.write_cycle)(known, row, x, 4.0, landing, times, found, 0) == 7
+    stick, state = Stick(3.9, 4.0, theta), taking_off(problem, 0.3, 1.0)
+    *_, k = plain(replay.sample_cycle)(
+        problem, state, stick, landing, held, times, wanted, 0, map_of(1e-4)
+    )
+    assert k == 7
+    assert not found[:, 6].any()
+    return np.abs(found - wanted)[:, :6] / known.inside.bound[:6]
+
+
+@pytest.mark.parametrize(("used", "duration"), [(0, 1.0), (4097, 1.0), (9, 0.0)])
+def test_no_motion_is_told_from_steps_that_were_not_kept(used, duration):
+    known = empty()
+    known.record.used[0] = used
+    known.inside.shapes[0] = 4, 0, 1, 0
+    window = inside.Window(0.0, duration)
+    assert plain(inside.resolved_pieces)(PROBLEM, EXACT, known, 0, window) == 0

@@ -137,12 +137,14 @@ def test_from_a_landing_to_the_angle_of_its_stick_and_back(name):
     assert stick.end == np.inf
 
 
-@pytest.mark.parametrize("name", ["soft", "damped"])
-@pytest.mark.parametrize("until", [0.6, 0.4])
-def test_strides_lead_to_the_same_sticks_as_steps(name, until):
-    """With samples along the way, at a fraction of the steps."""
+@pytest.mark.parametrize(
+    ("name", "until", "kept"),
+    [("soft", 0.6, 0), ("damped", 0.6, 0), ("soft", 0.4, 0), ("damped", 0.4, 0), ("soft", 0.4, 1)],
+)
+def test_strides_lead_to_the_same_sticks_as_steps(name, until, kept):
+    """With samples along the way, at a fraction of the steps; or by the motion that is kept."""
     problem, begun = soft(name), taking_off(soft(name), 1.0)
-    times, known = np.array([0.05, 0.25, 0.251, 0.255, 0.262, 0.37]), map_of(1e-6)
+    times, known = np.array([0.05, 0.25, 0.251, 0.255, 0.262, 0.37]), map_of(1e-6, kept)
     (code, state, k, _), sticks, samples = run(loop.stride, problem, begun, until, times, known)
     (_, wanted, _, _), exact, rows = run(
         exact_loop.advance, problem, begun, until, times, record_of(0)
