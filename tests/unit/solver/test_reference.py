@@ -214,6 +214,16 @@ def test_how_long_the_twin_takes_to_land(share):
     assert reference.landing(equations, 0.0, 0.5 * T, u, slip).end == 0.5 * T
 
 
+@pytest.mark.parametrize("rig", ["a grain", "stages", "all askew"])
+def test_the_twin_lands_as_its_slip_decelerates(rig):
+    """Of a rig that is not alike all around: r falls at the rate -ds/dt . e, until it is zero."""
+    equations, slip = reference.equations_of(RIGS[rig]), 1e-3 * np.array([0.6, -0.8])
+    u = np.array([1e-4, -2e-5])
+    a = equations.acceleration(equations.pull(u, slip), slip, equations.friction(0.0))
+    phase = reference.landing(equations, 0.2, 1.0, u, slip)
+    assert (slip + (phase.end - 0.2) * a) @ slip == pytest.approx(0.0, abs=1e-9 * slip @ slip)
+
+
 @ALONG
 @pytest.mark.parametrize("rig", RIGS)
 def test_the_twin_s_take_off_obeys_its_equation(rig, force):

@@ -8,9 +8,11 @@ from tests.systems import ELLIPSE, PROGRAM, SPRING, STEADY, problem_of
 
 import stiction as st
 from stiction.drive import VaryingLoad, VaryingVelocity
+from stiction.drive.recorded.spline import Recording, recording, spline
 from stiction.drive.signal import Signal
 from stiction.solver import segments
 from stiction.solver.problem import System
+from stiction.text.samples import FrozenColumn
 
 
 def test_a_steady_slider_is_one_segment():
@@ -57,6 +59,23 @@ def test_a_steady_drive_beside_a_load_that_varies_is_of_the_varying_type():
     assert drive.travel(0.1, 0.5) == pytest.approx((1e-3, 0.0))
     both = st.ConstantVelocity(2e-3), st.drive.ConstantLoad(10.0)
     assert segments.alike(*both) == both
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_a_recording_makes_recordings_of_the_others(first):
+    """Drive and load are of one type, with the same values."""
+    times = np.linspace(0.0, 1.0, 9)
+    rows = FrozenColumn(times), FrozenColumn(2e-3 + 1e-3 * times**2)
+    recorded = recording(spline(*rows, False), 0.0)
+    plain = Signal(0.0, 5.0, 1.0)
+    drive = VaryingVelocity(recorded if first else plain, Signal(0.0, 0.0))
+    load = VaryingLoad(plain if first else recorded)
+    along, force = segments.alike(drive, load)
+    assert isinstance(along.along, Recording)
+    assert isinstance(force.force, Recording)
+    for t in (0.1, 0.55):
+        assert along.rate(t) == pytest.approx(drive.rate(t))
+        assert force.at(t) == pytest.approx(load.at(t))
 
 
 def test_an_anisotropic_law_is_a_law_and_a_tensor():

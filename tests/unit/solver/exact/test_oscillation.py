@@ -1,6 +1,6 @@
 """The oscillation over which a step of slip is laid."""
 
-from math import cos, inf, pi, sqrt
+from math import cos, exp, factorial, inf, pi, sin, sqrt
 
 import numpy as np
 import pytest
@@ -19,6 +19,7 @@ from stiction.solver.exact.oscillation import (
     after,
     drift_of_level,
     oscillator,
+    propagator,
     swing,
     within_reach,
 )
@@ -63,6 +64,23 @@ def test_it_solves_its_equation(o, part):
     got = np.array(_after(o, t)) / [scale, scale * sqrt(o.k), scale * t]
     want = np.array([p, v, slid]) / [scale, scale * sqrt(o.k), scale * t]
     assert got == pytest.approx(want, abs=1e-12)
+
+
+@pytest.mark.parametrize("part", [0.25, 1.0])
+def test_the_series_of_a_quarter_of_the_longest_step(part):
+    """Of cosine and sine, to the first term that each leaves out; with a few roundings."""
+    square = part * MOST / 16.0
+    o, t = OSCILLATORS[2]._replace(beta=0.0), sqrt(square)
+    found = plain(propagator)(o, t)
+    rounding = 4 * np.finfo(float).eps
+    assert found[0] == pytest.approx(cos(t), abs=square**7 / factorial(14) + 0.5 * rounding)
+    assert found[1] == pytest.approx(sin(t), abs=t * square**7 / factorial(15) + 0.25 * rounding)
+    damped = o._replace(beta=STRONGEST)
+    decay = plain(propagator)(damped, t)[1] / plain(propagator)(o, t)[1]
+    shorter = sin(sqrt(1.0 - STRONGEST**2) * t) / sqrt(1.0 - STRONGEST**2) / sin(t)
+    assert decay == pytest.approx(
+        exp(-STRONGEST * t) * shorter, abs=(STRONGEST * t) ** 9 / factorial(9) + rounding
+    )
 
 
 @pytest.mark.parametrize("least", [-1e-3, 1e-3])

@@ -126,6 +126,20 @@ def test_where_the_edge_is():
     assert known.inside.ends[0] == pytest.approx([-1.625, -1.0])
 
 
+def test_the_edge_is_where_the_polynomial_vanishes_not_the_line_through_its_ends():
+    """Of (1.1 - x)(3 - x), in Newton's form."""
+    known, x = map_of(1e-6, samples=True), POINTS[:3]
+    squares = (1.1 - x) * (3.0 - x) * 1e-8
+    known.coefficients[0] = 0.0
+    known.patches[0, 2] = 3
+    slopes = np.diff(squares) / np.diff(x)
+    known.coefficients[0, :3, 2] = squares[0], slopes[0], (slopes[1] - slopes[0]) / (x[2] - x[0])
+    known.inside.ends[0] = np.sqrt([2.1 * 4.0 * 1e-8, 0.1 * 2.0 * 1e-8])
+    plain(inside.begin_at_edge)(known)
+    # in each iteration what is off falls by NUDGE over the distance of both zeros
+    assert known.inside.ends[0] == pytest.approx([1.1, 1.0], abs=1e-9)
+
+
 def test_bounds_of_errors():
     """Of the springs' forces a share of what friction can hold, of velocities one of the slip."""
     known = map_of(1e-6, samples=True)
@@ -161,6 +175,7 @@ def test_a_patch_knows_the_motion_inside_its_cycles(name, theta, reach, at_edge)
     assert (known.sizes[0], first, edge) == (1, 0, at_edge)
     assert 3 < nodes < 16
     assert known.inside.spans[PAST, 1] == pieces
+    assert np.isfinite(known.inside.points[: pieces * PHASES + pieces + 1, :7]).all()
     for part in (0.0, 0.13, 0.5, 0.87):
         off = miss_inside(problem, held, known, theta + part * reach)
         assert off.max() < 1.0
@@ -210,10 +225,13 @@ def miss_inside(problem, held, known, theta):
     return np.abs(found - wanted)[:, :6] / known.inside.bound[:6]
 
 
-@pytest.mark.parametrize(("used", "duration"), [(0, 1.0), (4097, 1.0), (9, 0.0)])
-def test_no_motion_is_told_from_steps_that_were_not_kept(used, duration):
+@pytest.mark.parametrize(
+    ("used", "duration", "pieces"), [(0, 1.0, 4), (4097, 1.0, 4), (9, 0.0, 4), (9, 1.0, 17)]
+)
+def test_no_motion_is_told_from_steps_that_were_not_kept(used, duration, pieces):
+    """Nor in more pieces than there is room for."""
     known = empty()
     known.record.used[0] = used
-    known.inside.shapes[0] = 4, 0, 1, 0
+    known.inside.shapes[0] = pieces, 0, 1, 0
     window = inside.Window(0.0, duration)
     assert plain(inside.resolved_pieces)(PROBLEM, EXACT, known, 0, window) == 0

@@ -203,6 +203,21 @@ def test_a_stride_stops_with_its_budget_or_room_and_goes_on():
     assert room.tolist() == table[:5].tolist()
 
 
+def test_the_balance_of_a_map():
+    """Each cycle that it finds saves what one costs without it, as whole numbers and quarters."""
+    problem, begun = soft("soft"), taking_off(soft("soft"), 1.0)
+    left, mapped = [], []
+    for saved in (7.0, 9.0):
+        known = map_of(1e-6)
+        known.balance[:] = 10_000.0, saved
+        (_, state, _, _), _, _ = run(loop.stride, problem, begun, 0.4, np.empty(0), known)
+        left.append(known.balance[0])
+        mapped.append(state[2][5])
+    assert mapped[0] == mapped[1] > 5
+    assert left[1] - left[0] == 2.0 * mapped[0]
+    assert left[0] - 7.0 * mapped[0] < 10_000.0
+
+
 def test_a_cycle_is_known_from_a_patch_or_from_the_past():
     known, cycle = map_of(1e-6), Cycle(0.01, 2.0, 0.5)
     found, _, _ = plain(loop.known_cycle)(known, 0.3, cycle)
