@@ -37,6 +37,25 @@ def test_a_first_guess_is_the_last_step_continued(warm):
         assert w.values[1:4, 2].tolist() == [9.0] * 3
 
 
+@pytest.mark.parametrize("k", range(3))
+@pytest.mark.parametrize("back", [True, False])
+def test_each_stage_is_at_rest_where_its_own_guess_turns_back(k, back):
+    """By the product with the slip at the start, (0.7, -1.4), of both components."""
+    w, x = plain(workspace)(1), 0.6
+    zeros = Polynomial.fromroots([1.0 + x * c for i, c in enumerate(C) if i != k])
+    there = 1.0 + x * C[k]
+    across = Polynomial([-1.0])
+    # at the stage k the product is -+0.1, at the others 1.4, as q_x is zero there
+    along = zeros * ((-0.1 if back else 0.1) - 1.4) / 0.7 / zeros(there)
+    w.past[:] = np.transpose([along(NODES), across(NODES), np.ones(4)])
+    w.values[START] = 0.7, -1.4, 9.0
+    q_x, q_y = plain(step.predict)(w, 0.7, -1.4, x, True)
+    wanted = [-1.0] * 3
+    wanted[k] = 0.0 if back else -1.0
+    assert q_y == pytest.approx(wanted)
+    assert q_x[k] == pytest.approx(0.0 if back else along(there))
+
+
 def test_the_last_step_is_remembered_in_the_slip_coordinate():
     w, eps = plain(workspace)(1), 1e-9
     past = np.array([[3e-6, 4e-6, 1.0], [0.0, 0.0, 2.0], [1e-3, 0.0, 3.0], [0.0, -1e-3, 4.0]])
