@@ -87,8 +87,11 @@ def test_the_defaults_have_no_static_coefficient_and_no_viscous_friction():
         st.laws.HyperbolicWeakening(0.2, 0.01),
         st.laws.Stribeck(0.2, 0.1, 0.01),
         st.laws.Table(v=[0.0, 1.0], mu=[0.2, 0.1]),
+        st.laws.TwoExponentials(0.1, 0.05, 0.01, 0.05, 0.1),
     ):
         assert law.mu_static == 0.0
+    bristles = st.laws.LuGreHyperbolic(0.2, 0.01, 1e5, 300.0)
+    assert (bristles.sigma_2, bristles.settled(0.5)) == (0.0, (0.0, 0.0))
     assert (st.laws.Stribeck(0.2, 0.1, 0.01).d, st.laws.Stribeck(0.2, 0.1, 0.01).c) == (2.0, 0.0)
     assert LUGRE._replace(sigma_2=0.0) == st.laws.LuGre(*LUGRE[:5])
     assert st.laws.Anisotropic(st.Coulomb(0.2), 1.5).angle == 0.0
@@ -330,5 +333,6 @@ def test_derivatives_at_zero_slip():
 
 def test_bristles_of_a_law_like_another_are_damped_critically_for_a_unit_mass():
     """LuGre's own numbers: sigma_1 = sqrt(sigma_0)."""
-    law = LuGreHyperbolic.like(0.3, 0.2, 0.01)
-    assert law.sigma_1 == pytest.approx(law.sigma_0**0.5)
+    for kind in (LuGreHyperbolic, st.laws.LuGre):
+        law = kind.like(0.3, 0.2, 0.01)
+        assert law.sigma_1 == pytest.approx(law.sigma_0**0.5)

@@ -67,6 +67,8 @@ def test_how_far_a_patch_is_tried(way):
     assert reach(known, theta, turn) == pytest.approx(way * 0.076)
     known.patches[0, 0] = theta + way * 0.074
     assert reach(known, theta, turn) == pytest.approx(way * 0.25)
+    known.edges[0] = theta  # at an edge itself there is nowhere to go
+    assert reach(known, theta, turn) == 0.0
 
 
 def test_a_patch_pays_if_it_is_good_for_eight_cycles():

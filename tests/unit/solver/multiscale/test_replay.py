@@ -14,7 +14,7 @@ from tests.unit.solver.multiscale.test_construction import (
 from stiction.solver.exact import loop
 from stiction.solver.exact.record import record_of
 from stiction.solver.multiscale import replay
-from stiction.solver.multiscale.return_map import Stick
+from stiction.solver.multiscale.return_map import NEAR, Stick
 from stiction.solver.state import COMPLETED, Counts, State
 
 COUNTS = Counts(7, 1, 20, 3, 0.5, 2)
@@ -66,3 +66,15 @@ def test_without_samples_of_the_slip_no_steps_are_taken(after):
     assert (code, found, k) == (COMPLETED, state, 1)
     assert samples[0, 6] == 1.0
     assert np.isnan(samples[1]).all()
+
+
+def test_which_remembered_cycle_tells_the_motion_of_another():
+    """One whose steps are kept, from an angle that differs by a patch's error at most."""
+    known, alike = map_of(1e-6, samples=True), plain(replay.alike)
+    known.past[:2, 0], known.inside.spans[:2] = THETA, [[0, 3], [3, 0]]
+    assert alike(known, 0, THETA)
+    for way in (1.0, -1.0):
+        assert alike(known, 0, THETA + 0.9 * way * NEAR * known.closing)
+        assert not alike(known, 0, THETA + 1.1 * way * NEAR * known.closing)
+    assert not alike(known, 1, THETA)
+    assert not alike(known, -1, THETA)
