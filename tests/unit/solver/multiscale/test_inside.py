@@ -140,6 +140,19 @@ def test_the_edge_is_where_the_polynomial_vanishes_not_the_line_through_its_ends
     assert known.inside.ends[0] == pytest.approx([1.1, 1.0], abs=1e-9)
 
 
+@pytest.mark.parametrize("p", range(3))
+@pytest.mark.parametrize("c", [0, COLUMNS - 2])
+def test_the_error_of_pieces_at_their_ends(p, c):
+    """What a piece's polynomial misses there, over the bound of its column."""
+    known, pieces = empty(), 2
+    known.inside.points[: pieces * PHASES + pieces + 1] = 1.0  # constant polynomials
+    known.inside.bound[:] = 2.0
+    error = plain(inside.error_of_phases)
+    assert error(known.inside, pieces) == pytest.approx(0.0, abs=1e-14)
+    known.inside.points[pieces * PHASES + p, c] = 0.5
+    assert error(known.inside, pieces) == pytest.approx(0.25, rel=1e-13)
+
+
 def test_bounds_of_errors():
     """Of the springs' forces a share of what friction can hold, of velocities one of the slip."""
     known = map_of(1e-6, samples=True)
