@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from math import inf, pi
+from operator import itemgetter
 from typing import Annotated, Any, Self, TypeGuard
 
 import numpy as np
@@ -260,6 +262,10 @@ def pick(stretches: Sequence[tuple[float, Any]], t: Times, value: Any) -> tuple[
     ``value(stretch, times, start)`` computes them; `start` is the beginning of the stretch.
     """
     times = np.asarray(t, dtype=np.float64)
+    if times.ndim == 0:  # which a run asks for some times in each stretch
+        i = bisect_left(stretches, times, key=itemgetter(0))
+        start = stretches[i - 1][0] if i > 0 else 0.0
+        return tuple(np.float64(x) for x in value(stretches[i][1], times[()], start))
     ends = np.array([end for end, _ in stretches])
     which = np.searchsorted(ends, times.ravel(), side="left")
     order = np.argsort(which, kind="stable")
