@@ -80,3 +80,22 @@ def test_what_each_step_is_held_to():
     assert finer.step_accuracy(shaken) == shaken._replace(speed=2e-6)
     assert finer.step_accuracy(shaken._replace(speed=1e-9)).speed == SPEED_SHARE * 1e-9
     assert held.longest == inf
+
+
+def test_a_mass_that_a_smoothed_law_holds_takes_long_steps():
+    """After the rapid slip of Fig. 3; guesses out of reach made 168 000 steps of this millisecond.
+
+    Friction's rate is F/(m delta) = 8e9 per second, but the motion takes 2 ms for a change.
+    """
+    start = st.Initial(
+        u_x=1.1737194423e-3,
+        u_y=9.120939145e-8,
+        v_x=9.998468508882e-4,
+        v_y=1.745174698190713e-05,
+        time=2.095705986,
+    )
+    slider = st.presets.nakano_popov_2020()
+    run = st.simulate(
+        slider, 1e-3, initial=start, sample_rate=0, rtol=1e-3, regularisation=1e-9, max_steps=1000
+    )
+    assert run.status.ok
