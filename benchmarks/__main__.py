@@ -17,6 +17,7 @@ PARTS = {
     "precision": "precision.diagram",
     "multiscale": "speed.multiscale",
     "ensembles": "ensembles.comparison",
+    "state-laws": "state_laws.comparison",
     "verification": "accuracy.verification",
     "calibration": "accuracy.calibration",
     "conservation": "accuracy.conservation",

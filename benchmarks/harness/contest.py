@@ -29,6 +29,7 @@ def contest(
     repeats: int,
     budget: float,
     seconds: float,
+    chosen: Callable[[str], bool] = lambda settings: True,
 ) -> list[Row]:
     """Return the rows of all libraries, with errors and times or with what went wrong.
 
@@ -48,6 +49,8 @@ def contest(
         A row whose runs have taken this many seconds in all sits out the later rounds.
     seconds : float
         What all of it may take: rows are left out, and rounds, when the time is up.
+    chosen : callable, optional
+        Whether rows with these settings take part; by default all.
     """
     task = progress.add_task("imports", total=len(libraries))
     started: list[list[tuple[str, str]]] = []
@@ -72,6 +75,9 @@ def contest(
         share = (ready - perf_counter()) / (len(libraries) - i if i else 1)
         until = perf_counter() + share
         for number, (solver, settings) in enumerate(own):
+            progress.advance(task)
+            if not chosen(settings):
+                continue
             row = Row(solver, settings, note="left out: the time was up")
             if perf_counter() < until:
                 library.limit = min(library.limit, max(LEAST, until - perf_counter()))
@@ -79,7 +85,6 @@ def contest(
             if row.times and row.seconds < SLOW:
                 measures[len(rows)] = timer(library, number, times[-1])
             rows.append(row)
-            progress.advance(task)
     task = progress.add_task("timing, in rounds", total=repeats * len(measures))
     timed = round_robin(
         list(measures.values()),

@@ -48,6 +48,7 @@ class Library:
     def start(self) -> None:
         """Start the process; what it says first is not waited for."""
         self.ready: set[tuple[int, int]] = set()  # what is compiled, by row and points
+        self.known: list[tuple[str, str]] | None = None
         path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
         with contextlib.suppress(FileNotFoundError):  # no such interpreter: nothing installed
             self.process = subprocess.Popen(
@@ -61,13 +62,15 @@ class Library:
             )
 
     def rows(self) -> list[tuple[str, str]]:
-        """Return solver and settings of each row.
+        """Return solver and settings of each row; several contests may ask.
 
         Raises
         ------
         Failed
             If it is not installed or does not start.
         """
+        if self.known is not None:
+            return self.known
         if self.process is None:
             raise Failed(f"not installed: there is no {self.interpreter}")
         answer = self._answer(START)
@@ -75,7 +78,8 @@ class Library:
             raise Failed(f"not installed: {answer['missing']}")
         if "failed" in answer:
             raise Failed(f"does not start: {answer['failed']}")
-        return [(solver, settings) for solver, settings in answer["rows"]]
+        self.known = [(solver, settings) for solver, settings in answer["rows"]]
+        return self.known
 
     def solve(self, row: int, duration: float, points: int) -> tuple[float, NDArray[np.float64]]:
         """Return the time a row takes (s) and its elongations; raise `Failed`."""
