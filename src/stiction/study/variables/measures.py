@@ -62,7 +62,9 @@ MEASURES: dict[str, Measure] = {
         "1", "share of a cycle in which the force rises", lambda run: _mean(run.cycles.rise_share)
     ),
     "peak_velocity": Measure(
-        "m/s", "largest velocity of the mass along X", lambda run: run.features.peak_velocity
+        "m/s",
+        "largest velocity of the mass along X in its slow motion: fast swings lie between samples",
+        lambda run: run.features.peak_velocity,
     ),
     "first_slip_time": Measure(
         "s",
