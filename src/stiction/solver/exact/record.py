@@ -96,15 +96,32 @@ def slip_within(row: np.ndarray, dt: float) -> tuple[float, float, float, float]
 
     It is the collocation polynomial, laid over the oscillation.
     """
-    x, h = dt / row[SIZE], row[SIZE]
     rest = row[REST], row[REST + 1], row[REST + 2]
     across = row[PRODUCTS], row[PRODUCTS + 1], row[PRODUCTS + 2]
-    way = 0.0, row[TURN], row[TURN + 1], row[TURN + 2]
-    p, slid = row[3], 0.0
-    if row[KIND] == SWUNG:
-        o = Oscillator(row[8], row[9], row[10], row[11], row[12], row[13], row[14])
+    turn = row[TURN], row[TURN + 1], row[TURN + 2]
+    o = Oscillator(row[8], row[9], row[10], row[11], row[12], row[13], row[14])
+    return on_polynomial(row[3], row[SIZE], row[KIND] == SWUNG, o, rest, turn, across, dt)
+
+
+@inlined
+def on_polynomial(
+    r: float,
+    h: float,
+    swung: bool,
+    o: Oscillator,
+    rest: Triple,
+    turn: Triple,
+    across: Triple,
+    dt: float,
+) -> tuple[float, float, float, float]:
+    """Return the same of a step of size `h` from the slip `r`, given its stages.
+
+    `rest` is p at the stages less the oscillation that it is laid over, if it is; `turn` is w, and
+    `across` p w.
+    """
+    x, p, slid = dt / h, cubic((r, rest[0], rest[1], rest[2]), dt / h), 0.0
+    if swung:
         under, _, slid = after(o, dt)
         p = under + cubic((0.0, rest[0], rest[1], rest[2]), x)
-    else:
-        p = cubic((row[3], rest[0], rest[1], rest[2]), x)
-    return slid + h * integral(rest, x), h * integral(across, x), max(p, 0.0), cubic(way, x)
+    way = cubic((0.0, turn[0], turn[1], turn[2]), x)
+    return slid + h * integral(rest, x), h * integral(across, x), max(p, 0.0), way

@@ -21,7 +21,6 @@ from stiction.solver.exact.error_estimate import moving
 from stiction.solver.exact.newton import products, solve
 from stiction.solver.exact.oscillation import (
     NO_LANDING,
-    Oscillator,
     Swing,
     after,
     oscillator,
@@ -29,9 +28,10 @@ from stiction.solver.exact.oscillation import (
     swing,
     swings,
 )
+from stiction.solver.exact.record import on_polynomial
 from stiction.solver.exact.slip_frame import Frame, Outset, elongation, friction
 from stiction.solver.problem import Problem, in_principal_axes, travel
-from stiction.solver.radau import A, C, cubic, integral
+from stiction.solver.radau import A, C, cubic
 from stiction.solver.state import Accuracy, Motion
 from stiction.solver.stick import holding
 from stiction.solver.surface import Tensor, friction_along, speed_ratio
@@ -55,14 +55,14 @@ def within(
     """Return the distance slipped after `dt` along and across the step, and p and w then."""
     if dt <= 0.0:
         return 0.0, 0.0, frame.r, 0.0
-    o, x = oscillator(frame, start), dt / h
+    if dt == h:
+        return end_of_step(h, laid, p, w)
+    o, x, rest, across = oscillator(frame, start), dt / h, less(p, laid.p), products(p, w)
+    if accuracy.inside >= accuracy.tolerance:
+        return on_polynomial(frame.r, h, swings(o, h), o, rest, w, across, dt)
+    way = 0.0, w[0], w[1], w[2]
     # in a step longer than an oscillation nothing swings, nor does it in a part of that step
     s = swing(o, dt, NO_LANDING) if swings(o, h) else still()
-    if dt == h:
-        return end_of_step(h, s, p, w)
-    if accuracy.inside >= accuracy.tolerance:
-        return on_polynomial(frame, o, laid, h, p, w, dt)
-    rest, way = less(p, laid.p), (0.0, w[0], w[1], w[2])
     if swings(o, h) and swings(o, dt):
         q = (
             s.p[0] + on_cubic(0.0, rest, C[0] * x),
@@ -85,21 +85,7 @@ def within(
     found, s, q, turn, _, _ = solve(problem, frame, o, s, dt, NO_LANDING, q, turn, accuracy, motion)
     if found and min(q) >= 0.0:
         return end_of_step(dt, s, q, turn)
-    return on_polynomial(frame, o, laid, h, p, w, dt)
-
-
-@inlined
-def on_polynomial(
-    frame: Frame, o: Oscillator, laid: Swing, h: float, p: Triple, w: Triple, dt: float
-) -> tuple[float, float, float, float]:
-    """Return the same by the step's polynomial, laid over the oscillation."""
-    x, rest, way = dt / h, less(p, laid.p), (0.0, w[0], w[1], w[2])
-    slid, along = 0.0, on_cubic(frame.r, rest, x)
-    if swings(o, h):
-        under, _, slid = after(o, dt)
-        along = under + on_cubic(0.0, rest, x)
-    slid_1, slid_2 = slid + h * integral(rest, x), h * integral(products(p, w), x)
-    return slid_1, slid_2, max(along, 0.0), cubic(way, x)
+    return on_polynomial(frame.r, h, swings(o, h), o, rest, w, across, dt)
 
 
 @inlined

@@ -9,7 +9,7 @@ from tests.systems import SLIDERS, Printed, motion_of, problem_of
 from tests.unit.solver.exact.test_collocation import A, begin
 from tests.unit.solver.exact.test_newton import SLIDES, held_to
 
-from stiction.solver.exact import error_estimate, newton, oscillation, sampling, slip_frame
+from stiction.solver.exact import error_estimate, newton, oscillation, record, sampling, slip_frame
 
 ALL = pytest.mark.parametrize(("name", "drawn"), [(n, d) for n in SLIDERS for d in SLIDES])
 EXACT = held_to(1e-13)._replace(speed=1e-6, square_x=1e-3, square_y=1e-3)
@@ -68,7 +68,9 @@ def test_where_that_is_accurate_enough_the_polynomial_is_taken(name, drawn, size
     arguments = problem, frame, start, swing, h, p, w
     for part in (0.2, 0.7):
         found = plain(sampling.within)(*arguments, part * h, coarse, 1.0)
-        assert found == plain(sampling.on_polynomial)(frame, o, swing, h, p, w, part * h)
+        rest, across = np.subtract(p, swing.p), np.multiply(p, w)
+        swung = plain(oscillation.swings)(o, h)
+        assert found == plain(record.on_polynomial)(frame.r, h, swung, o, rest, w, across, part * h)
         assert found == pytest.approx(
             plain(sampling.within)(*arguments, part * h, EXACT, 1.0), rel=1e-3, abs=1e-5
         )
