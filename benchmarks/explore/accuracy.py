@@ -15,7 +15,8 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from benchmarks.explore.deviation import FINER, FINEST, deviation, forces, response
-from benchmarks.explore.systems import system
+from benchmarks.explore.systems.set_valued import system
+from benchmarks.explore.systems.with_state import state_system
 from benchmarks.section import Section, Table
 from stiction.solver.integrate import tolerance
 from stiction.solver.multiscale.return_map import STEP_SHARE
@@ -28,6 +29,7 @@ MODES: tuple[bool | Literal["auto"], ...] = (False, "auto", True)
 # Of the response: by so much a reference may change with a tenth of its tolerance. That of a system
 # which is not chaotic changes by the bound times `FINER` at most, 0.03
 KNOWN = 0.1
+DRAWN = {"set-valued": system, "state": state_system}  # which laws, and what draws a system
 SHARES = (0.5, 0.9, 0.99, 0.999, 1.0)
 WORST = 10
 CHAOTIC = "chaotic: the reference changes with its own tolerance as much as the response is"
@@ -49,9 +51,9 @@ class Seen(NamedTuple):
     left_out: str
 
 
-def look(seed: int, number: int, longer: float = 1.0) -> Seen:
+def look(seed: int, number: int, longer: float = 1.0, laws: str = "set-valued") -> Seen:
     """Run one system in all modes, and as it would be if it were a little other."""
-    slider, duration, rtol = system(seed, number)
+    slider, duration, rtol = DRAWN[laws](seed, number)
     duration *= longer
     finer = max(FINER * rtol, FINEST)
     sharp, reference = forces(slider, duration, finer)

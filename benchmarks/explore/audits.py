@@ -18,8 +18,8 @@ from typing import Any, NamedTuple
 
 import stiction as st
 from benchmarks.explore.draw import Draw
-from benchmarks.explore.systems import LAWS as PLAIN
-from benchmarks.explore.systems import named_law
+from benchmarks.explore.systems.set_valued import LAWS as PLAIN
+from benchmarks.explore.systems.set_valued import named_law
 from stiction.auditing import Audit
 from stiction.auditing.page import page
 from stiction.auditing.simulated_test import OSCILLATES, SLIDES

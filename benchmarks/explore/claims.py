@@ -19,7 +19,7 @@ from scipy.linalg import expm
 
 import stiction as st
 from benchmarks.explore.draw import Draw
-from benchmarks.explore.systems import System, system
+from benchmarks.explore.systems.set_valued import System, system
 from stiction.solver.integrate import tolerance
 
 SAMPLES = 5  # of a run

@@ -18,7 +18,7 @@ sys.path.append(str(Path(__file__).parent.parent.parent))
 
 import stiction as st
 from benchmarks.explore.draw import Draw
-from benchmarks.explore.systems import system
+from benchmarks.explore.systems.set_valued import system
 
 SEED = 5
 MOST = 50_000  # steps of a run

@@ -4,9 +4,13 @@ Both bounds held on all but one of 30 000 of them, number 26943, and hold on tha
 are of the two laws that other tests compile as well.
 """
 
+import numpy as np
 import pytest
 from benchmarks.explore import accuracy
 from benchmarks.explore.accuracy import BOUNDS, CHAOTIC, look
+
+import stiction as st
+from stiction.presets.preset import on_a_line
 
 SEED = 1
 ANY = (0, 1, 3, 4, 5, 7, 10, 12, 14, 16, 18, 21, 22, 27, 28, 29, 32, 36, 41, 42, 45, 47, 55, 58)
@@ -62,3 +66,63 @@ def test_a_system_above_a_bound_counts_if_its_reference_is_known(known, left_out
     monkeypatch.setattr(accuracy, "KNOWN", known)
     monkeypatch.setitem(BOUNDS, "in steps", 0.0)
     assert look(SEED, 7).left_out == left_out
+
+
+@pytest.mark.parametrize("number", [2711, 1501, 2208, 2408, 2300, 292, 2324, 1585])
+def test_laws_with_state_keep_the_bound_too(number):
+    """The worst of two laws among 3000: in the plane, and on a line where slip turns back."""
+    seen = look(SEED, number, laws="state")
+    assert not seen.left_out
+    assert seen.off[0] < BOUNDS["in steps"]
+
+
+BRISTLES = st.laws.LuGre(0.3, 0.4, "0.3 mm/s", 3.7e5, 50.0, 3.6)
+
+
+def stick_slip(law, **changes):
+    """Return stick-slip along a line, of a mass of 17 g under 0.13 N that a soft spring pulls."""
+    drive = st.ConstantVelocity("95 um/s")
+    common = {"mass": "17 g", "k_x": 6.13, "normal_load": 0.127, "drive": drive}
+    return on_a_line(friction=law, driven="spring", **(common | changes))
+
+
+def test_slip_that_turns_back_costs_no_order():
+    """The error of a law with a kink at rest goes as rtol; a step across it has that of tol.
+
+    LuGre's published bristles ring under a stiff spring: their slip turns back many times.
+    """
+    law = st.laws.LuGre(1.0, 1.5, "1 mm/s", 1e5, 316.0, 0.4)
+    pulled = {"mass": 1.0, "k_x": 1e3, "normal_load": 1.0, "drive": st.ConstantVelocity("10 mm/s")}
+    slider = stick_slip(law, **pulled)
+
+    def force(rtol):
+        return st.simulate(slider, 1.0, sample_rate=200.0, rtol=rtol).data["spring_x"].values
+
+    exact = force(1e-13)
+    coarse, fine = (abs(force(rtol) - exact).max() for rtol in (1e-6, 1e-9))
+    assert fine < coarse / 100.0
+
+
+@pytest.mark.parametrize("rtol", [1e-2, 3e-3, 1e-3])
+def test_no_step_creeps_through_a_slip(rtol):
+    """Friction holds mu_s W and what bristles resist beside it, at any tolerance."""
+    run = st.simulate(stick_slip(BRISTLES), 355.0, sample_rate=1.0, rtol=rtol)
+    assert 0.9 * 0.4 * 0.127 < run.data["spring_x"].values.max() < 1.1 * 0.4 * 0.127
+
+
+@pytest.mark.parametrize("rtol", np.geomspace(3e-4, 3e-5, 11))
+def test_a_layer_at_the_start_is_resolved(rtol):
+    """Contacts that are far from sliding stop the paper's start, a millionth of the drive, at once.
+
+    The layer lasts 1e-20 s; steps that fell by a fifth at a time did not get there.
+    """
+    slider = st.Slider(
+        mass=0.106,
+        k_x=5.78e3,
+        k_y=9.35e4,
+        phi="1 deg",
+        normal_load=10.3,
+        friction=st.laws.RateStateAgeing(0.0048, 0.0109, "7.74 um", 0.358, "4.34 um/s"),
+        drive=st.ConstantVelocity("0.279 um/s"),
+    )
+    assert st.simulate(slider, 1.0, sample_rate=0, rtol=rtol).status.ok

@@ -8,7 +8,7 @@ import numpy as np
 
 import stiction as st
 from benchmarks.explore.draw import Draw
-from benchmarks.explore.systems import LAWS, System, damping, named_law
+from benchmarks.explore.systems.set_valued import LAWS, System, damping, named_law
 
 PERIODS = (3.0, 12.0)  # of the faster oscillation, from the end of the first stick on
 

@@ -160,7 +160,7 @@ def slip(
         plan,
         1 if turns_up(r, p) else memory.place + 1,
         h,
-        min(at_ease, 3.0),
+        at_ease,
         not landing,
         (r, p[0], p[1], p[2]),
         (0.0, w[0], w[1], w[2]),

@@ -24,6 +24,7 @@ from stiction.solver.smooth.right_hand_side import (
     evaluate,
     inertia_share,
     pull,
+    slowest,
 )
 from stiction.solver.smooth.workspace import INSIDE, START, WANTED, Workspace
 from stiction.solver.state import Accuracy
@@ -129,7 +130,7 @@ def balance(
         if eps < inf:
             slope, friction = (at.s_xx, at.s_xy, at.s_yy), (at.f_xx, at.f_xy, at.f_yy)
             share = inertia_share(problem, g, 1.0, (q_x, q_y), slope, friction)
-        q_x, q_y, _, size = correct(start, share, start.unit, q_x, q_y, d_x, d_y)
+        q_x, q_y, _, size = correct(start, share, w.size[0], q_x, q_y, d_x, d_y)
         if n > 2:
             size = larger(correct_states_inside(d_x, d_y, w), size)
         if not size < 1e100:
@@ -154,7 +155,7 @@ def local_error(
         return inf
     e_x, e_y = p.s_x - at.s_x, p.s_y - at.s_y
     w.error[0], w.error[1] = e_x, e_y
-    speed = accuracy.speed + sqrt(at.s_x * at.s_x + at.s_y * at.s_y)
+    speed = slowest(h, w, accuracy.speed) + sqrt(at.s_x * at.s_x + at.s_y * at.s_y)
     error = sqrt(e_x * e_x + e_y * e_y) / speed
     for k in range(2, w.size.shape[0]):
         w.error[k] = w.cubic[0, k] - w.values[INSIDE, k]

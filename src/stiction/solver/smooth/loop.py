@@ -8,7 +8,7 @@ import numpy as np
 
 from stiction.solver.block_algebra import dot
 from stiction.solver.compilation.jit import compiled, inlined
-from stiction.solver.control import GROWTH, step_factor
+from stiction.solver.control import GROWTH, ease, step_factor, trend
 from stiction.solver.problem import Problem, in_principal_axes, smooth_until, travel
 from stiction.solver.radau import A
 from stiction.solver.smooth.coordinate import coordinate
@@ -45,7 +45,8 @@ def begin(
     grain = grain_of(problem.law, w.values, START)
     w.size[0] = w.size[1] = min(grain, speed)
     eps = grain if len(z) > 0 and grain < COARSEST * speed else inf
-    unit = min(grain, speed) if eps == inf else min(1.0, speed / eps)
+    bend = 0.0 if len(z) > 0 else min(grain, speed)
+    unit = bend if eps == inf else min(1.0, speed / eps)
     q_x, q_y = coordinate(eps, s_x, s_y)
     start = SmoothOutset(t, u_x, u_y, eps, unit, 1.0)
     acting = pull(problem, start, 0.0)
@@ -109,6 +110,7 @@ def advance(
     z = internal.copy()
     past = memory.past.copy()
     h, h_last, warm = min(memory.h, accuracy.longest), memory.h_last, memory.warm
+    before = memory.ease
     w, inner = workspace(len(z)), workspace(len(z))
     code, turns = RUNNING, 0
     while turns < budget:
@@ -133,10 +135,15 @@ def advance(
         end = smooth if start.t + taken >= smooth else start.t + taken
         motion = motion_at_end(problem, start, taken, end, w)
         keep(w, z, past)
-        following = taken * step_factor(error, GROWTH if rejected == 0 else 1.0)
-        cut = end == smooth and taken < CUT * h  # its cubics do not reach across the next step
+        factor = step_factor(error, GROWTH if rejected == 0 else 1.0)
+        at_ease, short = ease(error), taken < CUT * h
+        if warm and not short:  # the errors of a step that was cut short show no trend
+            factor = min(factor, trend(taken, h_last, at_ease, before))
+        following, before = taken * factor, at_ease
+        cut = end == smooth and short  # its cubics do not reach across the next step
         h = min(max(h, following) if end == smooth else following, accuracy.longest)
         h_last, warm = taken, end < t_end and not cut
     if motion.t >= t_end:
         code = COMPLETED
-    return code, SmoothState(motion, z, SmoothMemory(h, h_last, warm, past), counts), k, turns
+    memory = SmoothMemory(h, h_last, before, warm, past)
+    return code, SmoothState(motion, z, memory, counts), k, turns

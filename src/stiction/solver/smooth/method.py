@@ -19,8 +19,8 @@ from stiction.solver.state import NOTHING, Accuracy, Output, first_step
 from stiction.system.description import Description
 from stiction.system.slider import Slider
 
-# of the slip speed below which that of set-valued friction is not resolved: states remember slower
-# slip. LuGre's published case comes out 600 times better for 14 % more steps.
+# of the slip speed below which that of set-valued friction is not resolved: rate and state is three
+# times as accurate for a tenth more steps
 SPEED_SHARE = 0.03
 
 
@@ -43,7 +43,7 @@ class Smooth:
         motion = SmoothMotion(initial.time, *u, *slip)
         internal = np.array(initial.internal(slider), dtype=np.float64)
         h = self.first_step = first_step(system_of(slider))
-        memory = SmoothMemory(h, h, False, np.zeros((4, 2 + self.states)))
+        memory = SmoothMemory(h, h, 1.0, False, np.zeros((4, 2 + self.states)))
         return SmoothState(motion, internal, memory, NOTHING)
 
     def enter_segment(self, state: SmoothState, x: float, y: float) -> SmoothState:

@@ -25,6 +25,7 @@ from stiction.solver.smooth.right_hand_side import (
     evaluate,
     inertia_share,
     pull,
+    slowest,
 )
 from stiction.solver.smooth.workspace import FIRST, LAST, SECOND, START, WANTED, Workspace
 from stiction.solver.state import Accuracy
@@ -201,7 +202,7 @@ def solve(
     squares the relative error, hence the test on the square of the first correction.
     """
     system, eps, states = problem.system, start.eps, w.size.shape[0] > 2
-    speed = accuracy.speed
+    speed = slowest(h, w, accuracy.speed)
     s_x, s_y = w.values[START, 0], w.values[START, 1]
     pulls = (
         pull(problem, start, C[0] * h),

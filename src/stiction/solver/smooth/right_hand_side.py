@@ -32,7 +32,8 @@ NOTICED = 0.01  # change of the friction coefficient that sets the scale of a st
 class SmoothOutset(NamedTuple):
     """A step's start: time (s), elongation (m), the speed eps of the slip coordinate (m/s).
 
-    Then the unit of q where q is smaller than 1, and the share of the slip speed to which errors
+    Then `unit`, the q below which friction is linear in it: 0 if it is the slip velocity and there
+    are states, whose rates have a kink at rest. Last the share of the slip speed to which errors
     are relative: less than 1 where the motion about steady sliding is slower.
     """
 
@@ -185,6 +186,21 @@ def moving(problem: Problem, t: float, p: Pull, at_start: Point, accuracy: Accur
     x, y = v_x - s_x, v_y - s_y
     square = by_x * by_x * accuracy.square_x + by_y * by_y * accuracy.square_y
     return max(sqrt(x * x + y * y + square), accuracy.least)
+
+
+@inlined
+def slowest(h: float, w: Workspace, speed: float) -> float:
+    """Return the slip speed (m/s) that counts in a step of `h`, at most `speed` (M70a).
+
+    By slipping as fast, over the step or as long as it remembers, a state changes by its scale.
+    """
+    for k in range(2, w.size.shape[0]):
+        of = w.jacobian[START, k]
+        change = h * sqrt(of[0] * of[0] + of[1] * of[1])
+        noticed = w.size[k] * (1.0 + h * abs(of[k]))
+        if change * speed > noticed:
+            speed = noticed / change
+    return speed
 
 
 @inlined

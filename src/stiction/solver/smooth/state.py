@@ -22,12 +22,14 @@ class SmoothMotion(NamedTuple):
 class SmoothMemory(NamedTuple):
     """Information of the last step for the next one.
 
-    h : size to try next, s; h_last : size of the last step; warm : whether `past`, slip
+    h : size to try next, s; h_last : size of the last step; ease : its error over
+    tolerance, to the power -1/4; warm : whether `past`, slip
     velocities and internal states at its start and stages (4, 2 + n), predicts the next.
     """
 
     h: float
     h_last: float
+    ease: float
     warm: bool
     past: np.ndarray
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import inf, sqrt
+
 import numpy as np
 
 from stiction.solver.block_algebra import Triple
@@ -13,10 +15,14 @@ from stiction.solver.smooth.coordinate import coordinate
 from stiction.solver.smooth.error_estimate import local_error
 from stiction.solver.smooth.newton import solve
 from stiction.solver.smooth.right_hand_side import SmoothOutset
-from stiction.solver.smooth.workspace import START, Workspace
+from stiction.solver.smooth.workspace import LAST, START, Workspace
 from stiction.solver.state import Accuracy
 
 HELD = 2.0  # of delta: slower slip follows the force
+LANDINGS = 3  # tries to end a step where slip turns back
+NEAR = 0.1  # of the speed at either end: slip that turns back passes rest as closely as that
+HALVINGS = 40  # until that place in the step is known
+STUBBORN, SHORTENED = 0.5, 0.2  # an error not less than so much of the last one; size over size
 
 
 @inlined
@@ -76,6 +82,36 @@ def resting(w: Workspace, q_x: float, q_y: float) -> bool:
 
 
 @inlined
+def turn_back(w: Workspace, accuracy: Accuracy) -> float:
+    """Return where in the step slip turns back through rest; 1 if it does not, at the end.
+
+    The rate of a state has a kink there, in |s|, and a step across it the error of a lower order.
+    """
+    v = w.values
+    x0, x1, x2, x3 = v[START, 0], v[1, 0], v[2, 0], v[LAST, 0]
+    y0, y1, y2, y3 = v[START, 1], v[1, 1], v[2, 1], v[LAST, 1]
+    before, after = sqrt(x0 * x0 + y0 * y0), sqrt(x3 * x3 + y3 * y3)
+    rest = accuracy.tolerance * (before + after + accuracy.speed)
+    if w.size.shape[0] == 2 or before < rest or not x0 * x3 + y0 * y3 < -rest * before:
+        return 1.0
+    along = (
+        x0 * x0 + y0 * y0,
+        x0 * x1 + y0 * y1,
+        x0 * x2 + y0 * y2,
+        x0 * x3 + y0 * y3,
+    )
+    low, high = 0.0, 1.0
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        if cubic(along, middle) > 0.0:
+            low = middle
+        else:
+            high = middle
+    x, y = cubic((x0, x1, x2, x3), high), cubic((y0, y1, y2, y3), high)
+    return high if sqrt(x * x + y * y) < NEAR * max(before, after) else 1.0
+
+
+@inlined
 def step(
     problem: Problem,
     start: SmoothOutset,
@@ -89,7 +125,8 @@ def step(
     accuracy: Accuracy,
 ) -> tuple[bool, float, float, int, int]:
     """Take one step; return (done, h, error over tolerance, rejected, iterations)."""
-    rejected = iterations = 0
+    rejected = iterations = landings = 0
+    before = inf
     for _ in range(ATTEMPTS):
         if h >= t_stop - start.t:
             h = t_stop - start.t
@@ -102,8 +139,14 @@ def step(
         if converged:
             error = local_error(problem, start, h, w, accuracy) / accuracy.tolerance
             if error <= 1.0:
-                return True, h, error, rejected, iterations
-            factor = step_factor(error, 1.0)
+                factor = turn_back(w, accuracy) if landings < LANDINGS else 1.0
+                if factor == 1.0:
+                    return True, h, error, rejected, iterations
+                landings += 1
+            else:
+                stubborn = error > STUBBORN * before
+                factor = SHORTENED if stubborn else step_factor(error, 1.0)
+                before = error
         elif warm and resting(w, q_x, q_y):
             warm, factor = False, 1.0
         rejected += 1

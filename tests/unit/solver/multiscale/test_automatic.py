@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from benchmarks.explore.systems import system
+from benchmarks.explore.systems.set_valued import system
 
 import stiction as st
 from stiction.solver.integrate import integrate

@@ -42,7 +42,7 @@ NO_TIMES = np.zeros(0)
 
 def state_of(name, motion=MOTION, h=1e-5):
     z = np.array(LAWS[name][1])
-    memory = SmoothMemory(h, h, False, np.zeros((4, 2 + len(z))))
+    memory = SmoothMemory(h, h, 1.0, False, np.zeros((4, 2 + len(z))))
     return SmoothState(SmoothMotion(TIME, *motion), z, memory, NOTHING)
 
 
@@ -68,7 +68,8 @@ def test_where_a_step_starts(name):
     logarithmic = name in ("ageing", "slip")
     assert start[:3] == (TIME, *MOTION[:2])
     assert start.eps == (grain if logarithmic else inf)
-    assert start.unit == min(1.0, EXACT.speed / grain) if logarithmic else min(grain, EXACT.speed)
+    linear = 0.0 if z else min(grain, EXACT.speed)  # rates of states have a kink at rest
+    assert start.unit == (min(1.0, EXACT.speed / grain) if logarithmic else linear)
     assert q == plain(coordinate)(start.eps, *MOTION[2:])
     assert w.values[START].tolist() == [*MOTION[2:], *z]
     assert w.size[:2].tolist() == [min(grain, EXACT.speed)] * 2

@@ -29,7 +29,7 @@ def test_the_state_from_which_a_run_starts():
     assert method.columns == COLUMNS + 1
     assert state.motion == (0.3, 1e-3, 2e-6, *START.slip(AGEING))
     assert state.internal.tolist() == list(START.internal(AGEING))
-    assert state.memory[:3] == (method.first_step, method.first_step, False)
+    assert state.memory[:4] == (method.first_step, method.first_step, 1.0, False)
     assert state.memory.past.tolist() == np.zeros((4, 3)).tolist()
     assert state.counts == NOTHING
     assert method.first_step == pytest.approx(0.05 * np.sqrt(0.25 / 4e4))

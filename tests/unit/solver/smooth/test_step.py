@@ -184,3 +184,56 @@ def test_a_step_goes_on_from_the_last_one():
         *_, iterations = plain(step.step)(problem, start, *q, inf, h, h, warm, w, accuracy(1e-6))
         counts.append(iterations)
     assert counts[1] < counts[0]
+
+
+def straight(*polynomials, states=1):
+    """Return a workspace with a step's slip along x and y as polynomials."""
+    w = plain(workspace)(states)
+    w.values[:4, 0], w.values[:4, 1] = (each(NODES) for each in polynomials)
+    return w
+
+
+@pytest.mark.parametrize("there", [0.02, 0.4, 0.99])
+@pytest.mark.parametrize("angle", [0.0, 2.0])
+def test_a_step_ends_where_slip_turns_back(there, angle):
+    """At the zero of the cubic, whatever its direction in the plane."""
+    along = Polynomial([1.0, 0.3, -0.1, 0.2]) * 1e-3
+    along = along - along(there) if there > 0.0 else along
+    w = straight(-np.cos(angle) * along, -np.sin(angle) * along)
+    assert plain(step.turn_back)(w, EXACT) == pytest.approx(there, abs=1e-12)
+    assert plain(step.turn_back)(straight(-along, 0.0 * along, states=0), EXACT) == 1.0
+
+
+def test_a_step_over_which_slip_turns_round_or_begins_at_rest_is_whole():
+    """The kink is at rest: slip that turns at speed does not meet it, nor one that leaves rest."""
+    along, aside = Polynomial([1e-3, -2e-3]), Polynomial([0.0, 2e-3, -2e-3])
+    assert plain(step.turn_back)(straight(along, aside), EXACT) == 1.0
+    assert plain(step.turn_back)(straight(along, 0.1 * aside), EXACT) == pytest.approx(0.5)
+    rest = EXACT.tolerance * (1e-3 + EXACT.speed)
+    for slow, whole in ((0.9 * rest, True), (1.2 * rest, False)):
+        leaving, coming = Polynomial([slow, -1e-3 - slow]), Polynomial([1e-3, -1e-3 - slow])
+        there = slow / (1e-3 + slow)
+        found = plain(step.turn_back)(straight(leaving, 0.0 * leaving), EXACT)
+        assert found == pytest.approx(1.0 if whole else there, abs=1e-12)
+        found = plain(step.turn_back)(straight(coming, 0.0 * coming), EXACT)
+        assert found == pytest.approx(1.0 if whole else 1.0 - there, abs=1e-12)
+
+
+def test_an_error_that_does_not_fall_shortens_the_step_at_once(monkeypatch):
+    """A layer far shorter than the step: 30 tries reach 0.2^29 of its size, not 0.9^29."""
+    sizes = []
+
+    def local_error(problem, start, h, w, accuracy):
+        sizes.append(h)
+        return 1.01 * accuracy.tolerance if h > 1e-25 else 0.0
+
+    found = plain(step.step)
+    monkeypatch.setitem(found.__globals__, "local_error", local_error)
+    problem, start, w, q = begun("ageing")
+    done, h, _, rejected, _ = found(problem, start, *q, 1.0, 1e-5, 1e-5, False, w, EXACT)
+    assert done
+    assert rejected < 40
+    assert h == sizes[-1] < 1e-25
+    # the first is shortened as its error says
+    assert sizes[1] == pytest.approx(0.9 * 1.01**-0.25 * 1e-5)
+    assert sizes[3] == pytest.approx(0.2 * sizes[2])

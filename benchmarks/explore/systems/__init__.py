@@ -1,0 +1,1 @@
+"""Random apparatus, each by its seed and number."""
