@@ -25,10 +25,12 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "sphinx-mathjax-offline",  # equations without a network
     "description_tables",
+    "links",
 ]
 exclude_patterns = ["_build", "gallery/**", "auto_gallery/**.ipynb"]
 nitpicky = True
-nitpick_ignore_regex = [("py:.*", r".*")]  # types in docstrings are words, not links
+default_role = "name"
+templates_path = ["_templates"]
 suppress_warnings = ["config.cache", "mystnb.unknown_mime_type"]
 
 html_theme = "pydata_sphinx_theme"
@@ -50,9 +52,11 @@ nb_execution_raise_on_error = True
 nb_execution_timeout = 300
 
 autodoc_typehints = "none"
-autosummary_generate = True
+PYTHON = "reference/python"
+autosummary_generate = [f"{PYTHON}/{page.name}" for page in (HERE / PYTHON).glob("*.md")]
 autosummary_imported_members = False
 napoleon_google_docstring = False
+napoleon_preprocess_types = True
 napoleon_use_rtype = False
 
 
@@ -84,6 +88,8 @@ sphinx_gallery_conf = {
     "remove_config_comments": True,
     "download_all_examples": False,
     "show_memory": False,
+    "doc_module": ("stiction",),
+    "backreferences_dir": f"{PYTHON}/backreferences",
     "min_reported_time": 1e9,
     "abort_on_example_error": True,
     "image_scrapers": ("matplotlib",),

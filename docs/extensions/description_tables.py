@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
-from inspect import getdoc
-from pathlib import Path
-from types import ModuleType
 
 from benchmarks.cases import CASES
 from docutils import nodes
@@ -17,8 +13,6 @@ import stiction as st
 from stiction.presets import PRESETS
 from stiction.result.columns import STICKS, VARIABLES
 from stiction.system.schema import schema
-
-ROOMS = ("laws", "protocols", "analysis", "linear_stability", "theory", "plotting", "testing")
 
 
 def table(headers: tuple[str, ...], rows: list[tuple[str, ...]]) -> list[str]:
@@ -48,33 +42,6 @@ def preset_lines() -> list[str]:
     """Return all presets with their references."""
     rows = [(f"`{name}`", preset.reference) for name, preset in PRESETS.items()]
     return table(("preset", "reference"), rows)
-
-
-def room_lines() -> list[str]:
-    """Return the public names of each room, with the first line of their help."""
-    lines: list[str] = []
-    for room in ROOMS:
-        module = getattr(st, room)
-        rows = [
-            (f"`{name}`", (getdoc(getattr(module, name)) or "").split("\n")[0])
-            for name in public_names(module)
-        ]
-        lines += [f"**`st.{room}`**", "", *table(("name", "what it is"), rows), ""]
-    return lines
-
-
-def public_names(module: ModuleType) -> list[str]:
-    """Return what a room offers, as its type stub or its list of names says."""
-    stub = Path(str(module.__file__)).with_suffix(".pyi")
-    if stub.exists():
-        return sorted(re.findall(r" as (\w+)$", stub.read_text("utf-8"), re.M))
-    return sorted(
-        name
-        for name, each in vars(module).items()
-        if not name.startswith("_")
-        and callable(each)
-        and getattr(each, "__module__", "").startswith("stiction")
-    )
 
 
 def verification_lines() -> list[str]:
@@ -123,7 +90,6 @@ DIRECTIVES = {
     "preset-table": preset_lines,
     "column-table": column_lines,
     "key-table": key_lines,
-    "room-tables": room_lines,
     "verification-table": verification_lines,
 }
 

@@ -31,6 +31,14 @@ class Check(NamedTuple):
         Whether the damaged parts were computed again.
     pending : int
         Number of blocks of a study that are not computed yet.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> path = st.simulate(st.presets.nakano_popov_2020(), "1 ms").save("run.nc")
+    >>> found = st.check("run.nc")
+    >>> found.ok, list(found.damaged)
+    (True, [])
     """
 
     path: Path

@@ -42,6 +42,15 @@ class Comparison(dict[str, Trajectory]):
     """Runs of one apparatus under several friction laws, by the law's name.
 
     The description's own law is the first.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> slider = st.presets.nakano_popov_2020()
+    >>> base = st.Description(slider, st.Initial(), st.Settings(duration="20 ms"))
+    >>> found = st.compare(base, ["coulomb"])
+    >>> found.ok, found["coulomb"].slider.law.mu_0
+    (True, 0.15)
     """
 
     def __repr__(self) -> str:
@@ -114,7 +123,7 @@ def compare(
     ----------
     description : Description, str or Path
         The description, or its file; only its friction law is replaced.
-    laws : sequence of law, mapping, str or Path
+    laws : sequence of FrictionLaw, StateLaw, mapping, str or Path
         Each is a friction law; a table as in a description; the same as text, e.g.
         ``'{law = "coulomb", mu_0 = 0.15}'``; a description file, whose table [friction] is
         used; ``file.py:Class``; or a law's name, e.g. ``"coulomb"``. A name alone gets
@@ -135,6 +144,14 @@ def compare(
     ------
     DescriptionError
         With every law that cannot be read.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> slider = st.presets.nakano_popov_2020()
+    >>> base = st.Description(slider, st.Initial(), st.Settings(duration="20 ms"))
+    >>> list(st.compare(base, ["coulomb", "lugre"]))
+    ['exponential-weakening', 'coulomb', 'lugre']
     """
     description = add_sample_rate(description_of(description))
     own = description.slider.law

@@ -64,7 +64,14 @@ def _without_middle(text: str, most: int) -> str:
 
 
 class StictionError(Exception):
-    """Base class of the package's errors; the text is meant for the user."""
+    """Base class of the package's errors; the text is meant for the user.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> issubclass(st.DescriptionError, st.StictionError)
+    True
+    """
 
     def __str__(self) -> str:
         """Return the text with control characters escaped."""
@@ -101,6 +108,15 @@ class DescriptionError(StictionError, ValueError):
     ----------
     faults : tuple of Fault
         Each fault with its path, in the order in which the description is read.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> try:
+    ...     st.presets.nakano_popov_2020().replace(mass="10 N", phi=1)
+    ... except st.DescriptionError as error:
+    ...     print([fault.path for fault in error.faults])
+    ['Slider.mass', 'Slider.phi']
     """
 
     def __init__(self, faults: Sequence[Fault]) -> None:
@@ -121,7 +137,17 @@ class DescriptionError(StictionError, ValueError):
 
 
 class ResultError(StictionError, ValueError):
-    """A file is not a result of this package, or lacks the requested data."""
+    """A file is not a result of this package, or lacks the requested data.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> try:
+    ...     st.load("none.nc")
+    ... except st.StictionError as error:
+    ...     print(type(error).__name__)
+    ResultError
+    """
 
 
 LISTED = 20  # faults of a file; the others are counted
@@ -174,6 +200,12 @@ class Status(Enum):
     """How a run ended; each value explains it.
 
     The order matters: the compiled loop returns a position in `STATUSES`.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> st.simulate(st.presets.nakano_popov_2020(), "1 ms").status
+    <Status.COMPLETED: 'the run reached its duration'>
     """
 
     COMPLETED = "the run reached its duration"

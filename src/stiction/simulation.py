@@ -169,6 +169,12 @@ def run(
     -------
     Trajectory
         Whatever happens; ``run.status`` says how the run ended.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> st.run(st.presets.leine_belt()).status.ok
+    True
     """
     description = description_of(description)
     initial, settings = description.initial, description.run

@@ -48,21 +48,43 @@ def natural_frequency(stiffness: ArrayLike, mass: ArrayLike) -> Floats:
 
     Parameters
     ----------
-    stiffness : principal stiffness, k_x or k_y (N/m).
-    mass : mass m (kg).
+    stiffness : array_like
+        Principal stiffness, k_x or k_y (N/m).
+    mass : array_like
+        Mass m (kg).
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> round(float(st.theory.natural_frequency(10e6, 0.25) / (2 * np.pi)), 1)
+    1006.6
     """
     stiffness, mass = _floats(stiffness, mass)
     return np.sqrt(stiffness / mass)
 
 
 def friction_force(mu_0: ArrayLike, normal_load: ArrayLike) -> Floats:
-    """Friction at vanishing slip speed, F_0 = mu_0 W (N); mu_0 (-), normal load W (N)."""
+    """Friction at vanishing slip speed, F_0 = mu_0 W (N); mu_0 (-), normal load W (N).
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> float(st.theory.friction_force(0.2, 10.0))
+    2.0
+    """
     mu_0, normal_load = _floats(mu_0, normal_load)
     return mu_0 * normal_load
 
 
 def slip_length(F_0: ArrayLike, k_x: ArrayLike) -> Floats:
-    """Elongation that carries the whole friction, F_0/k_x (m), of Eq. (8); F_0 (N), k_x (N/m)."""
+    """Elongation that carries the whole friction, F_0/k_x (m), of Eq. (8); F_0 (N), k_x (N/m).
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> float(st.theory.slip_length(2.0, 1e3))
+    0.002
+    """
     F_0, k_x = _floats(F_0, k_x)
     return F_0 / k_x
 
@@ -73,10 +95,20 @@ def elongation_rate(u_x: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike
 
     Parameters
     ----------
-    u_x : elongation along x (m); NaN beyond `l_x`.
-    V : drive velocity (m/s).
-    phi : misalignment (rad).
-    l_x : slip length (m), see `slip_length`.
+    u_x : array_like
+        Elongation along x (m); NaN beyond `l_x`.
+    V : array_like
+        Drive velocity (m/s).
+    phi : array_like
+        Misalignment (rad).
+    l_x : array_like
+        Slip length (m), see `slip_length`.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> round(float(st.theory.elongation_rate(0.0, 1e-3, np.radians(1.0), 2e-3)), 6)
+    0.001
     """
     u_x, V, phi, l_x = _floats(u_x, V, phi, l_x)
     x = u_x / l_x
@@ -91,9 +123,17 @@ def creep_time(theta: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -
 
     Parameters
     ----------
-    theta : angle of the friction force to the x axis (rad), phi <= theta <= pi/2, else NaN;
+    theta : array_like
+        Angle of the friction force to the x axis (rad), phi <= theta <= pi/2, else NaN;
         infinite at theta = phi > 0.
-    V, phi, l_x : drive velocity (m/s), misalignment (rad), slip length (m).
+    V, phi, l_x : array_like
+        Drive velocity (m/s), misalignment (rad), slip length (m).
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> round(float(st.theory.creep_time(np.radians(45.0), 1e-3, np.radians(1.0), 2e-3)), 3)
+    1.425
     """
     theta, V, phi, l_x = _floats(theta, V, phi, l_x)
     delta, half = np.pi / 2 - theta, (theta - phi) / 2
@@ -110,10 +150,20 @@ def creep_force_angle(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike
 
     Parameters
     ----------
-    t : time since the drive started with u_x = 0 (s), t >= 0, else NaN.
-    V : drive velocity (m/s).
-    phi : misalignment (rad), 0 <= phi <= pi/2, else NaN.
-    l_x : slip length (m), see `slip_length`.
+    t : array_like
+        Time since the drive started with u_x = 0 (s), t >= 0, else NaN.
+    V : array_like
+        Drive velocity (m/s).
+    phi : array_like
+        Misalignment (rad), 0 <= phi <= pi/2, else NaN.
+    l_x : array_like
+        Slip length (m), see `slip_length`.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> round(float(np.degrees(st.theory.creep_force_angle(1.0, 1e-3, np.radians(1.0), 2e-3))), 1)
+    60.2
     """
     delta, rest, phi = _creep(t, V, phi, l_x)
     return np.where(delta < rest, np.pi / 2 - delta, phi + rest)[()]  # the less rounded of the two
@@ -123,6 +173,12 @@ def creep_elongation(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike)
     """Elongation during creep, u_x(t) = l_x cos(theta) (m): the solution of Eq. (7).
 
     Parameters are those of `creep_force_angle`.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> round(float(st.theory.creep_elongation(1.0, 1e-3, np.radians(1.0), 2e-3)), 6)
+    0.000995
     """
     delta, _, _ = _creep(t, V, phi, l_x)
     return np.asarray(l_x, dtype=np.float64) * np.sin(delta)
@@ -136,6 +192,12 @@ def creep_velocity(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -
     V t = l_x and V from then on, the limit of small misalignment.
 
     Parameters are those of `creep_force_angle`.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> round(float(1e6 * st.theory.creep_velocity(1.0, 1e-3, np.radians(1.0), 2e-3)), 2)
+    10.31
     """
     delta, rest, phi = _creep(t, V, phi, l_x)
     t, V, l_x = _floats(t, V, l_x)
@@ -154,6 +216,13 @@ def creep_velocity_approximation(
     two terms in phi^2; the other is -V phi^2 (1 - c)/c^3, c = sqrt(1 - s^2).
 
     Parameters are those of `creep_force_angle`; NaN unless 0 <= s < 1.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> speed = st.theory.creep_velocity_approximation(1.0, 1e-3, np.radians(1.0), 2e-3)
+    >>> round(float(1e6 * speed), 2)
+    10.38
     """
     return _creep_expansion(t, V, phi, l_x, power=1)
 
@@ -163,12 +232,25 @@ def creep_velocity_as_printed(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: A
 
     It is not the limit of Eq. (7): see `creep_velocity_approximation`, which takes the same
     parameters.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> round(float(1e6 * st.theory.creep_velocity_as_printed(1.0, 1e-3, np.radians(1.0), 2e-3)), 2)
+    5.34
     """
     return _creep_expansion(t, V, phi, l_x, power=2)
 
 
 def transverse_deflection(F_0: ArrayLike, k_y: ArrayLike) -> Floats:
-    """Mean transverse elongation during creep, F_0/k_y (m); F_0 (N), k_y (N/m). From Eq. (9)."""
+    """Mean transverse elongation during creep, F_0/k_y (m); F_0 (N), k_y (N/m). From Eq. (9).
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> float(st.theory.transverse_deflection(2.0, 10e6))
+    2e-07
+    """
     F_0, k_y = _floats(F_0, k_y)
     return F_0 / k_y
 
@@ -181,8 +263,16 @@ def transverse_amplitude_bound(V: ArrayLike, phi: ArrayLike, omega_y: ArrayLike)
 
     Parameters
     ----------
-    V, phi : drive velocity (m/s), misalignment (rad).
-    omega_y : transverse natural frequency (rad/s), see `natural_frequency`.
+    V, phi : array_like
+        Drive velocity (m/s), misalignment (rad).
+    omega_y : array_like
+        Transverse natural frequency (rad/s), see `natural_frequency`.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> round(float(1e9 * st.theory.transverse_amplitude_bound(1e-3, np.radians(1.0), 6324.6)), 2)
+    2.76
     """
     V, phi, omega_y = _floats(V, phi, omega_y)
     return V * np.sin(phi) / omega_y
@@ -200,8 +290,16 @@ def oscillation_frequency(theta: ArrayLike, k_x: ArrayLike, k_y: ArrayLike, m: A
 
     Parameters
     ----------
-    theta : angle of the friction force to the x axis (rad), see `creep_force_angle`.
-    k_x, k_y, m : stiffnesses (N/m), mass (kg).
+    theta : array_like
+        Angle of the friction force to the x axis (rad), see `creep_force_angle`.
+    k_x, k_y, m : array_like
+        Stiffnesses (N/m), mass (kg).
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> round(float(st.theory.oscillation_frequency(np.pi / 2, 1e3, 10e6, 0.25)), 1)
+    6324.6
     """
     theta, k_x, k_y, m = _floats(theta, k_x, k_y, m)
     omega: Floats = np.sqrt((k_x * np.cos(theta) ** 2 + k_y * np.sin(theta) ** 2) / m)
@@ -216,9 +314,18 @@ def damping_number(
 
     Parameters
     ----------
-    F_0 : friction force mu_0 W (N).
-    V, phi : drive velocity (m/s), misalignment (rad).
-    m, k_x : mass (kg), stiffness along x (N/m).
+    F_0 : array_like
+        Friction force mu_0 W (N).
+    V, phi : array_like
+        Drive velocity (m/s), misalignment (rad).
+    m, k_x : array_like
+        Mass (kg), stiffness along x (N/m).
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> round(float(st.theory.damping_number(2.0, 1e-3, np.radians(1.0), 0.25, 1e3)), 1)
+    3623.9
     """
     F_0, V, phi, m, k_x = _floats(F_0, V, phi, m, k_x)
     return F_0 / (2.0 * V * np.sin(phi) * np.sqrt(m * k_x))
@@ -240,7 +347,14 @@ def damping_number_of(slider: Slider, V: float, phi: float | None = None) -> flo
 
 
 def damping_ratio(A: ArrayLike, theta: ArrayLike) -> Floats:
-    """Damping ratio zeta = A sin^3(theta) of Eq. (10); A = `damping_number`, theta in rad."""
+    """Damping ratio zeta = A sin^3(theta) of Eq. (10); A = `damping_number`, theta in rad.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> float(st.theory.damping_ratio(8.0, np.radians(30.0)).round(3))
+    1.0
+    """
     A, theta = _floats(A, theta)
     zeta: Floats = A * np.sin(theta) ** 3
     return zeta
@@ -251,6 +365,12 @@ def critical_angle(A: ArrayLike) -> Floats:
     """Force angle at which zeta = 1 in Eq. (10), arcsin(A^(-1/3)) (rad): slow slip turns fast.
 
     NaN where the `damping_number` A < 1: such a system is underdamped from the start.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> round(float(np.degrees(st.theory.critical_angle(8.0))), 1)
+    30.0
     """
     (A,) = _floats(A)
     return np.arcsin(1.0 / np.cbrt(A))
@@ -267,9 +387,18 @@ def first_stick_duration(
 
     Parameters
     ----------
-    F_0 : friction force mu_0 W (N).
-    V, phi : drive velocity (m/s), misalignment (rad).
-    k_x, k_y : principal stiffnesses (N/m).
+    F_0 : array_like
+        Friction force mu_0 W (N).
+    V, phi : array_like
+        Drive velocity (m/s), misalignment (rad).
+    k_x, k_y : array_like
+        Principal stiffnesses (N/m).
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> round(float(1e3 * st.theory.first_stick_duration(2.0, 1e-3, np.radians(1.0), 1e3, 10e6)), 2)
+    11.46
     """
     F_0, V, phi, k_x, k_y = _floats(F_0, V, phi, k_x, k_y)
     return F_0 / (V * np.hypot(k_x * np.cos(phi), k_y * np.sin(phi)))
@@ -283,8 +412,16 @@ def first_force_angle(phi: ArrayLike, k_x: ArrayLike, k_y: ArrayLike) -> Floats:
 
     Parameters
     ----------
-    phi : misalignment (rad).
-    k_x, k_y : principal stiffnesses (N/m).
+    phi : array_like
+        Misalignment (rad).
+    k_x, k_y : array_like
+        Principal stiffnesses (N/m).
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> round(float(np.degrees(st.theory.first_force_angle(np.radians(1.0), 1e3, 10e6))), 2)
+    89.67
     """
     phi, k_x, k_y = _floats(phi, k_x, k_y)
     angle: Floats = np.arctan2(k_y * np.sin(phi), k_x * np.cos(phi))
@@ -306,10 +443,22 @@ def critical_misalignment(
 
     Parameters
     ----------
-    V : drive velocity (m/s).
-    mu, slope : friction coefficient and its derivative (s/m) at the slip speed V.
-    c_x : damping constant of the spring along x (N s/m).
-    W : normal load (N); it matters only beside c_x.
+    V : array_like
+        Drive velocity (m/s).
+    mu, slope : array_like
+        Friction coefficient and its derivative (s/m) at the slip speed V.
+    c_x : array_like
+        Damping constant of the spring along x (N s/m).
+    W : array_like
+        Normal load (N); it matters only beside c_x.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> law = st.presets.nakano_popov_2020().law
+    >>> found = st.theory.critical_misalignment(1e-3, law.coefficient(1e-3), law.slope(1e-3))
+    >>> round(float(np.degrees(found)), 2)
+    8.66
     """
     V, mu, slope, c_x, W = _floats(V, mu, slope, c_x, W)
     weakening = np.maximum(-(c_x + W * slope), 0.0)
@@ -328,8 +477,16 @@ def critical_stiffness(
 
     Parameters
     ----------
-    a, b, D_c : direct effect, evolution effect, slip distance (m).
-    W, V, m : normal load (N), drive velocity (m/s), mass (kg).
+    a, b, D_c : array_like
+        Direct effect, evolution effect, slip distance (m).
+    W, V, m : array_like
+        Normal load (N), drive velocity (m/s), mass (kg).
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> round(float(st.theory.critical_stiffness(0.010, 0.015, 10e-6, 10.0, 1e-6, 1e-3)))
+    5000
     """
     a, b, D_c, W, V, m = _floats(a, b, D_c, W, V, m)
     return (b - a) * W / D_c * (1.0 + m * V**2 / (a * W * D_c))

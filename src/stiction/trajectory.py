@@ -73,6 +73,13 @@ class Trajectory:
         How the run ended.
     statistics : Statistics
         The cost of the run.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "20 ms", sample_rate="1 kHz")
+    >>> run.samples["u_x"].shape, run.sticks.sizes["stick"]
+    ((21,), 9)
     """
 
     description: Description
@@ -107,17 +114,17 @@ class Trajectory:
 
     @cached_property
     def samples(self) -> ColumnTable:
-        """The samples as plain arrays, by name: ``run.samples["u_x"]``."""
+        """The samples as plain arrays, ``run.samples["u_x"]`` for example."""
         return self.arrays()
 
     @cached_property
     def data(self) -> xr.Dataset:
-        """The samples: variables over ``time``, with units (see `stiction.result.columns`)."""
+        """The samples, variables over ``time`` with units (see `stiction.result.columns`)."""
         return as_dataset(self.samples)
 
     @cached_property
     def sticks(self) -> xr.Dataset:
-        """Every stick interval, whatever the sample rate: a dataset over ``stick``.
+        """Every stick interval, whatever the sample rate, as a dataset over ``stick``.
 
         `stick_start`, `stick_end` and `stick_duration`, in s.
         """
@@ -244,6 +251,14 @@ def load(path: str | Path, *, trust: bool = False) -> Trajectory:
     ------
     ResultError
         If the file does not exist, or is not a result of this package.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> st.simulate(st.presets.nakano_popov_2020(), "20 ms").save("run.nc").name
+    'run.nc'
+    >>> st.load("run.nc").status.ok
+    True
     """
     data, sticks = read_tables(path)
     try:

@@ -62,6 +62,15 @@ def strongest_line(
     ResultError
         If more than a tenth of the samples are missing, `low` is not below half the sample rate,
         or windows have too few samples.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> time = np.arange(0.0, 20.0, 1e-3)
+    >>> force = 1.0 + 0.1 * np.sin(2 * np.pi * 120.0 * time)
+    >>> found = st.analysis.strongest_line(st.Record(time=time, force=force), low=60.0)
+    >>> round(float(found["frequency"].mean()))
+    120
     """
     grid = even_grid(record.time)
     if grid is None or not grid.serves:

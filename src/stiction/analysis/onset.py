@@ -169,6 +169,14 @@ def find_onset(
     amplitude is above three times that, and has changed by at most 1 % over the later half of the
     time, in which a small disturbance would have changed by three times as much. Otherwise it is
     undecided, as happens close to the boundary, where changes are slow.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> slider = st.presets.veraszto_stepan().slider
+    >>> found = st.analysis.find_onset(slider, "drive.velocity", [0.16, 0.2, 0.24])
+    >>> found.kind
+    'hard'
     """
     sliders = [change_parameter(slider, path, value) for value in values]
     numbers = np.array([read(each, path) for each in sliders])

@@ -58,6 +58,13 @@ def transverse_oscillation(run: Trajectory) -> xr.Dataset:
     ------
     ResultError
         If the run is too short or too coarsely sampled for it, or nothing moves along y.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "1 s", sample_rate="10 kHz")
+    >>> round(float(st.analysis.transverse_oscillation(run)["frequency"][0]), -1)
+    1000.0
     """
     natural = run.slider.natural_frequency_y
     width = WIDTH / natural
@@ -124,6 +131,15 @@ def oscillation_by_phase(oscillation: xr.Dataset, run: Trajectory, phases: Float
         ``sticks_per_second``, on the average; ``rings_from`` (s), when its last stick ends and
         the oscillation begins to ring down; ``ring_down``, the share of its time from there to
         slip; ``first_frequency`` and ``last_frequency`` (Hz) that are seen in it.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "3 s", sample_rate="10 kHz")
+    >>> swings = st.analysis.transverse_oscillation(run)
+    >>> found = st.analysis.oscillation_by_phase(swings, run, np.array([[0.1, 1.9]]))
+    >>> bool(found["share_stuck"][0] > 0.05)
+    True
     """
     import xarray as xr
 

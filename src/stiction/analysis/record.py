@@ -258,7 +258,7 @@ class Record(Described):
 
     @property
     def sticks(self) -> Floats | None:
-        """(n, 2), s: all intervals in which the mass sticks, where the record is that of a run."""
+        """All intervals in which the mass sticks, (n, 2), s, where the record is that of a run."""
         return self._sticks
 
     @property
@@ -268,7 +268,7 @@ class Record(Described):
 
     @property
     def drive_travel(self) -> Floats | None:
-        """(n,), m: how far the drive has moved along the force, of a run whose drive varies."""
+        """How far the drive has moved along the force, (n,), m, of a run whose drive varies."""
         if self._drive_travel is None:
             return None
         return np.asarray(np.interp(self.time, *self._drive_travel))
@@ -394,6 +394,13 @@ def record_of(run: Trajectory) -> Record:
 
     The force is positive where the spring pulls along the drive. NaN samples at the end of a failed
     run are left out.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "1 s", sample_rate="1 kHz")
+    >>> st.analysis.record_of(run).sample_rate
+    1000.0
     """
     slider, samples = run.slider, run.samples
     cell = cell_axis(slider)

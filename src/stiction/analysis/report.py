@@ -76,6 +76,13 @@ class Analysis(NamedTuple):
         To be read first: drift, impossible numbers, hum that was subtracted.
     parts : dict
         The findings of all other parts, by name; see `stiction.analysis.parts`.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> found = st.analyse(st.simulate(st.presets.nakano_popov_2020(), "5 s", sample_rate="1 kHz"))
+    >>> found.regime.kind, found.cycles.sizes["cycle"]
+    ('stick-slip', 3)
     """
 
     source: Trajectory | Record

@@ -72,6 +72,13 @@ class Audit(NamedTuple):
         The tolerance budget; None where the misalignment is not uncertain.
     measured : RecordComparison or None
         A measured record beside simulations of the apparatus; None where none was given.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> found = st.audit(st.presets.nakano_popov_2020())
+    >>> found.ok, len(found.advices)
+    (True, 4)
     """
 
     slider: Slider

@@ -121,7 +121,7 @@ class SimulatedTest:
 
     @property
     def work(self) -> int:
-        """The work of the simulation: solver steps, accepted or rejected, and samples."""
+        """The work of the simulation in solver steps, accepted or rejected, and samples."""
         steps = self.run.statistics
         return steps.steps + steps.rejected + len(self.run.samples["time"])
 

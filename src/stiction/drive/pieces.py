@@ -44,6 +44,12 @@ class Constant(NamedTuple):
         Velocity or force; the program's base value when left out.
     duration : float or str, optional
         s; to the end when left out, which only the last piece may.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> st.protocols.Constant("1 mm/s", "2 s").duration
+    2.0
     """
 
     value: Level | None = None
@@ -66,6 +72,15 @@ class Step(NamedTuple):
         s; to the end when left out, which only the last piece may.
     to : float or str, optional
         Velocity or force after the jump, in place of `by`.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> p = st.protocols
+    >>> pieces = [p.Constant(duration="1 s"), p.Step(to="2 mm/s")]
+    >>> test = p.DriveProgram(velocity="1 mm/s", program=pieces)
+    >>> float(test.rate(2.0)[0])
+    0.002
     """
 
     by: Level | None = None
@@ -93,6 +108,14 @@ class Ramp(NamedTuple):
         Velocity or force at the end.
     duration : float or str
         s.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> p = st.protocols
+    >>> test = p.DriveProgram(velocity="0 m/s", program=[p.Ramp(to="2 mm/s", duration="2 s")])
+    >>> float(test.rate(1.0)[0])
+    0.001
     """
 
     to: Level
@@ -111,6 +134,15 @@ class Hold(NamedTuple):
     ----------
     duration : float or str, optional
         s; to the end when left out, which only the last piece may.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> p = st.protocols
+    >>> pieces = [p.Constant(duration="1 s"), p.Hold("9 s")]
+    >>> test = p.DriveProgram(velocity="1 mm/s", program=pieces)
+    >>> [float(test.rate(t)[0]) for t in (0.5, 5.0)]
+    [0.001, 0.0]
     """
 
     duration: Duration | None = None
@@ -122,7 +154,17 @@ class Hold(NamedTuple):
 
 @validate
 class Free(NamedTuple):
-    """The drive stops for good: the springs relax until the end of the run."""
+    """The drive stops for good: the springs relax until the end of the run.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> p = st.protocols
+    >>> pieces = [p.Constant(duration="1 s"), p.Free()]
+    >>> test = p.DriveProgram(velocity="1 mm/s", program=pieces)
+    >>> float(test.rate(1.5)[0])
+    0.0
+    """
 
     duration: None = None
 
@@ -139,6 +181,15 @@ class Reversal(NamedTuple):
     ----------
     duration : float or str, optional
         s; to the end when left out, which only the last piece may.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> p = st.protocols
+    >>> pieces = [p.Constant(duration="1 s"), p.Reversal("1 s")]
+    >>> test = p.DriveProgram(velocity="1 mm/s", program=pieces)
+    >>> float(test.rate(1.5)[0])
+    -0.001
     """
 
     duration: Duration | None = None
@@ -162,6 +213,15 @@ class Harmonic(NamedTuple):
         Angle at the start of the piece, with its unit; zero by default.
     duration : float or str, optional
         s; to the end when left out, which only the last piece may.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> p = st.protocols
+    >>> pieces = [p.Harmonic("0.5 mm/s", "1 Hz", duration="2 s")]
+    >>> test = p.DriveProgram(velocity="1 mm/s", program=pieces)
+    >>> float(test.rate(0.25)[0])
+    0.0015
     """
 
     amplitude: Level
@@ -186,6 +246,14 @@ class Modulation(NamedTuple):
         Hz.
     phase : str, optional
         Angle at t = 0, with its unit; zero by default.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> p = st.protocols
+    >>> test = p.DriveProgram(velocity="1 mm/s", across=p.Modulation("0.1 mm/s", "50 Hz"))
+    >>> test.across.frequency
+    50.0
     """
 
     amplitude: Level

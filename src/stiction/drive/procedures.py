@@ -74,6 +74,13 @@ def slide_hold_slide(
     slide : float or str
         How long it slides before each hold and after the last, s: long enough for friction to
         become steady.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> test = st.protocols.slide_hold_slide("10 um/s", ["10 s", "100 s"], slide="5 s")
+    >>> st.protocols.end(test)
+    125.0
     """
     V, between = _read("velocity", velocity, VELOCITY), _positive("slide", slide, TIME)
     pieces: list[Constant | Hold] = [Constant(duration=between)]
@@ -122,6 +129,13 @@ def load_ramp(
         How long each change takes, s.
     hold : float or str, optional
         How long each level is held, s; not at all when left out.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> load = st.protocols.load_ramp(["10 N", "20 N"], ramp="1 s", hold="2 s")
+    >>> st.protocols.end(load)
+    6.0
     """
     time = _positive("ramp", ramp, TIME)
     pieces: list[Ramp | Hold] = []
@@ -133,7 +147,14 @@ def load_ramp(
 
 
 def end(*programs: ConstantVelocity | DriveProgram | LoadProgram | None) -> float | None:
-    """Return when the last of some programs of drive and load ends, s; None if none has an end."""
+    """Return when the last of some programs of drive and load ends, s; None if none has an end.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> st.protocols.end(st.protocols.slide_hold_slide("1 mm/s", ["10 s"], slide="5 s"))
+    20.0
+    """
     ends = [_end(each) for each in programs if isinstance(each, DriveProgram | LoadProgram)]
     known = [each for each in ends if each is not None]
     return max(known) if known else None

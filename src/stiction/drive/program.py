@@ -50,6 +50,15 @@ class DriveProgram(Described):
         How often the program is gone through.
     along, across : Modulation, optional
         Harmonic velocity added along X and across it, from t = 0 on.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> p = st.protocols
+    >>> pieces = [p.Constant(duration="1 s"), p.Hold("0.5 s")]
+    >>> test = p.DriveProgram(velocity="1 mm/s", program=pieces)
+    >>> st.protocols.end(test)
+    1.5
     """
 
     velocity: Velocity = 0.0
@@ -66,7 +75,7 @@ class DriveProgram(Described):
 
     @cached_property
     def stretches(self) -> tuple[tuple[float, Any], ...]:
-        """The smooth stretches: the end of each (s), and its velocity."""
+        """The smooth stretches, each with its end (s) and its velocity."""
         sideways = modulate(Signal(0.0, 0.0), self.across)
         return tuple(
             (end, _velocity(modulate(signal, self.along), sideways))
@@ -122,6 +131,16 @@ class LoadProgram(Described):
         How often the program is gone through.
     modulation : Modulation, optional
         A harmonic force added from t = 0 on.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> p = st.protocols
+    >>> load = p.LoadProgram(program=[p.Constant(duration="1 s"), p.Ramp("20 N", "1 s")])
+    >>> slider = st.presets.nakano_popov_2020().replace(load=load)
+    >>> run = st.simulate(slider, "0.1 s")
+    >>> run.status.ok
+    True
     """
 
     program: Annotated[tuple[Any, ...], as_pieces(LOAD_PIECES, FORCE), PIECES] = ()

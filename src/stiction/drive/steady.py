@@ -16,6 +16,12 @@ class ConstantVelocity(NamedTuple):
     ----------
     velocity : float or str
         V, in m/s.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> st.ConstantVelocity("1 mm/s").velocity
+    0.001
     """
 
     velocity: Velocity

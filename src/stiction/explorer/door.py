@@ -26,7 +26,7 @@ def explore(
 
     Parameters
     ----------
-    source : str, Path, Description, Slider, Trajectory or Record, or a list of these, optional
+    source : str, Path, Description, Slider, Trajectory or Record, or list, optional
         A description, a run, a study (.zarr) or a measured record, or its file; by default the
         paper's case. A record may go with one of the others: it lies under the simulated curves.
     port : int, optional

@@ -41,7 +41,7 @@ class Plan(NamedTuple):
     ----------
     slider : Slider
         The rig in the middle of its priors.
-    priors : dict of str to Prior
+    priors : dict of str to Normal or Uniform
         Of its parameters, by path; and of ``jitter``, ``gain`` and ``zero`` (N) of the force, and
         ``drift``, the change of the coefficients' logarithm over a record.
     conditions : tuple of Conditions

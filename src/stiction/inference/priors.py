@@ -108,8 +108,15 @@ class Rig(NamedTuple):
     ----------
     slider : Slider
         With every uncertain value in the middle of its prior.
-    priors : dict of str to Prior
+    priors : dict of str to Normal or Uniform
         By the path of each uncertain parameter.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> text = st.presets.nakano_popov_2020().to_toml().replace('"1 deg"', '"1 +- 0.5 deg"')
+    >>> list(st.Rig.from_toml(text).priors)
+    ['phi']
     """
 
     slider: Slider

@@ -59,7 +59,7 @@ def axis(slider: Slider, path: str, between: Sequence[Quantity] | None = None) -
         The system.
     path : str
         The parameter, see `stiction.system.parameter`.
-    between : pair of float or str, optional
+    between : tuple of float or str, optional
         Its range; by default 0 to 90 degrees for an angle, else three decades below and above
         its present value.
 

@@ -45,7 +45,7 @@ def boundary(
         The system.
     x, y : str
         The two parameters, see `critical`.
-    x_between, y_between : pair of float or str, optional
+    x_between, y_between : tuple of float or str, optional
         Their ranges, see `critical`; the scale is logarithmic where the ends differ by more than
         a factor of ten.
 
@@ -67,6 +67,13 @@ def boundary(
     References
     ----------
     Continuation with a spherical constraint: Yamamura, IEEE Trans. Circuits Syst. I 40 (1993), 448.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> slider = st.presets.nakano_popov_2020()
+    >>> sorted(st.linear_stability.boundary(slider, "phi", "drive.velocity").data_vars)
+    ['branch', 'drive.velocity', 'frequency', 'phi']
     """
     across, up = axis(slider, x, x_between), axis(slider, y, y_between)
     if across.path == up.path:

@@ -49,6 +49,13 @@ class Stability:
         Steady sliding of the given slider, and its modes.
     criticals : tuple of Critical
         For each varied parameter, the values at which stability changes.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> found = st.stability(st.presets.nakano_popov_2020(), over="phi")
+    >>> found.stable, round(float(np.degrees(found.criticals[0].values[0])), 3)
+    (False, 8.656)
     """
 
     sliding: Linearisation
@@ -119,11 +126,12 @@ def stability(
     ----------
     slider : Slider, Description, str or Path
         The system, or the file of its description; with a steady drive and a constant load.
-    over : str or two of them, optional
-        The parameters to vary, for example ``"c_x"``; see `stiction.linear_stability.critical`.
-    between : pair of float or str, or such a pair for each parameter, optional
-        The ranges, in SI or with units; by default 0 to 90 degrees for an angle, else three
-        decades below and above the present value.
+    over : str or tuple of str, optional
+        One or two parameters to vary, for example ``"c_x"``; see
+        `stiction.linear_stability.critical`.
+    between : tuple of float or str, or tuple of tuple, optional
+        The range, or one for each parameter, in SI or with units; by default 0 to 90 degrees for
+        an angle, else three decades below and above the present value.
 
     Returns
     -------

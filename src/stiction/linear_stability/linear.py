@@ -48,6 +48,13 @@ class Linearisation:
     error : ndarray
         (n, n): the estimated error of each entry of `matrix`: rounding, and for laws with
         internal state the error of numerical differentiation.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> found = st.linear_stability.steady_sliding(st.presets.nakano_popov_2020())
+    >>> found.verdict, found.stable
+    ('unstable', False)
     """
 
     slider: Slider
@@ -84,7 +91,7 @@ class Linearisation:
 
     @property
     def shapes(self) -> Complex:
-        """Mode shapes, (n, n): column k belongs to eigenvalue k, rows as in `names`."""
+        """Mode shapes, (n, n); column k belongs to eigenvalue k, rows as in `names`."""
         return self._modes.vectors
 
     @property
@@ -115,7 +122,7 @@ class Linearisation:
 
     @property
     def verdict(self) -> str:
-        """The stability in words: "stable", "unstable" or "on the boundary ..."."""
+        """The stability in words, "stable", "unstable" or "on the boundary ..."."""
         if abs(self.growth_rate) <= self.growth_uncertainty:
             return BOUNDARY
         return STABLE if self.growth_rate < 0.0 else UNSTABLE
@@ -194,6 +201,14 @@ def growth_rate(slider: Slider) -> float:
     """Return the largest growth rate (1/s) of a small disturbance of steady sliding.
 
     Negative where steady sliding is stable; see `steady_sliding`.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> slider = st.presets.nakano_popov_2020()
+    >>> turned = slider.replace(phi="10 deg")
+    >>> [st.linear_stability.growth_rate(each) > 0 for each in (slider, turned)]
+    [True, False]
     """
     return float(np.linalg.eigvals(steady_sliding(slider).matrix).real.max())
 

@@ -36,6 +36,13 @@ class Critical(NamedTuple):
         second, ..., above the last.
     neutral : bool
         Whether disturbances neither grow nor decay anywhere, within the uncertainty.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> found = st.linear_stability.critical(st.presets.nakano_popov_2020(), "phi")
+    >>> found.path, found.stable
+    ('phi', (False, True, False))
     """
 
     path: str
@@ -68,7 +75,7 @@ def critical(
     path : str
         The parameter, for example ``"phi"``, ``"drive.velocity"``, ``"c_x"``, ``"mass"``,
         ``"friction.mu_inf"``, or several with one value: ``"c_x, c_y"``.
-    between : pair of float or str, optional
+    between : tuple of float or str, optional
         The range; by default 0 to 90 degrees for an angle, else three decades below and above
         the parameter's present value.
     points : int, optional

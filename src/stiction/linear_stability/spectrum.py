@@ -28,7 +28,7 @@ def modes_over(
         The system.
     path : str
         The parameter, see `critical`.
-    between : pair of float or str, optional
+    between : tuple of float or str, optional
         Its range, see `critical`.
     points : int, optional
         Number of values.
@@ -38,6 +38,13 @@ def modes_over(
     Dataset
         Over ``value`` (the parameter, SI) and ``mode``: ``growth_rate`` (1/s) and ``frequency``
         (Hz). Modes are matched from value to value by linear extrapolation.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> modes = st.linear_stability.modes_over(st.presets.nakano_popov_2020(), "phi", points=11)
+    >>> dict(modes.sizes)
+    {'value': 11, 'mode': 4}
     """
     import xarray as xr
 

@@ -93,7 +93,7 @@ def animate(
     ----------
     run : Trajectory, str or Path
         A run, or its file; it is solved again, with a sample for each frame.
-    window : pair of float or str, optional
+    window : tuple of float or str, optional
         Start and end in the run, s; all of it by default.
     length : float, optional
         Of the film, s: how slowly the window passes.
@@ -118,6 +118,13 @@ def animate(
     ResultError
         If there is no such window or format, or the package av is missing (install
         ``stiction[film]``).
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "20 ms", sample_rate="10 kHz")
+    >>> st.animate(run, length=0.2).save("film.mp4").name
+    'film.mp4'
     """
     found = run if isinstance(run, Trajectory) else load(run, trust=trust)
     if not 1.0 / RATE <= length <= LONGEST:

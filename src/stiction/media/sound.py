@@ -93,7 +93,7 @@ def listen(
     speed : float, optional
         1 for the true pitch; 0.1 is ten times slower and deeper. By default 1 where the natural
         frequency can be heard, else the power of ten by which it can.
-    window : pair of float or str, optional
+    window : tuple of float or str, optional
         Start and end in the run, s; all of it by default.
     axis : {"x", "y"}, optional
         Of the spring: y is the transverse one.

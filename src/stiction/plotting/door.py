@@ -14,22 +14,28 @@ def plot(source: Any, axes: Any = None, *, trust: bool = False) -> Any:
 
     Parameters
     ----------
-    source : object with a ``plot`` method, str or Path
-        The object to draw, or the file of a run.
-    axes : Axes, or several, optional
+    source : object, str or Path
+        The object to draw, with a method ``plot``, or the file of a run.
+    axes : Axes or sequence of Axes, optional
         Drawn on; a new figure, which pyplot shows, when left out.
     trust : bool, optional
         For a file; see `stiction.load`.
 
     Returns
     -------
-    Axes, or several
+    Axes or sequence of Axes
         The axes of the drawing.
 
     Raises
     ------
     StictionError
         If there is nothing to draw.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "0.1 s", sample_rate="10 kHz")
+    >>> axes = st.plot(run)
     """
     found = load(source, trust=trust) if isinstance(source, str | Path) else source
     if not hasattr(found, "plot"):

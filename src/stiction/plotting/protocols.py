@@ -111,6 +111,14 @@ def plot_load_dependence(found: LoadDependence, ax: Axes | None = None) -> Axes:
         From `stiction.analysis.load_dependence`.
     ax : Axes, optional
         Drawn on; a new figure as wide as a column when left out.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> load = st.protocols.load_ramp(["10 N", "20 N", "30 N"], ramp="2 s", hold="5 s")
+    >>> slider = st.presets.nakano_popov_2020().replace(friction=st.Coulomb(mu_0=0.2), load=load)
+    >>> found = st.analysis.load_dependence(st.simulate(slider, sample_rate="100 Hz"))
+    >>> ax = st.plotting.plot_load_dependence(found)
     """
     with style():
         ax = panel(ax, 2.4)

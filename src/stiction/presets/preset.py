@@ -31,6 +31,13 @@ class Number:
     """One number: its place in a publication, its meaning, both values, and the tolerance.
 
     A `finding` is wrong in the publication, as far as is known: it is shown, and must not agree.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> number = st.presets.find("leine-belt").numbers(st.run(st.presets.leine_belt()))[0]
+    >>> number.agrees
+    True
     """
 
     where: str
@@ -110,6 +117,12 @@ class Preset(NamedTuple):
         Returns these numbers from a run of the description, in the same order.
     assumed : tuple of str
         What the publication leaves open, and what was chosen.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> st.presets.find("leine-belt").grade
+    'solid'
     """
 
     name: str
@@ -124,7 +137,7 @@ class Preset(NamedTuple):
 
     @property
     def story(self) -> str:
-        """What the preset is about, in full: the docstring of its function."""
+        """The whole description of the preset, the docstring of its function."""
         from inspect import cleandoc
 
         return cleandoc(str(self.make.__doc__))
@@ -159,6 +172,12 @@ def find(name: str) -> Preset:
     ------
     DescriptionError
         If there is no preset of this name.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> st.presets.find("leine-belt").make().slider.mass
+    1.0
     """
     known = name.replace("_", "-")
     if known not in PRESETS:

@@ -156,7 +156,7 @@ def slide_hold_slide() -> Description:
 
     During the hold the spring relaxes, by slip that slows down, while the contacts age; on
     sliding again friction peaks and comes back. The values are of an independent quasi-static
-    integration. `st.protocols.slide_hold_slides` makes the programs for several holds.
+    integration. `st.protocols.slide_hold_slide` makes the programs for several holds.
     """
     law = RateStateAgeing(0.005, 0.01, 10 * UM, 0.6, 10 * UM)
     drive = DriveProgram(

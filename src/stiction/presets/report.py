@@ -114,6 +114,14 @@ def init(
     ------
     StictionError
         If the file exists, or cannot be written, or if there is no such preset.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> st.init("my.toml").name
+    'my.toml'
+    >>> st.Slider.from_toml("my.toml").mass
+    0.25
     """
     text = template_text() if preset is None else comment(find(preset))
     return write_description(path, text, force=force, schema=schema)

@@ -85,6 +85,12 @@ def paper(
     ------
     StictionError
         If the folder cannot be made.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> [path.name for path in st.paper("figures", figure=5).files]
+    ['figure-5.png', 'figure-5.pdf']
     """
     written, table = reproduce(Path(output), figure, progress or (lambda fraction: None))
     return Reproduction(written, table)

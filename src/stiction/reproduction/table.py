@@ -64,7 +64,7 @@ class NumberTable:
 
     @property
     def summary(self) -> str:
-        """One line: how many of the numbers agree, and which do not."""
+        """One line, how many of the numbers agree and which do not."""
         kinds = {
             "of the paper's numbers": [n for n in self.numbers if n.where != "reference"],
             "reference values of this project": [n for n in self.numbers if n.where == "reference"],

@@ -50,6 +50,12 @@ class Settings(Described):
         with other programs.
     multiscale : {"auto", True, False}, optional
         Whether to interpolate between cycles of stick and slip; see `stiction.simulate`.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> st.Settings(duration="5 s", sample_rate="10 kHz").sample_rate
+    10000.0
     """
 
     duration: Duration
@@ -79,7 +85,16 @@ class Settings(Described):
 
 
 class Description(NamedTuple):
-    """Slider, initial state and settings of one run."""
+    """Slider, initial state and settings of one run.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> slider = st.presets.nakano_popov_2020()
+    >>> description = st.Description(slider, st.Initial(), st.Settings(duration="20 ms"))
+    >>> st.run(description).status.ok
+    True
+    """
 
     slider: Slider
     initial: Initial

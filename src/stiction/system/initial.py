@@ -30,6 +30,12 @@ class Initial(Described):
         method ``settled``.
     time : float or str, optional
         The time at which the run starts, s; the drive moves from t = 0 on.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> st.Initial(u_x="1 mm").u_x
+    0.001
     """
 
     epsilon: Number = 1e-6

@@ -260,7 +260,7 @@ class Slider(Apparatus):
 
     @cached_property
     def direction(self) -> tuple[float, float]:
-        """Unit vector of X in the axes (x, y): (cos phi, sin phi), exact at a right angle."""
+        """Unit vector of X in the axes (x, y), (cos phi, sin phi), exact at a right angle."""
         c, s = cos(self.misalignment), sin(self.misalignment)
         return (0.0, s) if abs(c) < 1e-15 else (c, s)
 
@@ -295,7 +295,7 @@ class Slider(Apparatus):
 
     @property
     def masses(self) -> tuple[float, float]:
-        """The mass that swings on each spring, in kg: k over its natural frequency squared.
+        """The mass (kg) that swings on each spring, k over its natural frequency squared.
 
         Where the mass has axes of its own, the two swings are those of mass and springs together.
         """
@@ -315,7 +315,7 @@ class Slider(Apparatus):
 
     @property
     def modulation_frequencies(self) -> tuple[float, ...]:
-        """Frequencies in the programs of drive and load, in Hz: of harmonics, and those that the
+        """Frequencies (Hz) in the programs of drive and load, of harmonics, and those that the
         rows of a recorded table show well, with eight to a period."""
         drive, load = self.drive, self.load
         parts = [*getattr(drive, "program", ()), *getattr(load, "program", ())]

@@ -25,7 +25,14 @@ Check = Callable[[Any, Sequence[float]], Iterator[str]]
 
 
 def checks_of(law: Any) -> dict[str, Check]:
-    """Return the checks of a law by name; each yields its faults in words."""
+    """Return the checks of a law by name; each yields its faults in words.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> sorted(st.testing.checks_of(st.Coulomb(mu_0=0.2)))[:3]
+    ['comparable', 'compiled', 'continuous']
+    """
     return {**(WITH_STATE if has_state(law) else SET_VALUED), **COMMON}
 
 
@@ -47,6 +54,11 @@ def check_law(law: Any, speeds: Sequence[float] = SPEEDS) -> None:
     ------
     DescriptionError
         With all faults.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> st.testing.check_law(st.Coulomb(mu_0=0.2))
     """
     if isinstance(law, type):
         raise DescriptionError([Fault(law.__name__, f"is a class; write {law.__name__}(...)")])
@@ -72,6 +84,14 @@ class LawContract:
         With its parameters.
     speeds : sequence of float
         Slip speeds at which it is checked, m/s.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> from stiction.testing import LawContract
+    >>> class TestMine(LawContract):
+    ...     law = st.Coulomb(mu_0=0.2)
+    >>> TestMine().test_slope()
     """
 
     law: ClassVar[Any]

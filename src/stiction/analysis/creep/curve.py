@@ -76,6 +76,14 @@ def creep_curves(
     ResultError
         If a record has neither a position nor both stiffness and drive velocity, or `width` is
         not above zero.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "5 s", sample_rate="2 kHz")
+    >>> curves = st.analysis.creep_curves(run, st.analysis.find_cycles(run))
+    >>> sorted(curves.data_vars)
+    ['begin', 'end', 'force', 'velocity', 'velocity_error']
     """
     import xarray as xr
 
@@ -128,6 +136,14 @@ def mean_creep(curves: xr.Dataset) -> xr.Dataset:
         Over ``bin``, without bins that no phase reaches: ``velocity``, ``force``, ``begin``,
         ``end`` as in `creep_curves`; ``velocity_error`` (m/s), the standard error from the
         scatter of the phases, at least that from their own errors; ``phases``, their number.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "5 s", sample_rate="2 kHz")
+    >>> mean = st.analysis.mean_creep(st.analysis.creep_curves(run, st.analysis.find_cycles(run)))
+    >>> sorted(mean.data_vars)
+    ['begin', 'end', 'force', 'phases', 'velocity', 'velocity_error']
     """
     import xarray as xr
 

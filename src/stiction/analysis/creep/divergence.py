@@ -90,6 +90,15 @@ def fit_divergence(
     References
     ----------
     Nakano & Popov, arXiv:2008.01854, Eq. (8); see `stiction.theory`.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "20 s", sample_rate="2 kHz")
+    >>> mean = st.analysis.mean_creep(st.analysis.creep_curves(run, st.analysis.find_cycles(run)))
+    >>> found = st.analysis.fit_divergence(mean, loading_time=2.0)
+    >>> round(found.exponent, 2)
+    0.5
     """
     low, high = stretch[0] * loading_time, stretch[1] * loading_time
     begin, end, velocity, error, _ = used_bins(curve, low, high)

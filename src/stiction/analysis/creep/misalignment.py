@@ -41,7 +41,7 @@ class Misalignment(NamedTuple):
 
     @property
     def interval(self) -> tuple[float, float]:
-        """The 95 % interval of phi (rad): two standard errors to each side."""
+        """The 95 % interval of phi (rad), two standard errors to each side."""
         return self.phi - SURE * self.phi_error, self.phi + SURE * self.phi_error
 
     @property
@@ -87,6 +87,15 @@ def fit_misalignment(
     References
     ----------
     Nakano & Popov, arXiv:2008.01854, Eqs. (6) and (7).
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "20 s", sample_rate="2 kHz")
+    >>> mean = st.analysis.mean_creep(st.analysis.creep_curves(run, st.analysis.find_cycles(run)))
+    >>> found = st.analysis.fit_misalignment(mean, drive_velocity=1e-3, stiffness=1e3)
+    >>> round(float(np.degrees(found.phi)), 1)
+    1.0
     """
     peak = float(np.fmax.reduce(curve["force"].values, initial=0.0))
     loading_time = peak / stiffness / drive_velocity

@@ -115,7 +115,7 @@ def read_records(
 
     Parameters
     ----------
-    paths : str, Path or sequence of these
+    paths : str, Path or sequence of str or Path
         Files; of a folder all files in it, step 4 before step 10. Blocks stay in the order of
         their file.
     sidecar : str or Path, optional

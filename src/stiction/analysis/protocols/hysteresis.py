@@ -90,6 +90,15 @@ def hysteresis(source: Trajectory | Record, program: DriveProgram | None = None)
     ------
     ResultError
         If the drive does not turn twice.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> test = st.protocols.reversal_loops("1 mm/s", "10 mm")
+    >>> slider = st.presets.nakano_popov_2020().replace(friction=st.Coulomb(mu_0=0.2), drive=test)
+    >>> found = st.analysis.hysteresis(st.simulate(slider, sample_rate="100 Hz"))
+    >>> round(1e3 * found.loops[-1].area, 1)
+    24.4
     """
     test = friction_test(source, program)
     legs = test.stretches

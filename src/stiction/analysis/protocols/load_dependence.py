@@ -74,6 +74,15 @@ def load_dependence(
     ------
     ResultError
         If fewer than two levels are held.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> load = st.protocols.load_ramp(["20 N", "30 N"], ramp="2 s", hold="5 s")
+    >>> slider = st.presets.nakano_popov_2020().replace(friction=st.Coulomb(mu_0=0.2), load=load)
+    >>> found = st.analysis.load_dependence(st.simulate(slider, sample_rate="100 Hz"))
+    >>> round(found.coefficient, 4)
+    0.2
     """
     if isinstance(source, Trajectory):
         d, slider = source.samples, source.slider

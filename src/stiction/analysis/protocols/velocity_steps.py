@@ -136,6 +136,18 @@ def velocity_steps(
     ------
     ResultError
         If the drive's velocity does not jump from one speed to another.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> law = st.laws.RateStateAgeing(mu_star=0.6, a=0.010, b=0.015, D_c="10 um", V_star="1 um/s")
+    >>> test = st.protocols.velocity_steps(["1 um/s", "10 um/s"], distance="0.2 mm")
+    >>> slider = st.Slider(
+    ...     mass="1 g", k_x="1 MN/m", k_y="100 MN/m", phi="0 deg", normal_load="10 N",
+    ...     friction=law, drive=test)
+    >>> found = st.analysis.velocity_steps(st.simulate(slider, sample_rate="20 Hz"))
+    >>> round(found.steps[0].a, 3), round(found.steps[0].b, 3)
+    (0.01, 0.015)
     """
     test = friction_test(source, program)
     pairs = zip(test.stretches, test.stretches[1:], strict=False)

@@ -38,7 +38,7 @@ class ApparentFriction:
 
     @property
     def corrected(self) -> Floats:
-        """Mean friction along the drive where sliding is steady: `mean` over cos(phi), (n,)."""
+        """Mean friction along the drive where sliding is steady, `mean` over cos(phi), (n,)."""
         return self.mean / np.cos(self.phi)
 
     @property
@@ -83,6 +83,16 @@ def apparent_friction(study: xr.Dataset, slider: Slider) -> ApparentFriction:
     ------
     ResultError
         If the study is not one over phi alone, or lacks a measure.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> slider = st.presets.nakano_popov_2020()
+    >>> base = st.Description(slider, st.Initial(), st.Settings(duration="6 s"))
+    >>> done = st.sweep(st.protocols.yaw_sweep(base, ["1 deg", "12 deg"]), "angles.zarr")
+    >>> found = st.analysis.apparent_friction(st.open_study("angles.zarr"), base.slider)
+    >>> found.peak.round(3).tolist()
+    [0.199, 0.191]
     """
     wanted = ("mean_force", "peak_force", "amplitude")
     if set(study.dims) != {"phi"} or not {*wanted} <= {str(name) for name in study.data_vars}:

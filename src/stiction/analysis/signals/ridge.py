@@ -47,6 +47,15 @@ def follow_ridge(
         the spectrogram); ``prominence``, its ratio to the median of the 51 lines around it at
         that time, inclined as they are. A line stands out from 5 on, which noise alone reaches in
         one of some 10 000 windows.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> time = np.arange(0.0, 2.0, 1e-3)
+    >>> amplitude = st.analysis.spectrogram(np.sin(2 * np.pi * 100.0 * time), 1e3)
+    >>> ridge = st.analysis.follow_ridge(amplitude, low=50.0, high=200.0)
+    >>> round(float(ridge["frequency"].mean()))
+    100
     """
     import xarray as xr
 

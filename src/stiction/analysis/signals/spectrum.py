@@ -120,6 +120,14 @@ def spectrogram(
     References
     ----------
     Nakano & Popov, arXiv:2008.01854, caption of Fig. 4.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> time = np.arange(0.0, 2.0, 1e-3)
+    >>> found = st.analysis.spectrogram(np.sin(2 * np.pi * 100.0 * time), 1e3)
+    >>> float(found.mean("time").idxmax("frequency"))
+    100.0
     """
     signal = np.asarray(values, dtype=np.float64)
     windows = windows_of(sample_rate, width, step)

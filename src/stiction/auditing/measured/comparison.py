@@ -55,7 +55,7 @@ class RecordComparison:
 
     @property
     def like(self) -> bool:
-        """Whether the record looks like the simulations: features, loading curve, priors."""
+        """Whether the record looks like the simulations by features, loading curve and priors."""
         if self.fit is None or self.predictive is None:
             return False
         usual = self.fit.farther >= RARE and self.predictive.larger >= RARE

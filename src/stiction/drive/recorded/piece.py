@@ -61,6 +61,14 @@ class Recorded(NamedTuple):
         What the velocity is multiplied with.
     file : str, optional
         The file that the rows come from.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> t = [0.0, 0.5, 1.0, 1.5, 2.0]
+    >>> stage = st.protocols.Recorded(time=t, velocity=[1e-3, 1.2e-3, 1e-3, 0.8e-3, 1e-3])
+    >>> stage.duration
+    2.0
     """
 
     time: Times
@@ -107,6 +115,13 @@ class RecordedLoad(NamedTuple):
         What the load is multiplied with.
     file : str, optional
         The file that the rows come from.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> t = [0.0, 0.5, 1.0, 1.5, 2.0]
+    >>> st.protocols.RecordedLoad(time=t, load=[10.0, 10.5, 10.0, 9.5, 10.0]).duration
+    2.0
     """
 
     time: Times

@@ -63,6 +63,15 @@ def read_recorded(
     ------
     DescriptionError
         With every fault of the file, and its lines.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> rows = [f"{0.1 * i},{1 + 0.2 * i - 0.01 * i**2}" for i in range(20)]
+    >>> with open("stage.csv", "w") as file:
+    ...     print("time [s],velocity [mm/s]", *rows, sep=chr(10), file=file)
+    >>> round(st.protocols.read_recorded("stage.csv").duration, 6)
+    1.9
     """
     given = {"time": time, "velocity": velocity, "position": position, "load": load}
     names = {name: each for name, each in given.items() if each is not None}

@@ -45,6 +45,13 @@ class Anisotropic(NamedTuple):
         Coefficient across the axis over that along it; 0.7 to 1.5 for worn or ground metal.
     angle : str
         From the drive direction X to the surface's axis, towards Y, with its unit.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> law = st.laws.Anisotropic(law=st.Coulomb(mu_0=0.2), ratio=2.0, angle="45 deg")
+    >>> law.coefficient(0.0)
+    0.2
     """
 
     law: Annotated[Any, AfterValidator(_is_set_valued), "set-valued friction law"]

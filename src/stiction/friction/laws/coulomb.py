@@ -22,6 +22,12 @@ class Coulomb(NamedTuple):
         Friction coefficient.
     mu_static : float, optional
         Separate coefficient of static friction, not below mu_0; none when left out.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> st.Coulomb(mu_0=0.2).coefficient(0.1)
+    0.2
     """
 
     mu_0: Coefficient

@@ -29,6 +29,13 @@ class ExponentialWeakening(NamedTuple):
         Slip speed over which the coefficient changes, m/s.
     mu_static : float, optional
         Separate coefficient of static friction, not below mu_0; none when left out.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> law = st.ExponentialWeakening(mu_0=0.20, mu_inf=0.15, v_f="10 mm/s")
+    >>> law.coefficient(0.0), round(law.coefficient(0.01), 4)
+    (0.2, 0.1684)
     """
 
     mu_0: Coefficient

@@ -31,6 +31,12 @@ class HyperbolicWeakening(NamedTuple):
         Separate coefficient of static friction, not below mu_0; none when left out.
     mu_inf : float, optional
         Friction coefficient at large slip speed; zero when left out.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> st.laws.HyperbolicWeakening(mu_0=0.4, v_h="10 mm/s").coefficient(0.01)
+    0.2
     """
 
     mu_0: Coefficient

@@ -36,6 +36,14 @@ class LuGre(NamedTuple):
         Damping constant of the bristles, N s/m; the root of sigma_0 in the original paper.
     sigma_2 : float or str, optional
         Viscous friction, N s/m.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> law = st.laws.LuGre(
+    ...     mu_c=0.15, mu_s=0.2, v_s="10 mm/s", sigma_0="100 kN/m", sigma_1="300 N s/m")
+    >>> law.coefficient(0.0)
+    0.2
     """
 
     mu_c: PositiveNumber

@@ -35,6 +35,14 @@ class LuGreHyperbolic(NamedTuple):
         Damping constant of the bristles, N s/m.
     sigma_2 : float or str, optional
         Viscous friction, N s/m.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> law = st.laws.LuGreHyperbolic(
+    ...     mu_0=0.4, v_h="10 mm/s", sigma_0="100 kN/m", sigma_1="300 N s/m")
+    >>> law.coefficient(0.01)
+    0.2
     """
 
     mu_0: PositiveNumber

@@ -32,6 +32,12 @@ class PowerLawWeakening(NamedTuple):
         Exponent, greater than zero.
     mu_static : float, optional
         Separate coefficient of static friction, not below mu_0; none when left out.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> st.laws.PowerLawWeakening(mu_0=0.4, v_0="10 mm/s", n=1.0).coefficient(0.01)
+    0.2
     """
 
     mu_0: Coefficient

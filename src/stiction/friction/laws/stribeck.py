@@ -39,6 +39,13 @@ class Stribeck(NamedTuple):
         Viscous friction per normal load, s/m; none when left out.
     mu_static : float, optional
         Separate coefficient of static friction, not below mu_s; none when left out.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> law = st.laws.Stribeck(mu_s=0.3, mu_c=0.2, v_s="10 mm/s", c="0.5 s/m")
+    >>> round(law.coefficient(0.0), 3), round(law.coefficient(1.0), 3)
+    (0.3, 0.7)
     """
 
     mu_s: Coefficient

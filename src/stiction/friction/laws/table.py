@@ -33,6 +33,13 @@ class Table(NamedTuple):
         Friction coefficient at each.
     mu_static : float, optional
         Separate coefficient of static friction, not below the first of mu; none when left out.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> law = st.laws.Table(v=["0 m/s", "1 mm/s", "10 mm/s"], mu=[0.3, 0.25, 0.2])
+    >>> law.coefficient(1e-3)
+    0.25
     """
 
     v: Speeds

@@ -30,6 +30,14 @@ class TwoExponentials(NamedTuple):
         Slip speeds over which it is lost, m/s.
     mu_static : float, optional
         Separate coefficient of static friction, not below the sum of all three; none when left out.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> law = st.laws.TwoExponentials(
+    ...     mu_inf=0.35, mu_1=0.4, v_1="10 mm/s", mu_2=0.45, v_2="0.1 m/s")
+    >>> round(law.coefficient(0.0), 3)
+    1.2
     """
 
     mu_inf: Coefficient

@@ -98,6 +98,13 @@ def plot_creep(
         (s), from `creep_theory` or a fit's ``velocity``.
     ax : Axes, optional
         Drawn on; a new figure as wide as a column when left out.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "5 s", sample_rate="2 kHz")
+    >>> curves = st.analysis.creep_curves(run, st.analysis.find_cycles(run))
+    >>> ax = st.plotting.plot_creep(curves, st.analysis.mean_creep(curves), V=1e-3)
     """
     middle = 0.5 * (mean["begin"] + mean["end"]).values
     value, error = mean["velocity"].values, np.nan_to_num(mean["velocity_error"].values)

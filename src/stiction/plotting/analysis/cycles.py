@@ -37,7 +37,7 @@ def plot_cycles(
     ----------
     source : Record or Trajectory
         Measured, or a run; not empty.
-    axes : Axes, or two of them, optional
+    axes : Axes or sequence of Axes, optional
         For the whole record, and for the part that is shown larger; a new figure as wide as a
         page when left out.
 
@@ -45,6 +45,12 @@ def plot_cycles(
     -------
     ndarray of Axes
         One, or two where there are many cycles.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "5 s", sample_rate="1 kHz")
+    >>> axes = st.plotting.plot_cycles(run)
     """
     record = as_record(source)
     found = swings(record)

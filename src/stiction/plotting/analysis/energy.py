@@ -94,8 +94,8 @@ def plot_energy(budget: xr.Dataset, axes: Sequence[Axes] | None = None) -> NDArr
     ----------
     budget : Dataset
         From `stiction.analysis.energy_budget`, with some intervals, e.g. cycles.
-    axes : two Axes, optional
-        Drawn on; a new figure as wide as a column when left out.
+    axes : sequence of Axes, optional
+        Two, drawn on; a new figure as wide as a column when left out.
 
     Returns
     -------

@@ -85,8 +85,8 @@ def plot_oscillation(
         As for `stiction.analysis.transverse_oscillation`.
     oscillation : Dataset
         What that returned.
-    axes : three Axes, optional
-        Drawn on; a new figure as wide as a column when left out.
+    axes : sequence of Axes, optional
+        Three, drawn on; a new figure as wide as a column when left out.
 
     Returns
     -------

@@ -20,7 +20,14 @@ from stiction.trajectory import Trajectory
 
 
 def plot_analysis(found: Analysis, axes: Any = None) -> Any:
-    """Draw the force with its cycles and its kind of motion; see `plot_cycles`."""
+    """Draw the force with its cycles and its kind of motion; see `plot_cycles`.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "5 s", sample_rate="1 kHz")
+    >>> axes = st.plotting.plot_analysis(st.analyse(run))
+    """
     return plot_cycles(found.record, axes)
 
 

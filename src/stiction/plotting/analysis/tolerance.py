@@ -30,8 +30,8 @@ def plot_tolerance(budget: Any, axes: Sequence[Axes] | None = None) -> NDArray[n
     ----------
     budget : Budget
         Of `stiction.audit` of a rig with an uncertain misalignment: ``audit(rig).budget``.
-    axes : sequence of four Axes, optional
-        A new figure as wide as a page when left out.
+    axes : sequence of Axes, optional
+        Four; a new figure as wide as a page when left out.
 
     Returns
     -------

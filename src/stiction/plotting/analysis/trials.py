@@ -57,13 +57,22 @@ def plot_trials(
         The test before anything was changed, grey.
     trials : sequence of Trial
         At least one; blue.
-    axes : Axes, one for each trial, optional
-        Drawn on; a new figure as wide as a page when left out.
+    axes : Axes or sequence of Axes, optional
+        Drawn on, one for each trial; a new figure as wide as a page when left out.
 
     Returns
     -------
     ndarray of Axes
         One for each trial.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> from stiction.plotting.analysis.trials import Trial
+    >>> slider = st.presets.nakano_popov_2020()
+    >>> turned = st.simulate(slider.replace(phi="10 deg"), "5 s", sample_rate="1 kHz")
+    >>> before = st.analysis.record_of(st.simulate(slider, "5 s", sample_rate="1 kHz"))
+    >>> axes = st.plotting.plot_trials(before, [Trial("10 deg", st.analysis.record_of(turned))])
     """
     across = min(ACROSS, len(trials))
     rows = -(-len(trials) // across)

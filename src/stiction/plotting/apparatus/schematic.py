@@ -40,6 +40,11 @@ def plot_slider(slider: Slider, ax: Axes | None = None) -> Axes:
         The system.
     ax : Axes, optional
         Drawn on; a new figure as wide as a column when left out.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> ax = st.plotting.plot_slider(st.presets.nakano_popov_2020())
     """
     with style():
         return draw_schematic(panel(ax, 2.4), slider)

@@ -29,8 +29,8 @@ def plot_mechanism(odds: Any, axes: Sequence[Axes] | None = None) -> NDArray[np.
     ----------
     odds : Odds
         Of `stiction.mechanism`.
-    axes : sequence of three Axes, optional
-        A new figure as wide as a page when left out.
+    axes : sequence of Axes, optional
+        Three; a new figure as wide as a page when left out.
 
     Returns
     -------

@@ -25,8 +25,8 @@ def plot_predictive(comparison: Any, axes: Sequence[Axes] | None = None) -> NDAr
     ----------
     comparison : Comparison
         Of `stiction.audit` of a rig and a record: ``audit(rig, record=record).measured``.
-    axes : sequence of three Axes, optional
-        A new figure as wide as a page when left out.
+    axes : sequence of Axes, optional
+        Three; a new figure as wide as a page when left out.
 
     Returns
     -------

@@ -64,6 +64,13 @@ def plot_comparison(
     -------
     dict of str to Axes
         The axes by their names.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> slider = st.presets.nakano_popov_2020()
+    >>> base = st.Description(slider, st.Initial(), st.Settings(duration="20 ms"))
+    >>> axes = st.plotting.plot_comparison(st.compare(base, ["coulomb"]))
     """
     with style():
         curves = curves_of(runs)

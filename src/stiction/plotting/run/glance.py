@@ -29,6 +29,12 @@ def plot_glance(run: Trajectory, axes: Mapping[str, Axes] | None = None) -> dict
     -------
     dict of str to Axes
         The axes by their names.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "0.1 s", sample_rate="10 kHz")
+    >>> axes = st.plotting.plot_glance(run)
     """
     with style():
         panels = axes

@@ -26,6 +26,11 @@ def plot_law(slider: Slider, fastest: float | None = None, ax: Axes | None = Non
         Largest slip speed, m/s; ten times that of the drive when left out.
     ax : Axes, optional
         Drawn on; a new figure as wide as a column when left out.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> ax = st.plotting.plot_law(st.presets.nakano_popov_2020())
     """
     with style():
         ax = panel(ax, 2.2)

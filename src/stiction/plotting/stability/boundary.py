@@ -31,10 +31,17 @@ def plot_boundary(
     ----------
     curve : Dataset
         From `stiction.linear_stability.boundary`.
-    closed_form : pair of arrays, optional
+    closed_form : tuple of array, optional
         Another boundary to compare with, the two parameters in SI.
     ax : Axes, optional
         Drawn on; a new figure as wide as a column when left out.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> slider = st.presets.nakano_popov_2020()
+    >>> curve = st.linear_stability.boundary(slider, "phi", "drive.velocity")
+    >>> ax = st.plotting.plot_boundary(curve)
     """
     with style():
         ax = panel(ax, 2.9)

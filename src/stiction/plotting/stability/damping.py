@@ -83,6 +83,11 @@ def plot_damping(
         Ranges, as of `draw_damping_map`.
     ax : Axes, optional
         Drawn on; a new figure as wide as a column when left out.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> ax = st.plotting.plot_damping()
     """
     with style():
         ax = panel(ax, 2.7)

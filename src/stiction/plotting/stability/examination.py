@@ -18,6 +18,11 @@ def plot_stability(found: Stability, axes: Any = None) -> Any:
         From `stiction.stability`.
     axes : Axes, optional
         As of `plot_modes` (two of them) or `plot_boundary` (one).
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> axes = st.plotting.plot_stability(st.stability(st.presets.nakano_popov_2020(), over="phi"))
     """
     if len(found.criticals) == 2:
         return plot_boundary(found.boundary, ax=axes)

@@ -33,13 +33,19 @@ def plot_modes(
         From `stiction.linear_stability.modes_over`.
     critical : Critical, optional
         Critical values of the same parameter: dashed, with their numbers above.
-    axes : two Axes, optional
-        Drawn on; a new figure as wide as a column when left out.
+    axes : sequence of Axes, optional
+        Two, drawn on; a new figure as wide as a column when left out.
 
     Returns
     -------
     ndarray of Axes
         The two.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> modes = st.linear_stability.modes_over(st.presets.nakano_popov_2020(), "phi", points=11)
+    >>> axes = st.plotting.plot_modes(modes)
     """
     values, log = modes["value"], modes.attrs["scale"] == "log"
     ends = values.values[[0, -1]]

@@ -77,6 +77,17 @@ def refine(
     ------
     DescriptionError
         If there is no such axis, or the study keeps no regime.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> slider = st.presets.nakano_popov_2020()
+    >>> base = st.Description(slider, st.Initial(), st.Settings(duration="3 s"))
+    >>> axes = {"phi": st.Grid("8 deg", "12 deg", 3)}
+    >>> study = st.Study(base=base, axes=axes, measures=["regime"])
+    >>> found = st.refine(study, "yaw.zarr", along="phi", to="1 deg")
+    >>> found.sizes["point"] > 0
+    True
     """
     along, width, apart = request(study, along, to, apart)
     sweep(study, path, engine=engine, progress=progress)

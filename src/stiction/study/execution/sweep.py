@@ -88,6 +88,17 @@ def sweep(
     ------
     ResultError
         If something else is there, or the store cannot be written.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> slider = st.presets.nakano_popov_2020()
+    >>> base = st.Description(slider, st.Initial(), st.Settings(duration="20 ms"))
+    >>> axes = {"phi": st.Grid("1 deg", "3 deg", 3)}
+    >>> study = st.Study(base=base, axes=axes, measures=["stick_count"])
+    >>> print(st.sweep(study, "phi.zarr"))
+    phi.zarr
+      3 of 3 runs are done.
     """
     store = open_store(study, path) if Path(path).exists() else create(study, path)
     layout = store.layout

@@ -52,6 +52,12 @@ class Values(Positional):
     along : str, optional
         The dimension of the axis; by default the parameter's own. Axes along one dimension take
         their values together.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> st.Values(["1 mm/s", "2 mm/s"]).count
+    2
     """
 
     values: Quantities
@@ -95,6 +101,12 @@ class Grid(Range):
         Equal distances or equal ratios.
     along : str, optional
         As of `Values`.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> st.Grid("1 deg", "10 deg", 10).count
+    10
     """
 
     __init__ = Positional.__init__
@@ -113,6 +125,12 @@ class Random(Range):
         As of `Grid`.
     along : str, optional
         By default all random axes lie along ``sample``, so that each run draws all of them.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> st.Random("1 mm/s", "10 mm/s", 100, spacing="log").count
+    100
     """
 
     along: str | None = "sample"
@@ -137,6 +155,12 @@ class Sobol(Range):
     References
     ----------
     Sobol, USSR Comput. Math. Math. Phys. 7, 86 (1967); Matousek, J. Complexity 14, 527 (1998).
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> st.Sobol("1 deg", "5 deg", 64).count
+    64
     """
 
     along: str | None = "sample"

@@ -43,10 +43,10 @@ class Study(Described):
     ----------
     base : Description
         The description that all runs share.
-    axes : mapping of str to axis
+    axes : mapping of str to Grid, Values, Random or Sobol
         From the path of a parameter (``phi``, ``drive.velocity``, ``friction.mu_0``, ``k_x, k_y``
-        for two that share a value; see `stiction.study.plan.coordinates`) to a `Grid`, `Values`,
-        `Random` or `Sobol`, or a table of the same.
+        for two that share a value; see `stiction.study.plan.coordinates`) to an axis, or to a
+        table of the same.
     measures : sequence of str, optional
         Numbers to keep of each run, see `stiction.study.variables.measures.MEASURES`.
     traces : sequence of str, optional

@@ -289,6 +289,17 @@ def open_study(path: str | Path) -> xr.Dataset:
     ------
     ResultError
         If it is not a store, or is damaged; damaged values raise it when they are read.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> slider = st.presets.nakano_popov_2020()
+    >>> base = st.Description(slider, st.Initial(), st.Settings(duration="20 ms"))
+    >>> axes = {"phi": st.Grid("1 deg", "3 deg", 3)}
+    >>> study = st.Study(base=base, axes=axes, measures=["stick_count"])
+    >>> done = st.sweep(study, "phi.zarr")
+    >>> st.open_study("phi.zarr")["stick_count"].values.tolist()
+    [9.0, 15.0, 17.0]
     """
     import xarray as xr
     from zarr.storage import LocalStore

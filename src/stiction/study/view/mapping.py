@@ -49,6 +49,18 @@ class Map(NamedTuple):
         The study and its store, cut to one or two dimensions.
     measures : tuple of str
         The measures to draw.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> slider = st.presets.nakano_popov_2020()
+    >>> base = st.Description(slider, st.Initial(), st.Settings(duration="20 ms"))
+    >>> axes = {"phi": st.Grid("1 deg", "3 deg", 3)}
+    >>> study = st.Study(base=base, axes=axes, measures=["stick_count"])
+    >>> done = st.sweep(study, "phi.zarr")
+    >>> found = st.map("phi.zarr")
+    >>> found.data["stick_count"].sizes["phi"]
+    3
     """
 
     view: View
@@ -108,6 +120,17 @@ def map(
         If `store` is not the store of a study.
     DescriptionError
         If there is no such measure or dimension, or more than two dimensions remain.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> slider = st.presets.nakano_popov_2020()
+    >>> base = st.Description(slider, st.Initial(), st.Settings(duration="20 ms"))
+    >>> axes = {"phi": st.Grid("1 deg", "3 deg", 3)}
+    >>> study = st.Study(base=base, axes=axes, measures=["stick_count"])
+    >>> done = st.sweep(study, "phi.zarr")
+    >>> st.map("phi.zarr").dims
+    ('phi',)
     """
     view = view_study(store, at or {}, trust)
     return Map(view, tuple(choose_measures(view, [of] if isinstance(of, str) else of)))
@@ -120,13 +143,24 @@ def plot_map(found: Map, axes: Any = None) -> NDArray[np.object_]:
     ----------
     found : Map
         From `stiction.map`.
-    axes : Axes, one for each measure, optional
-        Axes to draw on; by default a new figure, as wide as a column, or as a page for several.
+    axes : Axes or sequence of Axes, optional
+        Drawn on, one for each measure; by default a new figure, as wide as a column, or as a page
+        for several.
 
     Returns
     -------
     ndarray of Axes
         One for each measure.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> slider = st.presets.nakano_popov_2020()
+    >>> base = st.Description(slider, st.Initial(), st.Settings(duration="20 ms"))
+    >>> axes = {"phi": st.Grid("1 deg", "3 deg", 3)}
+    >>> study = st.Study(base=base, axes=axes, measures=["stick_count"])
+    >>> done = st.sweep(study, "phi.zarr")
+    >>> axes = st.plotting.plot_map(st.map("phi.zarr"))
     """
     view = found.view
     draw = {1: _curves, 2: _maps}[len(found.dims)]

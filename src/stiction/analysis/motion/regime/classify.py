@@ -42,6 +42,13 @@ def classify(source: Trajectory | Record) -> Regime:
     source : Trajectory or Record
         A run or a measurement. With stiffness, drive velocity and mass, the rate of loading and
         the natural period count too; otherwise only the shape.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> time = np.arange(0.0, 20.0, 1e-3)
+    >>> st.analysis.classify(st.Record(time=time, force=0.1 * (time % 2.0))).kind
+    'stick-slip'
     """
     record = as_record(source)
     return regime_of(record, swings(record))

@@ -134,6 +134,14 @@ class Regime(NamedTuple):
         Numbers behind the decision; ``str(regime)`` puts them into words.
     runner_up : str
         The second most frequent kind among the cycles; empty if there is none.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "5 s", sample_rate="1 kHz")
+    >>> found = st.analysis.classify(run)
+    >>> found.kind, found.confidence > 0.9
+    ('stick-slip', True)
     """
 
     kind: str

@@ -101,6 +101,13 @@ class RateStateAgeing(Ageing, OneState):
         Coefficient of steady sliding at V_star.
     V_star : float or str
         Reference slip speed, m/s; any.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> law = st.laws.RateStateAgeing(mu_star=0.6, a=0.010, b=0.015, D_c="10 um", V_star="1 um/s")
+    >>> law.coefficient(1e-6), round(law.coefficient(1e-5), 4)
+    (0.6, 0.5885)
     """
 
     __slots__ = ()
@@ -127,6 +134,13 @@ class RateStateSlip(Slipping, OneState):
         Coefficient of steady sliding at V_star.
     V_star : float or str
         Reference slip speed, m/s; any.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> law = st.laws.RateStateSlip(mu_star=0.6, a=0.010, b=0.015, D_c="10 um", V_star="1 um/s")
+    >>> round(law.coefficient(1e-5), 4)
+    0.5885
     """
 
     __slots__ = ()
@@ -155,6 +169,13 @@ class RateStatePerrin(Squaring, OneState):
         Coefficient of steady sliding at V_star.
     V_star : float or str
         Reference slip speed, m/s; any.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> law = st.laws.RateStatePerrin(mu_star=0.6, a=0.010, b=0.015, D_c="10 um", V_star="1 um/s")
+    >>> round(law.coefficient(1e-5), 4)
+    0.5885
     """
 
     __slots__ = ()

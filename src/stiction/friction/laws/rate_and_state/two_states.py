@@ -117,6 +117,14 @@ class RateStateAgeing2(Ageing, TwoStates):
         Coefficient of steady sliding at V_star.
     V_star : float or str
         Reference slip speed, m/s; any.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> law = st.laws.RateStateAgeing2(
+    ...     mu_star=0.6, a=0.01, b_1=0.01, D_1="5 um", b_2=0.005, D_2="50 um", V_star="1 um/s")
+    >>> round(law.coefficient(1e-5), 4)
+    0.5885
     """
 
     __slots__ = ()
@@ -144,6 +152,14 @@ class RateStateSlip2(Slipping, TwoStates):
         Coefficient of steady sliding at V_star.
     V_star : float or str
         Reference slip speed, m/s; any.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> law = st.laws.RateStateSlip2(
+    ...     mu_star=0.6, a=0.01, b_1=0.01, D_1="5 um", b_2=0.005, D_2="50 um", V_star="1 um/s")
+    >>> round(law.coefficient(1e-5), 4)
+    0.5885
     """
 
     __slots__ = ()
