@@ -77,7 +77,7 @@ def legible(_, __):
     )
 
 
-PARTS = ["paper", "friction", "protocols", "maps", "apparatus"]
+PARTS = ["paper", "friction", "protocols", "maps", "apparatus", "inference"]
 sphinx_gallery_conf = {
     "write_computation_times": False,  # a page with scripts from elsewhere
     "examples_dirs": "gallery",

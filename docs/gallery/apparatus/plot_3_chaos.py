@@ -1,9 +1,9 @@
 """
-From one period to chaos
-========================
+From order to chaos
+===================
 
-The two-state slip law on a spring of falling stiffness: slips of one size, then two, four, eight
-sizes, then no order. Slip speed over force, for two stiffnesses.
+The two-state slip law on a spring: at 0.86 of the critical stiffness slips of two sizes take turns,
+at 0.8525 no slip is like another. Slip speed over force, for both.
 """
 
 import matplotlib.pyplot as plt
@@ -13,7 +13,7 @@ import stiction as st
 figure, ax = plt.subplots(figsize=(6, 3.6), layout="constrained")
 runs = {
     "chaos": ("0.6", 0.4, st.presets.two_state_chaos()),
-    "a period of a few slips": ("#D55E00", 1.6, st.presets.period_doubling()),
+    "two sizes in turn": ("#D55E00", 1.6, st.presets.period_doubling()),
 }
 for name, (colour, width, preset) in runs.items():
     run = st.run(preset)

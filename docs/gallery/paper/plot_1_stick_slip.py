@@ -1,6 +1,6 @@
 """
-Stick-slip that never sticks
-============================
+What looks like stick and slip
+==============================
 
 Fig. 3 of the paper. The force along the drive is a sawtooth, as from any friction test. Across the
 drive the force jumps to the full friction and falls to zero. The magnitude of friction does not

@@ -2,7 +2,7 @@
 Frequency, amplitude and rest of the transverse oscillation
 ===========================================================
 
-The oscillation followed through three slips: its frequency falls as sin θ towards each of them,
+The oscillation followed through four slips: its frequency falls as sin θ towards each of them,
 its velocity reaches V sin φ, where the mass comes to rest.
 """
 

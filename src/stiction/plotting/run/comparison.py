@@ -97,7 +97,7 @@ def plot_comparison(
 
 def _panels(curves: list[RunCurve], legend: list[str]) -> dict[str, Axes]:
     """Return the axes of a new figure, by their names."""
-    lines = sum(text.count("\n") + 1.6 for text in legend) + 9
+    lines = sum(text.count("\n") + 1.6 for text in legend) + 10
     top, strip = max(2.3, lines * LINE), 0.08 + 0.1 * len(curves)
     panels: dict[str, Axes] = canvas(PAGE, top + 2.5 + strip).subplot_mosaic(
         [["force", "words"], ["X", "words"], ["speed", "portrait"], ["rest", "held"]],
