@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 from benchmarks.cases import CASES
 from docutils import nodes
@@ -12,6 +13,7 @@ from docutils.statemachine import StringList
 import stiction as st
 from stiction.presets import PRESETS
 from stiction.result.columns import STICKS, VARIABLES
+from stiction.study.variables.measures import MEASURES
 from stiction.system.schema import schema
 
 
@@ -61,17 +63,32 @@ def column_lines() -> list[str]:
     return table(("variable", "unit", "meaning"), rows)
 
 
+def measure_lines() -> list[str]:
+    """Return the measures that a study can keep."""
+    rows = [(f"`{name}`", each.unit, each.long_name) for name, each in MEASURES.items()]
+    return table(("measure", "unit", "meaning"), rows)
+
+
 def key_lines() -> list[str]:
-    """Return every key of a description, table by table, and of each friction law."""
+    """Return every key of a description, table by table, and of each law and piece."""
     lines: list[str] = []
     for name, part in schema()["properties"].items():
-        lines += [f"**`[{name}]`**", "", *keys(part), ""]
-        for key, inner in part["properties"].items():
-            if rows := keys(inner.get("items", {})):
-                lines += [f"**`[[{name}.{key}]]`**", "", *rows, ""]
-        for case in part.get("allOf", []):
-            law = case["if"]["properties"]["law"]["const"]
-            lines += [f'**`[{name}]`, `law = "{law}"`**', "", *keys(case["then"]), ""]
+        lines += part_lines(f"[{name}]", part)
+    return lines
+
+
+def part_lines(heading: str, part: dict) -> list[str]:
+    """Return the keys of a table, then those of the tables within it."""
+    title, name = heading.partition(",")[0], heading.partition(",")[0].strip("[]")
+    rows = keys(part)
+    lines = [f"**`{heading}`**", "", *rows, ""] if rows else []
+    for case in part.get("allOf", []):
+        for key, choice in case.get("if", {}).get("properties", {}).items():
+            lines += part_lines(f'{title}, {key} = "{choice["const"]}"', case["then"])
+    for key, inner in part.get("properties", {}).items():
+        if "properties" in inner and (key != "anisotropy" or '"coulomb"' in heading):
+            lines += part_lines(f"[{name}.{key}]", inner)
+        lines += part_lines(f"[[{name}.{key}]]", inner.get("items", {}))
     return lines
 
 
@@ -79,17 +96,51 @@ def keys(part: dict) -> list[str]:
     """Return the table of the keys of a part of the schema."""
     rows = []
     for name, key in part.get("properties", {}).items():
-        if "description" in key:
+        if "const" not in key:
             needed = name in part.get("required", [])
             default = "required" if needed else f"`{key.get('default', 'none')}`"
-            rows.append((f"`{name}`", default.replace("`None`", "none"), key["description"]))
-    return table(("key", "default", "meaning and unit"), rows) if rows else []
+            default = default.replace("`None`", "none").replace("`none`", "none")
+            meaning = key.get(
+                "description", "a table, below" if "properties" in key else "the kind"
+            )
+            rows.append((f"`{name}`", find(key, "unit") or "", default, limit(key), meaning))
+    return table(("key", "SI unit", "default", "limit", "meaning"), rows) if rows else []
+
+
+BOUNDS = {
+    "exclusiveMinimum": "above",
+    "minimum": "from",
+    "maximum": "to",
+    "exclusiveMaximum": "below",
+}
+
+
+def limit(key: dict) -> str:
+    """Return the bounds of a key in words, or its choices."""
+    found = [
+        f"{word} {bound:g}"
+        for name, word in BOUNDS.items()
+        if (bound := find(key, name)) is not None
+    ]
+    choices = find(key, "enum")
+    return " ".join(found) or (
+        "" if choices is None else ", ".join(f"`{each}`" for each in choices)
+    )
+
+
+def find(key: dict, name: str) -> Any:
+    """Return what a key, or the first of its alternatives that has it, says under a name."""
+    if name in key:
+        return key[name]
+    found = (find(each, name) for each in key.get("anyOf", []))
+    return next((each for each in found if each is not None), None)
 
 
 DIRECTIVES = {
     "preset-table": preset_lines,
     "column-table": column_lines,
     "key-table": key_lines,
+    "measure-table": measure_lines,
     "verification-table": verification_lines,
 }
 

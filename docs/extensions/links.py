@@ -135,7 +135,10 @@ def leave_out(app, what, name, each, skip, options) -> bool | None:
 
 
 def setup(app):
-    """Register them."""
+    """Register them, and remove the pages of names that are no longer public."""
+    for page in PARTS.parent.glob("generated/*.rst"):
+        if page.stem not in PAGES.values():
+            page.unlink()
     app.add_role("name", name)
     app.connect("missing-reference", resolve)
     app.connect("autodoc-process-docstring", as_rst, priority=400)  # before napoleon

@@ -1,7 +1,8 @@
 """The JSON schema of a description, by which an editor completes and checks it as it is written.
 
 It is derived from what reads descriptions: the fields of each table, the registry of laws, the
-pieces of programs. Types, bounds and keys are in it; units, and rules between values, are not.
+pieces of programs. Types, bounds and keys are in it, and the SI unit as a keyword of its own, which
+validators pass over; rules between values are not.
 """
 
 from __future__ import annotations
@@ -45,15 +46,22 @@ def schema() -> Schema:
         "drive": program(DriveProgram, DRIVE_PIECES, VELOCITY, ("along", "across")),
         "load": program(LoadProgram, LOAD_PIECES, FORCE, ("modulation",)),
         "initial": table(Initial),
-        "run": table(Settings),
+        "run": table(Settings) | {"required": []},
     }
     return {
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "A description of stiction",
         "type": "object",
         "properties": tables,
-        "required": ["slider", "friction", "drive", "run"],
+        "required": ["slider", "friction", "drive"],
         "additionalProperties": False,
+        "anyOf": [  # a program may end, and the run with it
+            {"required": ["run"], "properties": {"run": {"required": ["duration"]}}},
+            *(
+                {"required": [name], "properties": {name: {"required": ["program"]}}}
+                for name in ("drive", "load")
+            ),
+        ],
     }
 
 
@@ -71,6 +79,7 @@ class Generator(GenerateJsonSchema):
 def quantity(number: Schema, kind: Kind, words: Iterable[str] = ()) -> Schema:
     """Return the schema of a quantity: a number in SI, except for angles, or a text, or a word."""
     text = {"type": "string", "pattern": WITH_UNIT if kind.unit else rf"{NUMBER}\s*$"}
+    text |= {"unit": "deg or rad" if kind.unit == "rad" else kind.unit} if kind.unit else {}
     if kind.unit == "rad":
         return text
     return {"anyOf": [number, text, *({"const": word} for word in words)]}

@@ -1,0 +1,69 @@
+"""The pages of the reference: every public name once, each with an example that runs."""
+
+import inspect
+import re
+from pathlib import Path
+from pkgutil import resolve_name
+from types import ModuleType
+
+import pytest
+
+import stiction as st
+from stiction.names import public_names
+from stiction.presets import PRESETS
+
+DOCS = Path(__file__).parents[2] / "docs"
+PAGES = sorted((DOCS / "reference" / "python").glob("*.md"))
+GALLERY = " ".join(path.read_text("utf-8") for path in (DOCS / "gallery").rglob("plot_*.py"))
+STUBS = ("analysis", "linear_stability", "plotting", "protocols", "results")
+MADE_BY = {"Advice": "design", "Fit": "fit"}  # results of what takes a minute
+SERVER = "explore"  # serves until its page is closed: tests/browser
+
+
+def listed(page: Path) -> list[str]:
+    """Return the full names that a page lists."""
+    text = page.read_text("utf-8")
+    room = re.search(r"currentmodule:: (\S+)", text)
+    names = re.findall(r"^   ([\w.]+)$", text, re.M)
+    return [f"{room[1]}.{name}" if room else name for name in names]
+
+
+LISTED = [name for page in PAGES if page.stem != "parts" for name in listed(page)]
+FOUND = {name: resolve_name(f"stiction:{name.removeprefix('stiction.')}") for name in LISTED}
+
+
+def offered() -> dict[int, str]:
+    """Return what a session and its rooms offer, by identity."""
+    rooms = {room: getattr(st, room) for room in st.__all__}
+    rooms = {room: each for room, each in rooms.items() if isinstance(each, ModuleType)}
+    found = {name: getattr(st, name) for name in st.__all__ if name not in rooms}
+    for room, module in rooms.items():
+        names = public_names(module.__name__) if room in STUBS else vars(module)
+        for name in names:
+            each = getattr(module, name)
+            if room in STUBS or getattr(each, "__module__", "").startswith(module.__name__):
+                found |= {f"{room}.{name}": each} if name[0] != "_" else {}
+    return {id(each): name for name, each in found.items() if callable(each)}
+
+
+def test_the_reference_lists_each_public_name_once():
+    names = offered()
+    assert len(names) > 200
+    assert sorted(name for key, name in names.items() if key not in map(id, FOUND.values())) == []
+    assert len({id(each) for each in FOUND.values()}) == len(LISTED)
+    assert sorted(name for name, each in FOUND.items() if id(each) not in names) == []
+
+
+def test_parts_of_results_are_where_their_page_says():
+    page = DOCS / "reference" / "python" / "parts.md"
+    assert all(isinstance(resolve_name(name), type) for name in listed(page))
+
+
+@pytest.mark.parametrize("name", LISTED)
+def test_each_name_has_an_example(name):
+    """In its docstring, which doctest runs, or in a script of the gallery, which the build runs."""
+    short = name.rpartition(".")[2]
+    if short.replace("_", "-") in PRESETS or short in ("nakano_popov_2020", SERVER):
+        return  # every preset is run by tests/unit/presets, and is used alike
+    short = MADE_BY.get(short, short)
+    assert ">>> " in (inspect.getdoc(FOUND[name]) or "") or f".{short}(" in GALLERY
