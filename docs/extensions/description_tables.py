@@ -32,6 +32,7 @@ def directive(lines: Callable[[], list[str]]) -> type[Directive]:
 
     class Written(Directive):
         def run(self) -> list[nodes.Node]:
+            self.state.document.settings.env.note_reread()  # the package may change, the page not
             inside = nodes.section()
             inside.document = self.state.document
             self.state.nested_parse(StringList(lines(), source="description"), 0, inside)

@@ -36,7 +36,8 @@ class Settings(Described):
     Parameters
     ----------
     duration : float or str
-        s; in a description's [run] by default until the programs of drive and load end.
+        How long the run lasts, s; in a description's [run] by default until the programs of drive
+        and load end.
     sample_rate : float or str, optional
         Output samples per second, Hz; 0 for the first and last state only. By default a rate
         that suits the system, see `stiction.simulate`.

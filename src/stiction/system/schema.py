@@ -17,7 +17,7 @@ from pydantic_core.core_schema import BeforeValidatorFunctionSchema
 
 from stiction.drive import DriveProgram, LoadProgram
 from stiction.drive.pieces import DRIVE_PIECES, LEVELS, LOAD_PIECES, Modulation
-from stiction.friction import LAWS, Anisotropic
+from stiction.friction import LAWS, Anisotropic, has_state
 from stiction.system.description import Settings
 from stiction.system.initial import Initial
 from stiction.system.slider import FROM_SPRINGS, Apparatus, Slider
@@ -160,8 +160,8 @@ def spring() -> Schema:
 def friction() -> Schema:
     """Return the schema of the table [friction]; of a user's law, any parameters."""
     laws = {name: table(fields(cast(Any, kind)), kind) for name, kind in LAWS.items()}
-    for each in laws.values():
-        each["properties"]["anisotropy"] = table(fields(Anisotropic), Anisotropic, ["law"])
+    for name in (each for each, kind in LAWS.items() if not has_state(kind)):
+        laws[name]["properties"]["anisotropy"] = table(fields(Anisotropic), Anisotropic, ["law"])
     return schema_by_choice("law", laws, {"type": "string", "pattern": ":"})
 
 

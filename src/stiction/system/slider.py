@@ -164,13 +164,13 @@ class Slider(Apparatus):
     Parameters
     ----------
     mass : float or str
-        m, kg.
+        The mass m that slides, kg.
     k_x, k_y : float or str
         Principal stiffnesses, N/m.
     phi : str
         Misalignment angle between x and X, within 90 degrees of zero; ``slider.phi`` is in rad.
     normal_load : float or str
-        W, N; the initial value of a load program.
+        Normal load W, N; the initial value of a load program.
     friction : FrictionLaw
         For example `ExponentialWeakening` or `Coulomb`.
     drive : ConstantVelocity or DriveProgram

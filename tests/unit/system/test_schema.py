@@ -8,7 +8,7 @@ import pytest
 from jsonschema import Draft7Validator
 
 import stiction as st
-from stiction.friction import LAWS
+from stiction.friction import LAWS, has_state
 from stiction.system.schema import schema
 
 ROOT = Path(__file__).parents[3]
@@ -181,3 +181,10 @@ def test_a_run_whose_program_ends_needs_no_duration():
     del steady["run"]
     assert not is_read(steady)
     assert not VALIDATOR.is_valid(steady)
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_laws_with_a_state_have_no_grain(name):
+    tables = describe(friction=LAWS[name].like(0.2, 0.15, 1e-2))
+    tables["friction"]["anisotropy"] = {"ratio": 1.5}
+    assert VALIDATOR.is_valid(tables) == is_read(tables) == (not has_state(LAWS[name]))
