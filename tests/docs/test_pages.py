@@ -10,23 +10,36 @@ from stiction.cli import main
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted((ROOT / "docs" / "how-to").glob("*.md"))
-BLOCK = re.compile(r"^```(sh|python)\n(.*?)^```$", re.M | re.S)
+BLOCK = re.compile(r"^```(sh|python|text)\n(.*?)^```$", re.M | re.S)
+
+
+def words(text: str) -> str:
+    """Return a text without line breaks and spaces that only lay it out."""
+    return " ".join(text.split())
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_what_a_page_says_works(page, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "200")
     names: dict[str, object] = {}
+    said = ""
     for kind, text in BLOCK.findall(page.read_text("utf-8")):
         if kind == "python":
             exec(compile(text, page.name, "exec"), names)
+            continue
+        if kind == "text":
+            shown = "" if "stiction " in text else text  # commands on files of the reader's
+            assert [line for line in shown.splitlines() if words(line) not in said] == []
             continue
         for line in text.splitlines():
             program, *arguments = shlex.split(line, comments=True)
             assert program == "stiction"
             with pytest.raises(SystemExit) as ended:
                 main(arguments)
-            assert ended.value.code == 0, capsys.readouterr().err
+            output = capsys.readouterr()
+            assert ended.value.code == 0, output.err
+            said += words(output.out)
 
 
 def test_pages_have_something_to_run():
