@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import fcntl
+import contextlib
 import os
 from pathlib import Path
+from typing import IO
 
 import numpy as np
 import pytest
@@ -73,6 +74,14 @@ def record(record_file: Path) -> st.Record:
     return st.read_record(record_file, time="t=ms", force="F=mN", **said)
 
 
+def wait_for(lock: IO[str]) -> None:
+    """Wait until no other worker has it; on Windows, which lacks it, all make the same."""
+    with contextlib.suppress(ImportError):
+        from fcntl import LOCK_EX, flock
+
+        flock(lock, LOCK_EX)
+
+
 @pytest.fixture(scope="session")
 def libraries(record: st.Record, rig: st.Rig, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Simulations for audits of that record; one worker makes them, and the others wait for it."""
@@ -80,7 +89,7 @@ def libraries(record: st.Record, rig: st.Rig, tmp_path_factory: pytest.TempPathF
     folder = (own.parent if "PYTEST_XDIST_WORKER" in os.environ else own) / "libraries"
     folder.mkdir(exist_ok=True)
     with folder.with_suffix(".lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
+        wait_for(lock)
         st.fit(record, rig, simulations=SIMULATIONS, library=folder)
         st.mechanism(record, rig, simulations=SIMULATIONS // SHARE, library=folder)
     return folder

@@ -20,7 +20,7 @@ MADE_BY = {"Advice": "design", "Fit": "fit"}  # results of what takes a minute
 SERVER = "explore"  # serves until its page is closed: tests/browser
 
 
-def listed(page: Path) -> list[str]:
+def names_on(page: Path) -> list[str]:
     """Return the full names that a page lists."""
     text = page.read_text("utf-8")
     room = re.search(r"currentmodule:: (\S+)", text)
@@ -28,11 +28,11 @@ def listed(page: Path) -> list[str]:
     return [f"{room[1]}.{name}" if room else name for name in names]
 
 
-LISTED = [name for page in PAGES if page.stem != "parts" for name in listed(page)]
+LISTED = [name for page in PAGES if page.stem != "parts" for name in names_on(page)]
 FOUND = {name: resolve_name(f"stiction:{name.removeprefix('stiction.')}") for name in LISTED}
 
 
-def offered() -> dict[int, str]:
+def public_objects() -> dict[int, str]:
     """Return what a session and its rooms offer, by identity."""
     rooms = {room: getattr(st, room) for room in st.__all__}
     rooms = {room: each for room, each in rooms.items() if isinstance(each, ModuleType)}
@@ -47,7 +47,7 @@ def offered() -> dict[int, str]:
 
 
 def test_the_reference_lists_each_public_name_once():
-    names = offered()
+    names = public_objects()
     assert len(names) > 200
     assert sorted(name for key, name in names.items() if key not in map(id, FOUND.values())) == []
     assert len({id(each) for each in FOUND.values()}) == len(LISTED)
@@ -56,7 +56,7 @@ def test_the_reference_lists_each_public_name_once():
 
 def test_parts_of_results_are_where_their_page_says():
     page = DOCS / "reference" / "python" / "parts.md"
-    assert all(isinstance(resolve_name(name), type) for name in listed(page))
+    assert all(isinstance(resolve_name(name), type) for name in names_on(page))
 
 
 @pytest.mark.parametrize("name", LISTED)

@@ -10,6 +10,8 @@ from stiction import cli
 from stiction.result.checksums import MARK, as_written
 from stiction.storage import isolation
 
+KILLS = pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="Windows has no such signal")
+
 
 def crash(path):
     os.kill(os.getpid(), signal.SIGKILL)
@@ -46,7 +48,7 @@ def result(slider, tmp_path):
 @pytest.mark.parametrize(
     ("work", "words"),
     [
-        (crash, "is damaged: reading it ends in SIGKILL"),
+        pytest.param(crash, "is damaged: reading it ends in SIGKILL", marks=KILLS),
         (leave, "is damaged: reading it ends in exit status 3"),
         (stumble, "cannot be read: ZeroDivisionError"),
         (refuse, "a.nc: refused"),
