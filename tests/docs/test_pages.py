@@ -50,3 +50,10 @@ def test_scripts_of_the_gallery_are_short():
     scripts = sorted((ROOT / "docs" / "gallery").rglob("plot_*.py"))
     assert len(scripts) >= 20
     assert [p.name for p in scripts if len(p.read_text("utf-8").splitlines()) > 40] == []
+
+
+def test_each_tutorial_can_be_downloaded_as_a_notebook():
+    pages = [page for page in (ROOT / "docs" / "tutorials").glob("*.md") if page.stem != "index"]
+    assert len(pages) >= 4
+    for page in pages:
+        assert f"{{nb-download}}`{page.stem}.ipynb`" in page.read_text("utf-8")

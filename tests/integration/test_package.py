@@ -138,13 +138,16 @@ def test_every_test_asserts_something():
     assert not silent, silent
 
 
-def test_readme_example_runs(tmp_path, monkeypatch):
+def test_readme_example_runs(tmp_path, monkeypatch, capsys):
     """The README's Python block is what a reader will type."""
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     code = text.split("```python\n")[1].split("```")[0]
     monkeypatch.chdir(tmp_path)
     exec(compile(code, "README.md", "exec"), {})
     assert (tmp_path / "run.nc").exists()
+    peak, sticks = map(float, capsys.readouterr().out.split())
+    assert f": {peak:.4f} N\n" in code
+    assert f": {sticks:.0f} in 5 s\n" in code
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.py")), ids=lambda p: p.stem)

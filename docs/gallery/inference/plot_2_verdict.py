@@ -35,6 +35,6 @@ motion = move(truth, np.arange(0.0, 13.0, 0.01), Jitter(0.005, 0.5), draw, cycle
 force = truth.k_x * motion.rows[:, 0] + 0.004 * draw.standard_normal(len(motion.time))
 record = st.Record(time=motion.time, force=force, drive_velocity="0.5 mm/s", normal_load="4 N")
 store = mkdtemp()  # what is simulated for the one serves the other
-found = st.audit(rig, record=record, simulations=512, library=store)  # 4000 by default
+found = st.audit(rig, record=record, simulations=384, library=store)  # 4000 by default
 st.plotting.plot_predictive(found.measured)
-st.plotting.plot_mechanism(st.mechanism(record, rig, simulations=128, library=store))
+st.plotting.plot_mechanism(st.mechanism(record, rig, simulations=96, library=store))
