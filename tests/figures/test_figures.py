@@ -740,3 +740,12 @@ def test_speeds_about_a_millimetre_a_second_are_labelled_alike() -> None:
     shown = {text.get_text() for text in ticks} - {""}
     assert len(shown) > 2
     assert all("10^{" in each for each in shown), shown
+
+
+def test_a_notebook_that_turns_interactive_inside_the_style_stays_so() -> None:
+    """Its backend does when pyplot is first imported; else only the first figure would show."""
+    for before, within in ((False, True), (True, False), (False, False)):
+        with mpl.rc_context({"interactive": before}):
+            with style():
+                mpl.interactive(within)
+            assert mpl.is_interactive() is within

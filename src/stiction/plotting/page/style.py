@@ -65,12 +65,20 @@ SHEET: dict[str, Any] = {
 
 @contextmanager
 def style() -> Iterator[None]:
-    """Use the style sheet inside the ``with`` block only."""
-    with mpl.rc_context():
-        mpl.rcdefaults()  # a user's settings would spoil the proportions
-        for name, value in SHEET.items():
-            mpl.rcParams[name] = value  # type: ignore[index]
-        yield
+    """Use the style sheet inside the ``with`` block only.
+
+    A notebook turns interactive when pyplot is first imported, which may be inside; it stays so.
+    """
+    interactive = mpl.is_interactive()
+    try:
+        with mpl.rc_context():
+            mpl.rcdefaults()  # a user's settings would spoil the proportions
+            for name, value in SHEET.items():
+                mpl.rcParams[name] = value  # type: ignore[index]
+            yield
+            interactive = mpl.is_interactive()
+    finally:
+        mpl.interactive(interactive)
 
 
 def new_figure(width: float, height: float) -> Figure:
