@@ -13,9 +13,8 @@ from stiction.presets import PRESETS
 
 figure, ax = plt.subplots(figsize=(6, 6), layout="constrained")
 shown = {name: preset for name, preset in PRESETS.items() if preset.published}
-for row, (name, preset) in enumerate(shown.items()):
-    made = preset.make()
-    for number in preset.numbers(st.run(made)):
+for row, preset in enumerate(shown.values()):
+    for number in preset.numbers(st.run(preset.make())):
         share = abs(number.deviation) / number.tolerance if number.tolerance else 0.0
         colour = "#0072B2" if number.agrees else "#D55E00"
         ax.plot(max(share, 1e-6), row, "o", color=colour, alpha=0.7, markersize=4)

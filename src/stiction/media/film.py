@@ -67,9 +67,11 @@ class Film:
 
     def _repr_html_(self) -> str:
         content = b64encode(self.content).decode("ascii")
+        fitted = 'style="max-width: 100%"'
         if self.kind == "gif":
-            return f'<img src="data:image/gif;base64,{content}">'
-        return f'<video controls loop src="data:video/{self.kind};base64,{content}"></video>'
+            return f'<img {fitted} src="data:image/gif;base64,{content}">'
+        source = f'src="data:video/{self.kind};base64,{content}"'
+        return f"<video controls loop {fitted} {source}></video>"
 
 
 def filmable(path: str | Path) -> Path:
