@@ -42,3 +42,7 @@ def test_links_to_files_lead_somewhere(name):
     text = (ROOT / name).read_text("utf-8")
     links = [each.partition("#")[0] for each in re.findall(r"\]\(((?!http)[^)]+)\)", text)]
     assert [each for each in links if not (ROOT / each).exists()] == []
+
+
+def test_the_page_on_citing_names_this_version():
+    assert f"version = {{{st.__version__}}}" in (ROOT / "docs" / "how-to" / "cite.md").read_text()
