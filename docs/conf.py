@@ -89,6 +89,7 @@ sphinx_gallery_conf = {
     "download_all_examples": False,
     "show_memory": False,
     "doc_module": ("stiction",),
+    "reference_url": {"stiction": None},  # names in scripts are links, too
     "backreferences_dir": f"{PYTHON}/backreferences",
     "min_reported_time": 1e9,
     "abort_on_example_error": True,
