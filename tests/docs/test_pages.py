@@ -9,7 +9,7 @@ import pytest
 from stiction.cli import main
 
 ROOT = Path(__file__).parents[2]
-PAGES = sorted((ROOT / "docs" / "how-to").glob("*.md"))
+PAGES = sorted(page for room in ("for", "how-to") for page in (ROOT / "docs" / room).glob("*.md"))
 BLOCK = re.compile(r"^```(sh|python|text)\n(.*?)^```$", re.M | re.S)
 
 
