@@ -16,6 +16,7 @@ import numpy as np
 
 from benchmarks.explore.deviation import FINER, FINEST, deviation, forces, response
 from benchmarks.explore.systems.set_valued import system
+from benchmarks.explore.systems.unsteady import unsteady_system
 from benchmarks.explore.systems.with_state import state_system
 from benchmarks.section import Section, Table
 from stiction.solver.integrate import tolerance
@@ -29,7 +30,7 @@ MODES: tuple[bool | Literal["auto"], ...] = (False, "auto", True)
 # Of the response: by so much a reference may change with a tenth of its tolerance. That of a system
 # which is not chaotic changes by the bound times `FINER` at most, 0.03
 KNOWN = 0.1
-DRAWN = {"set-valued": system, "state": state_system}  # which laws, and what draws a system
+DRAWN = {"set-valued": system, "state": state_system, "unsteady": unsteady_system}
 SHARES = (0.5, 0.9, 0.99, 0.999, 1.0)
 WORST = 10
 CHAOTIC = "chaotic: the reference changes with its own tolerance as much as the response is"

@@ -11,7 +11,6 @@ import stiction as st
 SAMPLES = 1000
 FINER = 1e-3  # tolerance of the reference over that of the run on trial
 FINEST = 1e-12
-CHANGED = ("mass", "normal_load")  # the clock of the oscillation, and the size of friction
 
 
 def forces(
@@ -27,13 +26,33 @@ def forces(
 def deviation(found: np.ndarray, reference: np.ndarray) -> float:
     """Return the largest difference of two forces over the largest force."""
     n = min(found.shape[1], reference.shape[1])
-    largest = float(np.hypot(*reference).max())
+    largest = float(np.hypot(*reference).max()) or 1.0  # of a run that ended where it began
     return float(np.hypot(*(found[:, :n] - reference[:, :n])).max()) / largest
 
 
 def response(
     slider: st.Slider, duration: float, share: float, rtol: float, reference: np.ndarray
 ) -> float:
-    """Return by how much the forces change if a constant of the apparatus changes by a share."""
-    changed = (slider.replace(**{name: getattr(slider, name) * (1 + share)}) for name in CHANGED)
+    """Return by how much the forces change if the mass, or the load, changes by a share.
+
+    The mass is the clock of the oscillation, the load the size of friction.
+    """
+    changed = (slider.replace(mass=slider.mass * (1 + share)), heavier(slider, 1 + share))
     return max(deviation(forces(each, duration, rtol)[0], reference) for each in changed)
+
+
+def heavier(slider: st.Slider, times: float) -> st.Slider:
+    """Return a slider under so many times its load, all along the program of the load."""
+    load = slider.load
+    if load is not None:
+        steps = tuple(
+            piece._replace(**{name: getattr(piece, name) * times})
+            for piece in load.program
+            for name in ("value", "to")
+            if hasattr(piece, name)
+        )
+        shaken = load.modulation and load.modulation._replace(
+            amplitude=load.modulation.amplitude * times
+        )
+        load = st.protocols.LoadProgram(program=steps, modulation=shaken)
+    return slider.replace(normal_load=slider.normal_load * times, load=load)

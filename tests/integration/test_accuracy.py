@@ -126,3 +126,11 @@ def test_a_layer_at_the_start_is_resolved(rtol):
         drive=st.ConstantVelocity("0.279 um/s"),
     )
     assert st.simulate(slider, 1.0, sample_rate=0, rtol=rtol).status.ok
+
+
+@pytest.mark.parametrize("number", [16, 150, 186])
+def test_programs_of_the_drive_keep_the_bound(number):
+    """Of 2000 with programs of drive or load; number 186 stuck where its drive had turned, once."""
+    seen = look(SEED, number, laws="unsteady")
+    assert not seen.left_out
+    assert max(seen.off) < BOUNDS["in steps"]

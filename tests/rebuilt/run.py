@@ -98,8 +98,9 @@ class Solver:
             tau = -M / (b + root) if b > 0 else (root - b) / q  # (M7)
         tau = min(tau, end - self.t)
         at_end, (b, q) = self.margin(self.u + self.v_d * tau), (b + q * tau, q)
-        x = C[0] * (end - self.t - tau)
-        if at_end + (b + q * x / 3) * x < rounding:  # (M9a)
+        whole = end - self.t - tau
+        x, up = C[0] * whole, b < 0 and at_end + (2 * b + q * whole) * whole >= rounding
+        if not up and at_end + (b + q * x / 3) * x < rounding:  # (M9a)
             tau = end - self.t
         if -M / (4 * self.f_s) * tau >= self.tol * self.sigma:  # (M10)
             self.sticks.append((self.t, self.t + tau))

@@ -126,11 +126,15 @@ def holds_on(problem: Problem, t: float, u_x: float, u_y: float, stop: float) ->
     """Return whether friction, at its limit, holds zero slip until `stop` within rounding (M9a).
 
     The slip at the first stage of a step until then is proportional to the mean of the margin until
-    there. Where that is rounding, the step could not rise from zero.
+    there. Where that is rounding, the step could not rise from zero. A margin that falls at first
+    must not have risen again by then: before it does, a stick ends.
     """
     excess, change, square = margin(problem, t, u_x, u_y)
-    x = C[0] * (stop - t)
-    return excess + (change + half_bend(problem, t) / 3.0 * x) * x < USED_UP * square
+    bend, whole = half_bend(problem, t), stop - t
+    x, rounding = C[0] * whole, USED_UP * square
+    if change < 0.0 and not excess + (2.0 * change + bend * whole) * whole < rounding:
+        return False
+    return excess + (change + bend / 3.0 * x) * x < rounding
 
 
 @inlined

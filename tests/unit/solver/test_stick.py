@@ -118,6 +118,26 @@ def test_friction_that_holds_on_with_a_margin_that_is_a_parabola(name):
 
 
 @pytest.mark.parametrize("name", ["steady", "ellipse"])
+def test_a_margin_that_falls_does_not_hold_beyond_its_next_rise(name):
+    """As where the drive turned: friction is a little over its limit, and far over it once more."""
+    t, problem = 0.35, problem_of(name)
+    duration, _ = plain(stick.stick_duration)(problem, t, 0.0, 0.0, inf)
+    at_limit = elongation_after(name, t, (0.0, 0.0), duration)
+    limit = brentq(lambda f: margin_of(name, t, -f * np.array(at_limit)), 0.9, 1.5)
+    u = tuple(-(limit + 1e-4) * each for each in at_limit)
+    excess, change, square = plain(stick.margin)(problem, t, *u)
+    assert excess > 1e-14 * square
+    assert change < 0.0
+
+    def after(dt):
+        return margin_of(name, t + dt, elongation_after(name, t, u, dt))
+
+    again = brentq(after, duration, 3.0 * duration)
+    for share, holds in ((0.5, True), (0.999, True), (1.001, False), (1.5, False), (3.0, False)):
+        assert plain(stick.holds_on)(problem, t, *u, t + share * again) == holds
+
+
+@pytest.mark.parametrize("name", ["steady", "ellipse"])
 def test_what_a_short_stick_has_to_spare(name):
     """(M10): the integral of f_s - |a|, to the share of the margin in f_s^2."""
     problem, t = problem_of(name), 0.35
