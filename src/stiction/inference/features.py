@@ -57,12 +57,18 @@ class Cycles(NamedTuple):
 def find_cycles(force: Floats) -> Cycles:
     """Return the whole cycles of a force, from trough over peak to trough.
 
+    The first begins at the end of a slip: a least force after no slip is where the record begins,
+    as at an unloaded spring, whose loading is longer than that of any cycle.
+
     >>> saw = np.tile(np.r_[0.0:1.0:10j, 0.6, 0.3], 4)
-    >>> find_cycles(saw).peak
-    array([21, 33])
+    >>> find_cycles(saw).peak, find_cycles(np.r_[0.1, saw]).peak
+    (array([21, 33]), array([22, 34]))
     """
     low, high = np.percentile(force, TAILS)
-    turns = zigzag(force, DROP * float(high - low))
+    height = DROP * float(high - low)
+    turns = zigzag(force, height)
+    if len(turns) and np.ptp(force[: turns[0] + 1]) <= height:
+        turns = turns[1:]
     if len(turns) > 1 and force[turns[0]] > force[turns[1]]:
         turns = turns[1:]
     count = max((len(turns) - 1) // 2, 0)

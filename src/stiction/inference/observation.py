@@ -104,12 +104,12 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     interval = np.diff(record.time)
     step = float(np.median(interval))
     if np.abs(interval - step).max() > UNEVEN * step:
-        raise ResultError(f"{name}: must be equally spaced for a fit; interpolate it first")
+        raise ResultError(f"{name} must be equally spaced for a fit; interpolate it first")
     found = find_cycles(channels["force"])
     count = len(found.peak)
     if count < LEAST_CYCLES:
         raise ResultError(
-            f"{name}: has {count} whole cycles of stick and slip, a fit needs {LEAST_CYCLES}; "
+            f"{name} has {count} whole cycles of stick and slip, a fit needs {LEAST_CYCLES}; "
             "record for longer, or slower"
         )
     cycle = float(np.mean(found.after - found.before)) * step

@@ -28,6 +28,8 @@ Floats = NDArray[np.float64]
 
 DRAWS = 4000  # equally weighted, of the posterior and of the prior
 INTERVAL = 0.95
+RARE = 0.05  # share of simulations below which a record is not like them
+TAIL = 3.0  # normal score beyond which 0.27 % of a prior lie
 NARROWER = 0.75  # of the prior's standard deviation, as normal scores: what counts as identified
 OWN_UNITS = {"jitter": "", "gain": "", "zero": "N"}
 MEANINGS = {
@@ -133,7 +135,8 @@ class Fit:
         """Return the report: what is known, and what the records do not say."""
         known = [x for x in self.estimates if x.identified]
         others = [x for x in self.estimates if not x.identified]
-        sentences = [
+        sentences = self.doubts
+        sentences += [
             f"{x.name} is {in_words(x.median, x.unit)}, 95 % interval {in_words(x.low, x.unit)} to "
             f"{in_words(x.high, x.unit)}."
             for x in known
@@ -156,6 +159,32 @@ class Fit:
         rows = [row(x) for x in self.estimates]
         headings = ("parameter", "posterior", "95 %", "prior", "95 %", "width", "coverage")
         return [Section("Fit", sentences, Table(headings, rows))]
+
+    @property
+    def beyond(self) -> list[str]:
+        """The parameters whose posterior lies in a tail of the prior, where it hardly can."""
+        middles = np.median(self.scores, axis=0)
+        pairs = zip(self.estimates, middles, strict=True)
+        return [each.name for each, middle in pairs if abs(middle) > TAIL]
+
+    @property
+    def doubts(self) -> list[str]:
+        """What speaks against the estimates, in sentences: the records are not those of the rig."""
+        found = []
+        if self.farther < RARE:
+            found.append(
+                "The records are not like those of the rig as described, whatever the uncertain "
+                f"values are: {percent(self.farther)} of the simulated records lie as far from the "
+                f"others, {percent(RARE)} are needed. The values below mean nothing until that is "
+                "explained: is it this rig's record, are drive and load as stated?"
+            )
+        if self.beyond:
+            names = ", ".join(self.beyond)
+            found.append(
+                f"At an end of its prior, beyond which the records point: {names}; "
+                "correct the rig's description, or widen that prior."
+            )
+        return found
 
     @property
     def sign_unseen(self) -> bool:
@@ -233,4 +262,5 @@ def row(x: Estimate) -> tuple[str, ...]:
     between = f"{in_words(x.low, x.unit)} to {in_words(x.high, x.unit)}"
     before = f"{in_words(x.prior_low, x.unit)} to {in_words(x.prior_high, x.unit)}"
     shares = percent(x.narrower), percent(x.coverage)
-    return (x.name, after, between, in_words(x.prior_median, x.unit), before, *shares)
+    short = x.name.split(".")[-1]  # the sentences have the whole name
+    return (short, after, between, in_words(x.prior_median, x.unit), before, *shares)

@@ -1,11 +1,12 @@
 """A fit from end to end: records of known rigs, a small library."""
 
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import xarray as xr
-from tests.uncertain import SIMULATIONS
+from tests.uncertain import SIMULATIONS, record_of
 
 import stiction as st
 from stiction.errors import DescriptionError, ResultError
@@ -82,6 +83,17 @@ def test_what_the_record_does_not_say_is_not_identifiable(found):
     assert "Not identifiable from these records: k_y" in said
 
 
+def test_a_fit_says_that_the_record_is_not_one_of_the_rig(found, rig, record, libraries):
+    """A zero that is wrong by half the friction force: the estimates would be taken for true."""
+    assert not found.doubts
+    moved = record.model_copy(update={"force": record.force + 1.2})
+    wrong = st.fit(moved, rig, simulations=SIMULATIONS, library=libraries)
+    assert wrong.beyond == ["friction.mu_0", "friction.mu_inf"]
+    assert "beyond which the records point: friction.mu_0" in wrong.tables()[0].sentences[0]
+    unlike = replace(found, farther=0.02).tables()[0].sentences
+    assert unlike[0].startswith("The records are not like those of the rig as described")
+
+
 def test_each_cycle_has_friction_of_its_own(rig):
     times = np.arange(0.0, 30.0, 0.005)
     random = np.random.default_rng(3)
@@ -92,6 +104,19 @@ def test_each_cycle_has_friction_of_its_own(rig):
     assert len(peaks) >= 15
     # 2 % with the uncertainty of a standard deviation from 15 values, 18 %; three of them
     assert peaks.std(ddof=1) == pytest.approx(0.02, rel=0.55)
+
+
+def test_the_loading_from_rest_is_no_cycle_whatever_the_noise(rig):
+    """Whether the first sample or a later one is the least is chance: the spring is unloaded."""
+    made = record_of(rig.slider, 0)
+    for seed in range(8):
+        noise = 0.03 * np.random.default_rng(seed).standard_normal(len(made))
+        seen = observe(st.Record(time=made.time, force=made.force + noise), rig.slider)
+        troughs = seen.force[seen.cycles.before]
+        assert troughs.min() > 0.2 * seen.force.max()  # a slip does not unload the spring
+        mean = np.mean(seen.cycles.after - seen.cycles.before) * seen.conditions.step
+        # the loading from rest takes twice as long, of at most 8 cycles; jitter is 0.5 %
+        assert seen.conditions.cycle == pytest.approx(mean, rel=0.05)
 
 
 def test_without_jitter_a_record_is_that_of_one_run(rig):
@@ -112,7 +137,7 @@ def test_without_jitter_a_record_is_that_of_one_run(rig):
 
 def test_a_record_without_cycles_is_refused(rig):
     flat = st.Record(time=np.arange(100.0), force=np.ones(100))
-    with pytest.raises(ResultError, match=r"record 1: has 0 whole cycles .* needs 6"):
+    with pytest.raises(ResultError, match=r"record 1 has 0 whole cycles .* needs 6"):
         st.fit(flat, rig)
 
 

@@ -6,21 +6,17 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from stiction.analysis.record import Record
 from stiction.errors import DescriptionError, ResultError
 from stiction.inference.features import USED
 from stiction.inference.fit import check, fit
 from stiction.inference.library import SIMULATIONS
 from stiction.inference.mechanism.comparison import SHARE, mechanism
-from stiction.inference.mechanism.odds import RARE, Odds
+from stiction.inference.mechanism.odds import Odds
 from stiction.inference.observation import Observation, observe
-from stiction.inference.posterior import Fit
+from stiction.inference.posterior import RARE, Fit
 from stiction.inference.predictive import Predictive, predict
 from stiction.inference.priors import Rig
-
-TAIL = 3.0  # normal score beyond which 0.27 % of a prior lie
 
 
 @dataclass(frozen=True)
@@ -59,16 +55,7 @@ class RecordComparison:
         if self.fit is None or self.predictive is None:
             return False
         usual = self.fit.farther >= RARE and self.predictive.larger >= RARE
-        return usual and not self.beyond
-
-    @property
-    def beyond(self) -> list[str]:
-        """The parameters whose posterior lies in a tail of the prior, where it hardly can."""
-        if self.fit is None:
-            return []
-        middles = np.median(self.fit.scores, axis=0)
-        pairs = zip(self.fit.estimates, middles, strict=True)
-        return [each.name for each, middle in pairs if abs(middle) > TAIL]
+        return usual and not self.fit.beyond
 
     @property
     def absent(self) -> list[str]:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from stiction.auditing.measured.comparison import RecordComparison
-from stiction.inference.mechanism.odds import RARE, UNDECIDED, near_one
+from stiction.inference.mechanism.odds import UNDECIDED, near_one
 from stiction.inference.mechanism.rivals import ROTATION
-from stiction.inference.posterior import Estimate, Fit
+from stiction.inference.posterior import RARE, Estimate, Fit
 from stiction.inference.predictive import Predictive
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
@@ -107,10 +107,6 @@ def grounds(found: RecordComparison, fit: Fit) -> list[str]:
     if found.odds is not None:
         lines += [f"Among the mechanisms compared: {each}" for each in found.odds.sentences()[:1]]
         lines += found.odds.sentences()[1:]
-    if found.beyond:
-        lines.append(
-            f"At an end of its prior, beyond which the record points: {', '.join(found.beyond)}."
-        )
     return lines
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from stiction.inference.features import EDGES
 from stiction.inference.mechanism.likeness import Likeness
 from stiction.inference.mechanism.rivals import ROTATION, STATIC
+from stiction.inference.posterior import RARE
 from stiction.names import draw
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table, as_html
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 CLAIM = 0.9  # probability from which on a mechanism is claimed
-RARE = 0.05  # share of simulations below which a record is not like them
 TREND = 0.01  # probability below which cycles do not stay the same
 UNDECIDED = "undecided"
 EXPLAINED = (
