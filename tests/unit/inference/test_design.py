@@ -1,5 +1,7 @@
 """What further tests are expected to tell, against posteriors in closed form."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.uncertain import TEXT
@@ -8,8 +10,9 @@ import stiction as st
 from stiction.inference.library import Plan
 from stiction.inference.next_test import design as module
 from stiction.inference.next_test import further
-from stiction.inference.next_test.expectation import expectation, misses
-from stiction.inference.next_test.further import further_tests
+from stiction.inference.next_test.advice import Advice
+from stiction.inference.next_test.expectation import Expected, expectation, misses
+from stiction.inference.next_test.further import AGAIN, further_tests
 from stiction.inference.next_test.wanted import Wanted
 from stiction.inference.observation import Conditions, Noise
 from stiction.inference.priors import Normal
@@ -116,6 +119,28 @@ def test_a_design_of_a_rig(monkeypatch, tmp_path):
     assert [each.get_text() for each in axes.get_yticklabels()] == [t.test for t in found.ranked]
     again = st.design(TEXT, library=tmp_path, **asked)  # from the folder
     assert again.data.identical(data)
+
+
+def test_a_test_that_is_surely_better_is_named_though_another_may_be_better_still():
+    """The smallest ratio may be a matter of few rigs, with an interval beyond 1."""
+
+    def expected(test, *numbers):
+        return Expected(test, *(np.array([x]) for x in (0.1, 0.1, *numbers)), 1.0)
+
+    tests = [
+        expected("the present test", 1.0, 1.0, 1.0),
+        expected("under 8 N", 0.53, 0.43, 1.19),
+        expected("the force across", 0.56, 0.40, 0.92),
+        expected(AGAIN, 0.88, 0.71, 2.06),
+    ]
+    plan = PLAN._replace(priors={"jitter": Normal(0.0, 1.0)})
+    advice = Advice(plan, "jitter", tuple(tests), (), (), 2000)
+    sure, perhaps = advice.sentences()[:2]
+    assert sure.startswith("Most is learned of jitter from this: the force across.")
+    assert perhaps.startswith("Perhaps more from this, but that is not sure: under 8 N, 0.53")
+    assert "the force across" in repr(advice)
+    unsure = replace(advice, tests=(tests[0], tests[1], tests[3]))
+    assert unsure.sentences()[0].startswith("None of these tests clearly tells more of jitter")
 
 
 def test_a_record_of_the_present_test_is_repeated_as_it_is():

@@ -64,6 +64,11 @@ class Advice:
         return sorted(self.tests[1:], key=lambda test: test.ratio[self.index])
 
     @property
+    def best(self) -> Expected | None:
+        """The test that tells most of those that clearly tell more than the present one."""
+        return next((test for test in self.ranked if test.high[self.index] < 1.0), None)
+
+    @property
     def data(self) -> xr.Dataset:
         """Widths, errors and ratios as a dataset over ``test`` and ``parameter``."""
         import xarray as xr
@@ -79,7 +84,7 @@ class Advice:
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
-        best = self.ranked[0]
+        best = self.best or self.ranked[0]
         return f"Advice: best for {self.of}: {best.test}, {best.ratio[self.index]:.2f} of the width"
 
     def tables(self) -> list[Section]:
@@ -105,16 +110,23 @@ class Advice:
 
     def sentences(self) -> list[str]:
         """Return what to do, and what it rests on."""
-        i, best, now = self.index, self.ranked[0], self.present
+        i, best, first = self.index, self.best, self.ranked[0]
         unit = unit_of(self.plan, self.of)
-        before, after = (in_words(float(test.error[i]), unit, 2) for test in (now, best))
+        before = in_words(float(self.present.error[i]), unit, 2)
         found = []
-        if best.high[i] < 1.0:
+        if best is not None:
+            after = in_words(float(best.error[i]), unit, 2)
             found.append(
                 f"Most is learned of {self.of} from this: {best.test}. Its typical error falls "
                 f"from {before} to {after}; the posterior is {best.ratio[i]:.2f} times as wide as "
                 f"from the present test (95 %: {best.low[i]:.2f} to {best.high[i]:.2f})."
             )
+            if best is not first:
+                found.append(
+                    f"Perhaps more from this, but that is not sure: {first.test}, "
+                    f"{first.ratio[i]:.2f} times as wide (95 %: {first.low[i]:.2f} to "
+                    f"{first.high[i]:.2f})."
+                )
         else:
             found.append(
                 f"None of these tests clearly tells more of {self.of} than the present one, whose "
