@@ -52,7 +52,7 @@ def find_drift(record: Record, cycles: xr.Dataset) -> Drift:
     else:
         return Drift(0.0, np.nan, 0.0, np.nan, stands_out=False)
     rate, error = _fit_line(at, middle)
-    change = rate * float(at[-1] - at[0])
+    change = rate * (float(record.time[-1]) - start)
     large = abs(change) > WORTH * abs(float(middle.mean()))
     sure = abs(rate) > SURE * error and _goes_on(at, middle, rate)
     return Drift(rate, error, change, start, stands_out=bool(large and sure))

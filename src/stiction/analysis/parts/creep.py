@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 
 RESTING = "it rests"
+USUAL = 0.5  # of the stick phases: what only the longest of them reach is left to the table
 SURE = 2.0  # standard errors that a fit must be away from nothing
 
 
@@ -41,12 +42,13 @@ def section(found: Analysis) -> Section:
     """Return the section on creep before slip."""
     if found.creep is None:
         return Section("Creep", [f"Not seen: {found.missing['creep']}."])
-    far, near = (found.creep.isel(bin=at) for at in (-1, 0))
+    counts = found.creep["phases"].values
+    usual = int(np.flatnonzero(counts >= USUAL * counts[0])[-1])
+    far, near = (found.creep.isel(bin=at) for at in (usual, 0))
     long, short = (in_words(float(row["begin"]), "s") for row in (far, near))
-    phases = int(found.creep["phases"].max())
     V = drive_speed(found.source, found.record) or 0.0
     first, last = _creeping(far, V), _creeping(near, V)
-    several = f" These are means over {phases} stick phases." if phases > 1 else ""
+    several = f" {_phases(*map(int, counts[[usual, 0]]))}" if counts[0] > 1 else ""
     lines = [f"{long} before {_end(found)} {first}; in the last {short} {last}.{several}"]
     if first == last == RESTING and found.regime.kind == STUCK:
         return Section("Creep", ["None: it rests from beginning to end."])
@@ -90,6 +92,13 @@ def _end(found: Analysis) -> str:
     if not found.cycles.sizes["cycle"] and found.friction.break_away is None:
         return "the spring is loaded"  # it comes to slide without a slip
     return "slip"
+
+
+def _phases(far: int, near: int) -> str:
+    """Return over how many stick phases two means are, in words."""
+    if far == near:
+        return f"These are means over {near} stick phases."
+    return f"These are means over the {far} stick phases that are so long, and over all {near}."
 
 
 def _creeping(row: xr.Dataset, V: float) -> str:

@@ -1,5 +1,6 @@
 """Creep curves against Eq. (7), from runs and from noisy records."""
 
+import re
 from math import radians
 
 import numpy as np
@@ -229,6 +230,19 @@ def test_a_measured_record_creeps_before_slip():
     early = (mean["begin"] > 1.0).values & (mean["phases"] > 20).values
     assert np.abs(share[early]).max() < 0.05
     assert (error[:8] < 0.15).all()
+
+
+def test_words_on_creep_leave_out_what_only_the_longest_phase_reaches(paper_run):
+    """The first loading, from rest, is twice as long as any other: one phase is no mean."""
+    found = st.analyse(paper_run)
+    counts, begin = (found.creep[name].values for name in ("phases", "begin"))
+    assert counts[-1] == 1
+    said = re.search(
+        r"([\d.]+) (ms|s) before slip .* means over (\d+) stick", str(found), re.DOTALL
+    )
+    at = float(said[1]) * {"ms": 1e-3, "s": 1.0}[said[2]]
+    assert at == pytest.approx(begin[counts > 1].max(), rel=1e-3)
+    assert int(said[3]) == counts[0]
 
 
 def test_the_figure_says_what_is_drawn(curves):
