@@ -54,10 +54,10 @@ def echo(value: object) -> str:
         text = " ".join(_shortened.repr(value).split())
     except Exception:  # the value is a stranger's, and so is its way to print itself
         text = f"a {type(value).__name__}"
-    return _without_middle(text, ECHOED + 2)  # with quotation marks
+    return without_middle(text, ECHOED + 2)  # with quotation marks
 
 
-def _without_middle(text: str, most: int) -> str:
+def without_middle(text: str, most: int) -> str:
     """Return a text of at most so many characters, without its middle."""
     half = (most - 3) // 2
     return text if len(text) <= most else f"{text[:half]}...{text[-half:]}"
@@ -97,8 +97,8 @@ class Fault(NamedTuple):
 
     def __str__(self) -> str:
         """Return ``path: message``, shortened if very long."""
-        path = _without_middle(self.path, LONGEST_PATH)
-        return _without_middle(f"{path}: {self.message}" if path else self.message, LONGEST)
+        path = without_middle(self.path, LONGEST_PATH)
+        return without_middle(f"{path}: {self.message}" if path else self.message, LONGEST)
 
 
 class DescriptionError(StictionError, ValueError):

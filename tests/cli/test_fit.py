@@ -30,6 +30,10 @@ def test_a_record_from_its_file_to_a_verdict(record_file, libraries, tmp_path, c
     library = ("-n", SIMULATIONS, "--library", folder)
 
     output, figures = tmp_path / "fit.nc", tmp_path / "figures"
+    assert inside("fit", data, "--rig", rig, "-o", tmp_path / "fit.png") == 2
+    assert "name it fit.nc" in capsys.readouterr().err  # what is written is NetCDF
+    assert inside("design", rig, "-o", tmp_path / "design.nc") == 2  # before it simulates
+    assert "use .png, .pdf, .svg" in capsys.readouterr().err
     command = ("fit", data, "--rig", rig, "-o", output, "--figures", figures, *library)
     assert inside(*command, "--mechanism") == 2  # nothing ambiguous passes silently
     assert "states no unit" in capsys.readouterr().err

@@ -1,6 +1,7 @@
 """``stiction import`` and ``stiction analyse`` on measured records."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -46,6 +47,32 @@ def test_what_is_ambiguous_ends_with_status_2(data, capsys):
     assert inside("import", data, "--time", "ms", "--force", "bar") == 2
     assert inside("import", data.with_name("none.csv")) == 2
     assert sorted(data.parent.iterdir()) == [data]
+
+
+def test_where_nothing_can_be_written_nothing_is_read_or_written(data, capsys):
+    units = ("--time", "ms", "--force", "mN")
+    assert inside("import", data, *units, "-o", data.with_name("record.csv")) == 2
+    assert "name it record.nc" in capsys.readouterr().err
+    target = data.with_name("record.nc")
+    assert inside("import", data, *units, "-o", target, "--json", data.parent) == 2
+    assert "is not a file" in capsys.readouterr().err
+    assert sorted(data.parent.iterdir()) == [data]
+
+
+def test_a_record_stored_in_a_session_shows_its_channels(data, capsys):
+    target = data.with_name("made.nc")
+    st.Record(time=[0.0, 1.0, 2.0], force=[0.1, 0.2, 0.4]).save(target)
+    assert inside("import", target) == 0
+    said = capsys.readouterr().out
+    assert said.startswith(str(target))
+    assert re.search(r"force +force along the drive +N +100 mN +400 mN", said)
+
+
+def test_a_name_of_5000_characters_does_not_fill_the_screen(capsys):
+    for command in ("import", "plot", "audit"):
+        output = ("-o", "a.png") if command == "plot" else ()
+        assert inside(command, 5000 * "a", *output) == 2
+        assert len(capsys.readouterr().err) < 2500
 
 
 def test_import_echoes_its_guess_and_stores_the_record(data, capsys):

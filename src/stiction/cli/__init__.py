@@ -17,7 +17,7 @@ import stiction
 from stiction.cli.notices import show_notices
 from stiction.cli.refusals import command_of, in_words
 from stiction.cli.terminal import give_up, spell_out
-from stiction.errors import StictionError, one_line, visible
+from stiction.errors import LONGEST, LONGEST_PATH, StictionError, one_line, visible, without_middle
 
 app = cyclopts.App(
     name="stiction",
@@ -91,7 +91,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         sys.exit(1)
     except OSError as error:
         give_up(None if error.filename else sys.stdout)
-        what = error.filename or "standard output"
+        what = without_middle(str(error.filename or "standard output"), LONGEST_PATH)
         refuse(errors, "file", f"{what}: {error.strerror or error}; choose another, or make room")
     except RecursionError:
         refuse(errors, "command line", "an argument is nested too deeply to be read")
@@ -110,7 +110,7 @@ def refuse(errors: Console, what: str, message: str) -> NoReturn:
     try:
         errors.print(f"[red]error[/red] {what}:")
         for line in visible(message).splitlines():
-            errors.print(f"  {line}", markup=False, highlight=False)
+            errors.print(f"  {without_middle(line, LONGEST)}", markup=False, highlight=False)
     except OSError:  # nowhere to print
         give_up(sys.stderr)
     sys.exit(2)

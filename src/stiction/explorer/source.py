@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.record import Record
@@ -19,6 +20,7 @@ from stiction.system.description import Description, Settings
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
 from stiction.text.toml import tame
+from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -94,7 +96,7 @@ def open_sources(sources: Iterable[Any], *, trust: bool = False) -> Opened:
     found: dict[str, Any] = {"description": the_papers()}
     for source in sources:
         part = open_source(source, trust)
-        own = Path(source).name if isinstance(source, str | Path) else f"a {type(source).__name__}"
+        own = name_of(source)
         if "description" in part:
             if described:
                 message = f"{described} and {own} both describe a system; give one of them"
@@ -102,7 +104,27 @@ def open_sources(sources: Iterable[Any], *, trust: bool = False) -> Opened:
             described = own
         name = described or own
         found |= part
+    if found.get("origin") == "measured":
+        found |= visible_part(found["measured"], found["description"])
     return Opened(name or "Nakano & Popov 2020, Fig. 3", **found)
+
+
+def name_of(source: Any) -> str:
+    """Return a source's name in the title of the page."""
+    if isinstance(source, Record) and source.origin is not None:
+        source = source.origin.file
+    return Path(source).name if isinstance(source, str | Path) else f"a {type(source).__name__}"
+
+
+def visible_part(
+    measured: Mapping[str, NDArray[np.float64]], description: Description
+) -> dict[str, Any]:
+    """Return a record whose clock starts after the run's end as one that starts with the run."""
+    first, start = float(measured["time"][0]), description.initial.time
+    if first < start + description.run.duration:
+        return {}
+    moved = {**measured, "time": measured["time"] - first + start}
+    return {"measured": moved, "origin": f"measured, from {in_words(first, 's')} on"}
 
 
 def open_source(source: Any, trust: bool) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from stiction.inference.calibration import Learned
 from stiction.inference.library import Library, Plan
 from stiction.inference.regression_abc import Sample, quantiles
 from stiction.names import draw
-from stiction.storage.files import placeable, whole
+from stiction.storage.files import NETCDF, placeable, whole
 from stiction.system.parameter import unit
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table, as_html
@@ -203,7 +203,7 @@ class Fit:
 
         Further datasets become groups of their name: ``fit.save("fit.nc", mechanism=odds.data)``.
         """
-        target = placeable(path)
+        target = placeable(path, NETCDF)
         with whole(target) as part:
             self.data.to_netcdf(part, engine="h5netcdf")
             for name, data in {"prior": self.prior, **groups}.items():

@@ -65,7 +65,9 @@ def as_gif(frames: Frames, rate: int) -> bytes:
             continue
         image = Image.fromarray(np.ascontiguousarray(frame))
         small = image.resize((image.width // HALF, image.height // HALF))
-        pictures.append(small.quantize(COLORS, dither=Image.Dither.NONE))
+        # thin lines keep their hues: the default divides the colours of most pixels only
+        method, plain = Image.Quantize.MAXCOVERAGE, Image.Dither.NONE
+        pictures.append(small.quantize(COLORS, method, dither=plain))
     made = BytesIO()
     pause = round(1e3 * HALF / rate)
     pictures[0].save(made, "GIF", save_all=True, append_images=pictures[1:], duration=pause, loop=0)

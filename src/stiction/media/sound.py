@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.errors import DescriptionError, ResultError
+from stiction.errors import DescriptionError, ResultError, echo
 from stiction.result.columns import sample_table
 from stiction.simulation import solve_coarsely
 from stiction.storage.files import placeable, whole
@@ -27,7 +27,7 @@ from stiction.trajectory import Trajectory, load
 WAV = (".wav",)
 RATE = 48_000  # samples of sound a second
 LOUD = 0.8  # of full scale
-LONGEST = 600.0  # s of sound
+SHORTEST, LONGEST = 0.01, 600.0  # s of sound
 HEARD = (50.0, 8_000.0)  # Hz: a pitch that small loudspeakers give
 LARGEST = 2**15 - 1  # of 16 bits
 
@@ -110,7 +110,8 @@ def listen(
     Raises
     ------
     ResultError
-        If it would be longer than ten minutes, or there is nothing to hear.
+        If it would be longer than ten minutes or shorter than ten milliseconds, or there is nothing
+        to hear.
 
     Examples
     --------
@@ -122,7 +123,12 @@ def listen(
     found = run if isinstance(run, Trajectory) else load(run, trust=trust)
     description = found.description
     start, end = window_of(description, window)
-    chosen = audible_speed(description, axis) if speed is None else float(speed)
+    if axis not in ("x", "y"):
+        raise ResultError(f"axis must be 'x' or 'y', is {echo(axis)}; y is the transverse one")
+    try:
+        chosen = audible_speed(description, axis) if speed is None else float(speed)
+    except (TypeError, ValueError):
+        raise ResultError(f"speed must be a number such as 0.1, is {echo(speed)}") from None
     if not chosen > 0.0:
         raise ResultError(f"speed must be above 0, is {chosen:g}; 0.1 is ten times slower")
     length = (end - start) / chosen
@@ -130,6 +136,11 @@ def listen(
         raise ResultError(
             f"at speed {chosen:g} the sound lasts {in_words(length, 's')}; it may last up to "
             f"{LONGEST:g} s: choose a window or a larger speed"
+        )
+    if length < SHORTEST:
+        raise ResultError(
+            f"at speed {chosen:g} the sound lasts {in_words(length, 's')}; it must last at least "
+            f"{in_words(SHORTEST, 's')}: choose a smaller speed, or another window"
         )
     count = floor(length * RATE)
     times = start + np.arange(count, dtype=np.float64) * (chosen / RATE)

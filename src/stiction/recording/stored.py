@@ -16,7 +16,7 @@ from stiction.errors import DescriptionError, ResultError
 from stiction.recording.channels import CHANNELS
 from stiction.recording.guess.clock import rate_of
 from stiction.recording.measurement import Measurement
-from stiction.recording.origin import Origin
+from stiction.recording.origin import Origin, Use
 from stiction.recording.sensor import Sensor
 from stiction.result.checksums import SEAL, as_written, damaged_parts, seal_tables, sign
 from stiction.result.columns import cf_attributes
@@ -126,7 +126,9 @@ def read_stored(path: Path) -> Measurement:
             name: Sensor(**fields) for name, fields in json.loads(data.attrs["sensors"]).items()
         }
         origin = (
-            Origin.from_json(data.attrs["origin"]) if data.attrs["origin"] else _origin(channels)
+            Origin.from_json(data.attrs["origin"])
+            if data.attrs["origin"]
+            else _origin(path, channels)
         )
     except (KeyError, TypeError, ValueError, AttributeError, DescriptionError) as error:
         raise ResultError(f"{path}: its attributes cannot be read: {error}") from None
@@ -137,7 +139,11 @@ def _fields(sensor: Sensor) -> dict[str, Any]:
     return {name: getattr(sensor, name) for name in type(sensor).model_fields}
 
 
-def _origin(channels: Mapping[str, Floats]) -> Origin:
-    """Return the origin of a record that was made in a session."""
+def _origin(path: Path, channels: Mapping[str, Floats]) -> Origin:
+    """Return the origin of a record that was made in a session: its own file."""
+    uses = tuple(
+        Use(0, name, name, CHANNELS[name].unit, float(np.nanmin(values)), float(np.nanmax(values)))
+        for name, values in channels.items()
+    )
     time = channels["time"]
-    return Origin("a session", "record", (), len(time), rate_of(time))
+    return Origin(str(path), "stored record", uses, len(time), rate_of(time))

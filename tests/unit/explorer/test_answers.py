@@ -212,6 +212,16 @@ def test_a_record_lies_over_a_description(tmp_path):
     assert open_sources([record]).description.slider == st.presets.nakano_popov_2020()
 
 
+def test_a_record_whose_clock_starts_after_the_run_is_shown_from_its_start(tmp_path):
+    """Nothing of it was in the window, below a legend that said "measured"."""
+    record = tmp_path / "force.csv"
+    record.write_text("time [s],force [mN]\n93.9,0\n94.4,5\n94.9,7\n")
+    what = open_sources([st.read_record(record)])
+    np.testing.assert_allclose(what.measured["time"], [0.0, 0.5, 1.0], atol=1e-12)
+    assert what.origin == "measured, from 93.9 s on"
+    assert what.name == "force.csv"  # not "a Record"
+
+
 def test_a_result_is_opened_with_its_curves(tmp_path, description):
     path = st.run(description).save(tmp_path / "run.nc")
     what = open_sources([path])

@@ -1,6 +1,7 @@
 """Sound and film of a run."""
 
 import wave
+from io import BytesIO
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from matplotlib.figure import Figure
 
 import stiction as st
 from stiction.cli import main
+from stiction.media.encoder import as_gif
 from stiction.media.film import (
     NAMES,
     draw,
@@ -21,6 +23,7 @@ from stiction.media.film import (
 from stiction.media.film import RATE as FRAMES
 from stiction.media.scene import ROOM, Scene, magnification
 from stiction.media.sound import LOUD, RATE, audible_speed
+from stiction.plotting.page.style import BLUE, GREEN, ORANGE, RED
 
 PAPER = st.presets.nakano_popov_2020()
 
@@ -70,7 +73,10 @@ def test_what_cannot_be_heard_is_slowed_down():
     ("options", "said"),
     [
         ({"speed": 1e-9}, "may last up to"),
+        ({"speed": 1e9}, "it must last at least 10 ms: choose a smaller speed"),
         ({"speed": -1.0}, "above 0"),
+        ({"speed": "1x"}, "speed must be a number such as 0.1, is '1x'"),
+        ({"axis": "z"}, "axis must be 'x' or 'y', is 'z'"),
         ({"window": ("1 s", "2 s")}, "not a part of the run"),
     ],
 )
@@ -149,6 +155,21 @@ def test_a_film_has_its_frames(run, kind, tmp_path):
     assert f"base64,{'R0lG' if kind == 'gif' else ''}" in film._repr_html_()
     with pytest.raises(st.ResultError, match="this film is"):
         film.save(tmp_path / ("a.mp4" if kind == "gif" else "a.gif"))
+
+
+def test_a_gif_keeps_the_hues_of_thin_lines():
+    """Both springs were orange: the palette followed the floor and the shades of letters."""
+    from PIL import Image
+
+    frame = np.full((200, 400, 3), 240, np.uint8)
+    frame[40:] = np.linspace(0, 255, 400)[None, :, None].astype(np.uint8)  # shades of grey
+    hues = [tuple(bytes.fromhex(color[1:])) for color in (RED, ORANGE, GREEN, BLUE)]
+    for at, hue in enumerate(hues):
+        frame[4 + 8 * at : 6 + 8 * at] = hue
+    image = Image.open(BytesIO(as_gif([frame], 25))).convert("RGB")
+    seen = [image.getpixel((100, 2 + 4 * at)) for at in range(len(hues))]
+    nearest = [np.abs(np.subtract(hues, each)).sum(axis=1).argmin() for each in seen]
+    assert nearest == [0, 1, 2, 3]
 
 
 def test_films_that_cannot_be(run, tmp_path):

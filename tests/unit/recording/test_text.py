@@ -192,6 +192,17 @@ def test_a_column_without_a_unit_is_refused(write):
     assert record.force[0] == 1e-3
 
 
+@pytest.mark.parametrize("header", ["a,b", "ch1,ch2", "A0,B1", "s,N"])
+def test_names_that_are_units_too(write, header):
+    """`a` is a year and `b` a bit; without names above them they are names."""
+    names = header.split(",")
+    record = st.read_record(
+        write(f"recipe 5\n{header}\n{lines()}"), time=f"{names[0]}=ms", force=f"{names[1]}=N"
+    )
+    assert [use.heading for use in record.origin.uses] == names
+    assert record.time[1] == 0.5e-3
+
+
 def test_columns_without_names(write):
     path = write(lines())
     with pytest.raises(st.ResultError, match="columns: 1 'column 1', 2 'column 2'; say for"):

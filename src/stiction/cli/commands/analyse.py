@@ -119,8 +119,12 @@ def import_(
     """
     from stiction.analysis.measurement.reading import read_records
     from stiction.cli.tables import print_sections
-    from stiction.storage.files import placeable, whole
+    from stiction.storage.files import NETCDF, placeable, whole
 
+    if output is not None:
+        placeable(output, NETCDF)
+    if json is not None:
+        placeable(json)
     said = (measured or RecordOptions()).arguments()
     records = read_records([file, *files], **said)
     targets: list[Path] = []

@@ -59,7 +59,8 @@ def read_tables(path: Path, layout: TextLayout) -> list[FileTable]:
         If it cannot be read, with line and column where there are any.
     """
     if not os.path.isfile(path):
-        what = "is a folder; name its files" if os.path.isdir(path) else "no such file"
+        what = "is not a file; name one" if os.path.lexists(path) else "no such file"
+        what = "is a folder; name its files" if os.path.isdir(path) else what
         raise ResultError(f"{path}: {what}")
     with open(path, "rb") as file:
         head = file.read(HEAD)

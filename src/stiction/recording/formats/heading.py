@@ -42,14 +42,23 @@ def find_heading(texts: Sequence[str], dialect: Dialect, width: int) -> Heading 
     rows = [_cells(text, dialect, width) for text in texts[-DEPTH:]]
     scores = [_score(row, width) for row in rows]
     best = max(range(len(rows)), key=lambda at: (scores[at], at), default=None)
-    if best is None or scores[best] <= 0.0:
+    if best is None:
         return None
+    if scores[best] <= 0.0:
+        return _unlikely(rows, width)
     units: tuple[str, ...] = ()
     below = rows[best + 1] if best + 1 < len(rows) else []
     if below and _is_units(below):
         units = tuple(below)
     trusted = any(map(_is_known, rows[best])) or bool(units)
     return Heading(tuple(rows[best]), units, trusted)
+
+
+def _unlikely(rows: Sequence[Sequence[str]], width: int) -> Heading | None:
+    """Return the line above samples as names though all are units too: ``a, b`` or ``ch1, ch2``."""
+    names = rows[-1]
+    fits = len(names) == width and all(names) and not any(map(AMOUNT.fullmatch, names))
+    return Heading(tuple(names), (), trusted=False) if fits else None
 
 
 def repeats(heading: Heading, text: str, dialect: Dialect) -> bool:

@@ -92,10 +92,11 @@ def design(
     from stiction.inference.next_test.design import design as find
     from stiction.inference.next_test.wanted import ANGLES
     from stiction.inference.priors import Rig
-    from stiction.storage.files import placeable
 
     if output is not None:
-        placeable(output)
+        from stiction.plotting.page.save import drawable
+
+        drawable(output)
     known = Rig.from_toml(rig, changes(set), trust=trust)
     given = None if record is None else record_in(record, measured, trust)
     with progress("simulating") as report:

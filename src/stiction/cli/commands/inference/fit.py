@@ -89,9 +89,9 @@ def fit(
     from stiction.inference.mechanism.comparison import SHARE
     from stiction.inference.mechanism.comparison import mechanism as find
     from stiction.inference.priors import Rig
-    from stiction.storage.files import placeable, usable_folder
+    from stiction.storage.files import NETCDF, placeable, usable_folder
 
-    placeable(output)
+    placeable(output, NETCDF)
     if figures is not None:
         usable_folder(figures)
     known = Rig.from_toml(rig, changes(set), trust=trust)
