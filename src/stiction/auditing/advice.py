@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from math import copysign, inf, isfinite, nan, pi, radians, sqrt
+from math import copysign, inf, isfinite, nan, radians, sqrt
 from typing import Any, NamedTuple
 
 from stiction.auditing.chain import softest_path
@@ -173,12 +173,6 @@ def try_change(slider: Slider, most_steps: int, progress: Progress) -> dict[str,
 
 def limits(slider: Slider, path: str) -> tuple[float | str, float | str] | None:
     """Return the range of a parameter; None for the default range of `critical`."""
-    if path == "phi" and slider.turn:
-        ends = (-0.5 * pi, slider.turn) if slider.misalignment < 0.0 else (slider.turn, 0.5 * pi)
-        low, high = (f"{each!r} rad" for each in ends)
-        return low, high
-    if path == "phi":
-        return ("-90 deg", "0 deg") if slider.phi < 0.0 else ("0 deg", "90 deg")
     if path == "c_x":
         return 0.0, max(STRONGEST * 2.0 * sqrt(slider.k_x * slider.masses[0]), 2.0 * slider.c_x)
     return None

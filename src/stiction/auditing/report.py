@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.record import Record, as_record
 from stiction.auditing import chain
-from stiction.auditing.advice import LEVERS, Remedy, advise, limits
+from stiction.auditing.advice import LEVERS, Remedy, advise
 from stiction.auditing.chain_words import chain_sections
 from stiction.auditing.prediction import Prediction, predict
 from stiction.auditing.simulated_test import (
@@ -223,7 +223,7 @@ def _examine(rig: Rig, measured: RecordComparison | None, report: Callable[[floa
     advices: tuple[Remedy, ...] = ()
     if not sliding.stable or observation.comes_to != SLIDES:
         advices = tuple(advise(system, sliding.stable, work, part(3, len(LEVERS))))
-    misalignment = critical(system, "phi", limits(system, "phi"))
+    misalignment = critical(system, "phi")
     tolerance = budget(rig, part(PARTS, MORE)) if "phi" in rig.priors else None
     report(1.0)
     both = observation, sliding_on

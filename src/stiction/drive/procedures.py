@@ -10,7 +10,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Sized
 
 from stiction.drive.pieces import Constant, Hold, Ramp, Reversal, Step
 from stiction.drive.program import DriveProgram, LoadProgram
@@ -166,7 +166,7 @@ def _end(program: DriveProgram | LoadProgram) -> float | None:
 
 
 def _at_least_one(path: str, values: Sequence[Quantity]) -> Sequence[Quantity]:
-    if isinstance(values, str) or not len(values):
+    if isinstance(values, str) or not isinstance(values, Sized) or not len(values):
         raise _fault(path, f"{echo(values)} must be a list of at least one value")
     return values
 

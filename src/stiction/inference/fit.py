@@ -81,7 +81,8 @@ def check(rig: Rig) -> None:
     """Refuse a rig without priors, or whose simulation has no cycles to jitter."""
     faults = []
     if not rig.priors:
-        message = 'nothing is uncertain; write for example phi = "2 +- 1 deg"'
+        message = "nothing is uncertain, and a fit estimates what is; write for example "
+        message += 'phi = "2 +- 1 deg"'
         faults.append(Fault("slider", message))
     if has_state(rig.slider.law) or "mu_0" not in getattr(rig.slider.law, "_fields", ()):
         message = "must have a coefficient mu_0 and no internal state for a fit"

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from math import exp, inf, log, nan
+from collections.abc import Sequence, Sized
+from math import exp, inf, log, nan, pi
 from typing import NamedTuple
 
 from stiction.errors import DescriptionError, Fault, Faults, echo
 from stiction.system.parameter import change_parameter, change_unchecked, read, unit
 from stiction.system.slider import Slider
 from stiction.text.paths import canonical_path
+from stiction.text.quantity_text import angle_text
 from stiction.text.units import Quantity
 
 DECADES = 3.0  # in both directions from a parameter's own value, the default range
@@ -60,17 +61,19 @@ def axis(slider: Slider, path: str, between: Sequence[Quantity] | None = None) -
     path : str
         The parameter, see `stiction.system.parameter`.
     between : tuple of float or str, optional
-        Its range; by default 0 to 90 degrees for an angle, else three decades below and above
-        its present value.
+        Its range; by default 0 to 90 degrees for an angle, -90 to 0 where it is below 0, else
+        three decades below and above its present value.
 
     Raises
     ------
     DescriptionError
         If the range is invalid, or contains forbidden values.
     """
+    if not isinstance(path, str):
+        raise DescriptionError([Fault("path", f"{echo(path)} is not a parameter; write 'phi'")])
     path = canonical_path(path)
     ends = default(slider, path) if between is None else between
-    if isinstance(ends, str) or len(ends) != 2:
+    if isinstance(ends, str) or not isinstance(ends, Sized) or len(ends) != 2:
         raise DescriptionError([Fault(path, f"{echo(ends)} is not a range; give its two ends")])
     faults, values = Faults(), []
     for end in ends:
@@ -92,9 +95,12 @@ def axis(slider: Slider, path: str, between: Sequence[Quantity] | None = None) -
 
 
 def default(slider: Slider, path: str) -> tuple[float | str, float | str]:
-    """Return the default range of a parameter."""
+    """Return the default range of a parameter; of phi, all misalignments of its sign."""
+    if path == "phi" and slider.turn:
+        ends = (-0.5 * pi, slider.turn) if slider.misalignment < 0.0 else (slider.turn, 0.5 * pi)
+        return angle_text(ends[0]), angle_text(ends[1])
     if unit(slider, path) == "rad":
-        return "0 deg", "90 deg"
+        return ("-90 deg", "0 deg") if present_value(slider, path) < 0.0 else ("0 deg", "90 deg")
     value = read(slider, path)
     if value == 0.0:
         message = "is zero, which gives no range; say which, for example between=(0, 1)"

@@ -127,11 +127,10 @@ def stability(
     slider : Slider, Description, str or Path
         The system, or the file of its description; with a steady drive and a constant load.
     over : str or tuple of str, optional
-        One or two parameters to vary, for example ``"c_x"``; see
-        `stiction.linear_stability.critical`.
+        The parameters to vary, for example ``"c_x"``; see `stiction.linear_stability.critical`.
     between : tuple of float or str, or tuple of tuple, optional
-        The range, or one for each parameter, in SI or with units; by default 0 to 90 degrees for
-        an angle, else three decades below and above the present value.
+        The ranges, in SI or with units; by default 0 to 90 degrees for an angle, -90 to 0
+        where it is below 0, else three decades below and above the present value.
 
     Returns
     -------

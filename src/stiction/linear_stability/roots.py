@@ -76,8 +76,8 @@ def critical(
         The parameter, for example ``"phi"``, ``"drive.velocity"``, ``"c_x"``, ``"mass"``,
         ``"friction.mu_inf"``, or several with one value: ``"c_x, c_y"``.
     between : tuple of float or str, optional
-        The range; by default 0 to 90 degrees for an angle, else three decades below and above
-        the parameter's present value.
+        The range; by default 0 to 90 degrees for an angle, -90 to 0 where it is below 0, else
+        three decades below and above the parameter's present value.
     points : int, optional
         Number of points of the first scan.
 

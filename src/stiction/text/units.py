@@ -8,7 +8,7 @@ does not say whether it is in degrees or radians.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from functools import cache, partial
 from math import floor, inf, isfinite, isinf, isnan, log10, radians
@@ -87,6 +87,10 @@ QUANTITY = re.compile(
 )
 
 
+UNCERTAIN = re.compile(r"\+-|\+/-|±")
+OF_PRIORS = {"uncertainty", "low"}  # keys of an uncertain value
+
+
 def to_si(value: object, kind: Kind) -> float:
     """Return `value` as a float in the SI unit of `kind`; below 1e-60 it is zero.
 
@@ -106,6 +110,8 @@ def to_si(value: object, kind: Kind) -> float:
     value = bare(value)
     angle = kind.unit == "rad"
     if isinstance(value, bool) or not isinstance(value, int | float | str):
+        if isinstance(value, Mapping) and OF_PRIORS & value.keys():
+            raise _uncertain(value, kind)
         raise fault(f"{echo(value)} is not {kind.name}; write for example {kind.example!r}")
     if isinstance(value, str):
         number = _parse(value, kind)
@@ -130,6 +136,14 @@ def unread(value: object) -> object:
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise ValueError(f"{echo(value)} is not a number or a string with its unit")
     return value
+
+
+def _uncertain(value: object, kind: Kind) -> Exception:
+    """Return the fault of an uncertain value where one value is needed."""
+    return fault(
+        f"{echo(value)} is uncertain, which 'stiction fit', 'design' and 'audit' read; write one "
+        f"value here, for example {kind.example!r}"
+    )
 
 
 def as_float(value: Any) -> float:
@@ -162,6 +176,8 @@ def _parse(text: str, kind: Kind) -> float:
         return number  # the usual case in large studies
     if unit == "deg" and kind.unit == "rad":
         return number * radians(1.0)
+    if UNCERTAIN.search(unit):
+        raise _uncertain(text, kind)
     if not unit:
         raise fault(f"{echo(text)} has no unit; write for example {kind.example!r}")
     if not kind.unit:

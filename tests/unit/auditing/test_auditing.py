@@ -15,7 +15,7 @@ from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.regime.kinds import HARMONIC, SETTLING, STICK_SLIP
 from stiction.analysis.record import record_of
 from stiction.auditing import advice, figures, report, simulated_test
-from stiction.auditing.advice import advise, advise_one, limits, nearest
+from stiction.auditing.advice import advise, advise_one, nearest
 from stiction.auditing.assumptions import suppositions
 from stiction.auditing.page import page
 from stiction.auditing.prediction import predict
@@ -265,7 +265,7 @@ def test_every_end_of_a_window_of_misalignments_is_said(found, slider, said):
         slider=slider,
         prediction=predict(slider),
         sliding=steady_sliding(slider),
-        misalignment=critical(slider, "phi", limits(slider, "phi")),
+        misalignment=critical(slider, "phi"),
     )
     assert margin(changed).endswith(said)
 

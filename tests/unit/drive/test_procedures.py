@@ -46,6 +46,7 @@ def test_a_yaw_sweep_is_a_study_over_phi():
 @pytest.mark.parametrize(
     ("call", "words"),
     [
+        (lambda: p.velocity_steps(5, distance="1 mm"), "5 must be a list of at least one value"),
         (lambda: p.velocity_steps(["1 um/s"]), "either the duration or the distance"),
         (lambda: p.velocity_steps(["1 um/s", 0.0], distance="1 mm"), "covers no distance"),
         (lambda: p.velocity_steps("1 um/s", duration=1), "must be a list"),

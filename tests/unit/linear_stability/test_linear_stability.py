@@ -439,7 +439,19 @@ def test_what_is_not_steady_is_refused_with_a_remedy():
     assert growth_rate(program) == growth_rate(PAPER)
 
 
+def test_a_negative_angle_is_varied_on_its_side():
+    """The mirrored rig has mirrored critical angles; an audit said so, and `critical` did not."""
+    here, there = critical(PAPER, "phi"), critical(PAPER.replace(phi="-1 deg"), "phi")
+    np.testing.assert_allclose(there.values, -here.values[::-1], rtol=1e-9)
+    assert there.between == (-here.between[1], 0.0)
+    assert there.stable == here.stable[::-1]
+
+
 def test_a_range_that_is_none_is_refused():
+    with pytest.raises(st.DescriptionError, match="5 is not a parameter; write 'phi'"):
+        critical(PAPER, 5)
+    with pytest.raises(st.DescriptionError, match="5 is not a range; give its two ends"):
+        critical(PAPER, "phi", 5)
     with pytest.raises(st.DescriptionError, match=r"is zero.*between=\(0, 1\)"):
         critical(PAPER, "c_x")
     with pytest.raises(st.DescriptionError, match="low end first"):

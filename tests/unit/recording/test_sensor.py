@@ -128,6 +128,13 @@ def test_a_run_too_coarse_for_a_filter_or_a_rate_is_refused(run):
         st.ResultError, match="a filter at 6000 Hz needs samples at 15000 Hz or mor"
     ):
         st.measure(run, st.Sensor(bandwidth="6 kHz"))
+    with pytest.raises(st.ResultError, match="5 is not a run; make one with"):
+        st.measure(5, st.Sensor())
+    for sensor in (5, {"force": 5}):
+        with pytest.raises(
+            st.ResultError, match=r"is not a sensor, .* write for example st.Sensor"
+        ):
+            st.measure(run, sensor)
     with pytest.raises(st.ResultError, match="the record is to have 20000"):
         st.measure(run, st.Sensor(), sample_rate="20 kHz")
     with pytest.raises(st.ResultError, match="'forc' is not a channel"):

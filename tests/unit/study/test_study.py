@@ -156,6 +156,12 @@ def test_an_invalid_value_is_a_fault_of_its_own_axis_alone():
         ({"phi": st.Grid("1 deg", "95 deg", 3)}, "must lie between -90 deg and 90 deg, is 95 deg"),
         ({"phi": {"from": "1 deg", "count": 3}}, "axes.phi.to: missing"),
         ({"phi": {"from": "1 deg", "to": "2 deg", "count": 0}}, "axes.phi.count: must not be"),
+        (
+            {"phi": {"low": "1 deg", "to": "2 deg", "count": 3}},
+            "axes.phi.low: unknown key 'low'; known: along, count, from, sampling, spacing, to",
+        ),
+        ({"phi": {"low": "1 deg", "to": "2 deg", "count": 3}}, "axes.phi.from: missing"),
+        ({"phi": {"values": ["1 deg"], "form": 3}}, "axes.phi.form: unknown key 'form'"),
         ({"phi": {"values": []}}, "is not a list of values"),
         ({"phi": {"sampling": "sobl"}}, "did you mean 'sobol'"),
         ({"phi": 3}, "3 is not an axis"),

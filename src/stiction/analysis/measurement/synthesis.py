@@ -57,7 +57,16 @@ def measure(
     >>> len(record), record.sensors["force"].noise
     (41, 0.002)
     """
-    sensors = {"force": sensor} if isinstance(sensor, Sensor) else dict(sensor)
+    if not isinstance(run, Trajectory):
+        raise ResultError(f"{echo(run)} is not a run; make one with st.simulate")
+    sensors = {"force": sensor} if isinstance(sensor, Sensor) else sensor
+    if not isinstance(sensors, Mapping) or not all(
+        isinstance(each, Sensor) for each in sensors.values()
+    ):
+        raise ResultError(
+            f"{echo(sensor)} is not a sensor, nor one for each channel; write for example "
+            "st.Sensor(noise='2 mN')"
+        )
     plain = record_of(run)
     sampling = read_arguments(Sampling, sample_rate=sample_rate or 0.0)
     rate = sampling.sample_rate or plain.sample_rate

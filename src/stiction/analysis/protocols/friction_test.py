@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.record import Record
+from stiction.analysis.record import Record, as_record
 from stiction.drive import ConstantVelocity, DriveProgram, drive_stretches
 from stiction.errors import ResultError
 from stiction.trajectory import Trajectory
@@ -94,6 +94,7 @@ def friction_test(source: Trajectory | Record, program: DriveProgram | None = No
         time, drive = d["time"], slider.motion
         mean, k_x = float(load.mean()), slider.k_x
         return FrictionTest(time, force / load, lag, mean, k_x, stretches(drive, time))
+    source = as_record(source)
     if source.normal_load is None:
         raise ResultError("friction needs the normal load; give the record its normal_load")
     if program is None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from stiction.analysis.protocols.friction_test import SETTLED, Floats
 from stiction.analysis.protocols.healing import line
-from stiction.analysis.record import Record
+from stiction.analysis.record import Record, as_record
 from stiction.drive import ConstantLoad, LoadProgram, load_stretches
 from stiction.errors import ResultError
 from stiction.text.sections import Section, Table
@@ -88,7 +88,7 @@ def load_dependence(
         d, slider = source.samples, source.slider
         time, force = d["time"], slider.along_drive(d["spring_x"], d["spring_y"])
         base, program = slider.normal_load, slider.load
-    elif source.normal_load is None:
+    elif as_record(source).normal_load is None:
         raise ResultError("the load is unknown; give the record its normal_load")
     else:
         time, force, base = source.time, source.force, source.normal_load

@@ -48,8 +48,8 @@ def stability(
         ("k_x, k_y"). Repeat it for a second one; phi and V by default. Example: --over phi.
     between
         Its range, two values with their units; repeat it for a second one, in the same order. By
-        default 0 to 90 degrees for an angle, else three decades below and above the value. Example:
-        --between "1 deg" "30 deg".
+        default 0 to 90 degrees for an angle, -90 to 0 where it is below 0, else three decades below
+        and above the value. Example: --between "1 deg" "30 deg".
     output
         The figure to write (.png, .pdf or .svg): the modes over one parameter, or the boundary of
         stability in the plane of two. Example: -o map.png.

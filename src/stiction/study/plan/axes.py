@@ -208,15 +208,20 @@ def read_axis(value: Any, name: str) -> Axis:
         message = unknown_name("sampling", str(sampling), SAMPLINGS)
         raise DescriptionError([Fault(f"{path}.sampling", message)])
     kind = Values if "values" in table else SAMPLINGS[sampling]
+    known = {WRITTEN.get(field, field) for field in kind.model_fields} | {"sampling"}
+    strange = [WRITTEN.get(key, key) for key in table if key not in kind.model_fields]
+    found = [Fault(f"{path}.{key}", unknown_name("key", key, known)) for key in strange]
     try:
-        return cast(Axis, kind(**table))
+        given = {key: each for key, each in table.items() if key in kind.model_fields}
+        made = cast(Axis, kind(**given))
     except DescriptionError as error:
-        found = []
         for fault in error.faults:
             _, _, field = fault.path.partition(".")
             first, dot, rest = field.partition(".")
             found.append(Fault(f"{path}.{WRITTEN.get(first, first)}{dot}{rest}", fault.message))
-        raise DescriptionError(found) from None
+    if found:
+        raise DescriptionError(found)
+    return made
 
 
 def axis_table(axis: Axis) -> dict[str, Any]:

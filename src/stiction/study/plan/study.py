@@ -203,8 +203,10 @@ class Study(Described):
         if not isinstance(own, Mapping):
             found.append(Fault("study", f"must be a table [study], is {echo(own)}"))
         elif strange := sorted({"base", "axes"} & own.keys()):
+            places = {"axes": "[axes.phi]", "base": "[slider], [friction], [drive] and [run]"}
             found += [
-                Fault(f"study.{key}", "is not a key of this table; leave it out") for key in strange
+                Fault(f"study.{key}", f"is not a key of this table; write {places[key]}")
+                for key in strange
             ]
         elif axes is None:
             found.append(Fault("axes", "missing; write for example a table [axes.phi]"))

@@ -174,3 +174,15 @@ def test_the_line_of_two_holds_has_no_error():
     found = st.analysis.healing(steadily_run(AGEING, program, rate=50.0))
     assert found.per_decade == pytest.approx(np.diff(found.gain)[0] / log10(10.0))
     assert np.isnan(found.per_decade_error)
+
+
+@pytest.mark.parametrize(
+    "analyse",
+    [
+        st.analysis.velocity_steps, st.analysis.healing, st.analysis.hysteresis,
+        st.analysis.load_dependence,
+    ],
+)  # fmt: skip
+def test_a_test_of_what_is_neither_run_nor_record_is_refused(analyse):
+    with pytest.raises(st.ResultError, match="a int is neither a run nor a record; make one with"):
+        analyse(5)
