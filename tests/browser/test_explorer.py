@@ -336,6 +336,28 @@ def test_it_fits_a_small_projector(page):
     assert [each for each in small if not each.startswith("<sub")] == []
 
 
+def test_no_name_of_a_parameter_is_cut_off(page):
+    """`sample rate` was "sample r...", on the line where it is changed."""
+    page.value(
+        "document.querySelectorAll('#parameters details').forEach((x) => { x.open = true; })"
+    )
+    cut = page.value(
+        """[...document.querySelectorAll('.row label')].filter((each) =>
+        each.clientWidth && each.scrollWidth > each.clientWidth).map((each) => each.textContent)"""
+    )
+    assert cut == []
+
+
+def test_ticks_of_a_study_have_the_prefix_of_its_axis(page):
+    """0.0003 and 0.0095 m/s reached into the name of the axis."""
+    made = page.value(
+        """import(new URL("axis.js", document.querySelector("script[type=module]").src)).then(
+        ({ cellAxis }) => cellAxis([3e-4, 9.5e-4, 3e-3, 9.5e-3, 0.03], "m/s"))"""
+    )
+    assert made["unit"] == "mm/s"
+    assert [words for _, words in made["ticks"]] == ["0.3", "0.95", "3", "9.5", "30"]
+
+
 def test_closing_the_page_ends_its_computation(browser, explorer):
     tab = browser.new_page()
     made = Page(tab, explorer)

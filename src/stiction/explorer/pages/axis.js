@@ -1,6 +1,6 @@
 // Axes of plots: linear and logarithmic, with their ticks.
 
-import { plain, prefixed, tickText, ticks } from "./quantity.js";
+import { RANGES, plain, prefixed, tickText, ticks } from "./quantity.js";
 
 // Linear axis from low to high (SI), shown with the prefix that suits it.
 export function linearAxis(low, high, count, unit = "") {
@@ -12,6 +12,14 @@ export function linearAxis(low, high, count, unit = "") {
     place: (value) => (value - low) / (high - low),
     ticks: values.map((value) => [value / factor, tickText(value, values)]),
   };
+}
+
+// Axis of cells of equal width, one for each value (SI).
+export function cellAxis(values, unit = "", most = 5) {
+  const count = values.length, every = Math.max(1, Math.ceil(count / most)), found = [];
+  const [factor, prefix] = unit in RANGES && unit !== "kg" ? prefixed(Math.max(...values.map(Math.abs))) : [1, ""];
+  for (let i = 0; i < count; i += every) found.push([i, plain(values[i] * factor, 2)]);
+  return { unit: prefix + unit, place: (i) => (i + 0.5) / count, ticks: found };
 }
 
 const UPPER = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };

@@ -4,6 +4,7 @@ import { linearAxis } from "./axis.js";
 import { BLUE, GREEN, INK, Layers, SOFT, curve, frame, line, text } from "./drawing.js";
 import { quantity } from "./quantity.js";
 
+const SLOWEST = 1e-12; // m/s: slower is rest, and rounding
 const LEFT = 52, RIGHT = 10, TOP = 4, BOTTOM = 22, GAP = 4;
 
 export class Microscope {
@@ -34,8 +35,8 @@ export class Microscope {
       const box = { left: LEFT, top: TOP + i * (room + GAP), width: inner, height: room };
       let low = Infinity, high = -Infinity;
       for (const value of values) { if (value < low) low = value; if (value > high) high = value; }
-      if (least !== null) low = least;
-      const margin = 0.07 * (high - low) || 1e-3 * Math.abs(high) || 1;
+      if (least !== null) [low, high] = [least, Math.max(high, SLOWEST)];
+      const margin = 0.07 * (high - low) || 1e-2 * Math.abs(high) || 1;
       const axis = linearAxis(least === null ? low - margin : low, high + margin, room / 24, unit);
       this.rests(context, box);
       const { x, y } = frame(context, box, i ? t : { ...t, ticks: t.ticks.map(([at]) => [at, ""]) }, axis);

@@ -1,7 +1,7 @@
 // Numbers with units: texts as descriptions have them, symbols, ticks.
 
 const PREFIX = { "-12": "p", "-9": "n", "-6": "µ", "-3": "m", 0: "", 3: "k", 6: "M", 9: "G" };
-const RANGES = {
+export const RANGES = {
   kg: [-12, 3], m: [-9, 0], s: [-9, 0], "m/s": [-9, 0], N: [-9, 9], "N/m": [-9, 9],
   "N*s/m": [-3, 6], Hz: [0, 9],
 };

@@ -9,7 +9,7 @@ const STRIPS = [
   { name: "force", unit: "N", share: 1.5, curves: [["spring_y", ORANGE, "k_y u_y"], ["spring_x", RED, "k_x u_x"]] },
   { name: "F", unit: "N", share: 0.8, curves: [["friction", PURPLE, "F"]] },
   { name: "ψ", unit: "deg", share: 0.9, curves: [["psi", BLUE, "ψ"]] },
-  { name: "X", unit: "m", share: 0.9, curves: [["X", INK, "X"]] },
+  { name: "X", unit: "m", share: 0.9, least: 1e-12, curves: [["X", INK, "X"]] },
   { name: "slip", unit: "m/s", share: 1.1, log: true, curves: [["slip_speed", GREEN, "slip speed"]] },
 ];
 
@@ -76,7 +76,8 @@ export class Series {
 
   range(strip, box) {
     const arrays = this.parts().flatMap(([, part]) => strip.curves.map(([name]) => part.arrays[name])).filter(Boolean);
-    const { low, high, least } = extent(arrays);
+    let { low, high, least } = extent(arrays);
+    if (high - low < strip.least) [low, high] = [low - strip.least, high + strip.least]; // rounding
     if (strip.log) {
       const top = 10 ** Math.ceil(Math.log10(Math.max(high, 1e-12)) + 0.02);
       return logAxis(Math.max(Math.min(10 ** Math.floor(Math.log10(least || top)), top / 100), top * 1e-8), top, strip.unit, box.height / 16);

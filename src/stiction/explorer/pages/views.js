@@ -1,6 +1,6 @@
 // The views at the side: numbers, phase portrait, damping diagram, spectrogram, stability map, study.
 
-import { linearAxis, logAxis, power } from "./axis.js";
+import { cellAxis, linearAxis, logAxis, power } from "./axis.js";
 import { GREEN, INK, Layers, PURPLE, RED, SOFT, UNSTABLE, curve, frame, line, symbols, text } from "./drawing.js";
 import { element } from "./form.js";
 import { plain, quantity } from "./quantity.js";
@@ -219,14 +219,16 @@ class StudyMap {
         context.fillRect(box.left + (i * box.width) / columns, box.top + box.height * (1 - (j + 1) / rows), box.width / columns + 0.6, box.height / rows + 0.6);
       }
     }
-    frame(context, box, cells(across), up ? cells(up) : { place: (v) => v, ticks: [] });
+    const xs = cellAxis(across.values, across.unit);
+    const ys = up ? cellAxis(up.values, up.unit) : { place: (v) => v, ticks: [] };
+    frame(context, box, xs, ys);
     (kinds ?? []).forEach((word, i) => {
       context.fillStyle = palette[i % 8];
       context.fillRect(box.left + box.width + 8, box.top + 2 + 17 * i, 11, 11);
       text(context, word, box.left + box.width + 23, box.top + 8 + 17 * i);
     });
-    below(context, width, height, `${nameOf(across)}: click a run${kinds ? "" : ` (${measure})`}`);
-    if (up) beside(context, height, nameOf(up));
+    below(context, width, height, `${nameOf(across, xs.unit)}: click a run${kinds ? "" : ` (${measure})`}`);
+    if (up) beside(context, height, nameOf(up, ys.unit));
     this.shape = { box, columns, rows, across, up };
     if (this.at) {
       const [i, j] = this.at;
@@ -248,13 +250,7 @@ class StudyMap {
   }
 }
 
-function cells(axis) {
-  const count = axis.values.length, every = Math.max(1, Math.ceil(count / 5)), found = [];
-  for (let i = 0; i < count; i += every) found.push([i, plain(axis.values[i], 2)]);
-  return { place: (i) => (i + 0.5) / count, ticks: found };
-}
-
-const nameOf = (axis) => `${axis.dim}${axis.unit ? ` (${axis.unit})` : ""}`;
+const nameOf = (axis, unit) => `${axis.dim}${unit ? ` (${unit})` : ""}`;
 
 export const VIEWS = { stability: StabilityMap, phase: PhasePortrait, damping: Damping, spectrogram: Spectrogram, numbers: null, study: StudyMap };
 
