@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 import json
 import tomllib
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -144,6 +144,12 @@ def _value(value: Any) -> str:
     return str(value).lower() if isinstance(value, bool) else repr(value)
 
 
+def _tables_in(table: Any, names: Iterable[str]) -> Iterator[str]:
+    """Yield which of some names a table has as tables within it: ``[slider.friction]``."""
+    if isinstance(table, Mapping):
+        yield from (name for name in names if isinstance(table.get(name), Mapping))
+
+
 def gather(
     raw: Mapping[str, Any],
     readers: Mapping[str, Reader],
@@ -166,18 +172,26 @@ def gather(
     found = [*known]
     strange = [name for name in raw if name not in readers]
     found += [Fault(name or '""', unknown_name("table", name, readers)) for name in strange]
+    inner = {name: [*_tables_in(raw.get(name), readers)] for name in readers}
+    found += [
+        Fault(f"{name}.{each}", f"is a table of its own; write [{each}]")
+        for name, names in inner.items()
+        for each in names
+    ]
+    elsewhere = {each for names in inner.values() for each in names}
     parts: dict[str, Any] = {}
     for name, read in sorted(readers.items(), key=lambda item: item[0] in last):
         if (name in absent and name not in raw) or (name in last and found):
             continue
         table = raw.get(name, {} if name in optional else None)
         if table is None:
-            found.append(Fault(name, f"missing; write a table [{name}]"))
+            if name not in elsewhere:
+                found.append(Fault(name, f"missing; write a table [{name}]"))
         elif not isinstance(table, Mapping):
             found.append(Fault(name, f"must be a table [{name}], is {echo(table)}"))
         else:
             try:
-                parts[name] = read(dict(table))
+                parts[name] = read({k: v for k, v in table.items() if k not in inner[name]})
             except DescriptionError as error:
                 found += error.at(name).faults
     if found:

@@ -97,6 +97,8 @@ def test_every_fault_at_once_by_path(tmp_path):
     [
         ('"exponential-weakening"', '"exponential-weakning"', "friction.law", "did you mean"),
         ('[drive]\nvelocity = "1 mm/s"', "", "drive", "write a table [drive]"),
+        ("[friction]", "[slider.friction]", "slider.friction", "of its own; write [friction]"),
+        ("[drive]", "[friction.drive]", "friction.drive", "of its own; write [drive]"),
         ('phi = "1 deg"', 'phi = "100 deg"', "slider.phi", "between -90 deg and 90 deg"),
         ('phi = "1 deg"', 'phi = "1"', "slider.phi", "no unit"),
         ('mass = "0.25 kg"', 'mass = "nan kg"', "slider.mass", "not finite"),
