@@ -139,5 +139,5 @@ def old_method(old: str, new: str) -> Callable[..., Any]:
         function = getattr(import_module("stiction"), new.partition("(")[0])
         return function(self, *args, **values)
 
-    method.__doc__ = f"Deprecated: `stiction.{new}`."
+    method.__doc__ = f"Deprecated: ``stiction.{new}``."
     return method
