@@ -48,8 +48,9 @@ def module_of(path: Path) -> str:
 def change(path: Path, text: str) -> None:
     """Give a module's functions and constants, wherever they were imported, those of a text.
 
-    Functions keep their identity and are given other code. A constant is replaced in each module
-    that holds it; what other modules have computed from it as they were imported stays.
+    Functions keep their identity and are given other code, named tuples other defaults. A constant
+    is replaced in each module that holds it; what other modules have computed from it as they were
+    imported stays.
     """
     module = importlib.import_module(module_of(path))
     fresh = dict(vars(module))
@@ -59,6 +60,8 @@ def change(path: Path, text: str) -> None:
         if name.startswith("__"):
             continue
         new = fresh[name]
+        if isinstance(old, type) and _own(old, module) and hasattr(old, "_field_defaults"):
+            _take_defaults(old, new)
         pairs = list(_codes(old, new, module))
         for function, other in pairs:
             function.__code__ = other.__code__
@@ -70,7 +73,7 @@ def change(path: Path, text: str) -> None:
 def _codes(old: Any, new: Any, module: ModuleType) -> Iterator[tuple[FunctionType, FunctionType]]:
     """Yield the functions of a module in a value, beside those to take their code from."""
     old, new = _bare(old), _bare(new)
-    if getattr(old, "__module__", None) != module.__name__:
+    if not _own(old, module):
         return
     if isinstance(old, FunctionType):
         if isinstance(old.__code__, CodeType):
@@ -79,6 +82,19 @@ def _codes(old: Any, new: Any, module: ModuleType) -> Iterator[tuple[FunctionTyp
         for name, each in vars(old).items():
             if name in vars(new):
                 yield from _codes(each, vars(new)[name], module)
+
+
+def _take_defaults(old: Any, new: Any) -> None:
+    """Give a named tuple, and what validates its parameters, the defaults of another."""
+    from stiction.text.validation import fields  # not before `forgiving`
+
+    old._field_defaults, old.__new__.__defaults__ = new._field_defaults, new.__new__.__defaults__
+    fields.cache_clear()
+
+
+def _own(value: Any, module: ModuleType) -> bool:
+    """Return whether a class or function is defined in a module."""
+    return getattr(value, "__module__", None) == module.__name__
 
 
 def _bare(value: Any) -> Any:

@@ -102,15 +102,20 @@ def rows_of(items: Sequence[pytest.Item], sources: Sequence[Path]) -> list[Any]:
 def fitting(tests: Sequence[Test], path: str, line: int, most: float) -> tuple[list[str], float]:
     """Return the tests to run for a line, and how long they take (s).
 
-    First those of the file that has its name from the source's, then the shortest. For a line that
-    is run as the file is imported, those that run anything of that file, and those that run no line
-    at all: they may read a constant, as the test of those printed in `docs/method.md` does.
+    First those in the place that mirrors the source's, then the shortest. For a line that is run as
+    the file is imported, those that run anything of that file, and before them those that run no
+    line at all: they may read a constant, as the test of those printed in `docs/method.md` does.
     """
     reaching = [each for each in tests if line in each.lines.get(path, ())]
     reaching = reaching or [each for each in tests if path in each.lines or not each.lines]
-    own = f"test_{Path(path).name}"
+    source = Path(path.replace("src/stiction", "tests/unit"))
+    own = source.with_name(f"test_{source.name}").as_posix()
+
+    def rank(test: Test) -> tuple[bool, bool, float]:
+        return bool(test.lines), test.file != own, test.seconds
+
     chosen, total = [], 0.0
-    for each in sorted(reaching, key=lambda each: (Path(each.file).name != own, each.seconds)):
+    for each in sorted(reaching, key=rank):
         if total + each.seconds <= most:
             chosen.append(each.name)
             total += each.seconds
