@@ -16,6 +16,7 @@ from tests.waiting import PATIENCE
 import stiction as st
 from stiction.cli import main
 from stiction.friction import has_state
+from stiction.friction.user.excerpt import excerpt
 
 LAW = """
 from typing import NamedTuple
@@ -106,6 +107,20 @@ def test_a_description_names_a_file_and_a_class(config):
     # the slope is rounded otherwise; a step is kept to 2e-5
     assert run.stick_intervals == pytest.approx(same.stick_intervals, rel=1e-9, abs=1e-9)
     assert st.Slider.from_toml(config) == run.slider
+
+
+def test_a_law_s_file_has_a_mebibyte_at_most(config):
+    law, room = config.parent / "mylaw.py", 2**20 - len(LAW)
+    law.write_text(LAW + "#" * room)
+    assert st.Slider.from_toml(config).law == (0.2, 0.05)
+    law.write_text(LAW + "#" * (room + 1))
+    with pytest.raises(st.DescriptionError, match="has more than 1048576 bytes"):
+        st.Slider.from_toml(config)
+
+
+def test_an_excerpt_has_the_decorators_of_what_it_defines():
+    needed = "from mine import mark\n@mark\n@mark(2)\nclass Mine:\n    mu_0 = 0.2"
+    assert excerpt(needed.replace("\n@", "\nx = 1\n@", 1) + "\nprint(x)", "Mine") == needed
 
 
 @pytest.mark.parametrize(

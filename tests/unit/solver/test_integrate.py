@@ -51,6 +51,12 @@ def test_what_a_step_is_held_to():
     assert found == pytest.approx((*wanted, tol * sigma, 0.0, least), rel=1e-9)
 
 
+def test_of_a_law_with_states_no_weakening_is_known():
+    """The speed of (M40) is then that of the transverse slip itself."""
+    lugre = STEADY.replace(friction=st.laws.LuGre(0.15, 0.2, "10 mm/s", 1e5, 300.0, 2.0))
+    assert accuracy_of(lugre).speed == pytest.approx(2e-3 * abs(STEADY.direction[1]), rel=1e-12)
+
+
 @pytest.mark.parametrize("phi", ["0 deg", "90 deg"])
 def test_along_a_principal_axis_the_speed_is_the_drive_s_along_it(phi):
     s = STEADY.replace(phi=phi)

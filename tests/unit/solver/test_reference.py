@@ -248,6 +248,16 @@ def test_the_twin_s_take_off_obeys_its_equation(rig, force):
         assert (s_2 - s_0) / (2 * step) == pytest.approx(a, abs=1e-5 * np.hypot(*a))
 
 
+def test_the_twin_finds_no_take_off_where_friction_falls_at_once():
+    """No polynomial in time follows a jump of friction, however short it is."""
+    equations = reference.equations_of(RIGS["alike all around"])
+    F_0 = equations.friction(0.0)
+    jump = equations._replace(friction=lambda v: F_0 if v == 0.0 else 0.5 * F_0)
+    u = np.linalg.solve(equations.stiffness, [1.1 * F_0, 0.0])
+    with pytest.raises(ArithmeticError, match=r"take-off at t = 0.3 s is not found"):
+        reference.take_off(jump, 0.3, 1.0, u, 1.5e-6)
+
+
 def test_the_twin_refuses_a_drive_that_is_not_steady():
     with pytest.raises(ValueError, match="steady drive"):
         twin(

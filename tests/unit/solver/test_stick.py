@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 from tests.entry import plain
 from tests.systems import MOTIONS, SLIDERS, Printed, motion_of, problem_of
 
+import stiction as st
 from stiction.solver import stick
 from stiction.solver.radau import C
 
@@ -78,6 +79,35 @@ def test_beyond_the_limit_nothing_sticks_wherever_the_drive_goes(name, u_x):
     if name in ("steady", "ellipse"):
         assert (change > 0.0) == (u_x > 0.0)
     assert plain(stick.stick_duration)(problem, 0.35, u_x, 0.0, inf) == (0.0, True)
+
+
+@pytest.mark.parametrize("limit", [1.0, 64.0])
+def test_a_stick_begins_at_the_limit_where_the_drive_lets_the_spring_go(limit):
+    """It ends where the spring pulls as much the other way; here a margin of 1e-14 f^2 is zero."""
+    problem = problem_of("steady")
+    system = problem.system._replace(
+        mass=1.0, per_mass=1.0, k_x=1.0, k_y=1.0, c_x=0.0, c_y=0.0, cos_phi=1.0, sin_phi=0.0
+    )
+    drive, load = problem.drive._replace(velocity=0.25), problem.load._replace(force=limit)
+    problem = problem._replace(system=system, law=st.Coulomb(1.0), drive=drive, load=load)
+    for beyond, duration in ((0.0, 8.0 * limit), (4e-15, 8.0 * limit), (6e-15, 0.0)):
+        u_x = -limit * (1.0 + beyond)
+        found = plain(stick.stick_duration)(problem, 0.0, u_x, 0.0, inf)
+        assert found == (pytest.approx(duration), True)
+
+
+def test_a_stick_under_a_program_is_over_where_its_margin_is_rounding():
+    """1e-14 of f^2."""
+    problem, t = problem_of("program"), 0.35
+    duration, _ = plain(stick.stick_duration)(problem, t, 0.0, 0.0, inf)
+    u_x, u_y = elongation_after("program", t, (0.0, 0.0), duration)
+    excess, change, square = plain(stick.margin)(problem, t + duration, u_x, u_y)
+    beside, *_ = plain(stick.margin)(problem, t + duration, (1.0 - 1e-6) * u_x, u_y)
+    assert change > 0.0
+    for part, over in ((0.5, True), (2.0, False)):
+        less = 1e-6 * (part * 1e-14 * square + excess) / (excess - beside)
+        found = plain(stick.stick_duration)(problem, t + duration, (1.0 - less) * u_x, u_y, inf)
+        assert (found[0] == 0.0) == over
 
 
 def test_a_stick_under_a_program_that_outlasts_the_stretch():

@@ -5,7 +5,7 @@ import pytest
 from tests.drawn import inside
 
 from stiction.analysis.motion import hesitations
-from stiction.analysis.motion.hesitations import ALIKE, AROUND, FEW, OFTEN
+from stiction.analysis.motion.hesitations import ALIKE, AROUND, FEW, LEAST, OFTEN
 
 SIZES = [np.array(each) for each in inside(3, *[(0.1, 1.0)] * 40)]
 
@@ -87,6 +87,15 @@ def test_where_falls_have_every_size_only_a_tenth_is_a_hesitation():
     assert OFTEN < 2
 
 
+@pytest.mark.parametrize(("count", "taken"), [(22, 22), (21, 0)])
+def test_reversals_that_come_with_the_falls_are_a_tenth_more_than_these(count, taken):
+    """Of 20 falls that are not alike, of which none divides the swing."""
+    falls = [5.0, 2.6, 5.0, 5.0, 2.6] * 4
+    lesser = [[1.2] * (1 + (i < count - 20)) for i in range(20)]
+    drops = [drop for fall, few in zip(falls, lesser, strict=True) for drop in (fall, *few)]
+    assert len(hesitations.take_out(cycles(*drops)).at) == taken
+
+
 def test_half_the_swing_divides_falls_that_differ():
     """If none lies between 40 and 60 %, their number is that of falls of half the swing."""
     drops = [5.0, 1.7, 5.0, 4.0, 1.5, 5.0, 3.1, 5.0, 3.2, 5.0]
@@ -122,6 +131,16 @@ def test_what_the_record_cuts_of_a_hesitation_is_left_out(way):
     assert len(inside) == 15
 
 
+@pytest.mark.parametrize("way", [1, -1])
+def test_what_the_record_cuts_of_a_hesitation_is_left_out_even_if_its_first_leg_is_less(way):
+    """It may be larger than the piece before it, of which the beginning is not known."""
+    values = np.array([5.15, 5.2, 5.1, 10.0, *[5.0, 10.0] * 7, 4.0])[::way]
+    assert set(values[hesitations.take_out(values).kept].tolist()) == {5.0, 5.1, 10.0}
+    # unless a leg before is more than a tenth of the swing, of the largest falls the same
+    values = np.array([10.0, 10.05, 9.95, 10.5, 4.5, *[9.5, 4.5] * 7, 8.0])[::way]
+    assert 10.05 in values[hesitations._below(values, LEAST).kept]
+
+
 @pytest.mark.parametrize("steep", [-0.8, -0.5, 0.5, 0.8])
 def test_a_slow_motion_takes_no_cycles_out(steep):
     """Of so many swings a cycle: rises are much smaller than falls, or much larger."""
@@ -129,6 +148,8 @@ def test_a_slow_motion_takes_no_cycles_out(steep):
     time = np.cumsum(np.tile([0.9, 0.1], 20))
     values = np.concatenate([[1.0], np.cumsum(size) + steep * time, [1.0]])
     values[-1] += values[-2]
+    peaks, troughs = hesitations.level(values, time)[1:-1].reshape(-1, 2).T
+    assert (np.ptp(peaks), np.ptp(troughs)) == pytest.approx((0.0, 0.0), abs=1e-12)
     assert len(hesitations.take_out(hesitations.level(values, time)).at) == 0
 
 
@@ -136,6 +157,12 @@ def test_cycles_beside_no_slow_motion_stay_as_they_are():
     for values in (cycles(*[5.0] * 8, dip=(0, 2.0, 0, 4.0)), cycles(*np.linspace(0.5, 5.0, 12))):
         time = np.arange(len(values) - 2.0)
         assert hesitations.level(values, time).tolist() == values.tolist()
+
+
+def test_a_slow_motion_is_not_known_of_less_than_four_cycles():
+    """So many go into the motion before a point and after it."""
+    values = np.array([0.5, 1.0, 0.3, 1.2, 0.5, 1.0, 0.4, 2.4, 1.5])
+    assert hesitations.level(values, np.arange(7.0)).tolist() == values.tolist()
 
 
 @pytest.mark.parametrize("before", [[], [9.0]])

@@ -159,6 +159,8 @@ def test_counts_are_the_same_in_any_unit():
     counts = turning_points.as_counts(values)
     assert counts.dtype == np.int64
     assert (counts.min(), counts.max()) == (0, turning_points.FINE)
+    # finer than a converter of 24 bits, and sums over 2^30 samples fit into 64
+    assert 2**24 < turning_points.FINE <= 2**33
     back = values.min() + counts * np.ptp(values) / turning_points.FINE
     assert back == pytest.approx(values, abs=0.6 * np.ptp(values) / turning_points.FINE)
     assert turning_points.as_counts(-3e-7 * values + 5e-8).tolist() == [
@@ -256,6 +258,16 @@ def test_a_sawtooth_turns_where_it_does(unit, noise):
     assert abs(points.before / unit) == pytest.approx(0.0, abs=0.15)
 
 
+def test_means_show_what_noise_hides_from_sample_to_sample():
+    """The level with the clearest gap decides, here one of means over some samples."""
+    time = np.arange(4000)
+    random = np.random.Generator(np.random.Philox(5)).normal(size=4000)
+    points = turning_points.turning_points(np.abs(time % 400 - 200) / 200 + 0.2 * random)
+    assert points.clearness > turning_points.CLEAR
+    assert points.width > 1
+    assert (points.index + 0.5) * points.width == pytest.approx(200 * np.arange(1, 20), abs=50)
+
+
 def test_before_and_after():
     """The farthest that the signal is from the first point, and from the last one."""
     values = np.array([3.0, 1.0, 5.0, 0.0, 4.0, 2.0, 6.0, 5.0])
@@ -336,10 +348,10 @@ def test_a_corner_stays_where_it_is_sampled():
 
 def test_the_top_of_a_parabola_within_its_piece():
     slope, bend = (
-        np.array([1.0, 1.0, -1.0, 3.0, 0.0, -2.0]),
-        np.array([-1.0, 1.0, 1.0, -1.0, 1.0, 0.0]),
+        np.array([1.0, 1.0, -1.0, 3.0, 0.0, -2.0, -1e-10, 1e-8]),
+        np.array([-1.0, 1.0, 1.0, -1.0, 1.0, 0.0, 1.0, 1.0]),
     )
-    wanted = [0.5, 1.0, -1.0, 1.0, 0.0, -1.0]
+    wanted = [0.5, 1.0, -1.0, 1.0, 0.0, -1.0, 0.0, 1.0]  # a slope of rounding is none
     assert peak_refinement._top(slope, bend).tolist() == wanted
 
 

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from tests.entry import plain
 from tests.systems import SLIDERS, Printed, motion_of, problem_of
+from tests.unit.solver.exact.test_collocation import begin
+from tests.unit.solver.exact.test_newton import SLIDES
 from tests.unit.solver.exact.test_predictor import COLD
 from tests.unit.solver.exact.test_step import held_to
 
@@ -180,6 +182,47 @@ def test_the_loop_ends_where_it_is_to_and_goes_on(name):
     never = held_to(1e-4)._replace(newton=0.0)
     sliding = state._replace(motion=state.motion._replace(r=1e-2))
     assert advance(name, sliding, 0.45, accuracy=never)[0] == STEP_UNDERFLOW
+
+
+def size_after(memory, t_stop):
+    """Return the size of a step that is hardly wrong, and the size to try after it."""
+    problem, frame, *_ = begin("steady", SLIDES[0], "not")
+    start, motion = plain(slip_frame.outset)(problem, frame), motion_of(*SLIDES[0])
+    memory = memory._replace(p=(motion.r,) * 4, w=(0.0,) * 4)
+    state = State(motion, memory, NOTHING)
+    done, state, _ = plain(loop.slip)(
+        problem, frame, start, state, t_stop, held_to(1.0), *NONE, record_of(0)
+    )
+    assert done
+    return state.memory.h_last, state.memory.h
+
+
+@pytest.mark.parametrize(("part", "after"), [(2.0, 2.0), (0.8, 1.6), (0.2, 0.4), (0.05, 1.0)])
+def test_the_size_after_a_step_to_the_end_of_a_stretch(part, after):
+    """Twice its size, (M43); one so much shorter than the size to try says nothing of it."""
+    taken, size = size_after(COLD._replace(h=1e-5), 0.35 + part * 1e-5)
+    assert taken == pytest.approx(min(part, 1.0) * 1e-5, rel=1e-9)
+    assert size == pytest.approx(after * 1e-5, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("warm", "part", "factor"),
+    [(True, inf, 0.2), (True, 0.95, 0.2), (True, 0.8, 2.0), (False, inf, 2.0)],
+)
+def test_an_error_that_has_grown_will_grow_on(warm, part, factor):
+    """(M43), from an error of nothing: least of all. Not after a first step, or one cut short."""
+    memory = COLD._replace(h=1e-5, h_last=1e-5, ease=1e9, warm=warm)
+    taken, size = size_after(memory, 0.35 + part * 1e-5)
+    assert size == pytest.approx(factor * taken, rel=1e-9)
+
+
+def test_a_landing_in_closed_form_takes_no_step():
+    """(M50), however slow the slip is."""
+    slow = motion_of(5e-4, 1e-5, 9e-13, 4e-13)
+    _, state, _, turns = advance("steady", State(slow, MEMORY, NOTHING), 0.45, budget=1)
+    assert turns == 1
+    assert 0.35 < state.motion.t < 0.35 + 1e-11
+    assert (state.motion.r, state.counts.steps) == (0.0, 0)
 
 
 def test_a_landing_in_closed_form_and_its_samples():

@@ -62,6 +62,26 @@ def test_it_stops_where_what_is_left_is_less_than_asked_for(name, drawn):
     assert solve_step(name, drawn, 10 * first, motion=part)[0][-1] > 1
 
 
+@pytest.mark.parametrize("stage", range(6))
+def test_each_correction_is_held_against_the_slip_at_its_own_stage(stage, monkeypatch):
+    """(M33): of p relative to |p| + sigma, of w to 1; its square is less than the tolerance."""
+    problem, frame, o, _, h = begin("steady", SLIDES[0], "not")
+    s = plain(oscillation.swing)(o, h, False)
+    p, scale = (1e-2, 1e-3, 1e-1), np.array([1.01e-2, 1.1e-3, 1.001e-1, 1.0, 1.0, 1.0])[stage]
+    for part, converged in ((0.999e-3, True), (1.001e-3, False)):
+        corrections = iter([part * scale * np.eye(6)[stage], np.zeros(6)])
+
+        def solve_blocks(*_, corrections=corrections):
+            off = next(corrections)
+            return tuple(off[:3]), tuple(off[3:])
+
+        solve = plain(newton.solve)
+        monkeypatch.setitem(solve.__globals__, "solve_blocks", solve_blocks)
+        before = tuple(np.add(p, part * scale * np.eye(6)[stage][:3]))
+        found = solve(problem, frame, o, s, h, False, before, (0.0,) * 3, held_to(1e-6), 1.0)
+        assert (found[0], found[-1] == 1) == (True, converged)
+
+
 @ALL
 def test_it_converges_fast(name, drawn):
     """Quadratically at first, by a tenth at least then: 13 digits in less than ten iterations."""

@@ -113,6 +113,22 @@ def test_a_dip_before_another_fall_is_seen(least):
     assert _dips(o, h, p, 0.0) == (least < 0.0)
 
 
+@pytest.mark.parametrize("off", [-1e-3, 1e-3])
+def test_a_dip_of_an_oscillation_before_another_fall_is_seen(off):
+    """The slip is least behind the first stage, rises to the second, and falls by a cubic."""
+    h, x = 2.4, np.linspace(0.0, 1.0, 2001)
+    o = Oscillator(1.0, 1.0, 0.0, 1.0, 0.0, -cos(0.6), -sin(0.6))  # least after 0.6
+
+    def slip(x):
+        return _after(o, x * h)[0] - 1.2 * x**3
+
+    p = tuple(float(slip(c)) for c in C)
+    assert p[0] < p[1] > p[2]
+    least = slip(x[x < C[1]]).min()
+    assert C[0] < x[np.argmin(slip(x[x < C[1]]))] < C[1]
+    assert _dips(o, h, p, least + off) == (off > 0.0)
+
+
 @pytest.mark.parametrize("o", OSCILLATORS)
 def test_what_it_adds_to_the_equations_is_what_its_cubic_leaves(o):
     h = 0.5 * sqrt(MOST / o.k)

@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 from tests.entry import plain
 from tests.systems import SLIDERS, motion_of, problem_of
 
+import stiction as st
 from stiction.solver.exact import pursuit, slip_frame
 from stiction.solver.state import Accuracy
 
@@ -108,6 +109,23 @@ def test_when_the_closed_form_ends_a_slip(name):
             assert found == pytest.approx((T, *slid), rel=1e-12)
         else:
             assert found == (inf, 0.0, 0.0)
+
+
+def test_how_much_the_springs_may_turn_a_slip_before_its_end():
+    """(M50) without drive, damper or weakening: their force changes by (k_11 + k_22) r T."""
+    problem = problem_of("steady")
+    system = problem.system._replace(c_x=0.0, c_y=0.0)
+    still = problem.drive._replace(velocity=0.0)
+    problem = problem._replace(system=system, law=st.Coulomb(0.2), drive=still)
+    r, a = 1e-3, np.array([0.0, 0.0])
+    frame = plain(slip_frame.frame_of)(problem, motion_of(*a, 0.6 * r, 0.8 * r))
+    start = plain(slip_frame.outset)(problem, frame)
+    f = 0.2 * 10.0 / 0.25
+    T = r / f
+    change = T * T * (1e3 + 4e4) / 0.25 * r
+    for part, closed in ((0.99, False), (1.01, True)):
+        found = plain(pursuit.pursuit)(problem, frame, start, held_to(1e-3, 1e4 * change * part))
+        assert found[0] == (pytest.approx(T) if closed else inf)
 
 
 def test_a_slip_that_is_over_before_the_clock_sees_it_ends_in_closed_form():

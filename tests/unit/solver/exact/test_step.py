@@ -151,6 +151,22 @@ def test_a_landing_that_was_not_foreseen_is_found_from_the_step_beyond(name, par
     assert h == pytest.approx(stop - frame.t, rel=1e-9)
 
 
+def test_a_landing_beyond_the_end_of_the_stretch_is_no_landing(monkeypatch):
+    """Found from a guess before that end: then the step ends there, and slips on."""
+    problem, frame, start, *_ = slowing(1e-3)
+    memory, accuracy = COLD._replace(h=1e-2), held_to(3e-2)
+    _, lands, _, landing, *_ = plain(step)(problem, frame, start, inf, memory, accuracy)
+    early = plain(step)
+    monkeypatch.setitem(early.__globals__, "time_to_landing", lambda *_: 0.9 * landing)
+    monkeypatch.setitem(early.__globals__, "swung_to_rest", lambda _, until: until)
+    for part in (0.95, 1.05):
+        stop = frame.t + part * landing
+        done, landed, _, h, p, *_ = early(problem, frame, start, stop, memory, accuracy)
+        assert (lands, done, landed) == (True, True, part > 1.0)
+        assert h == pytest.approx(min(part, 1.0) * landing, rel=1e-6)
+        assert (p[2] == 0.0) == landed
+
+
 def test_no_step_is_found_where_none_converges():
     """Each try is 0.3 times as long, until that is no time at all."""
     never = held_to(1e-3)._replace(newton=0.0)

@@ -174,6 +174,22 @@ def test_where_the_map_is_not_smooth_the_next_patch_is_half_as_wide():
     assert known.patches[0, 0] == 1.2
 
 
+def test_more_nodes_for_the_motion_end_where_one_does_not_return(monkeypatch):
+    """It is not tried again: it would not return then either."""
+    resolve, known, tried = plain(construction.resolve_motion), map_of(1e-4, samples=True), []
+    begun = taking_off(problem_of("soft"), 1.2)
+    known.patches[0], known.inside.shapes[0] = (1.2, -20.0, 4), (2, 0, 1, 0)
+
+    def lost(*arguments):
+        tried.append(arguments[4])
+        return False, interpolant.Cycle(0.1, 1.0, 0.5), 0.2, begun, 9
+
+    monkeypatch.setitem(resolve.__globals__, "solve_cycle", lost)
+    resolve(problem_of("soft"), EXACT, begun, known, 4, -0.1, 1.0)
+    assert tried == pytest.approx([1.2 - 0.05 * (interpolant.POINTS[4] + 1.0)])
+    assert known.inside.shapes[0, 1] == 0  # no motion is known
+
+
 CLOSED = 0.03 * 1e-4  # (M58) at a relative tolerance of 1e-4
 
 

@@ -92,6 +92,50 @@ def test_a_motion_of_too_few_pieces_begins_again():
     assert np.isinf(known.inside.missed[0])
 
 
+def test_a_node_whose_motion_is_not_resolved_asks_for_twice_the_pieces(monkeypatch):
+    """Of the patches to come, up to four times those that a swing needs."""
+    known, add = map_of(1e-4, samples=True), plain(inside.add_node)
+    window = inside.Window(0.0, 2 * np.pi / np.sqrt(PROBLEM.system.k_y / PROBLEM.system.mass))
+    few = plain(inside.resolution)(PROBLEM, window.duration, known.closing)
+    for times in (2, 4, 4):
+        known.inside.shapes[0] = few, 0, 1, 0
+        monkeypatch.setitem(add.__globals__, "resolved_pieces", lambda *_: 0)
+        add(PROBLEM, EXACT, known, 3, window)
+        assert known.inside.shapes[0].tolist() == [few, 0, 0, 0]
+        assert known.inside.finer[0] == times
+    monkeypatch.setitem(
+        add.__globals__, "resolved_pieces", lambda *_: int(known.inside.shapes[0, 0])
+    )
+    monkeypatch.setitem(add.__globals__, "added_motion", lambda *_: 1e6)
+    add(PROBLEM, EXACT, known, 0, window)
+    assert known.inside.shapes[0].tolist() == [min(4 * few, 16), 0, 1, 0]
+
+
+def test_pieces_are_doubled_for_the_first_node_alone(monkeypatch):
+    """The others must be resolved by as many as the first."""
+    resolved, tried = plain(inside.resolved_pieces), []
+    monkeypatch.setitem(resolved.__globals__, "bounds", lambda *_: None)
+    monkeypatch.setitem(resolved.__globals__, "evaluate_record", lambda *_: tried.append(_[-1]))
+    monkeypatch.setitem(resolved.__globals__, "error_of_phases", lambda *_: 1.0)
+    for n, wanted in ((0, [2, 4, 8, 16]), (1, [2]), (5, [2])):
+        known = empty()
+        known.record.used[0] = 9
+        known.inside.shapes[0] = 2, 0, 1, 0
+        tried.clear()
+        assert resolved(PROBLEM, EXACT, known, n, inside.Window(0.0, 1.0)) == 0
+        assert tried == wanted
+
+
+def test_a_patch_that_begins_again_keeps_its_first_node():
+    """Where that was resolved."""
+    known = map_of(1e-6, samples=True)
+    for pieces in (3, 0):
+        known.inside.shapes[0], known.inside.missed[0] = (pieces, 0, 0, 0), 3.0
+        plain(inside.begin_again)(known)
+        assert known.inside.shapes[0].tolist() == [pieces, 0, int(pieces > 0), 0]
+        assert np.isinf(known.inside.missed[0])
+
+
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_the_root_of_the_distance_to_an_edge(side):
     """(M59b): from -1 to 1 over the patch; the root of the distance is linear in it."""
@@ -205,7 +249,8 @@ def test_the_first_node_s_motion_serves_the_next_attempt():
     longest = 0.5 * (near.time - near.held + far.time - far.held)
     chart(problem, held, begun, known, 1.3, -0.4, longest)
     assert known.sizes.tolist() == [0, 1, 0, 2, 0]
-    known.inside.missed[0] = 0.0  # as if a narrower patch were nearly known, which it is not
+    # as if the motion were known, or nearly: of a narrower patch it is not
+    known.inside.missed[0], known.inside.shapes[0, 1] = 0.0, 2
     chart(problem, held, begun, known, 1.3, -0.1, longest)
     assert known.sizes[:2].tolist() == [1, 1]
     assert known.inside.shapes[0, 1] > 3

@@ -205,6 +205,20 @@ def test_a_stride_stops_with_its_budget_or_room_and_goes_on():
     assert room.tolist() == table[:5].tolist()
 
 
+def test_a_cycle_s_steps_are_kept_in_however_many_strides_they_are_taken():
+    """All since the take-off, and no earlier ones."""
+    problem, state, known = soft("soft"), taking_off(soft("soft"), 1.0), map_of(1e-6, 1)
+    never, sticks = (np.empty(0), np.empty((0, 7)), 0), np.zeros((9, 2))
+    known.record.used[0] = 7
+    for stride in range(3):
+        _, plainly, _, _ = plain(loop.stride)(
+            problem, state, 0.5, held_to(1e-7), 2, *never, sticks, known
+        )
+        state = state_from_plain(plainly)
+        assert (state.motion.r > 0.0, state.counts.sticks) == (True, 0)
+        assert known.record.used[0] == state.counts.steps > 2 * stride
+
+
 def test_the_balance_of_a_map():
     """Each cycle that it finds saves what one costs without it, as whole numbers and quarters."""
     problem, begun = soft("soft"), taking_off(soft("soft"), 1.0)

@@ -15,7 +15,7 @@ from stiction.solver.exact import loop
 from stiction.solver.exact.record import record_of
 from stiction.solver.multiscale import replay
 from stiction.solver.multiscale.return_map import NEAR, Stick
-from stiction.solver.state import COMPLETED, Counts, State
+from stiction.solver.state import COMPLETED, NON_FINITE, RUNNING, Counts, State
 
 COUNTS = Counts(7, 1, 20, 3, 0.5, 2)
 T, THETA = 4.0, 1.1
@@ -66,6 +66,26 @@ def test_without_samples_of_the_slip_no_steps_are_taken(after):
     assert (code, found, k) == (COMPLETED, state, 1)
     assert samples[0, 6] == 1.0
     assert np.isnan(samples[1]).all()
+
+
+@pytest.mark.parametrize(("code", "calls"), [(RUNNING, 3), (NON_FINITE, 1)])
+def test_steps_are_taken_until_the_samples_are_filled(code, calls, monkeypatch):
+    """Not until the landing, nor where they fail; it may stick for a moment in between."""
+    problem, known = problem_of("soft"), map_of(1e-6)
+    stick, times = Stick(T - 2e-3, T, THETA), T + 1e-3 * np.arange(1, 4)
+    state, seen = State(taking_off(problem, 0.3).motion, MEMORY, COUNTS), []
+
+    def advance(_, state, *arguments):
+        k = arguments[-3]
+        seen.append(k)
+        return code, state._replace(motion=state.motion._replace(t=times[k])), k + 1, 1
+
+    cycle = plain(replay.sample_cycle)
+    monkeypatch.setitem(cycle.__globals__, "advance", advance)
+    samples = np.full((3, 7), np.nan)
+    found, _, k = cycle(problem, state, stick, T + 0.01, EXACT, times, samples, 0, known)
+    assert (found, k) == (code, calls)
+    assert seen == list(range(calls))
 
 
 def test_which_remembered_cycle_tells_the_motion_of_another():

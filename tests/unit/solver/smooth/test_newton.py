@@ -112,6 +112,25 @@ def test_each_stage_has_its_own_share_of_inertia():
     assert len(set(found)) == 3
 
 
+def test_each_correction_is_damped_by_its_own_share(monkeypatch):
+    """(M69), as far as a stage's own correction rises."""
+    problem, start, w, _ = begun("ageing")
+    q, rise, share = np.array([3.0, 4.0, 5.0]), np.array([2.0, 1.0, 3.0]), (0.2, 0.5, 0.9)
+    solve = plain(newton.solve)
+    for name, found in (
+        ("solve_blocks", (tuple(-rise), (0.0,) * 3)),
+        ("shares", share),
+        ("residuals_without", ((0.0,) * 3, (0.0,) * 3)),
+        ("correct_states", 0.0),
+        ("settled", True),
+    ):
+        monkeypatch.setitem(solve.__globals__, name, lambda *_, found=found: found)
+    assert solve(problem, start, 1e-6, tuple(q), (0.0,) * 3, w, EXACT) == (True, 1)
+    wanted = [plain(damped_rise)(*each) for each in zip(q, rise, share, strict=True)]
+    slips = [plain(slip_at)(start.eps, to, 0.0)[0] for to in wanted]
+    assert w.values[1:4, 0] == pytest.approx(slips)
+
+
 GUESSES = [1.0, 0.9]  # of the slip velocity at the start
 
 

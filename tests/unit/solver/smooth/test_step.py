@@ -39,21 +39,31 @@ def test_a_first_guess_is_the_last_step_continued(warm):
 
 @pytest.mark.parametrize("k", range(3))
 @pytest.mark.parametrize("back", [True, False])
-def test_each_stage_is_at_rest_where_its_own_guess_turns_back(k, back):
-    """By the product with the slip at the start, (0.7, -1.4), of both components."""
-    w, x = plain(workspace)(1), 0.6
+@pytest.mark.parametrize("axis", [0, 1])
+def test_each_stage_is_at_rest_where_its_own_guess_turns_back(k, back, axis):
+    """By the product with the slip at the start of both components, of which one is constant."""
+    w, x, start = plain(workspace)(1), 0.6, [0.7, -1.4]
     zeros = Polynomial.fromroots([1.0 + x * c for i, c in enumerate(C) if i != k])
-    there = 1.0 + x * C[k]
-    across = Polynomial([-1.0])
-    # at the stage k the product is -+0.1, at the others 1.4, as q_x is zero there
-    along = zeros * ((-0.1 if back else 0.1) - 1.4) / 0.7 / zeros(there)
-    w.past[:] = np.transpose([along(NODES), across(NODES), np.ones(4)])
-    w.values[START] = 0.7, -1.4, 9.0
-    q_x, q_y = plain(step.predict)(w, 0.7, -1.4, x, True)
-    wanted = [-1.0] * 3
-    wanted[k] = 0.0 if back else -1.0
-    assert q_y == pytest.approx(wanted)
-    assert q_x[k] == pytest.approx(0.0 if back else along(there))
+    there, steady = 1.0 + x * C[k], 1.0 / start[1 - axis]
+    # at the stage k the product is -+0.1, at the others 1, as one component is zero there
+    guess = zeros * ((-0.1 if back else 0.1) - 1.0) / start[axis] / zeros(there)
+    w.past[:, axis], w.past[:, 1 - axis], w.past[:, 2] = guess(NODES), steady, 1.0
+    w.values[START] = *start, 9.0
+    found = plain(step.predict)(w, *start, x, True)
+    wanted = [steady] * 3
+    wanted[k] = 0.0 if back else steady
+    assert found[1 - axis] == pytest.approx(wanted)
+    assert found[axis][k] == pytest.approx(0.0 if back else guess(there))
+
+
+def test_a_smoothed_law_holds_a_slip_of_less_than_twice_its_speed():
+    """Of its magnitude; a law with states never does."""
+    for states in (0, 1):
+        w = plain(workspace)(states)
+        w.size[:2] = 1e-6
+        for slip, held in (((1.5, 1.3), True), ((1.5, 1.4), False), ((0.0, -1.9), True)):
+            q_x, q_y = 1e-6 * np.array(slip)
+            assert plain(step.resting)(w, q_x, q_y) == (held and states == 0)
 
 
 def test_the_last_step_is_remembered_in_the_slip_coordinate():
