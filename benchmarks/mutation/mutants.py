@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import json
 from collections import Counter, defaultdict
@@ -17,8 +18,8 @@ from cosmic_ray.plugins import get_operator
 
 ARITHMETIC = ("Add", "Sub", "Mul", "Div")
 COMPARISONS = ("Eq", "NotEq", "Lt", "LtE", "Gt", "GtE")
-# what is left out of Cosmic Ray's: bits of floats, which any run refuses; decorators, which do
-# nothing in plain Python; types of exceptions, whose messages have tests of their own
+# what is left out of Cosmic Ray's: bits of floats, which any run refuses; types of exceptions,
+# whose messages have tests of their own
 NAMES = (
     *(f"ReplaceBinaryOperator_{a}_{b}" for a in ARITHMETIC for b in ARITHMETIC if a != b),
     *(f"ReplaceBinaryOperator_Pow_{b}" for b in ("Mul", "Div")),
@@ -122,10 +123,22 @@ def places(text: str) -> list[tuple[tuple[int, int], list[tuple[str, int]]]]:
     return [(place[0], found[place]) for place in sorted(found)]
 
 
+def lines_of_the_compiler(text: str) -> set[int]:
+    """Return the lines that do nothing in plain Python: decorators, and overloads of functions."""
+    found: set[int] = set()
+    for node in ast.walk(ast.parse(text)):
+        for each in getattr(node, "decorator_list", ()):
+            overloads = "overload" in ast.unparse(each)
+            found.update(range(each.lineno, 1 + (node if overloads else each).end_lineno))
+    return found
+
+
 def named_places(path: Path, text: str) -> Iterator[tuple[str, Path, list[tuple[str, int]]]]:
     """Yield each place of a source under a name that edits of other lines do not change."""
-    lines, seen = text.splitlines(), Counter[str]()
+    lines, seen, compiled = text.splitlines(), Counter[str](), lines_of_the_compiler(text)
     for (line, _), ways in places(text):
+        if line in compiled:
+            continue
         stripped = lines[line - 1].strip()
         yield f"{path.as_posix()} {stripped} {seen[stripped]}", path, ways
         seen[stripped] += 1
