@@ -331,6 +331,15 @@ def test_derivatives_at_zero_slip():
     assert slip_law.evolution_gradient(1.0, (0.0, 0.0), 1e-5) == (0.0, 0.0, 0.0)
 
 
+def test_two_exponentials_like_one_lie_about_its_speed():
+    """Half of it is lost over a lesser speed, half over one that is as many times larger."""
+    law = st.laws.TwoExponentials.like(0.3, 0.2, 0.01)
+    assert law.coefficient(0.0) == pytest.approx(0.3)
+    assert (law.mu_inf, law.mu_1, law.mu_2) == pytest.approx((0.2, 0.05, 0.05))
+    assert law.v_1 < law.v_2
+    assert law.v_1 * law.v_2 == pytest.approx(0.01**2)
+
+
 def test_bristles_of_a_law_like_another_are_damped_critically_for_a_unit_mass():
     """LuGre's own numbers: sigma_1 = sqrt(sigma_0)."""
     for kind in (LuGreHyperbolic, st.laws.LuGre):

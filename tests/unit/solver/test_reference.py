@@ -248,6 +248,18 @@ def test_the_twin_s_take_off_obeys_its_equation(rig, force):
         assert (s_2 - s_0) / (2 * step) == pytest.approx(a, abs=1e-5 * np.hypot(*a))
 
 
+def test_the_twin_takes_off_for_half_as_long_where_friction_changes_fast():
+    """Or a quarter, ...: here it loses half over a slip that a whole take-off exceeds by far."""
+    equations = reference.equations_of(RIGS["alike all around"])
+    F_0, whole = equations.friction(0.0), reference.TAKE_OFF / equations.rate
+    fast = 0.1 * F_0 * equations.mobility[0, 0] * whole
+    weak = equations._replace(friction=lambda v: F_0 * (0.5 + 0.5 * np.exp(-v / fast)))
+    u = np.linalg.solve(equations.stiffness, [1.1 * F_0, 0.0])
+    halves = np.log2(whole / (reference.take_off(weak, 0.3, 1.0, u).end - 0.3))
+    assert halves == pytest.approx(round(halves))
+    assert 1 <= round(halves) < 10
+
+
 def test_the_twin_finds_no_take_off_where_friction_falls_at_once():
     """No polynomial in time follows a jump of friction, however short it is."""
     equations = reference.equations_of(RIGS["alike all around"])

@@ -10,10 +10,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
+from tests.entry import plain
 
 import stiction as st
 from stiction.analysis.slip import cell_force
+from stiction.solver.problem import damping
 from stiction.solver.rig import General
+from stiction.solver.segments import stretches
 from stiction.system.tensors import damping_tensor, mass_tensor, stiffness_tensor
 
 WEAKENING = st.ExponentialWeakening(0.3, 0.2, "20 mm/s")
@@ -255,6 +258,15 @@ def test_the_component_along_the_drive_is_what_a_turn_by_the_misalignment_leaves
     X, Y = random.standard_normal((2, 7))
     c, s = np.cos(slider.phi), np.sin(slider.phi)
     assert slider.along_drive(c * X - s * Y, s * X + c * Y) == pytest.approx(X)
+
+
+@pytest.mark.parametrize("name", ["weakening", "other signs", "stages"])
+def test_the_dampers_in_the_solver_s_axes(name):
+    """(M72): T^T C T, with a term from each axis to the other."""
+    problem = next(stretches(RIGS[name], 0.0, 1.0)).problem
+    for v in ((1.0, 0.0), (0.3, -2.0)):
+        force = damping_tensor(RIGS[name]) @ problem.rig.outward(v)
+        assert plain(damping)(problem, *v) == pytest.approx(problem.rig.inward(force))
 
 
 @pytest.mark.parametrize("seed", range(5))

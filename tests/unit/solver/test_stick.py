@@ -11,6 +11,7 @@ from tests.systems import MOTIONS, SLIDERS, Printed, motion_of, problem_of
 
 import stiction as st
 from stiction.solver import stick
+from stiction.solver.problem import Bends
 from stiction.solver.radau import C
 
 HELD = [(0.3 * u_x, 0.3 * u_y) for u_x, u_y, _, _ in MOTIONS]
@@ -182,6 +183,14 @@ def test_what_a_short_stick_has_to_spare(name):
 
     wanted, _ = quad(spare, 0.0, left)
     assert plain(stick.to_spare)(problem, t, *u, left) == pytest.approx(wanted, rel=1e-2)
+
+
+def test_bounds_of_the_margin_from_row_to_row():
+    """Before the first row and behind the last, those beside them."""
+    bends = Bends(np.array([1.0, 2.0, 4.0]), np.array([5.0, 6.0]))
+    for t, bound, until in ((0.5, 5, 1), (1.0, 5, 2), (1.9, 5, 2), (2.0, 6, 4), (4.0, 6, 9)):
+        assert (bends.bend_after(t), bends.smooth_until(t, 9.0)) == (bound, until)
+    assert bends.smooth_until(2.0, 3.0) == 3.0
 
 
 @pytest.mark.parametrize(

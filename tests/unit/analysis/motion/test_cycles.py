@@ -313,6 +313,18 @@ def test_hum_as_large_as_the_drops_is_taken_off(
     assert "was subtracted from the force" in str(found.regime)
 
 
+@pytest.mark.parametrize("known", [False, True])
+def test_a_line_through_the_first_loading_is_a_disturbance(known: bool) -> None:
+    """A mass that sticks does not vibrate; where its slip is known, it is not asked."""
+    time = np.arange(20_000) * 1e-3
+    noise = 0.002 * np.random.default_rng(1).normal(size=20_000)
+    force = np.minimum(time / 6.0, 1.0) + 0.05 * np.sin(2 * pi * 7.0 * time) + noise
+    slip = np.where(time < 6.0, 0.0, 1e-3) if known else None
+    found = swings(st.Record(time=time, force=force, slip_speed=slip))
+    assert [round(line.frequency, 3) for line in found.lines] == ([] if known else [7.0])
+    assert len(found.table) == pytest.approx(139 if known else 0, abs=1)  # of 140 in 20 s
+
+
 def test_a_vibration_is_not_taken_for_hum() -> None:
     time = np.arange(20_000) * 1e-3
     wave = np.sin(2 * pi * 50.0 * time) + 0.02 * np.random.default_rng(1).normal(size=20_000)

@@ -260,12 +260,15 @@ def test_a_sawtooth_turns_where_it_does(unit, noise):
 
 def test_means_show_what_noise_hides_from_sample_to_sample():
     """The level with the clearest gap decides, here one of means over some samples."""
-    time = np.arange(4000)
-    random = np.random.Generator(np.random.Philox(5)).normal(size=4000)
-    points = turning_points.turning_points(np.abs(time % 400 - 200) / 200 + 0.2 * random)
+    time = np.arange(16_000)
+    random = np.random.Generator(np.random.Philox(5)).normal(size=16_000)
+    signal = np.abs(time % 1600 - 800) / 800
+    points = turning_points.turning_points(signal + 0.2 * random)
     assert points.clearness > turning_points.CLEAR
-    assert points.width > 1
-    assert (points.index + 0.5) * points.width == pytest.approx(200 * np.arange(1, 20), abs=50)
+    assert points.width > 4
+    means = signal[: len(points.values) * points.width].reshape(-1, points.width).mean(axis=1)
+    assert np.abs(points.values - means).mean() < 0.2 / points.width**0.5
+    assert (points.index + 0.5) * points.width == pytest.approx(800 * np.arange(1, 20), abs=200)
 
 
 def test_before_and_after():

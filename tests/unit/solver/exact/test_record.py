@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 from tests.entry import plain
-from tests.systems import SLIDERS, problem_of
+from tests.systems import SLIDERS, motion_of, problem_of
 from tests.unit.solver.exact.test_loop import MEMORY, NONE
 from tests.unit.solver.exact.test_newton import SLIDES, held_to
 from tests.unit.solver.exact.test_sampling import EXACT, step_of
 
-from stiction.solver.exact import error_estimate, loop, record, sampling, slip_frame
+from stiction.solver.exact import error_estimate, loop, pursuit, record, sampling, slip_frame
+from stiction.solver.multiscale import inside
 from stiction.solver.state import NOTHING, Motion, State
 
 
@@ -30,6 +31,21 @@ def test_the_motion_inside_a_kept_step(name, drawn, size):
         )
         found = np.array(plain(record.slip_within)(row, part * h))
         assert found / scale == pytest.approx(np.array(exact) / scale, abs=rel)
+
+
+def test_the_motion_inside_a_kept_landing():
+    """It is that of the closed form, of a force that is not along the slip."""
+    problem, motion = problem_of("steady"), motion_of(5e-4, 1e-5, 9e-7, 4e-7)
+    frame, kept = plain(slip_frame.frame_of)(problem, motion), record.record_of(1)
+    kept.rows[:] = np.nan
+    r, a_1, a_2, f = motion.r, -3.0, -4.0, 8.0
+    T = plain(pursuit.landing_time)(r, a_1, a_1**2 + a_2**2, f)
+    plain(record.keep_landing)(kept, frame, T, a_1, a_2, f)
+    closed, samples = (T, *plain(pursuit.landing_slip)(r, a_1, a_2, f)), np.zeros((2, 7))
+    plain(inside.write_kept)(problem, kept.rows, 0, 0.4 * T, samples, 0)
+    arguments = problem, motion, a_1, a_2, f, closed, 0.6 * T, 0.4 * T, samples, 1
+    plain(pursuit.write_landing)(*arguments)
+    assert samples[0] == pytest.approx(samples[1], rel=1e-12)
 
 
 def test_the_loop_keeps_each_step():

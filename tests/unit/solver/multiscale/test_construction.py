@@ -174,6 +174,28 @@ def test_where_the_map_is_not_smooth_the_next_patch_is_half_as_wide():
     assert known.patches[0, 0] == 1.2
 
 
+def test_nodes_for_the_motion_alone_follow_those_of_the_patch(monkeypatch):
+    chart, known, begun = plain(construction.chart), map_of(1e-4, samples=True), []
+    state, misses = taking_off(problem_of("soft"), 1.2), iter([1.0, 0.9])
+    cycle = interpolant.Cycle(0.1, 1.0, 0.5)
+
+    def resolve(*arguments):
+        begun.append(arguments[4])
+        return state.counts
+
+    for name, found in (
+        ("solve_cycle", lambda *_: (True, cycle, 0.2, state, 9)),
+        ("added_node", lambda *_: next(misses) * CLOSED),
+        ("add_motion", lambda *_: None),
+        ("resolve_motion", resolve),
+    ):
+        monkeypatch.setitem(chart.__globals__, name, found)
+    chart(problem_of("soft"), EXACT, state, known, 1.2, -0.1, 1.0)
+    assert known.patches[0, 2] == 2  # nodes 0 and 1
+    assert begun == [2]
+    assert isinstance(begun[0], int)
+
+
 def test_more_nodes_for_the_motion_end_where_one_does_not_return(monkeypatch):
     """It is not tried again: it would not return then either."""
     resolve, known, tried = plain(construction.resolve_motion), map_of(1e-4, samples=True), []

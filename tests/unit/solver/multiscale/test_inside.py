@@ -20,7 +20,7 @@ def motion(x, phase):
     """Return a made-up motion: smooth in the angle and in the phase, another in each column."""
     c = np.arange(1.0, COLUMNS + 1)
     row = np.cos(c + 0.7 * x * phase) + 0.2 * np.exp(0.4 * x) * np.sin(2.0 * phase + c)
-    row[6:] = 0.0  # no stick
+    row[6:] = 0.0, 1e3  # no stick; behind a sample there is anything
     return row
 
 
@@ -101,6 +101,7 @@ def test_a_node_whose_motion_is_not_resolved_asks_for_twice_the_pieces(monkeypat
         known.inside.shapes[0] = few, 0, 1, 0
         monkeypatch.setitem(add.__globals__, "resolved_pieces", lambda *_: 0)
         add(PROBLEM, EXACT, known, 3, window)
+        add(PROBLEM, EXACT, known, 4, window)  # which is left out
         assert known.inside.shapes[0].tolist() == [few, 0, 0, 0]
         assert known.inside.finer[0] == times
     monkeypatch.setitem(
@@ -111,6 +112,20 @@ def test_a_node_whose_motion_is_not_resolved_asks_for_twice_the_pieces(monkeypat
     assert known.inside.shapes[0].tolist() == [min(4 * few, 16), 0, 1, 0]
 
 
+@pytest.mark.parametrize(
+    ("misses", "nodes"), [([1e6, 9.9, 0.9], 3), ([1e6, 10.1, 0.9, 0.9], 4), ([1e6, 9.0, 1.1], 0)]
+)
+def test_when_the_motion_inside_a_patch_is_known(misses, nodes, monkeypatch):
+    """Where a node is predicted, and the one before it was missed by less than ten times more."""
+    known, add, left = map_of(1e-4, samples=True), plain(inside.add_node), iter(misses)
+    known.inside.shapes[0], known.inside.missed[0] = (2, 0, 1, 0), np.inf
+    monkeypatch.setitem(add.__globals__, "resolved_pieces", lambda *_: 2)
+    monkeypatch.setitem(add.__globals__, "added_motion", lambda *_: next(left))
+    for n in range(len(misses)):
+        add(PROBLEM, EXACT, known, n, inside.Window(0.0, 1.0))
+    assert known.inside.shapes[0, 1] == nodes
+
+
 def test_pieces_are_doubled_for_the_first_node_alone(monkeypatch):
     """The others must be resolved by as many as the first."""
     resolved, tried = plain(inside.resolved_pieces), []
@@ -119,8 +134,8 @@ def test_pieces_are_doubled_for_the_first_node_alone(monkeypatch):
     monkeypatch.setitem(resolved.__globals__, "error_of_phases", lambda *_: 1.0)
     for n, wanted in ((0, [2, 4, 8, 16]), (1, [2]), (5, [2])):
         known = empty()
-        known.record.used[0] = 9
-        known.inside.shapes[0] = 2, 0, 1, 0
+        known.record.used[0], known.sizes[0] = 9, 3
+        known.inside.shapes[3] = 2, 0, 1, 0
         tried.clear()
         assert resolved(PROBLEM, EXACT, known, n, inside.Window(0.0, 1.0)) == 0
         assert tried == wanted

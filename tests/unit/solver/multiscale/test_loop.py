@@ -96,8 +96,9 @@ def test_a_patch_pays_if_it_is_good_for_eight_cycles():
     assert not pays(known, STICK, CYCLE, 1.0, 100.0)
     known.sizes[3] = 0
     assert pays(known, STICK, CYCLE, 1.0, 100.0)
-    known.balance[0] = 0.0
-    assert not pays(known, STICK, CYCLE, 1.0, 100.0)
+    for overdrawn in (0.0, -1.0):
+        known.balance[0] = overdrawn
+        assert not pays(known, STICK, CYCLE, 1.0, 100.0)
 
 
 def test_counts_of_what_the_map_has_found():

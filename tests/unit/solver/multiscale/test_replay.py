@@ -13,7 +13,7 @@ from tests.unit.solver.multiscale.test_construction import (
 
 from stiction.solver.exact import loop
 from stiction.solver.exact.record import record_of
-from stiction.solver.multiscale import replay
+from stiction.solver.multiscale import history, replay
 from stiction.solver.multiscale.return_map import NEAR, Stick
 from stiction.solver.state import COMPLETED, NON_FINITE, RUNNING, Counts, State
 
@@ -66,6 +66,29 @@ def test_without_samples_of_the_slip_no_steps_are_taken(after):
     assert (code, found, k) == (COMPLETED, state, 1)
     assert samples[0, 6] == 1.0
     assert np.isnan(samples[1]).all()
+
+
+@pytest.mark.parametrize("longer", [1.0, 1.02])
+def test_samples_of_a_cycle_like_another(longer):
+    """They are its samples at the same share of the slip's duration, and those of the stick."""
+    problem, known = problem_of("soft"), map_of(1e-6, samples=True)
+    cycle = cycle_from(problem, known, THETA)
+    plain(history.remember)(known, THETA, cycle)
+    slip, parts = cycle.time - cycle.held, np.linspace(0.1, 0.97, 5)
+    landing = T + longer * slip
+    times = np.array([T - 1e-3, *(T + parts * longer * slip), landing + 1e-4])
+    samples = np.full((7, 7), np.nan)
+    k = plain(replay.sample_remembered)(
+        problem, known, 0, Stick(T - 2e-3, T, THETA), landing, times, samples, 0
+    )
+    assert (k, samples[0, 6]) == (6, 1.0)
+    assert np.isnan(samples[6]).all()
+    wanted = np.full((5, 7), np.nan)
+    plain(loop.advance)(
+        problem, taking_off(problem, THETA, T), T + slip, EXACT, 10**6,
+        T + parts * slip, wanted, 0, np.zeros((2, 2)), record_of(0),
+    )  # fmt: skip
+    assert samples[1:6] == pytest.approx(wanted, rel=1e-4, abs=1e-7)
 
 
 @pytest.mark.parametrize(("code", "calls"), [(RUNNING, 3), (NON_FINITE, 1)])

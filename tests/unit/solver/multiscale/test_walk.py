@@ -84,4 +84,5 @@ def test_the_elongation_in_a_stick():
     assert samples[2, :2] == pytest.approx(end - 0.006 * v * e)
     assert samples[1:4, 6].tolist() == [1.0] * 3
     assert np.isnan(samples[[0, 4]]).all()
-    assert plain(walk.sample_known_stick)(PROBLEM, stick, times, samples, 4) == 4
+    for k in (4, 5):  # behind the stick, and behind all samples
+        assert plain(walk.sample_known_stick)(PROBLEM, stick, times, samples, k) == k

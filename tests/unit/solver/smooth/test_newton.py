@@ -231,6 +231,19 @@ def test_it_ends_when_corrections_are_negligible(name):
     assert counts[0] <= iterations <= counts[1]
 
 
+@pytest.mark.parametrize(("name", "count"), [("fed", 4), ("ageing", ITERATIONS)])
+def test_corrections_that_grow_are_given_up(name, count, monkeypatch):
+    """After three, of the slip velocity itself; its logarithm may have decades to go."""
+    solve, sizes = plain(newton.solve), iter(1.1 ** np.arange(20))
+    problem, start, w, (q_x, q_y) = begun(name)
+    monkeypatch.setitem(
+        solve.__globals__, "solve_blocks", lambda *_: ((1e-6 * next(sizes),) * 3, (0.0,) * 3)
+    )
+    w.values[1:4] = w.values[START]
+    found = solve(problem, start, 1e-6, (q_x,) * 3, (q_y,) * 3, w, EXACT)
+    assert found == (False, count)
+
+
 def test_no_numbers_and_no_convergence_are_no_step():
     for name in ("smoothed", "lugre", "ageing"):
         problem, start, w, (q_x, q_y) = begun(name)

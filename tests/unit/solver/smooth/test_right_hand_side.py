@@ -144,3 +144,14 @@ def test_the_slip_that_states_notice_in_a_step(h):
     assert speed == pytest.approx(min(each))
     assert plain(right_hand_side.slowest)(h, w, 0.5 * speed) == 0.5 * speed
     assert plain(right_hand_side.slowest)(h, plain(workspace)(0), 7.0) == 7.0
+
+    n = 2 + len(states)
+
+    def change(s):
+        return np.array(law.change(tuple(T @ s), load, states))
+
+    if states:
+        by_slip = derivative(change, s, [1e-7, 1e-7])
+        assert w.jacobian[LAST, 2:n, :2] == pytest.approx(
+            by_slip, rel=1e-5, abs=1e-6 * np.abs(by_slip).max()
+        )
