@@ -8,6 +8,8 @@ from tests.drawn import inside
 from tests.entry import plain
 
 import stiction as st
+from stiction.friction import name_of
+from stiction.friction.laws.anisotropic import read_anisotropy
 from stiction.solver import surface
 from stiction.solver.problem import Elliptic, Problem
 from stiction.solver.surface import Tensor
@@ -15,6 +17,16 @@ from stiction.solver.surface import Tensor
 flow, friction_along, takeoff = map(plain, (surface.flow, surface.friction_along, surface.takeoff))
 
 WEAKENING = st.ExponentialWeakening(0.2, 0.15, 0.01)
+
+
+def test_a_law_by_its_name_and_its_table():
+    grain = st.laws.Anisotropic(WEAKENING, 1.4, "30 deg")
+    assert name_of(WEAKENING) == "exponential-weakening"
+    assert name_of(grain) == "anisotropic exponential-weakening"
+    assert read_anisotropy(WEAKENING, {"ratio": 1.4, "angle": "30 deg"}) == grain
+    for wrong in (1.4, {"ratio": 1.4, "angle": "30 deg", "law": "coulomb"}):
+        with pytest.raises(st.DescriptionError, match="must be a table with ratio and angle"):
+            read_anisotropy(WEAKENING, wrong)
 
 
 def soft(slider, **changes):

@@ -340,6 +340,11 @@ def test_two_exponentials_like_one_lie_about_its_speed():
     assert law.v_1 * law.v_2 == pytest.approx(0.01**2)
 
 
+def test_a_power_law_like_another_weakens_as_fast_at_rest():
+    law = st.laws.PowerLawWeakening.like(0.3, 0.2, 0.01)
+    assert (law.coefficient(0.0), law.slope(0.0)) == pytest.approx((0.3, -0.1 / 0.01))
+
+
 def test_bristles_of_a_law_like_another_are_damped_critically_for_a_unit_mass():
     """LuGre's own numbers: sigma_1 = sqrt(sigma_0)."""
     for kind in (LuGreHyperbolic, st.laws.LuGre):

@@ -248,6 +248,16 @@ def test_the_twin_s_take_off_obeys_its_equation(rig, force):
         assert (s_2 - s_0) / (2 * step) == pytest.approx(a, abs=1e-5 * np.hypot(*a))
 
 
+def test_the_twin_s_ellipse_has_the_axes_of_the_grain():
+    """Along the drive's angle plus the grain's, friction is F, across it `ratio` times as much."""
+    slider = SOFTER.replace(phi="10 deg", friction=GRAIN)
+    equations, angle = reference.equations_of(slider), np.radians(10.0 + 25.0)
+    along = np.array([np.cos(angle), np.sin(angle)])
+    assert equations.toward(along) == pytest.approx(along)
+    across = np.array([-along[1], along[0]])
+    assert equations.toward(across) == pytest.approx(1.4 * across)
+
+
 def test_the_twin_takes_off_for_half_as_long_where_friction_changes_fast():
     """Or a quarter, ...: here it loses half over a slip that a whole take-off exceeds by far."""
     equations = reference.equations_of(RIGS["alike all around"])

@@ -16,7 +16,7 @@ import stiction as st
 from stiction.analysis.slip import cell_force
 from stiction.solver.problem import damping
 from stiction.solver.rig import General
-from stiction.solver.segments import stretches
+from stiction.solver.segments import begin, stretches
 from stiction.system.tensors import damping_tensor, mass_tensor, stiffness_tensor
 
 WEAKENING = st.ExponentialWeakening(0.3, 0.2, "20 mm/s")
@@ -258,6 +258,15 @@ def test_the_component_along_the_drive_is_what_a_turn_by_the_misalignment_leaves
     X, Y = random.standard_normal((2, 7))
     c, s = np.cos(slider.phi), np.sin(slider.phi)
     assert slider.along_drive(c * X - s * Y, s * X + c * Y) == pytest.approx(X)
+
+
+@pytest.mark.parametrize("slider", [BASE, BASE.replace(mass_y="0.3 kg", damping_angle="0 deg")])
+def test_the_start_in_the_solver_s_axes(slider):
+    """(M71): elongation and slip are T times what the solver sees."""
+    initial = st.Initial(u_x=1e-3, u_y=-2e-4, v_x=3e-3, v_y=1e-3)
+    found, rig = begin(slider, initial), next(stretches(slider, 0.0, 1.0)).problem.rig
+    assert rig.outward(found[0]) == pytest.approx((1e-3, -2e-4))
+    assert rig.outward(found[1]) == pytest.approx(initial.slip(slider))
 
 
 @pytest.mark.parametrize("name", ["weakening", "other signs", "stages"])

@@ -5,7 +5,9 @@ import pytest
 from tests.entry import plain
 from tests.systems import MOTIONS, SLIDERS, Printed, motion_of, problem_of
 
+from stiction.solver import surface
 from stiction.solver.exact import slip_frame
+from stiction.solver.rig import General
 
 ALL = pytest.mark.parametrize(
     ("name", "drawn"), [(name, drawn) for name in SLIDERS for drawn in MOTIONS]
@@ -64,6 +66,31 @@ def test_the_elongation_after_a_step(name, drawn):
     w = -0.3
     e = np.array([1.0, w]) @ printed.axes / np.hypot(1.0, w)
     assert plain(slip_frame.turned_direction)(frame, w) == pytest.approx(e, rel=1e-13)
+
+
+@pytest.mark.parametrize("name", SLIDERS)
+def test_a_general_rig_in_the_axes_of_a_step(name):
+    """(M71) to (M74): its tensors, the drive through T^-1, and the speed |T r|."""
+    T = np.array([[1.1, 0.3], [-0.2, 0.8]])
+    rig, drawn = General(*T.ravel(), 0.7, 1.0, 0.4, -0.5, 0.9), MOTIONS[0]
+    problem = problem_of(name)._replace(rig=rig)
+    motion = motion_of(*drawn)
+    frame, printed = plain(slip_frame.frame_of)(problem, motion), Printed(problem, motion)
+    printed.turn = np.array([[1.0, -0.5], [0.4, 0.9]])  # what is in X and in Y
+    printed.C = printed.C + 0.7 * np.eye(2)[::-1]
+    axes = printed.axes
+    upper = np.triu_indices(2)
+    damping = (axes @ printed.C @ axes.T / printed.m)[upper]
+    assert (frame.c_11, frame.c_12, frame.c_22) == pytest.approx(damping, rel=1e-12)
+    assert frame.metric == pytest.approx((axes @ T.T @ T @ axes.T)[upper], rel=1e-12)
+    found = plain(slip_frame.in_frame)(problem, frame, (0.3, -2.0))
+    assert found == pytest.approx(axes @ printed.turn @ [0.3, -2.0], rel=1e-12)
+    *b, db_1, db_2 = plain(slip_frame.pull)(problem, frame, 2e-3)
+    assert b == pytest.approx(printed.b(2e-3), rel=1e-11)
+    assert (db_1, db_2) == pytest.approx(printed.db(2e-3), rel=1e-11)
+    w = -0.4
+    ratio = plain(surface.speed_ratio)(problem, frame.metric, w)
+    assert ratio == pytest.approx(np.hypot(*T @ axes.T @ [1.0, w]), rel=1e-12)
 
 
 @pytest.mark.parametrize("name", SLIDERS)

@@ -196,6 +196,26 @@ def test_nodes_for_the_motion_alone_follow_those_of_the_patch(monkeypatch):
     assert isinstance(begun[0], int)
 
 
+def test_nodes_for_the_motion_end_as_it_is_known(monkeypatch):
+    resolve, known, added = plain(construction.resolve_motion), map_of(1e-4, samples=True), []
+    begun = taking_off(problem_of("soft"), 1.2)
+    known.patches[0], known.inside.shapes[0] = (1.2, -20.0, 4), (2, 0, 1, 0)
+
+    def add_node(*arguments):
+        added.append(arguments[3])
+        known.inside.shapes[0, 1] = 6 if len(added) == 2 else 0
+
+    cycle = interpolant.Cycle(0.1, 1.0, 0.5)
+    for name, found in (
+        ("solve_cycle", lambda *_: (True, cycle, 0.2, begun, 9)),
+        ("add_node", add_node),
+        ("finish_motion", lambda *_: None),
+    ):
+        monkeypatch.setitem(resolve.__globals__, name, found)
+    resolve(problem_of("soft"), EXACT, begun, known, 4, -0.1, 1.0)
+    assert added == [4, 5]
+
+
 def test_more_nodes_for_the_motion_end_where_one_does_not_return(monkeypatch):
     """It is not tried again: it would not return then either."""
     resolve, known, tried = plain(construction.resolve_motion), map_of(1e-4, samples=True), []

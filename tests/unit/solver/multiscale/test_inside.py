@@ -177,6 +177,7 @@ def test_where_the_edge_is():
     assert known.inside.shapes[0, 1:3].tolist() == [0, 1]
     known.coefficients[0, 1, 2] = -0.5e-8  # far away
     known.inside.ends[0] = np.sqrt(2.1e-8), np.sqrt(0.5e-8)
+    known.inside.shapes[0, 1] = 5  # nodes in the angle, not in the root
     plain(inside.begin_at_edge)(known)
     assert known.inside.ends[0] == pytest.approx([1.625, 1.0])
     assert known.inside.shapes[0, 1:3].tolist() == [0, 1]

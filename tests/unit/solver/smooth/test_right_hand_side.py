@@ -150,7 +150,12 @@ def test_the_slip_that_states_notice_in_a_step(h):
     def change(s):
         return np.array(law.change(tuple(T @ s), load, states))
 
+    def by_states(z):
+        return per * T.T @ np.array(law.force(tuple(T @ s), load, tuple(z)))
+
     if states:
+        effect = derivative(by_states, np.array(states), 1e-6 * w.size[2:])
+        assert w.jacobian[LAST, :2, 2:n] == pytest.approx(effect, rel=1e-5, abs=1e-9)
         by_slip = derivative(change, s, [1e-7, 1e-7])
         assert w.jacobian[LAST, 2:n, :2] == pytest.approx(
             by_slip, rel=1e-5, abs=1e-6 * np.abs(by_slip).max()
