@@ -69,11 +69,10 @@ def test_the_time_to_landing_is_close_if_it_is_within_reach():
     assert found(frame, start, o, parabola / 2.6) == parabola
 
 
-@pytest.mark.parametrize("u_x", [0.5e-3, *np.linspace(1.8e-3, 2.2e-3, 9)])
-@pytest.mark.parametrize("name", ["steady", "program"])
-def test_a_slip_passes_by_zero_where_friction_cannot_hold(name, u_x):
+@pytest.mark.parametrize("u_x", [0.5e-3, 1.9e-3, 2.1e-3])
+def test_a_slip_passes_by_zero_where_friction_cannot_hold(u_x):
     """M of (M6) at the end of the oscillation."""
-    problem = problem_of(name)
+    problem = problem_of("steady")
     frame = plain(slip_frame.frame_of)(problem, motion_of(u_x, 0.0, 1e-9, 3e-3))
     o = plain(oscillation.oscillator)(frame, plain(slip_frame.outset)(problem, frame))
     t = 1.0 / np.sqrt(frame.k_11)
