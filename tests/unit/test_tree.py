@@ -2,6 +2,7 @@
 
 import ast
 import re
+import tomllib
 from collections import Counter
 from importlib.util import find_spec
 from pathlib import Path
@@ -70,3 +71,9 @@ def test_functions_are_nouns_or_imperatives():
             if PARTICIPLE.fullmatch(name) and name not in NO_PARTICIPLES | CONTRACTS:
                 wrong.add(f"{path.relative_to(ROOT)}: {name}")
     assert sorted(wrong) == []
+
+
+def test_a_mutant_that_is_known_to_be_equivalent_is_one_of_a_line_that_is_there():
+    known = tomllib.loads((ROOT / "benchmarks/mutation/equivalent.toml").read_text("utf-8"))
+    texts = {row["file"]: (ROOT / row["file"]).read_text("utf-8") for row in known["mutant"]}
+    assert [row for row in known["mutant"] if row["before"] not in texts[row["file"]]] == []

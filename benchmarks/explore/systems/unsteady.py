@@ -27,7 +27,7 @@ def unsteady_system(seed: int, number: int) -> System:
 def drive(draw: Draw, slider: st.Slider, duration: float) -> st.protocols.DriveProgram:
     """Return velocity steps, ramps, holds, reversals and harmonics, some shaken."""
     V = abs(slider.motion.rate(0.0)[0])
-    pieces = [moved(draw, V, part) for part in parts(draw, duration)]
+    pieces = [piece(draw, V, part) for part in parts(draw, duration)]
     along = shaking(draw, slider, duration, V * draw.decades(0.01, 3.0))
     across = shaking(draw, slider, duration, V * draw.decades(1e-3, 0.3))
     program = pieces if draw.chance(0.8) else []
@@ -52,7 +52,7 @@ def parts(draw: Draw, duration: float) -> list[float]:
     return [duration * share / sum(shares) for share in shares]
 
 
-def moved(draw: Draw, V: float, duration: float):
+def piece(draw: Draw, V: float, duration: float):
     """Return a piece of a drive's program."""
     kind, other = draw.random(), V * draw.decades(0.1, 3.0)
     if kind < 0.3:
