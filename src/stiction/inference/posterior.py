@@ -169,7 +169,7 @@ class Fit:
 
     @property
     def doubts(self) -> list[str]:
-        """What speaks against the estimates, in sentences: the records are not those of the rig."""
+        """What speaks against the estimates, in sentences; none if nothing does."""
         found = []
         if self.farther < RARE:
             found.append(
