@@ -61,19 +61,20 @@ def simulate(
         ``multiscale=True`` the first and last state only. Samples never influence the steps, and
         stick intervals are all recorded anyway.
     rtol : float, optional
-        Relative tolerance, 1e-13 to 1e-2; for the paper's Fig. 3 over 5 s the relative error
-        of u_x is below it. Each step is kept to a share of 0.8 rtol^0.8 (1.3e-5 at the
-        default), relative to the slip, but to no more than the drive's speed, nor than the motion
-        about steady sliding. The promise for the whole run: its forces are off by no more than 30
-        times what the apparatus itself would do if its mass, or its normal load, were greater by
-        that share. Of 30 000 random systems half are off by less than 0.02 times that, 99 % by less
-        than 2 times, and the worst by 7 times; the worst of 90 000 others by 22 times, but one that
-        is chaotic: a thousandth of its tolerance does not determine it. Of 3000 whose law has
-        internal states half are off by less than 0.002 times that, 99 % by less than 1.3 times, and
-        all by less than 9 but two, by 28 and 98, which leave unstable steady sliding. A tenth of
-        `rtol` divides the error by ten where steps resolve the fastest oscillation, by six where
-        that has died out, and both on average only: the steps then lie elsewhere, so that a
-        neighbouring tolerance may gain nothing.
+        Relative tolerance, 1e-13 to 1e-2; for the paper's Fig. 3 over 5 s the relative error of u_x
+        is below it. Each step is kept to a share of 0.8 rtol^0.8 (1.3e-5 at the default), relative
+        to the slip, but to no more than the drive's speed, nor than the motion about steady
+        sliding. The promise for the whole run: its forces are off by no more than 30 times what the
+        apparatus itself would do if its mass, or its normal load, were greater by that share. Of
+        30 000 random systems half are off by less than 0.02 times that, 99 % by less than 2 times,
+        and the worst by 7 times; the worst of 90 000 others by 22 times, but one that is chaotic: a
+        thousandth of its tolerance does not determine it. Of 3000 whose law has internal states
+        half are off by less than 0.002 times that, 99 % by less than 1.3 times, and all by less
+        than 9 but two, by 28 and 98, which leave unstable steady sliding. Of 1800 with programs of
+        drive or load, of either kind, the worst is off by 25 times. A tenth of `rtol` divides the
+        error by ten where steps resolve the fastest oscillation, by six where that has died out,
+        and both on average only: the steps then lie elsewhere, so that a neighbouring tolerance may
+        gain nothing.
     initial : Initial, optional
         The state to start from; by default the paper's.
     regularisation : float or str, optional

@@ -16,7 +16,7 @@ RESOLUTION = 1e-30
 GROWTH = 2.0  # of step sizes, at most
 FAILED = 0.3  # of the size, where a step was not solved
 CONTRACTS = 0.1  # of a correction to the last one: the Jacobian is kept
-CALMEST = 3.0  # of eases, of the step before: a smaller error than that is no trend
+CALMEST = 3.0  # of eases that are kept: a smaller error than that begins no trend
 PATIENCE = 3  # iterations that may diverge
 
 
@@ -54,4 +54,4 @@ def trend(h: float, h_last: float, at_ease: float, before: float) -> float:
 
     Given the sizes of the step and the last one (s), then the eases of their errors.
     """
-    return max(0.2, 0.9 * h / h_last * at_ease * at_ease / min(before, CALMEST))
+    return max(0.2, 0.9 * h / h_last * at_ease * at_ease / before)

@@ -8,7 +8,7 @@ import numpy as np
 
 from stiction.solver.block_algebra import Triple, dot
 from stiction.solver.compilation.jit import compiled, inlined
-from stiction.solver.control import GROWTH, ease, step_factor, trend
+from stiction.solver.control import CALMEST, GROWTH, ease, step_factor, trend
 from stiction.solver.exact.newton import products
 from stiction.solver.exact.pursuit import land, pursuit
 from stiction.solver.exact.record import StepRecord, keep_step
@@ -160,7 +160,7 @@ def slip(
         plan,
         1 if turns_up(r, p) else memory.place + 1,
         h,
-        at_ease,
+        min(at_ease, CALMEST),
         not landing,
         (r, p[0], p[1], p[2]),
         (0.0, w[0], w[1], w[2]),

@@ -8,7 +8,7 @@ import numpy as np
 
 from stiction.solver.block_algebra import dot
 from stiction.solver.compilation.jit import compiled, inlined
-from stiction.solver.control import GROWTH, ease, step_factor, trend
+from stiction.solver.control import CALMEST, GROWTH, ease, step_factor, trend
 from stiction.solver.problem import Problem, in_principal_axes, smooth_until, travel
 from stiction.solver.radau import A
 from stiction.solver.smooth.coordinate import coordinate
@@ -139,7 +139,7 @@ def advance(
         at_ease, short = ease(error), taken < CUT * h
         if warm and not short:  # the errors of a step that was cut short show no trend
             factor = min(factor, trend(taken, h_last, at_ease, before))
-        following, before = taken * factor, at_ease
+        following, before = taken * factor, min(at_ease, CALMEST)
         cut = end == smooth and short  # its cubics do not reach across the next step
         h = min(max(h, following) if end == smooth else following, accuracy.longest)
         h_last, warm = taken, end < t_end and not cut
