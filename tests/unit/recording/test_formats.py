@@ -335,3 +335,23 @@ def test_analyse_takes_the_file_of_a_record_and_of_a_run(tmp_path, slider):
     found = st.analyse(tmp_path / "record.nc")
     assert isinstance(found.source, st.Record)
     assert np.array_equal(found.record.force, run.data["spring_x"])
+
+
+@pytest.mark.parametrize("name", ["a.nc", "a.mat", "a.h5", "a.csv"])
+def test_a_damaged_file_is_not_told_to_be_text(name, tmp_path):
+    """Its first bytes say neither what it is, nor that it is text: text saved anew is no help."""
+    (tmp_path / name).write_bytes(b"\x00\x03\xff\xfe\x81" * 40)
+    with pytest.raises(st.StictionError, match=r"not text, nor .* it is damaged: copy it again"):
+        st.read_record(tmp_path / name)
+    (tmp_path / name).write_bytes("t;µ\n1;2\n3;4\n".encode("cp1252") + b"\x81")
+    with pytest.raises(st.StictionError, match="line 4 is not text in cp1252; save it as UTF-8"):
+        st.read_record(tmp_path / name)
+
+
+def test_a_file_beside_a_record_that_is_not_there(tmp_path):
+    (tmp_path / "a.csv").write_text("time (s),force (N)\n0,1\n1,2\n2,3\n")
+    with pytest.raises(
+        st.DescriptionError, match=r"no such file; .* \[columns\], \[reading\]"
+    ) as e:
+        st.read_record(tmp_path / "a.csv", sidecar=tmp_path / "b.toml")
+    assert "stiction init" not in str(e.value)

@@ -310,3 +310,9 @@ def test_the_example_s_file():
     assert study.layout.shape == (24, 16)
     assert study.description((0, 15)).run.duration == 5.0
     assert st.Study.from_dict(study.to_dict()).to_json() == study.to_json()
+
+
+def test_what_is_no_study_is_not_swept(tmp_path):
+    with pytest.raises(st.DescriptionError, match=r"study: 5 is not a Study; make one with"):
+        st.sweep(5, tmp_path / "a.zarr")
+    assert not (tmp_path / "a.zarr").exists()

@@ -36,6 +36,8 @@ COPIES = 12  # of a file's bytes in memory: its text, its lines, its numbers
 WIDEST = 2000  # columns
 LINE_END = re.compile("\r\n|\n|\r")
 GZIP = b"\x1f\x8b"
+CONTROLS = {*range(32)} - {*b"\t\n\v\f\r\x1a\x1b"}  # bytes that no text has
+LOOKED_AT = 512  # bytes
 MARKS = {  # byte-order marks, the longer first
     codecs.BOM_UTF8: "utf-8-sig",
     codecs.BOM_UTF32_LE: "utf-32",
@@ -80,6 +82,11 @@ def _lines(path: Path, raw: bytes, encoding: str) -> list[str]:
     try:
         text = raw.decode(encoding)
     except UnicodeDecodeError as error:
+        if set(raw[:LOOKED_AT]) & CONTROLS:
+            raise ResultError(
+                f"{path}: is not text, nor does it begin as a file of another kind that is read "
+                "here; if it should, it is damaged: copy it again"
+            ) from None
         line = len(LINE_END.findall(raw[: error.start].decode("latin-1"))) + 1
         raise ResultError(
             f"{path}: line {line} is not text in {encoding}; save it as UTF-8"

@@ -8,6 +8,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import NamedTuple
 
+from stiction.errors import DescriptionError, Fault, echo
 from stiction.storage.files import folder_lock
 from stiction.study.execution.engines import Engine, Threads
 from stiction.study.execution.task import do_block
@@ -86,6 +87,8 @@ def sweep(
 
     Raises
     ------
+    DescriptionError
+        If `study` is none.
     ResultError
         If something else is there, or the store cannot be written.
 
@@ -100,6 +103,9 @@ def sweep(
     phi.zarr
       3 of 3 runs are done.
     """
+    if not isinstance(study, Study):
+        remedy = "make one with st.Study(...) or read one with st.Study.from_toml(path)"
+        raise DescriptionError([Fault("study", f"{echo(study)} is not a Study; {remedy}")])
     store = open_store(study, path) if Path(path).exists() else create(study, path)
     layout = store.layout
     left = [task for task in range(layout.tasks) if not store.has(layout.region(task))]
