@@ -134,3 +134,26 @@ def test_programs_of_the_drive_keep_the_bound(number):
     seen = look(SEED, number, laws="unsteady")
     assert not seen.left_out
     assert max(seen.off) < BOUNDS["in steps"]
+
+
+def test_no_mass_sticks_over_its_limit():
+    """A start over the limit with a drive that unloads the spring, or one that has just turned."""
+    W, k, mu = 10.0, 300.0, 0.2
+    unloading = st.protocols.DriveProgram(
+        velocity="1 mm/s",
+        program=[st.protocols.Step(to="-0.2 mm/s", duration=20.0), st.protocols.Reversal(5.0)],
+    )
+    for beyond in np.linspace(1.001, 1.2, 20):
+        slider = on_a_line(
+            mass=0.1,
+            k_x=k,
+            friction=st.Coulomb(mu),
+            normal_load=W,
+            drive=unloading,
+            driven="spring",
+        )
+        start = st.Initial(u_x=beyond * mu * W / k)
+        run = st.simulate(slider, 25.0, initial=start, sample_rate=40.0).data
+        rest = run["slip_speed"].values[1:] == 0.0
+        assert rest.any()
+        assert abs(run["spring_x"].values[1:][rest]).max() < mu * W * (1.0 + 1e-9)

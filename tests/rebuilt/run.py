@@ -99,7 +99,8 @@ class Solver:
         tau = min(tau, end - self.t)
         at_end, (b, q) = self.margin(self.u + self.v_d * tau), (b + q * tau, q)
         whole = end - self.t - tau
-        x, up = C[0] * whole, b < 0 and at_end + (2 * b + q * whole) * whole >= rounding
+        x, up = C[0] * whole, at_end + (2 * b + q * whole) * whole >= rounding
+        up = b < 0 and (up or at_end > 1e5 * rounding)
         if not up and at_end + (b + q * x / 3) * x < rounding:  # (M9a)
             tau = end - self.t
         if -M / (4 * self.f_s) * tau >= self.tol * self.sigma:  # (M10)

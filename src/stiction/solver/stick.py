@@ -25,6 +25,7 @@ from stiction.solver.radau import C
 from stiction.solver.surface import held_product
 
 USED_UP = 1e-14  # of f^2: the margin |a|^2 - f^2 is zero within rounding
+NEARLY = 1e-9  # of f^2: over a limit by less, and falling, friction lets no slip rise that counts
 MARGIN_LOOKS = 10_000  # evaluations of the margin before control returns to the loop
 
 
@@ -127,12 +128,13 @@ def holds_on(problem: Problem, t: float, u_x: float, u_y: float, stop: float) ->
 
     The slip at the first stage of a step until then is proportional to the mean of the margin until
     there. Where that is rounding, the step could not rise from zero. A margin that falls at first
-    must not have risen again by then: before it does, a stick ends.
+    must be nearly used up, or slip rises before; nor may it have risen again by then.
     """
     excess, change, square = margin(problem, t, u_x, u_y)
     bend, whole = half_bend(problem, t), stop - t
     x, rounding = C[0] * whole, USED_UP * square
-    if change < 0.0 and not excess + (2.0 * change + bend * whole) * whole < rounding:
+    again = excess + (2.0 * change + bend * whole) * whole
+    if change < 0.0 and (excess > NEARLY * square or not again < rounding):
         return False
     return excess + (change + bend / 3.0 * x) * x < rounding
 
