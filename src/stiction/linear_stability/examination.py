@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stiction.deprecation import old_attributes
-from stiction.errors import StictionError
+from stiction.errors import StictionError, echo
 from stiction.linear_stability.axis import present_value
 from stiction.linear_stability.curve import boundary
 from stiction.linear_stability.linear import (
@@ -150,6 +150,8 @@ def stability(
     (False, array([ 8.66, 76.26]))
     """
     system = slider_of(slider)
+    if not isinstance(over, str | Sequence):
+        raise StictionError(f"over: {echo(over)} is not a parameter; name one, such as 'c_x'")
     paths = [over] if isinstance(over, str) else list(over)
     ranges: list[Any] = [None] * len(paths) if between is None else list(between)
     if isinstance(over, str) and between is not None:

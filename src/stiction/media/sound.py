@@ -127,7 +127,7 @@ def listen(
         raise ResultError(f"axis must be 'x' or 'y', is {echo(axis)}; y is the transverse one")
     try:
         chosen = audible_speed(description, axis) if speed is None else float(speed)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ResultError(f"speed must be a number such as 0.1, is {echo(speed)}") from None
     if not chosen > 0.0:
         raise ResultError(f"speed must be above 0, is {chosen:g}; 0.1 is ten times slower")

@@ -169,9 +169,10 @@ def _beside(path: Path) -> Path | None:
 
 def _tables(own: Path) -> dict[str, dict[str, Any]]:
     """Return the tables of such a file, all faults of their names at once."""
-    if not own.is_file():
+    if not own.exists() or own.is_dir():  # a pipe is well
         tables = ", ".join(f"[{section}]" for section in SECTIONS)
-        message = f"no such file; write one that says more of the record, with {tables}"
+        what = "is a folder" if own.is_dir() else "no such file"
+        message = f"{what}; write a file that says more of the record, with {tables}"
         raise DescriptionError([Fault(str(own), message)])
     raw, wrong = read_toml(own), []
     allowed = {

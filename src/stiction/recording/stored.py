@@ -139,11 +139,17 @@ def _fields(sensor: Sensor) -> dict[str, Any]:
     return {name: getattr(sensor, name) for name in type(sensor).model_fields}
 
 
+def _ends(values: Floats) -> tuple[float, float]:
+    """Return the least and the largest value; NaN where there is none."""
+    if not len(values):
+        return np.nan, np.nan
+    return float(np.nanmin(values)), float(np.nanmax(values))
+
+
 def _origin(path: Path, channels: Mapping[str, Floats]) -> Origin:
     """Return the origin of a record that was made in a session: its own file."""
     uses = tuple(
-        Use(0, name, name, CHANNELS[name].unit, float(np.nanmin(values)), float(np.nanmax(values)))
-        for name, values in channels.items()
+        Use(0, name, name, CHANNELS[name].unit, *_ends(values)) for name, values in channels.items()
     )
     time = channels["time"]
     return Origin(str(path), "stored record", uses, len(time), rate_of(time))

@@ -468,3 +468,9 @@ def test_states_of_rounding_have_derivatives():
     rock = {"mass": 1, "k_x": 2e5, "k_y": 2e7, "phi": "1 deg", "normal_load": 5e3}
     block = st.Slider(**rock, friction=law, drive=st.ConstantVelocity(1e-5))
     assert critical(block, "phi").stable == (True,)  # it strengthens: b_1 + b_2 < a
+
+
+def test_what_names_no_parameter_is_refused():
+    for over in (5, 0.1):
+        with pytest.raises(st.StictionError, match="is not a parameter; name one, such as 'c_x'"):
+            st.stability(st.presets.nakano_popov_2020(), over=over)

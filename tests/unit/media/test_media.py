@@ -75,6 +75,7 @@ def test_what_cannot_be_heard_is_slowed_down():
         ({"speed": 1e-9}, "may last up to"),
         ({"speed": 1e9}, "it must last at least 10 ms: choose a smaller speed"),
         ({"speed": -1.0}, "above 0"),
+        ({"speed": 10**400}, "speed must be a number such as 0.1"),
         ({"speed": "1x"}, "speed must be a number such as 0.1, is '1x'"),
         ({"axis": "z"}, "axis must be 'x' or 'y', is 'z'"),
         ({"window": ("1 s", "2 s")}, "not a part of the run"),

@@ -341,7 +341,9 @@ def test_analyse_takes_the_file_of_a_record_and_of_a_run(tmp_path, slider):
 def test_a_damaged_file_is_not_told_to_be_text(name, tmp_path):
     """Its first bytes say neither what it is, nor that it is text: text saved anew is no help."""
     (tmp_path / name).write_bytes(b"\x00\x03\xff\xfe\x81" * 40)
-    with pytest.raises(st.StictionError, match=r"not text, nor .* it is damaged: copy it again"):
+    with pytest.raises(
+        st.StictionError, match=r"not text, nor .* it is damaged: copy it again; save text as"
+    ):
         st.read_record(tmp_path / name)
     (tmp_path / name).write_bytes("t;µ\n1;2\n3;4\n".encode("cp1252") + b"\x81")
     with pytest.raises(st.StictionError, match="line 4 is not text in cp1252; save it as UTF-8"):
@@ -355,3 +357,21 @@ def test_a_file_beside_a_record_that_is_not_there(tmp_path):
     ) as e:
         st.read_record(tmp_path / "a.csv", sidecar=tmp_path / "b.toml")
     assert "stiction init" not in str(e.value)
+    with pytest.raises(st.DescriptionError, match="is a folder; write a file"):
+        st.read_record(tmp_path / "a.csv", sidecar=tmp_path)
+
+
+def test_what_a_record_is_may_come_through_a_pipe(tmp_path):
+    """As ``--sidecar <(...)`` of a shell gives it."""
+    (tmp_path / "a.csv").write_text("0;1\n1;2\n2;3\n")
+    reading, writing = os.pipe()
+    os.write(writing, b'[columns]\ntime = "1 = ms"\nforce = "2 = mN"\n')
+    os.close(writing)
+    found = st.read_record(tmp_path / "a.csv", sidecar=f"/dev/fd/{reading}")
+    os.close(reading)
+    assert found.force.tolist() == pytest.approx([1e-3, 2e-3, 3e-3])
+
+
+def test_an_empty_record_is_read_as_it_was_stored(tmp_path):
+    st.Record(time=np.zeros(0), force=np.zeros(0)).save(tmp_path / "a.nc")
+    assert len(st.read_record(tmp_path / "a.nc").time) == 0

@@ -315,4 +315,6 @@ def test_the_example_s_file():
 def test_what_is_no_study_is_not_swept(tmp_path):
     with pytest.raises(st.DescriptionError, match=r"study: 5 is not a Study; make one with"):
         st.sweep(5, tmp_path / "a.zarr")
+    with pytest.raises(st.DescriptionError, match=r"study: None is not a Study; make one with"):
+        st.refine(None, tmp_path / "a.zarr", along="phi", to="1 deg")
     assert not (tmp_path / "a.zarr").exists()

@@ -98,6 +98,8 @@ def _phases(far: int, near: int) -> str:
     """Return over how many stick phases two means are, in words."""
     if far == near:
         return f"These are means over {near} stick phases."
+    if far == 1:
+        return f"The first is of the one stick phase so long, the second a mean over all {near}."
     return f"These are means over the {far} stick phases that are so long, and over all {near}."
 
 

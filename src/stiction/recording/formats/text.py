@@ -85,7 +85,7 @@ def _lines(path: Path, raw: bytes, encoding: str) -> list[str]:
         if set(raw[:LOOKED_AT]) & CONTROLS:
             raise ResultError(
                 f"{path}: is not text, nor does it begin as a file of another kind that is read "
-                "here; if it should, it is damaged: copy it again"
+                "here; if it should, it is damaged: copy it again; save text as UTF-8"
             ) from None
         line = len(LINE_END.findall(raw[: error.start].decode("latin-1"))) + 1
         raise ResultError(

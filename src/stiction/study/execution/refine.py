@@ -21,7 +21,7 @@ from stiction.study.execution.intervals import Intervals, changes, half_way, hal
 from stiction.study.execution.sweep import Tally, sweep
 from stiction.study.plan.axes import Floats, Values
 from stiction.study.plan.coordinates import number
-from stiction.study.plan.study import Study
+from stiction.study.plan.study import Study, refuse_other
 from stiction.study.store.kept import UNKNOWN, flag_attributes
 from stiction.study.store.seal import seal
 from stiction.study.store.store import errors_as_message, open_study
@@ -89,6 +89,7 @@ def refine(
     >>> found.sizes["point"] > 0
     True
     """
+    refuse_other(study)
     along, width, apart = request(study, along, to, apart)
     sweep(study, path, engine=engine, progress=progress)
     found, runs = changes(study, open_study(path).load(), along, apart), study.layout.runs

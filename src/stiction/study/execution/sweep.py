@@ -8,12 +8,11 @@ from pathlib import Path
 from time import perf_counter
 from typing import NamedTuple
 
-from stiction.errors import DescriptionError, Fault, echo
 from stiction.storage.files import folder_lock
 from stiction.study.execution.engines import Engine, Threads
 from stiction.study.execution.task import do_block
 from stiction.study.plan.layout import runs_of
-from stiction.study.plan.study import Study
+from stiction.study.plan.study import Study, refuse_other
 from stiction.study.store.creation import create
 from stiction.study.store.store import Store, open_store
 from stiction.study.view.summary import Summary, summary
@@ -103,9 +102,7 @@ def sweep(
     phi.zarr
       3 of 3 runs are done.
     """
-    if not isinstance(study, Study):
-        remedy = "make one with st.Study(...) or read one with st.Study.from_toml(path)"
-        raise DescriptionError([Fault("study", f"{echo(study)} is not a Study; {remedy}")])
+    refuse_other(study)
     store = open_store(study, path) if Path(path).exists() else create(study, path)
     layout = store.layout
     left = [task for task in range(layout.tasks) if not store.has(layout.region(task))]

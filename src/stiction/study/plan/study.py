@@ -264,3 +264,10 @@ def _in_file(fault: Fault) -> Fault:
     """Return a fault with its path in the file of a study."""
     path = fault.path.removeprefix("Study.")
     return Fault(path if path.startswith("axes") else f"study.{path}", fault.message)
+
+
+def refuse_other(study: object) -> None:
+    """Refuse what is no study."""
+    if not isinstance(study, Study):
+        remedy = "make one with st.Study(...) or read one with st.Study.from_toml(path)"
+        raise DescriptionError([Fault("study", f"{echo(study)} is not a Study; {remedy}")])

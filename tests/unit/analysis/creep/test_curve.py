@@ -301,3 +301,15 @@ def test_an_angle_is_not_implied_where_the_mass_lags(slider):
     fast = slider.replace(phi="16 deg", drive=st.ConstantVelocity("40 mm/s"))
     run = st.simulate(fast, 0.15, sample_rate=30e3)
     assert st.analyse(run).misalignment is None
+
+
+def test_one_phase_is_no_mean():
+    """Of rises of 1, 5, 2 and 0.5 s one is as long as the longest, and that is said."""
+    rises = [0.1 * np.arange(0.0, length, 1e-3) for length in (1.0, 5.0, 2.0, 0.5)]
+    force = np.concatenate(rises)
+    record = st.Record(
+        time=1e-3 * np.arange(len(force)), force=force, stiffness=1e3, drive_velocity=1e-4, mass=0.1
+    )
+    said = str(st.analyse(record))
+    assert "means over the 1 stick" not in said
+    assert "The first is of the one stick phase so long, the second a mean over all 2." in said
