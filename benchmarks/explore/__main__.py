@@ -30,18 +30,18 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.explore", description=__doc__)
     parser.add_argument("--systems", type=int, default=1000, help="how many")
     parser.add_argument("--seed", type=int, default=1, help="of all that is random")
-    parser.add_argument("--laws", choices=DRAWN, default="set-valued", help="the laws of friction")
+    parser.add_argument("--kind", choices=DRAWN, default="set-valued", help="of system to draw")
     parser.add_argument("--longer", type=float, default=1.0, help="times as long runs")
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--keep", type=Path, help="file to keep what was seen in, or to go on with")
     parser.add_argument("--only", type=int, metavar="NUMBER", help="one system, and what it is")
     options = parser.parse_args()
     if options.only is not None:
-        return one(options.seed, options.only, options.longer, options.laws)
+        return one(options.seed, options.only, options.longer, options.kind)
     console, seen = Console(), read_kept(options.keep)
     wanted = sorted(set(range(options.systems)) - {each.number for each in seen})
     with options.keep.open("a") if options.keep else nullcontext() as file:
-        drawn = options.seed, wanted, options.longer, options.laws
+        drawn = options.seed, wanted, options.longer, options.kind
         for each in looked_at(*drawn, options.processes):
             seen.append(each)
             if file is not None:
@@ -62,19 +62,19 @@ def read_kept(path: Path | None) -> list[Seen]:
 
 
 def looked_at(
-    seed: int, numbers: Iterable[int], longer: float, laws: str, processes: int
+    seed: int, numbers: Iterable[int], longer: float, kind: str, processes: int
 ) -> Iterator[Seen]:
     """Yield what is seen of each system, in order."""
     with ProcessPoolExecutor(processes) as pool:
-        yield from pool.map(partial(look, seed, longer=longer, laws=laws), numbers, chunksize=CHUNK)
+        yield from pool.map(partial(look, seed, longer=longer, kind=kind), numbers, chunksize=CHUNK)
 
 
-def one(seed: int, number: int, longer: float, laws: str) -> int:
+def one(seed: int, number: int, longer: float, kind: str) -> int:
     """Print one system and what is seen of it."""
-    slider, duration, rtol = DRAWN[laws](seed, number)
+    slider, duration, rtol = DRAWN[kind](seed, number)
     settings = st.Settings(duration=longer * duration, rtol=rtol)
     print(st.Description(slider, st.Initial(), settings).to_json())
-    print(look(seed, number, longer, laws))
+    print(look(seed, number, longer, kind))
     return 0
 
 

@@ -52,9 +52,9 @@ class Seen(NamedTuple):
     left_out: str
 
 
-def look(seed: int, number: int, longer: float = 1.0, laws: str = "set-valued") -> Seen:
+def look(seed: int, number: int, longer: float = 1.0, kind: str = "set-valued") -> Seen:
     """Run one system in all modes, and as it would be if it were a little other."""
-    slider, duration, rtol = DRAWN[laws](seed, number)
+    slider, duration, rtol = DRAWN[kind](seed, number)
     duration *= longer
     finer = max(FINER * rtol, FINEST)
     sharp, reference = forces(slider, duration, finer)

@@ -71,7 +71,7 @@ def test_a_system_above_a_bound_counts_if_its_reference_is_known(known, left_out
 @pytest.mark.parametrize("number", [2711, 1501, 2208, 2408, 2300, 292, 2324, 1585])
 def test_laws_with_state_keep_the_bound_too(number):
     """The worst of two laws among 3000: in the plane, and on a line where slip turns back."""
-    seen = look(SEED, number, laws="state")
+    seen = look(SEED, number, kind="state")
     assert not seen.left_out
     assert seen.off[0] < BOUNDS["in steps"]
 
@@ -131,7 +131,7 @@ def test_a_layer_at_the_start_is_resolved(rtol):
 @pytest.mark.parametrize("number", [16, 150, 186])
 def test_programs_of_the_drive_keep_the_bound(number):
     """Of 2000 with programs of drive or load; number 186 stuck where its drive had turned, once."""
-    seen = look(SEED, number, laws="unsteady")
+    seen = look(SEED, number, kind="unsteady")
     assert not seen.left_out
     assert max(seen.off) < BOUNDS["in steps"]
 

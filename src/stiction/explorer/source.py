@@ -120,6 +120,8 @@ def visible_part(
     measured: Mapping[str, NDArray[np.float64]], description: Description
 ) -> dict[str, Any]:
     """Return a record whose clock starts after the run's end as one that starts with the run."""
+    if not len(measured["time"]):
+        return {}
     first, start = float(measured["time"][0]), description.initial.time
     if first < start + description.run.duration:
         return {}

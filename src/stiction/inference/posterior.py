@@ -17,6 +17,7 @@ from stiction.inference.regression_abc import Sample, quantiles
 from stiction.names import draw
 from stiction.storage.files import NETCDF, placeable, whole
 from stiction.system.parameter import unit
+from stiction.text.paths import last_part
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table, as_html
 from stiction.text.units import in_words
@@ -113,7 +114,7 @@ class Fit:
         )
         after, prior = dataset(plan, scores), dataset(plan, before)
         for its in estimates:
-            after[its.name.split(".")[-1]].attrs["coverage_of_95_percent_intervals"] = its.coverage
+            after[last_part(its.name)].attrs["coverage_of_95_percent_intervals"] = its.coverage
         farther = learned.summary.farther(observed)
         count, ranks = len(library.scores), learned.ranks
         return cls(plan, after, prior, estimates, count, observed, ranks, scores, farther)
@@ -125,7 +126,7 @@ class Fit:
 
     def __getitem__(self, name: str) -> Estimate:
         """Return the estimate of a parameter by its name: ``fit["phi"]``."""
-        found = [x for x in self.estimates if name in (x.name, x.name.split(".")[-1])]
+        found = [x for x in self.estimates if name in (x.name, last_part(x.name))]
         if not found:
             known = ", ".join(x.name for x in self.estimates)
             raise ResultError(f"no parameter {echo(name)} was fitted; known: {known}")
@@ -182,7 +183,7 @@ class Fit:
             names = ", ".join(self.beyond)
             found.append(
                 f"At an end of its prior, beyond which the records point: {names}; "
-                "correct the rig's description, or widen that prior."
+                "correct the rig's description, or widen its prior."
             )
         return found
 
@@ -247,7 +248,7 @@ def dataset(plan: Plan, scores: Floats) -> xr.Dataset:
         if its == "rad":
             values, its = np.degrees(values), "deg"
         labels = {"units": its or "1", "long_name": MEANINGS.get(name, name)}
-        columns[name.split(".")[-1]] = ("draw", values, labels)
+        columns[last_part(name)] = ("draw", values, labels)
     return xr.Dataset(columns)
 
 
@@ -262,5 +263,5 @@ def row(x: Estimate) -> tuple[str, ...]:
     between = f"{in_words(x.low, x.unit)} to {in_words(x.high, x.unit)}"
     before = f"{in_words(x.prior_low, x.unit)} to {in_words(x.prior_high, x.unit)}"
     shares = percent(x.narrower), percent(x.coverage)
-    short = x.name.split(".")[-1]  # the sentences have the whole name
+    short = last_part(x.name)  # the sentences have the whole name
     return (short, after, between, in_words(x.prior_median, x.unit), before, *shares)

@@ -61,8 +61,7 @@ def axis(slider: Slider, path: str, between: Sequence[Quantity] | None = None) -
     path : str
         The parameter, see `stiction.system.parameter`.
     between : tuple of float or str, optional
-        Its range; by default 0 to 90 degrees for an angle, -90 to 0 where it is below 0, else
-        three decades below and above its present value.
+        Its range, by default that of `critical`.
 
     Raises
     ------

@@ -129,8 +129,7 @@ def stability(
     over : str or tuple of str, optional
         The parameters to vary, for example ``"c_x"``; see `stiction.linear_stability.critical`.
     between : tuple of float or str, or tuple of tuple, optional
-        The ranges, in SI or with units; by default 0 to 90 degrees for an angle, -90 to 0
-        where it is below 0, else three decades below and above the present value.
+        The ranges, in SI or with units, by default those of `stiction.linear_stability.critical`.
 
     Returns
     -------

@@ -77,7 +77,8 @@ def critical(
         ``"friction.mu_inf"``, or several with one value: ``"c_x, c_y"``.
     between : tuple of float or str, optional
         The range; by default 0 to 90 degrees for an angle, -90 to 0 where it is below 0, else
-        three decades below and above the parameter's present value.
+        three decades below and above the parameter's present value. Where springs are turned, that
+        of phi holds all misalignments of its sign.
     points : int, optional
         Number of points of the first scan.
 

@@ -43,6 +43,11 @@ def canonical_path(path: str) -> str:
     return ", ".join(ALIASES.get(name, name) for name in names)
 
 
+def last_part(path: str) -> str:
+    """Return the last part of a path: ``mu_0`` of ``friction.mu_0``."""
+    return path.rpartition(".")[2]
+
+
 def with_changes(raw: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
     """Return a description's tables with other values of some parameters.
 

@@ -222,6 +222,13 @@ def test_a_record_whose_clock_starts_after_the_run_is_shown_from_its_start(tmp_p
     assert what.name == "force.csv"  # not "a Record"
 
 
+def test_a_record_without_samples_opens_the_papers_case():
+    empty = st.Record(time=np.zeros(0), force=np.zeros(0))
+    what = open_sources([empty])
+    assert len(what.measured["time"]) == 0
+    assert what.origin == "measured"
+
+
 def test_a_result_is_opened_with_its_curves(tmp_path, description):
     path = st.run(description).save(tmp_path / "run.nc")
     what = open_sources([path])

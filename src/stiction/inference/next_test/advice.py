@@ -13,6 +13,7 @@ from stiction.inference.next_test.expectation import Expected
 from stiction.inference.next_test.further import AGAIN
 from stiction.inference.posterior import unit_of
 from stiction.names import draw
+from stiction.text.paths import last_part
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table, as_html
 from stiction.text.units import in_words
@@ -98,7 +99,7 @@ class Advice:
             (test.test, *(percent(each) for each in test.width))
             for test in (self.present, *self.ranked)
         ]
-        short = (name.split(".")[-1] for name in names)
+        short = map(last_part, names)
         return [
             *found,
             Section(

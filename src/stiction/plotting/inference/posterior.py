@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
 from stiction.plotting.page.style import BLUE, GREY, PAGE, PALE, style
+from stiction.text.paths import last_part
 from stiction.text.quantity_text import metric_prefix
 
 if TYPE_CHECKING:
@@ -107,7 +108,7 @@ def plot_corner(
     ndarray of Axes
         (n, n); those above the diagonal are empty.
     """
-    found = [x.name.split(".")[-1] for x in fit.estimates if x.identified]
+    found = [last_part(x.name) for x in fit.estimates if x.identified]
     chosen = [*names] if names is not None else found or [*fit.data.data_vars]
     count = len(chosen)
     with style():

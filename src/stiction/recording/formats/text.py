@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from stiction.errors import Faults, ResultError, echo
 from stiction.machine import largest_object
-from stiction.recording.formats import TextLayout
+from stiction.recording.formats import HEAD, TextLayout
 from stiction.recording.formats.dialect import (
     MISSING,
     Dialect,
@@ -37,7 +37,6 @@ WIDEST = 2000  # columns
 LINE_END = re.compile("\r\n|\n|\r")
 GZIP = b"\x1f\x8b"
 CONTROLS = {*range(32)} - {*b"\t\n\v\f\r\x1a\x1b"}  # bytes that no text has
-LOOKED_AT = 512  # bytes
 MARKS = {  # byte-order marks, the longer first
     codecs.BOM_UTF8: "utf-8-sig",
     codecs.BOM_UTF32_LE: "utf-32",
@@ -82,7 +81,7 @@ def _lines(path: Path, raw: bytes, encoding: str) -> list[str]:
     try:
         text = raw.decode(encoding)
     except UnicodeDecodeError as error:
-        if set(raw[:LOOKED_AT]) & CONTROLS:
+        if set(raw[:HEAD]) & CONTROLS:
             raise ResultError(
                 f"{path}: is not text, nor does it begin as a file of another kind that is read "
                 "here; if it should, it is damaged: copy it again; save text as UTF-8"
