@@ -32,12 +32,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from stiction.arrays import Floats
 
 if TYPE_CHECKING:
     from stiction.system.slider import Slider
-
-Floats = NDArray[np.float64]
 
 # Zeros and infinities below are limits (no misalignment, no end of creep), not accidents.
 _limits = np.errstate(divide="ignore", invalid="ignore", over="ignore")

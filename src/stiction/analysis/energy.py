@@ -6,9 +6,10 @@ from math import cos, sin
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from stiction.analysis.quadrature import integrals, states_at
+from stiction.arrays import Floats
 from stiction.drive import drive_stretches, jump
 from stiction.drive.program import pick
 from stiction.errors import ResultError, echo
@@ -19,8 +20,6 @@ from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Floats = NDArray[np.float64]
 
 # name: long name; all in J
 ENERGIES = {

@@ -15,9 +15,9 @@ from math import isnan, nan
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.analysis.limit_cycle import KICK, OSCILLATING, REST, UNDECIDED, Found, settle
+from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault
 from stiction.linear_stability import steady_sliding
 from stiction.names import draw
@@ -28,7 +28,6 @@ from stiction.text.units import Quantity, with_error
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 Kind = Literal["soft", "hard", "not determined", "none"]
 
 MOST_ADDED = 14  # values near the onset, beside those given

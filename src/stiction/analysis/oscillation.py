@@ -6,19 +6,18 @@ from math import pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction import theory
 from stiction.analysis.motion.rest import sticks_until, stuck_until
 from stiction.analysis.signals.ridge import follow_ridge
 from stiction.analysis.signals.spectrum import rate_spectrogram
+from stiction.arrays import Floats
 from stiction.errors import ResultError
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 Rows = dict[str, tuple[Any, str, str]]  # name: values, unit, long name
 
 WIDTH = 50.0  # transverse periods in a window

@@ -12,8 +12,8 @@ from math import pi
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stiction.arrays import Floats, Indices
 from stiction.drive import drive_stretches, load_stretches
 from stiction.errors import ResultError
 from stiction.solver.integrate import integrate
@@ -21,7 +21,6 @@ from stiction.solver.segments import fastest_swing, stretches
 from stiction.system.description import Description
 from stiction.trajectory import Trajectory
 
-Floats = NDArray[np.float64]
 Integrand = Callable[[Floats, Floats], Floats]
 
 PASSES = 6  # of splitting panels in four: down to a thousandth of the first
@@ -187,7 +186,7 @@ def panels(run: Trajectory, edges: Floats) -> tuple[Floats, Floats]:
     return split(starts, lengths, counts)
 
 
-def split(starts: Floats, lengths: Floats, counts: NDArray[np.intp]) -> tuple[Floats, Floats]:
+def split(starts: Floats, lengths: Floats, counts: Indices) -> tuple[Floats, Floats]:
     """Split each interval into `counts` equal parts; return starts and lengths (s)."""
     which = np.repeat(np.arange(len(counts)), counts)
     part = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)

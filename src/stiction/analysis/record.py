@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
 from pydantic_core import PydanticCustomError
 
+from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.drive.program import nominal_velocity
 from stiction.errors import Fault, ResultError, echo
@@ -21,7 +22,7 @@ from stiction.recording.sensor import Sensor
 from stiction.recording.stored import KNOWN, write_stored
 from stiction.system.slider import Slider
 from stiction.system.springs import ROUND
-from stiction.text.samples import Floats, as_numbers, samples_to_si, unit_on
+from stiction.text.samples import as_numbers, samples_to_si, unit_on
 from stiction.text.units import Force, Kind, Mass, PositiveSpeed, Stiffness
 from stiction.text.validation import Described, faulty, unknown_name
 from stiction.trajectory import Trajectory

@@ -6,16 +6,13 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import NDArray
 
 from stiction.analysis.creep.first_slip import first_slip_time
 from stiction.analysis.record import cell_axis
+from stiction.arrays import Floats
 from stiction.errors import Status
 from stiction.system.slider import Slider
 from stiction.trajectory import Trajectory
-
-Floats = NDArray[np.float64]
-
 
 FINE = 8  # bins in each time that is averaged over
 SEEN = 4  # samples for each stick: with fewer, what lies between two sticks is not seen

@@ -7,17 +7,15 @@ from math import degrees, hypot, isfinite, pi, sin, sqrt, tan
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction import theory
 from stiction.analysis.creep.first_slip import slips_at_once
+from stiction.arrays import Floats
 from stiction.auditing.prediction import Prediction, creep_distance
 from stiction.friction import Anisotropic, has_state
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
-
-Floats = NDArray[np.float64]
 
 # of the time until the slip: Eq. (7) supposes a shorter first stick
 SHORT = 0.1

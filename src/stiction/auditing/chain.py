@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.arrays import Floats
 from stiction.auditing.prediction import Prediction, predict
 from stiction.auditing.simulated_test import (
     LEAST_WORK,
@@ -20,7 +21,6 @@ from stiction.errors import DescriptionError
 from stiction.linear_stability import growth_rate
 from stiction.system.slider import Slider
 from stiction.system.springs import COMPLIANCES, STIFFNESSES, Spring, compliance, scale_stiffness
-from stiction.system.tensors import Matrix
 
 FACTORS = (2.0, inf)  # of the stiffness of a part that is replaced
 SMALL = 0.01  # of the compliance: the mass of a part that adds less may be left out, (M77)
@@ -106,12 +106,12 @@ def shares(slider: Slider) -> list[tuple[float, float]]:
     return [(a / along_x, b / along_y) for a, b in own]
 
 
-def axis(angle: float) -> Matrix:
+def axis(angle: float) -> Floats:
     """Return the unit vector at an angle (rad)."""
     return np.array([cos(angle), sin(angle)])
 
 
-def yield_of_mass(mass: float, omega: float, beyond: Matrix, e: Matrix) -> float:
+def yield_of_mass(mass: float, omega: float, beyond: Floats, e: Floats) -> float:
     """Return the compliance (m/N) along `e` that a mass on springs adds at a frequency, (M77).
 
     `beyond` is the compliance tensor of the springs between the mass and the drive. The mass of a

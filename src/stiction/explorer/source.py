@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.record import Record
+from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault, ResultError, echo
 from stiction.explorer.motion import CURVES
 from stiction.friction.user.loading import Find, is_own
@@ -116,9 +116,7 @@ def name_of(source: Any) -> str:
     return Path(source).name if isinstance(source, str | Path) else f"a {type(source).__name__}"
 
 
-def visible_part(
-    measured: Mapping[str, NDArray[np.float64]], description: Description
-) -> dict[str, Any]:
+def visible_part(measured: Mapping[str, Floats], description: Description) -> dict[str, Any]:
     """Return a record whose clock starts after the run's end as one that starts with the run."""
     if not len(measured["time"]):
         return {}

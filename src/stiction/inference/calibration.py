@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.inference.regression_abc import (
     Known,
     Sample,
@@ -29,8 +29,6 @@ from stiction.inference.summary import (
     single_threaded_algebra,
 )
 from stiction.storage.arrays import read_arrays, write_arrays
-
-Floats = NDArray[np.float64]
 
 RANKED = 500  # records of the library whose ranks are found
 REGRESSIONS = "middle", "spread"  # of a summary

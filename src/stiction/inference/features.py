@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.study.variables.features import zigzag
 
-Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 # shares of a loading, narrow where creep accelerates towards the slip

@@ -16,14 +16,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.friction import Anisotropic, states
 from stiction.simulation import solve_coarsely
 from stiction.study.variables.features import zigzag
 from stiction.system.description import Description, Settings
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
-
-Floats = NDArray[np.float64]
 
 RTOL = 1e-4  # of each cycle: a hundredth of a per cent, below any jitter that is seen
 LARGE = 0.15  # of the span in a cycle's window: a fall by so much, and a rise, make a trough

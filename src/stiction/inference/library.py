@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from stiction.analysis.record import cell_axis
+from stiction.arrays import Floats
 from stiction.inference.features import BEND, Cycles, FeatureGroup, features, find_cycles, parts
 from stiction.inference.jitter import Jitter, SampledMotion, move
 from stiction.inference.observation import Conditions
@@ -22,7 +23,6 @@ from stiction.study.execution.engines import Threads
 from stiction.system.parameter import change_unchecked
 from stiction.system.slider import Slider
 
-Floats = NDArray[np.float64]
 Progress = Callable[[float], None] | None
 
 SIMULATIONS = 4000  # of a library, unless told otherwise

@@ -7,9 +7,9 @@ from math import floor, log10
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.analysis.record import Record
+from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.errors import ResultError
 from stiction.inference.features import (
@@ -22,8 +22,6 @@ from stiction.inference.features import (
 )
 from stiction.recording.noise import white_noise
 from stiction.system.slider import Slider
-
-Floats = NDArray[np.float64]
 
 PER_CYCLE = 200  # samples: more are averaged
 # numbers of cycles, so that a library serves many records

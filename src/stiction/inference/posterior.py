@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtr
 
+from stiction.arrays import Floats
 from stiction.errors import ResultError, echo
 from stiction.inference.calibration import Learned
 from stiction.inference.library import Library, Plan
@@ -24,8 +24,6 @@ from stiction.text.units import in_words
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Floats = NDArray[np.float64]
 
 DRAWS = 4000  # equally weighted, of the posterior and of the prior
 INTERVAL = 0.95

@@ -11,15 +11,13 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.inference.features import Cycles
 from stiction.inference.library import Plan, Synthetic, synthesise
 from stiction.inference.observation import Observation
 from stiction.inference.posterior import Fit
 from stiction.study.execution.engines import Threads
-
-Floats = NDArray[np.float64]
 
 DRAWS = 60  # simulations with parameters of the posterior
 TAILS = (0.025, 0.975)

@@ -20,9 +20,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
+from stiction.arrays import Floats
 from stiction.drive.recorded.reading import locator, with_rows
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.friction import read_law
@@ -32,8 +32,6 @@ from stiction.system.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider, slide
 from stiction.text.paths import canonical
 from stiction.text.toml import folder_of, gather, read_toml
 from stiction.text.units import Kind, to_si
-
-Floats = NDArray[np.float64]
 
 NORMAL = {"value", "uncertainty"}
 UNIFORM = {"low", "high"}

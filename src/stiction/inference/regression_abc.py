@@ -22,9 +22,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from stiction.arrays import Floats
 
 SHARE = 0.25  # of the library that is near
 FEWEST = 200  # of its records, which a local regression needs

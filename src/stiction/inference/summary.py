@@ -17,12 +17,11 @@ from contextlib import AbstractContextManager
 from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.linalg.lapack import dpotrf, dpotrs, dtrtri  # type: ignore[attr-defined]
 from threadpoolctl import threadpool_limits
 
-Floats = NDArray[np.float64]
+from stiction.arrays import Floats
 
 WIDTHS = (1.0, 3.0)  # of the kernel, over the typical distance between records
 FINER = 0.3  # ridge with the metric of a parameter, over that without

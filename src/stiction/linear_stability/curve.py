@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault
 from stiction.linear_stability.axis import Axis, axis, present_value
-from stiction.linear_stability.derivatives import Floats
 from stiction.linear_stability.following import Growth, Point, both_ways, near, orient
 from stiction.linear_stability.linear import growth_rate, steady_sliding
 from stiction.linear_stability.roots import sign_changes, signed_growth

@@ -7,12 +7,10 @@ from math import cos, hypot, log, sin
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.friction import Anisotropic
 from stiction.system.slider import Slider
-
-Floats = NDArray[np.float64]
 
 ROUNDING = float(np.finfo(np.float64).eps)
 SMALL = 4.0 * ROUNDING  # relative rounding error after a few operations

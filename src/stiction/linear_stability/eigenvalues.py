@@ -6,11 +6,9 @@ from math import sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from stiction.linear_stability.derivatives import ROUNDING, Floats
-
-Complex = NDArray[np.complex128]
+from stiction.arrays import Complex, Floats
+from stiction.linear_stability.derivatives import ROUNDING
 
 EXTENDED = float(np.finfo(np.longdouble).eps)
 REFINEMENTS = 3  # Newton steps; each gains about ten digits of a simple eigenvalue

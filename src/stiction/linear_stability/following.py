@@ -12,7 +12,7 @@ from math import atan2, cos, hypot, pi, sin
 
 import numpy as np
 
-from stiction.linear_stability.derivatives import Floats
+from stiction.arrays import Floats
 
 Point = tuple[float, float]
 Growth = Callable[[Point], float]  # beyond an edge of the plane, its value at the edge

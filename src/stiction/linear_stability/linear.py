@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from stiction.arrays import Complex, Floats
 from stiction.deprecation import warn_renamed
 from stiction.errors import StictionError
 from stiction.friction import states
-from stiction.linear_stability.derivatives import Floats, Response
-from stiction.linear_stability.eigenvalues import Complex, Eigenvalues, eigenvalues
+from stiction.linear_stability.derivatives import Response
+from stiction.linear_stability.eigenvalues import Eigenvalues, eigenvalues
 from stiction.linear_stability.steady import drive_velocity, steady_friction
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider

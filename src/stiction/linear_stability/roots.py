@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.arrays import Floats
 from stiction.linear_stability.axis import axis
-from stiction.linear_stability.derivatives import Floats
 from stiction.linear_stability.linear import BOUNDARY, steady_sliding
 from stiction.system.slider import Slider
 from stiction.text.units import Quantity

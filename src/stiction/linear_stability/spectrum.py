@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stiction.arrays import Complex
 from stiction.linear_stability.axis import axis
-from stiction.linear_stability.eigenvalues import Complex
 from stiction.linear_stability.linear import steady_sliding
 from stiction.system.slider import Slider
 from stiction.text.units import Quantity

@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from stiction.arrays import Floats
 from stiction.drive import drive_stretches, load_stretches
 from stiction.errors import DescriptionError, Fault, StictionError
 from stiction.friction import has_state
-from stiction.linear_stability.derivatives import Floats, Response, set_valued, with_state
+from stiction.linear_stability.derivatives import Response, set_valued, with_state
 from stiction.system.slider import Slider
 
 SETTLED = 1e-9  # largest relative error of friction from unsteady internal states

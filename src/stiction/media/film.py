@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.errors import ResultError, echo
 from stiction.media.encoder import KINDS, encode
 from stiction.media.scene import Scene, slowest_slip
@@ -152,7 +153,7 @@ def _count(
 
 
 def draw(
-    description: Description, times: NDArray[np.float64], middle: float | None, length: float
+    description: Description, times: Floats, middle: float | None, length: float
 ) -> Iterator[NDArray[np.uint8]]:
     """Yield the frames at `times` (s), (height, width, 3)."""
     whole_run = sample(description, automatic_times(description))
@@ -184,13 +185,13 @@ def draw(
             yield np.asarray(canvas.buffer_rgba())[..., :3]
 
 
-def sample(description: Description, times: NDArray[np.float64]) -> ColumnTable:
+def sample(description: Description, times: Floats) -> ColumnTable:
     """Return a run sampled at `times` (s)."""
     solution = solve_coarsely(description, times)
     return sample_table(description, solution.times, solution.samples, {})
 
 
-def in_window(description: Description, times: NDArray[np.float64]) -> ColumnTable:
+def in_window(description: Description, times: Floats) -> ColumnTable:
     """Return a run between the first and the last of `times`, with samples that show its motion."""
     every = automatic_times(description)
     inside = every[(every >= times[0]) & (every <= times[-1])]
@@ -206,7 +207,7 @@ def moving_at(seen: ColumnTable) -> float:
     return float(slips[np.argmin(np.abs(slips - third))]) if len(slips) else third
 
 
-def fine_times(description: Description, middle: float) -> NDArray[np.float64]:
+def fine_times(description: Description, middle: float) -> Floats:
     """Return the times under the microscope, s."""
     start, end = window_of(description, None)
     width = min(PERIODS / description.slider.natural_frequencies[1], end - start)
@@ -222,7 +223,7 @@ def slowness(slow: float) -> str:
     return f"{float(f'{times:.3g}'):,.15g} times {word}"
 
 
-def series(figure: Figure, run: ColumnTable, times: NDArray[np.float64]) -> list[Line2D]:
+def series(figure: Figure, run: ColumnTable, times: Floats) -> list[Line2D]:
     """Draw spring forces, direction and slip speed over time; return the cursors."""
     force, prefix = metric_prefix(np.concatenate([run["spring_x"], run["spring_y"]]))
     rows: tuple[tuple[str, float, tuple[tuple[str, str, str], ...]], ...] = (

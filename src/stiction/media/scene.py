@@ -14,8 +14,8 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.patches import FancyArrowPatch, Polygon
-from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.friction import Anisotropic
 from stiction.friction.law import static_coefficient
 from stiction.plotting.apparatus.shapes import dashpot_paths, spring_path
@@ -35,7 +35,6 @@ from stiction.system.slider import Slider
 from stiction.system.tensors import dampers_askew
 from stiction.text.units import in_words
 
-Floats = NDArray[np.float64]
 ROOM = (7.2, 4.2)  # of the picture: its unit is the side of the mass
 BEHIND = {"facecolor": FLOOR, "edgecolor": "none", "alpha": 0.8, "pad": 1.0}  # words
 HOME = np.array([0.3, -0.45])  # of the mass, where the springs are relaxed

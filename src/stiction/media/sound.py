@@ -14,6 +14,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.errors import DescriptionError, ResultError, echo
 from stiction.result.columns import sample_table
 from stiction.simulation import solve_coarsely
@@ -157,15 +158,15 @@ def listen(
 
 def rate_at(
     description: Description,
-    times: NDArray[np.float64],
+    times: Floats,
     axis: str = "y",
     progress: Callable[[float], None] | None = None,
-) -> NDArray[np.float64]:
+) -> Floats:
     """Return the elongation rate (m/s) of a run at `times` (s), without its mean."""
     solution = solve_coarsely(description, times, progress=progress)
     values = sample_table(description, solution.times, solution.samples, {})[f"v_{axis}"]
     values = values[: len(times)]
-    found: NDArray[np.float64] = np.nan_to_num(values - np.mean(values[np.isfinite(values)]))
+    found: Floats = np.nan_to_num(values - np.mean(values[np.isfinite(values)]))
     return found
 
 

@@ -14,10 +14,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.plotting.page.parameter import Scale, sparse
 from stiction.plotting.page.style import BLACK, BLUE, GREEN
 
-Floats = NDArray[np.float64]
 CASING = [patheffects.withStroke(linewidth=3.0, foreground="white")]
 DECADES = 30.0  # a measure that spans a larger factor is drawn in decades
 PLAINLY = 1e3  # a smaller factor is written without powers of ten

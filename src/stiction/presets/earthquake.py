@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.friction.laws import RateStateAgeing, RateStateSlip2
 from stiction.presets.preset import Published, holds, on_a_line, preset
-from stiction.presets.samples import Floats, crest, upward_crossings
+from stiction.presets.samples import crest, upward_crossings
 from stiction.system.description import Description, Settings
 from stiction.system.initial import Initial
 

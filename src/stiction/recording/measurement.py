@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.errors import Faults, ResultError, echo
 from stiction.recording.channels import CHANNELS, plain
 from stiction.recording.formats import TextLayout, read_tables
@@ -23,7 +24,6 @@ from stiction.recording.sensor import Sensor
 from stiction.recording.table import FileTable, Remark, number_of
 from stiction.text.units import in_words
 
-Floats = NDArray[np.float64]
 T = TypeVar("T")
 DISPLACEMENTS = ("position", "drive_position")
 FEWEST = 2  # samples of a block

@@ -6,9 +6,8 @@ from math import comb, sqrt
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from stiction.arrays import Floats
 
 ORDER = 4  # of the differences: a sine at a tenth of the sample rate keeps 0.15 of its amplitude
 NORMAL = 0.6744897501960817  # median of |x| of a standard normal x

@@ -7,15 +7,13 @@ from math import ceil, log2
 from typing import Annotated, Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from stiction.arrays import Floats
 from stiction.errors import Fault, ResultError, echo
 from stiction.text.units import Kind, Number, Rate, to_si
 from stiction.text.validation import Described, faulty
-
-Floats = NDArray[np.float64]
 
 LEVELS = ("zero", "zero_uncertainty", "quantisation", "noise")  # in the unit of the channel
 KINDS = {

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.errors import DescriptionError, ResultError
 from stiction.recording.channels import CHANNELS
 from stiction.recording.guess.clock import rate_of
@@ -26,7 +26,6 @@ from stiction.storage.files import NETCDF, placeable, whole
 from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files
 from stiction.storage.isolation import apart
 
-Floats = NDArray[np.float64]
 KIND = "stiction_record"  # attribute by which a stored record is recognised; its value: the layout
 KNOWN = {  # of the apparatus, stored as attributes with their units
     "normal_load": "N",

@@ -7,15 +7,13 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.errors import ResultError, echo
 from stiction.recording.guess.clock import rate_of
 from stiction.recording.measurement import Measurement
 from stiction.recording.table import number_of
 from stiction.text.units import in_words
-
-Floats = NDArray[np.float64]
 
 ENDS = 0.25  # of the reach, about its middle: beyond it the drive is at one end or at the other
 AT_AN_END = 0.02  # of the reach: so near its end a drive turns, or dwells

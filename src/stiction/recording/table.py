@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from stiction.arrays import Floats, Indices
 
 
 class Remark(NamedTuple):
@@ -85,7 +85,7 @@ class FileTable:
     format: str
     label: str = ""
     remarks: tuple[Remark, ...] = ()
-    lines: NDArray[np.intp] | None = None
+    lines: Indices | None = None
     notes: tuple[str, ...] = ()
     interval: float | None = None
     stated: str = ""

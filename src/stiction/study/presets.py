@@ -11,9 +11,10 @@ from math import pi
 
 import numpy as np
 
+from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault
 from stiction.presets import nakano_popov_2020
-from stiction.study.plan.axes import Axis, Floats, Grid, Values
+from stiction.study.plan.axes import Axis, Grid, Values
 from stiction.study.plan.study import Study
 from stiction.system.description import Description, Settings
 from stiction.system.initial import Initial

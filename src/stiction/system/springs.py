@@ -16,8 +16,9 @@ from typing import Annotated, Any, NamedTuple
 
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
 
+from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault, echo
-from stiction.system.tensors import Matrix, principal
+from stiction.system.tensors import principal
 from stiction.text.paths import slug
 from stiction.text.quantity_text import RIGID, angle_text
 from stiction.text.units import Angle, Kind, Mass, Read, fault, reader, to_si
@@ -184,7 +185,7 @@ def _spring(value: Any) -> Spring:
     raise DescriptionError([Fault("spring", f"{echo(value)} is not a spring; {remedy}")])
 
 
-def compliance(spring: Spring) -> Matrix:
+def compliance(spring: Spring) -> Floats:
     """Return the compliance tensor of a spring in the axes of the description, (2, 2), m/N."""
     return principal(*spring.compliances, spring.angle)
 

@@ -7,16 +7,16 @@ from math import atan2, copysign, cos, hypot, pi, sin, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from stiction.arrays import Floats
 
 if TYPE_CHECKING:
     from stiction.system.slider import Slider
 
-Matrix = NDArray[np.float64]
 ROUND = 1e-12  # rad: less is rounding
 
 
-def mass_tensor(slider: Slider) -> Matrix:
+def mass_tensor(slider: Slider) -> Floats:
     """Return the mass tensor in the axes x and y, (2, 2), kg.
 
     Examples
@@ -31,17 +31,17 @@ def mass_tensor(slider: Slider) -> Matrix:
     return principal(along, across, slider.mass_angle - slider.turn)
 
 
-def stiffness_tensor(slider: Slider) -> Matrix:
+def stiffness_tensor(slider: Slider) -> Floats:
     """Return the stiffness tensor in the axes x and y, (2, 2), N/m; these are its own axes."""
     return np.diag([slider.k_x, slider.k_y])
 
 
-def damping_tensor(slider: Slider) -> Matrix:
+def damping_tensor(slider: Slider) -> Floats:
     """Return the damping tensor in the axes x and y, (2, 2), N s/m."""
     return principal(slider.c_x, slider.c_y, slider.damping_angle - slider.turn)
 
 
-def principal(along: float, across: float, angle: float) -> Matrix:
+def principal(along: float, across: float, angle: float) -> Floats:
     """Return the symmetric tensor with these principal values, the first at `angle` (rad) to x."""
     c, s = cos(angle), sin(angle)
     mixed = (along - across) * c * s
@@ -73,24 +73,24 @@ class Axes(NamedTuple):
     `turn` is T, (2, 2), `mass` m (kg), `stiffness` its two stiffnesses (N/m), `damping` T^T C T.
     """
 
-    turn: Matrix
+    turn: Floats
     mass: float
-    stiffness: Matrix
-    damping: Matrix
+    stiffness: Floats
+    damping: Floats
 
-    def inward(self, vectors: Matrix) -> Matrix:
+    def inward(self, vectors: Floats) -> Floats:
         """Return slips or elongations, (..., 2), in these axes: T^-1 s."""
-        found: Matrix = vectors @ np.linalg.inv(self.turn).T
+        found: Floats = vectors @ np.linalg.inv(self.turn).T
         return found
 
-    def outward(self, vectors: Matrix) -> Matrix:
+    def outward(self, vectors: Floats) -> Floats:
         """Return slips or elongations, (..., 2), in the axes x and y: T r."""
-        found: Matrix = vectors @ self.turn.T
+        found: Floats = vectors @ self.turn.T
         return found
 
-    def force_outward(self, forces: Matrix) -> Matrix:
+    def force_outward(self, forces: Floats) -> Floats:
         """Return forces, (..., 2), in the axes x and y: T^-T f."""
-        found: Matrix = forces @ np.linalg.inv(self.turn)
+        found: Floats = forces @ np.linalg.inv(self.turn)
         return found
 
 

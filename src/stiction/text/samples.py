@@ -8,12 +8,10 @@ from contextvars import ContextVar
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.storage.checksums import bytes_of, crc
 from stiction.text.units import Kind, to_si
-
-Floats = NDArray[np.float64]
 
 _whole: ContextVar[bool] = ContextVar("_whole", default=False)
 

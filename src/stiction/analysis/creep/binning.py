@@ -5,12 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.analysis.record import Record
 from stiction.analysis.signals.robust import trimmed_mean
-
-Floats = NDArray[np.float64]
+from stiction.arrays import Floats
 
 GROWTH = 0.125  # least width of a bin as a share of the time to slip
 

@@ -5,19 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.analysis.creep.binning import Bins, between_halves, between_rests, bin_edges
 from stiction.analysis.creep.first_slip import creep_end
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.robust import trimmed_mean
+from stiction.arrays import Floats
 from stiction.errors import ResultError, echo
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Floats = NDArray[np.float64]
 
 FINEST = 100  # bins in a stick phase, if all were as narrow as the last
 LAG = 8  # samples, for the noise; successive samples of a load cell are correlated

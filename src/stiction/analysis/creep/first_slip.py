@@ -6,9 +6,9 @@ from math import cos, pi, sin, sqrt
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction import theory
+from stiction.arrays import Floats
 from stiction.friction import has_state
 from stiction.friction.law import static_coefficient
 from stiction.system.slider import Slider
@@ -16,8 +16,6 @@ from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Floats = NDArray[np.float64]
 
 # Least gain of a slip on the drive, in units of the drive's speed over the slower and over the
 # faster angular frequency. Half a swing on the soft spring at 1.5 times the drive's speed gains 1

@@ -6,19 +6,17 @@ from math import degrees, exp, log, pi
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.analysis.creep.loading_curve import LoadingCurve, loading_curve
 from stiction.analysis.creep.misalignment import Misalignment
 from stiction.analysis.motion.cycles import find_cycles
 from stiction.analysis.record import Record
+from stiction.arrays import Floats
 from stiction.errors import ResultError
 from stiction.text.quantity_text import percent
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Floats = NDArray[np.float64]
 
 GRID = 400  # angles at which the closed form is tabled
 MODEL = 1e-4  # of the drop: least error of Eq. (7) with the terms below

@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING
 from warnings import catch_warnings, simplefilter
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.errors import ResultError
 from stiction.text.units import in_words
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Floats = NDArray[np.float64]
 
 THEORY = 0.01  # relative accuracy of Eqs. (7) and (8): they leave out inertia and terms in phi
 

@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.analysis.record import Record, cell_axis, record_of
+from stiction.arrays import Floats
 from stiction.errors import ResultError, echo
 from stiction.recording.sensor import Sensor
 from stiction.text.units import Quantity, SampleRate
 from stiction.text.validation import Described, read_arguments
 from stiction.trajectory import Trajectory
-
-Floats = NDArray[np.float64]
 
 
 class Sampling(Described):

@@ -6,9 +6,9 @@ from math import nan
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Floats = NDArray[np.float64]
+from stiction.arrays import Floats
 
 ORDERED = -0.9  # rank correlation of size and number: each smaller than the last, but for noise
 # Swings in such order, how many, and what is left of the first: by chance once in a thousand

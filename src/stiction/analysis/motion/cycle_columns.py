@@ -7,18 +7,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.analysis.record import Record
 from stiction.analysis.signals.peak_refinement import Vertices
 from stiction.analysis.signals.piecewise_fit import fit_pieces
 from stiction.analysis.signals.turning_points import without_spikes
+from stiction.arrays import Floats, Indices
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Floats = NDArray[np.float64]
-Indices = NDArray[np.intp]
 
 # name: (unit, long name), as CF attributes
 COLUMNS = {

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.analysis.motion.course import built_up, dies_out
 from stiction.analysis.motion.cycle_columns import CycleTable, tabulate
@@ -24,12 +23,11 @@ from stiction.analysis.signals.hum import Line, narrow_lines, of_mains, peak_fre
 from stiction.analysis.signals.outliers import without_outliers
 from stiction.analysis.signals.peak_refinement import Vertices, vertices
 from stiction.analysis.signals.turning_points import TurningPoints, turning_points
+from stiction.arrays import Floats
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Floats = NDArray[np.float64]
 
 LINES = 4  # taken off at most
 SAME = 0.01  # of a line's frequency: so far apart are two lines at least

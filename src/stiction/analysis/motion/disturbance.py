@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.analysis.motion.course import UNLOADED
 from stiction.analysis.motion.cycle_columns import CycleTable
@@ -12,8 +11,7 @@ from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import Line, of_mains
 from stiction.analysis.signals.robust import part_means, part_starts
 from stiction.analysis.signals.turning_points import turning_points
-
-Floats = NDArray[np.float64]
+from stiction.arrays import Floats
 
 # A line beside the motion: swings without it have so many of its periods, and are as high or stick
 SLOWER, HIGHER = 2.0, 0.75

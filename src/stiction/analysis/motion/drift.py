@@ -5,16 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.analysis.motion.cycles import find_cycles
 from stiction.analysis.record import Record
 from stiction.analysis.signals.robust import part_means
+from stiction.arrays import Floats
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Floats = NDArray[np.float64]
 
 SURE = 4.0  # standard errors
 WORTH = 0.02  # of the mean force, over the record: smaller drift is not reported

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.analysis.motion.course import UNLOADED
 from stiction.analysis.motion.cycle_columns import CycleTable, table_of
@@ -24,12 +23,11 @@ from stiction.analysis.motion.rest import comes_to_rest
 from stiction.analysis.record import Record
 from stiction.analysis.signals.robust import part_means, part_starts
 from stiction.analysis.signals.turning_points import without_spikes
+from stiction.arrays import Floats
 from stiction.text.quantity_text import percent
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Floats = NDArray[np.float64]
 
 PARTS = 400  # number of means of a record in which its break-away is sought
 FEWEST = 32  # least number of samples

@@ -20,10 +20,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Indices = NDArray[np.intp]
+from stiction.arrays import Floats, Indices
 
 HALF = 0.5  # of the swing: a larger fall is a cycle
 ABOUT_HALF = (0.4, 0.6)  # of the swing: without a fall between these, half divides them clearly

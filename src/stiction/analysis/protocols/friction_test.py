@@ -6,14 +6,13 @@ from math import nan
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.analysis.record import Record, as_record
+from stiction.arrays import Floats, Indices
 from stiction.drive import ConstantVelocity, DriveProgram, drive_stretches
 from stiction.errors import ResultError
 from stiction.trajectory import Trajectory
 
-Floats = NDArray[np.float64]
 SETTLED = 0.2  # of a stretch: its end, in which friction counts as steady
 
 
@@ -59,7 +58,7 @@ class FrictionTest(NamedTuple):
     stiffness: float
     stretches: list[ConstantStretch]
 
-    def within(self, start: float, end: float) -> NDArray[np.intp]:
+    def within(self, start: float, end: float) -> Indices:
         """Return the indices of the samples from `start` to `end` (s)."""
         first, after = np.searchsorted(self.time, [start - 1e-9, end + 1e-9])
         return np.arange(first, after)

@@ -7,8 +7,9 @@ from math import nan, sqrt
 
 import numpy as np
 
-from stiction.analysis.protocols.friction_test import Floats, friction_test
+from stiction.analysis.protocols.friction_test import friction_test
 from stiction.analysis.record import Record
+from stiction.arrays import Floats
 from stiction.drive import DriveProgram
 from stiction.errors import ResultError
 from stiction.text.sections import Section, Table

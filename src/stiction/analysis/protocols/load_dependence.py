@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stiction.analysis.protocols.friction_test import SETTLED, Floats
+from stiction.analysis.protocols.friction_test import SETTLED
 from stiction.analysis.protocols.healing import line
 from stiction.analysis.record import Record, as_record
+from stiction.arrays import Floats
 from stiction.drive import ConstantLoad, LoadProgram, load_stretches
 from stiction.errors import ResultError
 from stiction.text.sections import Section, Table

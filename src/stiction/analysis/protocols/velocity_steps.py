@@ -10,11 +10,11 @@ import numpy as np
 
 from stiction.analysis.protocols.friction_test import (
     ConstantStretch,
-    Floats,
     FrictionTest,
     friction_test,
 )
 from stiction.analysis.record import Record
+from stiction.arrays import Floats
 from stiction.drive import DriveProgram
 from stiction.errors import ResultError
 from stiction.text.sections import Section, Table

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from stiction.analysis.protocols.friction_test import Floats
+from stiction.arrays import Floats
 from stiction.errors import ResultError
 from stiction.system.slider import Slider
 from stiction.text.sections import Section, Table

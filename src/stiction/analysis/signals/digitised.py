@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from stiction.arrays import Floats
 
 MANY, FINE = 100_000, 1e-4  # samples examined for steps; finest step, over the signal's range
 

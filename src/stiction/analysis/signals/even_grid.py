@@ -14,9 +14,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.text.quantity_text import percent
-
-Floats = NDArray[np.float64]
 
 EVEN = 0.1  # of a step: how far a sample may lie off the grid to count as on it
 GAP = 1.75  # steps between two samples: in a longer interval a sample is missing

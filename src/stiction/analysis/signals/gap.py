@@ -11,9 +11,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Floats = NDArray[np.float64]
+from stiction.arrays import Floats
 
 PER_OCTAVE = 4  # edges tried in each factor of two of height
 # A walk of steps of finite size goes beyond a level before it turns: at either end by 0.583

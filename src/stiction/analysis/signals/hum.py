@@ -14,8 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.signals.even_grid import EvenGrid, even_grid
-
-Floats = NDArray[np.float64]
+from stiction.arrays import Complex, Floats
 
 PERIODS = 16  # of a line that a record has at least
 ABOVE = 30.0  # times the median power beside it: noise goes beyond in one of 2^30 samples
@@ -32,7 +31,6 @@ MUCH = 0.3  # of the power; the first harmonic of a sawtooth has 0.6
 TRIED = 20  # of the strongest
 BLOCK = 5  # periods in each mean of amplitude and phase
 LONGEST = 250  # periods over which amplitude and phase are taken for constant
-
 
 MAINS, MAINS_VARIES = (50.0, 60.0, 100.0, 120.0), 0.004  # Hz; a grid keeps its frequency to 0.4 %
 
@@ -238,7 +236,7 @@ def _middle(power: Floats, at: int) -> float:
     return float(lobe.start + np.average(np.arange(len(weight)), weights=weight))
 
 
-def _envelope(turned: NDArray[np.complex128], cycles: float) -> NDArray[np.complex128]:
+def _envelope(turned: Complex, cycles: float) -> Complex:
     """Return a line's amplitude and phase from a force demodulated at its frequency.
 
     They are averaged over blocks of a few periods. A windowed straight line is fitted around each

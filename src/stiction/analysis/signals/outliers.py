@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Indices = NDArray[np.intp]
+from stiction.arrays import Floats, Indices
 
 FAR = 8.0  # times the typical step from sample to sample
 FARTHER = 2.0  # times the motion on either side: a fast movement is not an outlier

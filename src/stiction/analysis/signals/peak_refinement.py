@@ -5,14 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.analysis.signals.piecewise_fit import fit_pieces
 from stiction.analysis.signals.turning_points import TurningPoints
-
-Floats = NDArray[np.float64]
-Indices = NDArray[np.intp]
-
+from stiction.arrays import Floats, Indices
 
 ROUNDING = 1e-9  # a slope less than this part of the bend is none
 

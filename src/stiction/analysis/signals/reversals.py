@@ -15,8 +15,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.arrays import Indices
+
 Counts = NDArray[np.int64]
-Indices = NDArray[np.intp]
 
 
 def extrema(values: Counts) -> Indices:

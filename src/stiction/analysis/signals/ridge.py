@@ -5,12 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+
+from stiction.arrays import Floats, Indices
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Floats = NDArray[np.float64]
 
 # Amplitudes of noise are Rayleigh-distributed: 1 in 500 windows of 1000 lines has one that is
 # five times their median, exp(-25 ln 2) for each.
@@ -93,7 +92,7 @@ def _rounding(amplitudes: Floats) -> float:
     return float(max(known.eps * amplitudes.max(), known.tiny))
 
 
-def _surroundings(level: Floats, lines: Floats, path: NDArray[np.intp]) -> Floats:
+def _surroundings(level: Floats, lines: Floats, path: Indices) -> Floats:
     """Return the logarithm of the median of the lines around a path, at each time.
 
     Noise that falls off with frequency lifts the lines at the lower end of a band above the median
@@ -110,7 +109,7 @@ def _surroundings(level: Floats, lines: Floats, path: NDArray[np.intp]) -> Float
     return np.asarray(low + np.where(right > left, share, 0.5) * (high - low))
 
 
-def best_path(level: Floats, jump: int, stiffness: float) -> NDArray[np.intp]:
+def best_path(level: Floats, jump: int, stiffness: float) -> Indices:
     """Return the line (m,) at each time that maximises the sum of levels minus jump costs.
 
     `level` is (n lines, m times).
@@ -136,7 +135,7 @@ def best_path(level: Floats, jump: int, stiffness: float) -> NDArray[np.intp]:
     return path
 
 
-def _summits(level: Floats, path: NDArray[np.intp]) -> tuple[Floats, Floats]:
+def _summits(level: Floats, path: Indices) -> tuple[Floats, Floats]:
     """Return height and offset (in lines) of the parabolas through three points near the path.
 
     Their middle is the highest of three lines: where a frequency lies half-way between two, the

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from stiction.arrays import Floats, Indices
 
 CUT = 0.1  # share of the values left out at each end
 
@@ -17,18 +18,18 @@ class Mean(NamedTuple):
     error: float
 
 
-def part_starts(size: int, parts: int) -> NDArray[np.intp]:
+def part_starts(size: int, parts: int) -> Indices:
     """Return where equal parts of so many samples begin: fewer parts, if some would be empty."""
     return np.linspace(0, size, min(parts, size), endpoint=False).astype(np.intp)
 
 
-def part_means(values: NDArray[np.float64], parts: int) -> NDArray[np.float64]:
+def part_means(values: Floats, parts: int) -> Floats:
     """Return the means of equal parts of some values, see `part_starts`."""
     starts = part_starts(len(values), parts)
     return np.asarray(np.add.reduceat(values, starts) / np.diff(starts, append=len(values)))
 
 
-def trimmed_mean(values: NDArray[np.float64]) -> Mean:
+def trimmed_mean(values: Floats) -> Mean:
     """Return the mean without the smallest and the largest tenth, and its standard error.
 
     The error is that of the winsorised values (J. W. Tukey & D. H. McLaughlin, Sankhya A 25, 331

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from stiction.arrays import Floats
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Floats = NDArray[np.float64]
 
 BLOCK = 2**17  # samples taken at once from what can be sliced, 1 MB
 AT_ONCE = 2**18  # samples in the windows that are transformed at once, 2 MB

@@ -11,14 +11,13 @@ from numpy.typing import NDArray
 from stiction.analysis.signals.gap import widest_gap
 from stiction.analysis.signals.reversals import (
     Counts,
-    Indices,
     all_heights,
     extrema,
     standing_out,
     taken_out,
 )
+from stiction.arrays import Floats, Indices
 
-Floats = NDArray[np.float64]
 Number = TypeVar("Number", np.int64, np.float64)
 
 FINE = 2**26  # counts over a signal's range; sums over 2^30 samples still fit into 64 bits

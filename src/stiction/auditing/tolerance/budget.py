@@ -8,8 +8,8 @@ from math import nan, radians
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.auditing.prediction import predict
 from stiction.auditing.simulated_test import coarse_rate, creep_before_slip, simulate_test
 from stiction.auditing.words.numbers import kinetic, peak
@@ -20,7 +20,6 @@ from stiction.study.execution.engines import Threads
 from stiction.system.parameter import change_parameters, quantity
 from stiction.system.slider import Slider
 
-Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
 
 ALLOWED = 0.02  # error of the static coefficient

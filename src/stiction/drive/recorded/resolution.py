@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.text.samples import Floats
+from stiction.arrays import Floats
 
 FEWEST = 8  # rows: fewer are taken as they are
 NOTICED = 1e-3  # of the largest value: smaller deviations, as of rounded digits, have no effect

@@ -7,9 +7,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from stiction.arrays import Floats
 from stiction.drive.recorded.resolution import advice, roughness
 from stiction.drive.recorded.spline import spline
-from stiction.text.samples import Floats, FrozenColumn
+from stiction.text.samples import FrozenColumn
 from stiction.text.units import LARGEST, in_words
 
 FEWEST = 4  # rows, which fix a cubic

@@ -14,8 +14,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from stiction.arrays import Floats
 from stiction.drive.signal import Signal, change_at, curve_at, sum_over, value_at
-from stiction.text.samples import Floats, FrozenColumn
+from stiction.text.samples import FrozenColumn
 
 KEPT = 8  # splines of tables, while their programs are made again with other parameters
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import log_softmax, softmax
 
+from stiction.arrays import Floats
 from stiction.inference.mechanism.simulations import Simulations
 from stiction.inference.summary import (
     Regression,
@@ -26,8 +27,6 @@ from stiction.inference.summary import (
     single_threaded_algebra,
 )
 from stiction.storage.arrays import read_arrays, write_arrays
-
-Floats = NDArray[np.float64]
 
 WIDTH = 1.0  # of the kernel, over the typical distance between records
 WEAK = 1e-3  # penalty on the slopes' squares: finite where mechanisms are told apart surely

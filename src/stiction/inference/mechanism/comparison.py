@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.record import Record
+from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault, ResultError
 from stiction.inference.fit import check
 from stiction.inference.library import bend_features
@@ -21,8 +22,6 @@ from stiction.inference.mechanism.simulations import Simulations, simulate
 from stiction.inference.mechanism.steadiness import trend
 from stiction.inference.observation import Observation, observe_all
 from stiction.inference.priors import Rig
-
-Floats = NDArray[np.float64]
 
 SIMULATIONS = 1000  # of each mechanism, unless told otherwise
 SHARE = 4  # simulations of a fit for each that a mechanism gets beside it

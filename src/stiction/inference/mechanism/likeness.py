@@ -9,11 +9,9 @@ from __future__ import annotations
 from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.inference.predictive import departures
-
-Floats = NDArray[np.float64]
 
 NEIGHBOURS = 150  # simulations from which a distance is measured
 SHRINKAGE = 0.1  # of correlations between features, which so few simulations do not show well

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.inference.features import EDGES
 from stiction.inference.mechanism.likeness import Likeness
 from stiction.inference.mechanism.rivals import ROTATION, STATIC
@@ -18,8 +18,6 @@ from stiction.text.sections import Section, Table, as_html
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Floats = NDArray[np.float64]
 
 CLAIM = 0.9  # probability from which on a mechanism is claimed
 TREND = 0.01  # probability below which cycles do not stay the same

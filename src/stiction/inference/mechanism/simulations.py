@@ -10,11 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.errors import ResultError
 from stiction.inference.library import simulate_all
 from stiction.inference.mechanism.rivals import Mechanism
 
-Floats = NDArray[np.float64]
 Progress = Callable[[float], None] | None
 
 FEWEST = 40  # simulations with cycles, below which a mechanism is left out

@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.inference.features import Cycles
-
-Floats = NDArray[np.float64]
 
 
 def trend(records: Iterable[tuple[Floats, Cycles]]) -> float:

@@ -15,10 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
+from stiction.arrays import Floats
 from stiction.inference.library import Plan
 from stiction.inference.summary import learn
-
-Floats = NDArray[np.float64]
 
 RESAMPLED = 1000  # times, for the interval of a ratio
 TAILS = (0.025, 0.975)

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator
-from numpy.typing import NDArray
 
 from stiction import theory
+from stiction.arrays import Floats
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.parameter import PLAIN
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, RED, style
@@ -18,7 +18,6 @@ from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, RED, style
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 Line = Callable[[Floats], Any]  # time to slip (s) to velocity (m/s)
 
 LOOKS: tuple[tuple[str, Any], ...] = (

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from stiction.arrays import Floats
 from stiction.plotting.apparatus import shapes
 from stiction.plotting.page.style import BLUE, GREEN, GREY, PALE, PURPLE
 from stiction.trajectory import Trajectory
@@ -16,10 +17,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def friction_vector(data: xr.Dataset) -> shapes.Points:
+def friction_vector(data: xr.Dataset) -> Floats:
     """Return the friction force (X, Y) on the mass, opposite to slip, shape (n, 2), in N."""
     psi = np.radians(data["psi"].values) + np.pi
-    direction: shapes.Points = np.column_stack([np.cos(psi), np.sin(psi)])
+    direction: Floats = np.column_stack([np.cos(psi), np.sin(psi)])
     return direction * np.asarray(data["friction"].values, dtype=np.float64)[:, None]
 
 

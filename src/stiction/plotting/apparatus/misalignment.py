@@ -8,9 +8,9 @@ from math import copysign, cos, degrees, pi, radians, sin
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stiction.plotting.apparatus.shapes import Points
+from stiction.arrays import Floats
 
-Placement = Callable[[ArrayLike], Points]
+Placement = Callable[[ArrayLike], Floats]
 
 LEAST, EXAGGERATED = radians(20), radians(24)  # a smaller misalignment is drawn like this
 STEEP = radians(60)  # one within LEAST of a right angle, like this
@@ -60,8 +60,8 @@ def placement(drawn: float) -> Placement:
     phi, side = abs(drawn), copysign(1.0, drawn)
     turn = np.array([[cos(phi), -sin(phi)], [sin(phi), cos(phi)]])
 
-    def lab(points: ArrayLike) -> Points:
-        placed: Points = (np.asarray(points, dtype=np.float64) @ turn) * (1.0, side)
+    def lab(points: ArrayLike) -> Floats:
+        placed: Floats = (np.asarray(points, dtype=np.float64) @ turn) * (1.0, side)
         return placed
 
     return lab

@@ -6,9 +6,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
+from stiction.arrays import Floats
 from stiction.plotting.apparatus import shapes
 from stiction.plotting.apparatus.misalignment import drawn_misalignment, misalignment_note
-from stiction.plotting.apparatus.shapes import Points
 from stiction.plotting.page.style import BLUE, FLOOR, RED
 from stiction.system.slider import Slider
 
@@ -66,10 +66,10 @@ def _draw_plate(ax: Axes) -> None:
     shapes.name(ax, _project((-1.4, -0.3, 0)), "$V$", BLUE)
 
 
-def _draw_cantilever(ax: Axes, turn: Points) -> None:
+def _draw_cantilever(ax: Axes, turn: Floats) -> None:
     """Draw the pin, the leaf spring that holds it, and the clamp at the leaf's other end."""
 
-    def put(points: ArrayLike) -> Points:
+    def put(points: ArrayLike) -> Floats:
         return _project(np.asarray(points) @ turn)
 
     low, high, length = 0.75, 1.35, 2.6
@@ -93,6 +93,6 @@ def _draw_cantilever(ax: Axes, turn: Points) -> None:
     shapes.name(ax, (-0.4 * leans, 0.3), "pin", size=7)
 
 
-def _project(points: ArrayLike) -> Points:
-    seen: Points = np.asarray(points, dtype=np.float64) @ VIEW
+def _project(points: ArrayLike) -> Floats:
+    seen: Floats = np.asarray(points, dtype=np.float64) @ VIEW
     return seen

@@ -7,6 +7,7 @@ from math import copysign, cos, degrees, pi, sin
 import numpy as np
 from matplotlib.axes import Axes
 
+from stiction.arrays import Floats
 from stiction.plotting.apparatus import shapes
 from stiction.plotting.apparatus.misalignment import (
     Placement,
@@ -15,7 +16,7 @@ from stiction.plotting.apparatus.misalignment import (
     misalignment_note,
     placement,
 )
-from stiction.plotting.apparatus.shapes import Points, polar
+from stiction.plotting.apparatus.shapes import polar
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.style import BLACK, BLUE, FLOOR, GREEN, GREY, PURPLE, RED, style
 from stiction.system.slider import Slider
@@ -93,7 +94,7 @@ def _reach(phi: float) -> float:
     return min(WALL_X / max(cos(phi), 1e-9), WALL_Y / max(sin(phi), 1e-9))
 
 
-def _draw_axes(ax: Axes, lab: Placement, phi: float, side: float) -> list[Points]:
+def _draw_axes(ax: Axes, lab: Placement, phi: float, side: float) -> list[Floats]:
     """Draw the principal axes and, between x and X, the misalignment."""
     x = lab([(-BACK, 0), (WALL_X + 1.9, 0)])
     y = lab([(0, -1.5), (0, WALL_Y + 1.1)] if side > 0 else [(0, WALL_Y + 0.7), (0, -1.9)])
@@ -110,7 +111,7 @@ def _draw_axes(ax: Axes, lab: Placement, phi: float, side: float) -> list[Points
     return [x, y]
 
 
-def _draw_spring(ax: Axes, lab: Placement, slider: Slider) -> list[Points]:
+def _draw_spring(ax: Axes, lab: Placement, slider: Slider) -> list[Floats]:
     """Draw the block, the bracket, and between them the springs and dampers."""
     corners = BLOCK * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
     bracket = lab([(WALL_X, -OVERHANG), (WALL_X, WALL_Y), (-OVERHANG, WALL_Y)])
@@ -135,7 +136,7 @@ def _draw_spring(ax: Axes, lab: Placement, slider: Slider) -> list[Points]:
     return [bracket]
 
 
-def _draw_dampers(ax: Axes, lab: Placement, slider: Slider, side: float) -> list[Points]:
+def _draw_dampers(ax: Axes, lab: Placement, slider: Slider, side: float) -> list[Floats]:
     """Draw dampers with axes of their own, each towards where the drawing has most room."""
     ends = []
     drawn = drawn_misalignment(slider.misalignment)
@@ -162,7 +163,7 @@ def _yields(slider: Slider, place: int) -> list[bool]:
     return [each > SEEN * sum(own) for each in own]
 
 
-def _draw_series(ax: Axes, lab: Placement, ends: Points, side: Points, yields: list[bool]) -> None:
+def _draw_series(ax: Axes, lab: Placement, ends: Floats, side: Floats, yields: list[bool]) -> None:
     """Draw springs one behind the other, with numbers beside them, and bars for what is rigid."""
     sizes = np.where(yields, 1.0, 0.4)
     joints = ends[0] + np.outer(np.r_[0.0, np.cumsum(sizes) / sizes.sum()], ends[1] - ends[0])
@@ -204,7 +205,7 @@ def _where(angle: float) -> str:
     return f"{turned:.4g}° to $x$".replace("-", "−") if abs(turned) > 1e-9 else "along $x$"
 
 
-def _draw_drive(ax: Axes, lab: Placement, phi: float, velocity: float) -> list[Points]:
+def _draw_drive(ax: Axes, lab: Placement, phi: float, velocity: float) -> list[Floats]:
     """Draw the drive direction X and, where there is one, the velocity of the bracket."""
     start = _reach(phi) + 0.1
     X = lab([polar(start, phi), polar(start + 2.2, phi)])
@@ -221,7 +222,7 @@ def _draw_drive(ax: Axes, lab: Placement, phi: float, velocity: float) -> list[P
 
 def _draw_slip(
     ax: Axes, lab: Placement, phi: float, theta: float, askew: bool, backward: bool
-) -> list[Points]:
+) -> list[Floats]:
     """Draw slip velocity and friction, opposite to each other, and their angles."""
     corner = np.array([BLOCK, BLOCK])
     ahead = lab([corner, corner + polar(SLIP, theta)])
@@ -248,7 +249,7 @@ def _draw_slip(
     return [behind, ahead]
 
 
-def _draw_axis(ax: Axes, ends: Points, text: str, color: str) -> None:
+def _draw_axis(ax: Axes, ends: Floats, text: str, color: str) -> None:
     shapes.line(ax, ends, color, 0.7, "-.", zorder=1)
     shapes.arrow(ax, [ends[1] - 0.1 * _unit(ends), ends[1]], color, 0.7)
     shapes.name(ax, ends[1] + (0.6 if "," in text else 0.35) * _unit(ends), text, color)
@@ -258,13 +259,13 @@ def _coincide(axis: str, phi: float) -> bool:
     return abs(phi - (0 if axis == "x" else pi / 2)) < 1e-9
 
 
-def _unit(ends: Points) -> Points:
-    way: Points = ends[1] - ends[0]
+def _unit(ends: Floats) -> Floats:
+    way: Floats = ends[1] - ends[0]
     way /= np.hypot(*way)
     return way
 
 
-def _frame(ax: Axes, points: Points, note: str, above: float) -> None:
+def _frame(ax: Axes, points: Floats, note: str, above: float) -> None:
     """Make the axes the floor, with room for labels at the ends, and for a legend above."""
     (left, bottom), (right, top) = points.min(axis=0) - 0.9, points.max(axis=0) + 0.9
     ax.margins(0)

@@ -10,11 +10,11 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import FancyArrowPatch, Polygon
 from matplotlib.text import Text
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from stiction.arrays import Floats
 from stiction.plotting.page.style import BLACK
 
-Points = NDArray[np.float64]
 SIDEWAYS = 0.3  # of a unit vector: a smaller component does not shift a text beside a point
 
 
@@ -83,7 +83,7 @@ def beside(ax: Axes, point: ArrayLike, way: ArrayLike, text: str) -> Text:
     return drawn
 
 
-def spring_path(start: ArrayLike, end: ArrayLike, width: float = 0.22, turns: int = 5) -> Points:
+def spring_path(start: ArrayLike, end: ArrayLike, width: float = 0.22, turns: int = 5) -> Floats:
     """Return a zigzag from `start` to `end` that reaches `width` to either side, shape (n, 2)."""
     along = np.r_[0.0, 0.15, 0.15 + 0.7 * (np.arange(2 * turns) + 0.5) / (2 * turns), 0.85, 1.0]
     across = np.r_[0.0, 0.0, width * (-1.0) ** np.arange(2 * turns), 0.0, 0.0]
@@ -95,7 +95,7 @@ def dashpot(ax: Axes, start: ArrayLike, end: ArrayLike, width: float = 0.22) -> 
     return [line(ax, path) for path in dashpot_paths(start, end, width)]
 
 
-def dashpot_paths(start: ArrayLike, end: ArrayLike, width: float) -> list[Points]:
+def dashpot_paths(start: ArrayLike, end: ArrayLike, width: float) -> list[Floats]:
     """Return the lines of a damper from `start` to `end`: a cup, and a rod with a piston in it."""
     cup = ([0.0, 0.38, 0.38, 0.68, 0.38, 0.38, 0.68], [0, 0, 1, 1, 1, -1, -1])
     rod, piston = ([0.56, 1.0], [0, 0]), ([0.56, 0.56], [0.7, -0.7])
@@ -105,13 +105,13 @@ def dashpot_paths(start: ArrayLike, end: ArrayLike, width: float) -> list[Points
     ]
 
 
-def arc_path(centre: ArrayLike, radius: float, start: float, end: float) -> Points:
+def arc_path(centre: ArrayLike, radius: float, start: float, end: float) -> Floats:
     """Return a circular arc from angle `start` to `end` (rad), shape (n, 2)."""
     angles = np.linspace(start, end, 60)
     return np.asarray(centre) + radius * np.column_stack([np.cos(angles), np.sin(angles)])
 
 
-def polar(radius: float, angle: float) -> Points:
+def polar(radius: float, angle: float) -> Floats:
     """Return the point at `radius` and `angle` (rad)."""
     return radius * np.array([np.cos(angle), np.sin(angle)])
 
@@ -125,7 +125,7 @@ def fit_view(ax: Axes, points: ArrayLike, margins: tuple[float, float]) -> None:
     ax.set_axis_off()
 
 
-def _between(start: ArrayLike, end: ArrayLike, along: Points, across: Points) -> Points:
+def _between(start: ArrayLike, end: ArrayLike, along: Floats, across: Floats) -> Floats:
     """Points from fractions `along` the way from start to end and lengths `across` it."""
     tail, way = np.asarray(start, float), np.asarray(end, float) - np.asarray(start, float)
     normal = np.array([-way[1], way[0]]) / np.hypot(*way)

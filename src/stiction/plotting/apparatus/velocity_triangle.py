@@ -7,6 +7,7 @@ from math import pi
 import numpy as np
 from matplotlib.axes import Axes
 
+from stiction.arrays import Floats
 from stiction.plotting.apparatus import shapes
 from stiction.plotting.apparatus.misalignment import (
     Placement,
@@ -14,7 +15,7 @@ from stiction.plotting.apparatus.misalignment import (
     drawn_slip_angle,
     placement,
 )
-from stiction.plotting.apparatus.shapes import Points, polar
+from stiction.plotting.apparatus.shapes import polar
 from stiction.plotting.page.style import BLUE, GREEN, RED
 from stiction.system.slider import Slider
 
@@ -59,7 +60,7 @@ def draw_velocity_triangle(ax: Axes, slider: Slider) -> Axes:
     return ax
 
 
-def _draw_angles(ax: Axes, lab: Placement, phi: float, theta: float, knee: Points) -> list[Points]:
+def _draw_angles(ax: Axes, lab: Placement, phi: float, theta: float, knee: Floats) -> list[Floats]:
     """Draw phi where V starts; theta and psi where the slip velocity does."""
     for angle, color in ((0.0, RED), (phi, BLUE)):
         shapes.line(ax, lab([knee, knee + polar(0.42, angle)]), color, 0.7, "-.", zorder=1)

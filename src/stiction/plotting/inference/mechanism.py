@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, RED, style
 from stiction.text.quantity_text import percent
@@ -64,7 +65,7 @@ def draw_odds(ax: Axes, odds: Any, names: Sequence[str]) -> None:
     ax.set(xlim=(0.0, 1.0), xlabel="probability", title="this record")
 
 
-def draw_confusion(ax: Axes, confusion: NDArray[np.float64], names: Sequence[str]) -> None:
+def draw_confusion(ax: Axes, confusion: Floats, names: Sequence[str]) -> None:
     """Draw the confusion matrix, each share written in its cell."""
     ax.imshow(confusion, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto")
     for (row, column), share in np.ndenumerate(confusion):

@@ -8,8 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.axis import Axis
 from matplotlib.ticker import FuncFormatter, NullFormatter
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from stiction.arrays import Floats
 from stiction.plotting.page.words import symbol
 from stiction.text.quantity_text import metric_prefix
 
@@ -75,9 +76,9 @@ class Scale(NamedTuple):
         """Symbol and unit."""
         return f"{self.symbol} ({self.unit})"
 
-    def in_unit(self, values: ArrayLike) -> NDArray[np.float64]:
+    def in_unit(self, values: ArrayLike) -> Floats:
         """Return values (SI) in the unit of the drawing."""
-        found: NDArray[np.float64] = np.asarray(values, dtype=np.float64) * self.factor
+        found: Floats = np.asarray(values, dtype=np.float64) * self.factor
         return found
 
     def quantity(self, value: float) -> str:

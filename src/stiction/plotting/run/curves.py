@@ -7,16 +7,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from stiction.analysis.slip import Slip, cell_force, cell_symbol
+from stiction.arrays import Floats
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY
 from stiction.plotting.run.time_series import average_slip, draw_line, say_only, stays
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import metric_prefix
 from stiction.trajectory import Trajectory
-
-Floats = NDArray[np.float64]
 
 COLOURS = (BLACK, RED, BLUE, GREEN, ORANGE, SKY, PURPLE)
 DASHES: tuple[Any, ...] = ("solid", (0, (5, 1.5)), (0, (7, 1.2, 1.2, 1.2)), (0, (1.4, 1.1)))

@@ -10,6 +10,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
+from stiction.arrays import Floats
 from stiction.drive.program import nominal_velocity
 from stiction.plotting.apparatus.schematic import draw_schematic
 from stiction.plotting.page.canvas import canvas, find_drawing, fix_ticks
@@ -22,13 +23,11 @@ from stiction.plotting.page.words import (
 )
 from stiction.plotting.run import time_series
 from stiction.plotting.run.law import draw_law
-from stiction.plotting.run.time_series import Floats
 from stiction.text.quantity_text import metric_prefix
 from stiction.trajectory import Trajectory
 
 LINE, GAP = 10.5, 3.0  # of text, pt
 DRAWING, LAW = 2.1, 1.7  # heights of the system's drawing and of the law, in
-
 
 SERIES = ("force", "friction", "direction", "position", "speed", "stuck")
 

@@ -10,18 +10,17 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import StepPatch
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from stiction.analysis.motion.rest import stuck_until
 from stiction.analysis.signals.reversals import taken_out
 from stiction.analysis.signals.turning_points import FINE, as_counts
 from stiction.analysis.slip import Slip, averaged_slip
+from stiction.arrays import Floats, Indices
 from stiction.plotting.page.parameter import label_decades
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED
 from stiction.text.quantity_text import metric_prefix, percent
 from stiction.trajectory import Trajectory
-
-Floats = NDArray[np.float64]
 
 FEW = 50  # so few samples are drawn as points: the motion between them is unknown
 PARTS = 500  # of the time: finer than a printed line shows
@@ -168,7 +167,7 @@ def _draw_range(
     return shown
 
 
-def _smooth(values: Floats, starts: NDArray[np.intp], period: float) -> tuple[Floats, ...]:
+def _smooth(values: Floats, starts: Indices, period: float) -> tuple[Floats, ...]:
     """Return low, high and mean of periods around each bin of an oscillation; `period` in bins."""
     from scipy.ndimage import (  # type: ignore[attr-defined]
         convolve1d,
@@ -188,7 +187,7 @@ def _smooth(values: Floats, starts: NDArray[np.intp], period: float) -> tuple[Fl
     return low, high, total / np.maximum(count, 1e-300)
 
 
-def _bin_starts(samples: int, bins: int) -> NDArray[np.intp]:
+def _bin_starts(samples: int, bins: int) -> Indices:
     """Return the index of the first sample of each bin."""
     return np.linspace(0, samples, bins, endpoint=False).astype(np.intp)
 

@@ -6,16 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from stiction.arrays import Floats
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.parameter import PLAIN, Scale, scale_of
 from stiction.plotting.page.style import BLACK, BLUE, UNSTABLE, style
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Floats = NDArray[np.float64]
 
 PIXELS = 161  # in each direction, of the signed distance to the boundary
 

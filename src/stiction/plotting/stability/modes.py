@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.linear_stability import Critical
 from stiction.plotting.page.canvas import stack
 from stiction.plotting.page.parameter import PLAIN, Scale, label_decades, scale_of
@@ -17,7 +18,6 @@ from stiction.plotting.page.style import BLUE, GREY, ORANGE, UNSTABLE, style
 
 if TYPE_CHECKING:
     import xarray as xr
-
 
 CLOSE = 0.13  # of the axis: closer numbers would overlap
 
@@ -79,7 +79,7 @@ def plot_modes(
     return np.array([above, below], dtype=object)
 
 
-def sides(ax: Axes, values: NDArray[np.float64]) -> list[str]:
+def sides(ax: Axes, values: Floats) -> list[str]:
     """Return the alignments of numbers above values: close neighbours lean apart.
 
     The axis must have its scale and limits already.

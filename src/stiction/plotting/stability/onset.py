@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
 from stiction.analysis.limit_cycle import OSCILLATING, REST, UNDECIDED
 from stiction.analysis.onset import Onset
+from stiction.arrays import Floats
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.parameter import PLAIN, scale_of
 from stiction.plotting.page.style import BLUE, GREY, PALE, RED, style
@@ -70,7 +70,7 @@ def draw_onset(ax: Axes, onset: Onset, critical: float | None = None) -> None:
     ax.margins(x=0.03)
 
 
-def _set_amplitudes(ax: Axes, moving: NDArray[np.float64]) -> tuple[float, float]:
+def _set_amplitudes(ax: Axes, moving: Floats) -> tuple[float, float]:
     """Fit the axis to amplitudes (m); return the factor to its unit, and its lower edge."""
     top, least = (each(moving, initial=start) for each, start in ((np.max, 0.0), (np.min, np.inf)))
     logarithmic = 0.0 < SPREAD * least < top

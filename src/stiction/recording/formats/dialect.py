@@ -9,8 +9,8 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.errors import ResultError, echo
 
 SAMPLE = 400  # lines by which they are found
@@ -217,7 +217,7 @@ def _no_samples(path: object, filled: Sequence[str]) -> str:
     return f"{path}: no line has samples; the first is {filled[0].strip()[:60]!r}"
 
 
-def seconds_of(cells: Sequence[object]) -> NDArray[np.float64] | None:
+def seconds_of(cells: Sequence[object]) -> Floats | None:
     """Return times of day, perhaps with dates, as seconds; NaN where a cell is missing.
 
     None if some cell is neither. Only differences mean anything. The order of day and month in a

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.arrays import Floats, Indices
 from stiction.errors import Faults, ResultError, echo
 from stiction.machine import largest_object
 from stiction.recording.formats import HEAD, TextLayout
@@ -28,9 +29,6 @@ from stiction.recording.formats.dialect import (
 from stiction.recording.formats.heading import Heading, find_heading, repeats
 from stiction.recording.table import FileColumn, FileTable, Remark, number_of
 from stiction.storage.foreign import refuse_size
-
-Floats = NDArray[np.float64]
-Rows = NDArray[np.intp]
 
 COPIES = 12  # of a file's bytes in memory: its text, its lines, its numbers
 WIDEST = 2000  # columns
@@ -135,7 +133,7 @@ def read_lines(path: Path, lines: Sequence[str], dialect: Dialect) -> list[FileT
     remarks = [Remark(at + 1, x) for at, x in enumerate(lines[:first]) if x.strip()]
     tables: list[FileTable] = []
     heading: Heading | None = None
-    rows: list[Rows] = []
+    rows: list[Indices] = []
     skipped: list[str] = []
 
     def close() -> None:
@@ -280,7 +278,7 @@ def _kinds(
     return kinds
 
 
-def _width(cells: _Cells, rows: Rows) -> int:
+def _width(cells: _Cells, rows: Indices) -> int:
     """Return the number of columns that have values in most of the rows."""
     filled = np.isfinite(cells.numbers[rows]) | cells.wrong[rows]
     used = np.flatnonzero(filled.any(axis=0))
@@ -298,7 +296,7 @@ def _lines_above(above: Sequence[Remark], heading: Heading | None) -> list[str]:
 
 
 def _note_longer_rows(
-    path: Path, cells: _Cells, rows: Rows, heading: Heading | None, faults: Faults
+    path: Path, cells: _Cells, rows: Indices, heading: Heading | None, faults: Faults
 ) -> None:
     """Note each row that has more values than nearly all others."""
     width = _width(cells, rows)
@@ -318,7 +316,7 @@ def _note_longer_rows(
 
 def _table(
     cells: _Cells,
-    rows: Rows,
+    rows: Indices,
     heading: Heading | None,
     words: set[int],
     remarks: Sequence[Remark],

@@ -5,14 +5,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stiction.arrays import Floats, Indices
 from stiction.errors import Faults, ResultError
 from stiction.recording.table import FileTable, number_of
 from stiction.text.units import in_words
-
-Floats = NDArray[np.float64]
-Rows = NDArray[np.intp]
 
 ALIKE = 1e-3  # relative: intervals, of which the file rounds one
 AGAIN = 0.05  # of a block's duration: a time so near its first begins the next block
@@ -25,9 +22,9 @@ EVEN = 0.5  # of their mean: how far the other intervals may spread for that to 
 
 
 class Block(NamedTuple):
-    """Rows of one block, and their times, s, from the file's own zero."""
+    """Indices of one block, and their times, s, from the file's own zero."""
 
-    rows: Rows
+    rows: Indices
     time: Floats
     notes: tuple[str, ...]
 

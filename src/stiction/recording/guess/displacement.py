@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from stiction.arrays import Floats
 
 ALIKE = 0.1  # relative difference of jumps that are one wrap
 WHOLE = 0.8  # of the range of values: smaller jumps are motion

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from stiction.study.plan.axes import Floats
+from stiction.arrays import Floats
 from stiction.study.plan.study import Study
 from stiction.study.view.view import kinds
 

@@ -13,13 +13,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pydantic_core import PydanticCustomError
 
+from stiction.arrays import Floats
 from stiction.deprecation import by_new_names
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.storage.files import place, workshop
 from stiction.study.execution.engines import Engine
 from stiction.study.execution.intervals import Intervals, changes, half_way, halve, widest
 from stiction.study.execution.sweep import Tally, sweep
-from stiction.study.plan.axes import Floats, Values
+from stiction.study.plan.axes import Values
 from stiction.study.plan.coordinates import number
 from stiction.study.plan.study import Study, refuse_other
 from stiction.study.store.kept import UNKNOWN, flag_attributes

@@ -7,14 +7,13 @@ from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Literal, cast
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import AfterValidator, BeforeValidator, Field
 
+from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.text.units import Read, unread
 from stiction.text.validation import Described, unknown_name
 
-Floats = NDArray[np.float64]
 MOST = 1_000_000_000  # values of an axis
 
 

@@ -10,8 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from pydantic_core import PydanticCustomError
 
+from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault, echo
-from stiction.study.plan.axes import Axis, Floats, Range
+from stiction.study.plan.axes import Axis, Range
 from stiction.study.variables.measures import MEASURES
 from stiction.system import parameter
 from stiction.system.description import Description

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.study.plan.axes import Floats
+from stiction.arrays import Floats
 from stiction.study.plan.study import Study
 from stiction.study.variables.measures import MEASURES, TRACES
 from stiction.study.variables.observed_run import ObservedRun

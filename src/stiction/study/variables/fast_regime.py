@@ -13,15 +13,13 @@ from math import pi
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.analysis.motion.course import QUARTER, QUIET, built_up, dies_out
 from stiction.analysis.motion.hesitations import cycle_corners
 from stiction.analysis.motion.regime import force_course, kinds
 from stiction.analysis.motion.regime.irregular import irregularity
+from stiction.arrays import Floats
 from stiction.study.variables.features import PARTS, Features
-
-Floats = NDArray[np.float64]
 
 KINDS = (
     kinds.UNDETERMINED,

@@ -7,8 +7,8 @@ from math import nan
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stiction.arrays import Floats
 from stiction.study.variables.fast_regime import KINDS
 from stiction.study.variables.observed_run import ObservedRun
 
@@ -96,7 +96,7 @@ class Trace(NamedTuple):
 
     unit: str
     long_name: str
-    of: Callable[[ObservedRun], NDArray[np.float64]]
+    of: Callable[[ObservedRun], Floats]
 
 
 TRACES: dict[str, Trace] = {

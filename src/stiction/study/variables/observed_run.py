@@ -8,11 +8,11 @@ from functools import cached_property
 from math import ceil, nan, pi, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.analysis.creep.first_slip import first_loading
 from stiction.analysis.motion.regime.kinds import STUCK
 from stiction.analysis.motion.rest import stick_shares, still_shares
+from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.drive.program import nominal_velocity
 from stiction.simulation import sample_times, solve_coarsely
@@ -22,8 +22,6 @@ from stiction.study.variables.features import Features, features
 from stiction.system.description import Description
 from stiction.system.slider import Slider
 from stiction.system.tensors import mass_tensor, stiffness_tensor
-
-Floats = NDArray[np.float64]
 
 # With samples this dense, a parabola finds peaks to 1e-5 of the amplitude for a harmonic, and to
 # 1e-4 for the paper's system. The samples cost about a hundredth of the run's time.

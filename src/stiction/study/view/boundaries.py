@@ -10,9 +10,9 @@ import numpy as np
 
 from stiction import linear_stability as stability
 from stiction import theory
+from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.errors import StictionError
-from stiction.study.plan.axes import Floats
 from stiction.study.plan.coordinates import vary
 from stiction.study.plan.study import Study
 from stiction.system.slider import Slider

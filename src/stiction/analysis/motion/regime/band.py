@@ -9,12 +9,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import spectrum
-
-Floats = NDArray[np.float64]
+from stiction.arrays import Floats
 
 PERIODS = 16  # of the vibration that a record has at least
 SUSPECTED = 5  # periods from which on a vibration is suspected, but not known

@@ -6,7 +6,6 @@ from math import pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.analysis.motion.course import MANY, ORDERED, change_of_period, order
 from stiction.analysis.motion.cycle_columns import CycleTable
@@ -28,8 +27,7 @@ from stiction.analysis.motion.regime.kinds import (
 from stiction.analysis.motion.rest import TOUCHES, rest_share, stick_shares, still_shares
 from stiction.analysis.record import Record
 from stiction.analysis.signals.hum import beat_frequency
-
-Floats = NDArray[np.float64]
+from stiction.arrays import Floats
 
 ENOUGH = 8.0  # samples a cycle, which show its shape
 ROUNDING = 1e-9  # of a period: stick intervals are that accurate, and more

@@ -5,11 +5,9 @@ from __future__ import annotations
 from math import hypot, log, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.analysis.motion.course import MANY, ORDERED, order
-
-Floats = NDArray[np.float64]
+from stiction.arrays import Floats
 
 # A vibration is irregular beyond either: the standard deviation of the periods over their mean,
 # which noise through a wide filter brings to 0.37 and more; and the span of the drops over their
