@@ -64,7 +64,7 @@ def draw(figure: str, *what: Any) -> Any:
 
 def picture(figure: str, *what: Any) -> str:
     """Return what a public figure draws as an image in HTML, for a notebook."""
-    shown = import_module("stiction.plotting.page.picture")
+    shown = import_module("stiction.plotting.page.save")
     return str(shown.picture(getattr(import_module("stiction.plotting"), figure), *what))
 
 

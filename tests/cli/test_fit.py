@@ -7,7 +7,7 @@ import xarray as xr
 from tests.uncertain import SIMULATIONS, TEXT
 
 import stiction as st
-from stiction.auditing.tolerance import budget
+from stiction.auditing import tolerance
 from stiction.cli import main
 from stiction.inference.next_test import further
 
@@ -20,7 +20,9 @@ def inside(*arguments):
 
 def test_a_record_from_its_file_to_a_verdict(record_file, libraries, tmp_path, capsys, monkeypatch):
     """Text without units is refused, then fitted; an audit finds the fit's simulations again."""
-    monkeypatch.setattr(budget, "DRAWS", 8)  # few tests of the rig, whose number is not the matter
+    monkeypatch.setattr(
+        tolerance, "DRAWS", 8
+    )  # few tests of the rig, whose number is not the matter
     rig, data, folder = tmp_path / "rig.toml", record_file, tmp_path / "libraries"
     rig.write_text(TEXT)
     shutil.copytree(libraries, folder)

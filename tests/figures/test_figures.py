@@ -20,11 +20,11 @@ from stiction import theory
 from stiction.analysis.creep.first_slip import first_slip_time, mean_creep_velocity
 from stiction.analysis.motion.rest import stuck_until
 from stiction.analysis.signals.spectrum import rate_spectrogram, spectrogram
+from stiction.arrays import Floats
 from stiction.plotting.analysis.cycles import plot_cycles
 from stiction.plotting.analysis.trials import Trial, plot_trials
 from stiction.plotting.apparatus.misalignment import drawn_misalignment
 from stiction.plotting.apparatus.schematic import draw_schematic
-from stiction.plotting.apparatus.shapes import Points
 from stiction.plotting.maps import Side, draw_slice
 from stiction.plotting.page.canvas import figure_of
 from stiction.plotting.page.parameter import Scale, label_decades
@@ -55,7 +55,7 @@ def words(ax: Axes) -> str:
     return " ".join(text.get_text() for text in ax.texts)
 
 
-def curve(ax: Axes, index: int = 0) -> Points:
+def curve(ax: Axes, index: int = 0) -> Floats:
     return np.asarray(ax.lines[index].get_xydata(), dtype=float)
 
 
@@ -328,7 +328,7 @@ def test_spectrogram_gives_the_amplitude_of_a_sine() -> None:
 
 
 @pytest.mark.parametrize("bad", [np.zeros(10), np.full(2000, np.nan)])
-def test_spectrogram_refuses_what_it_cannot_transform(bad: Points) -> None:
+def test_spectrogram_refuses_what_it_cannot_transform(bad: Floats) -> None:
     with pytest.raises(ValueError, match=r"window|finite"):
         spectrogram(bad, 1e4)
 

@@ -21,9 +21,8 @@ from stiction.comparison import exchange_law, read_laws, shared_traits
 from stiction.friction.equivalent import like, traits
 from stiction.plotting.page.canvas import figure_of
 from stiction.plotting.page.words import wrap_words
-from stiction.plotting.run.comparison import legend_text, plot_comparison
+from stiction.plotting.run.comparison import LAST, MANY, legend_text, plot_comparison
 from stiction.plotting.run.curves import curves_of
-from stiction.plotting.run.slip_speeds import LAST, MANY
 from stiction.result.table import as_table
 from stiction.simulation import automatic_times
 

@@ -5,7 +5,7 @@ from stiction.analysis.creep.force_curve import misalignment_from_force as misal
 from stiction.analysis.creep.misalignment import fit_misalignment as fit_misalignment
 from stiction.analysis.energy import energy_budget as energy_budget
 from stiction.analysis.measured_line import strongest_line as strongest_line
-from stiction.analysis.motion.cycle_summary import summary as summary
+from stiction.analysis.motion.cycle_columns import summary as summary
 from stiction.analysis.motion.cycles import find_cycles as find_cycles
 from stiction.analysis.motion.drift import detrend as detrend
 from stiction.analysis.motion.regime.classify import classify as classify

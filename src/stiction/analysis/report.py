@@ -14,7 +14,7 @@ from stiction.analysis.creep.misalignment import Misalignment
 from stiction.analysis.export import export
 from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.measurement.reading import read_source
-from stiction.analysis.motion.cycle_summary import summary
+from stiction.analysis.motion.cycle_columns import summary
 from stiction.analysis.motion.cycles import Swings, swings
 from stiction.analysis.motion.doubts import taken_off, turns_round, unsteady, warnings
 from stiction.analysis.motion.friction import Friction, find_friction, without_loading

@@ -11,9 +11,7 @@ from jinja2 import Environment, PackageLoader
 from matplotlib.figure import Figure
 
 import stiction
-from stiction.auditing import figures
-from stiction.auditing.measured import words as measured
-from stiction.auditing.tolerance import words as tolerance
+from stiction.auditing import figures, measured, tolerance
 from stiction.plotting.page.save import png
 from stiction.storage.files import placeable, whole
 from stiction.text.sections import join_units

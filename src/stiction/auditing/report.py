@@ -21,8 +21,7 @@ from stiction.auditing.simulated_test import (
     from_sliding,
     simulate_test,
 )
-from stiction.auditing.tolerance.budget import Budget, budget
-from stiction.auditing.tolerance.words import section
+from stiction.auditing.tolerance import Budget, budget, section
 from stiction.auditing.words.changes import changes
 from stiction.auditing.words.load_cell import TITLE as LOAD_CELL
 from stiction.auditing.words.load_cell import load_cell
@@ -39,7 +38,7 @@ from stiction.system.slider import Slider
 from stiction.text.sections import Section, as_html, as_text
 
 if TYPE_CHECKING:  # a fit takes 0.3 s to import
-    from stiction.auditing.measured.comparison import RecordComparison
+    from stiction.auditing.measured import RecordComparison
 
 # parts of the work: two tests, the advices, critical misalignments, and springs replaced
 PARTS = 4 + len(LEVERS)
@@ -191,7 +190,7 @@ def audit(
     before = FITTING if record is not None else 0.0
     measured = None
     if record is not None:
-        from stiction.auditing.measured.comparison import compare
+        from stiction.auditing.measured import compare
 
         seen = record if isinstance(record, Record) else as_record(read_source(record))
         measured = compare(
@@ -248,7 +247,7 @@ def _of_record(measured: RecordComparison | None) -> list[Section]:
     """Return the sections on a measured record, none without one."""
     if measured is None:
         return []
-    from stiction.auditing.measured.words import sections as sections_of
+    from stiction.auditing.measured import sections as sections_of
 
     return sections_of(measured)
 

@@ -17,4 +17,4 @@ from stiction.drive.recorded.piece import Recorded as Recorded
 from stiction.drive.recorded.piece import RecordedLoad as RecordedLoad
 from stiction.drive.recorded.reading import read_recorded as read_recorded
 from stiction.drive.steady import ConstantVelocity as ConstantVelocity
-from stiction.study.plan.yaw_sweep import yaw_sweep as yaw_sweep
+from stiction.study.presets import yaw_sweep as yaw_sweep

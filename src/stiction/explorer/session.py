@@ -9,20 +9,24 @@ from __future__ import annotations
 import asyncio
 import json
 import sys
-from collections.abc import Awaitable, Callable, Iterator
+from collections.abc import Awaitable, Callable, Iterator, Mapping
 from contextlib import suppress
+from math import isfinite
+from struct import pack
 from traceback import print_exc
 from typing import Any
 
+import numpy as np
+
 from stiction.errors import DescriptionError, StictionError, one_line
 from stiction.explorer.answers import ANSWERS, Request, answer
-from stiction.explorer.encoding import encode
 from stiction.explorer.motion import Reply
 from stiction.explorer.source import Opened
 
 Send = Callable[[bytes], Awaitable[None]]
 STILL = 0.12  # s without a newer request before the slower part of an answer is computed
 LANES = 2  # of each kind: the run that is shown, and the one that it is compared with
+ALIGNED = 8  # bytes
 
 
 class Superseded(Exception):
@@ -121,3 +125,39 @@ class Session:
     async def close(self) -> None:
         """End every computation of the page."""
         await asyncio.gather(*(lane.close() for lane in self._lanes.values()))
+
+
+def encode(head: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> bytes:
+    """Return a message of a head and named arrays, as they lie in memory.
+
+    The first four bytes are the length of the head in JSON (little-endian); the head is padded with
+    spaces so that the arrays begin at a multiple of eight, as typed arrays of the browser need it.
+
+    Examples
+    --------
+    >>> message = encode({"reply": "run"}, {"time": np.array([0.0, 1.0])})
+    >>> message[-16:] == np.array([0.0, 1.0]).tobytes()
+    True
+    """
+    parts: list[bytes] = []
+    places: list[list[Any]] = []
+    offset = 0
+    for name, values in arrays.items():
+        content = values.astype(values.dtype.newbyteorder("<"), copy=False).tobytes()
+        places.append([name, values.dtype.str[1:], list(values.shape), offset])
+        content += bytes(-len(content) % ALIGNED)
+        parts.append(content)
+        offset += len(content)
+    text = json.dumps(finite({**head, "arrays": places}), allow_nan=False).encode()
+    text += b" " * (-(len(text) + 4) % ALIGNED)
+    return b"".join([pack("<I", len(text)), text, *parts])
+
+
+def finite(value: Any) -> Any:
+    """Return a value for JSON, which has neither NaN nor infinity: None stands for them."""
+    if isinstance(value, Mapping):
+        return {str(key): finite(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [finite(each) for each in value]
+    value = value.item() if hasattr(value, "item") else value
+    return None if isinstance(value, float) and not isfinite(value) else value

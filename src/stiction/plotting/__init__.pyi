@@ -19,12 +19,12 @@ from stiction.plotting.protocols import plot_hysteresis as plot_hysteresis
 from stiction.plotting.protocols import plot_load_dependence as plot_load_dependence
 from stiction.plotting.protocols import plot_velocity_steps as plot_velocity_steps
 from stiction.plotting.run.comparison import plot_comparison as plot_comparison
-from stiction.plotting.run.glance import plot_glance as plot_glance
 from stiction.plotting.run.law import plot_law as plot_law
+from stiction.plotting.run.overview import plot_glance as plot_glance
 from stiction.plotting.run.overview import plot_run as plot_run
 from stiction.plotting.stability.boundary import plot_boundary as plot_boundary
+from stiction.plotting.stability.boundary import plot_stability as plot_stability
 from stiction.plotting.stability.damping import plot_damping as plot_damping
-from stiction.plotting.stability.examination import plot_stability as plot_stability
 from stiction.plotting.stability.modes import plot_modes as plot_modes
 from stiction.plotting.stability.onset import plot_onset as plot_onset
 from stiction.study.view.mapping import plot_map as plot_map

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
-from stiction.plotting.apparatus.pin_on_plate import draw_apparatus
+from stiction.plotting.apparatus.pin_on_plate import draw_apparatus, draw_side_view
 from stiction.plotting.apparatus.schematic import draw_schematic
-from stiction.plotting.apparatus.side_view import draw_side_view
 from stiction.plotting.apparatus.velocity_triangle import draw_velocity_triangle
 from stiction.plotting.page.style import PAGE, new_figure, style
 from stiction.system.slider import Slider

@@ -6,7 +6,7 @@ All start from the system of Fig. 3 of Nakano & Popov (2020), see
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import pi
 
 import numpy as np
@@ -24,6 +24,7 @@ from stiction.theory import natural_frequency
 
 TRAVEL = 4.0  # least travel of the drive, in slip lengths: load-up, then some cycles
 PERIODS = 40.0  # least duration, in slow periods, in which motion grows or dies out
+MEASURES = ("regime", "mean_force", "peak_force", "amplitude")
 
 
 def yaw_angle() -> Study:
@@ -104,3 +105,24 @@ def durations(slider: Slider, V: Floats) -> Floats:
     """Return, for each drive velocity (m/s), a duration (s) that shows the motion."""
     slow = 2.0 * pi / natural_frequency(slider.k_x, slider.mass)
     return TRAVEL * slider.F_0 / slider.k_x / V + PERIODS * slow
+
+
+def yaw_sweep(base: Description, angles: Sequence[str]) -> Study:
+    """Return the study of a test at several misalignments, for `st.analysis.apparent_friction`.
+
+    Parameters
+    ----------
+    base : Description
+        The test; long enough for the last quarter to be periodic or steady.
+    angles : sequence of str
+        Misalignments phi, with their unit.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> base = st.presets.yaw_angle_brake()
+    >>> study = st.protocols.yaw_sweep(base, [f"{phi} deg" for phi in range(0, 31, 5)])
+    >>> study.layout.runs
+    7
+    """
+    return Study(base=base, axes={"phi": Values(list(angles))}, measures=MEASURES)

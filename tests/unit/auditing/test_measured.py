@@ -7,10 +7,9 @@ import pytest
 from tests.uncertain import SIMULATIONS, record_of
 
 import stiction as st
-from stiction.auditing.measured.comparison import compare
-from stiction.auditing.measured.words import alternatives, sections, verdict
+from stiction.auditing import tolerance
+from stiction.auditing.measured import alternatives, compare, sections, verdict
 from stiction.auditing.page import page
-from stiction.auditing.tolerance import budget
 from stiction.errors import DescriptionError
 from stiction.inference.features import find_cycles
 from stiction.inference.mechanism.rivals import ROTATION, STATIC
@@ -21,7 +20,7 @@ from stiction.plotting import plot_predictive, plot_ranks
 @pytest.fixture(scope="module")
 def found(rig, record, libraries):
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(budget, "DRAWS", 8)  # of what test_tolerance examines
+        patch.setattr(tolerance, "DRAWS", 8)  # of what test_tolerance examines
         return st.audit(rig, record=record, simulations=SIMULATIONS, library=libraries)
 
 

@@ -7,10 +7,18 @@ import pytest
 from matplotlib.figure import Figure
 
 import stiction as st
+from stiction.auditing import tolerance as module
 from stiction.auditing.page import page
-from stiction.auditing.tolerance import budget as module
-from stiction.auditing.tolerance.budget import ALLOWED, Alignment, budget, crossing, read, turn_to
-from stiction.auditing.tolerance.words import limit, round_down
+from stiction.auditing.tolerance import (
+    ALLOWED,
+    Alignment,
+    budget,
+    crossing,
+    limit,
+    read,
+    round_down,
+    turn_to,
+)
 from stiction.plotting import plot_tolerance
 
 TEXT = """

@@ -16,7 +16,7 @@ from tests.waiting import PATIENCE
 import stiction as st
 from stiction.cli import main
 from stiction.friction import has_state
-from stiction.friction.user.excerpt import excerpt
+from stiction.friction.user.source import excerpt
 
 LAW = """
 from typing import NamedTuple

@@ -12,8 +12,7 @@ from stiction.inference.next_test import design as module
 from stiction.inference.next_test import further
 from stiction.inference.next_test.advice import Advice
 from stiction.inference.next_test.expectation import Expected, expectation, misses
-from stiction.inference.next_test.further import AGAIN, further_tests
-from stiction.inference.next_test.wanted import Wanted
+from stiction.inference.next_test.further import AGAIN, Wanted, further_tests
 from stiction.inference.observation import Conditions, Noise
 from stiction.inference.priors import Normal
 

@@ -10,7 +10,7 @@ import stiction as st
 from stiction import theory
 from stiction.linear_stability import boundary, critical, growth_rate, modes_over, steady_sliding
 from stiction.linear_stability.derivatives import derivative, set_valued, with_state
-from stiction.linear_stability.steady import drive_velocity
+from stiction.linear_stability.linear import drive_velocity
 from stiction.system.parameter import change_unchecked
 
 PAPER = st.presets.nakano_popov_2020()

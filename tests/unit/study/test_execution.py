@@ -169,17 +169,17 @@ DASK = "from distributed.cli.dask_{0} import main; main()"
 # a worker does no block more than a file allows: the study cannot be over before the test is
 GATE = """
 import json, pathlib, time
-from stiction.study.execution import task
+from stiction.study.execution import sweep
 
 gate = pathlib.Path({0!r})
-do_block = task.ungated = getattr(task, "ungated", task.do_block)  # loaded more than once
+do_block = sweep.ungated = getattr(sweep, "ungated", sweep.do_block)  # loaded more than once
 
 def allowed(study, store, *arguments):
     while len([*store.path.glob("status/c/*/[!.]*")]) >= json.loads(gate.read_text()):
         time.sleep(0.01)
     return do_block(study, store, *arguments)
 
-task.do_block = allowed
+sweep.do_block = allowed
 """
 
 

@@ -1,4 +1,4 @@
-"""What is measured of each cycle: the columns of the table."""
+"""What is measured of each cycle, the columns of the table, and their mean and spread."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stiction.analysis.record import Record
-from stiction.analysis.signals.peak_refinement import Vertices
-from stiction.analysis.signals.piecewise_fit import fit_pieces
+from stiction.analysis.signals.peak_refinement import Vertices, fit_pieces
 from stiction.analysis.signals.turning_points import without_spikes
 from stiction.arrays import Floats, Indices
 
@@ -43,6 +42,7 @@ JUMP = 1.5  # sampling steps: a shorter pause is not a gap
 LOADING = (0.1, 0.5)  # part of the rise that is straight: after the swing, before the creep
 QUARTER = 4  # of a fall, to each side: cubics through so much of half a sine are 0.2 % too flat
 _THREE = ((0, -1), (1, None), (2, None))  # of troughs and peaks in turn: start, peak, trough
+TIMES = ("start", "peak_time", "trough_time")  # instants, whose mean is meaningless
 
 
 @dataclass(frozen=True, eq=False)
@@ -233,3 +233,54 @@ def _smooth_rate(time: Floats, force: Floats, fall: int) -> Floats:
     window = min(2 * max(2, fall // QUARTER) + 1, (len(time) - 1) // 2 * 2 + 1)
     gained, passed = (savgol_filter(each, window, 3, deriv=1) for each in (force, time))
     return np.asarray(gained / passed)
+
+
+def summary(cycles: xr.Dataset) -> xr.Dataset:
+    """Return mean and spread of each quantity of a table of cycles.
+
+    Parameters
+    ----------
+    cycles : Dataset
+        From ``st.analysis.find_cycles``.
+
+    Returns
+    -------
+    Dataset
+        Over ``quantity`` (names, with ``unit`` beside them): ``mean``, ``standard_deviation`` of
+        a single cycle (divide by the square root of `number` for that of the mean), and
+        ``number`` of cycles in which the quantity is known. NaN if there are fewer than one, or
+        two, of them.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> time = np.arange(0.0, 10.0, 1e-3)
+    >>> cycles = st.analysis.find_cycles(st.Record(time=time, force=0.1 * (time % 2.0)))
+    >>> float(st.analysis.summary(cycles)["mean"].sel(quantity="period").round(6))
+    2.0
+    """
+    import xarray as xr
+
+    names = [str(name) for name in cycles.data_vars if name not in TIMES]
+    values = [cycles[name].values[np.isfinite(cycles[name].values)] for name in names]
+    columns = {
+        "mean": [v.mean() if len(v) else np.nan for v in values],
+        "standard_deviation": [v.std(ddof=1) if len(v) > 1 else np.nan for v in values],
+        "number": [len(v) for v in values],
+    }
+    meanings = {
+        "mean": "mean over cycles",
+        "standard_deviation": "standard deviation over cycles",
+        "number": "cycles in which it is known",
+    }
+    return xr.Dataset(
+        {
+            key: ("quantity", column, {"long_name": meanings[key]})
+            for key, column in columns.items()
+        },
+        {
+            "quantity": names,
+            "unit": ("quantity", [cycles[name].attrs["units"] for name in names]),
+            "meaning": ("quantity", [cycles[name].attrs["long_name"] for name in names]),
+        },
+    )

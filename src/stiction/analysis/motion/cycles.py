@@ -20,8 +20,8 @@ from stiction.analysis.motion.disturbance import (
 from stiction.analysis.motion.hesitations import cycle_corners
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.hum import Line, narrow_lines, of_mains, peak_frequencies
-from stiction.analysis.signals.outliers import without_outliers
 from stiction.analysis.signals.peak_refinement import Vertices, vertices
+from stiction.analysis.signals.robust import without_outliers
 from stiction.analysis.signals.turning_points import TurningPoints, turning_points
 from stiction.arrays import Floats
 from stiction.trajectory import Trajectory

@@ -1,14 +1,22 @@
-"""Means: of equal parts, and of values among which a few are wild."""
+"""Means of equal parts, means of values among which a few are wild, and signals without those."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stiction.arrays import Floats, Indices
 
 CUT = 0.1  # share of the values left out at each end
+FAR = 8.0  # times the typical step from sample to sample
+FARTHER = 2.0  # times the motion on either side: a fast movement is not an outlier
+WIDEST = 4  # samples in a row: two pairs
+LONGEST = 8  # samples in a group from first to last, including correct ones
+BESIDE = 3  # samples on either side for the motion of the signal; one of them may be wild
+PASSES = 4  # a group beside another is seen after that one is removed
+MOST = 0.05  # of the samples: if there are more, they are the signal
 
 
 class Mean(NamedTuple):
@@ -52,3 +60,56 @@ def trimmed_mean(values: Floats) -> Mean:
         return Mean(value, np.nan)
     back = np.clip(ordered, kept[0], kept[-1])
     return Mean(value, float(back.std(ddof=1)) / (1.0 - 2.0 * cut / count) / count**0.5)
+
+
+def without_outliers(values: Floats) -> Floats:
+    """Replace wild samples by the straight line between their neighbours.
+
+    Parameters
+    ----------
+    values : ndarray
+        (n,), in any unit; returned unchanged if none is wild.
+    """
+    kept, wild = values, np.zeros(len(values), bool)
+    for _ in range(PASSES):
+        found = _outliers(kept)
+        if not found.any():
+            break
+        wild |= found
+        if wild.mean() > MOST:
+            return values
+        at = np.flatnonzero(~wild)
+        kept = values.copy()
+        kept[wild] = np.interp(np.flatnonzero(wild), at, values[at])
+    return kept
+
+
+def _outliers(values: Floats) -> NDArray[np.bool_]:
+    """Return a mask of the samples in groups that jump off and back."""
+    found, steps = np.zeros(len(values), bool), np.abs(np.diff(values))
+    if not steps.any():
+        return found
+    far = FAR * float(np.median(steps[steps > 0.0]))
+    jumps = np.flatnonzero(steps > far)  # the last samples before them
+    for width in range(1, LONGEST + 1):
+        left = jumps[(jumps >= BESIDE) & (jumps + width + 1 + BESIDE < len(values))]
+        left = left[steps[left + width] > far]
+        right = left + width + 1
+        rise = values[right] - values[left]
+        inside = left[:, None] + np.arange(1, width + 1)
+        line = values[left, None] + rise[:, None] * (inside - left[:, None]) / (width + 1)
+        moves = np.maximum(_moves(values, left, -1), _moves(values, right, 1))
+        bound = np.maximum(far, FARTHER * np.maximum(moves, np.abs(rise)))
+        off = np.abs(values[inside] - line) > bound[:, None]
+        group = off[:, 0] & off[:, -1]
+        if width > WIDEST:
+            rows = np.lib.stride_tricks.sliding_window_view(off, WIDEST + 1, axis=1)
+            group &= ~np.any(np.all(rows, axis=2), axis=1)
+        found[inside[group][off[group]]] = True
+    return found
+
+
+def _moves(values: Floats, at: Indices, way: int) -> Floats:
+    """Return how far the signal moves on one side of samples: the median over three of them."""
+    beside = values[at[:, None] + way * np.arange(1, BESIDE + 1)]
+    return np.asarray(np.median(np.abs(beside - values[at, None]), axis=1))

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 from pydantic_core import PydanticCustomError
 
-from stiction.drive.recorded.piece import KINDS, Recorded, RecordedLoad
-from stiction.drive.recorded.rows import Rows, row_faults
+from stiction.drive.recorded.piece import KINDS, Recorded, RecordedLoad, Rows, row_faults
 from stiction.drive.recorded.table_file import (
     ColumnHeading,
     TextTable,

@@ -15,11 +15,10 @@ from stiction.errors import DescriptionError, Fault, ResultError
 from stiction.inference.fit import check
 from stiction.inference.library import bend_features
 from stiction.inference.mechanism.classifier import Classifier, study
-from stiction.inference.mechanism.likeness import Reference
+from stiction.inference.mechanism.likeness import Reference, trend
 from stiction.inference.mechanism.odds import CLAIM, Odds
 from stiction.inference.mechanism.rivals import Mechanism, mechanisms
 from stiction.inference.mechanism.simulations import Simulations, simulate
-from stiction.inference.mechanism.steadiness import trend
 from stiction.inference.observation import Observation, observe_all
 from stiction.inference.priors import Rig
 

@@ -15,15 +15,17 @@ from stiction.inference.next_test.advice import Advice
 from stiction.inference.next_test.expectation import Expected, expectation, misses, whole
 from stiction.inference.next_test.further import (
     AGAIN,
+    ANGLES,
     CYCLES,
     NOISE,
+    SIMULATIONS,
     Further,
+    Wanted,
     further_tests,
     usual_conditions,
     with_cycle,
     with_noise,
 )
-from stiction.inference.next_test.wanted import ANGLES, SIMULATIONS, Wanted
 from stiction.inference.observation import PER_CYCLE, Conditions, observe
 from stiction.inference.priors import Rig
 from stiction.system.slider import Slider

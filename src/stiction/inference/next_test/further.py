@@ -3,24 +3,49 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
+from pydantic import AfterValidator, Field
 
 from stiction.drive import ConstantVelocity
 from stiction.inference.features import LEAST_CYCLES, USED, find_cycles
 from stiction.inference.jitter import Jitter, move
 from stiction.inference.library import LONGEST, SPARE
-from stiction.inference.next_test.wanted import Wanted
 from stiction.inference.observation import PER_CYCLE, Conditions, Noise
 from stiction.system.slider import Slider
-from stiction.text.units import in_words
+from stiction.text.units import Angle, Force, PositiveLength, PositiveSpeed, in_words
+from stiction.text.validation import Described
 
+ANGLES = ("2 deg", "5 deg")
+SIMULATIONS = 2000  # rigs
+LEAST = 100  # of them
 CYCLES = 20  # of a test, where no record says how many it has
 VELOCITIES, LOADS = (1.0 / 3.0, 3.0), (0.5, 2.0)  # to try, over the present ones
 NOISE = 0.002  # of the friction force at rest: of a load cell, where neither record nor user says
 AGAIN = "the same test again"
 CHANNEL_NAMES = {"force_across": "the force across", "position": "the displacement"}
+
+
+def _with_force(channels: tuple[str, ...]) -> tuple[str, ...]:
+    """Refuse channels that no test has, or a test without force."""
+    if "force" not in channels or not set(channels) <= set(USED):
+        raise ValueError(
+            f"must be force, and any of {', '.join(USED[1:])}; is {', '.join(channels) or 'none'}"
+        )
+    return channels
+
+
+class Wanted(Described):
+    """The arguments of `stiction.design`, in SI."""
+
+    channels: Annotated[tuple[str, ...], AfterValidator(_with_force)] = ("force",)
+    angles: tuple[Angle, ...] = Field(ANGLES, validate_default=True)
+    velocities: tuple[PositiveSpeed, ...] | None = None
+    loads: tuple[Force, ...] | None = None
+    noise: Force | None = None
+    position_noise: PositiveLength | None = None
+    simulations: Annotated[int, Field(ge=LEAST)] = SIMULATIONS
 
 
 class Further(NamedTuple):

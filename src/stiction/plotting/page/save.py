@@ -1,19 +1,24 @@
-"""Writing of figures to files."""
+"""Writing of figures to files, and into pages."""
 
 from __future__ import annotations
 
+from base64 import b64encode
+from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 from matplotlib.figure import Figure
 
+from stiction.errors import StictionError
+from stiction.plotting.page.canvas import figure_of
 from stiction.plotting.page.style import style
 from stiction.storage.files import placeable, whole
 
 FORMATS = (".png", ".pdf", ".svg")
 # no dates: the same figure gives the same file
 METADATA: dict[str, dict[str, Any]] = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}
+WIDEST = 700  # pixels of a page
 
 
 def save(fig: Figure, path: str | Path) -> list[Path]:
@@ -63,3 +68,14 @@ def png(fig: Figure) -> bytes:
     with style():
         fig.savefig(image, format="png")
     return image.getvalue()
+
+
+def picture(draw: Callable[..., Any], *what: Any) -> str:
+    """Return what a function draws as an image in HTML; '' if there is nothing to draw."""
+    try:
+        figure = figure_of(draw, *what)
+    except StictionError:
+        return ""
+    content = b64encode(png(figure)).decode("ascii")
+    width = min(int(100 * figure.get_figwidth()), WIDEST)
+    return f'<img alt="" style="width: {width}px" src="data:image/png;base64,{content}">'

@@ -1,4 +1,4 @@
-"""A whole run on one page."""
+"""A whole run on one page, or at a glance."""
 
 from __future__ import annotations
 
@@ -30,6 +30,8 @@ LINE, GAP = 10.5, 3.0  # of text, pt
 DRAWING, LAW = 2.1, 1.7  # heights of the system's drawing and of the law, in
 
 SERIES = ("force", "friction", "direction", "position", "speed", "stuck")
+SHOWN = ("force", "direction", "speed")
+HEIGHT = 1.9  # in
 
 
 def plot_run(run: Trajectory, axes: Mapping[str, Axes] | None = None) -> dict[str, Axes]:
@@ -183,3 +185,32 @@ def _write(ax: Axes, words: list[tuple[str, list[str], str]]) -> None:
             text.set_in_layout(False)
             offset += LINE
         offset += GAP
+
+
+def plot_glance(run: Trajectory, axes: Mapping[str, Axes] | None = None) -> dict[str, Axes]:
+    """Draw a run small: spring forces, direction of friction, slip speed.
+
+    Parameters
+    ----------
+    run : Trajectory
+        Any run.
+    axes : mapping of str to Axes, optional
+        As of `stiction.plotting.plot_run`; a new figure as wide as a page when left out.
+
+    Returns
+    -------
+    dict of str to Axes
+        The axes by their names.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "0.1 s", sample_rate="10 kHz")
+    >>> axes = st.plotting.plot_glance(run)
+    """
+    with style():
+        panels = axes
+        if panels is None:
+            made = canvas(PAGE, HEIGHT).subplots(1, len(SHOWN))
+            panels = dict(zip(SHOWN, fix_ticks(list(made)), strict=True))
+    return plot_run(run, panels)

@@ -1,17 +1,19 @@
-"""The boundary of stable steady sliding in the plane of two parameters."""
+"""The examination of steady sliding, and its boundary in the plane of two parameters."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from stiction.arrays import Floats
+from stiction.linear_stability import Stability
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.parameter import PLAIN, Scale, scale_of
 from stiction.plotting.page.style import BLACK, BLUE, UNSTABLE, style
+from stiction.plotting.stability.modes import plot_modes
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -131,3 +133,23 @@ def signed_distance(curve: xr.Dataset, across: Floats, up: Floats) -> Floats:
         nearest = np.minimum(gap, nearest)
     signed: Floats = nearest * np.sign(side)
     return signed
+
+
+def plot_stability(found: Stability, axes: Any = None) -> Any:
+    """Draw the modes over one parameter, or the boundary in the plane of two.
+
+    Parameters
+    ----------
+    found : Stability
+        From `stiction.stability`.
+    axes : Axes, optional
+        As of `plot_modes` (two of them) or `plot_boundary` (one).
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> axes = st.plotting.plot_stability(st.stability(st.presets.nakano_popov_2020(), over="phi"))
+    """
+    if len(found.criticals) == 2:
+        return plot_boundary(found.boundary, ax=axes)
+    return plot_modes(found.modes, found.criticals[0], axes)

@@ -23,8 +23,7 @@ from stiction.study.plan.coordinates import (
     vary,
     zip_faults,
 )
-from stiction.study.plan.layout import Index, Layout, laid_out
-from stiction.study.plan.memory import axis_faults, run_faults
+from stiction.study.plan.layout import Index, Layout, axis_faults, laid_out, run_faults
 from stiction.study.plan.reading import axes_of, is_description, measures_of, traces_of
 from stiction.study.variables.measures import DEFAULT
 from stiction.study.variables.observed_run import seconds_of

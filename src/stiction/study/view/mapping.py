@@ -23,7 +23,7 @@ from stiction.plotting.maps import (
 )
 from stiction.plotting.page.canvas import as_list, canvas, fix_ticks, panel
 from stiction.plotting.page.parameter import Scale, in_unit, parameter_symbol
-from stiction.plotting.page.picture import picture
+from stiction.plotting.page.save import picture
 from stiction.plotting.page.style import COLUMN, PAGE, style
 from stiction.plotting.stability.damping import draw_damping_map
 from stiction.study.plan.layout import Index

@@ -68,7 +68,7 @@ class Summary(NamedTuple):
         return [Section(str(self.store), lines)]
 
     def _repr_html_(self) -> str:
-        from stiction.plotting.page.picture import picture
+        from stiction.plotting.page.save import picture
 
         return as_html(self.tables()) + picture(self.plot)
 

@@ -10,7 +10,7 @@ from tests.measured import read_measured
 
 import stiction as st
 from stiction import theory
-from stiction.analysis.creep.binning import bin_edges
+from stiction.analysis.creep.curve import bin_edges
 from stiction.analysis.creep.findings import MISSED
 from stiction.analysis.signals.robust import trimmed_mean
 from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep

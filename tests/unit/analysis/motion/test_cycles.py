@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from tests.measured import bare, read_measured
 
 import stiction as st
-from stiction.analysis.motion.cycle_summary import TIMES
+from stiction.analysis.motion.cycle_columns import TIMES
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.friction import find_friction
 from stiction.analysis.motion.hesitations import take_out
-from stiction.analysis.signals.outliers import without_outliers
 from stiction.analysis.signals.reversals import all_heights, standing_out, taken_out
+from stiction.analysis.signals.robust import without_outliers
 from stiction.analysis.signals.turning_points import _locate, turning_points
 from stiction.plotting.analysis.cycles import plot_cycles
 from stiction.plotting.page.canvas import figure_of

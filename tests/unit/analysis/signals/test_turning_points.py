@@ -5,8 +5,8 @@ import pytest
 from scipy.stats import binom
 from tests.drawn import inside
 
-from stiction.analysis.signals import gap, peak_refinement, reversals, turning_points
-from stiction.analysis.signals.piecewise_fit import fit_pieces
+from stiction.analysis.signals import peak_refinement, reversals, turning_points
+from stiction.analysis.signals.peak_refinement import fit_pieces
 
 WALKS = [np.rint(np.cumsum(each) * 40).astype(np.int64) for each in inside(4, *[(-1.0, 1.0)] * 60)]
 
@@ -85,11 +85,11 @@ def test_what_stands_out(values, wanted):
 @pytest.mark.parametrize(("found", "among", "chance"), [(7, 10, 0.3), (3, 40, 0.01), (40, 50, 0.5)])
 def test_a_chance_is_bounded(found, among, chance):
     """Chernoff: the bound has the right exponent; of what is no surprise it tells nothing."""
-    worth = float(gap._surprise(found, among, chance))
+    worth = float(turning_points._surprise(found, among, chance))
     exact = -binom.logsf(found - 1, among, chance)
     assert worth <= exact <= worth + np.log(among + 1)
-    assert gap._surprise(2, 10, 0.3) == 0.0
-    assert gap._surprise(0, 0, 0.3) == 0.0
+    assert turning_points._surprise(2, 10, 0.3) == 0.0
+    assert turning_points._surprise(0, 0, 0.3) == 0.0
 
 
 @pytest.mark.parametrize(("small", "large"), [(1.0, 20.0), (3.0, 10.0)])
@@ -98,30 +98,32 @@ def test_the_widest_gap_lies_between_two_kinds_of_heights(small, large):
     clear = []
     for number in (5, 50):
         heights = [*np.linspace(0.5, 1.0, 200) * small, *np.linspace(1.0, 1.3, number) * large]
-        found = gap.widest_gap(heights, 0.1, 60)
+        found = turning_points.widest_gap(heights, 0.1, 60)
         assert 0.8 * small <= found.low <= 1.2 * small + 0.1  # edges are 2^(1/4) apart
         assert 0.8 * large <= found.high <= 1.2 * large
         assert found.middle == pytest.approx((found.low * found.high) ** 0.5)
         clear.append(found.clearness)
     assert clear[1] > 5 * clear[0] > 5 * 3
-    assert gap.widest_gap(heights, 0.1, 40).clearness < clear[1]  # no more than so many are large
+    assert (
+        turning_points.widest_gap(heights, 0.1, 40).clearness < clear[1]
+    )  # no more than so many are large
     # the counts of two steps and more alone, and none where all are as small
-    assert gap.widest_gap(heights, large, 60) == gap.NO_GAP
-    assert gap.widest_gap([], 0.1, 60) == gap.NO_GAP
-    assert gap.widest_gap(heights, 0.0, 60) == gap.NO_GAP
+    assert turning_points.widest_gap(heights, large, 60) == turning_points.NO_GAP
+    assert turning_points.widest_gap([], 0.1, 60) == turning_points.NO_GAP
+    assert turning_points.widest_gap(heights, 0.0, 60) == turning_points.NO_GAP
 
 
 def test_a_gap_reaches_up_to_the_lowest_of_the_large_heights():
     """To an edge below it, which are a quarter of an octave apart, down from the largest height."""
     heights = [*np.linspace(0.5, 1.0, 200), *np.linspace(0.9, 1.0, 30) * 20.0]
-    found = gap.widest_gap(heights, 0.1, 60)
+    found = turning_points.widest_gap(heights, 0.1, 60)
     assert 0.9 * 20.0 * 2**-0.25 < found.high <= 0.9 * 20.0
 
 
 def test_a_gap_is_as_unlikely_as_a_random_walk_makes_it():
     """n (a/b)^2 of n heights above a are above b; each end lies 2 x 0.583 steps farther."""
     heights, step = [*[2.0] * 99, 16.0, 16.0, 16.0, 16.0], 0.5
-    found = gap.widest_gap(heights, step, 50)
+    found = turning_points.widest_gap(heights, step, 50)
     beyond = 2 * 0.583 / 0.674 * step
     share = ((found.low + beyond) / (found.high + beyond)) ** 2
     assert found.clearness == pytest.approx(-4 * np.log(share))  # all four
@@ -393,4 +395,4 @@ def test_a_signal_turns_wherever_it_ends(last):
 
 @pytest.mark.parametrize(("heights", "step"), [([], 1.0), ([1.0, 2.0], 1.0), ([5.0], 0.0)])
 def test_without_heights_above_two_steps_there_is_no_gap(heights, step):
-    assert gap.widest_gap(heights, step, 3.0) == (0.0, 0.0, 0.0)
+    assert turning_points.widest_gap(heights, step, 3.0) == (0.0, 0.0, 0.0)

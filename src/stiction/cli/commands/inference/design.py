@@ -90,7 +90,7 @@ def design(
     from stiction.cli.tables import print_sections
     from stiction.inference.library import cache_folder
     from stiction.inference.next_test.design import design as find
-    from stiction.inference.next_test.wanted import ANGLES
+    from stiction.inference.next_test.further import ANGLES
     from stiction.inference.priors import Rig
 
     if output is not None:

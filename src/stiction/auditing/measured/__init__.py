@@ -1,1 +1,0 @@
-"""A measured record beside an audit: fit, predictive check, and a verdict."""
