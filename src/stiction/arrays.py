@@ -1,10 +1,27 @@
-"""Arrays of numbers, as annotations name them."""
+"""Arrays of numbers, as annotations name them, and xarray, imported at its first use."""
 
 from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+__all__ = ["Complex", "Floats", "Indices", "xr"]
+
 Floats = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Indices = NDArray[np.intp]
+
+if TYPE_CHECKING:
+    import xarray as xr
+else:
+
+    class _LateModule:
+        """A module that takes longer to import than a run: it waits until it is used."""
+
+        def __getattr__(self, name: str) -> Any:
+            return getattr(import_module("xarray"), name)
+
+    xr = _LateModule()

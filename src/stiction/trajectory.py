@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from stiction.arrays import xr
 from stiction.errors import DescriptionError, ResultError, Status
 from stiction.friction import states
 from stiction.names import draw, picture
@@ -28,7 +29,6 @@ from stiction.text.validation import read_arguments
 
 if TYPE_CHECKING:
     import pandas as pd
-    import xarray as xr
 
 
 @dataclass(frozen=True)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from math import cos, sin
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from stiction.analysis.quadrature import integrals, states_at
-from stiction.arrays import Floats
+from stiction.arrays import Floats, xr
 from stiction.drive import drive_stretches, jump
 from stiction.drive.program import pick
 from stiction.errors import ResultError, echo
@@ -17,9 +17,6 @@ from stiction.solver.integrate import tolerance
 from stiction.system.slider import Slider
 from stiction.system.tensors import damping_tensor, mass_tensor
 from stiction.trajectory import Trajectory
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 # name: long name; all in J
 ENERGIES = {
@@ -89,8 +86,6 @@ def energy_budget(run: Trajectory, edges: ArrayLike | None = None) -> xr.Dataset
     >>> bool((abs(budget["residual"]) < budget["bound"]).all())
     True
     """
-    import xarray as xr
-
     borders = _edges(run, edges)
     rtol = run.description.run.rtol
     powers, off, sizes, rows = integrals(run, borders, lambda t, rows: _powers(run, t, rows), rtol)

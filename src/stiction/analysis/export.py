@@ -7,12 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stiction.analysis.parts import functions
+from stiction.arrays import xr
 from stiction.storage.files import placeable, whole
 from stiction.storage.table_files import with_units, write_tables
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from stiction.analysis.report import Analysis
 
 

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from math import hypot, pi, sqrt
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from stiction.arrays import xr
 from stiction.linear_stability import steady_sliding
 from stiction.simulation import simulate
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 KICK = 1e-2  # of the drive's speed: the disturbance of steady sliding
 DECAYED, GROWN = 0.3, 3.0  # times the kick: below it rests, above it can be an oscillation

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from stiction.analysis.record import Record
@@ -11,10 +9,8 @@ from stiction.analysis.signals.digitised import rounding_line
 from stiction.analysis.signals.even_grid import EvenGrid, even_grid, why_not
 from stiction.analysis.signals.ridge import follow_ridge
 from stiction.analysis.signals.spectrum import spectrogram
+from stiction.arrays import xr
 from stiction.errors import ResultError
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 PERIODS = 100.0  # of the lowest frequency, in a window
 # Times the amplitude of a sawtooth's harmonic, or of the rounding's; a force of two levels has 2

@@ -12,21 +12,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise, takewhile
 from math import isnan, nan
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from stiction.analysis.limit_cycle import KICK, OSCILLATING, REST, UNDECIDED, Found, settle
-from stiction.arrays import Floats
+from stiction.arrays import Floats, xr
 from stiction.errors import DescriptionError, Fault
 from stiction.linear_stability import steady_sliding
 from stiction.names import draw
 from stiction.system.parameter import change_parameter, change_unchecked, read, unit
 from stiction.system.slider import Slider
 from stiction.text.units import Quantity, with_error
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Kind = Literal["soft", "hard", "not determined", "none"]
 
@@ -368,8 +365,6 @@ def judge_points(points: Sequence[SweepPoint], data: xr.Dataset) -> Onset:
 
 def table(path: str, unit: str, points: Sequence[SweepPoint], growth: Floats) -> xr.Dataset:
     """Return the sweeps as labelled arrays."""
-    import xarray as xr
-
     values = np.array([each.value for each in points])
     sweeps = [[each.up for each in points], [each.down for each in points]]
     amplitude = np.array([[found.amplitude for found in sweep] for sweep in sweeps])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -11,12 +11,9 @@ from stiction import theory
 from stiction.analysis.motion.rest import sticks_until, stuck_until
 from stiction.analysis.signals.ridge import follow_ridge
 from stiction.analysis.signals.spectrum import rate_spectrogram
-from stiction.arrays import Floats
+from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
 from stiction.trajectory import Trajectory
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Rows = dict[str, tuple[Any, str, str]]  # name: values, unit, long name
 
@@ -140,8 +137,6 @@ def oscillation_by_phase(oscillation: xr.Dataset, run: Trajectory, phases: Float
     >>> bool(found["share_stuck"][0] > 0.05)
     True
     """
-    import xarray as xr
-
     phases = np.asarray(phases, dtype=np.float64).reshape(-1, 2)
     length = phases[:, 1] - phases[:, 0]
     begun = sticks_until(phases, run.stick_intervals)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -28,13 +28,11 @@ from stiction.analysis.oscillation import (
 )
 from stiction.analysis.parts import functions
 from stiction.analysis.record import Record, as_record
+from stiction.arrays import xr
 from stiction.deprecation import warn_renamed
 from stiction.names import draw
 from stiction.text.sections import Section, as_html, as_text
 from stiction.trajectory import Trajectory
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 HARMONICS = 10.0  # of the stick-slip; oscillations are sought above them
 OF_STICKING = ("mu_static", "stick_slope", "stiffness", "creep_distance")  # columns of cycles

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite, nan
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -19,15 +19,13 @@ from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK
 from stiction.analysis.motion.rest import stuck_share
 from stiction.analysis.record import Record, record_of
+from stiction.arrays import xr
 from stiction.auditing.prediction import SEEN, Prediction
 from stiction.linear_stability import Linearisation
 from stiction.simulation import simulate
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
 from stiction.trajectory import Trajectory
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 CYCLES = 6  # of expected stick-slip to simulate
 LOAD_UPS = 4.0  # to wait for a force that approaches the friction limit only slowly
@@ -41,7 +39,6 @@ LEAST_WORK = 20_000  # steps: a trial with fewer would be cut
 SHARE = 0.35  # of that for each of the tests from rest and from sliding
 FINE = 1000.0  # samples from the one before the first slip to the one after it
 MANY = 50_000  # transverse periods above which fewer cycles are simulated
-
 
 Progress = Callable[[float], None] | None
 

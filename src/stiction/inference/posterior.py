@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from scipy.special import ndtr
 
-from stiction.arrays import Floats
+from stiction.arrays import Floats, xr
 from stiction.errors import ResultError, echo
 from stiction.inference.calibration import Learned
 from stiction.inference.library import Library, Plan
@@ -21,9 +21,6 @@ from stiction.text.paths import last_part
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table, as_html
 from stiction.text.units import in_words
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 DRAWS = 4000  # equally weighted, of the posterior and of the prior
 INTERVAL = 0.95
@@ -238,8 +235,6 @@ def resample(sample: Sample) -> Floats:
 
 def dataset(plan: Plan, scores: Floats) -> xr.Dataset:
     """Return draws as a dataset: angles in degrees, as everywhere in data."""
-    import xarray as xr
-
     columns: dict[str, Any] = {}
     for i, (name, prior) in enumerate(plan.priors.items()):
         values, its = prior.quantile(ndtr(scores[:, i])), unit_of(plan, name)

@@ -9,20 +9,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 from math import atan2, cos, hypot, pi, sin
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from stiction.arrays import Floats
+from stiction.arrays import Floats, xr
 from stiction.errors import DescriptionError, Fault
 from stiction.linear_stability.axis import Axis, axis, present_value
 from stiction.linear_stability.linear import growth_rate, steady_sliding
 from stiction.linear_stability.roots import sign_changes, signed_growth
 from stiction.system.slider import Slider
 from stiction.text.units import Quantity
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 LINES = (0.0, 0.25, 0.5, 0.75, 1.0)  # across both ranges, searched for points of curves
 LOOKS = 33  # points on each line
@@ -123,8 +120,6 @@ def table(
     slider: Slider, x: Axis, y: Axis, branches: Sequence[Floats], at: Callable[[Point], Slider]
 ) -> xr.Dataset:
     """Return the curves as labelled arrays."""
-    import xarray as xr
-
     points = [(float(a), float(b)) for branch in branches for a, b in branch]
     count = [n for n, branch in enumerate(branches) for _ in branch]
     frequency = [steady_sliding(at(point)).frequencies[0] for point in points]

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from stiction.arrays import xr
 from stiction.deprecation import old_attributes
 from stiction.errors import StictionError, echo
 from stiction.linear_stability.axis import present_value
@@ -30,8 +31,6 @@ from stiction.text.sections import Section, Table, as_html, as_text
 from stiction.text.units import Quantity, in_words
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from stiction.system.description import Description
 
 OVER = ("phi", "drive.velocity")

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stiction.arrays import Complex
+from stiction.arrays import Complex, xr
 from stiction.linear_stability.axis import axis
 from stiction.linear_stability.linear import steady_sliding
 from stiction.system.slider import Slider
 from stiction.text.units import Quantity
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def modes_over(
@@ -46,8 +42,6 @@ def modes_over(
     >>> dict(modes.sizes)
     {'value': 11, 'mode': 4}
     """
-    import xarray as xr
-
     along = axis(slider, path, between)
     fractions = np.linspace(0.0, 1.0, points)
     rows: list[Complex] = []

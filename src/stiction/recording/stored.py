@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from stiction.arrays import Floats
+from stiction.arrays import Floats, xr
 from stiction.errors import DescriptionError, ResultError
 from stiction.recording.channels import CHANNELS
 from stiction.recording.guess.clock import rate_of
@@ -103,8 +103,6 @@ def read_stored(path: Path) -> Measurement:
     ResultError
         If the file is damaged.
     """
-    import xarray as xr
-
     if as_written(path) is False:
         raise ResultError(f"{path}: is damaged, its bytes have changed; import the record again")
     if as_written(path) is None:

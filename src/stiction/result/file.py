@@ -7,19 +7,17 @@ from collections.abc import Iterable, Iterator, Sequence
 from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from stiction.arrays import xr
 from stiction.errors import ResultError
 from stiction.result.checksums import SEAL, as_written, damaged_parts, seal_tables, sign
 from stiction.result.columns import STICKS, VARIABLES
 from stiction.result.table import ColumnTable, as_table
 from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files
 from stiction.storage.isolation import apart
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 CHANGED = "is damaged, or was changed: "
 SIGNATURE = b"\x89HDF\r\n\x1a\n"  # of HDF5, the format below NetCDF 4
@@ -136,8 +134,6 @@ def age(data: xr.Dataset) -> str:
 
 def open_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
     """Return the two tables of a file; up to version 0.4 both are in the root group."""
-    import xarray as xr
-
     how: dict[str, Any] = {"engine": "h5netcdf", "decode_times": False, "phony_dims": "sort"}
     data = xr.load_dataset(path, **how)
     if "stick" in data.dims:

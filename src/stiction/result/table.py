@@ -8,12 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-if TYPE_CHECKING:
-    import xarray as xr
+from stiction.arrays import xr
 
 
 class Column(NamedTuple):
@@ -46,8 +45,6 @@ class ColumnTable:
 
 def as_dataset(table: ColumnTable) -> xr.Dataset:
     """Return a table for xarray; a column that is named as its dimension is a coordinate."""
-    import xarray as xr
-
     return xr.Dataset(dict(table.columns), attrs=dict(table.attributes))
 
 

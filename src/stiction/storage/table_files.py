@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from stiction.arrays import xr
 from stiction.errors import ResultError
 from stiction.storage.files import placeable, whole
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Tables = Mapping[str, "xr.Dataset"]
 

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from stiction.analysis.creep.first_slip import creep_end
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.robust import trimmed_mean
-from stiction.arrays import Floats
+from stiction.arrays import Floats, xr
 from stiction.errors import ResultError, echo
 from stiction.trajectory import Trajectory
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 FINEST = 100  # bins in a stick phase, if all were as narrow as the last
 LAG = 8  # samples, for the noise; successive samples of a load cell are correlated
@@ -83,8 +80,6 @@ def creep_curves(
     >>> sorted(curves.data_vars)
     ['begin', 'end', 'force', 'velocity', 'velocity_error']
     """
-    import xarray as xr
-
     if width is not None and not width > 0.0:
         raise ResultError(
             f"width must be above 0 s, is {echo(width)}; leave it out for one that suits"
@@ -143,8 +138,6 @@ def mean_creep(curves: xr.Dataset) -> xr.Dataset:
     >>> sorted(mean.data_vars)
     ['begin', 'end', 'force', 'phases', 'velocity', 'velocity_error']
     """
-    import xarray as xr
-
     seen = np.isfinite(curves["velocity"].values)
     bins = np.flatnonzero(seen.any(axis=0))
     table = np.stack([curves[name].values for name in CURVES])

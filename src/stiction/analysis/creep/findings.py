@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import degrees
-from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -13,13 +13,11 @@ from stiction.analysis.creep.divergence import Divergence, fit_divergence
 from stiction.analysis.creep.force_curve import misalignment_from_force
 from stiction.analysis.creep.misalignment import Misalignment, fit_misalignment
 from stiction.analysis.record import Record
+from stiction.arrays import xr
 from stiction.drive.program import nominal_velocity
 from stiction.errors import ResultError, StictionError
 from stiction.text.quantity_text import percent
 from stiction.trajectory import Trajectory
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 T = TypeVar("T")
 

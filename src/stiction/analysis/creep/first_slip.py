@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from math import cos, pi, sin, sqrt
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from stiction import theory
-from stiction.arrays import Floats
+from stiction.arrays import Floats, xr
 from stiction.friction import has_state
 from stiction.friction.law import static_coefficient
 from stiction.system.slider import Slider
 from stiction.trajectory import Trajectory
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 # Least gain of a slip on the drive, in units of the drive's speed over the slower and over the
 # faster angular frequency. Half a swing on the soft spring at 1.5 times the drive's speed gains 1
@@ -147,8 +144,6 @@ def mean_creep_velocity(run: Trajectory, width: float = 0.02) -> xr.DataArray:
     DataArray
         Over ``time`` (s), the middle of each interval; empty if slip comes before two of them.
     """
-    import xarray as xr
-
     times, X = run.samples["time"], run.samples["X"]
     end = first_slip_time(run)
     rests = run.stick_intervals[run.stick_intervals[:, 1] < end, 1]

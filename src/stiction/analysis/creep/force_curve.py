@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import degrees, exp, log, pi
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -11,12 +11,9 @@ from stiction.analysis.creep.loading_curve import LoadingCurve, loading_curve
 from stiction.analysis.creep.misalignment import Misalignment
 from stiction.analysis.motion.cycles import find_cycles
 from stiction.analysis.record import Record
-from stiction.arrays import Floats
+from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
 from stiction.text.quantity_text import percent
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 GRID = 400  # angles at which the closed form is tabled
 MODEL = 1e-4  # of the drop: least error of Eq. (7) with the terms below

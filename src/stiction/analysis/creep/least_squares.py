@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
-from stiction.arrays import Floats
+from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
 from stiction.text.units import in_words
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 THEORY = 0.01  # relative accuracy of Eqs. (7) and (8): they leave out inertia and terms in phi
 

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import dither_remainder, resolution
-from stiction.arrays import Floats
+from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 LEVELS = 40  # number of forces on the curve
 FEWEST = 10  # bins in a rise, each of at least two samples

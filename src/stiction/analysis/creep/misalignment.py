@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from stiction.analysis.creep.least_squares import fit_parameters, used_bins
-from stiction.arrays import Floats
-
-if TYPE_CHECKING:
-    import xarray as xr
+from stiction.arrays import Floats, xr
 
 START = 0.02  # rad, of phi, and of the weakening
 WEAKENINGS = (-0.3, 1.0)  # from strengthening to half the friction at the drive's speed

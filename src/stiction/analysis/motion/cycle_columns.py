@@ -4,17 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from stiction.analysis.record import Record
 from stiction.analysis.signals.peak_refinement import Vertices, fit_pieces
 from stiction.analysis.signals.turning_points import without_spikes
-from stiction.arrays import Floats, Indices
-
-if TYPE_CHECKING:
-    import xarray as xr
+from stiction.arrays import Floats, Indices, xr
 
 # name: (unit, long name), as CF attributes
 COLUMNS = {
@@ -84,8 +80,6 @@ class CycleTable:
 
     def as_dataset(self) -> xr.Dataset:
         """Return the table for xarray, over ``cycle``, 1, 2, ..., with units."""
-        import xarray as xr
-
         table = xr.Dataset(
             {
                 name: ("cycle", self[name], {"units": unit, "long_name": meaning})
@@ -259,8 +253,6 @@ def summary(cycles: xr.Dataset) -> xr.Dataset:
     >>> float(st.analysis.summary(cycles)["mean"].sel(quantity="period").round(6))
     2.0
     """
-    import xarray as xr
-
     names = [str(name) for name in cycles.data_vars if name not in TIMES]
     values = [cycles[name].values[np.isfinite(cycles[name].values)] for name in names]
     columns = {

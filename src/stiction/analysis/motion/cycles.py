@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,11 +23,8 @@ from stiction.analysis.signals.hum import Line, narrow_lines, of_mains, peak_fre
 from stiction.analysis.signals.peak_refinement import Vertices, vertices
 from stiction.analysis.signals.robust import without_outliers
 from stiction.analysis.signals.turning_points import TurningPoints, turning_points
-from stiction.arrays import Floats
+from stiction.arrays import Floats, xr
 from stiction.trajectory import Trajectory
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 LINES = 4  # taken off at most
 SAME = 0.01  # of a line's frequency: so far apart are two lines at least

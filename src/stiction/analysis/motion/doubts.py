@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from math import log10, pi
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,12 +15,10 @@ from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, 
 from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import even_grid, why_not
 from stiction.analysis.signals.hum import Line, of_mains
+from stiction.arrays import xr
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 LARGEST_MU = 3.0
 LEAST_MU = 0.01  # of dry friction: superlubricity aside

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from stiction.analysis.motion.cycles import find_cycles
 from stiction.analysis.record import Record
 from stiction.analysis.signals.robust import part_means
-from stiction.arrays import Floats
-
-if TYPE_CHECKING:
-    import xarray as xr
+from stiction.arrays import Floats, xr
 
 SURE = 4.0  # standard errors
 WORTH = 0.02  # of the mean force, over the record: smaller drift is not reported

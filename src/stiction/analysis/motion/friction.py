@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,11 +23,8 @@ from stiction.analysis.motion.rest import comes_to_rest
 from stiction.analysis.record import Record
 from stiction.analysis.signals.robust import part_means, part_starts
 from stiction.analysis.signals.turning_points import without_spikes
-from stiction.arrays import Floats
+from stiction.arrays import Floats, xr
 from stiction.text.quantity_text import percent
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 PARTS = 400  # number of means of a record in which its break-away is sought
 FEWEST = 32  # least number of samples

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import isfinite, nan, pi
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,10 +11,7 @@ from stiction.analysis.motion.drift import find_drift
 from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
 from stiction.analysis.signals.robust import trimmed_mean
-from stiction.arrays import Floats
-
-if TYPE_CHECKING:
-    import xarray as xr
+from stiction.arrays import Floats, xr
 
 FASTER, SLOWER = 1.1, 0.5  # rate of loading over stiffness times drive velocity
 LIGHTER, HEAVIER = 1.4, 0.7  # k/m by the swing over that stated; a slip is slower than a swing

@@ -10,17 +10,15 @@ import numpy as np
 from stiction.analysis.creep.findings import RESTS, drive_speed
 from stiction.analysis.motion.regime.kinds import STUCK
 from stiction.analysis.parts.wording import SLIGHT, number
+from stiction.arrays import xr
 from stiction.friction import states
 from stiction.text.sections import Section
 from stiction.text.units import in_words, with_error
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from stiction.analysis.creep.misalignment import Misalignment
     from stiction.analysis.report import Analysis
-
 
 RESTING = "it rests"
 USUAL = 0.5  # of the stick phases: what only the longest of them reach is left to the table

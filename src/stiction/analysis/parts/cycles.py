@@ -8,16 +8,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stiction.analysis.parts.wording import SHOWN, number, with_spread
+from stiction.arrays import xr
 from stiction.text.columns import Quantity, grid
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from stiction.analysis.report import Analysis
-
 
 COLUMNS = {
     "start": "start",

@@ -8,6 +8,7 @@ import numpy as np
 
 from stiction.analysis.energy import energy_budget
 from stiction.analysis.parts.wording import SHOWN
+from stiction.arrays import xr
 from stiction.errors import ResultError
 from stiction.text.columns import Quantity, grid
 from stiction.text.quantity_text import percent
@@ -16,10 +17,7 @@ from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from stiction.analysis.report import Analysis
-
 
 ENERGIES = {
     "work": "work",

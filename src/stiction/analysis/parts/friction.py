@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 from stiction.analysis.motion.friction import Measured
 from stiction.analysis.parts.wording import SLIGHT, number, with_spread
+from stiction.arrays import xr
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words, with_error
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from stiction.analysis.report import Analysis
-
 
 FRICTIONS = {
     "break_away": "first break-away",
@@ -91,8 +89,6 @@ def _overshoot(found: Analysis) -> list[str]:
 
 def tables(found: Analysis) -> dict[str, xr.Dataset | None]:
     """Return the known kinds of friction, a row each."""
-    import xarray as xr
-
     known = {name: each for name in FRICTIONS if (each := getattr(found.friction, name))}
     columns = {
         key: ("friction", [getattr(each, key) for each in known.values()], {"units": unit})

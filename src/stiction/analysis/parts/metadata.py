@@ -13,12 +13,11 @@ from stiction.analysis.motion.metadata import (
     StatedQuantity,
 )
 from stiction.analysis.parts.wording import number
+from stiction.arrays import xr
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words, with_error
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from stiction.analysis.report import Analysis
 
 SAME, SURE = 0.1, 3.0  # relative, and standard errors: values that differ by less are the same
@@ -93,8 +92,6 @@ def _rows(its: tuple[StatedQuantity, ...]) -> list[tuple[str, ...]]:
 
 def tables(found: Analysis) -> dict[str, xr.Dataset | None]:
     """Return a row for each quantity, in SI."""
-    import xarray as xr
-
     its: tuple[StatedQuantity, ...] = found.parts["metadata"]
     columns = {name: ("quantity", [getattr(each, name) for each in its]) for name in NUMBERS}
     texts = {name: ("quantity", [getattr(each, name) for each in its]) for name in ("unit", "how")}

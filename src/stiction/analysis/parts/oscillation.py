@@ -9,14 +9,13 @@ import numpy as np
 from stiction.analysis.oscillation import hides, stands_out
 from stiction.analysis.parts.wording import SHOWN
 from stiction.analysis.signals.hum import of_mains
+from stiction.arrays import xr
 from stiction.text.columns import Quantity, grid
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
 from stiction.text.units import in_words
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from stiction.analysis.report import Analysis
 
 

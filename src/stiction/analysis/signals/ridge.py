@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from stiction.arrays import Floats, Indices
-
-if TYPE_CHECKING:
-    import xarray as xr
+from stiction.arrays import Floats, Indices, xr
 
 # Amplitudes of noise are Rayleigh-distributed: 1 in 500 windows of 1000 lines has one that is
 # five times their median, exp(-25 ln 2) for each.
@@ -56,8 +51,6 @@ def follow_ridge(
     >>> round(float(ridge["frequency"].mean()))
     100
     """
-    import xarray as xr
-
     band = amplitude.sel(frequency=slice(low, high))
     if band.sizes["frequency"] < 3:
         raise ValueError(

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike
 
-from stiction.arrays import Floats
+from stiction.arrays import Floats, xr
 from stiction.trajectory import Trajectory
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 BLOCK = 2**17  # samples taken at once from what can be sliced, 1 MB
 AT_ONCE = 2**18  # samples in the windows that are transformed at once, 2 MB
@@ -48,8 +45,6 @@ class Windows(NamedTuple):
 
     def label(self, amplitude: Floats, first: int, start: float) -> xr.DataArray:
         """Return amplitudes with their frequencies and times; `first` is the first window's."""
-        import xarray as xr
-
         frequency = np.arange(self.length // 2 + 1) * (self.rate / self.length)
         place = (first + np.arange(amplitude.shape[1])) * self.hop + self.length // 2
         return xr.DataArray(

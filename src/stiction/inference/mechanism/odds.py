@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from stiction.arrays import Floats
+from stiction.arrays import Floats, xr
 from stiction.inference.features import EDGES
 from stiction.inference.mechanism.likeness import Likeness
 from stiction.inference.mechanism.rivals import ROTATION, STATIC
@@ -15,9 +15,6 @@ from stiction.inference.posterior import RARE
 from stiction.names import draw
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table, as_html
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 CLAIM = 0.9  # probability from which on a mechanism is claimed
 TREND = 0.01  # probability below which cycles do not stay the same
@@ -177,8 +174,6 @@ class Odds:
     @property
     def data(self) -> xr.Dataset:
         """Probabilities and confusion as a dataset over ``mechanism`` and ``called``."""
-        import xarray as xr
-
         columns: dict[str, Any] = {
             "probability": ("mechanism", self.probabilities),
             "confusion": (("mechanism", "called"), self.confusion),

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from stiction.arrays import xr
 from stiction.inference.library import Plan
 from stiction.inference.next_test.expectation import Expected
 from stiction.inference.next_test.further import AGAIN
@@ -17,9 +18,6 @@ from stiction.text.paths import last_part
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table, as_html
 from stiction.text.units import in_words
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 @dataclass(frozen=True, repr=False)
@@ -72,8 +70,6 @@ class Advice:
     @property
     def data(self) -> xr.Dataset:
         """Widths, errors and ratios as a dataset over ``test`` and ``parameter``."""
-        import xarray as xr
-
         dims = ("test", "parameter")
         columns: dict[str, Any] = {
             name: (dims, np.array([getattr(test, name) for test in self.tests]))

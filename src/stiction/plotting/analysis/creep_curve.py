@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator
 
 from stiction import theory
-from stiction.arrays import Floats
+from stiction.arrays import Floats, xr
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.parameter import PLAIN
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, RED, style
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Line = Callable[[Floats], Any]  # time to slip (s) to velocity (m/s)
 

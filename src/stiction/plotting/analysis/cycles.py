@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,14 +12,12 @@ from numpy.typing import NDArray
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.record import Record, as_record
+from stiction.arrays import xr
 from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
 from stiction.plotting.page.style import BLUE, GREY, PAGE, PALE, RED, style
 from stiction.plotting.run.time_series import draw_line, name_time
 from stiction.text.quantity_text import metric_prefix
 from stiction.trajectory import Trajectory
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 FEW = 12  # cycles that can be distinguished on a page's width
 SHOWN = 6  # cycles in the close-up

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator, NullFormatter
 from numpy.typing import NDArray
 
+from stiction.arrays import xr
 from stiction.plotting.page.canvas import stack
 from stiction.plotting.page.style import (
     BLACK,
@@ -24,9 +24,6 @@ from stiction.plotting.page.style import (
     style,
 )
 from stiction.text.quantity_text import metric_prefix
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 # terms of the budget: label, colour, hatch, whether dissipated
 PARTS = {

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from stiction.analysis.oscillation import oscillation_spectrogram
+from stiction.arrays import xr
 from stiction.plotting.analysis.spectrogram import draw_spectrogram, frequency_unit
 from stiction.plotting.page.canvas import stack
 from stiction.plotting.page.style import (
@@ -22,9 +23,6 @@ from stiction.plotting.page.style import (
     style,
 )
 from stiction.trajectory import Trajectory
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 HIGHEST = 1.5  # of omega_y, drawn
 

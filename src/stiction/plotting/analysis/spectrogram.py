@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.lines import Line2D
 
+from stiction.arrays import xr
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.style import style
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def plot_spectrogram(

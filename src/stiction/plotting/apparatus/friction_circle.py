@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from stiction.arrays import Floats
+from stiction.arrays import Floats, xr
 from stiction.plotting.apparatus import shapes
 from stiction.plotting.page.style import BLUE, GREEN, GREY, PALE, PURPLE
 from stiction.trajectory import Trajectory
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def friction_vector(data: xr.Dataset) -> Floats:

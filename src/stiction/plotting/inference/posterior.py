@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import ceil
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from stiction.arrays import xr
 from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
 from stiction.plotting.page.style import BLUE, GREY, PAGE, PALE, style
 from stiction.text.paths import last_part
 from stiction.text.quantity_text import metric_prefix
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 ACROSS = 4  # panels in a row
 BINS = 40

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from stiction.arrays import Floats
+from stiction.arrays import Floats, xr
 from stiction.linear_stability import Stability
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.parameter import PLAIN, Scale, scale_of
 from stiction.plotting.page.style import BLACK, BLUE, UNSTABLE, style
 from stiction.plotting.stability.modes import plot_modes
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 PIXELS = 161  # in each direction, of the signed distance to the boundary
 

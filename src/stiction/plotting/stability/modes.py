@@ -4,20 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from stiction.arrays import Floats
+from stiction.arrays import Floats, xr
 from stiction.linear_stability import Critical
 from stiction.plotting.page.canvas import stack
 from stiction.plotting.page.parameter import PLAIN, Scale, label_decades, scale_of
 from stiction.plotting.page.style import BLUE, GREY, ORANGE, UNSTABLE, style
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 CLOSE = 0.13  # of the axis: closer numbers would overlap
 

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from pydantic_core import PydanticCustomError
 
-from stiction.arrays import Floats
+from stiction.arrays import Floats, xr
 from stiction.deprecation import by_new_names
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.storage.files import place, workshop
@@ -30,9 +30,6 @@ from stiction.study.view.view import CHANGES, REFINED, REGIME, kinds
 from stiction.text.paths import canonical_path
 from stiction.text.units import Quantity
 from stiction.text.validation import unknown_name
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 MOST_HALVINGS = 50  # to the distance of two floats
 
@@ -242,8 +239,6 @@ def samples(study: Study, values: Mapping[str, Floats]) -> Study:
 
 def table(study: Study, found: Intervals, along: str, runs: int) -> xr.Dataset:
     """Return the changes as labelled arrays."""
-    import xarray as xr
-
     data: dict[str, Any] = {
         name: (
             "point",

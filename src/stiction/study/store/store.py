@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 
 from stiction import errors
+from stiction.arrays import xr
 from stiction.errors import ResultError
 from stiction.storage.checksums import LENGTH, with_checksum, without_checksum
 from stiction.storage.files import place, workshop
@@ -30,7 +31,6 @@ from stiction.study.store.kept import Kept, names_kept
 from stiction.study.variables.measures import FORMERLY
 
 if TYPE_CHECKING:
-    import xarray as xr
     import zarr
 
 FORMATS = (1, 2)  # of readable stores
@@ -301,7 +301,6 @@ def open_study(path: str | Path) -> xr.Dataset:
     >>> st.open_study("phi.zarr")["stick_count"].values.tolist()
     [9.0, 15.0, 17.0]
     """
-    import xarray as xr
     from zarr.storage import LocalStore
 
     from stiction.study.store.chunks import WholeChunks

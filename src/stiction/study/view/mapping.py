@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.arrays import xr
 from stiction.errors import DescriptionError, Fault
 from stiction.plotting.maps import (
     Side,
@@ -34,7 +35,6 @@ from stiction.text.units import in_words as value_in_words
 from stiction.theory import damping_number_of
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
 
 DAMPING = ("phi", "drive.velocity")  # coordinates that locate a run in the damping diagram

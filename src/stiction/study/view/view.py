@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from pydantic_core import PydanticCustomError
 
+from stiction.arrays import xr
 from stiction.deprecation import by_new_names
 from stiction.errors import DescriptionError, Fault, ResultError
 from stiction.storage.foreign import opening, refuse_size
@@ -22,9 +23,6 @@ from stiction.study.variables.measures import FORMERLY
 from stiction.text.paths import canonical_path
 from stiction.text.units import Quantity
 from stiction.text.validation import unknown_name
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 REGIME = "regime"
 RUNS = ("status", "message")  # variables that are not measures
@@ -105,8 +103,6 @@ def fitting(path: str | Path, data: xr.Dataset, study: Study) -> None:
 
 def refined_changes(path: str | Path) -> list[xr.Dataset]:
     """Return the refined changes of motion, one dataset for each axis."""
-    import xarray as xr
-
     if lost := broken_changes(path):
         remedy = "refine the study again, with the same command: its runs are kept"
         raise ResultError(f"{path}: is damaged: {', '.join(lost)}; {remedy}")
