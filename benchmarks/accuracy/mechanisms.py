@@ -31,12 +31,11 @@ from stiction.inference.library import (
     plan,
     simulate_all,
 )
-from stiction.inference.mechanism.classifier import Classifier, study
+from stiction.inference.mechanism.classifier import Classifier, Simulations, simulate, study
 from stiction.inference.mechanism.likeness import Reference, trend
 from stiction.inference.mechanism.odds import CLAIM, TREND
 from stiction.inference.mechanism.rivals import Levels, Mechanism, levels, mechanisms
-from stiction.inference.mechanism.simulations import Simulations, simulate
-from stiction.inference.next_test.expectation import whole
+from stiction.inference.next_test.advice import whole
 from stiction.inference.observation import Conditions
 from stiction.inference.posterior import RARE
 from stiction.inference.priors import Prior, Rig, Uniform

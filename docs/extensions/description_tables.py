@@ -12,7 +12,7 @@ from docutils.statemachine import StringList
 
 import stiction as st
 from stiction.presets import PRESETS
-from stiction.result.columns import STICKS, VARIABLES
+from stiction.result.table import STICKS, VARIABLES
 from stiction.study.variables.measures import MEASURES
 from stiction.system.schema import schema
 

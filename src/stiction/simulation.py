@@ -15,8 +15,7 @@ from numba.core.errors import NumbaError
 from stiction.drive.procedures import end
 from stiction.errors import STATUSES, DescriptionError, Fault, Status, echo
 from stiction.friction import has_state, states
-from stiction.result.columns import VARIABLES, sample_table
-from stiction.result.table import ColumnTable
+from stiction.result.table import VARIABLES, ColumnTable, sample_table
 from stiction.solver.compilation.refusal import reasons
 from stiction.solver.integrate import Solution, integrate, tolerance
 from stiction.system.description import Description, Settings, description_of

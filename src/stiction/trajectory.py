@@ -14,9 +14,17 @@ from stiction.arrays import xr
 from stiction.errors import DescriptionError, ResultError, Status
 from stiction.friction import states
 from stiction.names import draw, picture
-from stiction.result.columns import VARIABLES, apparent_friction, cf_attributes, stick_table
 from stiction.result.file import ENDS, age, read_tables, write_result
-from stiction.result.table import Column, ColumnTable, as_dataset, as_table
+from stiction.result.table import (
+    VARIABLES,
+    Column,
+    ColumnTable,
+    apparent_friction,
+    as_dataset,
+    as_table,
+    cf_attributes,
+    stick_table,
+)
 from stiction.storage.files import NETCDF, placeable, whole
 from stiction.storage.table_files import exportable, write_tables
 from stiction.system.description import Description
@@ -119,7 +127,7 @@ class Trajectory:
 
     @cached_property
     def data(self) -> xr.Dataset:
-        """The samples, variables over ``time`` with units (see `stiction.result.columns`)."""
+        """The samples, variables over ``time`` with units (see `stiction.result.table`)."""
         return as_dataset(self.samples)
 
     @cached_property

@@ -36,10 +36,7 @@ from stiction.plotting.run.overview import plot_run
 from stiction.plotting.run.time_series import cut_open, draw_line, envelope, oscillations
 from stiction.plotting.stability.damping import draw_damping_map
 from stiction.reproduction.creep import creep
-from stiction.reproduction.figure3 import figure3
-from stiction.reproduction.figure4 import figure4
-from stiction.reproduction.figure5 import figure5
-from stiction.reproduction.schematic import schematic
+from stiction.reproduction.figures import figure3, figure4, figure5, schematic
 from stiction.reproduction.zero_slip import zero_slip
 from stiction.text.quantity_text import metric_prefix
 

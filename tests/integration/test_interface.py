@@ -142,7 +142,7 @@ def test_dir_lists_fields_properties_and_methods(slider):
 def test_friction_on_the_mass_points_the_same_way_in_every_figure(slider):
     from matplotlib.figure import Figure
 
-    from stiction.plotting.apparatus.friction_circle import friction_vector
+    from stiction.plotting.apparatus.vectors import friction_vector
 
     run = st.simulate(slider, "0.1 s", sample_rate="10 kHz")
     force = friction_vector(run.data)

@@ -21,7 +21,7 @@ from stiction.cli import main
 from stiction.cli.commands.sweep import engine
 from stiction.cli.tables import print_sections
 from stiction.errors import StictionError
-from stiction.study.execution.cluster import Processes
+from stiction.study.execution.engines import Processes
 from stiction.study.store.creation import create
 from stiction.study.store.seal import seal
 from stiction.text.sections import Section, Table

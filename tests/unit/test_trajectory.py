@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.result.columns import VARIABLES
+from stiction.result.table import VARIABLES
 from stiction.simulation import automatic_times
 
 

@@ -19,11 +19,15 @@ from stiction.plotting.analysis.cycles import plot_cycles
 from stiction.plotting.analysis.tolerance import plot_tolerance
 from stiction.plotting.analysis.trials import Trial, plot_trials
 from stiction.plotting.inference.mechanism import plot_mechanism
-from stiction.plotting.inference.posterior import plot_corner, plot_posterior
-from stiction.plotting.inference.predictive import plot_predictive, plot_ranks
+from stiction.plotting.inference.posterior import (
+    plot_corner,
+    plot_posterior,
+    plot_predictive,
+    plot_ranks,
+)
 from stiction.plotting.page.canvas import figure_of
 from stiction.plotting.stability.boundary import plot_boundary
-from stiction.reproduction.figure5 import figure5
+from stiction.reproduction.figures import figure5
 from stiction.text.units import in_words
 
 if TYPE_CHECKING:

@@ -12,8 +12,7 @@ from math import inf
 from typing import Any
 
 from stiction.drive.program import DriveProgram, LoadProgram, pick
-from stiction.drive.steady import ConstantLoad, ConstantVelocity
-from stiction.drive.stretch import VaryingLoad, VaryingVelocity
+from stiction.drive.steady import ConstantLoad, ConstantVelocity, VaryingLoad, VaryingVelocity
 
 Drive = ConstantVelocity | DriveProgram
 Stretches = tuple[tuple[float, Any], ...]

@@ -18,8 +18,7 @@ from stiction.drive.recorded.piece import RECORDS, Recorded
 from stiction.drive.recorded.reading import checksum
 from stiction.drive.recorded.spline import Recording
 from stiction.drive.signal import Signal
-from stiction.drive.steady import ConstantLoad, ConstantVelocity
-from stiction.drive.stretch import VaryingLoad, VaryingVelocity
+from stiction.drive.steady import ConstantLoad, ConstantVelocity, VaryingLoad, VaryingVelocity
 from stiction.machine import shortage
 from stiction.text.samples import FrozenColumn
 from stiction.text.units import FORCE, VELOCITY, Velocity

@@ -1,9 +1,16 @@
-"""Constant drive velocity and constant normal load: stretches without end."""
+"""Smooth stretches of a drive and of a normal load, for the compiled solver.
+
+Between the instants at which a program jumps or bends, the drive velocity and the normal load
+are constant, signals, or the splines through recorded rows; the solver integrates one such stretch
+after the other and never meets a jump.
+"""
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from stiction.drive.recorded.spline import Recording
+from stiction.drive.signal import Signal, change_at, curve_at, sum_over, value_at
 from stiction.text.units import Force, Velocity
 from stiction.text.validation import validate
 
@@ -70,3 +77,48 @@ class ConstantLoad(NamedTuple):
     def constant(load) -> bool:
         """Return True."""
         return True
+
+
+class VaryingVelocity(NamedTuple):
+    """A velocity that varies within a stretch of the drive: along X and across it."""
+
+    along: Signal | Recording
+    across: Signal
+
+    def travel(drive, t: Any, dt: Any) -> tuple[Any, Any]:
+        """Return the displacement from time `t` to `t + dt`, in m."""
+        return sum_over(drive.along, t, dt), sum_over(drive.across, t, dt)
+
+    def rate(drive, t: Any) -> tuple[Any, Any]:
+        """Return the velocity at time `t`, in m/s."""
+        return value_at(drive.along, t), value_at(drive.across, t)
+
+    def rate_change(drive, t: Any) -> tuple[Any, Any]:
+        """Return the acceleration at time `t`, in m/s^2."""
+        return change_at(drive.along, t), change_at(drive.across, t)
+
+    def rate_curve(drive, t: Any) -> tuple[Any, Any]:
+        """Return the rate of change of the acceleration at time `t`, in m/s^3."""
+        return curve_at(drive.along, t), curve_at(drive.across, t)
+
+    def steady(drive) -> bool:
+        """Return whether the velocity is constant; the compiler knows the answer."""
+        return False
+
+
+class VaryingLoad(NamedTuple):
+    """A normal load that varies within a stretch."""
+
+    force: Signal | Recording
+
+    def at(load, t: Any) -> Any:
+        """Return the normal load at time `t`, in N."""
+        return value_at(load.force, t)
+
+    def drift(load, t: Any) -> Any:
+        """Return the rate of change of the load, in N/s."""
+        return change_at(load.force, t)
+
+    def constant(load) -> bool:
+        """Return whether the load is constant; the compiler knows the answer."""
+        return False

@@ -14,8 +14,7 @@ from stiction.errors import STATUSES
 from stiction.explorer.decimation import columns_of, extremes, share_stuck
 from stiction.friction import Anisotropic, has_state
 from stiction.friction.law import static_coefficient
-from stiction.result.columns import sample_table
-from stiction.result.table import ColumnTable
+from stiction.result.table import ColumnTable, sample_table
 from stiction.simulation import automatic_times, solve
 from stiction.solver.integrate import Solution
 from stiction.system.description import Description

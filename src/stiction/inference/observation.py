@@ -20,7 +20,7 @@ from stiction.inference.features import (
     features,
     find_cycles,
 )
-from stiction.recording.noise import white_noise
+from stiction.recording.sensor import white_noise
 from stiction.system.slider import Slider
 
 PER_CYCLE = 200  # samples: more are averaged

@@ -1,9 +1,9 @@
 from stiction.linear_stability.curve import boundary as boundary
 from stiction.linear_stability.examination import Stability as Stability
+from stiction.linear_stability.examination import modes_over as modes_over
 from stiction.linear_stability.examination import stability as stability
 from stiction.linear_stability.linear import Linearisation as Linearisation
 from stiction.linear_stability.linear import growth_rate as growth_rate
 from stiction.linear_stability.linear import steady_sliding as steady_sliding
 from stiction.linear_stability.roots import Critical as Critical
 from stiction.linear_stability.roots import critical as critical
-from stiction.linear_stability.spectrum import modes_over as modes_over

@@ -23,8 +23,7 @@ from stiction.media.scene import Scene, slowest_slip
 from stiction.media.sound import time_in, window_of
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, RED, style
 from stiction.plotting.run.time_series import envelope
-from stiction.result.columns import sample_table
-from stiction.result.table import ColumnTable
+from stiction.result.table import ColumnTable, sample_table
 from stiction.simulation import automatic_times, solve_coarsely
 from stiction.storage.files import placeable, whole
 from stiction.system.description import Description

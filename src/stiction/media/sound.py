@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from stiction.arrays import Floats
 from stiction.errors import DescriptionError, ResultError, echo
-from stiction.result.columns import sample_table
+from stiction.result.table import sample_table
 from stiction.simulation import solve_coarsely
 from stiction.storage.files import placeable, whole
 from stiction.system.description import Description

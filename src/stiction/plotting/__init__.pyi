@@ -2,8 +2,8 @@ from stiction.plotting.analysis.creep_curve import plot_creep as plot_creep
 from stiction.plotting.analysis.cycles import plot_cycles as plot_cycles
 from stiction.plotting.analysis.energy import plot_energy as plot_energy
 from stiction.plotting.analysis.oscillation import plot_oscillation as plot_oscillation
+from stiction.plotting.analysis.oscillation import plot_spectrogram as plot_spectrogram
 from stiction.plotting.analysis.overview import plot_analysis as plot_analysis
-from stiction.plotting.analysis.spectrogram import plot_spectrogram as plot_spectrogram
 from stiction.plotting.analysis.tolerance import plot_tolerance as plot_tolerance
 from stiction.plotting.analysis.trials import plot_trials as plot_trials
 from stiction.plotting.apparatus.schematic import plot_slider as plot_slider
@@ -11,8 +11,8 @@ from stiction.plotting.inference.design import plot_design as plot_design
 from stiction.plotting.inference.mechanism import plot_mechanism as plot_mechanism
 from stiction.plotting.inference.posterior import plot_corner as plot_corner
 from stiction.plotting.inference.posterior import plot_posterior as plot_posterior
-from stiction.plotting.inference.predictive import plot_predictive as plot_predictive
-from stiction.plotting.inference.predictive import plot_ranks as plot_ranks
+from stiction.plotting.inference.posterior import plot_predictive as plot_predictive
+from stiction.plotting.inference.posterior import plot_ranks as plot_ranks
 from stiction.plotting.protocols import plot_apparent_friction as plot_apparent_friction
 from stiction.plotting.protocols import plot_healing as plot_healing
 from stiction.plotting.protocols import plot_hysteresis as plot_hysteresis

@@ -19,9 +19,8 @@ from stiction.recording.measurement import Measurement
 from stiction.recording.origin import Origin, Use
 from stiction.recording.sensor import Sensor
 from stiction.result.checksums import SEAL, as_written, damaged_parts, seal_tables, sign
-from stiction.result.columns import cf_attributes
 from stiction.result.file import SIGNATURE, write_table
-from stiction.result.table import Column, ColumnTable, as_table
+from stiction.result.table import Column, ColumnTable, as_table, cf_attributes
 from stiction.storage.files import NETCDF, placeable, whole
 from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files
 from stiction.storage.isolation import apart

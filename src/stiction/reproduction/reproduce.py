@@ -13,12 +13,8 @@ from stiction.errors import StictionError, echo
 from stiction.friction.laws import Coulomb
 from stiction.plotting.page.save import save
 from stiction.reproduction.creep import creep
-from stiction.reproduction.figure3 import figure3
-from stiction.reproduction.figure4 import figure4
-from stiction.reproduction.figure5 import figure5
-from stiction.reproduction.numbers import numbers
-from stiction.reproduction.schematic import schematic
-from stiction.reproduction.table import NumberTable
+from stiction.reproduction.figures import figure3, figure4, figure5, schematic
+from stiction.reproduction.numbers import NumberTable, numbers
 from stiction.reproduction.zero_slip import zero_slip
 from stiction.simulation import simulate
 from stiction.storage.files import make_folder, usable_folder

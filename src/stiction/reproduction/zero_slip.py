@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
-from stiction.plotting.apparatus.friction_circle import draw_friction_arc, draw_friction_circle
+from stiction.plotting.apparatus.vectors import draw_friction_arc, draw_friction_circle
 from stiction.plotting.page.style import (
     GREEN,
     GREY,

@@ -14,8 +14,7 @@ import numpy as np
 from stiction.arrays import xr
 from stiction.errors import ResultError
 from stiction.result.checksums import SEAL, as_written, damaged_parts, seal_tables, sign
-from stiction.result.columns import STICKS, VARIABLES
-from stiction.result.table import ColumnTable, as_table
+from stiction.result.table import STICKS, VARIABLES, ColumnTable, as_table
 from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files
 from stiction.storage.isolation import apart
 

@@ -1,4 +1,4 @@
-"""A table of columns with units: what a run holds before anybody asks for xarray.
+"""Tables of columns with units, samples and stick intervals: what a run holds without xarray.
 
 xarray, and pandas below it, take as long to import as a run takes to simulate and write. A command
 that only computes and writes does without them.
@@ -13,6 +13,41 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.arrays import xr
+from stiction.friction import states
+from stiction.system.description import Description
+from stiction.system.slider import Slider
+
+# name: (unit, long name), as CF attributes
+VARIABLES = {
+    "u_x": ("m", "spring elongation along x"),
+    "u_y": ("m", "spring elongation along y"),
+    "v_x": ("m/s", "elongation rate along x"),
+    "v_y": ("m/s", "elongation rate along y"),
+    "slip_x": ("m/s", "slip velocity along x"),
+    "slip_y": ("m/s", "slip velocity along y"),
+    "slip_speed": ("m/s", "slip speed"),
+    "spring_x": ("N", "spring force along x, k_x u_x"),
+    "spring_y": ("N", "spring force along y, k_y u_y"),
+    "friction": ("N", "magnitude of the friction force F"),
+    "theta": ("deg", "friction angle to the principal axis x: on the mass F points at theta + 180"),
+    "psi": ("deg", "friction angle to the drive direction X: on the mass F points at psi + 180"),
+    "X": ("m", "position along the drive direction"),
+    "Y": ("m", "position across the drive direction"),
+    "V_X": ("m/s", "velocity along the drive direction"),
+    "drive_X": ("m/s", "drive velocity along X"),
+    "drive_Y": ("m/s", "drive velocity across X"),
+    "normal_load": ("N", "normal load"),
+    "mu": (
+        "1",
+        "apparent friction coefficient: spring force along X, or the load cell, over the load",
+    ),
+    "sticking": ("1", "whether the slip is zero"),
+}
+STICKS = {
+    "stick_start": ("s", "start of a stick interval"),
+    "stick_end": ("s", "end of a stick interval"),
+    "stick_duration": ("s", "duration of a stick interval"),
+}
 
 
 class Column(NamedTuple):
@@ -55,3 +90,89 @@ def as_table(data: xr.Dataset) -> ColumnTable:
         for name, each in data.variables.items()
     }
     return ColumnTable(columns, data.attrs)
+
+
+def sample_table(
+    description: Description,
+    times: np.ndarray,
+    samples: np.ndarray,
+    attributes: dict[str, Any],
+) -> ColumnTable:
+    """Return the samples of a run as a table over ``time``.
+
+    Parameters
+    ----------
+    description : Description
+        The description of the run.
+    times : ndarray
+        (n,), s.
+    samples : ndarray
+        (n, 7 + internal states); the columns of `stiction.solver.exact.sampling`, then the states.
+    attributes : dict
+        Further attributes of the table.
+    """
+    slider = description.slider
+    c, s = slider.direction
+    rows = np.ascontiguousarray(samples.T)
+    (u_x, u_y, slip_x, slip_y, f_x, f_y, sticking), internal = rows[:7], rows[7:]
+    travel_X, travel_Y = slider.motion.travel(0.0, times)
+    rate_X, rate_Y = slider.motion.rate(times)
+    v_x = rate_X * c - rate_Y * s - slip_x
+    v_y = rate_X * s + rate_Y * c - slip_y
+    friction = np.hypot(f_x, f_y)
+    theta = np.degrees(np.arctan2(f_y, f_x))
+    theta[friction <= 1e-14 * np.max(friction, initial=0.0)] = np.nan  # no force, no direction
+    values = {
+        "u_x": u_x,
+        "u_y": u_y,
+        "v_x": v_x,
+        "v_y": v_y,
+        "slip_x": slip_x,
+        "slip_y": slip_y,
+        "slip_speed": np.hypot(slip_x, slip_y),
+        "spring_x": slider.k_x * u_x,
+        "spring_y": slider.k_y * u_y,
+        "friction": friction,
+        "theta": theta,
+        "psi": theta - np.degrees(slider.misalignment),
+        "X": travel_X - u_x * c - u_y * s,
+        "Y": travel_Y + u_x * s - u_y * c,
+        "V_X": slider.along_drive(slip_x, slip_y),
+        "drive_X": np.broadcast_to(rate_X, times.shape).copy(),
+        "drive_Y": np.broadcast_to(rate_Y, times.shape).copy(),
+        "normal_load": np.broadcast_to(slider.weight(times), times.shape).copy(),
+        "sticking": sticking.astype(np.int8),
+    }
+    values["mu"] = apparent_friction(slider, values)
+    along = ("time",)
+    columns = {"time": Column(along, times, cf_attributes("s", "time"))}
+    for name, about in VARIABLES.items():
+        columns[name] = Column(along, values[name], cf_attributes(*about))
+    for state, value in zip(states(slider.law), internal, strict=True):
+        columns[state.name] = Column(along, value, cf_attributes(state.unit, state.meaning))
+    return ColumnTable(columns, {"description": description.to_json(), **attributes})
+
+
+def apparent_friction(slider: Slider, values: Mapping[Any, Any] | ColumnTable) -> Any:
+    """Return the spring force along the load cell, by default along X, over the normal load.
+
+    A friction test reports this ratio; in steady sliding it is the law's coefficient.
+    """
+    c, s = slider.cell
+    with np.errstate(divide="ignore", invalid="ignore"):  # the load may vanish at the end of a run
+        return (values["spring_x"] * c + values["spring_y"] * s) / values["normal_load"]
+
+
+def stick_table(intervals: np.ndarray) -> ColumnTable:
+    """Return stick intervals, (n, 2) in s, as a table over ``stick``."""
+    start, end = intervals.T
+    values = zip(STICKS.items(), (start.copy(), end.copy(), end - start), strict=True)
+    return ColumnTable(
+        {name: Column(("stick",), value, cf_attributes(*about)) for (name, about), value in values},
+        {},
+    )
+
+
+def cf_attributes(unit: str, meaning: str) -> dict[str, str]:
+    """Return the CF attributes of a variable."""
+    return {"units": unit, "long_name": meaning}

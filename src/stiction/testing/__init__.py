@@ -15,8 +15,7 @@ from typing import Any, ClassVar
 
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import has_state
-from stiction.friction.user.bounded import endless
-from stiction.friction.user.validation import ENDING, is_law
+from stiction.friction.user.validation import ENDING, endless, is_law
 from stiction.testing.common import COMMON, SPEEDS
 from stiction.testing.set_valued import SET_VALUED
 from stiction.testing.with_state import WITH_STATE

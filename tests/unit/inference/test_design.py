@@ -10,8 +10,7 @@ import stiction as st
 from stiction.inference.library import Plan
 from stiction.inference.next_test import design as module
 from stiction.inference.next_test import further
-from stiction.inference.next_test.advice import Advice
-from stiction.inference.next_test.expectation import Expected, expectation, misses
+from stiction.inference.next_test.advice import Advice, Expected, expectation, misses
 from stiction.inference.next_test.further import AGAIN, Wanted, further_tests
 from stiction.inference.observation import Conditions, Noise
 from stiction.inference.priors import Normal

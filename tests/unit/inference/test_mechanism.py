@@ -15,11 +15,10 @@ from stiction.inference.features import EDGES, find_cycles
 from stiction.inference.fit import plan_for
 from stiction.inference.jitter import Jitter, laws, move
 from stiction.inference.library import bend_features
-from stiction.inference.mechanism.classifier import study
+from stiction.inference.mechanism.classifier import Simulations, simulate, study
 from stiction.inference.mechanism.likeness import CURVES, Likeness, Reference, trend
 from stiction.inference.mechanism.odds import UNDECIDED, Odds
 from stiction.inference.mechanism.rivals import RATE_AND_STATE, ROTATION, STATIC, levels, mechanisms
-from stiction.inference.mechanism.simulations import Simulations, simulate
 from stiction.inference.observation import observe
 from stiction.plotting import plot_mechanism
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.recording.noise import lattice, noise_level
+from stiction.recording.sensor import lattice, noise_level
 
 RATE = 1e4
 

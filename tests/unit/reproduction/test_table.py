@@ -1,7 +1,7 @@
 """The summary below the table of numbers counts what is listed above it."""
 
 from stiction.presets import Number
-from stiction.reproduction.table import NumberTable
+from stiction.reproduction.numbers import NumberTable
 
 
 def test_findings_are_counted_among_the_numbers_listed():

@@ -28,7 +28,7 @@ KILLS = 20
 NURSERY = """
 import os, resource, sys
 import stiction as st
-from stiction.study.execution.cluster import Scheduler
+from stiction.study.execution.engines import Scheduler
 from stiction.study.execution.engines import Threads
 from stiction.study.plan.layout import laid_out
 import distributed, xarray, zarr

@@ -7,8 +7,7 @@ import pytest
 import xarray as xr
 
 import stiction as st
-from stiction.study.execution.cluster import Processes
-from stiction.study.execution.engines import Threads
+from stiction.study.execution.engines import Processes, Threads
 from stiction.study.plan.coordinates import unit, vary
 from stiction.study.plan.layout import Layout, laid_out, places
 from stiction.study.store.creation import create

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.analysis.creep.least_squares import fit_parameters, used_bins
+from stiction.analysis.creep.divergence import fit_parameters, used_bins
 from stiction.arrays import Floats, xr
 
 START = 0.02  # rad, of phi, and of the weakening

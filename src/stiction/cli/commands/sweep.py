@@ -154,6 +154,6 @@ def engine(
         raise StictionError("--dashboard needs --workers; give both")
     if workers is None and scheduler is None:
         return Threads() if threads is None else Threads(threads)
-    from stiction.study.execution.cluster import Processes, Scheduler
+    from stiction.study.execution.engines import Processes, Scheduler
 
     return Processes(workers, dashboard) if workers is not None else Scheduler(str(scheduler))

@@ -8,6 +8,8 @@ however many of its simulations have cycles: the odds before are even.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -17,7 +19,9 @@ from scipy.optimize import minimize
 from scipy.special import log_softmax, softmax
 
 from stiction.arrays import Floats
-from stiction.inference.mechanism.simulations import Simulations
+from stiction.errors import ResultError
+from stiction.inference.library import simulate_all
+from stiction.inference.mechanism.rivals import Mechanism
 from stiction.inference.summary import (
     Regression,
     Standard,
@@ -28,8 +32,69 @@ from stiction.inference.summary import (
 )
 from stiction.storage.arrays import read_arrays, write_arrays
 
+Progress = Callable[[float], None] | None
+
+FEWEST = 40  # simulations with cycles, below which a mechanism is left out
 WIDTH = 1.0  # of the kernel, over the typical distance between records
 WEAK = 1e-3  # penalty on the slopes' squares: finite where mechanisms are told apart surely
+
+
+class Simulations(NamedTuple):
+    """Simulated records: features (n, f), and the place of each one's mechanism among `names` (n,).
+
+    `absent` are the mechanisms by which hardly any simulated record has cycles of stick and slip.
+    """
+
+    names: tuple[str, ...]
+    features: Floats
+    labels: NDArray[np.int64]
+    absent: tuple[str, ...] = ()
+
+
+def simulate(
+    rivals: Sequence[Mechanism],
+    count: int,
+    folder: Path | None,
+    *,
+    seed: int = 0,
+    progress: Progress = None,
+) -> Simulations:
+    """Simulate `count` records of each mechanism, the same number by each of its plans.
+
+    Raises
+    ------
+    ResultError
+        If by no mechanism enough of them have cycles of stick and slip.
+    """
+    total = sum(len(rival.plans) for rival in rivals)
+    done, found, absent = 0, {}, []
+    for rival in rivals:
+        parts = []
+        for plan in rival.plans:
+            place = None if folder is None else folder / f"{plan.key}-{seed}"
+            wanted = -(-count // len(rival.plans))
+            report = partial(tell, progress, done, total)
+            _, rows = simulate_all(plan, wanted, place, seed=seed, progress=report)
+            parts.append(rows[np.isfinite(rows).all(axis=1)])
+            done += 1
+        features = np.concatenate(parts)
+        if len(features) < FEWEST:
+            absent.append(rival.name)
+        else:
+            found[rival.name] = features
+    if not found:
+        raise ResultError(
+            f"by no mechanism {FEWEST} of {count} simulated records have cycles of stick and slip: "
+            "check the priors, or simulate more"
+        )
+    labels = np.repeat(np.arange(len(found)), [len(each) for each in found.values()])
+    return Simulations((*found,), np.concatenate([*found.values()]), labels, (*absent,))
+
+
+def tell(progress: Progress, done: int, total: int, fraction: float) -> None:
+    """Report the fraction done of all, when one of several is done to a fraction."""
+    if progress is not None:
+        progress((done + fraction) / total)
 
 
 class Classifier(NamedTuple):

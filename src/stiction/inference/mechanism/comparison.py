@@ -14,11 +14,10 @@ from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault, ResultError
 from stiction.inference.fit import check
 from stiction.inference.library import bend_features
-from stiction.inference.mechanism.classifier import Classifier, study
+from stiction.inference.mechanism.classifier import Classifier, Simulations, simulate, study
 from stiction.inference.mechanism.likeness import Reference, trend
 from stiction.inference.mechanism.odds import CLAIM, Odds
 from stiction.inference.mechanism.rivals import Mechanism, mechanisms
-from stiction.inference.mechanism.simulations import Simulations, simulate
 from stiction.inference.observation import Observation, observe_all
 from stiction.inference.priors import Rig
 

@@ -11,8 +11,7 @@ from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault, ResultError
 from stiction.inference.fit import check, one_sided
 from stiction.inference.library import Plan, features_from, plan, simulate_all
-from stiction.inference.next_test.advice import Advice
-from stiction.inference.next_test.expectation import Expected, expectation, misses, whole
+from stiction.inference.next_test.advice import Advice, Expected, expectation, misses, whole
 from stiction.inference.next_test.further import (
     AGAIN,
     ANGLES,

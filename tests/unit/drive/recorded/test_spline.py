@@ -11,7 +11,7 @@ from stiction.drive.bounds import drive_bounds, load_bounds, vanishes
 from stiction.drive.program import modulate
 from stiction.drive.recorded import spline as s
 from stiction.drive.signal import Signal
-from stiction.drive.stretch import VaryingLoad, VaryingVelocity
+from stiction.drive.steady import VaryingLoad, VaryingVelocity
 from stiction.solver import problem
 from stiction.solver.compilation.jit import njit
 from stiction.text.samples import FrozenColumn
