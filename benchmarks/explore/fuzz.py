@@ -30,7 +30,7 @@ from benchmarks.explore.draw import Draw
 from stiction.cli import main as main_line
 from stiction.cli.options import value as option
 from stiction.comparison import read_laws
-from stiction.result import checksums
+from stiction.result import file as run_file
 from stiction.result.file import open_tables
 from stiction.result.table import as_table
 from stiction.study.store.seal import seal
@@ -296,7 +296,7 @@ def result(draw: Draw, folder: Path) -> None:
     whole = _result(folder)
     path.write_bytes(whole)
     if draw.chance(0.25):
-        checksum = whole.rindex(checksums.MARK)  # of the whole file: others write none
+        checksum = whole.rindex(run_file.MARK)  # of the whole file: others write none
         path.write_bytes(damage_bytes(draw, whole[: draw.among([checksum, len(whole)])]))
     else:
         with h5py.File(path, "r+") as file:
@@ -314,10 +314,10 @@ def reseal(path: Path) -> None:
     """Have a result's checksums fit what is in it, as who changes it on purpose would."""
     with suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
         data, sticks = map(as_table, open_tables(path))
-        seal = checksums.seal_tables({"samples": data, "sticks": sticks})
+        seal = run_file.seal_tables({"samples": data, "sticks": sticks})
         with h5py.File(path, "r+") as file:
-            file.attrs[checksums.SEAL] = seal
-    checksums.sign(path)
+            file.attrs[run_file.SEAL] = seal
+    run_file.sign(path)
 
 
 def _result(folder: Path, kept: dict[str, bytes] = {}) -> bytes:  # noqa: B006

@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from stiction.errors import ResultError
-from stiction.result.checksums import intact_description
-from stiction.result.file import CHANGED, is_netcdf, read_tables
+from stiction.result.file import CHANGED, intact_description, is_netcdf, read_tables
 from stiction.simulation import run
 from stiction.storage.isolation import apart
 from stiction.study.execution.repair import damage_of, restore, stores_in

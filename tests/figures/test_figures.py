@@ -23,8 +23,8 @@ from stiction.analysis.signals.spectrum import rate_spectrogram, spectrogram
 from stiction.arrays import Floats
 from stiction.plotting.analysis.cycles import plot_cycles
 from stiction.plotting.analysis.trials import Trial, plot_trials
-from stiction.plotting.apparatus.misalignment import drawn_misalignment
 from stiction.plotting.apparatus.schematic import draw_schematic
+from stiction.plotting.apparatus.shapes import drawn_misalignment
 from stiction.plotting.maps import Side, draw_slice
 from stiction.plotting.page.canvas import figure_of
 from stiction.plotting.page.parameter import Scale, label_decades
@@ -35,9 +35,8 @@ from stiction.plotting.run.comparison import plot_comparison
 from stiction.plotting.run.overview import plot_run
 from stiction.plotting.run.time_series import cut_open, draw_line, envelope, oscillations
 from stiction.plotting.stability.damping import draw_damping_map
-from stiction.reproduction.creep import creep
+from stiction.reproduction.creep import creep, zero_slip
 from stiction.reproduction.figures import figure3, figure4, figure5, schematic
-from stiction.reproduction.zero_slip import zero_slip
 from stiction.text.quantity_text import metric_prefix
 
 

@@ -14,8 +14,7 @@ import cyclopts
 from rich.console import Console
 
 import stiction
-from stiction.cli.notices import show_notices
-from stiction.cli.refusals import command_of, in_words
+from stiction.cli.refusals import command_of, in_words, show_notices
 from stiction.cli.terminal import give_up, spell_out
 from stiction.errors import LONGEST, LONGEST_PATH, StictionError, one_line, visible, without_middle
 

@@ -1,12 +1,14 @@
-"""Faults of the command line in words: the rule, the value and the remedy."""
+"""Notices of the package on standard error, and faults of the command line in words."""
 
 from __future__ import annotations
 
+import logging
 import re
 from inspect import getdoc
 
 from cyclopts import CycloptsError, MissingArgumentError
 from cyclopts.exceptions import UnusedCliTokensError
+from rich.console import Console
 
 from stiction.errors import echo
 
@@ -58,3 +60,20 @@ def _example(error: MissingArgumentError, name: str) -> str:
     words = next((x.parameter.help or "" for x in known if x.name == name), "")
     found = EXAMPLE.search(words)
     return " ".join(found[1].split()) if found else ""
+
+
+class Notices(logging.Handler):
+    """Print each notice on its own line, above any progress bar."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Print a notice."""
+        console = Console(stderr=True, soft_wrap=True, emoji=False)  # on the present standard error
+        console.print(record.getMessage(), markup=False, highlight=False)
+
+
+def show_notices() -> None:
+    """Show notices from now on."""
+    log = logging.getLogger("stiction")
+    if not any(isinstance(each, Notices) for each in log.handlers):
+        log.addHandler(Notices())
+    log.setLevel(logging.INFO)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
+from math import copysign, degrees, log10
 from typing import Any
 
 import numpy as np
@@ -22,15 +23,19 @@ from stiction.explorer.form import form
 from stiction.explorer.motion import Check, Reply
 from stiction.explorer.protocols import names, protocol
 from stiction.explorer.source import Opened
-from stiction.explorer.stability_map import stability_map
 from stiction.friction import LAWS
+from stiction.linear_stability.linear import growth_rate
 from stiction.media.sound import RATE, rate_at
 from stiction.presets import PRESETS, find
 from stiction.system.description import Description
+from stiction.system.parameter import change_unchecked
 
 Request = Mapping[str, Any]
 WIDEST = 8192  # columns of a screen
 LOUDEST = 60.0  # s of sound
+ANGLES = (0.1, 90.0)  # of misalignment, deg
+DECADES = 3  # of the drive's velocity, to each side of its present one
+LEVELS = ((12, 12), (24, 24), (48, 48))  # cells, from coarse to fine
 
 
 def answer(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
@@ -231,3 +236,45 @@ ANSWERS: dict[str, Callable[[Opened, Request, Check], Iterator[Reply]]] = {
     "pick": pick,
     "export": file,
 }
+
+
+def stability_map(description: Description, check: Check) -> Iterator[Reply]:
+    """Yield maps of the growth rate (1/s), rows of velocity by columns of angle, each finer.
+
+    Raises
+    ------
+    StictionError
+        If there is no steady sliding.
+    """
+    slider = description.slider
+    side = copysign(1.0, slider.phi)
+    middle = round(log10(abs(slider.motion.velocity) or 1e-3))
+    way = copysign(1.0, slider.motion.velocity)
+    low, high = 10.0 ** (middle - DECADES), 10.0 ** (middle + DECADES)
+    growth_rate(slider)  # or say why there is none
+    for across, up in LEVELS:
+        angles = np.radians(middles(*ANGLES, across)) * side
+        speeds = middles(low, high, up) * way
+        found = np.full((up, across), np.nan, np.float32)
+        for row, speed in enumerate(speeds):
+            driven = change_unchecked(slider, "drive.velocity", float(speed))
+            for column, angle in enumerate(angles):
+                check()
+                found[row, column] = growth_at(driven, float(angle))
+        head = {"angles": ANGLES, "speeds": (low, high), "own": degrees(abs(slider.phi))}
+        yield head, {"growth": found}
+
+
+def growth_at(slider: object, angle: float) -> float:
+    """Return the growth rate at an angle (rad); NaN where there is no steady sliding."""
+    try:
+        return growth_rate(change_unchecked(slider, "phi", angle))  # type: ignore[arg-type]
+    except (StictionError, ArithmeticError, ValueError):
+        return float("nan")
+
+
+def middles(low: float, high: float, count: int) -> np.ndarray:
+    """Return the middles of cells of equal ratio."""
+    edges = np.geomspace(low, high, count + 1)
+    found: np.ndarray = np.sqrt(edges[1:] * edges[:-1])
+    return found

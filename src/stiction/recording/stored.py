@@ -18,8 +18,15 @@ from stiction.recording.guess.clock import rate_of
 from stiction.recording.measurement import Measurement
 from stiction.recording.origin import Origin, Use
 from stiction.recording.sensor import Sensor
-from stiction.result.checksums import SEAL, as_written, damaged_parts, seal_tables, sign
-from stiction.result.file import SIGNATURE, write_table
+from stiction.result.file import (
+    SEAL,
+    SIGNATURE,
+    as_written,
+    damaged_parts,
+    seal_tables,
+    sign,
+    write_table,
+)
 from stiction.result.table import Column, ColumnTable, as_table, cf_attributes
 from stiction.storage.files import NETCDF, placeable, whole
 from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files

@@ -12,10 +12,9 @@ from stiction import presets
 from stiction.errors import StictionError, echo
 from stiction.friction.laws import Coulomb
 from stiction.plotting.page.save import save
-from stiction.reproduction.creep import creep
+from stiction.reproduction.creep import creep, zero_slip
 from stiction.reproduction.figures import figure3, figure4, figure5, schematic
 from stiction.reproduction.numbers import NumberTable, numbers
-from stiction.reproduction.zero_slip import zero_slip
 from stiction.simulation import simulate
 from stiction.storage.files import make_folder, usable_folder
 from stiction.text.sections import Section, as_text

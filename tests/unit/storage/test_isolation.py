@@ -7,7 +7,7 @@ import pytest
 
 import stiction as st
 from stiction import cli
-from stiction.result.checksums import MARK, as_written
+from stiction.result.file import MARK, as_written
 from stiction.storage import isolation
 
 KILLS = pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="Windows has no such signal")

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from stiction.arrays import Floats
 from stiction.plotting.apparatus import shapes
-from stiction.plotting.apparatus.misalignment import drawn_misalignment, misalignment_note
+from stiction.plotting.apparatus.shapes import drawn_misalignment, misalignment_note
 from stiction.plotting.page.style import BLUE, FLOOR, GREY, RED
 from stiction.system.slider import Slider
 

@@ -9,14 +9,14 @@ from matplotlib.axes import Axes
 
 from stiction.arrays import Floats
 from stiction.plotting.apparatus import shapes
-from stiction.plotting.apparatus.misalignment import (
+from stiction.plotting.apparatus.shapes import (
     Placement,
     drawn_misalignment,
     drawn_slip_angle,
     misalignment_note,
     placement,
+    polar,
 )
-from stiction.plotting.apparatus.shapes import polar
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.style import BLACK, BLUE, FLOOR, GREEN, GREY, PURPLE, RED, style
 from stiction.system.slider import Slider

@@ -10,13 +10,13 @@ from matplotlib.lines import Line2D
 
 from stiction.arrays import Floats, xr
 from stiction.plotting.apparatus import shapes
-from stiction.plotting.apparatus.misalignment import (
+from stiction.plotting.apparatus.shapes import (
     Placement,
     drawn_misalignment,
     drawn_slip_angle,
     placement,
+    polar,
 )
-from stiction.plotting.apparatus.shapes import polar
 from stiction.plotting.page.style import BLUE, GREEN, GREY, PALE, PURPLE, RED
 from stiction.system.slider import Slider
 from stiction.trajectory import Trajectory
