@@ -13,7 +13,7 @@ from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.record import Record, as_record
 from stiction.arrays import xr
-from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
+from stiction.plotting.page.canvas import grid_of
 from stiction.plotting.page.style import BLUE, GREY, PAGE, PALE, RED, style
 from stiction.plotting.run.time_series import draw_line, name_time
 from stiction.text.quantity_text import metric_prefix
@@ -54,11 +54,7 @@ def plot_cycles(
     cycles, regime = found.cycles, regime_of(record, found)
     many = cycles.sizes["cycle"] > FEW
     with style():
-        if axes is None:
-            fig = canvas(PAGE, 4.4 if many else 2.6)
-            panels = fix_ticks(list(fig.subplots(2 if many else 1, 1, squeeze=False)[:, 0]))
-        else:
-            panels = as_list(axes)
+        panels = grid_of(axes, (PAGE, 4.4 if many else 2.6), 2 if many else 1, 1)
         draw_cycles(panels[0], record, cycles)
         panels[0].set_title(regime.kind.capitalize())
         if many and len(panels) > 1:

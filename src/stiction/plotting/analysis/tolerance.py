@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
+from stiction.plotting.page.canvas import grid_of
 from stiction.plotting.page.parameter import in_unit
 from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PALE, style
 from stiction.text.quantity_text import percent
@@ -40,9 +40,7 @@ def plot_tolerance(budget: Any, axes: Sequence[Axes] | None = None) -> NDArray[n
         where it is reached; creep and transverse oscillation.
     """
     with style():
-        if axes is None:
-            axes = fix_ticks(list(canvas(PAGE, 3.6).subplots(2, 2, sharex=True).ravel()))
-        panels = as_list(axes)
+        panels = grid_of(axes, (PAGE, 3.6), 2, 2, sharex=True)
         angles = np.degrees(budget.angles)
         for i, ax in enumerate(panels):
             factor, unit = in_unit(budget.drawn[np.isfinite(budget.drawn[:, i]), i], UNITS[i])

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from stiction.analysis.record import Record
 from stiction.analysis.signals.reversals import standing_out
 from stiction.analysis.signals.turning_points import FINE, as_counts
-from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
+from stiction.plotting.page.canvas import grid_of
 from stiction.plotting.page.style import BLUE, GREY, PAGE, PALE, style
 from stiction.plotting.run.time_series import draw_line, name_time
 from stiction.text.quantity_text import metric_prefix
@@ -79,11 +79,7 @@ def plot_trials(
     largest = [np.abs(each.force).max() for each in (before, *(trial.record for trial in trials))]
     factor, prefix = metric_prefix(np.array(largest))
     with style():
-        if axes is None:
-            fig = canvas(PAGE, 0.5 + PANEL * rows)
-            panels = fix_ticks(list(fig.subplots(rows, across, squeeze=False).ravel()))
-        else:
-            panels = as_list(axes)
+        panels = grid_of(axes, (PAGE, 0.5 + PANEL * rows), rows, across)
         drawn: dict[str, Artist] = {}
         for ax, trial in zip(panels, trials, strict=False):
             drawn |= _draw_trial(ax, before, trial, factor)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from stiction.plotting.page.canvas import canvas, fix_ticks
+from stiction.plotting.page.canvas import grid_of
 from stiction.plotting.page.style import BLACK, BLUE, GREY, style
 
 NAMES = ("ratio", "low", "high")
@@ -32,9 +32,7 @@ def plot_design(advice: Any, axes: Axes | None = None) -> Axes:
     """
     i, tests = advice.index, advice.ranked
     with style():
-        if axes is None:
-            axes = canvas(WIDTH, ROW * len(tests) + 0.7).subplots()
-            fix_ticks([axes])
+        (axes,) = grid_of(axes, (WIDTH, ROW * len(tests) + 0.7), 1, 1)
         places = np.arange(len(tests))[::-1]
         ratio, low, high = (np.array([getattr(t, n)[i] for t in tests]) for n in NAMES)
         axes.errorbar(

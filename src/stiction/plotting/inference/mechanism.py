@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from stiction.arrays import Floats
-from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
+from stiction.plotting.page.canvas import grid_of
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, RED, style
 from stiction.text.quantity_text import percent
 
@@ -42,9 +42,7 @@ def plot_mechanism(odds: Any, axes: Sequence[Axes] | None = None) -> NDArray[np.
         of the most probable mechanism.
     """
     with style():
-        if axes is None:
-            axes = fix_ticks(list(canvas(PAGE, 2.9).subplots(1, 3, width_ratios=(1, 1.35, 1.25))))
-        panels = as_list(axes)
+        panels = grid_of(axes, (PAGE, 2.9), 1, 3, width_ratios=(1, 1.35, 1.25))
         names = [fill(name, LETTERS) for name in odds.names]
         draw_odds(panels[0], odds, names)
         draw_confusion(panels[1], odds.confusion, names)

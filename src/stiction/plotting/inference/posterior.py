@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from stiction.arrays import xr
-from stiction.plotting.page.canvas import as_list, canvas, fix_ticks
+from stiction.plotting.page.canvas import canvas, fix_ticks, grid_of
 from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PALE, SKY, style
 from stiction.text.paths import last_part
 from stiction.text.quantity_text import metric_prefix
@@ -53,13 +53,13 @@ def plot_posterior(fit: Any, axes: Sequence[Axes] | None = None) -> NDArray[np.o
 
 def panels_of(axes: Sequence[Axes] | None, count: int, height: float) -> Sequence[Axes]:
     """Return the given axes, or one for each parameter on a new page, in rows of a height (in)."""
-    if axes is not None:
-        return as_list(axes)
     rows = ceil(count / ACROSS)
-    grid = canvas(PAGE, height * rows + 0.3).subplots(rows, ACROSS, squeeze=False).ravel()
-    for ax in grid[count:]:
+    panels = grid_of(axes, (PAGE, height * rows + 0.3), rows, ACROSS)
+    if axes is not None:
+        return panels
+    for ax in panels[count:]:
         ax.set_axis_off()
-    return fix_ticks(list(grid[:count]))
+    return panels[:count]
 
 
 def draw_parameter(ax: Axes, after: xr.DataArray, before: xr.DataArray, identified: bool) -> None:
@@ -179,9 +179,7 @@ def plot_predictive(comparison: Any, axes: Sequence[Axes] | None = None) -> NDAr
         they are from straight.
     """
     with style():
-        if axes is None:
-            axes = fix_ticks(list(canvas(PAGE, 2.4).subplots(1, 3, width_ratios=(1.4, 1, 1))))
-        panels = as_list(axes)
+        panels = grid_of(axes, (PAGE, 2.4), 1, 3, width_ratios=(1.4, 1, 1))
         draw_cycles(panels[0], comparison.seen, comparison.predictive)
         draw_loading(panels[1:], comparison.predictive)
         for ax in panels[:2]:  # both curves fill the panels

@@ -41,12 +41,19 @@ def stack(axes: Any, height: float, ratios: Sequence[float]) -> Sequence[Axes]:
 
     They stand above each other on one x axis, their heights in these ratios.
     """
+    panels = grid_of(axes, (COLUMN, height), len(ratios), 1, sharex=True, height_ratios=ratios)
+    if axes is None:
+        whole_figure(panels[0]).align_ylabels(panels)
+    return panels
+
+
+def grid_of(
+    axes: Any, size: tuple[float, float], rows: int, columns: int, **how: Any
+) -> Sequence[Axes]:
+    """Return the given axes, or a grid of panels, row by row, on a new figure of a size (in)."""
     if axes is not None:
         return as_list(axes)
-    figure = canvas(COLUMN, height)
-    panels = fix_ticks(list(figure.subplots(len(ratios), 1, sharex=True, height_ratios=ratios)))
-    figure.align_ylabels(panels)
-    return panels
+    return fix_ticks(list(canvas(*size).subplots(rows, columns, squeeze=False, **how).ravel()))
 
 
 def as_list(axes: Any) -> list[Axes]:

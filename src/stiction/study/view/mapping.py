@@ -22,7 +22,7 @@ from stiction.plotting.maps import (
     draw_slice,
     draw_theory,
 )
-from stiction.plotting.page.canvas import as_list, canvas, fix_ticks, panel
+from stiction.plotting.page.canvas import as_list, grid_of, panel, whole_figure
 from stiction.plotting.page.parameter import Scale, in_unit, parameter_symbol
 from stiction.plotting.page.save import picture
 from stiction.plotting.page.style import COLUMN, PAGE, style
@@ -207,11 +207,8 @@ def _maps(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
     theory = plane(view.study, str(x_dim), str(y_dim), view.at)
     columns = min(len(measures), 2)
     rows = -(-len(measures) // columns)
-    if axes is None:
-        fig = canvas(COLUMN if columns == 1 else PAGE, 2.9 * rows + 0.4)
-        panels = fix_ticks(list(fig.subplots(rows, columns, squeeze=False).ravel()))
-    else:
-        panels = as_list(axes)
+    width = COLUMN if columns == 1 else PAGE
+    panels = grid_of(axes, (width, 2.9 * rows + 0.4), rows, columns)
     handles: list[Any] = []
     for ax, name in zip(panels, measures, strict=False):
         handles += _map(ax, view, name, theory)
@@ -219,7 +216,9 @@ def _maps(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
         ax.set_axis_off()
     unique = {handle.get_label(): handle for handle in handles}
     if unique and axes is None:
-        fig.legend(handles=[*unique.values()], loc="outside upper center", ncols=2 * columns)
+        whole_figure(panels[0]).legend(
+            handles=[*unique.values()], loc="outside upper center", ncols=2 * columns
+        )
     elif unique:
         panels[0].legend(handles=[*unique.values()], loc="lower left", bbox_to_anchor=(0.0, 1.0))
     return list(panels[: len(measures)])
@@ -252,11 +251,8 @@ def _map(ax: Axes, view: View, name: str, theory: Plane) -> list[Any]:
 
 def _curves(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
     (dim,) = view.data["status"].dims
-    if axes is None:
-        fig = canvas(COLUMN, 0.6 + 1.7 * len(measures))
-        panels = fix_ticks(list(fig.subplots(len(measures), 1, sharex=True, squeeze=False)[:, 0]))
-    else:
-        panels = as_list(axes)
+    count = len(measures)
+    panels = grid_of(axes, (COLUMN, 0.6 + 1.7 * count), count, 1, sharex=True)
     for ax, name in zip(panels, measures, strict=True):
         if name == REGIME:
             draw_kinds(ax, side(view, str(dim)), list(kinds(view.data)))
