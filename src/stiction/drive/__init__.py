@@ -11,8 +11,13 @@ from bisect import bisect_left, bisect_right
 from math import inf
 from typing import Any
 
-from stiction.drive.program import DriveProgram, LoadProgram, pick
-from stiction.drive.steady import ConstantLoad, ConstantVelocity, VaryingLoad, VaryingVelocity
+from stiction.drive.program import DriveProgram as DriveProgram
+from stiction.drive.program import LoadProgram as LoadProgram
+from stiction.drive.program import pick
+from stiction.drive.steady import ConstantLoad as ConstantLoad
+from stiction.drive.steady import ConstantVelocity as ConstantVelocity
+from stiction.drive.steady import VaryingLoad as VaryingLoad
+from stiction.drive.steady import VaryingVelocity as VaryingVelocity
 
 Drive = ConstantVelocity | DriveProgram
 Stretches = tuple[tuple[float, Any], ...]
@@ -64,21 +69,3 @@ def read_drive(table: dict[str, Any]) -> Drive:
 def read_load(table: dict[str, Any]) -> LoadProgram:
     """Read a description's table [load]."""
     return LoadProgram(**table)
-
-
-__all__ = [
-    "ConstantLoad",
-    "ConstantVelocity",
-    "Drive",
-    "DriveProgram",
-    "LoadProgram",
-    "VaryingLoad",
-    "VaryingVelocity",
-    "ahead",
-    "drive_stretches",
-    "jump",
-    "load_at",
-    "load_stretches",
-    "read_drive",
-    "read_load",
-]

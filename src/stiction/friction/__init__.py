@@ -11,17 +11,17 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from stiction.friction.law import (
-    FrictionLaw,
-    Internal,
-    Law,
-    StateLaw,
-    has_state,
-    states,
-)
-from stiction.friction.laws import Anisotropic
+from stiction.friction.law import FrictionLaw as FrictionLaw
+from stiction.friction.law import Internal as Internal
+from stiction.friction.law import Law as Law
+from stiction.friction.law import StateLaw as StateLaw
+from stiction.friction.law import has_state as has_state
+from stiction.friction.law import states as states
+from stiction.friction.laws import Anisotropic as Anisotropic
 from stiction.friction.laws.anisotropic import anisotropy_table, read_anisotropy
-from stiction.friction.registry import FUNCTIONS, LAWS, METHODS
+from stiction.friction.registry import FUNCTIONS as FUNCTIONS
+from stiction.friction.registry import LAWS as LAWS
+from stiction.friction.registry import METHODS as METHODS
 from stiction.friction.user.loading import (
     Find,
     finder_for_descriptions,
@@ -76,21 +76,3 @@ def parameters(law: Any) -> dict[str, Any]:
     if isinstance(law, Anisotropic):
         return parameters(values.pop("law")) | values
     return values
-
-
-__all__ = [
-    "FUNCTIONS",
-    "LAWS",
-    "METHODS",
-    "Anisotropic",
-    "FrictionLaw",
-    "Internal",
-    "Law",
-    "StateLaw",
-    "has_state",
-    "law_table",
-    "name_of",
-    "parameters",
-    "read_law",
-    "states",
-]

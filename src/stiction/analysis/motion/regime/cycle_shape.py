@@ -11,7 +11,6 @@ from stiction.analysis.motion.course import MANY, ORDERED, change_of_period, ord
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings
 from stiction.analysis.motion.regime.evidence import Regime
-from stiction.analysis.motion.regime.irregular import drop_spread, irregularity
 from stiction.analysis.motion.regime.kinds import (
     COUPLED,
     HARMONIC,
@@ -22,6 +21,8 @@ from stiction.analysis.motion.regime.kinds import (
     UNDETERMINED,
     bounds,
     couples,
+    drop_spread,
+    irregularity,
     shape,
 )
 from stiction.analysis.motion.rest import TOUCHES, rest_share, stick_shares, still_shares
