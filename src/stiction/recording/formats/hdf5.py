@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from stiction.recording.formats import TextLayout
-from stiction.recording.formats.members import Member, tables_of
+from stiction.recording.formats.members import Member, plain_text, tables_of
 from stiction.recording.table import FileTable, natural_key
 from stiction.storage.foreign import read_through, refuse_other_files
 from stiction.storage.isolation import apart
@@ -44,15 +44,10 @@ def _members(group: Any, path: str, kind: str) -> Iterator[Member]:
         if hasattr(each, "keys"):
             yield from _members(each, f"{path}/{name}".strip("/"), kind)
             continue
-        units = next((_plain(each.attrs[key]) for key in UNITS if key in each.attrs), "")
+        units = next((plain_text(each.attrs[key]) for key in UNITS if key in each.attrs), "")
         values = each[()]
-        if kind == "MATLAB 7.3" and _plain(each.attrs.get("MATLAB_class", "")) == "char":
+        if kind == "MATLAB 7.3" and plain_text(each.attrs.get("MATLAB_class", "")) == "char":
             values = "".join(map(chr, np.ravel(values)))
         if getattr(values, "dtype", None) is not None and values.dtype.kind == "O":
-            values = np.asarray([_plain(x) for x in np.ravel(values)][:1], dtype=str)
+            values = np.asarray([plain_text(x) for x in np.ravel(values)][:1], dtype=str)
         yield Member(path, name, values, units)
-
-
-def _plain(value: Any) -> str:
-    value = value[0] if isinstance(value, np.ndarray) and value.size == 1 else value
-    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)

@@ -69,7 +69,11 @@ def _split(member: Member) -> Iterable[Member]:
 def _text(member: Member) -> str:
     value = np.asarray(member.values).ravel()
     first = value[0] if value.size == 1 else ""
-    if isinstance(first, bytes):
-        first = first.decode("utf-8", "replace")
     unit = f" {member.unit}" if member.unit else ""
-    return f"{first!s:.{LONGEST}}{unit}"
+    return f"{plain_text(first):.{LONGEST}}{unit}"
+
+
+def plain_text(value: Any) -> str:
+    """Return what a file holds as text: bytes, an array of one value, or anything else."""
+    value = value[0] if isinstance(value, np.ndarray) and value.size == 1 else value
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)

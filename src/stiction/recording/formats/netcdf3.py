@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from stiction.recording.formats import TextLayout
-from stiction.recording.formats.members import Member, tables_of
+from stiction.recording.formats.members import Member, plain_text, tables_of
 from stiction.recording.table import FileTable
 from stiction.storage.foreign import refuse_size
 
@@ -20,11 +20,7 @@ def read(path: Path, layout: TextLayout) -> list[FileTable]:
     io: Any = import_module("scipy.io")  # slow to import
     with io.netcdf_file(path, mmap=False) as file:
         members = [
-            Member("", name, np.array(each.data), _text(getattr(each, "units", "")))
+            Member("", name, np.array(each.data), plain_text(getattr(each, "units", "")))
             for name, each in file.variables.items()
         ]
     return tables_of(members, "NetCDF")
-
-
-def _text(value: Any) -> str:
-    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
