@@ -26,7 +26,8 @@ from stiction.auditing.words.changes import changes
 from stiction.auditing.words.load_cell import TITLE as LOAD_CELL
 from stiction.auditing.words.load_cell import load_cell
 from stiction.auditing.words.numbers import numbers, violated_assumptions
-from stiction.auditing.words.stick import stick, transverse
+from stiction.auditing.words.stick import stick
+from stiction.auditing.words.transverse import transverse
 from stiction.auditing.words.verdict import verdict
 from stiction.deprecation import old_attributes
 from stiction.inference.library import SIMULATIONS

@@ -32,7 +32,8 @@ from stiction.auditing.simulated_test import (
 )
 from stiction.auditing.words.changes import _change
 from stiction.auditing.words.numbers import apparent_stiffness, numbers
-from stiction.auditing.words.stick import stick, transverse
+from stiction.auditing.words.stick import stick
+from stiction.auditing.words.transverse import transverse
 from stiction.auditing.words.verdict import margin, motions, stability
 from stiction.cli import main
 from stiction.linear_stability import Critical, critical, steady_sliding

@@ -1,14 +1,12 @@
-"""What an audit says of stick, and of the transverse motion, in sentences."""
+"""How much of the apparent stick is creep."""
 
 from __future__ import annotations
 
-from math import hypot, isfinite, sin
-from typing import TYPE_CHECKING, Any
+from math import isfinite
+from typing import TYPE_CHECKING
 
 from stiction.analysis.motion.regime.kinds import HARMONIC, IRREGULAR, STICK_SLIP, TRANSVERSE
-from stiction.auditing.simulated_test import SLIDES
 from stiction.friction import has_state
-from stiction.system.slider import Slider
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 
@@ -17,7 +15,6 @@ if TYPE_CHECKING:
 
 VIBRATES = (HARMONIC, TRANSVERSE, IRREGULAR)  # about steady sliding: nothing creeps
 HARDLY = 0.05  # of the time: a smaller share of creep or rest is negligible
-SOON = 10.0  # e-folds until the first slip: it dies out in the first half of creep
 
 
 def stick(found: Audit) -> list[str]:
@@ -69,73 +66,3 @@ def stick(found: Audit) -> list[str]:
             "in each slip, so the trough alone is not a property of the interface."
         )
     return lines
-
-
-def transverse(found: Audit) -> list[str]:
-    """Return the transverse oscillation, and the sample rate that shows it."""
-    p, seen = found.prediction, found.observation
-    if p.amplitude == 0.0:
-        return ["Without misalignment the transverse spring is not excited."]
-    frequency, rate = in_words(p.f_y, "Hz"), in_words(p.sample_rate, "Hz")
-    natural = f"The transverse natural frequency is {frequency}."
-    if seen.motion == TRANSVERSE:
-        swings = in_words(1.0 / seen.mean("period"), "Hz")
-        return [
-            f"{natural} The vibration itself, at {swings}, is a transverse oscillation, faster "
-            f"than the {in_words(p.f_x, 'Hz')} of the mass on the spring along x alone. To see its "
-            f"shape, sample at {rate}."
-        ]
-    if has_state(found.slider.law):
-        return [
-            f"{natural} Whether the mass oscillates in spite of a friction with internal state can "
-            f"be seen in a run sampled at {rate}: stiction analyse."
-        ]
-    if seen.motion in VIBRATES or seen.shares.creep < HARDLY:
-        return [
-            f"{natural} A transverse oscillation needs creep, and this mass hardly creeps. What "
-            f"remains of it can be seen in a run sampled at {rate}."
-        ]
-    creeps = seen.shares.creep * seen.mean("period")
-    if creeps * p.f_y < 1.0:
-        return [
-            f"{natural} A transverse oscillation needs creep, and this mass creeps for "
-            f"{in_words(creeps, 's')} in each cycle, less than one period of it."
-        ]
-    force, decay = in_words(p.amplitude * found.slider.k_y, "N"), transverse_decay(found.slider)
-    if decay * p.load_up > SOON:
-        return [
-            f"{natural} A transverse oscillation begins with creep, and dies out within some "
-            f"{in_words(5.0 / decay, 's', 1)}: dampers, or friction that rises with "
-            f"speed, damp it. To see it, sample at {rate}."
-        ]
-    end, then = "slip", "the oscillation dies out: friction falls too little with speed to drive it"
-    if seen.comes_to == SLIDES:
-        end, then = "steady sliding", "the oscillation dies out"
-    elif decay < 0.0:
-        then = "the amplitude grows with its period"
-    lines = [
-        f"During creep the mass oscillates across the drive at {frequency}, by "
-        f"{in_words(p.amplitude, 'm')} (V sin φ/ω_y) or {force}. Towards {end} the frequency "
-        f"falls, as sin θ, and {then}.",
-        f"To see it, sample at {rate}; below {in_words(2.0 * p.f_y, 'Hz')} it appears at another "
-        "frequency.",
-    ]
-    if seen.coarse:
-        rate = in_words(seen.record.sample_rate, "Hz")
-        lines.append(
-            f"This test lasts so long that it was simulated with {rate} only, which does not show "
-            "the oscillation."
-        )
-    return lines
-
-
-def transverse_decay(slider: Slider) -> float:
-    """Return the rate of decay of the transverse oscillation early in creep, 1/s.
-
-    There the mass slips across the drive, at V sin(phi) on average, and friction is a damper of
-    the slope of its law. If negative, the oscillation lasts.
-    """
-    speed = hypot(*slider.motion.rate(0.0)) * abs(sin(slider.misalignment))
-    law: Any = slider.law
-    slope = float(law.slope(speed)) * slider.normal_load
-    return 0.5 * (slider.c_y + slope) / slider.masses[1]
