@@ -18,12 +18,14 @@ from rich.progress import Progress
 import stiction as st
 from benchmarks.accuracy.convergence import order
 from benchmarks.explore.deviation import deviation, forces, response
+from benchmarks.explore.systems.set_valued import System
 from benchmarks.section import Section, Table
 from stiction.friction import has_state
 from stiction.plotting.page.style import BLUE, PAGE, RED, new_figure, panel_letter, style
 from stiction.solver.integrate import FACTOR
 
 TOLERANCES = tuple(10.0**-n for n in range(3, 10))
+LASTS = 3.0  # s
 REFERENCE = 1e-12
 SHARE = 1e-7  # by which the apparatus is changed: the response is linear, and above rounding
 POWER = 4.0 / 5.0
@@ -49,8 +51,8 @@ class Measured(NamedTuple):
         return [FACTOR * (rtol / error) ** POWER for rtol, error in pairs]
 
 
-def systems() -> dict[str, tuple[st.Slider, float]]:
-    """Return sliders of every kind, each with the time (s) over which it is run."""
+def systems() -> dict[str, System]:
+    """Return systems of every kind."""
     p, paper = st.protocols, st.presets.nakano_popov_2020()
     shaken = p.DriveProgram(velocity="1 mm/s", across=p.Modulation("0.2 mm/s", "50 Hz"))
     stopped = [p.Constant(duration="2.2 s"), p.Ramp("3 mm/s", "0.2 s"), p.Hold("0.3 s")]
@@ -81,16 +83,16 @@ def systems() -> dict[str, tuple[st.Slider, float]]:
         "slip law": {"friction": slip, "k_y": "1 MN/m"},
         "LuGre": {"friction": bristles, "k_y": "1 MN/m"},
     }
-    return {name: (paper.replace(**changes), 3.0) for name, changes in rigs.items()}
+    return {name: System(paper.replace(**each), LASTS, REFERENCE) for name, each in rigs.items()}
 
 
-def measure(name: str, slider: st.Slider, duration: float, tolerances: Sequence[float]) -> Measured:
+def measure(name: str, system: System, tolerances: Sequence[float]) -> Measured:
     """Run a system at each tolerance, beside the tightest one and a changed apparatus."""
-    sharp, _ = forces(slider, duration, REFERENCE)
-    per_share = response(slider, duration, SHARE, REFERENCE, sharp) / SHARE
-    off = (deviation(forces(slider, duration, rtol)[0], sharp) for rtol in tolerances)
+    sharp, _ = forces(system, REFERENCE)
+    per_share = response(system, SHARE, REFERENCE, sharp) / SHARE
+    off = (deviation(forces(system, rtol)[0], sharp) for rtol in tolerances)
     errors = tuple(each / per_share for each in off)
-    return Measured(name, has_state(slider.law), errors)
+    return Measured(name, has_state(system.slider.law), errors)
 
 
 def run(progress: Progress, quick: bool) -> Section:
@@ -98,8 +100,8 @@ def run(progress: Progress, quick: bool) -> Section:
     chosen = systems()
     task = progress.add_task("calibration", total=len(chosen))
     found = []
-    for name, (slider, duration) in chosen.items():
-        found.append(measure(name, slider, duration, TOLERANCES[: 4 if quick else None]))
+    for name, system in chosen.items():
+        found.append(measure(name, system, TOLERANCES[: 4 if quick else None]))
         progress.advance(task)
     return Section("Calibration", [table(found)], NOTES, {"calibration": figure(found)})
 

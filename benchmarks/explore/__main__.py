@@ -71,9 +71,11 @@ def looked_at(
 
 def one(seed: int, number: int, longer: float, kind: str) -> int:
     """Print one system and what is seen of it."""
-    slider, duration, rtol = DRAWN[kind](seed, number)
-    settings = st.Settings(duration=longer * duration, rtol=rtol)
-    print(st.Description(slider, st.Initial(), settings).to_json())
+    drawn = DRAWN[kind](seed, number)
+    settings = st.Settings(
+        duration=longer * drawn.duration, rtol=drawn.rtol, regularisation=drawn.delta
+    )
+    print(st.Description(drawn.slider, drawn.start or st.Initial(), settings).to_json())
     print(look(seed, number, longer, kind))
     return 0
 

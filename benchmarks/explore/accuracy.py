@@ -15,6 +15,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from benchmarks.explore.deviation import FINER, FINEST, deviation, forces, response
+from benchmarks.explore.systems.general import general_system
 from benchmarks.explore.systems.set_valued import system
 from benchmarks.explore.systems.unsteady import unsteady_system
 from benchmarks.explore.systems.with_state import state_system
@@ -30,7 +31,12 @@ MODES: tuple[bool | Literal["auto"], ...] = (False, "auto", True)
 # Of the response: by so much a reference may change with a tenth of its tolerance. That of a system
 # which is not chaotic changes by the bound times `FINER` at most, 0.03
 KNOWN = 0.1
-DRAWN = {"set-valued": system, "state": state_system, "unsteady": unsteady_system}
+DRAWN = {
+    "set-valued": system,
+    "state": state_system,
+    "unsteady": unsteady_system,
+    "general": general_system,
+}
 SHARES = (0.5, 0.9, 0.99, 0.999, 1.0)
 WORST = 10
 CHAOTIC = "chaotic: the reference changes with its own tolerance as much as the response is"
@@ -54,18 +60,19 @@ class Seen(NamedTuple):
 
 def look(seed: int, number: int, longer: float = 1.0, kind: str = "set-valued") -> Seen:
     """Run one system in all modes, and as it would be if it were a little other."""
-    slider, duration, rtol = DRAWN[kind](seed, number)
-    duration *= longer
+    drawn = DRAWN[kind](seed, number)
+    drawn = drawn._replace(duration=longer * drawn.duration)
+    slider, rtol = drawn.slider, drawn.rtol
     finer = max(FINER * rtol, FINEST)
-    sharp, reference = forces(slider, duration, finer)
-    moved = response(slider, duration, tolerance(rtol), finer, sharp)
-    runs = [forces(slider, duration, rtol, mode) for mode in MODES]
+    sharp, reference = forces(drawn, finer)
+    moved = response(drawn, tolerance(rtol), finer, sharp)
+    runs = [forces(drawn, rtol, mode) for mode in MODES]
     left_out = "" if moved > FINEST else "nothing depends on mass or load: it never slipped"
     for run in (reference, *(run for _, run in runs)):
         left_out = left_out if run.status.ok else run.status.value
     off = tuple(deviation(found, sharp) / (moved or 1.0) for found, _ in runs)
     if not left_out and any(map(gt, off, BOUNDS.values())):
-        sharper, _ = forces(slider, duration, finer / 10.0)
+        sharper, _ = forces(drawn, finer / 10.0)
         if deviation(sharper, sharp) > KNOWN * moved:
             left_out = CHAOTIC
     return Seen(

@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 
 import stiction as st
+from benchmarks.explore.systems.set_valued import System
 
 SAMPLES = 1000
 FINER = 1e-3  # tolerance of the reference over that of the run on trial
@@ -14,11 +15,18 @@ FINEST = 1e-12
 
 
 def forces(
-    slider: st.Slider, duration: float, rtol: float, multiscale: bool | Literal["auto"] = False
+    system: System, rtol: float, multiscale: bool | Literal["auto"] = False
 ) -> tuple[np.ndarray, st.Trajectory]:
     """Return the force of the springs (N; 2 rows) at equal intervals of time, and the run."""
-    rate = (SAMPLES - 1) / duration
-    run = st.simulate(slider, duration, sample_rate=rate, rtol=rtol, multiscale=multiscale)
+    run = st.simulate(
+        system.slider,
+        system.duration,
+        sample_rate=(SAMPLES - 1) / system.duration,
+        rtol=rtol,
+        initial=system.start,
+        regularisation=system.delta,
+        multiscale=multiscale,
+    )
     found = np.stack([run.data["spring_x"].values, run.data["spring_y"].values])
     return found[:, : SAMPLES - 1], run
 
@@ -30,15 +38,18 @@ def deviation(found: np.ndarray, reference: np.ndarray) -> float:
     return float(np.hypot(*(found[:, :n] - reference[:, :n])).max()) / largest
 
 
-def response(
-    slider: st.Slider, duration: float, share: float, rtol: float, reference: np.ndarray
-) -> float:
+def response(system: System, share: float, rtol: float, reference: np.ndarray) -> float:
     """Return by how much the forces change if the mass, or the load, changes by a share.
 
     The mass is the clock of the oscillation, the load the size of friction.
     """
-    changed = (slider.replace(mass=slider.mass * (1 + share)), heavier(slider, 1 + share))
-    return max(deviation(forces(each, duration, rtol)[0], reference) for each in changed)
+    slider, times = system.slider, 1.0 + share
+    inert = {"mass": slider.mass * times}
+    if slider.mass_y is not None:
+        inert["mass_y"] = slider.mass_y * times
+    changed = (slider.replace(**inert), heavier(slider, times))
+    runs = (forces(system._replace(slider=each), rtol)[0] for each in changed)
+    return max(deviation(run, reference) for run in runs)
 
 
 def heavier(slider: st.Slider, times: float) -> st.Slider:
@@ -48,7 +59,7 @@ def heavier(slider: st.Slider, times: float) -> st.Slider:
         steps = tuple(
             piece._replace(**{name: getattr(piece, name) * times})
             for piece in load.program
-            for name in ("value", "to")
+            for name in ("value", "to", "scale")
             if hasattr(piece, name)
         )
         shaken = load.modulation and load.modulation._replace(

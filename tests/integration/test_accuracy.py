@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 from benchmarks.explore import accuracy
 from benchmarks.explore.accuracy import BOUNDS, CHAOTIC, look
+from benchmarks.explore.deviation import FINEST, deviation, forces, response
+from benchmarks.explore.systems.set_valued import System
 
 import stiction as st
 from stiction.presets.preset import on_a_line
+from stiction.solver.integrate import tolerance
 
 SEED = 1
 ANY = (0, 1, 3, 4, 5, 7, 10, 12, 14, 16, 18, 21, 22, 27, 28, 29, 32, 36, 41, 42, 45, 47, 55, 58)
@@ -132,6 +135,32 @@ def test_a_layer_at_the_start_is_resolved(rtol):
 def test_programs_of_the_drive_keep_the_bound(number):
     """Of 2000 with programs of drive or load; number 186 stuck where its drive had turned, once."""
     seen = look(SEED, number, kind="unsteady")
+    assert not seen.left_out
+    assert max(seen.off) < BOUNDS["in steps"]
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8, 1e-9])
+def test_creep_of_smooth_friction_is_as_exact_as_asked_for(rtol):
+    """Slip that follows the springs was off by 7 to 50 times the response, the more the finer."""
+    creeping = st.Slider(
+        mass=3.0,
+        k_x=0.5,
+        k_y=1e4,
+        phi="1 deg",
+        normal_load=45.0,
+        friction=st.Coulomb(0.7),
+        drive=st.ConstantVelocity("0.1 m/s"),
+    )
+    drawn = System(creeping, 14.0, rtol, delta=4e-3)
+    sharp, _ = forces(drawn, FINEST)
+    off = deviation(forces(drawn, rtol)[0], sharp)
+    assert off < response(drawn, tolerance(rtol), FINEST, sharp)
+
+
+@pytest.mark.parametrize("number", [477, 1594, 2000])
+def test_all_that_a_description_can_hold_keeps_the_bound(number):
+    """Of 5000 rigs with axes, springs, laws and starts of all kinds; two of them with creep."""
+    seen = look(2, number, kind="general")
     assert not seen.left_out
     assert max(seen.off) < BOUNDS["in steps"]
 

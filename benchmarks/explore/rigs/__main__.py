@@ -35,7 +35,7 @@ def main() -> int:
     parser.add_argument("--only", type=int, metavar="NUMBER", help="one rig, and what it is")
     options = parser.parse_args()
     if options.only is not None:
-        slider, duration, rtol = rig(options.seed, options.only)
+        slider, duration, rtol = rig(options.seed, options.only)[:3]
         settings = st.Settings(duration=duration, rtol=rtol)
         print(st.Description(slider, st.Initial(), settings).to_json())
         print(look(options.seed, options.only))

@@ -36,11 +36,12 @@ class Seen(NamedTuple):
 
 def look(seed: int, number: int) -> Seen:
     """Solve one rig by both, and as it would be if it were a little other."""
-    slider, duration, rtol = rig(seed, number)
-    found, run = forces(slider, duration, rtol)
+    drawn = rig(seed, number)
+    slider, duration, rtol = drawn[:3]
+    found, run = forces(drawn, rtol)
     finer = max(FINER * rtol, FINEST)
-    sharp, _ = forces(slider, duration, finer)
-    moved = max(response(slider, duration, tolerance(rtol), finer, sharp), LEAST)
+    sharp, _ = forces(drawn, finer)
+    moved = max(response(drawn, tolerance(rtol), finer, sharp), LEAST)
     left_out, off = "" if run.status.ok else run.status.value, 0.0
     name, sticks = type(slider.law).__name__, len(run.stick_intervals)
     if steps_of_twin(slider, duration) > MOST:

@@ -17,11 +17,16 @@ SHARES = (0.4, 0.2, 0.15, 0.15, 0.1)
 
 
 class System(NamedTuple):
-    """An apparatus, how long it is looked at (s), and the tolerance of the run on trial."""
+    """An apparatus, how long it is looked at (s), and the tolerance of the run on trial.
+
+    `start` is the initial state, by default the paper's; `delta` (m/s) regularises friction.
+    """
 
     slider: st.Slider
     duration: float
     rtol: float
+    start: st.Initial | None = None
+    delta: float | None = None
 
 
 def system(seed: int, number: int) -> System:

@@ -15,13 +15,14 @@ APART = 1_000_003  # between numbers of drawing an apparatus and its program
 def unsteady_system(seed: int, number: int) -> System:
     """Return the system of a number: one of the other two kinds, with a program."""
     draw = Draw(seed, APART + number)
-    slider, duration, rtol = (system if draw.chance(0.7) else state_system)(seed, number)
+    drawn = (system if draw.chance(0.7) else state_system)(seed, number)
+    slider, duration = drawn.slider, drawn.duration
     changed = draw.random()
     if changed < 0.7:
         slider = slider.replace(drive=drive(draw, slider, duration))
     if changed > 0.5:
         slider = slider.replace(load=load(draw, slider, duration))
-    return System(slider, duration, rtol)
+    return System(slider, duration, drawn.rtol)
 
 
 def drive(draw: Draw, slider: st.Slider, duration: float) -> st.protocols.DriveProgram:

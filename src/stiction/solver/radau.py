@@ -93,6 +93,12 @@ def cubic_slope(values: tuple[float, float, float, float], c: float) -> float:
 
 
 @inlined
+def leading_factor(values: tuple[float, float, float, float]) -> float:
+    """Return the factor of c^3 in the cubic through `values` at 0 and the three stages."""
+    return _W0 * values[0] + _W1 * values[1] + _W2 * values[2] + _W3 * values[3]
+
+
+@inlined
 def integral(values: Triple, c: float) -> float:
     """Return the integral from 0 to `c` of the quadratic through `values` at the stages."""
     i, j, k = _INTEGRALS

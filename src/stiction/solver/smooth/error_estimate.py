@@ -14,7 +14,15 @@ from numpy.polynomial import Polynomial
 
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.problem import Problem
-from stiction.solver.radau import DEFECT_WEIGHT, INTERIOR, C, cubic, cubic_slope, integral
+from stiction.solver.radau import (
+    DEFECT_WEIGHT,
+    INTERIOR,
+    C,
+    cubic,
+    cubic_slope,
+    integral,
+    leading_factor,
+)
 from stiction.solver.smooth.coordinate import coordinate
 from stiction.solver.smooth.elimination import correct_states_inside, slip_without_states
 from stiction.solver.smooth.newton import correct, larger
@@ -32,6 +40,7 @@ from stiction.solver.state import Accuracy
 BALANCE_ITERATIONS = 20
 # how the error goes inside a step, 1 in magnitude at c_1, where it is largest
 _PI = Polynomial.fromroots(C).integ()
+LARGEST = float(abs(_PI(C[0])))  # integral of the cubic less the quadratic, over the factor of c^3
 ERROR = tuple(float(x) for x in (_PI / abs(_PI(C[0]))).coef[1:])
 
 
@@ -98,11 +107,13 @@ def balance(
     p: Within,
     w: Workspace,
     enough: float,
-) -> tuple[bool, Point]:
+    further: tuple[float, float],
+) -> tuple[bool, Point, tuple[float, float]]:
     """Solve for slip and states at `c` in the step; write the states to the row `INSIDE`.
 
     They are x with x - p + weight (p' - h f(x)) = 0 (M70), p being the polynomial and f the
     right-hand side. Where f is gentle, x is p up to its error; where it is stiff, forces balance.
+    By so much slower (m/s) would the slip be, had the mass slid `further` (over h).
     """
     n, system, eps = w.size.shape[0], problem.system, start.eps
     a_x, a_y, load = pull(problem, start, c * h)
@@ -116,6 +127,8 @@ def balance(
     given_x, given_y = p.s_x - weight * p.d_x + g * a_x, p.s_y - weight * p.d_y + g * a_y
     x, y = 1.0 + damping_x, 1.0 + damping_y
     at = evaluate(problem, eps, load, q_x, q_y, w, INSIDE, WANTED)
+    square = g * h * system.per_mass
+    lost_x, lost_y = square * system.k_x * further[0], square * system.k_y * further[1]
     for _ in range(BALANCE_ITERATIONS):
         r_x, r_y = x * at.s_x + g * at.f_x - given_x, y * at.s_y + g * at.f_y - given_y
         xx, xy = x * at.s_xx + g * at.f_xx, x * at.s_xy + g * at.f_xy
@@ -134,11 +147,25 @@ def balance(
         if n > 2:
             size = larger(correct_states_inside(d_x, d_y, w), size)
         if not size < 1e100:
-            return False, at
+            return False, at, (0.0, 0.0)
+        d_x, d_y = (yy * lost_x - xy * lost_y) * per, (xx * lost_y - yx * lost_x) * per
+        slower = at.s_xx * d_x + at.s_xy * d_y, at.s_xy * d_x + at.s_yy * d_y
         at = evaluate(problem, eps, load, q_x, q_y, w, INSIDE, WANTED)
         if size < enough or size * size < enough:
-            return True, at
-    return False, at
+            return True, at, slower
+    return False, at, (0.0, 0.0)
+
+
+@inlined
+def distance_error(w: Workspace) -> tuple[float, float]:
+    """Return the largest error of the distance slid inside the step, over h (m/s).
+
+    The distance is the integral of the quadratic through the stages, the slip is the cubic.
+    """
+    v = w.values
+    x = leading_factor((v[START, 0], v[1, 0], v[2, 0], v[3, 0]))
+    y = leading_factor((v[START, 1], v[1, 1], v[2, 1], v[3, 1]))
+    return LARGEST * x, LARGEST * y
 
 
 @inlined
@@ -147,16 +174,20 @@ def local_error(
 ) -> float:
     """Return the relative error of the step's cubic, and write the error itself.
 
-    It is relative to the slip, or to the motion about steady sliding if that is slower.
+    It is relative to the slip, or to the motion about steady sliding if that is slower. Where slip
+    follows the springs, the cubic misses no force, and its error is that of the distance (M70b).
     """
     p = within(w, INTERIOR)
-    found, at = balance(problem, start, h, INTERIOR, DEFECT_WEIGHT, p, w, 0.1)
+    found, at, (by_x, by_y) = balance(
+        problem, start, h, INTERIOR, DEFECT_WEIGHT, p, w, 0.1, distance_error(w)
+    )
     if not found:
         return inf
     e_x, e_y = p.s_x - at.s_x, p.s_y - at.s_y
     w.error[0], w.error[1] = e_x, e_y
     speed = slowest(h, w, accuracy.speed) + sqrt(at.s_x * at.s_x + at.s_y * at.s_y)
-    error = sqrt(e_x * e_x + e_y * e_y) / speed
+    x, y = e_x + by_x, e_y + by_y
+    error = sqrt(max(e_x * e_x + e_y * e_y, x * x + y * y)) / speed
     for k in range(2, w.size.shape[0]):
         w.error[k] = w.cubic[0, k] - w.values[INSIDE, k]
         error = max(error, abs(w.error[k]) / w.size[k])

@@ -50,7 +50,7 @@ def sample(
             write_states(inner, LAST, samples, k)
         else:  # the weight grows from zero at the start, where the polynomial is exact
             p = less_error(w, within(w, x), x)
-            _, there = balance(problem, start, h, x, x, p, w, accuracy.newton)
+            _, there, _ = balance(problem, start, h, x, x, p, w, accuracy.newton, (0.0, 0.0))
             u_x, u_y = u_x - h * p.slid_x, u_y - h * p.slid_y
             slip, friction = (there.s_x, there.s_y), (there.f_x, there.f_y)
             write(problem, u_x, u_y, slip, friction, samples, k)

@@ -11,6 +11,7 @@ from tests.unit.solver.smooth.systems import (
     EXACT,
     LAWS,
     MOTION,
+    STATELESS,
     A,
     C,
     Equations,
@@ -23,6 +24,7 @@ from stiction.solver.smooth import error_estimate, newton
 from stiction.solver.smooth.workspace import INSIDE, START, workspace
 
 NODES = np.array([0.0, *C])
+NONE = (0.0, 0.0)
 ROW = np.array(inside(3, *[(-1.0, 1.0)] * 12)[0])
 PI = Polynomial.fromroots(C)
 
@@ -83,7 +85,7 @@ def test_a_balance_inside_a_step(name, drive, c, weight, h):
     """(M70): y - P + weight (P_c - h f(y)) = 0."""
     problem, start, w = solved_step(name, h, drive)
     p = plain(error_estimate.within)(w, c)
-    found, at = plain(error_estimate.balance)(problem, start, h, c, weight, p, w, 1e-20)
+    found, at, _ = plain(error_estimate.balance)(problem, start, h, c, weight, p, w, 1e-20, NONE)
     assert found
     value, by_c, slid = polynomials(w, c)
     s, z = np.array(at[:2]), w.values[INSIDE, 2:]
@@ -103,13 +105,40 @@ def test_the_error_of_a_step(name, h):
     error = plain(error_estimate.local_error)(problem, start, h, w, EXACT)
     value, _, _ = polynomials(w, INTERIOR)
     p = plain(error_estimate.within)(w, INTERIOR)
-    _, at = plain(error_estimate.balance)(problem, start, h, INTERIOR, DEFECT_WEIGHT, p, w, 1e-20)
-    s, z = np.array(at[:2]), w.values[INSIDE, 2:]
+    of = problem, start, h, INTERIOR, DEFECT_WEIGHT
+    farther = plain(error_estimate.distance_error)(w)
+    _, at, _ = plain(error_estimate.balance)(*of, p, w, 1e-20, NONE)
+    s, z = np.array(at[:2]), w.values[INSIDE, 2:].copy()
     off = value - [*s, *z]
-    parts = [hypot(*off[:2]) / (EXACT.speed + hypot(*s)), *np.abs(off[2:] / w.size[2:])]
+    p = p._replace(slid_x=p.slid_x + farther[0], slid_y=p.slid_y + farther[1])
+    _, there, _ = plain(error_estimate.balance)(*of, p, w, 1e-20, NONE)  # (M70b)
+    slip = max(hypot(*off[:2]), hypot(*(value[:2] - there[:2])))
+    parts = [slip / (EXACT.speed + hypot(*s)), *np.abs(off[2:] / w.size[2:])]
     # one iteration with a fresh Jacobian, or two: its error is quadratic in the correction
     assert error == pytest.approx(max(parts) / 0.25, rel=1e-2)
     assert w.error == pytest.approx(off, rel=5e-2, abs=1e-2 * max(parts) * w.size.min())
+
+
+@pytest.mark.parametrize("h", [1e-5, 3e-4])
+def test_a_balance_farther_along(h):
+    """By so much slower is the slip for a little more distance slid."""
+    for name in STATELESS:  # states, which feel the slip, are left as they are
+        problem, start, w = solved_step(name, h, "steady")
+        of = problem, start, h, INTERIOR, DEFECT_WEIGHT
+        p = plain(error_estimate.within)(w, INTERIOR)
+        _, at, slower = plain(error_estimate.balance)(*of, p, w, 1e-20, (3e-9, -2e-9))
+        p = p._replace(slid_x=p.slid_x + 3e-9, slid_y=p.slid_y - 2e-9)
+        _, there, _ = plain(error_estimate.balance)(*of, p, w, 1e-20, NONE)
+        assert (at.s_x - there.s_x, at.s_y - there.s_y) == pytest.approx(slower, rel=1e-2)
+
+
+def test_the_error_of_the_distance_slid():
+    """It is the integral of the cubic less that of the quadratic, at the first stage (M70b)."""
+    _, _, w = solved_step("smoothed", 1e-3)
+    cubics = [fit(NODES, w.values[:4, i]) for i in (0, 1)]
+    quadratics = [fit(C, w.values[1:4, i]) for i in (0, 1)]
+    off = [abs((a - b).integ()(C[0])) for a, b in zip(cubics, quadratics, strict=True)]
+    assert np.abs(plain(error_estimate.distance_error)(w)) == pytest.approx(off)
 
 
 def test_the_error_falls_with_the_fourth_power_of_the_step():
@@ -137,7 +166,7 @@ def test_a_balance_over_many_decades_takes_few_iterations(name, h, monkeypatch):
 
     monkeypatch.setitem(balance.__globals__, "evaluate", noted)
     p = plain(error_estimate.within)(w, INTERIOR)
-    found, at = balance(problem, start, h, INTERIOR, DEFECT_WEIGHT, p, w, 1e-12)
+    found, at, _ = balance(problem, start, h, INTERIOR, DEFECT_WEIGHT, p, w, 1e-12, NONE)
     assert found
     assert at is points[-1]
     assert at.s_x > 0.5 * h
@@ -151,7 +180,7 @@ def test_without_a_balance_the_error_is_infinite(name):
     assert plain(error_estimate.local_error)(problem, start, 1e-3, w, EXACT) == inf
     problem, start, w = solved_step(name, 1e-3)
     p = plain(error_estimate.within)(w, 0.5)
-    found, _ = plain(error_estimate.balance)(problem, start, 1e-3, 0.5, 0.5, p, w, 0.0)
+    found, _, _ = plain(error_estimate.balance)(problem, start, 1e-3, 0.5, 0.5, p, w, 0.0, NONE)
     assert not found  # nothing is exact enough
 
 
