@@ -2,6 +2,7 @@
 
 import math
 import os
+import re
 import shutil
 
 import pytest
@@ -10,6 +11,7 @@ from tests.waiting import PATIENCE, until
 
 import stiction as st
 from stiction.explorer.answers import tables_of
+from stiction.explorer.source import open_sources
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 if CHROMIUM is None:
@@ -356,6 +358,61 @@ def test_ticks_of_a_study_have_the_prefix_of_its_axis(page):
     )
     assert made["unit"] == "mm/s"
     assert [words for _, words in made["ticks"]] == ["0.3", "0.95", "3", "9.5", "30"]
+
+
+def test_the_label_of_the_last_tick_is_not_cut_off(page):
+    """Of 0.30 at the end of the time axis one saw 0.3."""
+    ends = page.value(
+        """import(new URL("drawing.js", document.querySelector("script[type=module]").src)).then(
+        ({ frame }) => {
+          const canvas = document.createElement("canvas"), found = [];
+          canvas.width = 300;
+          const context = canvas.getContext("2d");
+          context.fillText = (words, x) => found.push(x + context.measureText(words).width / 2);
+          const none = { place: (value) => value, ticks: [] };
+          frame(context, { left: 50, top: 0, width: 245, height: 50 },
+            { ...none, ticks: [[0, "0.00"], [1, "0.30"]] }, none);
+          return found;
+        })"""
+    )
+    assert ends[0] < 75.0
+    assert 290.0 < ends[1] <= 300.0
+
+
+def test_a_study_shows_what_its_colours_mean(browser, tmp_path):
+    """A click on a run without a value opens it, too."""
+    study = st.Study(
+        base=an_opened(duration=2e-3).description,
+        axes={"phi": st.Values(["1 deg", "2 deg"]), "V": st.Values(["1 mm/s", "100 mm/s"])},
+        measures=["peak_force"],
+    )
+    st.sweep(study, tmp_path / "a.zarr")
+    what = open_sources([tmp_path / "a.zarr"])
+    what.study.data["peak_force"].values[1, 0] = math.nan
+    with serving(what) as explorer:
+        page = Page(browser.new_page(viewport={"width": 1280, "height": 720}), explorer)
+        still = "document.querySelector('#panel-a .layers canvas')"
+        page.value(
+            f"""(() => {{ const context = {still}.getContext("2d"), write = context.fillText;
+            window.written = [];
+            context.fillText = (words, ...at) => {{ written.push(words);
+              write.call(context, words, ...at); }};
+ }})()"""
+        )
+        canvas = "#panel-a canvas[role=img]"
+        box = page.tab.locator(canvas).bounding_box()
+        page.done_after(
+            lambda: page.tab.click(
+                canvas, position={"x": 0.6 * box["width"], "y": 0.7 * box["height"]}
+            )
+        )
+        page.drawn_picture(canvas)
+        written = page.value("written")
+        assert [words for words in written if re.fullmatch(r"peak force \(.?N\)", words)]
+        assert "no value" in written
+        assert page.row("slider.phi").locator("input[type=text]").input_value() == "2 deg"
+        assert page.said == []
+        page.tab.close()
 
 
 def test_closing_the_page_ends_its_computation(browser, explorer):

@@ -9,7 +9,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from math import copysign, degrees, log10
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -29,6 +29,9 @@ from stiction.media.sound import RATE, rate_at
 from stiction.presets import PRESETS, find
 from stiction.system.description import Description
 from stiction.system.parameter import change_unchecked
+
+if TYPE_CHECKING:
+    from stiction.study.view.view import View
 
 Request = Mapping[str, Any]
 WIDEST = 8192  # columns of a screen
@@ -105,16 +108,17 @@ def fine(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
 
 
 def measured_curves(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
-    """Yield the measured curves in a window, s."""
+    """Yield the measured curves in a window of a run, s."""
     if opened.measured is None:
         return
     low, high = (float(each) for each in request["window"])
-    times = opened.measured["time"]
+    start, end = (float(each) for each in request["run"])
+    times, origin = opened.measured_during((start, end))
     places, starts = columns_of(times, (low, high), columns(request))
     drawn = {
         name: extremes(values, starts) for name, values in opened.measured.items() if name != "time"
     }
-    head = {"window": (low, high), "origin": opened.origin, "columns": columns(request)}
+    head = {"window": (low, high), "origin": origin, "columns": columns(request)}
     yield head, {"column": places.astype(np.float32), **drawn}
 
 
@@ -197,28 +201,45 @@ def file(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
 
 
 def study_map(opened: Opened) -> Reply:
-    """Return the map of a study: a measure over its dimensions, rows of the second."""
-    from stiction.study.view.view import choose_measures, kinds
+    """Return the map of a study: the colour of each run as in its figure, and what colours mean."""
+    from stiction.plotting.shades import (
+        COLORS,
+        NO_RESULT,
+        NO_VALUE,
+        kind_codes,
+        kind_shades,
+        measure_shades,
+        present_kinds,
+    )
+    from stiction.study.view.mapping import in_words
+    from stiction.study.view.view import REGIME, choose_measures, kinds
 
     view = opened.study
     assert view is not None
     (name,) = choose_measures(view, ())[:1]
-    dims = [str(dim) for dim in view.data["status"].dims]
+    head: dict[str, Any] = {"axes": study_axes(view), "kinds": None, "bar": None}
+    if name == REGIME:
+        named = kinds(view.data)
+        shades, values = kind_shades(), kind_codes(named)
+        head |= {"measure": name, "missing": NO_RESULT}
+        head["kinds"] = [(each, COLORS[each]) for each in present_kinds(named)]
+    else:
+        values, words = in_words(view.data, name)
+        shades = measure_shades(values)
+        head |= {"measure": words, "missing": NO_VALUE}
+        head["bar"] = {"limits": shades.limits, "log": shades.log}
+    return head, {"map": shades.rgba(values), "bar": shades.bar}
+
+
+def study_axes(view: View) -> list[dict[str, Any]]:
+    """Return name, values and unit of each dimension of a map."""
     axes = []
-    for dim in dims:
+    for dim in map(str, view.data["status"].dims):
         known = view.study.coordinates.get(dim)
         values = np.arange(view.data.sizes[dim]) if known is None else known.values
-        axes.append({"dim": dim, "values": values, "unit": "" if known is None else known.unit})
-    head: dict[str, Any] = {"measure": name, "axes": axes, "kinds": None}
-    if name == "regime":
-        named = kinds(view.data)
-        words = sorted(set(named.ravel().tolist()) - {""})
-        values = np.array([[words.index(x) if x in words else -1 for x in named.ravel()]])
-        head["kinds"] = words
-    else:
-        values = view.data[name].values
-    head["axes"] = [{**each, "values": np.asarray(each["values"]).tolist()} for each in axes]
-    return head, {"map": np.asarray(values, np.float32).reshape(view.data["status"].shape)}
+        unit = "" if known is None else known.unit
+        axes.append({"dim": dim, "values": values.tolist(), "unit": unit})
+    return axes
 
 
 ANSWERS: dict[str, Callable[[Opened, Request, Check], Iterator[Reply]]] = {

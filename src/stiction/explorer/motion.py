@@ -113,11 +113,10 @@ def curves(table: ColumnTable, sticks: np.ndarray, window: Window, columns: int)
     """Return each curve as first, lowest, highest and last value of each column of pixels."""
     places, starts = columns_of(table["time"], window, columns)
     found: Arrays = {name: extremes(table[name], starts) for name in CURVES}
-    return {
-        "column": places.astype(np.float32),
-        **found,
-        "stuck": share_stuck(sticks, window, columns),
-    }
+    stuck = share_stuck(sticks, window, columns)
+    # rest may fall between two samples; those that happen to be near it would show beats
+    found["slip_speed"][stuck[places] > 0.0, 1] = 0.0
+    return {"column": places.astype(np.float32), **found, "stuck": stuck}
 
 
 def track(table: ColumnTable) -> Arrays:

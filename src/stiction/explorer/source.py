@@ -51,6 +51,24 @@ class Opened:
     origin: str = ""
     study: View | None = None
 
+    def measured_during(self, run: tuple[float, float]) -> tuple[np.ndarray, str]:
+        """Return the times of the measured curves (s), and what to call the curves.
+
+        Curves whose clock ends before the run or starts after it would not be seen: their times
+        are counted from the run's start.
+
+        Parameters
+        ----------
+        run : tuple of float
+            Start and end of the run that is shown, s.
+        """
+        times = np.zeros(0) if self.measured is None else self.measured["time"]
+        start, end = run
+        if not len(times) or (times[0] < end and times[-1] > start) or times[0] == start:
+            return times, self.origin
+        first = float(times[0])
+        return times - first + start, f"{self.origin}, from {in_words(first, 's')} on"
+
     def read(self, tables: Mapping[str, Any]) -> Description:
         """Return the description of a page's tables.
 
@@ -104,8 +122,6 @@ def open_sources(sources: Iterable[Any], *, trust: bool = False) -> Opened:
             described = own
         name = described or own
         found |= part
-    if found.get("origin") == "measured":
-        found |= visible_part(found["measured"], found["description"])
     return Opened(name or "Nakano & Popov 2020, Fig. 3", **found)
 
 
@@ -114,17 +130,6 @@ def name_of(source: Any) -> str:
     if isinstance(source, Record) and source.origin is not None:
         source = source.origin.file
     return Path(source).name if isinstance(source, str | Path) else f"a {type(source).__name__}"
-
-
-def visible_part(measured: Mapping[str, Floats], description: Description) -> dict[str, Any]:
-    """Return a record whose clock starts after the run's end as one that starts with the run."""
-    if not len(measured["time"]):
-        return {}
-    first, start = float(measured["time"][0]), description.initial.time
-    if first < start + description.run.duration:
-        return {}
-    moved = {**measured, "time": measured["time"] - first + start}
-    return {"measured": moved, "origin": f"measured, from {in_words(first, 's')} on"}
 
 
 def open_source(source: Any, trust: bool) -> dict[str, Any]:

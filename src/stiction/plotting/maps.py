@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib import patheffects
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
-from matplotlib.colors import ListedColormap, LogNorm, Normalize
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
@@ -17,25 +16,18 @@ from numpy.typing import NDArray
 from stiction.arrays import Floats
 from stiction.plotting.page.parameter import Scale, sparse
 from stiction.plotting.page.style import BLACK, BLUE, GREEN
+from stiction.plotting.shades import (
+    COLORS,
+    NO_RESULT,
+    NO_VALUE,
+    kind_codes,
+    kind_shades,
+    measure_shades,
+    present_kinds,
+)
 
 CASING = [patheffects.withStroke(linewidth=3.0, foreground="white")]
-DECADES = 30.0  # a measure that spans a larger factor is drawn in decades
 PLAINLY = 1e3  # a smaller factor is written without powers of ten
-NO_RESULT = "no result"
-DEEPEST = 1e6  # range below the largest value; smaller ones count as zero
-
-# light for calm, dark and warm for violent motion; distinct without colour too
-COLORS = {
-    "stick-slip": "#C44E00",
-    "transitional oscillation": "#EE9A4D",
-    "harmonic vibration": "#FBDDA6",
-    "settling": "#CFE3F1",
-    "steady sliding": "#8FC1E3",
-    "transverse oscillation": "#A3558F",
-    "irregular vibration": "#6B4E9B",
-    "stuck": "#8A8A8A",
-    "undetermined": "#FFFFFF",
-}
 
 
 class Side(NamedTuple):
@@ -70,24 +62,19 @@ def draw_regimes(ax: Axes, x: Side, y: Side, kinds: NDArray[np.object_]) -> list
     kinds : ndarray
         (n, m), names as in `COLORS`; others (a run that failed, or is not done) are hatched.
     """
-    names = list(COLORS)
-    codes = np.full(kinds.shape, np.nan)
-    for code, name in enumerate(names):
-        codes[kinds == name] = code
-    shades = ListedColormap(list(COLORS.values()))
+    shades, codes = kind_shades(), kind_codes(kinds)
     ax.set_facecolor("white")
     failed = np.isnan(codes)
     if failed.any():
         ax.patch.set(hatch="xxxx", edgecolor="#777777")
     ax.pcolormesh(
-        x.edges, y.edges, np.ma.masked_invalid(codes.T), cmap=shades,
-        norm=Normalize(-0.5, len(names) - 0.5), rasterized=True,
+        x.edges, y.edges, np.ma.masked_invalid(codes.T), cmap=shades.colormap, norm=shades.norm,
+        rasterized=True,
     )  # fmt: skip
     _frame(ax, x, y)
-    present = [name for code, name in enumerate(names) if (codes == code).any()]
     patches = [
         Patch(facecolor=COLORS[name], edgecolor=BLACK, linewidth=0.4, label=name)
-        for name in present
+        for name in present_kinds(kinds)
     ]
     if failed.any():
         patches.append(Patch(facecolor="white", edgecolor="#777777", hatch="xxxx", label=NO_RESULT))
@@ -102,23 +89,21 @@ def draw_measure(
     Parameters are those of `draw_regimes`, and the name of the measure; where there is no value it
     is hatched. Returned is what is coloured, and a patch for the legend if some of it is hatched.
     """
-    found = values[np.isfinite(values)]
-    positive = len(found) > 0 and found.min() > 0.0
-    log = positive and found.max() > DECADES * found.min()
+    shades = measure_shades(values)
     hatched = []
-    if len(found) < values.size:
+    if not np.isfinite(values).all():
         ax.patch.set(hatch="////", edgecolor="#BBBBBB")
-        hatched = [Patch(facecolor="white", edgecolor="#BBBBBB", hatch="////", label="no value")]
+        hatched = [Patch(facecolor="white", edgecolor="#BBBBBB", hatch="////", label=NO_VALUE)]
     mesh = ax.pcolormesh(
-        x.edges, y.edges, np.ma.masked_invalid(values.T), cmap="cividis",
-        norm=LogNorm(max(found.min(), found.max() / DEEPEST), found.max()) if log else None,
+        x.edges, y.edges, np.ma.masked_invalid(values.T), cmap=shades.colormap, norm=shades.norm,
         rasterized=True,
     )  # fmt: skip
     _frame(ax, x, y)
     bar = ax.figure.colorbar(mesh, ax=ax, label=label, pad=0.02)
-    if log and found.max() < PLAINLY * found.min():
+    low, high = shades.limits
+    if shades.log and high < PLAINLY * low:
         for formatted in (bar.ax.yaxis.set_major_formatter, bar.ax.yaxis.set_minor_formatter):
-            formatted(sparse(found.min()))
+            formatted(sparse(low))
     return mesh, hatched
 
 

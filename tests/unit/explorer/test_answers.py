@@ -1,15 +1,23 @@
 """What a page is given: curves, forms, exports, sources."""
 
+import json
+import re
 import tomllib
 import zipfile
+from dataclasses import replace
+from importlib import resources
 from io import BytesIO
+from itertools import pairwise
 
 import numpy as np
 import pytest
+from matplotlib import colormaps
+from matplotlib.collections import QuadMesh
 from tests.explored import an_opened
 
 import stiction as st
-from stiction.explorer.answers import ANSWERS, tables_of
+from stiction.explorer import motion
+from stiction.explorer.answers import ANSWERS, study_map, tables_of
 from stiction.explorer.decimation import columns_of, extremes, share_stuck
 from stiction.explorer.door import explore
 from stiction.explorer.exports import NAMES, export, python_lines
@@ -18,6 +26,8 @@ from stiction.explorer.protocols import TESTS, names, protocol
 from stiction.explorer.source import open_sources
 from stiction.friction import LAWS
 from stiction.presets import PRESETS
+from stiction.study.view.mapping import Map, plot_map
+from stiction.system.description import Settings
 
 
 def free():
@@ -49,6 +59,21 @@ def test_no_peak_is_lost():
         assert row[2] == np.float32(np.nanmax(mine))
         np.testing.assert_array_equal(row[[0, 3]], mine[[0, -1]].astype(np.float32))
     assert len(places) == 37
+
+
+def test_slip_is_zero_in_each_column_that_holds_rest(description):
+    """Rest between two samples left out, the lowest slip speeds showed beats."""
+    run = st.simulate(description.slider, 0.3)
+    window, columns = (0.1, 0.2), 400
+    times = np.linspace(*window, 700)  # seven a period
+    solution, table = motion.simulate(description._replace(run=Settings(duration=0.3)), times, free)
+    drawn = motion.curves(table, solution.sticks, window, columns)
+    starts, ends = run.sticks["stick_start"].values, run.sticks["stick_end"].values
+    edges = np.linspace(*window, columns + 1)
+    rests = np.array([((starts < b) & (ends > a)).any() for a, b in pairwise(edges)])
+    assert 90 < rests.sum() < columns
+    places = drawn["column"].astype(int)
+    np.testing.assert_array_equal(drawn["slip_speed"][:, 1] == 0.0, rests[places])
 
 
 def test_columns_without_samples_are_left_out():
@@ -206,20 +231,50 @@ def test_a_record_lies_over_a_description(tmp_path):
     what = open_sources([rig, record])
     assert what.name == "my.toml"
     np.testing.assert_allclose(what.measured["time"], [0.0, 1e-3, 2e-3])
-    ((head, arrays),) = answers({"do": "measured", "window": [0.0, 2e-3], "columns": 16}, what)
+    asked = {"do": "measured", "window": [0.0, 2e-3], "run": [0.0, 5.0], "columns": 16}
+    ((head, arrays),) = answers(asked, what)
     assert head["origin"] == "measured"
     assert arrays["spring_x"].max() == np.float32(7e-3)
     assert open_sources([record]).description.slider == st.presets.nakano_popov_2020()
 
 
-def test_a_record_whose_clock_starts_after_the_run_is_shown_from_its_start(tmp_path):
+@pytest.mark.parametrize(
+    ("first", "run", "shown", "says"),
+    [
+        (93.9, (0.0, 5.0), 0.0, "measured, from 93.9 s on"),
+        (-8.0, (0.0, 5.0), 0.0, "measured, from -8 s on"),
+        (0.0, (20.0, 25.0), 20.0, "measured, from 0 s on"),
+        (5.0, (0.0, 5.0), 0.0, "measured, from 5 s on"),  # only their ends touch
+        (-1.0, (0.0, 5.0), 0.0, "measured, from -1 s on"),
+        (4.9, (0.0, 5.0), 4.9, "measured"),
+        (-0.9, (0.0, 5.0), -0.9, "measured"),
+    ],
+)
+def test_a_record_beside_the_run_is_shown_from_its_start(tmp_path, first, run, shown, says):
     """Nothing of it was in the window, below a legend that said "measured"."""
     record = tmp_path / "force.csv"
-    record.write_text("time [s],force [mN]\n93.9,0\n94.4,5\n94.9,7\n")
+    times = [first + later for later in (0.0, 0.5, 1.0)]
+    rows = "".join(f"{time:.3f},{force}\n" for time, force in zip(times, (0, 5, 7), strict=True))
+    record.write_text(f"time [s],force [mN]\n{rows}")
     what = open_sources([st.read_record(record)])
-    np.testing.assert_allclose(what.measured["time"], [0.0, 0.5, 1.0], atol=1e-12)
-    assert what.origin == "measured, from 93.9 s on"
     assert what.name == "force.csv"  # not "a Record"
+    asked = {"do": "measured", "window": run, "run": run, "columns": 5000}
+    ((head, arrays),) = answers(asked, what)
+    assert head["origin"] == says
+    inside = [time for time in (shown, shown + 0.5, shown + 1.0) if run[0] <= time <= run[1]]
+    columns = [round((time - run[0]) * 1000) for time in inside]
+    np.testing.assert_allclose(arrays["column"], columns, atol=1.0)
+
+
+def test_a_record_of_one_sample_where_the_run_starts_keeps_its_clock():
+    what = open_sources([st.Record(time=[0.0], force=[1.0])])
+    assert what.measured_during((0.0, 5.0))[1] == "measured"
+
+
+def test_a_record_comes_into_view_by_its_own_clock_as_the_run_grows():
+    what = open_sources([st.Record(time=[7.0, 8.0], force=[1.0, 2.0])])
+    assert what.measured_during((0.0, 5.0))[0].tolist() == [0.0, 1.0]
+    assert what.measured_during((0.0, 7.5))[0].tolist() == [7.0, 8.0]
 
 
 def test_a_record_without_samples_opens_the_papers_case():
@@ -267,12 +322,62 @@ def test_a_study_is_a_map_whose_runs_open(tmp_path):
     ((head, arrays),) = answers({"do": "start"}, what)
     axes = {each["dim"]: each["values"] for each in head["study"]["axes"]}
     assert axes["phi"] == [1.0, 2.0]
-    assert arrays["map"].shape == (2, 3)
+    assert arrays["map"].shape == (2, 3, 4)
     ((head, _),) = answers({"do": "pick", "at": {"phi": 1, "drive.velocity": 2}}, what)
     picked = what.read(head["tables"]).slider
     assert (np.degrees(picked.phi), picked.motion.velocity) == (pytest.approx(2.0), 5e-3)
     with pytest.raises(st.StictionError, match="no study"):
         answers({"do": "pick", "at": {}})
+
+
+@pytest.fixture
+def finished_study(tmp_path):
+    """A study of two runs of which one is missing, by kind and by a measure of three decades."""
+    study = st.Study(
+        base=an_opened(duration=2e-3).description,
+        axes={"phi": st.Values(["1 deg", "2 deg", "3 deg"]), "V": st.Values(["1 mm/s", "3 mm/s"])},
+        measures=["regime", "peak_force"],
+    )
+    st.sweep(study, tmp_path / "a.zarr")
+    return tmp_path / "a.zarr"
+
+
+def map_colors(axes):
+    """Return the colours that a figure gives the cells of its map, rows by the first dimension."""
+    (mesh,) = [each for each in axes.collections if isinstance(each, QuadMesh)]
+    values = mesh.get_array()
+    colors = mesh.cmap(mesh.norm(values), bytes=True)
+    return np.swapaxes(colors.reshape(*values.shape, 4), 0, 1)
+
+
+@pytest.mark.parametrize("measure", ["regime", "peak_force"])
+def test_a_study_has_the_colours_of_its_figure(finished_study, monkeypatch, measure):
+    """The page had other colours for the kinds, and all measures on a linear scale without unit."""
+    view = open_sources([finished_study]).study
+    force = view.data["peak_force"].values
+    force[:] = [[1e-3, 2e-2], [np.nan, 0.5], [1.0, 3.0]]  # N: in decades, one without a value
+    view.data["regime"].values[0] = [-1, 3]  # one that failed
+    monkeypatch.setattr("stiction.study.view.view.choose_measures", lambda *_: [measure])
+    head, arrays = study_map(replace(an_opened(), study=view))
+    (axes,) = plot_map(Map(view, (measure,)))
+    np.testing.assert_array_equal(arrays["map"], map_colors(axes))
+    if measure == "regime":
+        legend = axes.figure.legends[0]
+        words = [each.get_text() for each in legend.get_texts()][: len(head["kinds"]) + 1]
+        assert words == [name for name, _ in head["kinds"]] + [head["missing"]]
+    else:
+        bar = next(each for each in axes.figure.axes if each is not axes)
+        assert head["measure"] == bar.get_ylabel() == "peak force (N)"
+        assert head["bar"] == {"limits": pytest.approx(bar.get_ylim()), "log": True}
+        assert head["missing"] == "no value"
+        assert arrays["map"][1, 0].tolist() == [0, 0, 0, 0]
+
+
+def test_the_spectrogram_has_the_shades_of_its_figure():
+    text = (resources.files("stiction.explorer") / "pages" / "views.js").read_text()
+    table = json.loads(re.search(r"const VIRIDIS = (\[[^;]*),\n\];", text).group(1) + "]")
+    wanted = colormaps["viridis"](np.linspace(0.0, 1.0, len(table)), bytes=True)[:, :3]
+    np.testing.assert_allclose(table, wanted)
 
 
 def test_without_the_extra_the_command_is_named(monkeypatch):

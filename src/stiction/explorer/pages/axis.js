@@ -43,4 +43,13 @@ export function logAxis(low, high, unit = "", most = 6, show = null) {
   };
 }
 
-export const asPlain = (value) => plain(value);
+// Axis of a colour bar, in the unit of its values; logarithmic over few decades with plain numbers.
+export function barAxis([low, high], log) {
+  if (!log) return linearAxis(low, high, 5);
+  const axis = logAxis(low, high, "", 5);
+  if (high >= 1e3 * low) return axis;
+  const first = Math.floor(Math.log10(low)), last = Math.floor(Math.log10(high));
+  const decades = Array.from({ length: last - first + 1 }, (_, i) => first + i);
+  const values = decades.flatMap((n) => [1, 2, 5].map((digit) => Number(`${digit}e${n}`)));
+  return { ...axis, ticks: values.filter((value) => value >= low && value <= high).map((value) => [value, plain(value)]) };
+}

@@ -139,6 +139,9 @@ export function symbols(context, words, x, y, { color = INK, align = "left", hal
   return total;
 }
 
+// The width of a canvas in CSS pixels.
+export const widthOf = (context) => context.canvas.width / context.getTransform().a;
+
 // Frame of a plot with ticks; returns the functions from values to pixels.
 export function frame(context, box, xs, ys) {
   const { left, top, width, height } = box;
@@ -148,7 +151,8 @@ export function frame(context, box, xs, ys) {
   const x = (value) => left + width * xs.place(value), y = (value) => top + height * (1 - ys.place(value));
   for (const [value, label] of xs.ticks) {
     line(context, [[x(value), top + height], [x(value), top + height - 4]], GREY);
-    text(context, label, x(value), top + height + 9, { align: "center", color: SOFT });
+    const half = context.measureText(label).width / 2; // the last one may end before the frame does
+    text(context, label, Math.min(x(value), widthOf(context) - half - 1), top + height + 9, { align: "center", color: SOFT });
   }
   for (const [value, label] of ys.ticks) {
     line(context, [[left, y(value)], [left + 4, y(value)]], GREY);

@@ -163,7 +163,7 @@ function compare() {
   const clear = (part) => series[part] && series.show(part, undefined);
   if (data.pinned) link.ask({ do: "zoom", lane: 1, tables: data.pinned.tables, window, columns }, (answer) => series.show("a", answer), () => clear("a"));
   else clear("a");
-  if (data.origin) link.ask({ do: "measured", window, columns }, (answer) => series.show("measured", answer));
+  if (data.origin) link.ask({ do: "measured", window, run: whole.window, columns }, (answer) => series.show("measured", answer));
 }
 
 // What the views at the side need beyond the run; the map, only if something else than its axes changed.

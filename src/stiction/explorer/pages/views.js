@@ -1,7 +1,7 @@
 // The views at the side: numbers, phase portrait, damping diagram, spectrogram, stability map, study.
 
-import { cellAxis, linearAxis, logAxis, power } from "./axis.js";
-import { GREEN, INK, Layers, PURPLE, RED, SOFT, UNSTABLE, curve, frame, line, symbols, text } from "./drawing.js";
+import { barAxis, cellAxis, linearAxis, logAxis, power } from "./axis.js";
+import { GREEN, GREY, INK, Layers, PURPLE, RED, SOFT, UNSTABLE, curve, frame, line, symbols, text, widthOf } from "./drawing.js";
 import { element } from "./form.js";
 import { plain, quantity } from "./quantity.js";
 
@@ -204,30 +204,30 @@ class StudyMap {
   still(context, width, height, data) {
     const study = data.study, box = BOX(width, height);
     if (!study) return note(context, width, height, "no study: stiction explore STUDY.zarr");
-    const words = study.kinds ?? [], beyond = words.length ? 24 + Math.max(...words.map((word) => context.measureText(word).width)) : 0;
-    box.width -= beyond;
-    const { axes, kinds, measure } = study, map = study.arrays.map;
-    const [across, up] = axes.length > 1 ? [axes[0], axes[1]] : [axes[0], null];
+    const { axes, arrays } = study, [across, up] = [axes[0], axes[1] ?? null];
     const columns = across.values.length, rows = up ? up.values.length : 1;
-    let low = Infinity, high = -Infinity;
-    for (const value of map) { if (value < low) low = value; if (value > high) high = value; }
-    const palette = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442", "#555"];
+    const gaps = arrays.map.some((value, i) => i % 4 === 3 && !value), stripes = hatching(context);
+    const meanings = [...(study.kinds ?? []), ...(gaps ? [[study.missing, stripes]] : [])];
+    const bar = study.bar && barAxis(study.bar.limits, study.bar.log);
+    const wide = (words) => Math.max(...words.map((each) => context.measureText(each).width));
+    if (bar) box.width -= 44 + wide(bar.ticks.map(([, label]) => label));
+    else box.width -= 24 + wide(meanings.map(([words]) => words));
+    if (bar && gaps) [box.top, box.height] = [box.top + 16, box.height - 16];
     for (let i = 0; i < columns; i++) {
       for (let j = 0; j < rows; j++) {
-        const value = map[up ? i * rows + j : i];
-        context.fillStyle = !(value === value) || (kinds && value < 0) ? "#eee" : kinds ? palette[value % 8] : cividis((value - low) / (high - low || 1));
+        const [red, green, blue, known] = arrays.map.subarray(4 * (i * rows + j));
+        context.fillStyle = known ? `rgb(${red},${green},${blue})` : stripes;
         context.fillRect(box.left + (i * box.width) / columns, box.top + box.height * (1 - (j + 1) / rows), box.width / columns + 0.6, box.height / rows + 0.6);
       }
     }
     const xs = cellAxis(across.values, across.unit);
     const ys = up ? cellAxis(up.values, up.unit) : { place: (v) => v, ticks: [] };
     frame(context, box, xs, ys);
-    (kinds ?? []).forEach((word, i) => {
-      context.fillStyle = palette[i % 8];
-      context.fillRect(box.left + box.width + 8, box.top + 2 + 17 * i, 11, 11);
-      text(context, word, box.left + box.width + 23, box.top + 8 + 17 * i);
-    });
-    below(context, width, height, `${nameOf(across, xs.unit)}: click a run${kinds ? "" : ` (${measure})`}`);
+    if (bar) {
+      colorBar(context, box, bar, arrays.bar, study.measure);
+      if (gaps) swatch(context, box.left, 2, ...meanings[0]);
+    } else meanings.forEach(([words, color], i) => swatch(context, box.left + box.width + 8, box.top + 2 + 17 * i, words, color));
+    below(context, width, height, `${nameOf(across, xs.unit)}: click a run`);
     if (up) beside(context, height, nameOf(up, ys.unit));
     this.shape = { box, columns, rows, across, up };
     if (this.at) {
@@ -248,6 +248,46 @@ class StudyMap {
     this.at = [i, j];
     return up ? { [across.dim]: i, [up.dim]: j } : { [across.dim]: i };
   }
+}
+
+// What a colour means.
+function swatch(context, left, top, words, color) {
+  context.fillStyle = color;
+  context.fillRect(left, top, 11, 11);
+  context.strokeStyle = GREY;
+  context.lineWidth = 0.6;
+  context.strokeRect(left, top, 11, 11);
+  text(context, words, left + 15, top + 6);
+}
+
+// Stripes, where there is nothing to show.
+function hatching(context) {
+  const tile = document.createElement("canvas");
+  tile.width = tile.height = 6;
+  const inside = tile.getContext("2d");
+  inside.fillStyle = "#fff";
+  inside.fillRect(0, 0, 6, 6);
+  for (const shift of [-6, 0, 6]) line(inside, [[shift - 1, 7], [shift + 7, -1]], "#a8a8a8", 1);
+  return context.createPattern(tile, "repeat");
+}
+
+// The colours of a measure and their values, to the right of a box.
+function colorBar(context, box, axis, colors, words) {
+  const left = box.left + box.width + 8, count = colors.length / 4;
+  for (let i = 0; i < count; i++) {
+    context.fillStyle = `rgb(${colors.subarray(4 * i, 4 * i + 3).join(",")})`;
+    context.fillRect(left, box.top + box.height * (1 - (i + 1) / count), 10, box.height / count + 0.6);
+  }
+  for (const [value, label] of axis.ticks) {
+    const y = box.top + box.height * (1 - axis.place(value));
+    line(context, [[left + 10, y], [left + 13, y]], GREY);
+    text(context, label, left + 16, y, { color: SOFT });
+  }
+  context.save();
+  context.translate(widthOf(context) - 7, box.top + box.height / 2);
+  context.rotate(-Math.PI / 2);
+  text(context, words, 0, 0, { color: SOFT, align: "center" });
+  context.restore();
 }
 
 const nameOf = (axis, unit) => `${axis.dim}${unit ? ` (${unit})` : ""}`;
@@ -354,16 +394,19 @@ function extent(values) {
   return [low, high];
 }
 
-// cividis (Nunez et al., PLOS ONE 13 (2018), e0199239), sampled at nine points
-const CIVIDIS = [[0, 34, 78], [18, 53, 112], [59, 73, 108], [87, 93, 109], [112, 113, 115], [138, 134, 120], [165, 156, 116], [196, 181, 104], [253, 231, 55]];
+// matplotlib's viridis at 17 equal steps, as in the figure of a spectrogram
+const VIRIDIS = [
+  [68, 1, 84], [71, 24, 106], [71, 44, 123], [66, 64, 133], [58, 82, 139], [50, 98, 141],
+  [44, 114, 142], [38, 129, 142], [32, 144, 140], [30, 159, 136], [40, 174, 127], [62, 188, 115],
+  [94, 201, 97], [131, 211, 75], [173, 220, 48], [215, 226, 25], [253, 231, 36],
+];
 
-function cividis(share) {
-  const place = Math.min(Math.max(share, 0), 1) * (CIVIDIS.length - 1), i = Math.min(Math.floor(place), CIVIDIS.length - 2);
-  const mix = CIVIDIS[i].map((a, k) => Math.round(a + (place - i) * (CIVIDIS[i + 1][k] - a)));
-  return `rgb(${mix.join(",")})`;
+function viridis(share) {
+  const place = share * (VIRIDIS.length - 1), i = Math.min(Math.floor(place), VIRIDIS.length - 2);
+  return VIRIDIS[i].map((a, k) => Math.round(a + (place - i) * (VIRIDIS[i + 1][k] - a)));
 }
 
-// Amplitudes as an image: 60 dB from the strongest down.
+// Amplitudes as an image: 70 dB from the strongest down.
 function shaded(amplitude, rows, columns) {
   const image = document.createElement("canvas");
   image.width = columns;
@@ -371,10 +414,10 @@ function shaded(amplitude, rows, columns) {
   const context = image.getContext("2d"), pixels = context.createImageData(columns, rows);
   let most = 0;
   for (const value of amplitude) if (value > most) most = value;
-  const colors = Array.from({ length: 256 }, (_, i) => cividis(i / 255).match(/\d+/g).map(Number));
+  const colors = Array.from({ length: 256 }, (_, i) => viridis(i / 255));
   for (let i = 0; i < rows; i++) {
     for (let j = 0; j < columns; j++) {
-      const level = 1 + Math.log10(Math.max(amplitude[i * columns + j], 1e-30) / (most || 1)) / 3;
+      const level = 1 + Math.log10(Math.max(amplitude[i * columns + j], 1e-30) / (most || 1)) / 3.5;
       const color = colors[Math.round(255 * Math.min(Math.max(level, 0), 1))];
       pixels.data.set([...color, 255], 4 * ((rows - 1 - i) * columns + j));
     }

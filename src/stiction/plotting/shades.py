@@ -1,0 +1,92 @@
+"""The colours of a map of a study, for its figure and for the page of the explorer."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.colors import Colormap, ListedColormap, LogNorm, Normalize
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+DECADES = 30.0  # a measure that spans a larger factor is drawn in decades
+DEEPEST = 1e6  # range below the largest value; smaller ones count as zero
+NO_RESULT, NO_VALUE = "no result", "no value"
+
+# light for calm, dark and warm for violent motion; distinct without colour too
+COLORS = {
+    "stick-slip": "#C44E00",
+    "transitional oscillation": "#EE9A4D",
+    "harmonic vibration": "#FBDDA6",
+    "settling": "#CFE3F1",
+    "steady sliding": "#8FC1E3",
+    "transverse oscillation": "#A3558F",
+    "irregular vibration": "#6B4E9B",
+    "stuck": "#8A8A8A",
+    "undetermined": "#FFFFFF",
+}
+
+
+class Shades(NamedTuple):
+    """The way from values to colours: a colour map, and the scale of the values."""
+
+    colormap: Colormap
+    norm: Normalize
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """The values at the ends of the colour bar."""
+        low, high = self.norm.vmin, self.norm.vmax
+        assert low is not None
+        assert high is not None
+        return float(low), float(high)
+
+    @property
+    def log(self) -> bool:
+        """Whether the colour bar is logarithmic."""
+        return isinstance(self.norm, LogNorm)
+
+    @property
+    def bar(self) -> NDArray[np.uint8]:
+        """The colours of the colour bar, from its lower end up."""
+        return np.asarray(self.colormap(np.arange(self.colormap.N), bytes=True), np.uint8)
+
+    def rgba(self, values: Floats) -> NDArray[np.uint8]:
+        """Return the colour of each value, 0 to 255; all zero where there is none.
+
+        Examples
+        --------
+        >>> measure_shades(np.array([1.0, 2.0])).rgba(np.array([1.0, np.nan])).tolist()
+        [[0, 34, 77, 255], [0, 0, 0, 0]]
+        """
+        scaled = self.norm(np.ma.masked_invalid(values))
+        return np.asarray(self.colormap(scaled, bytes=True), np.uint8)
+
+
+def measure_shades(values: Floats) -> Shades:
+    """Return the colours of a measure, logarithmic where its values span a large factor."""
+    found = values[np.isfinite(values)]
+    low, high = (float(found.min()), float(found.max())) if len(found) else (0.0, 1.0)
+    if 0.0 < low < high / DECADES:
+        return Shades(colormaps["cividis"], LogNorm(max(low, high / DEEPEST), high))
+    margin = 0.0 if high > low else 0.1 * abs(high) or 0.1  # a colour bar must have a length
+    return Shades(colormaps["cividis"], Normalize(low - margin, high + margin))
+
+
+def kind_shades() -> Shades:
+    """Return the colours of the codes of kinds of motion."""
+    return Shades(ListedColormap(list(COLORS.values())), Normalize(-0.5, len(COLORS) - 0.5))
+
+
+def kind_codes(kinds: NDArray[np.object_]) -> Floats:
+    """Return the place of each kind of motion in `COLORS`; NaN for others."""
+    codes = np.full(kinds.shape, np.nan)
+    for code, name in enumerate(COLORS):
+        codes[kinds == name] = code
+    return codes
+
+
+def present_kinds(kinds: NDArray[np.object_]) -> list[str]:
+    """Return the kinds of motion that occur, in the order of `COLORS`."""
+    return [name for name in COLORS if (kinds == name).any()]
