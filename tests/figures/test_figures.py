@@ -26,10 +26,10 @@ from stiction.plotting.analysis.trials import Trial, plot_trials
 from stiction.plotting.apparatus.schematic import draw_schematic
 from stiction.plotting.apparatus.shapes import drawn_misalignment
 from stiction.plotting.maps import Side, draw_slice
-from stiction.plotting.page.canvas import figure_of
+from stiction.plotting.page.canvas import canvas, figure_of
 from stiction.plotting.page.parameter import Scale, label_decades
 from stiction.plotting.page.save import save, write
-from stiction.plotting.page.style import BLACK, BLUE, GREY, PURPLE, new_figure, style
+from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PURPLE, new_figure, style
 from stiction.plotting.page.words import plain
 from stiction.plotting.run.comparison import plot_comparison
 from stiction.plotting.run.overview import plot_run
@@ -433,6 +433,35 @@ def test_a_few_fast_turns_in_each_cycle_leave_the_cycles_to_be_seen() -> None:
     force = within + 0.1 * np.exp(-within / 0.02) * np.sin(2.0 * pi * 100.0 * within)
     line = draw_line(Figure().add_subplot(), time, force)
     assert np.ptp(line.get_ydata()) > 0.9 * np.ptp(force)
+
+
+@pytest.mark.parametrize("noise", [0.02, 0.05, 0.1])
+def test_noise_on_an_oscillation_that_can_be_seen_does_not_flatten_it(noise: float) -> None:
+    """The mean of a few turns of the noise took part of it away, here more and there less."""
+    time = np.arange(0.0, 3.75, 5e-4)
+    rng = np.random.default_rng(5)
+    force = np.sin(2.0 * pi * 35.0 * time) + noise * rng.normal(size=len(time))
+    panel = canvas(PAGE, 2.2).add_subplot()
+    line = draw_line(panel, time, force, width=0.5)
+    times, heights = line.get_xydata().T
+    periods = [heights[(times >= a) & (times < a + 1 / 35)] for a in np.arange(1, 128) / 35]
+    assert min(np.ptp(each) for each in periods) > 1.9  # of 2
+    assert not panel.collections
+
+
+def test_spikes_are_no_oscillation() -> None:
+    """Sparse ones do not turn noise on stick-slip into another period."""
+    time = np.arange(0.0, 20.0, 5e-4)
+    rng = np.random.default_rng(5)
+    force = 3.0 * (time % 2.0) + 0.2 * rng.normal(size=len(time))
+    spikes = force.copy()
+    spikes[rng.integers(len(time), size=150)] += 1.5
+    panels = [canvas(PAGE, 2.2).add_subplot() for _ in range(2)]
+    bare, spiked = (
+        draw_line(panel, time, each) for panel, each in zip(panels, (force, spikes), strict=True)
+    )
+    assert all(panel.collections for panel in panels)
+    assert np.abs(bare.get_ydata() - spiked.get_ydata()).max() < 0.4  # what spikes add to a mean
 
 
 def test_a_trial_that_hardly_moves_beside_the_test_before_is_drawn_whole() -> None:

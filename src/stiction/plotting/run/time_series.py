@@ -30,6 +30,9 @@ TURNS = 6  # at least, of an oscillation: three periods
 THIN = 5e-3  # of a panel's height: a smaller range looks like a line
 RANGE = 1.5  # periods in which extremes are sought: they differ in length
 MEAN = 4.0  # periods of a mean; two are the least whose weight cancels them
+LARGER = 3.0  # times the median swing: larger ones are no noise of an oscillation, but another one
+APART = 15.0  # times a period: a mean over `MEAN` periods keeps 0.95 of an oscillation as slow
+BURSTS = 1.5  # times the gap between turns: larger swings that are as fast are bursts and spikes
 SMOOTH = 13  # least bins of a mean, two of them with weight zero: one may hold a period and a half
 POINT = 72.0  # pt in an inch
 EDGE = 0.3  # pt, of the outline of a range: pale colours look alike in print
@@ -95,6 +98,7 @@ def oscillations(time: Floats, values: Floats, longest: float, least: float) -> 
     first, *_, last = points = known[points]
     turns, found = points[1:-1], []
     for group in np.split(turns, np.flatnonzero(np.diff(time[turns]) > longest) + 1):
+        group = visible_turns(time, values, turns, group)
         gaps = np.diff(time[group])
         if len(group) >= TURNS and gaps.mean() <= 0.5 * longest:
             begins = time[group[0]] - time[first] <= 1.5 * gaps[0]
@@ -102,6 +106,42 @@ def oscillations(time: Floats, values: Floats, longest: float, least: float) -> 
             start, end = first if begins else group[0], last if goes_on else group[-1]
             found.append(Oscillation(slice(start, end + 1), 2.0 * gaps.mean()))
     return found
+
+
+def visible_turns(
+    time: Floats, values: Floats, turns: NDArray[np.intp], group: NDArray[np.intp]
+) -> NDArray[np.intp]:
+    """Leave out turns that are noise on an oscillation which a mean over their periods would alter.
+
+    The mean of a few noise periods takes away part of an oscillation that is hardly slower, and
+    more of it where the noise is slower: what is left beats.
+
+    Parameters
+    ----------
+    time, values : ndarray
+        (n,).
+    turns, group : ndarray
+        Indices of all turns, and of those that are looked at, which follow one another.
+
+    Returns
+    -------
+    ndarray
+        Those of the slower oscillation, or `group`.
+    """
+    while len(group) >= TURNS:
+        gaps, least = np.diff(time[group]), LARGER * np.median(np.abs(np.diff(values[group])))
+        beside = APART * gaps.mean()
+        ends = time[group[0]] - beside, time[group[-1]] + beside
+        near = turns[slice(*np.searchsorted(time[turns], ends))]
+        points, _ = taken_out(as_counts(values[near]), FINE * least / np.ptp(values[near]))
+        larger = near[points[1:-1]]
+        slower = np.diff(time[larger])
+        if not len(slower) or np.quantile(slower, 0.25) < BURSTS * np.median(gaps):
+            break
+        if slower.mean() > beside:
+            break
+        group = larger[(larger >= group[0]) & (larger <= group[-1])]
+    return group
 
 
 def draw_line(
