@@ -360,23 +360,80 @@ def test_ticks_of_a_study_have_the_prefix_of_its_axis(page):
     assert [words for _, words in made["ticks"]] == ["0.3", "0.95", "3", "9.5", "30"]
 
 
-def test_the_label_of_the_last_tick_is_not_cut_off(page):
-    """Of 0.30 at the end of the time axis one saw 0.3."""
-    ends = page.value(
-        """import(new URL("drawing.js", document.querySelector("script[type=module]").src)).then(
-        ({ frame }) => {
-          const canvas = document.createElement("canvas"), found = [];
+def module(name, use):
+    """Return what a function makes of a module of the page, of which it gives an expression."""
+    return (
+        f'import(new URL("{name}", document.querySelector("script[type=module]").src)).then({use})'
+    )
+
+
+def test_the_labels_of_ticks_are_not_cut_off_or_in_another_frame(page):
+    """Of 0.30 at the end of the time axis one saw 0.3; 0 and 1 of two strips lay on each other."""
+    across, up = page.value(
+        module(
+            "drawing.js",
+            """({ frame }) => {
+          const canvas = document.createElement("canvas"), found = [[], []];
           canvas.width = 300;
           const context = canvas.getContext("2d");
-          context.fillText = (words, x) => found.push(x + context.measureText(words).width / 2);
-          const none = { place: (value) => value, ticks: [] };
-          frame(context, { left: 50, top: 0, width: 245, height: 50 },
-            { ...none, ticks: [[0, "0.00"], [1, "0.30"]] }, none);
+          context.fillText = (words, x, y) => {
+            const aside = context.textAlign === "right";
+            found[Number(aside)].push(aside ? y : x + context.measureText(words).width / 2);
+          };
+          const axis = { place: (value) => value, ticks: [[0, "0.00"], [1, "0.30"]] };
+          frame(context, { left: 50, top: 10, width: 245, height: 50 }, axis, axis);
           return found;
-        })"""
+        }""",
+        )
     )
-    assert ends[0] < 75.0
-    assert 290.0 < ends[1] <= 300.0
+    assert across[0] < 75.0
+    assert 290.0 < across[1] <= 300.0
+    assert up == [54.0, 16.0]
+
+
+@pytest.mark.parametrize("damping", [1e-1, 1.0, 3e3, 2e7, 5e11])
+def test_the_numbers_in_the_damping_diagram_lie_apart(page, damping):
+    boxes = page.value(
+        module(
+            "views.js",
+            """({ VIEWS }) => {
+          const canvas = document.createElement("canvas"), found = [];
+          [canvas.width, canvas.height] = [330, 200];
+          const context = canvas.getContext("2d");
+          context.font = "12px sans-serif";
+          context.fillText = (words, x, y) => {
+            if (context.textAlign !== "left") return;
+            found.push([words, x, x + context.measureText(words).width, y]);
+          };
+          new VIEWS.damping().still(context, 330, 200, { scene: { damping: DAMPING, phi: 0.1 } });
+          return found;
+        }""".replace("DAMPING", str(damping)),
+        )
+    )
+    boxes = [box for box in boxes if box[0].startswith(("10", "ζ"))]
+    assert len(boxes) > 4
+    assert "ζ = 1" in [box[0] for box in boxes]
+    for at, (_, left, right, y) in enumerate(boxes):
+        for _, other_left, other_right, other in boxes[:at]:
+            assert left > other_right or other_left > right or abs(y - other) >= 14
+
+
+def test_what_does_not_move_has_no_magnification(page):
+    """A rig without misalignment had "u_y × 0"."""
+    said = page.value(
+        module(
+            "scene.js",
+            """({ Scene }) => {
+          const factors = (x, y) =>
+            Scene.prototype.factors.call({ lengths: { x, y } }, { x: 4e4, y: 4 });
+          return [factors(1, 0), factors(1, 1), factors(0, 0)];
+        }""",
+        )
+    )
+    assert said[0].startswith("u_x × ")
+    assert "u_y" not in said[0]
+    assert "u_y" in said[1]
+    assert said[2] == "nothing moves"
 
 
 def test_a_study_shows_what_its_colours_mean(browser, tmp_path):

@@ -7,6 +7,7 @@ from math import isfinite, nan
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stiction import theory
 from stiction.drive.program import nominal_velocity
@@ -25,6 +26,7 @@ CURVES = ("spring_x", "spring_y", "friction", "psi", "X", "V_X", "slip_speed", "
 TRACK = ("u_x", "u_y", "slip_x", "slip_y", "friction", "theta", "X", "V_X", "normal_load")
 PER_COLUMN = 16  # samples in a column of pixels while a slider moves
 FEWEST, MOST = 4_000, 24_000  # samples of the whole run then
+IN_SLIP = 48  # samples in a slip between two rests
 FINE = 4_001  # samples under the microscope
 DIGITS = 6  # of a number on the page
 Window = tuple[float, float]
@@ -73,10 +75,15 @@ def pictures(whole: np.ndarray, window: Window, columns: int) -> list[np.ndarray
 def run(description: Description, columns: int, check: Check) -> Iterator[Reply]:
     """Yield the whole run twice: at once as far as the page needs it, then with every peak."""
     window, whole = span(description), automatic_times(description)
-    parts = pictures(whole, window, columns)
-    for number, times in enumerate(parts, 1):
-        solution, table = simulate(description, times, check)
-        quick = number < len(parts)
+    first, *more = pictures(whole, window, columns)
+    solution, table = simulate(description, first, check)
+    within = slip_times(solution.sticks, first)
+    moving = np.union1d(first, within)
+    parts = [np.union1d(each, within) for each in more or [first] * bool(len(within))]
+    for times in [first, *parts]:
+        quick = times is first and bool(parts)
+        if times is not first:
+            solution, table = simulate(description, times, check)
         head = {
             **about(description, solution, table),
             "facts": facts(description, solution, table, None if quick else whole),
@@ -84,7 +91,26 @@ def run(description: Description, columns: int, check: Check) -> Iterator[Reply]
             "quick": quick,
         }
         drawn = curves(table, solution.sticks, window, columns)
-        yield head, drawn | track(table) if number == 1 else drawn
+        if times is first or len(within):
+            drawn |= track(table, np.isin(table["time"], moving))
+        yield head, drawn
+
+
+def slip_times(sticks: np.ndarray, times: np.ndarray) -> np.ndarray:
+    """Return times (s) within slips between two rests that hold few of `times`.
+
+    Examples
+    --------
+    >>> slip_times(np.array([[0.0, 1.0], [1.5, 2.0]]), np.array([0.0, 2.0]))[[0, -1]].tolist()
+    [1.0, 1.5]
+    """
+    starts, ends = sticks[:-1, 1], sticks[1:, 0]
+    held = np.searchsorted(times, ends) - np.searchsorted(times, starts)
+    short = (held < IN_SLIP) & (ends > starts)
+    count = min(MOST // max(int(short.sum()), 1), IN_SLIP)
+    if count < 3:
+        return np.zeros(0)
+    return np.unique(np.linspace(starts[short], ends[short], count))
 
 
 def zoom(description: Description, window: Window, columns: int, check: Check) -> Iterator[Reply]:
@@ -119,9 +145,9 @@ def curves(table: ColumnTable, sticks: np.ndarray, window: Window, columns: int)
     return {"column": places.astype(np.float32), **found, "stuck": stuck}
 
 
-def track(table: ColumnTable) -> Arrays:
-    """Return the samples that the apparatus is animated with."""
-    return {f"track_{name}": values for name, values in as_track(table).items()}
+def track(table: ColumnTable, chosen: NDArray[np.bool_]) -> Arrays:
+    """Return the chosen samples, with which the apparatus is animated."""
+    return {f"track_{name}": values[chosen] for name, values in as_track(table).items()}
 
 
 def as_track(table: ColumnTable) -> Arrays:

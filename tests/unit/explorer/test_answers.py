@@ -76,6 +76,34 @@ def test_slip_is_zero_in_each_column_that_holds_rest(description):
     np.testing.assert_array_equal(drawn["slip_speed"][:, 1] == 0.0, rests[places])
 
 
+def test_the_phase_portrait_holds_slips_that_are_short_beside_the_run():
+    """Few samples fell in a slip of 28 us of 0.2 s: chords fanned out, of another top each."""
+    m, k_x, k_y = 1e-11, 0.5, 40.0  # of a force microscope
+    tip = st.Slider(
+        mass=m, k_x=k_x, k_y=k_y, phi="5 deg", normal_load=2e-8, drive=st.ConstantVelocity(1e-6),
+        friction=st.ExponentialWeakening(mu_0=0.5, mu_inf=0.3, v_f=1e-5),
+    )  # fmt: skip
+    description = st.Description(tip, st.Initial(), st.Settings(duration=0.05))
+    quick, full = motion.run(description, 400, free)
+    assert (quick[0]["quick"], full[0]["quick"]) == (True, False)
+    run = st.run(description)
+    start, end = run.sticks["stick_end"].values[-2], run.sticks["stick_start"].values[-1]
+    _, wanted = motion.simulate(description, np.linspace(start, end, 2001), free)
+    top = wanted["V_X"].max()
+    times, speeds = full[1]["track_time"], full[1]["track_V_X"]
+    inside = (times >= start) & (times <= end)
+    assert inside.sum() >= 48
+    assert speeds[inside].max() == pytest.approx(top, rel=0.01)
+
+
+def test_a_run_whose_slips_are_sampled_well_is_drawn_once(description):
+    plain = description.slider.replace(phi="0 deg")
+    parts = list(
+        motion.run(description._replace(slider=plain, run=Settings(duration=2.5)), 400, free)
+    )
+    assert [head["quick"] for head, _ in parts].count(False) == 1
+
+
 def test_columns_without_samples_are_left_out():
     places, starts = columns_of(np.array([0.05, 0.95]), (0.0, 1.0), 10)
     assert places.tolist() == [0, 9]

@@ -156,7 +156,8 @@ export function frame(context, box, xs, ys) {
   }
   for (const [value, label] of ys.ticks) {
     line(context, [[left, y(value)], [left + 4, y(value)]], GREY);
-    text(context, label, left - 4, y(value), { align: "right", color: SOFT });
+    const beside = Math.min(Math.max(y(value), top + 6), top + height - 6); // not over another frame's
+    text(context, label, left - 4, beside, { align: "right", color: SOFT });
   }
   return { x, y };
 }

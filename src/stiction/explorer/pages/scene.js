@@ -9,6 +9,7 @@ import { plain, quantity } from "./quantity.js";
 
 const BLOCK = 27; // half side of the mass, px
 const PIXEL = 0.0254 / 96; // m, of CSS
+const SLOWEST = 1e-12; // m/s: slower is rest, and rounding
 
 export class Scene {
   constructor(canvas) {
@@ -156,7 +157,7 @@ export class Scene {
       text(context, "F", ...add(mass, [1.13 * tip[0], 1.13 * tip[1]]), { font: SERIF, color: PURPLE, align: "center", halo: true });
     }
     const speed = Math.hypot(s.slip_x, s.slip_y);
-    if (speed > 0 && !s.sticking) {
+    if (speed > SLOWEST && !s.sticking) {
       const long = BLOCK + (0.24 * height) * Math.min(1, 0.25 * Math.max(0, Math.log10(speed / (this.largestSlip || speed)) + 4));
       const way = turn(s.slip_x / speed, s.slip_y / speed), end = add(mass, [long * way[0], long * way[1]]);
       arrow(context, mass, end, GREEN, 3);
@@ -171,13 +172,23 @@ export class Scene {
       ["friction F", `${quantity(s.friction, "N")}, ψ = ${plain(psi, 4)}°`, PURPLE],
       ["k_x u_x", quantity(this.scene.k[0] * s.u_x, "N"), RED],
     ];
+    context.fillStyle = FLOOR; // a wall may be there
+    context.globalAlpha = 0.85;
+    context.fillRect(6, 5, 86 + Math.max(...rows.map(([, value]) => context.measureText(value).width)), 56);
+    context.globalAlpha = 1;
     rows.forEach(([name, value, color], i) => {
       symbols(context, name, 12, 15 + 18 * i, { color, halo: true });
       text(context, value, 88, 15 + 18 * i, { color: INK, halo: true });
     });
-    const factors = M.x === M.y ? `elongations × ${count(M.x * PIXEL)}` : `u_x × ${count(M.x * PIXEL)},  u_y × ${count(M.y * PIXEL)}`;
-    symbols(context, `${factors};  slip arrow: logarithmic`, width - 10, height - 16, { color: SOFT, align: "right", halo: true });
+    symbols(context, `${this.factors(M)};  slip arrow: logarithmic`, width - 10, height - 16, { color: SOFT, align: "right", halo: true });
     text(context, `φ = ${plain((this.scene.phi * 180) / Math.PI, 4)}°`, width - 10, 15, { color: INK, align: "right", halo: true });
+  }
+
+  // What the elongations are magnified by; one that stays zero is not.
+  factors(M) {
+    const moved = ["x", "y"].filter((axis) => this.lengths[axis] > 0);
+    if (moved.length === 2 && M.x === M.y) return `elongations × ${count(M.x * PIXEL)}`;
+    return moved.map((axis) => `u_${axis} × ${count(M[axis] * PIXEL)}`).join(",  ") || "nothing moves";
   }
 }
 

@@ -79,7 +79,8 @@ class Damping {
     ys.ticks = [0.5, 1, 2, 5, 10, 20, 45, 90].map((value) => [value, `${value}`]);
     this.shade(context, box, low, high);
     this.to = frame(context, box, xs, ys);
-    for (let n = -7; n <= 6; n++) this.contour(context, box, n);
+    this.words = [];
+    for (const n of [0, 1, -1, 2, -2, 3, -3, 4, -4, 5, -5, 6, -6, -7]) this.contour(context, box, n);
     const path = [90, Math.max((Math.abs(data.scene.phi) * 180) / Math.PI, 0.5)];
     line(context, path.map((angle) => [this.to.x(A), this.to.y(angle)]), PURPLE, 2, [5, 3]);
     below(context, width, height, "damping number A (1)");
@@ -107,8 +108,13 @@ class Damping {
     }
     if (points.length < 2) return;
     line(context, points, n ? "#8f979e" : GREEN, n ? 0.7 : 2.2);
-    const [x, y] = points[Math.floor(points.length * 0.62)];
-    text(context, n ? power(n) : "ζ = 1", x + 3, y, { color: n ? SOFT : GREEN, halo: true });
+    const words = n ? power(n) : "ζ = 1", wide = context.measureText(words).width;
+    const [x, y] = points[Math.floor(points.length * 0.62)], label = { left: x + 3, right: x + 3 + wide, y };
+    // one over another, or over the frame, would be read as neither
+    const inside = label.right < box.left + box.width && Math.abs(y - box.top - box.height / 2) < box.height / 2 - 8;
+    if (!inside || this.words.some((each) => each.left < label.right + 4 && label.left < each.right + 4 && Math.abs(each.y - y) < 14)) return;
+    this.words.push(label);
+    text(context, words, label.left, y, { color: n ? SOFT : GREEN, halo: true });
   }
 
   moving(context, width, height, now) {
