@@ -5,7 +5,7 @@ from __future__ import annotations
 from base64 import b64encode
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from math import ceil
+from math import ceil, log10
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from stiction.arrays import Floats
@@ -22,7 +23,7 @@ from stiction.media.encoder import KINDS, encode
 from stiction.media.scene import Scene, slowest_slip
 from stiction.media.sound import time_in, window_of
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, RED, style
-from stiction.plotting.run.time_series import envelope
+from stiction.plotting.run.time_series import STILL, envelope
 from stiction.result.table import ColumnTable, sample_table
 from stiction.simulation import automatic_times, solve_coarsely
 from stiction.storage.files import placeable, whole
@@ -37,6 +38,7 @@ LENGTH, LONGEST = 10.0, 300.0  # s of film
 PERIODS = 4  # of the fast oscillation under the microscope
 FINE = 2_000  # samples of these
 IN_WINDOW = 20_000  # samples of the time series, at least
+TICKS = 5  # of a time axis, at most: more run into one another
 NAMES = ("u_x", "u_y", "slip_x", "slip_y", "slip_speed", "friction", "psi", "X", "normal_load",
          "spring_x", "sticking")  # fmt: skip
 
@@ -166,6 +168,7 @@ def draw(
         canvas: Any = FigureCanvasAgg(figure)
         scene = Scene(figure.add_axes((0.02, 0.4, 0.62, 0.58)), description.slider, whole_run)
         cursor, mark = series(figure, seen, times), microscope(figure, fine, length)
+        places, _ = micro_times(fine)
         moving: list[Any] = [*scene.artists, *cursor, mark]
         for artist in moving:
             artist.set_animated(True)
@@ -174,11 +177,11 @@ def draw(
         for number, time in enumerate(shown["time"]):
             canvas.restore_region(still)
             state = {name: float(shown[name][number]) for name in NAMES}
-            scene.show(state, f"t = {time:.3f} s, {slowness(slow)}")
+            scene.show(state, f"t = {clock(time, times[-1] - times[0])}, {slowness(slow)}")
             for line in cursor:
                 line.set_xdata([time, time])
-            here = int(number / max(len(times) - 1, 1) * (len(fine["time"]) - 1))
-            mark.set_xdata([mark_at(fine, here)] * 2)
+            here = int(number / max(len(times) - 1, 1) * (len(places) - 1))
+            mark.set_xdata([places[here]] * 2)
             for artist in moving:
                 artist.axes.draw_artist(artist)
             yield np.asarray(canvas.buffer_rgba())[..., :3]
@@ -245,7 +248,11 @@ def series(figure: Figure, run: ColumnTable, times: Floats) -> list[Line2D]:
             slow = slowest_slip(run)
             ax.set_yscale("log", nonpositive="clip")
             ax.set_ylim(slow, max(3.0 * float(np.nanmax(run[name])), 10.0 * slow))
+        low, high = ax.get_ylim()
+        if name == "psi" and high - low < STILL:
+            ax.set_ylim(low - STILL, high + STILL)
         ax.set_xlim(times[0], times[-1])
+        ax.xaxis.set_major_locator(MaxNLocator(TICKS))
         label_axes(ax, "time $t$ (s)", label)
         cursors.append(ax.axvline(times[0], color=BLACK, linewidth=1.0))
     return cursors
@@ -256,7 +263,7 @@ def microscope(figure: Figure, fine: ColumnTable, length: float) -> Line2D:
     ax = figure.add_axes((0.72, 0.47, 0.26, 0.44))
     rests = bool((fine["slip_speed"] < slowest_slip(fine)).all())
     factor, prefix = (1.0, "") if rests else metric_prefix(fine["slip_speed"])
-    places = np.array([mark_at(fine, i) for i in range(len(fine["time"]))])
+    places, small = micro_times(fine)
     ax.plot(places, fine["slip_speed"] * factor, color=GREEN, linewidth=1.2)
     rest = (fine["sticking"] > 0) | (fine["slip_speed"] < slowest_slip(fine))
     ax.fill_between(places, 0, 1, where=rest, transform=ax.get_xaxis_transform(), color="#D9D9D9")
@@ -266,16 +273,32 @@ def microscope(figure: Figure, fine: ColumnTable, length: float) -> Line2D:
         ax.set_yticks([0.0])
     span = fine["time"][-1] - fine["time"][0]
     middle = 0.5 * (fine["time"][-1] + fine["time"][0])
-    label_axes(ax, f"time from {middle:.4f} s (ms)", f"slip speed ({prefix}m/s), grey: at rest")
+    label_axes(
+        ax,
+        f"time from {clock(middle, span)} ({small}s)",
+        f"slip speed ({prefix}m/s), grey: at rest",
+    )
     words = f"Microscope: {in_words(span, 's', 3)}, {slowness(length / span)}"
     ax.set_title(words, fontsize=10)
     return ax.axvline(places[0], color=BLACK, linewidth=1.0)
 
 
-def mark_at(fine: ColumnTable, index: int) -> float:
-    """Return the place of a sample under the microscope, ms from its middle."""
-    times = fine["time"]
-    return float(1e3 * (times[index] - 0.5 * (times[0] + times[-1])))
+def micro_times(fine: ColumnTable) -> tuple[NDArray[np.float64], str]:
+    """Return the times under the microscope from its middle, and the prefix of their unit."""
+    times = fine["time"] - 0.5 * (fine["time"][0] + fine["time"][-1])
+    factor, prefix = metric_prefix(times)
+    return factor * times, prefix
+
+
+def clock(time: float, window: float) -> str:
+    """Return a time (s) with the digits that a window of it shows.
+
+    Examples
+    --------
+    >>> clock(1.25, 5.0), clock(0.0674213, 12e-6)
+    ('1.250 s', '0.0674213 s')
+    """
+    return f"{time:.{max(3, ceil(-log10(window)) + 2)}f} s"
 
 
 def label_axes(ax: Axes, along: str, up: str) -> None:

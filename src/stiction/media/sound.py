@@ -29,6 +29,7 @@ WAV = (".wav",)
 RATE = 48_000  # samples of sound a second
 LOUD = 0.8  # of full scale
 SHORTEST, LONGEST = 0.01, 600.0  # s of sound
+EVEN = 1e-5  # of a mean rate: ten times what epsilon, which starts a run, alters
 HEARD = (50.0, 8_000.0)  # Hz: a pitch that small loudspeakers give
 LARGEST = 2**15 - 1  # of 16 bits
 
@@ -150,8 +151,8 @@ def listen(
     if loudest == 0.0:
         other = "x" if axis == "y" else "y"
         raise ResultError(
-            f"nothing moves along {axis} from {start:g} s to {end:g} s; choose the axis {other}, "
-            "or another window"
+            f"nothing oscillates along {axis} from {start:g} s to {end:g} s; choose the axis "
+            f"{other}, or another window"
         )
     return Sound((values * (LOUD / loudest)).astype(np.float32), chosen)
 
@@ -162,11 +163,17 @@ def rate_at(
     axis: str = "y",
     progress: Callable[[float], None] | None = None,
 ) -> Floats:
-    """Return the elongation rate (m/s) of a run at `times` (s), without its mean."""
+    """Return the elongation rate (m/s) of a run at `times` (s), without its mean.
+
+    It is zero where a spring is loaded evenly, whatever rounding and the start leave.
+    """
     solution = solve_coarsely(description, times, progress=progress)
     values = sample_table(description, solution.times, solution.samples, {})[f"v_{axis}"]
     values = values[: len(times)]
-    found: Floats = np.nan_to_num(values - np.mean(values[np.isfinite(values)]))
+    mean = float(np.mean(values[np.isfinite(values)]))
+    found: Floats = np.nan_to_num(values - mean)
+    if np.max(np.abs(found), initial=0.0) < EVEN * abs(mean):
+        return np.zeros_like(found)
     return found
 
 
