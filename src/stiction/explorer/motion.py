@@ -78,8 +78,8 @@ def run(description: Description, columns: int, check: Check) -> Iterator[Reply]
     first, *more = pictures(whole, window, columns)
     solution, table = simulate(description, first, check)
     within = slip_times(solution.sticks, first)
-    moving = np.union1d(first, within)
-    parts = [np.union1d(each, within) for each in more or [first] * bool(len(within))]
+    moving = np.union1d(first, within) if len(within) else first
+    parts = [np.union1d(each, moving) for each in more or [first] * bool(len(within))]
     for times in [first, *parts]:
         quick = times is first and bool(parts)
         if times is not first:

@@ -96,6 +96,16 @@ def test_the_phase_portrait_holds_slips_that_are_short_beside_the_run():
     assert speeds[inside].max() == pytest.approx(top, rel=0.01)
 
 
+def test_the_better_track_holds_the_first_one(description):
+    """Between thousands of short slips the long ones were left out."""
+    long = description._replace(run=Settings(duration=3.0))
+    quick, full = (arrays for _, arrays in motion.run(long, 400, free))
+    assert set(quick["track_time"]) < set(full["track_time"])
+    assert len(full["track_time"]) <= motion.MOST + len(quick["track_time"])
+    highest = [arrays["track_V_X"].max() for arrays in (quick, full)]
+    assert highest[1] >= highest[0] > 0.01  # m/s
+
+
 def test_a_run_whose_slips_are_sampled_well_is_drawn_once(description):
     plain = description.slider.replace(phi="0 deg")
     parts = list(
