@@ -33,7 +33,13 @@ from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PURPLE, new_fi
 from stiction.plotting.page.words import plain
 from stiction.plotting.run.comparison import plot_comparison
 from stiction.plotting.run.overview import plot_run
-from stiction.plotting.run.time_series import cut_open, draw_line, envelope, oscillations
+from stiction.plotting.run.time_series import (
+    average_slip,
+    cut_open,
+    draw_line,
+    envelope,
+    oscillations,
+)
 from stiction.plotting.stability.damping import draw_damping_map
 from stiction.reproduction.creep import creep, zero_slip
 from stiction.reproduction.figures import figure3, figure4, figure5, schematic
@@ -447,6 +453,18 @@ def test_noise_on_an_oscillation_that_can_be_seen_does_not_flatten_it(noise: flo
     periods = [heights[(times >= a) & (times < a + 1 / 35)] for a in np.arange(1, 128) / 35]
     assert min(np.ptp(each) for each in periods) > 1.9  # of 2
     assert not panel.collections
+
+
+def test_slips_that_ring_now_and_then_are_no_oscillation() -> None:
+    """A few turns after one slip and before the next were a band of two slips among lines."""
+    soft = st.Slider(
+        mass="200 g", k_x="150 N/m", k_y="60 kN/m", phi="0.5 deg", normal_load="2 N",
+        friction=st.ExponentialWeakening(mu_0=0.35, mu_inf=0.22, v_f="5 mm/s"),
+        drive=st.ConstantVelocity("2 mm/s"),
+    )  # fmt: skip
+    slip = average_slip(st.simulate(soft, 60.0, sample_rate="2 kHz"))
+    speed = np.where(slip.mean > 2e-9, slip.mean, np.nan)  # as a comparison draws it
+    assert not oscillations(slip.time, speed, 1.2356, 5e-3 * np.nanmax(speed))
 
 
 def test_spikes_are_no_oscillation() -> None:

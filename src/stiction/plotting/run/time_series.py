@@ -27,6 +27,7 @@ PARTS = 500  # of the time: finer than a printed line shows
 BINS = 1500  # more than a printed line has dots
 LINES = 3.0  # widths of a line in a period: fewer leave next to no paper between its two strokes
 TURNS = 6  # at least, of an oscillation: three periods
+LONGER = 1.2  # times as long as they are, periods must fit into an oscillation: theirs differ
 THIN = 5e-3  # of a panel's height: a smaller range looks like a line
 RANGE = 1.5  # periods in which extremes are sought: they differ in length
 MEAN = 4.0  # periods of a mean; two are the least whose weight cancels them
@@ -86,7 +87,8 @@ def oscillations(time: Floats, values: Floats, longest: float, least: float) -> 
     time, values : ndarray
         (n,); not-a-number values are no turns.
     longest : float
-        Mean period of the slowest of them, s, and time between two turns that ends one.
+        Period of the slowest of them, s, by the mean over time, and time between two turns that
+        ends one.
     least : float
         Height of a turn; smaller ones do not count.
     """
@@ -100,7 +102,12 @@ def oscillations(time: Floats, values: Floats, longest: float, least: float) -> 
     for group in np.split(turns, np.flatnonzero(np.diff(time[turns]) > longest) + 1):
         group = visible_turns(time, values, turns, group)
         gaps = np.diff(time[group])
-        if len(group) >= TURNS and gaps.mean() <= 0.5 * longest:
+        if len(group) < TURNS:
+            continue
+        periods = time[group[2:]] - time[group[:-2]]
+        # that at any time, not of any turn: the turns of a burst do not make up for a long pause
+        period, lasts = np.average(periods, weights=periods), time[group[-1]] - time[group[0]]
+        if period <= longest and (TURNS - 1) * period <= LONGER * 2.0 * lasts:
             begins = time[group[0]] - time[first] <= 1.5 * gaps[0]
             goes_on = time[last] - time[group[-1]] <= 1.5 * gaps[-1]
             start, end = first if begins else group[0], last if goes_on else group[-1]
