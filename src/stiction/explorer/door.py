@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable, Coroutine
+from concurrent.futures import Future
 from importlib.util import find_spec
+from threading import Thread
 from typing import Any
 
 from stiction.errors import StictionError
 from stiction.explorer.source import open_sources
 
 PORTS = 65_535
+ENDS = ("Ctrl-C ends it", "it ends with the notebook, or when its last page is closed")
+Tell = Callable[[str], Any]
 
 
 def explore(
@@ -22,6 +27,7 @@ def explore(
     """Open the explorer in the browser: sliders for every parameter, and the motion at once.
 
     The page is served on this machine only. It ends with Ctrl-C, or when its last page is closed.
+    In a notebook the cell is done at once, and the page is served beside the next ones.
     It needs ``stiction[explorer]``.
 
     Parameters
@@ -54,10 +60,45 @@ def explore(
     opened = open_sources(source if several else [source], trust=trust)
 
     def tell(address: str) -> None:
-        print(f"{opened.name}: {address}\nCtrl-C ends it", flush=True)
+        print(f"{opened.name}: {address}\n{ENDS[beside]}", flush=True)
         if browser:
             import webbrowser
 
             webbrowser.open(address)
 
-    asyncio.run(serve_until_closed(opened, port, browser, tell))
+    beside = is_loop_running()
+    if beside:
+        serve_beside(lambda told: serve_until_closed(opened, port, browser, told), tell)
+    else:
+        asyncio.run(serve_until_closed(opened, port, browser, tell))
+
+
+def is_loop_running() -> bool:
+    """Return whether an event loop runs in this thread, as in a notebook."""
+    try:
+        asyncio.get_running_loop()
+    except RuntimeError:
+        return False
+    return True
+
+
+def serve_beside(serve: Callable[[Tell], Coroutine[Any, Any, None]], tell: Tell) -> None:
+    """Serve in a thread of its own; return when the address has been told.
+
+    Raises
+    ------
+    OSError
+        If it cannot listen.
+    """
+    address: Future[str] = Future()
+
+    def work() -> None:
+        try:
+            asyncio.run(serve(address.set_result))
+        except BaseException as error:
+            if address.done():
+                raise
+            address.set_exception(error)
+
+    Thread(target=work, name="explorer", daemon=True).start()  # ends with the notebook
+    tell(address.result())

@@ -1,18 +1,23 @@
 """The server lets its own page in, and nobody else."""
 
+import asyncio
 import http.client
 import json
+import re
 import socket
+from urllib.request import urlopen
 
 import numpy as np
 import pytest
 from tests.explored import an_opened, ask, page_of, serving
+from tests.waiting import PATIENCE
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 import stiction as st
 from stiction.explorer import server
 from stiction.explorer.answers import tables_of
+from stiction.explorer.door import explore
 
 
 @pytest.fixture(scope="module")
@@ -153,3 +158,25 @@ def test_the_numbers_are_those_of_simulate(explorer):
     # the steps before are the same; only the last one ends elsewhere
     for name in ("u_x", "u_y", "slip_x", "friction"):
         assert fine[0]["at"][name] == pytest.approx(float(wanted[name]), rel=1e-7), name
+
+
+def test_in_a_notebook_the_page_is_served_beside_the_next_cells(capsys):
+    """An event loop runs there, in which no other may be run."""
+
+    async def cell():
+        explore(an_opened().description, browser=False)
+
+    asyncio.run(cell())
+    said = capsys.readouterr().out
+    address = re.search(r"http://\S+", said).group()
+    assert "it ends with the notebook" in said
+    with urlopen(address, timeout=PATIENCE) as page:
+        assert b"stiction explorer" in page.read()
+
+
+def test_in_a_notebook_a_port_that_is_taken_is_told():
+    async def cell(port):
+        explore(an_opened().description, browser=False, port=port)
+
+    with socket.create_server(("127.0.0.1", 0)) as taken, pytest.raises(OSError, match="in use"):
+        asyncio.run(cell(taken.getsockname()[1]))
