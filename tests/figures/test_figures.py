@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from io import BytesIO
 from itertools import pairwise
 from math import degrees, pi, radians
 from pathlib import Path
@@ -13,6 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.markers import MarkerStyle
 from matplotlib.patches import FancyArrowPatch
+from PIL import Image
 from tests.drawn import inside
 
 import stiction as st
@@ -28,7 +30,7 @@ from stiction.plotting.apparatus.shapes import drawn_misalignment
 from stiction.plotting.maps import Side, draw_slice
 from stiction.plotting.page.canvas import canvas, figure_of
 from stiction.plotting.page.parameter import Scale, label_decades
-from stiction.plotting.page.save import save, write
+from stiction.plotting.page.save import png, save, write
 from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PURPLE, new_figure, style
 from stiction.plotting.page.words import plain
 from stiction.plotting.run.comparison import plot_comparison
@@ -792,3 +794,14 @@ def test_a_notebook_that_turns_interactive_inside_the_style_stays_so() -> None:
             with style():
                 mpl.interactive(within)
             assert mpl.is_interactive() is within
+
+
+def test_a_figure_is_written_for_print(tmp_path: Path) -> None:
+    """A journal asks for 300 dots in an inch; a picture in a page has fewer."""
+    fig = new_figure(3.375, 2.0)
+    fig.add_subplot().plot([0.0, 1.0])
+    with Image.open(write(fig, tmp_path / "a.png")) as image:
+        assert image.info["dpi"] == pytest.approx((300.0, 300.0), rel=1e-3)
+        assert image.size == (1012, 600)
+    with Image.open(BytesIO(png(fig))) as image:
+        assert image.size == (675, 400)

@@ -57,7 +57,7 @@ SHEET: dict[str, Any] = {
     "figure.constrained_layout.w_pad": 0.03,
     "figure.constrained_layout.hspace": 0.02,
     "figure.constrained_layout.wspace": 0.02,
-    "savefig.dpi": 200.0,
+    "savefig.dpi": 300.0,
     "pdf.fonttype": 42,
     "svg.fonttype": "none",
 }
