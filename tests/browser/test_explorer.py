@@ -436,6 +436,25 @@ def test_what_does_not_move_has_no_magnification(page):
     assert said[2] == "nothing moves"
 
 
+def write_down(page):
+    """Keep the words that are drawn in the upper view at the side from now on."""
+    still = "document.querySelector('#panel-a .layers canvas')"
+    page.value(
+        f"""(() => {{ const context = {still}.getContext("2d"), write = context.fillText;
+        window.written = [];
+        context.fillText = (words, ...at) => {{ written.push(words);
+          write.call(context, words, ...at); }}; }})()"""
+    )
+
+
+def test_a_map_that_cannot_be_says_of_what(page):
+    """It began with "is not steady", and did not say what."""
+    write_down(page)
+    page.done_after(lambda: page.tab.select_option("#drive-protocol", "slide-hold-slide"))
+    page.until("written.some((words) => words.includes('not steady'))")
+    assert [words for words in page.value("written") if words.startswith("drive: is not")]
+
+
 def test_a_study_shows_what_its_colours_mean(browser, tmp_path):
     """A click on a run without a value opens it, too."""
     study = st.Study(
@@ -448,14 +467,7 @@ def test_a_study_shows_what_its_colours_mean(browser, tmp_path):
     what.study.data["peak_force"].values[1, 0] = math.nan
     with serving(what) as explorer:
         page = Page(browser.new_page(viewport={"width": 1280, "height": 720}), explorer)
-        still = "document.querySelector('#panel-a .layers canvas')"
-        page.value(
-            f"""(() => {{ const context = {still}.getContext("2d"), write = context.fillText;
-            window.written = [];
-            context.fillText = (words, ...at) => {{ written.push(words);
-              write.call(context, words, ...at); }};
- }})()"""
-        )
+        write_down(page)
         canvas = "#panel-a canvas[role=img]"
         box = page.tab.locator(canvas).bounding_box()
         page.done_after(

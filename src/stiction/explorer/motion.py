@@ -26,6 +26,7 @@ CURVES = ("spring_x", "spring_y", "friction", "psi", "X", "V_X", "slip_speed", "
 TRACK = ("u_x", "u_y", "slip_x", "slip_y", "friction", "theta", "X", "V_X", "normal_load")
 PER_COLUMN = 16  # samples in a column of pixels while a slider moves
 FEWEST, MOST = 4_000, 24_000  # samples of the whole run then
+CLOSE = 4  # columns between two rests that look like one
 IN_SLIP = 48  # samples in a slip between two rests
 FINE = 4_001  # samples under the microscope
 DIGITS = 6  # of a number on the page
@@ -141,8 +142,27 @@ def curves(table: ColumnTable, sticks: np.ndarray, window: Window, columns: int)
     found: Arrays = {name: extremes(table[name], starts) for name in CURVES}
     stuck = share_stuck(sticks, window, columns)
     # rest may fall between two samples; those that happen to be near it would show beats
-    found["slip_speed"][stuck[places] > 0.0, 1] = 0.0
+    found["slip_speed"][dense(stuck > 0.0)[places], 1] = 0.0
     return {"column": places.astype(np.float32), **found, "stuck": stuck}
+
+
+def dense(rests: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return which columns hold rest, or lie between two that do so closely that they look so.
+
+    Rests as frequent as columns would beat with them.
+
+    Examples
+    --------
+    >>> dense(np.array([True, False, True, False, False, False, False, True])).tolist()
+    [True, True, True, False, False, False, False, True]
+    """
+    at = np.flatnonzero(rests)
+    places = np.arange(len(rests))
+    if len(at) < 2:
+        return rests
+    after = np.searchsorted(at, places).clip(1, len(at) - 1)
+    between = (places > at[after - 1]) & (places < at[after])
+    return rests | (between & (at[after] - at[after - 1] <= CLOSE))
 
 
 def track(table: ColumnTable, chosen: NDArray[np.bool_]) -> Arrays:

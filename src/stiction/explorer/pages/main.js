@@ -45,9 +45,10 @@ function say(words, bad = false) {
 
 function failed(answer) {
   if (answer.faults) form?.setFaults(answer.faults);
-  const first = answer.faults?.[0];
-  say(first ? `${first.path}: ${first.message}` : answer.error, true);
+  say(reason(answer), true);
 }
+
+function reason({ faults, error }) { return faults ? `${faults[0].path}: ${faults[0].message}` : error; }
 
 function begin(answer) {
   $("name").textContent = answer.name;
@@ -189,7 +190,7 @@ function askViews() {
     page.decade = rest.drive.velocity;
     data.stabilityError = null;
     link.ask({ do: "stability", tables: state.tables }, (answer) => { data.stability = answer; page.mapped = answer.arrays.growth.shape[0]; refresh(); }, (answer) => {
-      data.stabilityError = answer.error ?? answer.faults[0].message;
+      data.stabilityError = reason(answer);
       page.map = null;
       refresh();
     });

@@ -5,7 +5,7 @@ import { BLUE, GREEN, INK, Layers, SOFT, curve, frame, line, text } from "./draw
 import { quantity } from "./quantity.js";
 
 const SLOWEST = 1e-12; // m/s: slower is rest, and rounding
-const LEFT = 52, RIGHT = 10, TOP = 4, BOTTOM = 22, GAP = 4;
+const LEFT = 66, RIGHT = 10, TOP = 4, BOTTOM = 22, GAP = 4;
 
 export class Microscope {
   constructor(canvas, hooks) {

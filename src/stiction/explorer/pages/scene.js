@@ -63,11 +63,6 @@ export class Scene {
         context.fill();
       }
     }
-    const base = height - 16;
-    arrow(context, [206, base], [160, base], GREY, 1.6);
-    text(context, "plate", 212, base, { color: GREY });
-    arrow(context, [14, base], [60, base], BLUE, 1.6);
-    text(context, "X, drive", 66, base, { color: BLUE });
   }
 
   travel(s) { // of the drive: X plus the elongation along it
@@ -165,7 +160,17 @@ export class Scene {
     }
   }
 
+  // Which way plate and drive move, over what reaches there.
+  ways(context, height) {
+    const base = height - 16;
+    arrow(context, [206, base], [160, base], GREY, 1.6);
+    text(context, "plate", 212, base, { color: GREY, halo: true });
+    arrow(context, [14, base], [60, base], BLUE, 1.6);
+    text(context, "X, drive", 66, base, { color: BLUE, halo: true });
+  }
+
   words(context, width, height, s, M) {
+    this.ways(context, height);
     const speed = Math.hypot(s.slip_x, s.slip_y), psi = s.theta - (this.scene.phi * 180) / Math.PI;
     const rows = [
       ["slip speed", s.sticking ? "0 (at rest)" : quantity(speed, "m/s"), GREEN],
