@@ -162,7 +162,8 @@ def dense(rests: NDArray[np.bool_]) -> NDArray[np.bool_]:
         return rests
     after = np.searchsorted(at, places).clip(1, len(at) - 1)
     between = (places > at[after - 1]) & (places < at[after])
-    return rests | (between & (at[after] - at[after - 1] <= CLOSE))
+    close = at[after] - at[after - 1] <= CLOSE
+    return np.asarray(rests | (between & close), np.bool_)
 
 
 def track(table: ColumnTable, chosen: NDArray[np.bool_]) -> Arrays:
