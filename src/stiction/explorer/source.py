@@ -11,7 +11,6 @@ import numpy as np
 
 from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.record import Record
-from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault, ResultError, echo
 from stiction.explorer.motion import CURVES
 from stiction.friction.user.loading import Find, is_own

@@ -283,7 +283,7 @@ def microscope(figure: Figure, fine: ColumnTable, length: float) -> Line2D:
     return ax.axvline(places[0], color=BLACK, linewidth=1.0)
 
 
-def micro_times(fine: ColumnTable) -> tuple[NDArray[np.float64], str]:
+def micro_times(fine: ColumnTable) -> tuple[Floats, str]:
     """Return the times under the microscope from its middle, and the prefix of their unit."""
     times = fine["time"] - 0.5 * (fine["time"][0] + fine["time"][-1])
     factor, prefix = metric_prefix(times)

@@ -9,7 +9,8 @@ from matplotlib import colormaps
 from matplotlib.colors import Colormap, ListedColormap, LogNorm, Normalize
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from stiction.arrays import Floats
+
 DECADES = 30.0  # a measure that spans a larger factor is drawn in decades
 DEEPEST = 1e6  # range below the largest value; smaller ones count as zero
 NO_RESULT, NO_VALUE = "no result", "no value"

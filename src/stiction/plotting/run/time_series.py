@@ -115,9 +115,7 @@ def oscillations(time: Floats, values: Floats, longest: float, least: float) -> 
     return found
 
 
-def visible_turns(
-    time: Floats, values: Floats, turns: NDArray[np.intp], group: NDArray[np.intp]
-) -> NDArray[np.intp]:
+def visible_turns(time: Floats, values: Floats, turns: Indices, group: Indices) -> Indices:
     """Leave out turns that are noise on an oscillation which a mean over their periods would alter.
 
     The mean of a few noise periods takes away part of an oscillation that is hardly slower, and
