@@ -10,8 +10,10 @@ import sys
 from collections.abc import Callable, Mapping
 from functools import cache
 from importlib import import_module
+from types import FunctionType
 from typing import Any
 
+from stiction.arguments import doorway
 from stiction.deprecation import old_names
 
 
@@ -48,7 +50,9 @@ def public(
             raise AttributeError(f"module {room!r} has no attribute {name!r}")
         home = public_names(room)[name]
         found = None if home == room else getattr(import_module(home), name, None)
-        return import_module(f"{home}.{name}") if found is None else found  # a room
+        if found is None:
+            return import_module(f"{home}.{name}")  # a room
+        return doorway(found, room, name) if isinstance(found, FunctionType) else found
 
     def names() -> list[str]:
         own = (name for name in vars(sys.modules[room]) if name.startswith("__"))

@@ -36,6 +36,9 @@ from numpy.typing import ArrayLike
 
 from stiction.arrays import Floats
 
+from stiction.arguments import is_numeric, name_arguments
+from stiction.errors import DescriptionError, Fault, echo
+
 if TYPE_CHECKING:
     from stiction.system.slider import Slider
 
@@ -331,6 +334,7 @@ def damping_number(
     return F_0 / (2.0 * V * np.sin(phi) * np.sqrt(m * k_x))
 
 
+@name_arguments
 def damping_number_of(slider: Slider, V: float, phi: float | None = None) -> float:
     """Damping number A of Eq. (10) of a slider that is driven at `V` (m/s), dimensionless.
 
@@ -493,6 +497,10 @@ def critical_stiffness(
 
 
 def _floats(*values: ArrayLike) -> tuple[Floats, ...]:
+    for value in values:
+        if not is_numeric(value):
+            told = f"the theory takes numbers in SI, or arrays of them, not {echo(value)}"
+            raise DescriptionError([Fault("", told)])
     return tuple(np.asarray(value, dtype=np.float64) for value in values)
 
 

@@ -10,8 +10,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence, Sized
+from collections.abc import Sequence
 
+from stiction.arguments import is_list
 from stiction.drive.pieces import Constant, Hold, Ramp, Reversal, Step
 from stiction.drive.program import DriveProgram, LoadProgram
 from stiction.drive.steady import ConstantVelocity
@@ -155,6 +156,10 @@ def end(*programs: ConstantVelocity | DriveProgram | LoadProgram | None) -> floa
     >>> st.protocols.end(st.protocols.slide_hold_slide("1 mm/s", ["10 s"], slide="5 s"))
     20.0
     """
+    for each in programs:
+        if not isinstance(each, ConstantVelocity | DriveProgram | LoadProgram | None):
+            remedy = "give the drive or the load of a slider"
+            raise _fault("programs", f"{echo(each)} is not a program; {remedy}")
     ends = [_end(each) for each in programs if isinstance(each, DriveProgram | LoadProgram)]
     known = [each for each in ends if each is not None]
     return max(known) if known else None
@@ -166,7 +171,7 @@ def _end(program: DriveProgram | LoadProgram) -> float | None:
 
 
 def _at_least_one(path: str, values: Sequence[Quantity]) -> Sequence[Quantity]:
-    if isinstance(values, str) or not isinstance(values, Sized) or not len(values):
+    if not is_list(values) or not len(values):
         raise _fault(path, f"{echo(values)} must be a list of at least one value")
     return values
 

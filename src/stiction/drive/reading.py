@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 from pydantic import BeforeValidator
 from pydantic_core import PydanticCustomError
 
+from stiction.arguments import is_list
 from stiction.drive.pieces import LEVELS, Modulation
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.text.toml import choose
@@ -19,7 +20,7 @@ def as_pieces(known: Mapping[str, type[Any]], kind: Kind) -> BeforeValidator:
     """Return the validator that reads a program of known pieces, with levels of one quantity."""
 
     def read(value: Any) -> tuple[Any, ...]:
-        if not isinstance(value, Sequence) or isinstance(value, str):
+        if not is_list(value):
             raise fault(f"{echo(value)} is not a list of pieces")
         made, found = [], []
         for i, each in enumerate(value):

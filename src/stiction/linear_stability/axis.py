@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence, Sized
+from collections.abc import Sequence
 from math import exp, inf, log, nan, pi
 from typing import NamedTuple
 
+from stiction.arguments import is_list
 from stiction.errors import DescriptionError, Fault, Faults, echo
 from stiction.system.parameter import change_parameter, change_unchecked, read, unit
 from stiction.system.slider import Slider
@@ -72,7 +73,7 @@ def axis(slider: Slider, path: str, between: Sequence[Quantity] | None = None) -
         raise DescriptionError([Fault("path", f"{echo(path)} is not a parameter; write 'phi'")])
     path = canonical_path(path)
     ends = default(slider, path) if between is None else between
-    if isinstance(ends, str) or not isinstance(ends, Sized) or len(ends) != 2:
+    if not is_list(ends) or len(ends) != 2:
         raise DescriptionError([Fault(path, f"{echo(ends)} is not a range; give its two ends")])
     faults, values = Faults(), []
     for end in ends:

@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
+from stiction.arguments import name_arguments
 from stiction.errors import DescriptionError, Fault
 from stiction.system.description import Description
 from stiction.system.slider import Slider
@@ -165,6 +166,7 @@ def preset(measure: Measure, **fields: Any) -> Callable[[Make], Make]:
     return register
 
 
+@name_arguments
 def find(name: str) -> Preset:
     """Return a preset by its name, with dashes or underscores.
 

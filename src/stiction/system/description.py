@@ -24,7 +24,7 @@ from stiction.system.writing import describe, parameter_table, slider_tables
 from stiction.text.sections import Section, as_html
 from stiction.text.toml import Reader, folder_of, gather, read_json, read_toml, toml_text
 from stiction.text.units import Duration, Number, SampleRate, Velocity
-from stiction.text.validation import Described, faulty, write_call
+from stiction.text.validation import Described, faulty, validate
 
 SAMPLE = 300.0  # bytes of memory per sample, for all columns and intermediate arrays
 Smoothing = Annotated[Velocity, Field(ge=1e-11)]  # below, steps resolve a thin layer
@@ -85,6 +85,7 @@ class Settings(Described):
         return self
 
 
+@validate
 class Description(NamedTuple):
     """Slider, initial state and settings of one run.
 
@@ -100,10 +101,6 @@ class Description(NamedTuple):
     slider: Slider
     initial: Initial
     run: Settings
-
-    def __repr__(self) -> str:
-        """Return the call that makes an equal description."""
-        return write_call(self)
 
     def _repr_html_(self) -> str:
         table = as_html([Section("Description", [], parameter_table(self._tables()))])

@@ -56,9 +56,14 @@ class Described(BaseModel, metaclass=_Presented):
         required = sorted(parameters, key=lambda p: p.default is not Parameter.empty)
         cls.__signature__ = Signature(required)
 
-    def __init__(self, **values: Any) -> None:
+    def __init__(self, *unnamed: Any, **values: Any) -> None:
         """Validate, or raise every fault at once."""
-        collect(type(self).__name__, super().__init__, type(self).model_fields, values)
+        name, known = type(self).__name__, type(self).model_fields
+        if unnamed:
+            remedy = f"write {name}({next(iter(known))}=...)"
+            told = f"its values have names, {echo(unnamed[0])} has none; {remedy}"
+            raise DescriptionError([Fault(name, told)])
+        collect(name, super().__init__, known, values)
 
     def __eq__(self, other: object) -> bool:
         """Compare the fields; the library would compare what was derived from them, too."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from stiction.arrays import Floats, Indices, xr
+from stiction.errors import ResultError
 
 # Amplitudes of noise are Rayleigh-distributed: 1 in 500 windows of 1000 lines has one that is
 # five times their median, exp(-25 ln 2) for each.
@@ -53,7 +54,7 @@ def follow_ridge(
     """
     band = amplitude.sel(frequency=slice(low, high))
     if band.sizes["frequency"] < 3:
-        raise ValueError(
+        raise ResultError(
             f"{band.sizes['frequency']} lines lie between {low:g} Hz and {high:g} Hz and at "
             "least 3 are needed; widen the windows of the spectrogram"
         )

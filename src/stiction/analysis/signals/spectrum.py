@@ -10,6 +10,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike
 
 from stiction.arrays import Floats, xr
+from stiction.errors import ResultError
 from stiction.trajectory import Trajectory
 
 BLOCK = 2**17  # samples taken at once from what can be sliced, 1 MB
@@ -28,7 +29,7 @@ class Windows(NamedTuple):
         from scipy.fft import rfft
 
         if not np.isfinite(samples).all():
-            raise ValueError("the signal has values that are not finite; leave them out")
+            raise ResultError("the signal has values that are not finite; leave them out")
         shape = np.hamming(self.length + 1)[:-1]  # periodic; scipy.signal takes 0.4 s to import
         shape *= 2.0 / shape.sum()
         ramp = np.arange(self.length) - 0.5 * (self.length - 1)
@@ -61,7 +62,7 @@ def windows_of(sample_rate: float, width: float, step: float) -> Windows:
     """Return windows of a width, one every `step` (both s); two samples wide at least."""
     windows = Windows(round(width * sample_rate), max(1, round(step * sample_rate)), sample_rate)
     if windows.length < 2:
-        raise ValueError(too_short(windows, 0))
+        raise ResultError(too_short(windows, 0))
     return windows
 
 
@@ -108,7 +109,7 @@ def spectrogram(
 
     Raises
     ------
-    ValueError
+    ResultError
         If the signal is shorter than the window, or not finite.
 
     References
@@ -126,7 +127,7 @@ def spectrogram(
     signal = np.asarray(values, dtype=np.float64)
     windows = windows_of(sample_rate, width, step)
     if len(signal) < windows.length:
-        raise ValueError(too_short(windows, len(signal)))
+        raise ResultError(too_short(windows, len(signal)))
     return windows.label(windows.amplitudes(signal), 0, start)
 
 
@@ -158,7 +159,7 @@ def stream_spectrogram(
 
     Raises
     ------
-    ValueError
+    ResultError
         If the signal is shorter than the window, or not finite.
 
     Examples
@@ -179,7 +180,7 @@ def stream_spectrogram(
             done += count
             rest = rest[count * windows.hop :].copy()
     if not done:
-        raise ValueError(too_short(windows, seen))
+        raise ResultError(too_short(windows, seen))
 
 
 def _blocks(blocks: Any) -> Iterator[Floats]:

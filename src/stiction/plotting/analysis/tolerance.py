@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,6 +14,9 @@ from stiction.plotting.page.parameter import in_unit
 from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PALE, style
 from stiction.text.quantity_text import percent
 
+if TYPE_CHECKING:
+    from stiction.auditing.tolerance.budget import Budget
+
 LABELS = (
     "apparent static friction,\nlargest force",
     "apparent kinetic friction,\nmean",
@@ -23,7 +26,7 @@ LABELS = (
 UNITS = ("1", "1", "m", "m")
 
 
-def plot_tolerance(budget: Any, axes: Sequence[Axes] | None = None) -> NDArray[np.object_]:
+def plot_tolerance(budget: Budget, axes: Sequence[Axes] | None = None) -> NDArray[np.object_]:
     """Draw each reading of a rig's tests over the misalignments drawn from its prior.
 
     Parameters
@@ -54,7 +57,7 @@ def plot_tolerance(budget: Any, axes: Sequence[Axes] | None = None) -> NDArray[n
     return np.array(panels, dtype=object)
 
 
-def draw_limit(ax: Axes, budget: Any) -> None:
+def draw_limit(ax: Axes, budget: Budget) -> None:
     """Draw the allowed error of the static coefficient, and where it is reached."""
     static, limit = budget.aligned.static, budget.alignment
     band = static * (1.0 - limit.allowed), static * (1.0 + limit.allowed)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,12 +10,15 @@ from matplotlib.axes import Axes
 from stiction.plotting.page.canvas import grid_of
 from stiction.plotting.page.style import BLACK, BLUE, GREY, style
 
+if TYPE_CHECKING:
+    from stiction.inference.next_test.advice import Advice
+
 NAMES = ("ratio", "low", "high")
 WIDTH = 4.5  # inches: long names stand beside the axis
 ROW = 0.22  # inches for a test
 
 
-def plot_design(advice: Any, axes: Axes | None = None) -> Axes:
+def plot_design(advice: Advice, axes: Axes | None = None) -> Axes:
     """Draw the expected width of the posterior of the parameter of interest, test by test.
 
     Parameters

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from textwrap import fill
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,6 +15,9 @@ from stiction.plotting.page.canvas import grid_of
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, RED, style
 from stiction.text.quantity_text import percent
 
+if TYPE_CHECKING:
+    from stiction.inference.mechanism.odds import Odds
+
 LETTERS = 16  # in a line of a mechanism's name
 TAILS = (0.025, 0.975)
 LOOKS = (  # of the mechanisms' loadings: told apart without colour too
@@ -23,7 +26,7 @@ LOOKS = (  # of the mechanisms' loadings: told apart without colour too
 DARK = 0.5  # share above which its number is white
 
 
-def plot_mechanism(odds: Any, axes: Sequence[Axes] | None = None) -> NDArray[np.object_]:
+def plot_mechanism(odds: Odds, axes: Sequence[Axes] | None = None) -> NDArray[np.object_]:
     """Draw the odds of mechanisms beside the confusion matrix and the loading.
 
     Parameters
@@ -50,7 +53,7 @@ def plot_mechanism(odds: Any, axes: Sequence[Axes] | None = None) -> NDArray[np.
     return np.array(panels, dtype=object)
 
 
-def draw_odds(ax: Axes, odds: Any, names: Sequence[str]) -> None:
+def draw_odds(ax: Axes, odds: Odds, names: Sequence[str]) -> None:
     """Draw a bar for each mechanism, and the line from which a claim is made."""
     places = np.arange(len(names))
     claimed = [name == odds.decision for name in odds.names]
@@ -76,7 +79,7 @@ def draw_confusion(ax: Axes, confusion: Floats, names: Sequence[str]) -> None:
     ax.set_title("simulated records (rows) called so")
 
 
-def draw_loading(ax: Axes, odds: Any) -> None:
+def draw_loading(ax: Axes, odds: Odds) -> None:
     """Draw the bend of the record's loading over those of simulations."""
     share = odds.shares
     parts = len(share)  # of the first record, where there are several

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import ceil
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,6 +15,10 @@ from stiction.plotting.page.canvas import canvas, fix_ticks, grid_of
 from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PALE, SKY, style
 from stiction.text.paths import last_part
 from stiction.text.quantity_text import metric_prefix
+
+if TYPE_CHECKING:
+    from stiction.auditing.measured import RecordComparison
+    from stiction.inference.posterior import Fit
 
 ACROSS = 4  # panels in a row
 BINS = 40
@@ -27,7 +31,7 @@ SHOWN = 5  # cycles
 RANK_BINS = 10  # of a histogram of ranks
 
 
-def plot_posterior(fit: Any, axes: Sequence[Axes] | None = None) -> NDArray[np.object_]:
+def plot_posterior(fit: Fit, axes: Sequence[Axes] | None = None) -> NDArray[np.object_]:
     """Draw the posterior of each parameter over its prior, with the 95 % interval.
 
     Parameters
@@ -90,7 +94,7 @@ def axis_unit(values: xr.DataArray) -> tuple[float, str]:
 
 
 def plot_corner(
-    fit: Any, names: Sequence[str] | None = None, axes: Any = None
+    fit: Fit, names: Sequence[str] | None = None, axes: Any = None
 ) -> NDArray[np.object_]:
     """Draw the posterior of all pairs of parameters: regions that hold 50 % and 95 % of it.
 
@@ -142,7 +146,7 @@ def plot_corner(
     return np.asarray(grid, dtype=object)
 
 
-def draw_pair(ax: Axes, fit: Any, x: str, y: str) -> None:
+def draw_pair(ax: Axes, fit: Fit, x: str, y: str) -> None:
     """Draw the regions of two parameters that hold 95 % and 50 % of the posterior."""
     from scipy.ndimage import gaussian_filter  # type: ignore[attr-defined]
 
@@ -162,7 +166,9 @@ def draw_pair(ax: Axes, fit: Any, x: str, y: str) -> None:
         ax.contourf(*centres, smooth.T, levels=edges, colors=["#BBD6E8", BLUE])
 
 
-def plot_predictive(comparison: Any, axes: Sequence[Axes] | None = None) -> NDArray[np.object_]:
+def plot_predictive(
+    comparison: RecordComparison, axes: Sequence[Axes] | None = None
+) -> NDArray[np.object_]:
     """Draw a record over a simulation with the fitted parameters, and both loading curves.
 
     Parameters
@@ -218,7 +224,7 @@ def draw_loading(panels: Sequence[Axes], found: Any) -> None:
     panels[1].set_ylabel("from a straight line (% of the rise)")
 
 
-def plot_ranks(fit: Any, axes: Sequence[Axes] | None = None) -> NDArray[np.object_]:
+def plot_ranks(fit: Fit, axes: Sequence[Axes] | None = None) -> NDArray[np.object_]:
     """Draw the ranks of the truth in posteriors of simulated records: even, if calibrated.
 
     Parameters

@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from stiction.analysis.motion.cycles import find_cycles
 from stiction.analysis.motion.rest import stuck_until
 from stiction.analysis.slip import cell_force, is_undersampled
+from stiction.errors import StictionError
 from stiction.friction import name_of
 from stiction.plotting.page.canvas import canvas, find_drawing, fix_ticks
 from stiction.plotting.page.style import GREY, PAGE, style
@@ -84,6 +85,8 @@ def plot_comparison(
     >>> base = st.Description(slider, st.Initial(), st.Settings(duration="20 ms"))
     >>> axes = st.plotting.plot_comparison(st.compare(base, ["coulomb"]))
     """
+    if not runs:
+        raise StictionError("there is no run to compare; give some, as `st.compare` returns them")
     with style():
         curves = curves_of(runs)
         legend = [legend_text(curve) for curve in curves]

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal, cast
 
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field
 
+from stiction.arguments import is_list
 from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.text.units import Read, unread
@@ -19,7 +20,7 @@ MOST = 1_000_000_000  # values of an axis
 
 def _list(value: Any) -> Any:
     value = value.tolist() if hasattr(value, "tolist") else value
-    if isinstance(value, str) or not isinstance(value, Sequence) or not value:
+    if not is_list(value) or not value:
         raise ValueError(
             f"{echo(value)} is not a list of values; write them in brackets: [..., ...]"
         )
@@ -38,7 +39,8 @@ class Positional(Described):
 
     def __init__(self, *given: Any, **values: Any) -> None:
         """Read the fields."""
-        super().__init__(**dict(zip(type(self).model_fields, given, strict=False)), **values)
+        named = dict(zip(type(self).model_fields, given, strict=False))
+        super().__init__(*given[len(named) :], **named, **values)
 
 
 class Values(Positional):

@@ -1,0 +1,198 @@
+"""Arguments of public functions: one of a wrong type is named when it makes the function fail.
+
+A function asks no type of its arguments as long as it can work with them. When it fails, the
+annotations in its signature tell whether an argument is to blame. This costs a call that succeeds
+nothing, and an error of the function itself stays what it is. Only a number in place of a path is
+refused beforehand.
+"""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set, Sized
+from functools import wraps
+from inspect import Signature, isclass, signature, unwrap
+from numbers import Integral, Real
+from os import PathLike
+from typing import Any, TypeVar, cast, get_args
+
+from stiction.errors import DescriptionError, Fault, StictionError, echo
+
+F = TypeVar("F", bound=Callable[..., Any])
+ANYTHING = {"Any", "object", "Unpack", "Literal"}  # values of a Literal have messages of their own
+PLAIN: dict[str, Any] = {"float": Real, "int": Integral, "Path": PathLike, "None": type(None)}
+NO_PATH = int, bytes  # yet the system takes a number for a file that is open, and closes it
+IN_WORDS = {
+    "float": "a number",
+    "int": "a whole number",
+    "str": "text",
+    "bool": "True or False",
+    "Path": "a path",
+    "ArrayLike": "numbers",
+    "Quantity": "a number or text with a unit",
+    "Callable": "a function",
+    "Ends": "two numbers or texts with units",
+}
+
+
+_doors: dict[Callable[..., Any], Callable[..., Any]] = {}  # one of a function with two names
+
+
+def doorway(function: Callable[..., Any], room: str, name: str) -> Callable[..., Any]:
+    """Return a public function that names its wrong arguments if they make it fail.
+
+    Parameters
+    ----------
+    function : callable
+        The function.
+    room, name : str
+        Where users find it; there, pickle finds it again.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> try:
+    ...     st.check(5)
+    ... except st.StictionError as error:
+    ...     print(error)
+    path: must be text or a path, is 5; see help(st.check)
+    """
+    if function in _doors:
+        return _doors[function]
+    hints = getattr(unwrap(function), "__annotations__", {})
+    paths = {each for each, hint in hints.items() if "Path" in str(hint)}
+
+    @wraps(function)
+    def public(*args: Any, **values: Any) -> Any:
+        title = f"st{room.removeprefix('stiction')}.{name}"
+        if any(isinstance(each, NO_PATH) for each in (*args, *values.values())):
+            refuse([each for each in faults(function, args, values, title) if each.path in paths])
+        try:
+            return function(*args, **values)
+        except StictionError:
+            raise
+        except Exception:
+            refuse(faults(function, args, values, title))
+            raise
+
+    public.__module__, public.__qualname__ = room, name
+    return _doors.setdefault(function, public)
+
+
+def name_arguments(function: F) -> F:
+    """Decorate a public function of a module that is a room itself, as `stiction.theory` is."""
+    return cast(F, doorway(function, function.__module__, function.__name__))
+
+
+def refuse(found: list[Fault]) -> None:
+    """Raise the faults, if there are any."""
+    if found:
+        raise DescriptionError(found) from None
+
+
+def faults(
+    function: Callable[..., Any], args: tuple[Any, ...], values: Mapping[str, Any], title: str
+) -> list[Fault]:
+    """Return the arguments that are not of the type that the signature states."""
+    shape, scope = signature(function), vars(builtins) | unwrap(function).__globals__
+    try:
+        given = shape.bind(*args, **values).arguments
+    except TypeError:  # too many, or too few: Python's message says so
+        return []
+    return [
+        Fault(name, f"must be {in_words(hint)}, is {echo(value)}; see help({title})")
+        for name, hint, value in pairs(shape, given)
+        if not accepts(hint, value, scope)
+    ]
+
+
+def pairs(shape: Signature, given: Mapping[str, Any]) -> Iterator[tuple[str, ast.expr, Any]]:
+    """Yield name, annotation and value of each argument that has an annotation."""
+    for name, value in given.items():
+        each = shape.parameters[name]
+        if isinstance(each.annotation, str) and each.kind not in (
+            each.VAR_POSITIONAL,
+            each.VAR_KEYWORD,
+        ):
+            yield name, ast.parse(each.annotation, mode="eval").body, value
+
+
+def members(hint: ast.expr) -> list[ast.expr]:
+    """Return the members of a union."""
+    if isinstance(hint, ast.BinOp):
+        return [*members(hint.left), *members(hint.right)]
+    return [hint]
+
+
+def name_of(hint: ast.expr) -> str:
+    """Return the name of a type: ``Dataset`` of ``xr.Dataset``, ``Sequence`` of a sequence."""
+    inner = hint.value if isinstance(hint, ast.Subscript) else hint
+    return re.split(r"[. ]", ast.unparse(inner))[-1]
+
+
+def in_words(hint: ast.expr) -> str:
+    """Return the types that an annotation allows, for a reader."""
+    names = dict.fromkeys(name_of(each) for each in members(hint))
+    texts = [IN_WORDS.get(name) or _with_article(name) for name in names if name != "None"]
+    return " or ".join(texts)
+
+
+def _with_article(name: str) -> str:
+    name = name.lower() if name in ("Sequence", "Iterable", "Mapping") else name
+    return f"an {name}" if name[0] in "AEIOaeio" else f"a {name}"
+
+
+def accepts(hint: ast.expr, value: Any, scope: Mapping[str, Any]) -> bool:
+    """Return whether a value may be of an annotated type; unknown types are left to the function.
+
+    Classes count by their names: most annotations name classes that are not imported at run time.
+    """
+    return any(_is_of(name_of(each), each, value, scope) for each in members(hint))
+
+
+def _is_of(name: str, hint: ast.expr, value: Any, scope: Mapping[str, Any]) -> bool:
+    if name in ANYTHING or any(kind.__name__ == name for kind in type(value).__mro__):
+        return True
+    if name == "ArrayLike":
+        return is_numeric(value)
+    kind = PLAIN.get(name, scope.get(name))
+    if name in ("Sequence", "Iterable") and isinstance(value, (str, bytes)):
+        return isinstance(value, str) and "str" in ast.unparse(hint)
+    alternatives = get_args(getattr(kind, "__value__", kind))
+    if alternatives and not isclass(kind):  # an alias of a union
+        return any(_is_instance(value, each) for each in alternatives if isclass(each))
+    return isclass(kind) and _is_instance(value, kind)
+
+
+def _is_instance(value: Any, kind: type) -> bool:
+    """Return whether a value is of a class; the members of a protocol show when they are used."""
+    try:
+        return isinstance(value, kind)
+    except TypeError:
+        return True
+
+
+def is_list(value: Any) -> bool:
+    """Return whether a value is a list of values; text, bytes, mappings and sets are not.
+
+    Examples
+    --------
+    >>> is_list(["1 mm/s"]), is_list((1.0, 2.0)), is_list("1 mm/s"), is_list(b"12"), is_list({1: 2})
+    (True, True, False, False, False)
+    """
+    no_lists = str, bytes, bytearray, Mapping, Set
+    return (
+        isinstance(value, Sized) and isinstance(value, Iterable) and not isinstance(value, no_lists)
+    )
+
+
+def is_numeric(value: Any) -> bool:
+    """Return whether a value is a number, or an array or a nested sequence of numbers."""
+    import numpy as np
+
+    try:
+        return np.asarray(value).dtype.kind in "biuf"
+    except (TypeError, ValueError):
+        return False

@@ -1,0 +1,132 @@
+"""Public names refuse in words what they cannot use: argument, rule, value and remedy."""
+
+from __future__ import annotations
+
+import inspect
+import pickle
+import traceback
+from enum import EnumMeta
+from pkgutil import resolve_name
+from types import FunctionType
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from tests.docs.test_reference import public_objects
+
+import stiction as st
+from stiction.arguments import doorway, is_list
+
+mpl.use("Agg")
+NO_ONE_S = (b"12", object())  # nothing takes bytes
+NONSENSE = (5, "x", None, [], {}, *NO_ONE_S)
+SERVER, WRITERS = {"explore"}, {"init", "paper"}  # serves a page; write x
+LATE = {"analysis.stream_spectrogram", "testing.checks_of"}  # fail when what they return is used
+# results of functions, and the parts of a published system
+MADE = {"Trajectory", "Rig", "results", "analysis", "linear_stability", "presets"}
+
+
+def is_called(name, each):
+    """Whether users call it: results are returned to them, errors raised, statuses compared."""
+    if isinstance(each, FunctionType):
+        return name not in SERVER | WRITERS | LATE
+    kinds = isinstance(each, EnumMeta) or (isinstance(each, type) and issubclass(each, Exception))
+    return not kinds and name.partition(".")[0] not in MADE
+
+
+NAMES = public_objects().values()
+CALLED = {name: resolve_name(f"stiction:{name}") for name in sorted(NAMES)}
+CALLED = {name: each for name, each in CALLED.items() if is_called(name, each)}
+
+
+def call(public, value):
+    """Call a public function or class with this value for each argument that it needs."""
+    shape = inspect.signature(public).parameters.values()
+    needed = [each for each in shape if each.default is each.empty]
+    names = [each.name for each in needed if each.kind is each.KEYWORD_ONLY]
+    places = sum(each.kind is each.POSITIONAL_OR_KEYWORD for each in needed)
+    return public(*[value] * max(1, places), **dict.fromkeys(names, value))
+
+
+def outcome(public, value):
+    """Return the error of such a call; None if there is none."""
+    try:
+        call(public, value)
+    except Exception as error:
+        return error
+    return None
+
+
+def is_arity(error):
+    """Whether Python itself refused the call, before the first line of the function."""
+    said = ("positional argument", "keyword argument", "multiple values", " takes ")
+    return isinstance(error, TypeError) and any(words in str(error) for words in said)
+
+
+@pytest.mark.parametrize("name", CALLED)
+def test_nonsense_is_refused_in_words(name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for value in NONSENSE:
+        error = outcome(CALLED[name], value)
+        told = "".join(traceback.format_exception(error))
+        assert error is not None or not any(value is each for each in NO_ONE_S), value
+        assert error is None or isinstance(error, st.StictionError) or is_arity(error), told
+    assert not [*tmp_path.iterdir()]
+
+
+def test_the_registry_is_not_empty():
+    assert len(CALLED) > 120
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        (lambda: st.check(5), r"path: must be text or a path, is 5; see help\(st.check\)"),
+        (lambda: st.read_record(5), r"path: must be text or a path, is 5; see help"),
+        (lambda: st.Slider(5), r"Slider: its values have names, 5 has none; write Slider\(mass="),
+        (lambda: st.Grid(1, 2, 3, "log", None, 7), "its values have names, 7 has none"),
+        (lambda: st.protocols.velocity_steps(b"12", duration=1), "must be a list of at least one"),
+        (lambda: st.protocols.end(5), "5 is not a program"),
+        (lambda: st.Description(5, 6, 7), "instance of Slider, is 5"),
+        (lambda: st.plotting.plot_posterior("x"), "fit: must be a Fit, is 'x'; see help"),
+        (lambda: st.plotting.plot_comparison({}), "there is no run to compare"),
+        (lambda: st.analysis.summary([]), r"must be a Dataset, is \[\]; see help\(st.analysis"),
+        (lambda: st.theory.critical_angle("x"), "numbers in SI, or arrays of them, not 'x'"),
+        (lambda: st.theory.critical_angle(None), "numbers in SI, or arrays of them, not None"),
+    ],
+)
+def test_the_message_names_the_rule_the_value_and_the_remedy(wrong, words):
+    with pytest.raises(st.StictionError, match=words):
+        wrong()
+
+
+def test_an_error_of_another_origin_stays_what_it_is():
+    def divide(number: float) -> float:
+        return 1.0 / number
+
+    with pytest.raises(ZeroDivisionError):
+        doorway(divide, "stiction", "divide")(0.0)
+    with pytest.raises(st.DescriptionError, match="number: must be a number, is '0'"):
+        doorway(divide, "stiction", "divide")("0")
+    with pytest.raises(TypeError, match="unexpected keyword argument 'nonsense'"):
+        st.check("x", nonsense=1)
+
+
+def test_a_public_function_is_one_object_that_can_be_sent_to_another_process():
+    assert st.simulate is st.simulate
+    assert pickle.loads(pickle.dumps(st.simulate)) is st.simulate
+    assert pickle.loads(pickle.dumps(st.analysis.summary)) is st.analysis.summary
+    assert "duration" in inspect.signature(st.simulate).parameters
+
+
+@pytest.mark.parametrize("verb", [st.load, st.animate, st.listen, st.open_study, st.check])
+def test_a_number_in_place_of_a_path_leaves_open_files_alone(verb, tmp_path):
+    with (tmp_path / "x").open("w") as file:
+        with pytest.raises(st.DescriptionError, match=r"must be .* path.*, is \d+"):
+            verb(file.fileno())
+        file.write("still open")
+
+
+def test_lists_are_what_has_values_in_order():
+    assert all(map(is_list, ([1], (1, 2), np.ones(2), {"a": 1}.values())))
+    assert not any(map(is_list, ("1", b"1", {"a": 1}, {1, 2}, 5, None, iter([1]))))
