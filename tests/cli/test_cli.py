@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.waiting import INTERRUPTIBLE, PATIENCE
+from tests.waiting import INTERRUPTIBLE, PATIENCE, until
 
 import stiction as st
-from stiction.cli import COMMANDS, app, main
+from stiction.cli import COMMANDS, app, main, progress
 from stiction.cli.commands.run import report_lines
 
 # runs the command, and says so once the simulation is on its way
@@ -264,3 +264,21 @@ def test_a_wrong_number_is_an_exit_status(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(reproduce, "save", lambda *_: [])  # no figures
     assert inside("paper", "--out", tmp_path) == 1
     assert "0 of 2 of the paper's numbers agree; wrong: one, nothing" in capsys.readouterr().out
+
+
+def test_work_that_lasts_says_so_through_a_pipe(capsys, monkeypatch):
+    monkeypatch.setattr(progress, "FIRST", 0.01)
+    lines = []
+    monkeypatch.setattr(progress, "print_line", lines.append)
+    with progress.progress("simulating") as report:
+        report(0.5)
+        until(lambda: bool(lines), "the first line")
+    assert lines[0].startswith("simulating: ")
+    assert progress.line("auditing", 0.1, 1200.0) == "auditing: 10 % after 20 min, about 3.0 h left"
+    assert capsys.readouterr() == ("", "")
+
+
+def test_work_that_is_over_soon_says_nothing(capsys):
+    with progress.progress("simulating") as report:
+        report(1.0)
+    assert capsys.readouterr() == ("", "")

@@ -1,6 +1,7 @@
 """``stiction sweep``: the command line of studies."""
 
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -9,7 +10,7 @@ import pytest
 import xarray as xr
 from tests.waiting import INTERRUPTIBLE, PATIENCE
 
-from stiction.cli import main
+from stiction.cli import main, tally
 
 STUDY = """
 [study]
@@ -58,6 +59,13 @@ def test_progress_on_a_terminal(config, tmp_path, capsys, monkeypatch):
     assert "8 of 8 runs" in shown
     assert "a second" in shown
     assert "left" in shown
+
+
+def test_progress_through_a_pipe(config, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(tally, "FIRST", 0.0)
+    assert inside("sweep", config, "-o", tmp_path / "a.zarr", "--threads", 1) == 0
+    (shown,) = capsys.readouterr().err.splitlines()  # the next would come after a minute
+    assert re.fullmatch(r"\d of 8 runs, .* a second, about .* left", shown)
 
 
 def test_progress_as_json_lines(config, tmp_path, capsys):

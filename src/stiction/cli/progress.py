@@ -1,23 +1,26 @@
-"""Progress bar, with the time left, for work that takes more than a second."""
+"""Progress, with the time left: a bar on a terminal; where output is piped, a line now and then."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from threading import Timer
+from contextlib import contextmanager, suppress
+from threading import Event, Thread, Timer
+from time import monotonic
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 PATIENCE = 1.0  # seconds of silence before a bar appears
+FIRST, EVERY = 5.0, 60.0  # seconds before the first line, and between lines
 
 
 @contextmanager
 def progress(title: str) -> Iterator[Callable[[float], None]]:
-    """Show a bar on standard error after a second; yield a function that takes the fraction."""
+    """Show progress on standard error; yield a function that takes the fraction."""
     console = Console(stderr=True, emoji=False)
     if not console.is_terminal:
-        yield lambda fraction: None
+        with _lines(title) as report:
+            yield report
         return
     bar = Progress(
         TextColumn("{task.description}"),
@@ -39,3 +42,62 @@ def progress(title: str) -> Iterator[Callable[[float], None]]:
         timer.cancel()
         timer.join()
         bar.stop()
+
+
+@contextmanager
+def _lines(title: str) -> Iterator[Callable[[float], None]]:
+    """Print lines while the work lasts; yield a function that takes the fraction."""
+    begun, done, finished = monotonic(), [0.0], Event()
+
+    def tell() -> None:
+        pause = FIRST
+        while not finished.wait(pause):
+            print_line(line(title, done[0], monotonic() - begun))
+            pause = EVERY if done[0] else min(2.0 * pause, EVERY)
+
+    teller = Thread(target=tell, daemon=True)
+    teller.start()
+    try:
+        yield lambda fraction: done.__setitem__(0, fraction)
+    finally:
+        finished.set()
+        teller.join()
+
+
+def line(title: str, fraction: float, seconds: float) -> str:
+    """Return the progress in words.
+
+    Examples
+    --------
+    >>> line("simulating", 0.25, 40.0)
+    'simulating: 25 % after 40 s, about 2 min left'
+    >>> line("simulating", 0.0, 5.0)
+    'simulating: begun 5 s ago'
+    """
+    if fraction <= 0.0:
+        return f"{title}: begun {in_time(seconds)} ago"
+    left = in_time(seconds / fraction - seconds)
+    return f"{title}: {100 * fraction:.0f} % after {in_time(seconds)}, about {left} left"
+
+
+def in_time(seconds: float) -> str:
+    """Return a time for a sentence: in seconds below a minute, else in minutes or hours."""
+    if seconds < 60.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 3600.0 else f"{seconds / 3600.0:.1f} h"
+
+
+def print_line(text: str) -> None:
+    """Print a line of progress on standard error as it is now; nobody may read it."""
+    with suppress(OSError, ValueError):  # closed
+        console = Console(stderr=True, soft_wrap=True, emoji=False)
+        console.print(text, markup=False, highlight=False)
+
+
+def clock(seconds: float) -> str:
+    """Return a time in hours, minutes and seconds."""
+    if seconds == float("inf"):
+        return "-:--"
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
+from stiction.cli.progress import EVERY, FIRST, clock, in_time, print_line
 from stiction.cli.terminal import say
 
 if TYPE_CHECKING:
@@ -21,14 +22,14 @@ if TYPE_CHECKING:
 
 Report = Callable[["Tally"], None]
 Conclude = Callable[[Path, "Summary"], None]
-EVERY = 1.0  # s between lines of JSON
+JSON_EVERY = 1.0  # s between lines of JSON
 
 
 @contextmanager
 def show_tally(quiet: bool, json_lines: bool) -> Iterator[tuple[Report | None, Conclude]]:
     """Yield two functions: one takes a study's tally while it runs, one its final summary."""
     if json_lines:
-        yield _now_and_then(_print_tally), _print_summary
+        yield _now_and_then(_print_tally, JSON_EVERY), _print_summary
     elif quiet:
         yield None, _tell_failures
     else:
@@ -36,13 +37,13 @@ def show_tally(quiet: bool, json_lines: bool) -> Iterator[tuple[Report | None, C
             yield report, _tell
 
 
-def _now_and_then(report: Report) -> Report:
-    """Return a report that passes on one tally per interval."""
-    last = [-EVERY]
+def _now_and_then(report: Report, every: float, first: float = 0.0) -> Report:
+    """Return a report that passes on one tally per interval, not before so many seconds."""
+    due = [monotonic() + first]
 
     def sometimes(tally: Tally) -> None:
-        if monotonic() - last[0] >= EVERY:
-            last[0] = monotonic()
+        if monotonic() >= due[0]:
+            due[0] = monotonic() + every
             report(tally)
 
     return sometimes
@@ -90,10 +91,10 @@ def _failures(result: Summary) -> str:
 
 @contextmanager
 def _bar() -> Iterator[Report | None]:
-    """Show a bar with the rate and the time left, on a terminal."""
+    """Show a bar with the rate and the time left on a terminal, elsewhere a line now and then."""
     console = Console(stderr=True, emoji=False)
     if not console.is_terminal:
-        yield None
+        yield _now_and_then(_print_line, EVERY, FIRST)
         return
     columns = (
         TextColumn("{task.description}"),
@@ -119,14 +120,12 @@ def _bar() -> Iterator[Report | None]:
         yield report
 
 
+def _print_line(tally: Tally) -> None:
+    done = tally.before + tally.now
+    left = f", about {in_time(tally.left)} left" if isfinite(tally.left) else ""
+    told = f"{done} of {tally.runs} runs, {tally.rate:.3g} a second{left}"
+    print_line(told + _so_far(tally.failed))
+
+
 def _so_far(failed: int) -> str:
     return f", {failed} failed" if failed else ""
-
-
-def clock(seconds: float) -> str:
-    """Return a time in hours, minutes and seconds."""
-    if seconds == float("inf"):
-        return "-:--"
-    minutes, rest = divmod(round(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"
