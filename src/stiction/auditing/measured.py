@@ -27,6 +27,11 @@ DESCRIBED = (
     "The sections after the fit are of the apparatus as it is described, with uncertain values in "
     "the middle of their priors: write the fitted values into the description, and audit again."
 )
+BOTH_HOLD = (
+    "Both hold, as the loading curve is compared with two sets of simulations: those with the "
+    "fitted values have one like it, which is enough for an explanation; of those nearest to the "
+    "record among all values of the priors few have, and a claim of rotation needs both."
+)
 GROUNDS, CHANGES = "What that rests on", "What would change it"
 NAMES = {"force_across": "force across the drive", "position": "displacement of the mass"}
 
@@ -199,7 +204,18 @@ def grounds(found: RecordComparison, fit: Fit) -> list[str]:
     if found.odds is not None:
         lines += [f"Among the mechanisms compared: {each}" for each in found.odds.sentences()[:1]]
         lines += found.odds.sentences()[1:]
+        if found.like and is_unusual_rotation(found.odds):
+            lines.append(BOTH_HOLD)
     return lines
+
+
+def is_unusual_rotation(odds: Odds) -> bool:
+    """Return whether rotation is the most probable, yet has few loading curves like the record's.
+
+    An explanation and a claim compare that curve with different simulations (`BOTH_HOLD`).
+    """
+    its = odds.likeness[odds.likeliest]
+    return odds.names[odds.likeliest] == ROTATION and its.larger < RARE
 
 
 def curve(found: Predictive | None) -> str:

@@ -8,7 +8,14 @@ from tests.uncertain import SIMULATIONS, record_of
 
 import stiction as st
 from stiction.auditing import tolerance
-from stiction.auditing.measured import alternatives, compare, sections, verdict
+from stiction.auditing.measured import (
+    BOTH_HOLD,
+    GROUNDS,
+    alternatives,
+    compare,
+    sections,
+    verdict,
+)
 from stiction.auditing.page import page
 from stiction.errors import DescriptionError
 from stiction.inference.features import find_cycles
@@ -95,6 +102,19 @@ def test_the_verdict_says_what_other_mechanisms_leave_open(found):
     alone = replace(seen, odds=None, incomparable="nothing rotates")
     assert "none is excluded" in verdict(alone)
     assert "Other mechanisms were not compared: nothing rotates." in str(sections(alone)[2])
+
+
+def test_an_explanation_beside_an_unusual_loading_curve_says_how_both_hold(found):
+    seen = found.measured
+    odds = replace(seen.odds, probabilities=np.eye(len(seen.odds.names))[0])
+    assert seen.like
+    assert odds.names[0] == ROTATION
+    for larger, said in ((0.01, True), (0.5, False)):
+        its = odds.likeness[0]._replace(larger=larger)
+        unusual = replace(seen, odds=replace(odds, likeness=(its, *odds.likeness[1:])))
+        (rests,) = (part for part in sections(unusual) if part.title == GROUNDS)
+        assert (BOTH_HOLD in rests.sentences) == said
+        assert any("The loading curve is not like" in x for x in rests.sentences) == said
 
 
 def test_a_record_without_cycles_gets_no_verdict_and_says_why(rig):
