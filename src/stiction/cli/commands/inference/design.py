@@ -50,6 +50,8 @@ def design(
     at other velocities, under other loads, and once more as it is. What each test leaves open of
     the parameter is how far estimates are off, on average, for rigs that they have not seen.
 
+    A first call simulates for minutes; its simulations are stored for the next.
+
     For example:
 
         stiction design rig.toml
