@@ -62,7 +62,9 @@ def doorway(function: Callable[..., Any], room: str, name: str) -> Callable[...,
     if function in _doors:
         return _doors[function]
     hints = getattr(unwrap(function), "__annotations__", {})
-    paths = {each for each, hint in hints.items() if "Path" in str(hint)}
+    # what is no description is refused by its reader, with a remedy of its own
+    texts = {each: str(hint) for each, hint in hints.items() if "Description" not in str(hint)}
+    paths = {each for each, hint in texts.items() if "Path" in hint}
 
     @wraps(function)
     def public(*args: Any, **values: Any) -> Any:
