@@ -34,9 +34,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stiction.arrays import Floats
-
 from stiction.arguments import is_numeric, name_arguments
+from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault, echo
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PALE, style
 from stiction.text.quantity_text import percent
 
 if TYPE_CHECKING:
-    from stiction.auditing.tolerance.budget import Budget
+    from stiction.auditing.tolerance import Budget
 
 LABELS = (
     "apparent static friction,\nlargest force",
