@@ -69,7 +69,7 @@ def doorway(function: Callable[..., Any], room: str, name: str) -> Callable[...,
     @wraps(function)
     def public(*args: Any, **values: Any) -> Any:
         title = f"st{room.removeprefix('stiction')}.{name}"
-        if any(isinstance(each, NO_PATH) for each in (*args, *values.values())):
+        if paths and any(isinstance(each, NO_PATH) for each in (*args, *values.values())):
             refuse([each for each in faults(function, args, values, title) if each.path in paths])
         try:
             return function(*args, **values)
