@@ -1,20 +1,24 @@
 """Public names: a room lists them once, in its stub, and imports each at first use.
 
 The stub (``__init__.pyi``, a line ``from HOME import NAME as NAME`` each) is what type checkers
-read, so that they and a session see the same names, and `import stiction` is fast.
+read, so that they and a session see the same names, and `import stiction` is fast. Old names work
+for one more version, with a warning that names the new one.
 """
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping
+import warnings
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from importlib import import_module
+from inspect import currentframe
+from os import sep
+from pathlib import Path
 from types import FunctionType
 from typing import Any
 
 from stiction.arguments import doorway
-from stiction.deprecation import old_names
 
 
 @cache
@@ -40,7 +44,7 @@ def public(
     room : str
         The module's ``__name__``.
     formerly : mapping, optional
-        From each old name to the new one, as `stiction.deprecation.old_names` takes it.
+        From each old name to the new one, as `old_names` takes it.
     """
 
     def find(name: str) -> Any:
@@ -89,3 +93,135 @@ def session_name(kind: type) -> str:
             if getattr(getattr(stiction, room), name, None) is kind:
                 return f"st.{room}.{name}"
     return name
+
+
+def warn_renamed(old: str, new: str) -> None:
+    """Warn that `old` is called `new` now, at the line of the user that holds the old name.
+
+    Python shows such a warning only for a line of a script or a session.
+    """
+    message = f"{old} is now called {new}; the old name goes with the next version"
+    own = f"{Path(__file__).parent}{sep}", f"{sep}pydantic{sep}"  # which checks arguments for us
+    frame, level = currentframe(), 1
+    while frame is not None and any(part in frame.f_code.co_filename for part in own):
+        frame, level = frame.f_back, level + 1
+    warnings.warn(message, DeprecationWarning, stacklevel=level)
+
+
+def by_new_names(names: Iterable[str], formerly: Mapping[str, str], what: str) -> list[str]:
+    """Replace old names of data by new ones; warn the caller of the public function.
+
+    Parameters
+    ----------
+    names : iterable of str
+        The given names.
+    formerly : mapping
+        From each old name to the new one.
+    what : str
+        The kind of name, for example "measure".
+    """
+    given = list(names)
+    for name in dict.fromkeys(given):
+        if name in formerly:
+            warn_renamed(f"the {what} {name!r}", repr(formerly[name]))
+    return [formerly.get(name, name) for name in given]
+
+
+def old_names(
+    module: str, renamed: Mapping[str, str], otherwise: Callable[[str], Any] | None = None
+) -> Callable[[str], Any]:
+    """Return a ``__getattr__`` for a module that resolves its old names.
+
+    Parameters
+    ----------
+    module : str
+        The module's ``__name__``.
+    renamed : mapping
+        From each old name to the new one: an attribute of the same module, or a full dotted
+        path (``"stiction.plotting.run"``).
+    otherwise : callable, optional
+        Resolves all other names; by default they raise `AttributeError`.
+
+    Examples
+    --------
+    In ``stiction/analysis/oscillation.py``::
+
+        __getattr__ = old_names(__name__, {"hear_song": "transverse_oscillation"})
+    """
+
+    def find(name: str) -> Any:
+        if name in renamed:
+            new = renamed[name] if "." in renamed[name] else f"{module}.{renamed[name]}"
+            warn_renamed(f"{module}.{name}", new)
+            return _resolve(new)
+        if otherwise is not None:
+            return otherwise(name)
+        raise AttributeError(f"module {module!r} has no attribute {name!r}")
+
+    return find
+
+
+def _resolve(path: str) -> Any:
+    from pkgutil import resolve_name  # here, so that `import stiction` is fast
+
+    return resolve_name(path)
+
+
+class _Moved:
+    """Placeholder for a moved function or class, which warns at each use."""
+
+    def __init__(self, old: str, new: str) -> None:
+        self._old, self._new = old, new
+
+    def _resolve(self) -> Any:
+        warn_renamed(self._old, self._new)
+        return _resolve(self._new)
+
+    def __call__(self, *args: Any, **values: Any) -> Any:
+        return self._resolve()(*args, **values)
+
+    def __instancecheck__(self, value: Any) -> bool:
+        return isinstance(value, self._resolve())
+
+    def __subclasscheck__(self, kind: type) -> bool:
+        return issubclass(kind, self._resolve())
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):  # pytest, doctest and others look these up on functions
+            raise AttributeError(name)
+        return getattr(self._resolve(), name)
+
+
+def old_attributes(function: Callable[..., Any], renamed: Mapping[str, str]) -> None:
+    """Give a function that replaced a module the attributes of that module.
+
+    Parameters
+    ----------
+    function : callable
+        For example `stiction.audit`.
+    renamed : mapping
+        From each old name in the module to the full path of the new one.
+    """
+    for old, new in renamed.items():
+        setattr(function, old, _Moved(f"stiction.{function.__name__}.{old}", new))
+
+
+def old_method(old: str, new: str) -> Callable[..., Any]:
+    """Return a deprecated method that warns and calls the function that replaced it.
+
+    Parameters
+    ----------
+    old : str
+        The old call, for example ``"Study.run(store)"``.
+    new : str
+        The same call of a public function, ``"sweep(study, store)"``; the instance is its first
+        argument.
+    """
+
+    def method(self: Any, *args: Any, **values: Any) -> Any:
+        warn_renamed(old, f"stiction.{new}")
+        function = getattr(import_module("stiction"), new.partition("(")[0])
+        return function(self, *args, **values)
+
+    method.__doc__ = f"Deprecated: ``stiction.{new}``."
+    return method

@@ -18,7 +18,7 @@ PAGES = [
     *(each for each in sorted(DOCS.rglob("*.md")) if not MADE & {*each.relative_to(DOCS).parts}),
 ]
 TESTED = {"README.md", "CONTRIBUTING.md"}  # tests/integration runs their Python
-BLOCK = re.compile(r"^( *)(?:<!-- not run: (.+) -->\n\n *)?```(\w+)\n(.*?)^\1```$", re.M | re.S)
+BLOCK = re.compile(r"^( *)(?:<!-- not run: ([^\n]+) -->\n\n *)?```(\w+)\n(.*?)^\1```$", re.M | re.S)
 SPANS = re.compile(r"`(?:uv run (?:--extra explorer )?)?(stiction [a-z][^`]*)`")
 READER_S = {"study.toml": ROOT / "examples" / "study.toml"}  # files that a page asks for
 PREFIX = re.compile(r"^uv run( --(group|extra) \S+)* ")

@@ -194,7 +194,7 @@ def test_a_user_s_law_is_compiled_cached_and_seen_when_edited(tmp_path, code_cac
 
 def test_old_names_go_on_working_with_a_warning():
     from stiction import _RENAMED
-    from stiction.deprecation import old_names
+    from stiction.names import old_names
 
     for old, new in _RENAMED.items():
         with pytest.warns(

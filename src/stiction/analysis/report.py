@@ -29,8 +29,7 @@ from stiction.analysis.oscillation import (
 from stiction.analysis.parts import functions
 from stiction.analysis.record import Record, as_record
 from stiction.arrays import xr
-from stiction.deprecation import warn_renamed
-from stiction.names import draw
+from stiction.names import draw, warn_renamed
 from stiction.text.sections import Section, as_html, as_text
 from stiction.trajectory import Trajectory
 

@@ -29,10 +29,10 @@ from stiction.auditing.words.numbers import numbers, violated_assumptions
 from stiction.auditing.words.stick import stick
 from stiction.auditing.words.transverse import transverse
 from stiction.auditing.words.verdict import verdict
-from stiction.deprecation import old_attributes
 from stiction.inference.library import SIMULATIONS
 from stiction.inference.priors import Rig, rig_of
 from stiction.linear_stability import Critical, Linearisation, critical, steady_sliding
+from stiction.names import old_attributes
 from stiction.system.description import Description
 from stiction.system.slider import Slider
 from stiction.text.sections import Section, as_html, as_text

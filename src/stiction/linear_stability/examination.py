@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stiction.arrays import Complex, xr
-from stiction.deprecation import old_attributes
 from stiction.errors import StictionError, echo
 from stiction.linear_stability.axis import axis, present_value
 from stiction.linear_stability.curve import boundary
@@ -24,7 +23,7 @@ from stiction.linear_stability.linear import (
     steady_sliding,
 )
 from stiction.linear_stability.roots import Critical, critical
-from stiction.names import draw
+from stiction.names import draw, old_attributes
 from stiction.system.slider import Slider, slider_of
 from stiction.text.sections import Section, Table, as_html, as_text
 from stiction.text.units import Quantity, in_words

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from stiction.arrays import Complex, Floats
-from stiction.deprecation import warn_renamed
 from stiction.drive import drive_stretches, load_stretches
 from stiction.errors import DescriptionError, Fault, StictionError
 from stiction.friction import has_state, states
 from stiction.linear_stability.derivatives import Response, set_valued, with_state
 from stiction.linear_stability.eigenvalues import Eigenvalues, eigenvalues
+from stiction.names import warn_renamed
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
 from stiction.system.tensors import damping_tensor, mass_tensor, stiffness_tensor

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 from pydantic import AfterValidator, model_validator
 from pydantic_core import PydanticCustomError
 
-from stiction.deprecation import warn_renamed
 from stiction.drive import (
     ConstantVelocity,
     Drive,
@@ -26,7 +25,7 @@ from stiction.errors import DescriptionError, Fault, echo
 from stiction.friction import Law, has_state, read_law
 from stiction.friction.user.loading import finder_for_descriptions, is_own
 from stiction.friction.user.validation import is_law
-from stiction.names import picture
+from stiction.names import picture, warn_renamed
 from stiction.system.springs import ROUND, Springs, read_springs, whole
 from stiction.system.tensors import solver_axes
 from stiction.system.writing import parameter_table, slider_tables

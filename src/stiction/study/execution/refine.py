@@ -14,8 +14,8 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from stiction.arrays import Floats, xr
-from stiction.deprecation import by_new_names
 from stiction.errors import DescriptionError, Fault, echo
+from stiction.names import by_new_names
 from stiction.storage.files import place, workshop
 from stiction.study.execution.engines import Engine
 from stiction.study.execution.sweep import Tally, sweep

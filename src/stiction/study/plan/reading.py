@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import Any
 
-from stiction.deprecation import by_new_names
 from stiction.errors import DescriptionError, echo
+from stiction.names import by_new_names
 from stiction.study.plan.axes import Axis, read_axis
 from stiction.study.variables.measures import FORMERLY, MEASURES, TRACES
 from stiction.system.description import Description

@@ -11,10 +11,10 @@ from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
-from stiction.deprecation import old_method
 from stiction.drive.recorded.reading import Locate, locate_nothing, locator
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.friction.user.loading import Find, finder_for_descriptions, finder_for_results
+from stiction.names import old_method
 from stiction.study.plan.axes import axis_table
 from stiction.study.plan.coordinates import (
     Coordinate,

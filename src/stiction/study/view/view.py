@@ -10,8 +10,8 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from stiction.arrays import xr
-from stiction.deprecation import by_new_names
 from stiction.errors import DescriptionError, Fault, ResultError
+from stiction.names import by_new_names
 from stiction.storage.foreign import opening, refuse_size
 from stiction.study.plan.coordinates import number
 from stiction.study.plan.study import Study

@@ -10,7 +10,7 @@ import stiction as st
 from stiction.solver.exact import method
 from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.state import NOTHING, PLANNED, Motion, State, first_step
-from stiction.system.description import Description
+from stiction.system.description import Description, Settings
 
 START = st.Initial(u_x=1e-3, u_y=2e-6, v_x=1e-3, v_y=-5e-4, time=0.3)
 MOVING = Motion(0.35, 1e-3, 2e-6, 5e-3, 0.6, 0.8)
@@ -22,7 +22,7 @@ def exact():
 
 
 def test_the_state_from_which_a_run_starts(exact):
-    state = exact.begin(Description(STEADY, START, None))
+    state = exact.begin(Description(STEADY, START, Settings(duration=1.0)))
     s = START.slip(STEADY)
     assert exact.columns == COLUMNS
     assert state.motion[:3] == (0.3, 1e-3, 2e-6)

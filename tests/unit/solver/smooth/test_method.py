@@ -12,7 +12,7 @@ from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.smooth.dispatch import Smoothed
 from stiction.solver.smooth.method import SPEED_SHARE, Smooth
 from stiction.solver.state import NOTHING
-from stiction.system.description import Description
+from stiction.system.description import Description, Settings
 
 AGEING = STEADY.replace(friction=st.laws.RateStateAgeing(0.01, 0.015, "10 um", 0.2, "1 mm/s"))
 START = st.Initial(u_x=1e-3, u_y=2e-6, v_x=1e-3, v_y=-5e-4, time=0.3)
@@ -21,7 +21,7 @@ START = st.Initial(u_x=1e-3, u_y=2e-6, v_x=1e-3, v_y=-5e-4, time=0.3)
 def begun(slider, delta=None):
     """Return the solver of a slider, and the state from which a run starts."""
     method = Smooth(slider, delta)
-    return method, method.begin(Description(slider, START, None))
+    return method, method.begin(Description(slider, START, Settings(duration=1.0)))
 
 
 def test_the_state_from_which_a_run_starts():
