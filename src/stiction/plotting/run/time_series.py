@@ -27,12 +27,14 @@ PARTS = 500  # of the time: finer than a printed line shows
 BINS = 1500  # more than a printed line has dots
 LINES = 3.0  # widths of a line in a period: fewer leave next to no paper between its two strokes
 TURNS = 6  # at least, of an oscillation: three periods
+PAUSE, PAUSES = 3.0, 0.5  # times the median gap between turns, and the share of such in bursts
 LONGER = 1.2  # times as long as they are, periods must fit into an oscillation: theirs differ
 THIN = 5e-3  # of a panel's height: a smaller range looks like a line
 RANGE = 1.5  # periods in which extremes are sought: they differ in length
 MEAN = 4.0  # periods of a mean; two are the least whose weight cancels them
 LARGER = 3.0  # times the median swing: larger ones are no noise of an oscillation, but another one
 APART = 15.0  # times a period: a mean over `MEAN` periods keeps 0.95 of an oscillation as slow
+ALL_ALONG = 0.7  # of the time of an oscillation, noise on it is
 BURSTS = 1.5  # times the gap between turns: larger swings that are as fast are bursts and spikes
 SMOOTH = 13  # least bins of a mean, two of them with weight zero: one may hold a period and a half
 POINT = 72.0  # pt in an inch
@@ -102,7 +104,7 @@ def oscillations(time: Floats, values: Floats, longest: float, least: float) -> 
     for group in np.split(turns, np.flatnonzero(np.diff(time[turns]) > longest) + 1):
         group = visible_turns(time, values, turns, group)
         gaps = np.diff(time[group])
-        if len(group) < TURNS:
+        if len(group) < TURNS or gaps[gaps > PAUSE * np.median(gaps)].sum() > PAUSES * gaps.sum():
             continue
         periods = time[group[2:]] - time[group[:-2]]
         # that at any time, not of any turn: the turns of a burst do not make up for a long pause
@@ -138,14 +140,18 @@ def visible_turns(time: Floats, values: Floats, turns: Indices, group: Indices) 
         beside = APART * gaps.mean()
         ends = time[group[0]] - beside, time[group[-1]] + beside
         near = turns[slice(*np.searchsorted(time[turns], ends))]
-        points, _ = taken_out(as_counts(values[near]), FINE * least / np.ptp(values[near]))
-        larger = near[points[1:-1]]
+        counts, height = as_counts(values[near]), FINE * least / np.ptp(values[near])
+        points, _ = taken_out(counts, height)
+        legs = np.abs(np.diff(counts[points]))  # of swings that grow or shrink, small ones are left
+        larger = near[points[1:-1][(legs[:-1] >= height) & (legs[1:] >= height)]]
         slower = np.diff(time[larger])
         if not len(slower) or np.quantile(slower, 0.25) < BURSTS * np.median(gaps):
             break
-        if slower.mean() > beside:
+        inside = larger[(larger >= group[0]) & (larger <= group[-1])]
+        lasts = np.ptp(time[inside]) if len(inside) else 0.0  # of a growing one, only the end is
+        if slower.mean() > beside or lasts < ALL_ALONG * np.ptp(time[group]):
             break
-        group = larger[(larger >= group[0]) & (larger <= group[-1])]
+        group = inside
     return group
 
 
