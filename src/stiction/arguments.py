@@ -65,10 +65,10 @@ def doorway(function: Callable[..., Any], room: str, name: str) -> Callable[...,
     # what is no description is refused by its reader, with a remedy of its own
     texts = {each: str(hint) for each, hint in hints.items() if "Description" not in str(hint)}
     paths = {each for each, hint in texts.items() if "Path" in hint}
+    title = f"st{room.removeprefix('stiction')}.{name}"
 
     @wraps(function)
     def public(*args: Any, **values: Any) -> Any:
-        title = f"st{room.removeprefix('stiction')}.{name}"
         if paths and any(isinstance(each, NO_PATH) for each in (*args, *values.values())):
             refuse([each for each in faults(function, args, values, title) if each.path in paths])
         try:

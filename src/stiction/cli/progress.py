@@ -10,6 +10,8 @@ from time import monotonic
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from stiction.cli.terminal import note
+
 PATIENCE = 1.0  # seconds of silence before a bar appears
 FIRST, EVERY = 5.0, 60.0  # seconds before the first line, and between lines
 
@@ -88,10 +90,9 @@ def in_time(seconds: float) -> str:
 
 
 def print_line(text: str) -> None:
-    """Print a line of progress on standard error as it is now; nobody may read it."""
+    """Print a line of progress; nobody may read it."""
     with suppress(OSError, ValueError):  # closed
-        console = Console(stderr=True, soft_wrap=True, emoji=False)
-        console.print(text, markup=False, highlight=False)
+        note(text)
 
 
 def clock(seconds: float) -> str:

@@ -8,8 +8,8 @@ from inspect import getdoc
 
 from cyclopts import CycloptsError, MissingArgumentError
 from cyclopts.exceptions import UnusedCliTokensError
-from rich.console import Console
 
+from stiction.cli.terminal import note
 from stiction.errors import echo
 
 EXAMPLE = re.compile(r"Example:\s+(.+?)\.?\s*$", re.S)  # at the end of the help of an option
@@ -67,8 +67,7 @@ class Notices(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         """Print a notice."""
-        console = Console(stderr=True, soft_wrap=True, emoji=False)  # on the present standard error
-        console.print(record.getMessage(), markup=False, highlight=False)
+        note(record.getMessage())
 
 
 def show_notices() -> None:

@@ -8,6 +8,8 @@ import sys
 from contextlib import suppress
 from typing import TextIO
 
+from rich.console import Console
+
 from stiction.errors import visible
 
 # replacements for letters that a terminal lacks
@@ -21,6 +23,12 @@ PLAIN = {
 def say(text: str, *, error: bool = False) -> None:
     """Print a text with control characters escaped, to standard error if `error`."""
     print(visible(text), file=sys.stderr if error else sys.stdout)
+
+
+def note(text: str) -> None:
+    """Print a line as it is on standard error as it is now, above any progress bar."""
+    console = Console(stderr=True, soft_wrap=True, emoji=False)
+    console.print(text, markup=False, highlight=False)
 
 
 def spell_out() -> None:

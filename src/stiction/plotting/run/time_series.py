@@ -13,7 +13,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator
 from numpy.typing import ArrayLike
 
 from stiction.analysis.motion.rest import stuck_until
-from stiction.analysis.signals.reversals import taken_out
+from stiction.analysis.signals.reversals import standing_out, taken_out
 from stiction.analysis.signals.turning_points import FINE, as_counts
 from stiction.analysis.slip import Slip, averaged_slip
 from stiction.arrays import Floats, Indices
@@ -141,9 +141,7 @@ def visible_turns(time: Floats, values: Floats, turns: Indices, group: Indices) 
         ends = time[group[0]] - beside, time[group[-1]] + beside
         near = turns[slice(*np.searchsorted(time[turns], ends))]
         counts, height = as_counts(values[near]), FINE * least / np.ptp(values[near])
-        points, _ = taken_out(counts, height)
-        legs = np.abs(np.diff(counts[points]))  # of swings that grow or shrink, small ones are left
-        larger = near[points[1:-1][(legs[:-1] >= height) & (legs[1:] >= height)]]
+        larger = near[standing_out(counts, height, np.inf)]
         slower = np.diff(time[larger])
         if not len(slower) or np.quantile(slower, 0.25) < BURSTS * np.median(gaps):
             break

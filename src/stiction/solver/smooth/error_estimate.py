@@ -41,7 +41,7 @@ BALANCE_ITERATIONS = 20
 # how the error goes inside a step, 1 in magnitude at c_1, where it is largest
 _PI = Polynomial.fromroots(C).integ()
 LARGEST = float(abs(_PI(C[0])))  # integral of the cubic less the quadratic, over the factor of c^3
-ERROR = tuple(float(x) for x in (_PI / abs(_PI(C[0]))).coef[1:])
+ERROR = tuple(float(x) for x in (_PI / LARGEST).coef[1:])
 
 
 class Within(NamedTuple):
