@@ -18,7 +18,7 @@ from typing import Any
 from rich.progress import Progress
 
 from benchmarks.section import Cell, Section, Table
-from stiction.solver.compilation.jit import ARITHMETIC, njit
+from stiction.solver.compilation.part import ARITHMETIC, njit
 
 RTOLS = (1e-3, 1e-6, 1e-9)
 DURATION = 0.03  # s, of Fig. 3 in plain Python: some 30 cycles

@@ -10,10 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import inf
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 import numpy as np
-from numba.extending import overload, register_jitable
 
 from stiction.drive.recorded.spline import Recording, cubic_sum, piece_at, piece_at_one
 from stiction.drive.signal import FUNCTIONS as SIGNAL_FUNCTIONS
@@ -23,6 +22,7 @@ from stiction.friction import METHODS as LAW_METHODS
 from stiction.friction import FrictionLaw, StateLaw
 from stiction.friction.law import Vector, static_coefficient
 from stiction.solver.compilation.jit import inlined
+from stiction.solver.compilation.stand_in import called_from_both, stand_in
 from stiction.solver.rig import Aligned, General
 
 
@@ -272,7 +272,7 @@ def by_type(function: Callable[..., Any], kind: type | None = None, **options: A
         found = arguments[0].instance_class
         return getattr(found, name) if kind in (None, found) else None
 
-    overload(function, strict=False, jit_options=cast(Any, options))(method)
+    stand_in(function, **options)(method)
 
 
 for _function in (
@@ -302,29 +302,29 @@ for _function in (
 ):
     by_type(_function)
 for _piece in LAW_FUNCTIONS:
-    register_jitable(_piece)
+    called_from_both(_piece)
 SEPARATE: Any = {"forceinline": False}  # of what is large and called from many places
 for _method in SIGNAL_FUNCTIONS:
     by_type(_method, Signal)
     by_type(_method, Recording, **SEPARATE)
-register_jitable(**SEPARATE)(cubic_sum)
-overload(piece_at, strict=False, jit_options=SEPARATE)(lambda *_: piece_at_one)
+called_from_both(cubic_sum, **SEPARATE)
+stand_in(piece_at, **SEPARATE)(lambda *_: piece_at_one)
 
 
-@overload(coefficient_and_slope, strict=False)
+@stand_in(coefficient_and_slope)
 def _coefficient_and_slope(law: Any, v: Any) -> Any:
     own = getattr(law.instance_class, "coefficient_and_slope", None)
     return own or (lambda law, v: (coefficient(law, v), slope(law, v)))
 
 
-@overload(static, strict=False)
+@stand_in(static)
 def _static(law: Any) -> Any:
     if "mu_static" in law.instance_class._fields:
         return lambda law: max(law.mu_static, coefficient(law, 0.0))
     return lambda law: coefficient(law, 0.0)
 
 
-@overload(grain, strict=False)
+@stand_in(grain)
 def _grain(law: Any, state: Any) -> Any:
     return getattr(law.instance_class, "grain", lambda law, state: EVERYWHERE)
 

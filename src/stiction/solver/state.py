@@ -7,11 +7,11 @@ from math import sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba.extending import register_jitable
 
 from stiction.errors import DescriptionError, Fault
 from stiction.machine import shortage
 from stiction.solver.compilation.jit import inlined
+from stiction.solver.compilation.stand_in import called_from_both
 from stiction.solver.problem import System
 
 STICK = 80.0  # bytes of memory per stick interval, for all tables and intermediate arrays
@@ -151,7 +151,7 @@ def plain(state: State) -> Plain:
     return state.motion[:], state.memory[:], state.counts[:]
 
 
-@register_jitable
+@called_from_both
 def state_from_plain(state: Plain) -> State:
     """Return the state from its plain tuples."""
     motion, memory, counts = state

@@ -56,4 +56,7 @@ def compiling() -> Iterator[None]:
     finally:
         end_turns()
         if searched:
+            if not gc.get_freeze_count():  # what was made is old: else it is looked through at once
+                gc.freeze()
+                gc.unfreeze()
             gc.enable()

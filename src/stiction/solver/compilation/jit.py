@@ -6,7 +6,6 @@ Plain Python takes some 200 times as long; it serves debuggers and `benchmarks.m
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any, TypeVar, cast
 
 import numba
@@ -14,21 +13,12 @@ import numpy as np
 
 from stiction.solver.compilation.interrupt import compiling
 from stiction.solver.compilation.machine_code import Shelf
-from stiction.solver.compilation.part import PartCompiler, compile_part
+from stiction.solver.compilation.part import make_entry, make_part
 
-njit: Any = numba.njit
 config: Any = numba.config
 F = TypeVar("F", bound=Callable[..., Any])
 
 INTERPRETED = bool(config.DISABLE_JIT)
-
-# the compiler may fuse multiply-adds and share divisions by a common divisor; it reorders nothing,
-# and infinities and NaN keep their meaning
-ARITHMETIC = {"error_model": "numpy", "fastmath": {"contract", "arcp", "nsz"}}
-
-# only compiled code calls a part, and most parts allocate nothing: without wrappers for Python
-# callers, and without reference counts, they compile in half the time
-PART = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
 def number(value: int) -> int:
@@ -74,23 +64,7 @@ def python_of(function: F) -> F:
 
 
 def _part(function: F, **options: Any) -> F:
-    if INTERPRETED:
-        return function
-    made: Any = njit(nogil=True, pipeline_class=PartCompiler, **options, **ARITHMETIC, **PART)(
-        function
-    )
-
-    def refuse(*_: Any, **__: Any) -> Any:
-        raise TypeError(f"{function.__name__} is called by compiled code only")
-
-    # numba would call missing code, and crash Python
-    made._insert, made._compile_for_args = _nowhere, refuse
-    made.compile = partial(compile_part, made)
-    return cast(F, made)
-
-
-def _nowhere(*_: Any, **__: Any) -> None:
-    """Do not register a compiled part for Python callers."""
+    return function if INTERPRETED else cast(F, make_part(function, **options))
 
 
 def compiled_for(function: Any, digest: str | None) -> Any:
@@ -105,7 +79,7 @@ def compiled_for(function: Any, digest: str | None) -> Any:
 def _entry(function: F, shelf: Shelf | None) -> F:
     if INTERPRETED:
         return function
-    made: Any = njit(nogil=True, **ARITHMETIC)(function)
+    made = make_entry(function)
     if shelf is not None:
         made._cache = shelf
     return cast(F, made)

@@ -9,111 +9,34 @@ clean-up and the timers that numba adds around each.
 
 from __future__ import annotations
 
-import operator
-from functools import cache
-from typing import Any, ClassVar
+from functools import cache, partial
+from typing import Any
 
 from numba.core import (
-    codegen,
     compiler,
     compiler_machinery,
+    decorators,
     sigutils,
     typed_passes,
-    types,
     untyped_passes,
 )
 
-JITCodeLibrary: Any = codegen.JITCodeLibrary
+from stiction.solver.compilation.library import EntryLibrary
+from stiction.solver.compilation.passes import PartInference, PartLowering
+
+njit: Any = decorators.njit
+Compiler: Any = compiler.Compiler
 CompilerBase: Any = compiler.CompilerBase
 PassManager: Any = compiler_machinery.PassManager
-NativeLowering: Any = typed_passes.NativeLowering
-TypeInference: Any = typed_passes.NopythonTypeInference
-register_pass: Any = compiler_machinery.register_pass
 normalize_signature: Any = sigutils.normalize_signature
 
-OPERATORS = frozenset(getattr(operator, name) for name in operator.__all__)
+# the compiler may fuse multiply-adds and share divisions by a common divisor; it reorders nothing,
+# and infinities and NaN keep their meaning
+ARITHMETIC = {"error_model": "numpy", "fastmath": {"contract", "arcp", "nsz"}}
 
-
-class PartLibrary(JITCodeLibrary):  # type: ignore[misc]
-    """The code of a part, to be merged into that of what calls it."""
-
-    def _optimize_final_module(self) -> None:
-        """Leave this to the function into which all parts are merged."""
-
-    def _finalize_final_module(self) -> None:
-        """End as any library, but for machine code."""
-        self._finalize_dynamic_globals()
-        self._verify_declare_only_symbols()
-        self._finalized = True
-
-
-class Remembering:
-    """A typing context that types an operator of the same numbers once.
-
-    numba asks some forty templates, of arrays, dates and sets, before it knows that the sum of two
-    floats is a float, and asks them anew for each sum.
-    """
-
-    def __init__(self, context: Any, known: dict[Any, Any]) -> None:
-        """Store numba's context, and what is known so far."""
-        self._context, self._known = context, known
-
-    def __getattr__(self, name: str) -> Any:
-        """Return what numba's context has under this name."""
-        return getattr(self._context, name)
-
-    def resolve_function_type(self, function: Any, args: Any, kws: Any) -> Any:
-        """Return the signature of a call."""
-        if not _of_numbers(function, args, kws):
-            return self._context.resolve_function_type(function, args, kws)
-        key = (function, args)
-        if key not in self._known:
-            self._known[key] = self._context.resolve_function_type(function, args, kws)
-        return self._known[key]
-
-
-def _of_numbers(function: Any, args: Any, kws: Any) -> bool:
-    """Return whether a call is that of an operator with numbers."""
-    return (
-        not kws
-        and isinstance(function, types.Function)
-        and function.typing_key in OPERATORS
-        and all(isinstance(each, types.Number | types.Boolean) for each in args)
-    )
-
-
-@register_pass(mutates_CFG=True, analysis_only=False)
-class PartInference(TypeInference):  # type: ignore[misc]
-    """Infer types, with a memory for operators."""
-
-    _name = "part_type_inference"
-    _known: ClassVar[dict[Any, Any]] = {}
-
-    def run_pass(self, state: Any) -> bool:
-        """Infer the types."""
-        context = state.typingctx
-        state.typingctx = Remembering(context, self._known)
-        try:
-            return bool(super().run_pass(state))
-        finally:
-            state.typingctx = context
-
-
-@register_pass(mutates_CFG=True, analysis_only=False)
-class PartLowering(NativeLowering):  # type: ignore[misc]
-    """Lower a part into a library of its own kind, and enter it among what can be called."""
-
-    _name = "part_lowering"
-
-    def run_pass(self, state: Any) -> bool:
-        """Lower."""
-        context = state.targetctx
-        state.library = PartLibrary(context.codegen(), state.func_id.func_qualname)
-        super().run_pass(state)
-        key = object()  # by which calls find the part: numba takes the function for Python callers
-        context.insert_user_function(key, state["cr"].fndesc, [state.library])
-        state["cr"] = state["cr"]._replace(cfunc=key)
-        return True
+# only compiled code calls a part, and most parts allocate nothing: without wrappers for Python
+# callers, and without reference counts, they compile in half the time
+PART = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
 class Passes(PassManager):  # type: ignore[misc]
@@ -149,8 +72,28 @@ def passes() -> Any:
     return made
 
 
+class Current:
+    """A context that is up to date, since the function that calls the part is being compiled."""
+
+    def __init__(self, context: Any) -> None:
+        """Store numba's context."""
+        self._context = context
+
+    def __getattr__(self, name: str) -> Any:
+        """Return what numba's context has under this name."""
+        return getattr(self._context, name)
+
+    def refresh(self) -> None:
+        """Look for no news."""
+
+
 class PartCompiler(CompilerBase):  # type: ignore[misc]
     """numba's compiler, with these passes."""
+
+    def __init__(self, typing: Any, target: Any, *others: Any) -> None:
+        """Take the contexts as they are."""
+        super().__init__(Current(typing), Current(target), *others)
+        self.state.typingctx = typing
 
     def define_pipelines(self) -> list[Any]:
         """Return the passes."""
@@ -171,3 +114,36 @@ def compile_part(part: Any, signature: Any) -> Any:
     made = part._compiler.compile(arguments, returned)
     part.add_overload(made)
     return made.entry_point
+
+
+class EntryCompiler(Compiler):  # type: ignore[misc]
+    """numba's compiler, for what calls parts."""
+
+    def compile_extra(self, function: Any) -> Any:
+        """Compile a Python function."""
+        library = EntryLibrary(self.state.targetctx.codegen(), function.__qualname__)
+        library.enable_object_caching()
+        self.state.library = library
+        return super().compile_extra(function)
+
+
+def make_entry(function: Any) -> Any:
+    """Return a function as one that Python calls, not yet compiled."""
+    return njit(nogil=True, pipeline_class=EntryCompiler, **ARITHMETIC)(function)
+
+
+def make_part(function: Any, **options: Any) -> Any:
+    """Return a function as a part, not yet compiled."""
+    made = njit(nogil=True, pipeline_class=PartCompiler, **options, **ARITHMETIC, **PART)(function)
+
+    def refuse(*_: Any, **__: Any) -> Any:
+        raise TypeError(f"{function.__name__} is called by compiled code only")
+
+    # numba would call missing code, and crash Python
+    made._insert, made._compile_for_args = _nowhere, refuse
+    made.compile = partial(compile_part, made)
+    return made
+
+
+def _nowhere(*_: Any, **__: Any) -> None:
+    """Do not register a compiled part for Python callers."""

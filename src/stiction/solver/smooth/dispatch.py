@@ -10,12 +10,12 @@ from math import atan, pi, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba.extending import overload, register_jitable
 
 from stiction.friction.law import Vector, states
 from stiction.solver.compilation.interrupt import compiling
 from stiction.solver.compilation.jit import compiled, inlined
 from stiction.solver.compilation.pointer import address, caller, memory, pointee, types
+from stiction.solver.compilation.stand_in import called_from_both, stand_in
 from stiction.solver.problem import (
     Elliptic,
     Isotropic,
@@ -98,7 +98,7 @@ def slip_factor(law: Smoothed, square: float) -> tuple[float, float]:
 by_type(slip_factor)
 
 
-@register_jitable
+@called_from_both
 def friction_and_gradient(law: Smoothed, slip: Vector, load: float) -> Friction:
     """Return mu(v) W h N s (N) and its derivatives by the slip velocity (N s/m)."""
     x, y = slip
@@ -259,7 +259,7 @@ def write_gradient(
     write(law, slip, load, per_mass, values, i, flow, jacobian, size)
 
 
-@register_jitable
+@called_from_both
 def own_gradient(
     law: Any,
     slip: Vector,
@@ -278,7 +278,7 @@ def own_gradient(
             jacobian[i, j, k] = rows[j][k] * per_mass if j < 2 else rows[j][k]
 
 
-@register_jitable
+@called_from_both
 def differences(
     law: Any,
     slip: Vector,
@@ -313,9 +313,9 @@ def states_in(law: Any, values: np.ndarray, i: int) -> tuple[float, ...]:
 def _states(n: int) -> Callable[..., Any]:
     """Return a compiled function that makes a tuple of the n states in a row."""
     if n == 0:
-        return register_jitable(lambda values, i: ())
+        return inlined(lambda values, i: ())
     before, last = _states(n - 1), n + 1
-    return register_jitable(
+    return inlined(
         lambda values, i: before(values, i) + (values[i, last],)  # noqa: RUF005
     )
 
@@ -324,13 +324,13 @@ def _count(law: Any) -> int:
     return len(getattr(law.instance_class, "states", tuple)())
 
 
-@overload(states_in, strict=False)
+@stand_in(states_in)
 def _states_in(law: Any, values: Any, i: Any) -> Callable[..., Any]:
     found = _states(_count(law))
     return lambda law, values, i: found(values, i)
 
 
-@overload(write_flow, strict=False)
+@stand_in(write_flow)
 def _write_flow(
     law: Any, slip: Any, load: Any, per_mass: Any, values: Any, i: Any, to: Any
 ) -> Callable[..., None]:
@@ -347,7 +347,7 @@ def _write_flow(
     return write
 
 
-@overload(write_gradient, strict=False)
+@stand_in(write_gradient)
 def _write_gradient(
     law: Any,
     slip: Any,

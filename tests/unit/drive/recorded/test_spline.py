@@ -2,6 +2,7 @@
 
 import pickle
 
+import numba
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
@@ -13,7 +14,6 @@ from stiction.drive.recorded import spline as s
 from stiction.drive.signal import Signal
 from stiction.drive.steady import VaryingLoad, VaryingVelocity
 from stiction.solver import problem
-from stiction.solver.compilation.jit import njit
 from stiction.text.samples import FrozenColumn
 
 KINDS = ("even", "uneven", "clustered")
@@ -90,7 +90,7 @@ def test_compiled_code_finds_the_same_piece(kind, seed):
 
 
 def test_compiled_code_returns_the_same_values():
-    compiled = njit(everything)
+    compiled = numba.njit(everything)
     made, time, _ = table("uneven")
     wave = st.protocols.Modulation(0.3, 7.0)
     rng = np.random.default_rng(5)

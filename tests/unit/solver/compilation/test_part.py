@@ -12,7 +12,7 @@ import pytest
 from tests.entry import entry
 
 from stiction.solver.compilation import jit
-from stiction.solver.compilation.part import Remembering
+from stiction.solver.compilation.passes import Remembering
 
 ROOT = Path(__file__).parents[4]
 OPERATIONS = {
@@ -23,6 +23,12 @@ OPERATIONS = {
     "power": lambda a, b: a**b,
     "less": lambda a, b: a < b,
     "equal": lambda a, b: a == b,
+    "larger": lambda a, b: max(a, b, 2.5),
+    "smaller": lambda a, b: min(a, b),
+    "size": lambda a, b: abs(a) + abs(b),
+    "truth": lambda a, b: bool(a) + (not b),
+    "square": lambda a, b: a**2 - b**3,
+    "shift": lambda a, b: (int(a) << 2) + (int(b) >> 1) & 13 | 6 ^ int(a),
 }
 NUMBERS = [True, 2, 3.5, np.int64(-7), np.float64(0.3)]
 
@@ -72,6 +78,28 @@ def test_a_separate_part_stays_separate_where_it_is_called_by_an_inlined_one():
     for part, inline in ((separate, False), (merged, True)):
         (made,) = part.overloads.values()
         assert made.fndesc.inline is inline
+
+
+def largest(x):
+    """Return the larger of three numbers, by numba's own code."""
+    return max(x, 2.0, -x)
+
+
+def called_for_nothing(x, part):
+    """Call a part in a branch that folding removes."""
+    return part(x) if x != x and x == x else x
+
+
+@pytest.mark.skipif(jit.INTERPRETED, reason="nothing is compiled")
+@pytest.mark.parametrize("make", [numba.njit, jit.make_entry], ids=["numba's own", "ours"])
+def test_what_several_parts_call_is_there_once_and_for_all_of_them(make):
+    """LLVM leaves out what nothing calls when it is merged, also if something calls it later."""
+    part = jit.inlined(largest)
+    first = jit.inlined(lambda x: called(x, part))
+    called = jit.inlined(called_for_nothing)
+    second = jit.piece(lambda x: part(x) + part(x + 1.0))
+    whole = make(lambda x: first(x) + second(x) + first(x - 1.0))
+    assert whole(-3.0) == -3.0 + (3.0 + 2.0) - 4.0
 
 
 def test_an_operator_is_typed_once():

@@ -1,0 +1,90 @@
+"""The code of a part of the loop, and of a function into which parts are merged.
+
+numba merges what a function calls into it, and all that again into what calls the function. Here
+each part is merged once, into the function that Python calls.
+"""
+
+from __future__ import annotations
+
+from functools import cache, cached_property
+from typing import Any
+
+from llvmlite.binding import newpassmanagers
+from numba.core import codegen
+
+JITCodeLibrary: Any = codegen.JITCodeLibrary
+create_passes: Any = newpassmanagers.create_new_function_pass_manager
+
+
+class CallingLibrary(JITCodeLibrary):  # type: ignore[misc]
+    """The code of a function that calls parts."""
+
+    def add_linking_library(self, library: Any) -> None:
+        """Note what is called: a part, or a function of numba's own, which has to be complete."""
+        if isinstance(library, PartLibrary):
+            self._linking_libraries.append(library)
+        else:
+            super().add_linking_library(library)
+
+    @cached_property
+    def called(self) -> dict[Any, None]:
+        """Return all that is called, and what that calls in turn, in a fixed order."""
+        found: dict[Any, None] = {}
+        for each in dict.fromkeys(self._linking_libraries):
+            found |= {each: None} | (each.called if isinstance(each, PartLibrary) else {})
+        return found
+
+    def merge(self) -> None:
+        """Merge all that is called."""
+        parts = [each for each in self.called if isinstance(each, PartLibrary)]
+        # what calls comes before what it calls: LLVM leaves out what nothing calls so far
+        parts.sort(key=lambda part: len(part.called), reverse=True)
+        others = [each for each in self.called if not isinstance(each, PartLibrary)]
+        for each in [part.shared_code() for part in parts] + [
+            other._get_module_for_linking() for other in others
+        ]:
+            self._final_module.link_in(each, preserve=True)
+        self._linking_libraries: list[Any] = []
+
+
+class PartLibrary(CallingLibrary):
+    """The code of a part."""
+
+    def _optimize_functions(self, module: Any) -> None:
+        """Tidy the part up, so that less is merged; all else is done then."""
+        module.data_layout = self._codegen._data_layout
+        builder = self._codegen._pass_builder()
+        for function in module.functions:
+            if not function.is_declaration:
+                tidying().run(function, builder)
+
+    def shared_code(self) -> Any:
+        """Return the part without what it calls, as code that may be there already."""
+        for function in self._final_module.functions:
+            if not function.is_declaration:
+                function.linkage = "linkonce_odr"
+        return self._final_module
+
+    def finalize(self) -> None:
+        """Merge what is called, for a caller that is compiled in numba's own way."""
+        self.merge()
+        self._finalized = True
+
+
+class EntryLibrary(CallingLibrary):
+    """The code of a function that Python calls."""
+
+    def finalize(self) -> None:
+        """Merge what is called, and end as any library."""
+        self.merge()
+        super().finalize()
+
+
+@cache
+def tidying() -> Any:
+    """Return the passes that turn memory into numbers, and fold them."""
+    made = create_passes()
+    made.add_sroa_pass()
+    made.add_instruction_combine_pass()
+    made.add_simplify_cfg_pass()
+    return made
