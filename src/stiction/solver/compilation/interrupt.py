@@ -14,6 +14,8 @@ from typing import Any
 
 from stiction.solver.compilation.turn import end_turns
 
+MANY = 50_000  # objects: compiling makes 100 000 and more, loading machine code some 20 000
+
 
 @contextmanager
 def delay_interrupt() -> Iterator[None]:
@@ -56,7 +58,7 @@ def compiling() -> Iterator[None]:
     finally:
         end_turns()
         if searched:
-            if not gc.get_freeze_count():  # what was made is old: else it is looked through at once
-                gc.freeze()
+            if gc.get_count()[0] > MANY and not gc.get_freeze_count():
+                gc.freeze()  # all is old now: else all would be looked through at once
                 gc.unfreeze()
             gc.enable()

@@ -45,11 +45,6 @@ def inlined(function: F) -> F:
     return _part(function, forceinline=True, _nrt=False)
 
 
-def allocating(function: F) -> F:
-    """Compile a part of the loop that makes arrays, with reference counts."""
-    return _part(function, forceinline=False)
-
-
 def piece(function: F) -> F:
     """Compile a part separately because it is large or called from several places.
 

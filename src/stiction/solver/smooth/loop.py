@@ -17,7 +17,7 @@ from stiction.solver.smooth.right_hand_side import SmoothOutset, evaluate, measu
 from stiction.solver.smooth.sampling import sample
 from stiction.solver.smooth.state import SmoothMemory, SmoothMotion, SmoothState
 from stiction.solver.smooth.step import remember, step
-from stiction.solver.smooth.workspace import LAST, START, Workspace, workspace
+from stiction.solver.smooth.workspace import LAST, START, Workspace
 from stiction.solver.state import (
     COMPLETED,
     CUT,
@@ -101,17 +101,19 @@ def advance(
     times: np.ndarray,
     samples: np.ndarray,
     k: int,
+    w: Workspace,
+    inner: Workspace,
 ) -> tuple[int, SmoothState, int, int]:
     """Advance until `t_end` or until the budget is used up, as `exact.loop.advance` does.
 
-    Rows of `samples` are 7 + n long; see `stiction.solver.smooth.sampling`.
+    The arrays of `state` change. Rows of `samples` are 7 + n long; see
+    `stiction.solver.smooth.sampling`. `inner` is for steps within a step. No array is made here:
+    to compile that takes half a second.
     """
-    motion, internal, memory, counts = state
-    z = internal.copy()
-    past = memory.past.copy()
+    motion, z, memory, counts = state
+    past = memory.past
     h, h_last, warm = min(memory.h, accuracy.longest), memory.h_last, memory.warm
     before = memory.ease
-    w, inner = workspace(len(z)), workspace(len(z))
     code, turns = RUNNING, 0
     while turns < budget:
         if motion.t >= t_end:

@@ -14,7 +14,8 @@ from stiction.solver.problem import Isotropic, Problem, at, force
 from stiction.solver.segments import begin, friction_of, surface_of, system_of
 from stiction.solver.smooth import loop
 from stiction.solver.smooth.dispatch import SMOOTHED, point_to_flow
-from stiction.solver.smooth.state import SmoothMemory, SmoothMotion, SmoothState
+from stiction.solver.smooth.state import SmoothMemory, SmoothMotion, SmoothState, copy_of
+from stiction.solver.smooth.workspace import workspace
 from stiction.solver.state import NOTHING, Accuracy, Output, first_step
 from stiction.system.description import Description
 from stiction.system.slider import Slider
@@ -67,9 +68,11 @@ class Smooth:
         smooth = problem._replace(law=self.flow, surface=Isotropic())  # the law knows its surface
         resolved = self.step_accuracy(held)
         times, samples = out.times, out.samples
+        own = copy_of(state)
+        rooms = workspace(self.states), workspace(self.states)
         with compiling():  # the state returns as named tuples and arrays
             code, state, out.filled, turns = loop.advance(
-                smooth, state, end, resolved, budget, times, samples, out.filled
+                smooth, own, end, resolved, budget, times, samples, out.filled, *rooms
             )
         out.used += turns
         return code, state

@@ -41,3 +41,9 @@ class SmoothState(NamedTuple):
     internal: np.ndarray
     memory: SmoothMemory
     counts: Counts
+
+
+def copy_of(state: SmoothState) -> SmoothState:
+    """Return the state with arrays of its own."""
+    memory = state.memory._replace(past=state.memory.past.copy())
+    return state._replace(internal=state.internal.copy(), memory=memory)

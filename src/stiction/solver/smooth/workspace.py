@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.solver.compilation.jit import allocating, number, switch
+from stiction.solver.compilation.jit import number, switch
 
 ROWS = 6
 START, FIRST, SECOND, LAST, INSIDE, TRIAL = map(number, range(ROWS))  # rows
@@ -42,7 +42,6 @@ class Workspace(NamedTuple):
     right: np.ndarray
 
 
-@allocating
 def workspace(n: int) -> Workspace:
     """Return the arrays for `n` internal states."""
     n += 2

@@ -73,7 +73,7 @@ def smooth_problem(law, drive="program"):
 def begun(law, drive="program", accuracy=EXACT, motion=MOTION):
     """Return a problem with a step's start, its workspace and the slip coordinate."""
     problem, z = smooth_problem(law, drive), np.array(LAWS[law][1])
-    w = plain(workspace)(len(z))
+    w = workspace(len(z))
     start, q_x, q_y = plain(loop.begin)(problem, SmoothMotion(TIME, *motion), z, w, accuracy)
     return problem, start, w, (q_x, q_y)
 

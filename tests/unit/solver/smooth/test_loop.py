@@ -21,12 +21,15 @@ from tests.unit.solver.smooth.systems import (
     smooth_problem,
 )
 
+import stiction as st
 from stiction.solver.control import GROWTH, step_factor
 from stiction.solver.exact.sampling import COLUMNS
+from stiction.solver.segments import stretches
 from stiction.solver.smooth import loop, right_hand_side
 from stiction.solver.smooth.coordinate import coordinate
 from stiction.solver.smooth.loop import COARSEST
-from stiction.solver.smooth.state import SmoothMemory, SmoothMotion, SmoothState
+from stiction.solver.smooth.method import Smooth
+from stiction.solver.smooth.state import SmoothMemory, SmoothMotion, SmoothState, copy_of
 from stiction.solver.smooth.workspace import START, workspace
 from stiction.solver.state import (
     COMPLETED,
@@ -34,6 +37,7 @@ from stiction.solver.state import (
     NOTHING,
     RUNNING,
     STEP_UNDERFLOW,
+    Output,
 )
 
 HELD = EXACT._replace(tolerance=1e-7, newton=1e-9)
@@ -51,11 +55,12 @@ def advance(
 ):
     """Advance, and return the code, the state, the samples and the steps of this call."""
     samples = np.full((len(times), COLUMNS + len(LAWS[name][1])), np.nan)
-    problem, state = smooth_problem(name, drive), state or state_of(name)
+    problem, own = smooth_problem(name, drive), copy_of(state or state_of(name))
     if law is not None:
         problem = problem._replace(law=behind(law))
     advance = plain(loop.advance)
-    code, state, k, turns = advance(problem, state, end, accuracy, budget, times, samples, 0)
+    rooms = workspace_of(name), workspace_of(name)
+    code, state, k, turns = advance(problem, own, end, accuracy, budget, times, samples, 0, *rooms)
     return code, state, samples[:k], turns
 
 
@@ -94,7 +99,7 @@ def test_where_a_step_starts(name):
 
 
 def workspace_of(name):
-    return plain(workspace)(len(LAWS[name][1]))
+    return workspace(len(LAWS[name][1]))
 
 
 @pytest.mark.parametrize("name", STATEFUL)
@@ -169,11 +174,17 @@ def test_a_stretch_in_parts_is_the_whole(name):
 
 
 def test_what_it_starts_from_is_not_changed():
-    state = state_of("lugre")
-    internal, past = state.internal.copy(), state.memory.past.copy()
-    advance("lugre", TIME + 1e-4, state=state)
-    assert state.internal.tolist() == internal.tolist()
-    assert state.memory.past.tolist() == past.tolist()
+    slider = st.presets.nakano_popov_2020().replace(friction=LAWS["lugre"][0])
+    description = st.simulate(slider, 1e-3, sample_rate=0).description
+    stretch, method = next(stretches(slider, 0.0, 1.0)), Smooth(slider, None)
+    held = EXACT._replace(newton=1e-9)
+    state = method.begin(description)
+    before, out = copy_of(state), Output(NO_TIMES, np.zeros((0, COLUMNS + 2)), NO_TIMES)
+    code, after = method.advance(stretch.problem, state, 1e-3, held, 1000, out)
+    assert (code, out.used) == (COMPLETED, after.counts.steps)
+    assert after.internal.tolist() != before.internal.tolist()
+    assert state.internal.tolist() == before.internal.tolist()
+    assert state.memory.past.tolist() == before.memory.past.tolist()
 
 
 @pytest.mark.parametrize("name", ["smoothed", "lugre"])
