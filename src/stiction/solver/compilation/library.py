@@ -35,16 +35,19 @@ class CallingLibrary(JITCodeLibrary):  # type: ignore[misc]
         return found
 
     def merge(self) -> None:
-        """Merge all that is called."""
-        parts = [each for each in self.called if isinstance(each, PartLibrary)]
-        # what calls comes before what it calls: LLVM leaves out what nothing calls so far
-        parts.sort(key=lambda part: len(part.called), reverse=True)
-        others = [each for each in self.called if not isinstance(each, PartLibrary)]
-        for each in [part.shared_code() for part in parts] + [
-            other._get_module_for_linking() for other in others
-        ]:
-            self._final_module.link_in(each, preserve=True)
+        """Merge all that is called, what calls before what it calls.
+
+        LLVM leaves out what nothing calls so far.
+        """
+        for each in sorted(self.called, key=_count_called, reverse=True):
+            self._reload_init.update(each._reload_init)
+            self._final_module.link_in(each._get_module_for_linking(), preserve=True)
         self._linking_libraries: list[Any] = []
+
+
+def _count_called(library: Any) -> int:
+    """Return how many others a part calls; a function of numba's own holds what it calls."""
+    return len(library.called) if isinstance(library, PartLibrary) else 0
 
 
 class PartLibrary(CallingLibrary):
@@ -58,8 +61,8 @@ class PartLibrary(CallingLibrary):
             if not function.is_declaration:
                 tidying().run(function, builder)
 
-    def shared_code(self) -> Any:
-        """Return the part without what it calls, as code that may be there already."""
+    def _get_module_for_linking(self) -> Any:
+        """Return the part as code that may be there already: by itself, unless finalised."""
         for function in self._final_module.functions:
             if not function.is_declaration:
                 function.linkage = "linkonce_odr"

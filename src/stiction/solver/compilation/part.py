@@ -22,7 +22,7 @@ from numba.core import (
 )
 
 from stiction.solver.compilation.library import EntryLibrary
-from stiction.solver.compilation.passes import PartInference, PartLowering
+from stiction.solver.compilation.passes import KNOWN, Current, PartLowering, Remembering
 
 njit: Any = decorators.njit
 Compiler: Any = compiler.Compiler
@@ -61,7 +61,7 @@ def passes() -> Any:
         untyped_passes.DeadBranchPrune,
         untyped_passes.GenericRewrites,
         untyped_passes.ReconstructSSA,
-        PartInference,
+        typed_passes.NopythonTypeInference,
         typed_passes.PreLowerStripPhis,
         typed_passes.IRLegalization,
         PartLowering,
@@ -72,28 +72,12 @@ def passes() -> Any:
     return made
 
 
-class Current:
-    """A context that is up to date, since the function that calls the part is being compiled."""
-
-    def __init__(self, context: Any) -> None:
-        """Store numba's context."""
-        self._context = context
-
-    def __getattr__(self, name: str) -> Any:
-        """Return what numba's context has under this name."""
-        return getattr(self._context, name)
-
-    def refresh(self) -> None:
-        """Look for no news."""
-
-
 class PartCompiler(CompilerBase):  # type: ignore[misc]
     """numba's compiler, with these passes."""
 
     def __init__(self, typing: Any, target: Any, *others: Any) -> None:
         """Take the contexts as they are."""
-        super().__init__(Current(typing), Current(target), *others)
-        self.state.typingctx = typing
+        super().__init__(Remembering(typing, KNOWN), Current(target), *others)
 
     def define_pipelines(self) -> list[Any]:
         """Return the passes."""

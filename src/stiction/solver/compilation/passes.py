@@ -1,4 +1,4 @@
-"""numba's inference and lowering of a part, which look for an operator of numbers once.
+"""numba's typing and lowering of a part, which look for an operator of numbers once.
 
 numba asks some forty templates, of arrays, dates and sets, before it knows that the sum of two
 floats is a float, and asks them anew for each sum, twice.
@@ -7,7 +7,7 @@ floats is a float, and asks them anew for each sum, twice.
 from __future__ import annotations
 
 import operator
-from typing import Any, ClassVar
+from typing import Any
 
 from numba.core import compiler_machinery, lowering, typed_passes, types
 
@@ -15,7 +15,6 @@ from stiction.solver.compilation.library import PartLibrary
 
 Lower: Any = lowering.Lower
 NativeLowering: Any = typed_passes.NativeLowering
-TypeInference: Any = typed_passes.NopythonTypeInference
 register_pass: Any = compiler_machinery.register_pass
 
 NUMBERS = (types.Number, types.Boolean)
@@ -23,20 +22,32 @@ OPERATORS = frozenset(getattr(operator, name) for name in operator.__all__) | {a
 POWERS = {operator.pow, operator.ipow}  # numba has code of their own for constant exponents
 
 
-class Remembering:
-    """A typing context that types an operator of the same numbers once."""
+class Current:
+    """A context of numba's that is up to date, since what calls the part is being compiled."""
 
-    def __init__(self, context: Any, known: dict[Any, Any]) -> None:
-        """Store numba's context, and what is known so far."""
-        self._context, self._known = context, known
+    def __init__(self, context: Any) -> None:
+        """Store numba's context."""
+        self._context = context
 
     def __getattr__(self, name: str) -> Any:
         """Return what numba's context has under this name."""
         return getattr(self._context, name)
 
+    def refresh(self) -> None:
+        """Look for no news."""
+
+
+class Remembering(Current):
+    """A typing context that types an operator of the same numbers once."""
+
+    def __init__(self, context: Any, known: dict[Any, Any]) -> None:
+        """Store numba's context, and what is known so far."""
+        super().__init__(context)
+        self._known = known
+
     def resolve_function_type(self, function: Any, args: Any, kws: Any) -> Any:
         """Return the signature of a call."""
-        if not _of_numbers(function, args, kws):
+        if kws or not is_of_numbers(function, args):
             return self._context.resolve_function_type(function, args, kws)
         key = (function, args)
         if key not in self._known:
@@ -44,53 +55,34 @@ class Remembering:
         return self._known[key]
 
 
-def _of_numbers(function: Any, args: Any, kws: Any) -> bool:
+KNOWN: dict[Any, Any] = {}  # signatures of operators
+
+
+def is_of_numbers(function: Any, args: Any) -> bool:
     """Return whether a call is that of an operator with numbers."""
     return (
-        not kws
-        and isinstance(function, types.Function)
+        isinstance(function, types.Function)
         and function.typing_key in OPERATORS
         and all(isinstance(each, NUMBERS) for each in args)
     )
 
 
-@register_pass(mutates_CFG=True, analysis_only=False)
-class PartInference(TypeInference):  # type: ignore[misc]
-    """Infer types, with a memory for operators."""
-
-    _name = "part_type_inference"
-    _known: ClassVar[dict[Any, Any]] = {}
-
-    def run_pass(self, state: Any) -> bool:
-        """Infer the types."""
-        context = state.typingctx
-        state.typingctx = Remembering(context, self._known)
-        try:
-            return bool(super().run_pass(state))
-        finally:
-            state.typingctx = context
-
-
 class PartLower(Lower):  # type: ignore[misc]
     """numba's lowering, which looks for operators of numbers once."""
 
-    _called: ClassVar[dict[Any, Any]] = {}
-
     def lower_binop(self, resty: Any, expr: Any, op: Any) -> Any:
         """Lower an operator; that of two numbers as its types were inferred."""
-        signature = self.fndesc.calltypes[expr]
-        if op in POWERS or not all(isinstance(each, NUMBERS) for each in signature.args):
+        context, builder, signature = self.context, self.builder, self.fndesc.calltypes[expr]
+        function = context.typing_context.resolve_value_type(op)
+        if op in POWERS or not is_of_numbers(function, signature.args):
             return super().lower_binop(resty, expr, op)
-        context, builder = self.context, self.builder
         values = [
             context.cast(builder, self.loadvar(each.name), self.typeof(each.name), kind)
             for each, kind in zip((expr.lhs, expr.rhs), signature.args, strict=True)
         ]
-        function = context.typing_context.resolve_value_type(op)
-        key = (op, signature.args)
-        if key not in self._called:
-            self._called[key] = function.get_call_type(context.typing_context, signature.args, {})
-        found = context.get_function(function, self._called[key])(builder, values)
+        typing = Remembering(context.typing_context, KNOWN)
+        known = typing.resolve_function_type(function, signature.args, {})
+        found = context.get_function(function, known)(builder, values)
         return context.cast(builder, found, signature.return_type, resty)
 
 
