@@ -40,7 +40,6 @@ class CallingLibrary(JITCodeLibrary):  # type: ignore[misc]
         LLVM leaves out what nothing calls so far.
         """
         for each in sorted(self.called, key=_count_called, reverse=True):
-            self._reload_init.update(each._reload_init)
             self._final_module.link_in(each._get_module_for_linking(), preserve=True)
         self._linking_libraries: list[Any] = []
 
