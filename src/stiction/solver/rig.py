@@ -88,3 +88,8 @@ class General(NamedTuple):
     def cross_damping(rig) -> float:
         """Return c_xy, N s/m."""
         return rig.c_xy
+
+
+def as_general(cos_phi: float, sin_phi: float) -> General:
+    """Return an aligned rig, X at an angle phi to x, as a general one."""
+    return General(1.0, 0.0, 0.0, 1.0, 0.0, cos_phi, sin_phi, -sin_phi, cos_phi)

@@ -15,7 +15,7 @@ from tests.entry import plain
 import stiction as st
 from stiction.analysis.slip import cell_force
 from stiction.solver.problem import damping
-from stiction.solver.rig import General
+from stiction.solver.rig import Aligned, General, as_general
 from stiction.solver.segments import begin, stretches
 from stiction.system.tensors import damping_tensor, mass_tensor, stiffness_tensor
 
@@ -291,3 +291,16 @@ def test_axes_of_a_general_rig_are_a_matrix(seed):
     assert np.array([[xx, xy], [xy, yy]]) == pytest.approx(T.T @ T)
     assert rig.into_axes(0.0, 0.0, v) == pytest.approx(e @ v)
     assert rig.cross_damping() == 0.7
+
+
+@pytest.mark.parametrize("phi", [0.0, 0.3, -2.0])
+def test_an_aligned_rig_as_a_general_one(phi):
+    angle = np.cos(phi), np.sin(phi)
+    found, aligned = as_general(*angle), Aligned()
+    for vector in ((1.0, 0.0), (0.0, 1.0), (-0.3, 2.0)):
+        assert found.outward(vector) == found.inward(vector) == vector
+        wanted = aligned.into_axes(*angle, vector)
+        assert found.into_axes(*angle, vector) == pytest.approx(wanted, rel=1e-15, abs=1e-16)
+    assert found.metric() == aligned.metric()
+    assert found.cross_damping() == 0.0
+    assert not found.is_aligned()

@@ -11,7 +11,8 @@ from stiction.solver.exact.record import record_of
 from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.exact.slip_frame import friction
 from stiction.solver.law import point_to
-from stiction.solver.problem import Problem, kinds_of
+from stiction.solver.problem import Problem, is_aligned, isotropic, kinds_of
+from stiction.solver.rig import as_general
 from stiction.solver.segments import begin, friction_of, system_of
 from stiction.solver.state import (
     Accuracy,
@@ -72,8 +73,15 @@ class Exact:
         return [motion.u_x, motion.u_y, *slip, *force, float(motion.r == 0.0)]
 
     def point_law(self, problem: Problem) -> Problem:
-        """Return a problem for compiled code, with its law behind pointers."""
-        return problem._replace(law=self.law)
+        """Return a problem for compiled code, with its law behind pointers.
+
+        An elliptic surface is on a general rig there: the loop is compiled for two kinds of both
+        instead of three.
+        """
+        pointed = problem._replace(law=self.law)
+        if isotropic(problem.surface) or not is_aligned(problem.rig):
+            return pointed
+        return pointed._replace(rig=as_general(problem.system.cos_phi, problem.system.sin_phi))
 
 
 @compiled

@@ -3,12 +3,16 @@
 import numpy as np
 import pytest
 from tests.entry import plain
-from tests.systems import SLIDERS, STEADY, Printed, motion_of, problem_of
+from tests.systems import ELLIPSE, SLIDERS, STEADY, Printed, motion_of, problem_of
 from tests.unit.solver.exact.test_predictor import COLD
 
 import stiction as st
 from stiction.solver.exact import method
+from stiction.solver.exact.loop import steps
 from stiction.solver.exact.sampling import COLUMNS
+from stiction.solver.integrate import integrate
+from stiction.solver.problem import kinds_of
+from stiction.solver.segments import stretches
 from stiction.solver.state import NOTHING, PLANNED, Motion, State, first_step
 from stiction.system.description import Description, Settings
 
@@ -73,3 +77,24 @@ def test_the_sample_of_a_state(exact, r):
     force = plain(method.force_between)(problem, motion)
     wanted = [1e-3, 2e-6, 0.6 * r, 0.8 * r, *force, 1.0 if r == 0.0 else 0.0]
     assert row == pytest.approx(wanted, rel=1e-12)
+
+
+def test_the_loop_is_compiled_for_two_kinds_of_planes():
+    """All alike; or with a grain, or masses or dampers of their own, or both."""
+    turned = {"mass_y": 0.3, "mass_angle": "20 deg"}
+    kinds = []
+    for slider in (STEADY, ELLIPSE, STEADY.replace(**turned), ELLIPSE.replace(**turned)):
+        problem = next(stretches(slider, 0.0, 1.0)).problem
+        kinds.append(kinds_of(method.Exact(slider).point_law(problem)))
+    assert kinds[0] != kinds[1] == kinds[2] == kinds[3]
+
+
+def test_times_that_may_not_be_written_to_are_taken_without_compiling_anew():
+    description = Description(STEADY, START, Settings(duration=1e-3))
+    times = START.time + np.linspace(0.0, 1e-3, 5)
+    wanted = integrate(description, times, 10**6, None).samples
+    known = len(steps.overloads)
+    times.flags.writeable = False
+    found = integrate(description, times, 10**6, None).samples
+    assert found.tolist() == wanted.tolist()
+    assert len(steps.overloads) == known
