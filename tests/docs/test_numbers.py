@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 
 import stiction as st
 from stiction.friction import LAWS
+from stiction.reproduction import reproduce
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -17,7 +18,8 @@ README = (ROOT / "README.md").read_text("utf-8")
 WORDS = " ".join(README.split())
 
 
-def test_the_readme_counts_what_the_reproduction_finds(tmp_path):
+def test_the_readme_counts_what_the_reproduction_finds(tmp_path, monkeypatch):
+    monkeypatch.setattr(reproduce, "save", lambda *_: [])  # no figures
     table = st.paper(tmp_path).table
     stated = [each for each in table.numbers if each.where != "reference"]
     findings = sum(each.finding for each in stated)

@@ -64,7 +64,7 @@ def test_what_the_other_process_returns_is_returned(result):
 
 
 def test_what_does_not_end_is_ended(result, monkeypatch):
-    monkeypatch.setattr(isolation, "PATIENCE", 1.0)
+    monkeypatch.setattr(isolation, "PATIENCE", 0.0)
     with pytest.raises(st.ResultError, match="is damaged: reading it does not end"):
         isolation.apart(loop, result)
 
@@ -81,7 +81,7 @@ def test_a_file_that_hdf5_reads_without_end_is_refused(result, monkeypatch, caps
     first = content.index(b"GCOL") + 16  # texts: HDF5 goes on by the size of each, here by zero
     content[first : first + 16] = bytes(16)
     result.write_bytes(content)
-    monkeypatch.setattr(isolation, "PATIENCE", 1.0)
+    monkeypatch.setattr(isolation, "PATIENCE", 0.0)
     for command in (["analyse", str(result)], ["check", str(result), "--repair"]):
         with pytest.raises(SystemExit) as end:
             cli.main(command)
