@@ -98,7 +98,8 @@ def creep_curves(
     for phase, (start, slip) in enumerate(phases):
         times = slip - edges[edges <= slip - start]
         if isinstance(source, Trajectory):
-            found = between_rests(record, position, source.stick_intervals[:, 1], times, slip)
+            rests = source.stick_intervals[:, 1]
+            found = between_rests(record, position, rests, times, (start, slip))
         else:
             found = between_halves(record, position, times, slip)
         rounding = grain / (found.begin - found.end)
@@ -207,15 +208,16 @@ def bin_edges(least: float, longest: float) -> Floats:
 
 
 def between_rests(
-    record: Record, position: Floats, rests: Floats, times: Floats, slip: float
+    record: Record, position: Floats, rests: Floats, times: Floats, phase: tuple[float, float]
 ) -> Bins:
     """Average between `times` (s, descending), each shifted to a rest if one is near.
 
-    Otherwise the position at the bin's ends is averaged over the oscillation.
+    Otherwise the position at the bin's ends is averaged over the oscillation, as far as this is
+    inside the phase (s): before it and after it the mass slips.
     """
     if len(times) < 2:
         return Bins(*np.zeros((5, 0)))
-    edges, reach = times, 0.5 * (times[0] - times[1])
+    edges, reach, (start, slip) = times, 0.5 * (times[0] - times[1]), phase
     at_rest = np.zeros(len(times), bool)
     if len(rests):
         after = np.searchsorted(rests, times).clip(0, len(rests) - 1)
@@ -228,7 +230,7 @@ def between_rests(
     near = slice(max(0, first - 1), last + 1)
     time, position = record.time[near], position[near]
     ends = np.clip(np.stack([edges - reach, edges + reach]), time[0], time[-1])
-    ends[:, at_rest | (edges > slip - reach)] = np.nan
+    ends[:, at_rest | (edges < start + reach) | (edges > slip - reach)] = np.nan
     average = np.diff(_integral(time, position, ends), axis=0)[0] / np.diff(ends, axis=0)[0]
     place = np.where(np.isnan(average), np.interp(edges, time, position), average)
     passed = np.diff(edges)

@@ -10,7 +10,7 @@ from tests.measured import read_measured
 
 import stiction as st
 from stiction import theory
-from stiction.analysis.creep.curve import bin_edges
+from stiction.analysis.creep.curve import between_rests, bin_edges
 from stiction.analysis.creep.findings import MISSED
 from stiction.analysis.signals.robust import trimmed_mean
 from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep
@@ -313,3 +313,14 @@ def test_one_phase_is_no_mean():
     said = str(st.analyse(record))
     assert "means over the 1 stick" not in said
     assert "The first is of the one stick phase so long, the second a mean over all 2." in said
+
+
+def test_the_slip_before_a_stick_phase_is_no_creep():
+    """Without a rest, as with rate and state, the mean about a bin's end would reach into it."""
+    time = np.arange(0.0, 6.0, 1e-3)
+    position = np.interp(time, [0.0, 0.9, 1.0, 5.0, 5.1], [0.0, 0.0, 1e-3, 1e-3, 2e-3])
+    record = st.Record(time=time, force=np.ones(len(time)), position=position)
+    edges = bin_edges(0.04, 4.0)
+    found = between_rests(record, position, np.zeros(0), 5.0 - edges, (1.0, 5.0))
+    assert len(found.velocity) == len(edges) - 1 > 10
+    assert np.abs(found.velocity).max() < 1e-12
