@@ -11,6 +11,7 @@ from stiction.errors import ResultError
 from stiction.result.file import CHANGED, intact_description, is_netcdf, read_tables
 from stiction.simulation import run
 from stiction.storage.isolation import apart
+from stiction.storage.kinds import RESULT, use_of
 from stiction.study.execution.repair import damage_of, restore, stores_in
 from stiction.study.view.view import broken_changes
 from stiction.system.description import Description
@@ -113,8 +114,8 @@ def check(path: str | Path, *, repair: bool = False, trust: bool = False) -> Che
 
 def _check_result(path: Path, repair: bool, trust: bool) -> Check:
     if path.suffix.lower() in (".toml", ".csv", ".parquet", ".mat") and os.path.isfile(path):
-        wrote = "what stiction run or stiction sweep wrote"
-        raise ResultError(f"{path}: a {path.suffix} file is not a result; check reads {wrote}")
+        use = use_of(path, RESULT) or "check reads what stiction run or stiction sweep wrote"
+        raise ResultError(f"{path}: a {path.suffix} file is not a result; {use}")
     try:
         read_tables(path)
         return Check(path, [])

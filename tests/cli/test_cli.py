@@ -190,6 +190,61 @@ def test_a_wrong_path_is_one_message(config, tmp_path, monkeypatch, capsys, argu
     assert [path.name for path in tmp_path.iterdir()] == ["slider.toml"]
 
 
+KINDS = {
+    "slider.toml": "stiction run slider.toml -o slider.nc",
+    "study.toml": "stiction sweep study.toml -o study.zarr",
+    "study.zarr": "stiction map study.zarr",
+    "run.nc": "stiction analyse run.nc",
+    "data.csv": "stiction analyse",
+}
+TAKES = {  # what each command takes
+    "run": ("slider.toml",),
+    "audit": ("slider.toml", "study.toml"),
+    "sweep": ("study.toml",),
+    "plot": ("run.nc",),
+    "check": ("run.nc", "study.zarr"),
+    "analyse": ("run.nc", "data.csv"),
+    "import": ("run.nc", "data.csv"),
+    "map": ("study.zarr",),
+}
+
+
+@pytest.fixture(scope="module")
+def one_of_each(slider, tmp_path_factory):
+    """A folder with a file of each kind."""
+    folder = tmp_path_factory.mktemp("kinds")
+    described = st.Description(slider, st.Initial(), st.Settings(duration="20 ms"))
+    text = described.to_toml()
+    (folder / "slider.toml").write_text(text)
+    (folder / "study.toml").write_text(f"{text}\n[axes.phi]\nvalues = ['1 deg']\n")
+    st.sweep(st.Study.from_toml(folder / "study.toml"), folder / "study.zarr")
+    st.run(described).save(folder / "run.nc")
+    (folder / "data.csv").write_text("time (s);force (N)\n" + "0,5;1e-3\n" * 20)
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("command", "given"), [(c, g) for c, taken in TAKES.items() for g in KINDS if g not in taken]
+)
+def test_who_gives_another_kind_of_file_learns_what_takes_it(
+    one_of_each, tmp_path, monkeypatch, capsys, command, given
+):
+    monkeypatch.chdir(one_of_each)
+    before = sorted(one_of_each.iterdir())
+    suffix = {"plot": "png", "map": "png", "sweep": "zarr", "audit": "html"}.get(command, "nc")
+    output = () if command in ("check", "analyse") else ("-o", tmp_path / f"a.{suffix}")
+    assert inside(command, given, *output) == 2
+    said = " ".join(capsys.readouterr().err.split())
+    if (command, given) == ("run", "study.toml"):
+        assert "axes: is a table of a study, which 'stiction sweep' runs" in said
+    elif (command, given) == ("sweep", "slider.toml"):
+        assert "write for example a table [axes.phi]" in said
+    else:
+        assert KINDS[given] in said
+    assert sorted(one_of_each.iterdir()) == before
+    assert not [*tmp_path.iterdir()]
+
+
 def test_plot_refuses_an_unknown_format(config, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert inside("run", "slider.toml", "--output", "a.nc") == 0

@@ -20,7 +20,6 @@ from stiction.recording.origin import Origin, Use
 from stiction.recording.sensor import Sensor
 from stiction.result.file import (
     SEAL,
-    SIGNATURE,
     as_written,
     damaged_parts,
     seal_tables,
@@ -31,6 +30,7 @@ from stiction.result.table import Column, ColumnTable, as_table, cf_attributes
 from stiction.storage.files import NETCDF, placeable, whole
 from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files
 from stiction.storage.isolation import apart
+from stiction.storage.kinds import HDF5
 
 KIND = "stiction_record"  # attribute by which a stored record is recognised; its value: the layout
 KNOWN = {  # of the apparatus, stored as attributes with their units
@@ -85,7 +85,7 @@ def root_attributes(path: Path) -> list[str] | None:
     """Return the names of an HDF5 file's attributes; none of another file, None if damaged."""
     try:
         with open(path, "rb") as file:
-            if file.read(len(SIGNATURE)) != SIGNATURE:
+            if file.read(len(HDF5)) != HDF5:
                 return []
         found = as_written(path)
         names = list_attributes(str(path)) if found else apart(list_attributes, path)

@@ -25,9 +25,9 @@ from stiction.result.table import STICKS, VARIABLES, ColumnTable, as_table
 from stiction.storage.checksums import LENGTH, broken_parts, bytes_of, crc_of_file, seal
 from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files
 from stiction.storage.isolation import apart
+from stiction.storage.kinds import HDF5, RESULT, use_of
 
 CHANGED = "is damaged, or was changed: "
-SIGNATURE = b"\x89HDF\r\n\x1a\n"  # of HDF5, the format below NetCDF 4
 STICK_GROUP = "sticks"  # group of a result file
 CHUNK = 2**16  # samples per checksum of HDF5
 ENDS = ("stick_start", "stick_end")
@@ -73,8 +73,9 @@ def read_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
         If there is no such file, or it is not a result of this package.
     """
     if os.path.isdir(path):
-        remedy = "of a study, st.map(path) draws a map and st.open_study(path) reads the data"
-        raise ResultError(f"{path}: is a folder, not the file of one run; {remedy}")
+        study = "of a study, st.map(path) draws a map and st.open_study(path) reads the data"
+        use = use_of(path, RESULT) or study
+        raise ResultError(f"{path}: is a folder, not the file of one run; {use}")
     if not os.path.isfile(path):
         raise ResultError(f"{path}: no such file; write one with 'stiction run'")
     with opening(path, UNREADABLE):
@@ -124,13 +125,14 @@ def _refuse_what_is_no_netcdf(path: str | Path) -> None:
     """Refuse a file that is not NetCDF, such as a measured record."""
     if not is_netcdf(path):
         record = "a measured record is read by 'stiction analyse' and st.read_record"
-        raise ResultError(f"{path}: not a NetCDF file; write one with 'stiction run'; {record}")
+        use = use_of(path, RESULT) or f"write one with 'stiction run'; {record}"
+        raise ResultError(f"{path}: not a NetCDF file; {use}")
 
 
 def is_netcdf(path: str | Path) -> bool:
     """Return whether a file begins as NetCDF does."""
     with open(path, "rb") as file:
-        return file.read(len(SIGNATURE)) == SIGNATURE
+        return file.read(len(HDF5)) == HDF5
 
 
 def age(data: xr.Dataset) -> str:

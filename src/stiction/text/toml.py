@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from stiction.errors import DescriptionError, Fault, echo
+from stiction.storage.kinds import DESCRIPTION, STUDY, use_of
 from stiction.text.paths import with_changes
 from stiction.text.validation import unknown_name
 
@@ -19,6 +20,8 @@ LARGEST = 2**24  # bytes of a description: a table of a million values
 DEEPEST = 16  # tables and lists inside one another; descriptions have five
 TOO_DEEP = f"is nested more deeply than {DEEPEST} levels; descriptions are not"
 BITS = 64  # of an integer, as TOML has it
+WRITE = "write a description with 'stiction init'"
+OF_STUDIES = ("axes", "study")  # tables of a description that is swept
 
 
 def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dict[str, Any]:
@@ -46,18 +49,24 @@ def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dic
     except RecursionError:
         message = TOO_DEEP
     except OSError as error:
-        message = f"{error.strerror or 'cannot be read'}; write a description with 'stiction init'"
+        message = f"{error.strerror or 'cannot be read'}; {_instead(path, written) or WRITE}"
     except UnicodeDecodeError:
-        message = "is not text in UTF-8; write a description with 'stiction init'"
+        message = f"is not text in UTF-8; {_instead(path, written) or WRITE}"
     except ValueError as error:  # invalid TOML, and integers of thousands of digits
         unquoted = (
             "; a value with a unit goes in quotes" if "Expected newline" in str(error) else ""
         )
-        message = f"is not TOML: {error}{unquoted}"
+        use = _instead(path, written)
+        message = f"is not TOML: {error}{unquoted}{use and f'; {use}'}"
     else:
         tame(raw, where)
         return tame(with_changes(raw, changes), where) if changes else raw
     raise DescriptionError([Fault(where, message)])
+
+
+def _instead(path: str | Path, written: bool) -> str:
+    """Return what takes a file that is no description."""
+    return "" if written else use_of(path, DESCRIPTION, STUDY)
 
 
 def read_json(text: str) -> dict[str, Any]:
@@ -150,6 +159,13 @@ def _tables_in(table: Any, names: Iterable[str]) -> Iterator[str]:
         yield from (name for name in names if isinstance(table.get(name), Mapping))
 
 
+def _strange(name: str, readers: Mapping[str, Reader]) -> str:
+    """Return what is wrong with a table that has no reader."""
+    if name in OF_STUDIES:
+        return "is a table of a study, which 'stiction sweep' runs; take it out for a single run"
+    return unknown_name("table", name, readers)
+
+
 def gather(
     raw: Mapping[str, Any],
     readers: Mapping[str, Reader],
@@ -171,7 +187,7 @@ def gather(
     """
     found = [*known]
     strange = [name for name in raw if name not in readers]
-    found += [Fault(name or '""', unknown_name("table", name, readers)) for name in strange]
+    found += [Fault(name or '""', _strange(name, readers)) for name in strange]
     inner = {name: [*_tables_in(raw.get(name), readers)] for name in readers}
     found += [
         Fault(f"{name}.{each}", f"is a table of its own; write [{each}]")

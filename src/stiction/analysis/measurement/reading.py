@@ -13,6 +13,7 @@ from stiction.recording.request import ReadingOptions
 from stiction.recording.stored import is_stored, read_stored, root_attributes
 from stiction.recording.strokes import stroke_of
 from stiction.recording.table import natural_key
+from stiction.storage.kinds import use_of
 from stiction.text.units import Quantity
 from stiction.trajectory import Trajectory, load
 
@@ -176,6 +177,8 @@ def is_run(path: Path) -> bool:
 
 def _files_of(folder: Path) -> Sequence[Path]:
     """Return the files of a folder in their natural order; TOML files describe the others."""
+    if use := use_of(folder):
+        raise ResultError(f"{folder}: holds no records; {use}")
     files = [x for x in folder.iterdir() if x.is_file() and not x.name.startswith(".")]
     some = [x for x in files if x.suffix != ".toml"]
     if not some:

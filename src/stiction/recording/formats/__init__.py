@@ -11,6 +11,7 @@ from typing import NamedTuple
 from stiction.errors import ResultError
 from stiction.recording.table import FileTable
 from stiction.storage.foreign import opening
+from stiction.storage.kinds import HDF5, RECORD, RESULT, use_of
 
 HEAD = 512  # bytes by which a file is recognised
 
@@ -31,7 +32,7 @@ class Format(NamedTuple):
 
 
 FORMATS = (
-    Format("HDF5", "hdf5", lambda head: head.startswith(b"\x89HDF\r\n\x1a\n")),
+    Format("HDF5", "hdf5", lambda head: head.startswith(HDF5)),
     Format("MATLAB 7.3", "hdf5", lambda head: head.startswith(b"MATLAB 7.3")),
     Format("MATLAB 5", "matlab", lambda head: head.startswith(b"MATLAB 5.0")),
     Format("NetCDF 3", "netcdf3", lambda head: head.startswith((b"CDF\x01", b"CDF\x02"))),
@@ -60,12 +61,14 @@ def read_tables(path: Path, layout: TextLayout) -> list[FileTable]:
     """
     if not os.path.isfile(path):
         what = "is not a file; name one" if os.path.lexists(path) else "no such file"
-        what = "is a folder; name its files" if os.path.isdir(path) else what
+        what = f"is a folder; {use_of(path) or 'name its files'}" if os.path.isdir(path) else what
         raise ResultError(f"{path}: {what}")
     with open(path, "rb") as file:
         head = file.read(HEAD)
     if not head:
         raise ResultError(f"{path}: is empty; record it again")
+    if use := use_of(path, RESULT, RECORD):
+        raise ResultError(f"{path}: is no record; {use}")
     for magic, what in OTHERS.items():
         if head.startswith(magic):
             raise ResultError(f"{path}: is {what}")

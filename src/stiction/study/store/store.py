@@ -24,6 +24,7 @@ from stiction.errors import ResultError
 from stiction.storage.checksums import LENGTH, with_checksum, without_checksum
 from stiction.storage.files import place, workshop
 from stiction.storage.foreign import opening, refuse_links, refuse_size
+from stiction.storage.kinds import STORE, use_of
 from stiction.study.plan.layout import MANY_TASKS, Index, Layout, Region
 from stiction.study.plan.study import Study
 from stiction.study.store import seal
@@ -263,7 +264,8 @@ def group_at(path: str | Path, mode: Literal["r", "r+"]) -> zarr.Group:
 
     if not os.path.isdir(path):
         what = "a file, not the store of a study" if os.path.isfile(path) else "no such store"
-        raise ResultError(f"{path}: {what}; make one with 'stiction sweep'")
+        use = use_of(path, STORE) or "make one with 'stiction sweep'"
+        raise ResultError(f"{path}: {what}; {use}")
     refuse_links(path)
     was = (Path(path) / STATUS / seal.ROOT).is_file()
     what = f"is damaged: {seal.ROOT}; {seal.ANEW}" if was else "is not the store of a study"

@@ -1,0 +1,47 @@
+"""What a path holds, so that whoever gave the wrong thing learns which command takes it."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+HDF5 = b"\x89HDF\r\n\x1a\n"  # the first bytes of HDF5, the format below NetCDF 4
+SEEN = 2**16  # bytes that are looked at
+TABLE = re.compile(rb"^\s*\[(slider|friction|drive)\b", re.M)
+AXES = re.compile(rb"^\s*\[axes\b", re.M)
+NUMBERS = re.compile(rb"^\s*[-+]?[\d.]+(e[-+]?\d+)?\s*[;,\t ]\s*[-+]?[\d.]", re.M | re.I)
+
+DESCRIPTION, STUDY, STORE, RESULT, RECORD = "description", "study", "store", "result", "record"
+USES = {
+    DESCRIPTION: "it is a description; stiction run {path} -o {stem}.nc simulates it",
+    STUDY: "it describes a study; stiction sweep {path} -o {stem}.zarr runs it",
+    STORE: "it is the store of a study; stiction map {path} draws it, and st.open_study reads it",
+    RESULT: "it is a result or a record; stiction analyse {path} takes either",
+    RECORD: "it seems to be a measured record; stiction analyse or st.read_record reads it",
+}
+
+
+def use_of(path: str | Path, *wanted: str) -> str:
+    """Return what a path holds instead of what is `wanted`, and what takes it; '' if unknown."""
+    kind = kind_of(Path(path))
+    if kind is None or kind in wanted:
+        return ""
+    return USES[kind].format(path=path, stem=Path(path).stem)
+
+
+def kind_of(path: Path) -> str | None:
+    """Return the kind of what a path holds, as far as its beginning tells."""
+    try:
+        if path.is_dir():
+            return STORE if (path / "zarr.json").is_file() else None
+        with path.open("rb") as file:
+            head = file.read(SEEN)
+    except (OSError, ValueError):
+        return None
+    if head.startswith(HDF5):
+        return RESULT
+    if b"\0" in head:  # no text
+        return None
+    if TABLE.search(head):
+        return STUDY if AXES.search(head) else DESCRIPTION
+    return RECORD if NUMBERS.search(head) else None
