@@ -24,6 +24,7 @@ ARGUMENTS += [
     "--autoplay-policy=no-user-gesture-required",
     *(f"--disable-{each}" for each in QUIET),
 ]
+SIZE = {"width": 1280, "height": 720}
 SHOWN = "Boolean(window.stictionPage?.shown) && !stictionPage.shown.quick"
 
 
@@ -37,7 +38,6 @@ class Page:
         tab.on("pageerror", lambda error: self.said.append(str(error)))
         tab.on("request", lambda request: self.asked.append(request.url))
         tab.on("websocket", lambda socket: self.asked.append(socket.url))
-        self.visit("")
 
     def visit(self, state):
         self.tab.goto(self.explorer.address + state)
@@ -89,18 +89,26 @@ def explorer():
         yield made
 
 
-@pytest.fixture
-def page(browser, explorer):
-    tab = browser.new_page(viewport={"width": 1280, "height": 720})
+@pytest.fixture(scope="module")
+def opened(browser, explorer):
+    tab = browser.new_page(viewport=SIZE)
     tab.set_default_timeout(PATIENCE * 1e3)
-    made = Page(tab, explorer)
+    return Page(tab, explorer)
+
+
+@pytest.fixture
+def page(opened, explorer):
+    """The page as it opens; a tab of its own for each test would take as long as the page."""
+    made, opened.said, opened.asked = opened, [], []
+    made.tab.set_viewport_size(SIZE)
+    made.tab.goto("about:blank")  # so that the page is loaded, and not only its state
+    made.visit("")
     yield made
     assert made.said == []  # no error, no warning, in any of these tests
     away = [
         url for url in made.asked if f"//127.0.0.1:{explorer.port}/{explorer.token}/" not in url
     ]
     assert [url for url in away if not url.startswith(("blob:", "data:"))] == []
-    tab.close()
 
 
 def test_numbers_are_those_of_simulate(page):
@@ -466,7 +474,8 @@ def test_a_study_shows_what_its_colours_mean(browser, tmp_path):
     what = open_sources([tmp_path / "a.zarr"])
     what.study.data["peak_force"].values[1, 0] = math.nan
     with serving(what) as explorer:
-        page = Page(browser.new_page(viewport={"width": 1280, "height": 720}), explorer)
+        page = Page(browser.new_page(viewport=SIZE), explorer)
+        page.visit("")
         write_down(page)
         canvas = "#panel-a canvas[role=img]"
         box = page.tab.locator(canvas).bounding_box()
@@ -485,11 +494,12 @@ def test_a_study_shows_what_its_colours_mean(browser, tmp_path):
 
 
 def test_closing_the_page_ends_its_computation(browser, explorer):
-    tab = browser.new_page()
+    others, tab = len(explorer._pages), browser.new_page()
     made = Page(tab, explorer)
-    assert len(explorer._pages) >= 1
+    made.visit("")
+    assert len(explorer._pages) == others + 1
     tables = tables_of(an_opened().description)
     tables["run"]["duration"] = "100000 s"
     made.value(f"stictionPage.link.ask({{do: 'zoom', tables: {tables}, window: [0, 1]}}, () => 0)")
     tab.close()
-    until(lambda: not explorer._pages, "what was computed for the page")
+    until(lambda: len(explorer._pages) == others, "what was computed for the page")
