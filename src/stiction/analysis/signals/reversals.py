@@ -12,12 +12,18 @@ Edelsbrunner, Letscher & Zomorodian, Discrete Comput. Geom. 28, 511 (2002); ASTM
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from stiction.arrays import Indices
 
 Counts = NDArray[np.int64]
+
+# A pass over arrays takes as long as a hundred points one by one: it pays where it takes out more
+# than these, and one in as many points.
+FEW = 32
 
 
 def extrema(values: Counts) -> Indices:
@@ -35,8 +41,9 @@ def extrema(values: Counts) -> Indices:
 def taken_out(values: Counts, below: float = np.inf) -> tuple[Indices, Counts]:
     """Take out reversals, the smallest of each neighbourhood first.
 
-    All local minima of height are removed at once, so that a few passes over ever fewer points
-    suffice for any length.
+    All local minima of height are removed at once. Where they get few, as in a vibration whose
+    amplitude changes slowly, the rest is taken out in one go from left to right: in any order the
+    same reversals go, because none of two that can go is in the way of the other.
 
     Parameters
     ----------
@@ -50,7 +57,7 @@ def taken_out(values: Counts, below: float = np.inf) -> tuple[Indices, Counts]:
     points : ndarray
         Indices of the remaining samples, including both ends of the signal.
     heights : ndarray
-        Heights of the reversals taken out.
+        Heights of the reversals taken out, in any order.
     """
     points, heights = extrema(values), [np.zeros(0, np.int64)]
     while len(points) > 3:
@@ -60,9 +67,27 @@ def taken_out(values: Counts, below: float = np.inf) -> tuple[Indices, Counts]:
         found = np.flatnonzero(small) + 1  # never two neighbours: one of them is not the smaller
         if len(found) == 0:
             break
+        if len(found) < FEW + len(points) // FEW:
+            kept, last = _from_left_to_right(legs.tolist(), below)
+            return points[kept], np.concatenate([*heights, np.array(last, np.int64)])
         heights.append(legs[found])
         points = np.delete(points, np.concatenate([found, found + 1]))
     return points, np.concatenate(heights)
+
+
+def _from_left_to_right(legs: Sequence[int], below: float) -> tuple[list[int], list[int]]:
+    """Return which points between legs remain without reversals, and the heights of these."""
+    points, left = [0], []
+    heights = []
+    for point, leg in enumerate(legs, 1):
+        points.append(point)
+        left.append(leg)
+        while len(left) > 2 and left[-2] < left[-1] and left[-3] >= left[-2] < below:
+            first, inner, last = left[-3:]
+            heights.append(inner)
+            left[-3:] = [first - inner + last]
+            del points[-3:-1]
+    return points, heights
 
 
 def all_heights(values: Counts) -> Counts:

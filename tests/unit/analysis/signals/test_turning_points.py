@@ -50,6 +50,13 @@ def test_reversals(walk, below):
     assert walk[points].tolist() == walk[wanted_points].tolist()
 
 
+def test_reversals_of_a_long_signal_many_at_once_and_then_one_by_one():
+    noise = np.array(inside(1, *[(-1e3, 1e3)] * 400)[0])
+    slowly = 500.0 * np.sin(np.arange(400.0)) * (2.0 + np.sin(np.arange(400.0) / 30.0))
+    for values in (noise, slowly, noise + slowly):
+        test_reversals(np.rint(values).astype(np.int64), np.inf)
+
+
 def test_the_ends_of_a_signal():
     assert reversals.extrema(np.array([], dtype=np.int64)).tolist() == []
     assert reversals.extrema(np.array([5])).tolist() == [0]
