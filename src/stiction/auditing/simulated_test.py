@@ -141,6 +141,7 @@ def simulate_test(
     sample_rate: float,
     start: Initial | None = None,
     multiscale: bool | Literal["auto"] | None = None,
+    rtol: float = 1e-6,
     most_steps: int = int(SHARE * MOST_WORK),
     progress: Progress = None,
 ) -> SimulatedTest:
@@ -161,6 +162,8 @@ def simulate_test(
         The initial state; by default rest with unloaded springs.
     multiscale : {"auto", True, False}, optional
         As of `stiction.simulate`; by default True for a test of very many transverse periods.
+    rtol : float, optional
+        As of `stiction.simulate`.
     most_steps : int, optional
         Limit of the solver's steps.
     progress : callable, optional
@@ -181,6 +184,7 @@ def simulate_test(
         initial=start,
         sample_rate=min(sample_rate, MOST_SAMPLES / duration),
         multiscale=multiscale,
+        rtol=rtol,
         max_steps=most_steps,
         progress=progress,
     )

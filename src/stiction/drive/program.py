@@ -284,6 +284,9 @@ def pick(stretches: Sequence[tuple[float, Any]], t: Times, value: Any) -> tuple[
         i = bisect_left(stretches, times, key=itemgetter(0))
         start = stretches[i - 1][0] if i > 0 else 0.0
         return tuple(np.float64(x) for x in value(stretches[i][1], times[()], start))
+    if len(stretches) == 1:
+        found = value(stretches[0][1], times, 0.0)
+        return tuple(np.full(times.shape, column) for column in found)
     ends = np.array([end for end, _ in stretches])
     which = np.searchsorted(ends, times.ravel(), side="left")
     order = np.argsort(which, kind="stable")

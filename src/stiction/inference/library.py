@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import ndtr
 
 from stiction.analysis.record import cell_axis
 from stiction.arrays import Floats
@@ -65,6 +64,8 @@ class Plan(NamedTuple):
 
     def parameters(self, scores: Floats) -> dict[str, float]:
         """Return the parameters with these normal scores, (p,)."""
+        from scipy.special import ndtr  # slow to import
+
         shares = ndtr(scores)
         pairs = zip(self.priors.items(), shares, strict=True)
         return {name: float(prior.quantile(share)) for (name, prior), share in pairs}
