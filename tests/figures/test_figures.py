@@ -28,7 +28,7 @@ from stiction.plotting.analysis.trials import Trial, plot_trials
 from stiction.plotting.apparatus.schematic import draw_schematic
 from stiction.plotting.apparatus.shapes import drawn_misalignment
 from stiction.plotting.maps import Side, draw_slice
-from stiction.plotting.page.canvas import canvas, figure_of
+from stiction.plotting.page.canvas import canvas, figure_of, fix_ticks
 from stiction.plotting.page.parameter import Scale, label_decades
 from stiction.plotting.page.save import png, save, write
 from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PURPLE, new_figure, style
@@ -816,3 +816,30 @@ def test_a_figure_is_written_for_print(tmp_path: Path) -> None:
         assert image.size == (1012, 600)
     with Image.open(BytesIO(png(fig))) as image:
         assert image.size == (675, 400)
+
+
+def test_the_layout_is_the_one_that_matplotlib_finds_when_it_writes(tmp_path: Path) -> None:
+    """To the last pixel, of a figure with ticks, a power of ten beside an axis, and a legend."""
+    fig = new_figure(3.375, 2.0)
+    with style():
+        ax = fix_ticks([fig.add_subplot()])[0]
+        ax.plot([0.0, 1e-7], [1e9, 3e9], label="$k_x$")
+        ax.set_xlabel("time")
+        ax.legend()
+    engine = fig.get_layout_engine()
+    write(fig, tmp_path / "a.png")
+    assert fig.get_layout_engine() is engine
+    with style():
+        fig.savefig(tmp_path / "b.png")
+    with Image.open(tmp_path / "a.png") as one, Image.open(tmp_path / "b.png") as other:
+        assert np.array_equal(np.asarray(one), np.asarray(other))
+
+
+def test_labels_of_ticks_are_plain_text() -> None:
+    with style():
+        ax = fix_ticks([new_figure(3.375, 2.0).add_subplot()])[0]
+        ax.plot([-1.0, 0.0], [1e9, 3e9])
+        ax.figure.draw_without_rendering()
+    assert "\N{MINUS SIGN}1.0" in [each.get_text() for each in ax.get_xticklabels()]
+    assert not any("$" in each.get_text() for each in ax.get_yticklabels())
+    assert r"\times\mathdefault{10^{9}}" in ax.yaxis.get_offset_text().get_text()

@@ -15,6 +15,7 @@ from stiction.plotting.analysis.oscillation import draw_spectrogram, mark_freque
 from stiction.plotting.apparatus.pin_on_plate import draw_apparatus, draw_side_view
 from stiction.plotting.apparatus.schematic import draw_schematic
 from stiction.plotting.apparatus.vectors import draw_velocity_triangle
+from stiction.plotting.page.canvas import fix_ticks
 from stiction.plotting.page.style import (
     BLUE,
     COLUMN,
@@ -96,7 +97,7 @@ def figure3(run: Trajectory) -> Figure:
     """
     with style():
         fig = new_figure(COLUMN, 5.6)
-        axes = fig.subplots(5, 1, sharex=True, height_ratios=[1, 1, 1, 1, 1.5])
+        axes = fix_ticks(list(fig.subplots(5, 1, sharex=True, height_ratios=[1, 1, 1, 1, 1.5])))
         time_series.draw_spring_force(axes[0], run, "x")
         time_series.draw_spring_force(axes[1], run, "y")
         time_series.draw_friction(axes[2], run)
@@ -155,7 +156,7 @@ def figure4(run: Trajectory) -> Figure:
     natural = float(theory.natural_frequency(slider.k_y, slider.mass)) / (2 * pi)
     with style():
         fig = new_figure(COLUMN, 5.4)
-        axes = fig.subplots(4, 1, sharex=True, height_ratios=[1, 1.5, 1, 1.5])
+        axes = fix_ticks(list(fig.subplots(4, 1, sharex=True, height_ratios=[1, 1.5, 1, 1.5])))
         for (rate, spectrum), axis in zip((axes[:2], axes[2:]), "xy", strict=True):
             draw_rate(rate, run, axis)
             rate.margins(y=0.12)

@@ -120,7 +120,7 @@ def plot_corner(
         if axes is None:
             size = min(PAGE, 1.2 * count + 0.8)
             grid = canvas(size, size).subplots(count, count, squeeze=False, sharex="col")
-        fix_ticks(list(grid.ravel()))
+            fix_ticks(list(grid.ravel()))
         for i, j in np.ndindex(count, count):
             ax = grid[i, j]
             if j > i:

@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import ScalarFormatter
 
 from stiction.errors import StictionError
 from stiction.plotting.page.style import COLUMN, SHEET, new_figure
@@ -77,7 +78,20 @@ def fix_ticks(axes: Sequence[Axes]) -> Sequence[Axes]:
             size["labelsize"] = SHEET[f"{way}tick.labelsize"]
             ax.tick_params(axis=way, which="major", **size)  # type: ignore[arg-type]
         ax.tick_params(which="both", top=True, right=True)
+        for axis in (ax.xaxis, ax.yaxis):
+            axis.set_major_formatter(PlainNumbers())
     return axes
+
+
+class PlainNumbers(ScalarFormatter):
+    """Labels of ticks in plain text; a power of ten beside an axis is a formula as before.
+
+    To parse and lay out a formula takes fifty times as long, and few are remembered.
+    """
+
+    def __call__(self, x: float, pos: int | None = None) -> str:
+        """Return the label of a tick."""
+        return super().__call__(x, pos).removeprefix(r"$\mathdefault{").removesuffix("}$")
 
 
 def find_drawing(drawings: Mapping[str, Drawing], name: str) -> Drawing:

@@ -8,6 +8,7 @@ from typing import Any
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 # Okabe & Ito, "Color Universal Design" (2008): distinct with any colour vision
@@ -83,7 +84,9 @@ def style() -> Iterator[None]:
 
 def new_figure(width: float, height: float) -> Figure:
     """Return an empty figure of the given size (in), unknown to pyplot."""
-    return Figure(figsize=(width, height), layout="constrained")
+    fig = Figure(figsize=(width, height), layout="constrained")
+    FigureCanvasAgg(fig)  # one renderer, which remembers sizes of texts, for layout and file
+    return fig
 
 
 def panel_letter(ax: Axes, letter: str) -> None:
