@@ -32,7 +32,6 @@ from stiction.cli.options import value as option
 from stiction.comparison import read_laws
 from stiction.result import file as run_file
 from stiction.result.file import open_tables
-from stiction.result.table import as_table
 from stiction.study.store.seal import seal
 from stiction.text.toml import toml_text
 
@@ -313,8 +312,8 @@ def result(draw: Draw, folder: Path) -> None:
 def reseal(path: Path) -> None:
     """Have a result's checksums fit what is in it, as who changes it on purpose would."""
     with suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
-        data, sticks = map(as_table, open_tables(path))
-        seal = run_file.seal_tables({"samples": data, "sticks": sticks})
+        samples, sticks, _ = open_tables(path)
+        seal = run_file.seal_tables({"samples": samples, "sticks": sticks})
         with h5py.File(path, "r+") as file:
             file.attrs[run_file.SEAL] = seal
     run_file.sign(path)

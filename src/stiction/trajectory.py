@@ -270,22 +270,22 @@ def load(path: str | Path, *, trust: bool = False) -> Trajectory:
     """
     data, sticks = read_tables(path)
     try:
-        description = Description.from_json(data.attrs["description"], trust=trust)
+        description = Description.from_json(data.attributes["description"], trust=trust)
         statistics = Statistics(
             **{
-                name: data.attrs[name].item()
+                name: data.attributes[name].item()
                 for name in Statistics.__dataclass_fields__
-                if name != "mapped" or name in data.attrs  # not in results of version 0.2
+                if name != "mapped" or name in data.attributes  # not in results of version 0.2
             }
         )
-        status = Status[data.attrs["status"]]
+        status = Status[data.attributes["status"]]
         for state in states(description.slider.law):
             data[state.name]
     except (DescriptionError, KeyError, ValueError, AttributeError) as error:
         told = f"its attributes cannot be read: {error}"
         raise ResultError(f"{path}: {told}{age(data)}") from None
-    intervals = np.column_stack([sticks[name].values for name in ENDS])
-    arrays = partial(_with_mu, as_table(data), description.slider)
+    intervals = np.column_stack([sticks[name] for name in ENDS])
+    arrays = partial(_with_mu, data, description.slider)
     return Trajectory(description, arrays, intervals, status, statistics)
 
 

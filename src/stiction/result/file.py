@@ -19,9 +19,8 @@ from typing import Any
 
 import numpy as np
 
-from stiction.arrays import xr
 from stiction.errors import ResultError
-from stiction.result.table import STICKS, VARIABLES, ColumnTable, as_table
+from stiction.result.table import STICKS, VARIABLES, Column, ColumnTable
 from stiction.storage.checksums import LENGTH, broken_parts, bytes_of, crc_of_file, seal
 from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files
 from stiction.storage.isolation import apart
@@ -64,7 +63,7 @@ def write_table(group: Any, table: ColumnTable) -> None:
         column[...] = values
 
 
-def read_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
+def read_tables(path: str | Path) -> tuple[ColumnTable, ColumnTable]:
     """Return samples and sticks of a result file.
 
     Raises
@@ -87,31 +86,23 @@ def read_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
         apart(read_through, path)
     with opening(path, UNREADABLE):
         refuse_other_files(path)
-        data, sticks = open_tables(path)
-        lost = _damage_in(data, sticks)
+        data, sticks, checked = open_tables(path)
+        sealed = data.attributes.get(SEAL)
+        lost = damaged_parts(sealed, {"samples": data, "sticks": sticks}) if checked else []
     if lost:
         raise _damage(path, lost)
-    data, sticks = data.drop_encoding(), sticks.drop_encoding()
-    data.attrs.pop(SEAL, None)
+    about = {name: value for name, value in data.attributes.items() if name != SEAL}
+    data = ColumnTable(data.columns, about)
     lacking = [*_lacking(data, VARIABLES), *_lacking(sticks, ENDS)]
-    lacking += ["its description"] if "description" not in data.attrs else []
+    lacking += ["its description"] if "description" not in about else []
     if lacking:
         what = f"it lacks {', '.join(lacking)}"
         raise ResultError(f"{path}: not a result of 'stiction run'; {what}{age(data)}")
     wrong = [*_wrong(data, "time", ["time", *VARIABLES]), *_wrong(sticks, "stick", STICKS)]
-    wrong += [f"{name} is not text" for name in TEXTS if not isinstance(data.attrs.get(name), str)]
+    wrong += [f"{name} is not text" for name in TEXTS if not isinstance(about.get(name), str)]
     if wrong:
         raise ResultError(f"{path}: not a result of 'stiction run'; {'; '.join(wrong)}{age(data)}")
     return data, sticks
-
-
-def _damage_in(data: xr.Dataset, sticks: xr.Dataset) -> list[str]:
-    """Return the names of damaged parts; none for files of versions without checksums."""
-    sealed, tables = data.attrs.get(SEAL), {"samples": data, "sticks": sticks}
-    arrays = [each for table in tables.values() for each in table.variables.values()]
-    if sealed is None and not any(each.encoding.get("fletcher32") for each in arrays):
-        return []
-    return damaged_parts(sealed, {name: as_table(each) for name, each in tables.items()})
 
 
 def _damage(path: str | Path, lost: Sequence[str]) -> ResultError:
@@ -135,40 +126,55 @@ def is_netcdf(path: str | Path) -> bool:
         return file.read(len(HDF5)) == HDF5
 
 
-def age(data: xr.Dataset) -> str:
+def age(data: ColumnTable) -> str:
     """Return a note on the version that wrote a file, '' if it is this one."""
-    wrote, this = data.attrs.get("stiction_version"), version("stiction")
+    wrote, this = data.attributes.get("stiction_version"), version("stiction")
     if wrote is None or str(wrote) == this:
         return ""
     return f"; stiction {wrote!s:.20} wrote it, this is {this}"
 
 
-def open_tables(path: str | Path) -> tuple[xr.Dataset, xr.Dataset]:
-    """Return the two tables of a file; up to version 0.4 both are in the root group."""
-    how: dict[str, Any] = {"engine": "h5netcdf", "decode_times": False, "phony_dims": "sort"}
-    data = xr.load_dataset(path, **how)
-    if "stick" in data.dims:
-        return data.drop_dims("stick"), data.drop_dims("time", errors="ignore")
-    try:
-        sticks = xr.load_dataset(path, group=STICK_GROUP, **how)
-    except OSError:  # no such group
-        return data, xr.Dataset()
-    return data, sticks
+def open_tables(path: str | Path) -> tuple[ColumnTable, ColumnTable, bool]:
+    """Return the two tables of a file, and whether it has checksums, as from version 0.5 on.
+
+    Up to version 0.4 both are in the root group. xarray would take longer to import than to draw.
+    """
+    h5netcdf: Any = import_module("h5netcdf")  # slow to import
+    with h5netcdf.File(path, "r", phony_dims="sort") as file:
+        groups = [file, *([file[STICK_GROUP]] if STICK_GROUP in file.groups else [])]
+        tables = [_table_of(group) for group in groups]
+        checked = any(each.fletcher32 for group in groups for each in group.variables.values())
+    data = tables[0]
+    samples, old = (
+        {n: each for n, each in data.columns.items() if ("stick" in each.dims) is its}
+        for its in (False, True)
+    )
+    sticks = ColumnTable(old, {}) if old else tables[-1] if tables[1:] else ColumnTable({}, {})
+    return ColumnTable(samples, data.attributes), sticks, checked or SEAL in data.attributes
 
 
-def _lacking(table: xr.Dataset, names: Iterable[str]) -> list[str]:
-    return [name for name in names if name not in table and name not in LATER]
+def _table_of(group: Any) -> ColumnTable:
+    """Return the columns and attributes of a group of a file."""
+    columns = {}
+    for name, each in group.variables.items():
+        about = {key: value for key, value in each.attrs.items() if key != "_FillValue"}
+        columns[name] = Column(tuple(each.dimensions), np.asarray(each[...]), about)
+    return ColumnTable(columns, dict(group.attrs))
 
 
-def _wrong(table: xr.Dataset, dim: str, names: Iterable[str]) -> Iterator[str]:
+def _lacking(table: ColumnTable, names: Iterable[str]) -> list[str]:
+    return [name for name in names if name not in table.columns and name not in LATER]
+
+
+def _wrong(table: ColumnTable, dim: str, names: Iterable[str]) -> Iterator[str]:
     """Yield the faults of numeric columns along one dimension."""
     for name in names:
-        if name not in table:
+        if name not in table.columns:
             continue
-        column = table[name]
-        if column.dtype.kind not in "fiu" or column.dims != (dim,):
+        column = table.columns[name]
+        if column.values.dtype.kind not in "fiu" or column.dims != (dim,):
             along = ", ".join(map(str, column.dims)) or "nothing"
-            yield f"{name} is {column.dtype} along {along}, and must be numbers along {dim}"
+            yield f"{name} is {column.values.dtype} along {along}, and must be numbers along {dim}"
         elif name in ("time", *ENDS):
             values = column.values.astype(np.float64)
             least = SHORTEST if name == "time" else 0.0

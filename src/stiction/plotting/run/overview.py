@@ -96,7 +96,7 @@ def _system(ax: Axes, run: Trajectory) -> None:
 
 def _law(ax: Axes, run: Trajectory) -> None:
     drive = abs(nominal_velocity(run.slider.motion))  # the slip speed of steady sliding
-    draw_law(ax, run.slider, max(drive, float(run.data["slip_speed"].max())))
+    draw_law(ax, run.slider, max(drive, float(np.nanmax(run.samples["slip_speed"]))))
 
 
 def _words(run: Trajectory) -> list[tuple[str, list[str], str]]:

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import StepPatch
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike
 
 from stiction.analysis.motion.rest import stuck_until
@@ -218,22 +219,24 @@ def _draw_range(
 
 def _smooth(values: Floats, starts: Indices, period: float) -> tuple[Floats, ...]:
     """Return low, high and mean of periods around each bin of an oscillation; `period` in bins."""
-    from scipy.ndimage import (  # type: ignore[attr-defined]
-        convolve1d,
-        maximum_filter1d,
-        minimum_filter1d,
-    )
-
     known = np.isfinite(values)
-    size = int(np.ceil(RANGE * period)) // 2 * 2 + 1
-    low = minimum_filter1d(np.fmin.reduceat(np.where(known, values, np.inf), starts), size)
-    high = maximum_filter1d(np.fmax.reduceat(np.where(known, values, -np.inf), starts), size)
+    half = int(np.ceil(RANGE * period)) // 2
+    low, high = (
+        _extremes(np.where(known, values, none), starts, half, extreme, none)
+        for extreme, none in ((np.fmin, np.inf), (np.fmax, -np.inf))
+    )
     weight = np.hanning(max(SMOOTH, round(MEAN * period) // 2 * 2 + 3))
     total, count = (
-        convolve1d(np.add.reduceat(each, starts), weight, mode="constant")
+        np.convolve(np.add.reduceat(each, starts), weight)[len(weight) // 2 :][: len(starts)]
         for each in (np.where(known, values, 0.0), known.astype(np.float64))
     )
     return low, high, total / np.maximum(count, 1e-300)
+
+
+def _extremes(values: Floats, starts: Indices, half: int, extreme: np.ufunc, none: float) -> Floats:
+    """Return the extreme of each bin and `half` as many to either side, as there are."""
+    own = np.pad(extreme.reduceat(values, starts), half, constant_values=none)
+    return np.asarray(extreme.reduce(sliding_window_view(own, 2 * half + 1), axis=1))
 
 
 def _bin_starts(samples: int, bins: int) -> Indices:
@@ -245,8 +248,8 @@ def draw_quantity(
     ax: Axes, run: Trajectory, variable: str, symbol: str, color: str = BLACK
 ) -> Line2D:
     """Draw a variable of the run over time, in a suitable unit."""
-    data = run.data[variable]
-    return draw_values(ax, run, data.values, symbol, data.attrs["units"], color)
+    column = run.samples.columns[variable]
+    return draw_values(ax, run, column.values, symbol, column.attributes["units"], color)
 
 
 def draw_values(
@@ -268,9 +271,9 @@ def imposed_quantities(run: Trajectory) -> list[tuple[str, Floats, str, str]]:
     Drive velocity along X and across it, and normal load.
     """
     names = (("drive_X", "$V$"), ("drive_Y", "$V_Y$"), ("normal_load", "$W$"))
-    found = [(name, run.data[name], symbol) for name, symbol in names]
+    found = [(name, run.samples.columns[name], symbol) for name, symbol in names]
     return [
-        (name, each.values, symbol, each.attrs["units"])
+        (name, each.values, symbol, each.attributes["units"])
         for name, each, symbol in found
         if np.ptp(each.values) > 0
     ]
@@ -339,9 +342,7 @@ def draw_position(ax: Axes, run: Trajectory) -> Line2D:
     """Draw the position X along the drive direction over time, without rounding errors."""
     if not stays(run):
         return draw_quantity(ax, run, "X", "$X$", BLUE)
-    line = draw_values(
-        ax, run, np.zeros(len(run.samples["X"])), "$X$", run.data["X"].attrs["units"], BLUE
-    )
+    line = draw_values(ax, run, np.zeros(len(run.samples["X"])), "$X$", "m", BLUE)
     say_only(ax, "at rest")
     return line
 
