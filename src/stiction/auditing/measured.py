@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from stiction.analysis.record import Record
+from stiction.auditing.words.verdict import RECORD
 from stiction.errors import DescriptionError, ResultError
 from stiction.inference.features import USED
 from stiction.inference.fit import check, fit
@@ -22,7 +23,6 @@ from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
 from stiction.text.units import in_words
 
-TITLE = "What the record says"
 DESCRIBED = (
     "The sections after the fit are of the apparatus as it is described, with uncertain values in "
     "the middle of their priors: write the fitted values into the description, and audit again."
@@ -120,9 +120,9 @@ def compare(
 def sections(found: RecordComparison) -> list[Section]:
     """Return the sections of a report."""
     if found.fit is None:
-        return [Section(TITLE, [f"No verdict: {found.reason}."])]
+        return [Section(RECORD, [f"No verdict: {found.reason}."])]
     parts = [
-        Section(TITLE, [verdict(found), DESCRIBED]),
+        Section(RECORD, [verdict(found), DESCRIBED]),
         Section(GROUNDS, grounds(found, found.fit)),
         Section(CHANGES, changes(found, found.fit)),
     ]

@@ -11,7 +11,8 @@ from jinja2 import Environment, PackageLoader
 from matplotlib.figure import Figure
 
 import stiction
-from stiction.auditing import figures, measured, tolerance
+from stiction.auditing import figures, tolerance
+from stiction.auditing.words.verdict import RECORD
 from stiction.plotting.page.save import png
 from stiction.storage.files import placeable, whole
 from stiction.text.sections import join_units
@@ -36,7 +37,7 @@ DRAWN: dict[str, tuple[tuple[Callable[[Audit], Figure | None], str], ...]] = {
         (figures.creep, "Creep before slip, averaged over the transverse motion."),
         (figures.damping, "How the friction force turns during creep, and where slow turns fast."),
     ),
-    measured.TITLE: ((figures.record, "Measured, and simulated with the fitted parameters."),),
+    RECORD: ((figures.record, "Measured, and simulated with the fitted parameters."),),
     "Mechanism": (
         (
             figures.mechanism,

@@ -22,6 +22,7 @@ from stiction.plotting.page.style import (
     GREEN,
     PAGE,
     RED,
+    lay_out,
     new_figure,
     panel_letter,
     style,
@@ -217,7 +218,7 @@ def figure5(slider: Slider, other_phi: float | None = radians(10)) -> Figure:
         for (A, phi), color in zip(paths, (RED, BLUE), strict=False):
             draw_force_path(ax, A, phi, color, _label(A, phi))
         fig.legend(loc="outside upper center", ncols=2)
-        fig.draw_without_rendering()  # the axes have their final size: words are placed in it
+        lay_out(fig)  # words are placed in axes of their final size
         for A, phi in paths:
             name_crossing(ax, A, phi)
         at = np.geomspace(low, high, 40)[2:-2]

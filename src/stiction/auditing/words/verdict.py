@@ -28,6 +28,7 @@ from stiction.text.units import in_words, with_error
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit
 
+RECORD = "What the record says"  # title of the verdict on a measured record
 MEANS = ("period", "s"), ("drop", "N")  # over the cycles
 SHOWN = 1e-3  # of a mean: a smaller error is not worth a word
 SEEN = {  # kinds of motion, in a sentence

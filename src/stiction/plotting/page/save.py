@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from stiction.errors import StictionError
 from stiction.plotting.page.canvas import figure_of
-from stiction.plotting.page.style import SHEET, style
+from stiction.plotting.page.style import SHEET, lay_out, style
 from stiction.storage.files import placeable, whole
 
 FORMATS = (".png", ".pdf", ".svg")
@@ -68,10 +68,9 @@ def laid_out(fig: Figure, dpi: float) -> Iterator[None]:
     Writing a file, matplotlib would draw the whole figure to find it, and draw it once more.
     """
     engine, own = fig.get_layout_engine(), fig.dpi
-    if engine is not None:
-        fig.dpi = dpi
-        engine.execute(fig)
-        fig.dpi = own
+    fig.dpi = dpi
+    lay_out(fig)
+    fig.dpi = own
     fig.set_layout_engine(None)
     try:
         yield

@@ -89,6 +89,12 @@ def new_figure(width: float, height: float) -> Figure:
     return fig
 
 
+def lay_out(fig: Figure) -> None:
+    """Give the axes of a figure their final places, without drawing it."""
+    if (engine := fig.get_layout_engine()) is not None:
+        engine.execute(fig)
+
+
 def panel_letter(ax: Axes, letter: str) -> None:
     """Write ``(letter)`` above the labels at the upper left corner of the axes."""
     ax.annotate(
