@@ -103,6 +103,7 @@ def _commands(folder: Path) -> dict[str, list[str]]:
     return {
         "stiction run": [*STICTION, "run", rig, "-o", result],
         "stiction audit": [*STICTION, "audit", rig],
+        "stiction audit -o": [*STICTION, "audit", rig, "-o", str(folder / "my.html")],
         "stiction analyse": [*STICTION, "analyse", result],
         "stiction plot": [*STICTION, "plot", result, "-o", str(folder / "my.png")],
         "stiction paper": [*STICTION, "paper", "-o", str(folder / "paper")],

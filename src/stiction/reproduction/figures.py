@@ -115,11 +115,12 @@ def figure3(run: Trajectory) -> Figure:
 
 def _magnify_creep(ax: Axes, run: Trajectory) -> Axes:
     """Draw, in an inset, how X (um) creeps before the first slip."""
-    start, end = float(run.samples["time"][0]), first_slip_time(run)
-    stick = run.data.sel(time=slice(start, start + 0.98 * (end - start)))
+    time, X = run.samples["time"], run.samples["X"]
+    end = first_slip_time(run)
+    stick = time <= time[0] + 0.98 * (end - time[0])
     inset = ax.inset_axes((0.16, 0.48, 0.36, 0.44))
-    factor, prefix = metric_prefix(stick["X"].values)
-    time_series.draw_line(inset, stick["time"].values, stick["X"].values * factor, BLUE)
+    factor, prefix = metric_prefix(X[stick])
+    time_series.draw_line(inset, time[stick], X[stick] * factor, BLUE)
     inset.set_ylabel(f"$X$ ({prefix}m)", fontsize=7, labelpad=1)
     inset.set_xlabel("$t$ (s)", fontsize=7, labelpad=1)
     inset.margins(y=0.08)
