@@ -36,7 +36,6 @@ LEVERS = ("phi", "drive.velocity", "c_x", "k_x")  # of springs in series, the so
 NOT_TRIED = (nan, nan, None)  # fields of a `Remedy` without a better value so far
 MOST_TURNED = 80.0  # degrees: near a right angle the soft spring no longer acts along the drive
 STRONGEST = 10.0  # times critical damping: the strongest damper tried
-TRIED = 1e-4  # rtol of a trial, of which four digits are told: half the steps of 1e-6
 
 
 class Remedy(NamedTuple):
@@ -166,7 +165,6 @@ def try_change(slider: Slider, most_steps: int, progress: Progress) -> dict[str,
         growth,
         sample_rate=rate,
         multiscale="auto",
-        rtol=TRIED,
         most_steps=most_steps,
         progress=progress,
     )

@@ -141,7 +141,6 @@ def simulate_test(
     sample_rate: float,
     start: Initial | None = None,
     multiscale: bool | Literal["auto"] | None = None,
-    rtol: float = 1e-6,
     most_steps: int = int(SHARE * MOST_WORK),
     progress: Progress = None,
 ) -> SimulatedTest:
@@ -162,8 +161,6 @@ def simulate_test(
         The initial state; by default rest with unloaded springs.
     multiscale : {"auto", True, False}, optional
         As of `stiction.simulate`; by default True for a test of very many transverse periods.
-    rtol : float, optional
-        As of `stiction.simulate`.
     most_steps : int, optional
         Limit of the solver's steps.
     progress : callable, optional
@@ -184,7 +181,6 @@ def simulate_test(
         initial=start,
         sample_rate=min(sample_rate, MOST_SAMPLES / duration),
         multiscale=multiscale,
-        rtol=rtol,
         max_steps=most_steps,
         progress=progress,
     )
