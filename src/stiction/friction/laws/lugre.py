@@ -127,7 +127,8 @@ def bristle_gradient(
 def bending(law: LuGre, s_x: float, s_y: float, load: float) -> float:
     """Return sigma_0 |s|/g, the rate at which bristles slip, per second."""
     square = s_x * s_x + s_y * s_y
-    g = law.mu_c + (law.mu_s - law.mu_c) * exp(-square / (law.v_s * law.v_s))
+    narrow = 1.0 / (law.v_s * law.v_s)
+    g = law.mu_c + (law.mu_s - law.mu_c) * exp(-square * narrow)
     return law.sigma_0 * sqrt(square) / (load * g)
 
 

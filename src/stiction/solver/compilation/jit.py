@@ -19,6 +19,7 @@ config: Any = numba.config
 F = TypeVar("F", bound=Callable[..., Any])
 
 INTERPRETED = bool(config.DISABLE_JIT)
+BY_ADDRESS = {"_nrt": False, "no_cfunc_wrapper": True}  # no reference counts, no callers in C
 
 
 def number(value: int) -> int:
@@ -34,6 +35,14 @@ def switch(value: bool) -> bool:
 def compiled(function: F) -> F:
     """Compile an entry point that Python calls, cached on disk, without the GIL."""
     return _entry(function, Shelf(function))
+
+
+def entry_by_address(function: F) -> F:
+    """Compile an entry point that compiled code calls by its address, cached on disk.
+
+    It makes no arrays, and keeps none: to count who else does takes longer than most laws.
+    """
+    return _entry(function, Shelf(function), **BY_ADDRESS)
 
 
 def inlined(function: F) -> F:
@@ -68,13 +77,15 @@ def compiled_for(function: Any, digest: str | None) -> Any:
     The digest is None if the law's text is unknown; then each process compiles it anew.
     """
     own = python_of(function)
-    return _entry(own, None if digest is None else Shelf(own, digest))
+    known = getattr(function, "targetoptions", {})
+    options = {name: value for name, value in BY_ADDRESS.items() if name in known}
+    return _entry(own, None if digest is None else Shelf(own, digest), **options)
 
 
-def _entry(function: F, shelf: Shelf | None) -> F:
+def _entry(function: F, shelf: Shelf | None, **options: Any) -> F:
     if INTERPRETED:
         return function
-    made = make_entry(function)
+    made = make_entry(function, **options)
     if shelf is not None:
         made._cache = shelf
     return cast(F, made)

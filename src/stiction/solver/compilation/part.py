@@ -111,9 +111,9 @@ class EntryCompiler(Compiler):  # type: ignore[misc]
         return super().compile_extra(function)
 
 
-def make_entry(function: Any) -> Any:
+def make_entry(function: Any, **options: Any) -> Any:
     """Return a function as one that Python calls, not yet compiled."""
-    return njit(nogil=True, pipeline_class=EntryCompiler, **ARITHMETIC)(function)
+    return njit(nogil=True, pipeline_class=EntryCompiler, **options, **ARITHMETIC)(function)
 
 
 def make_part(function: Any, **options: Any) -> Any:

@@ -13,7 +13,7 @@ import numpy as np
 
 from stiction.friction.law import Vector, states
 from stiction.solver.compilation.interrupt import compiling
-from stiction.solver.compilation.jit import compiled, inlined
+from stiction.solver.compilation.jit import entry_by_address, inlined
 from stiction.solver.compilation.pointer import address, caller, memory, pointee, types
 from stiction.solver.compilation.stand_in import called_from_both, stand_in
 from stiction.solver.problem import (
@@ -33,6 +33,7 @@ INCREMENT = 1.5e-8  # of a difference: the root of the rounding error
 
 # friction x and y, and their derivatives by slip: xx, xy, yx, yy
 Friction = tuple[float, float, float, float, float, float]
+State = tuple[float, ...]
 
 
 class Smoothed(NamedTuple):
@@ -192,7 +193,7 @@ call_flow: Any = caller(FOUND, *FLOW)
 call_grain: Any = caller(types.float64, *GRAIN)
 
 
-@compiled
+@entry_by_address
 def friction_at(law: Any, s_x: float, s_y: float, load: float, per_mass: float) -> Friction:
     """Do as `flow` for the law without states at a pointer."""
     f, g, xx, xy, yx, yy = friction_and_gradient(pointee(law), (s_x, s_y), load)
@@ -200,7 +201,7 @@ def friction_at(law: Any, s_x: float, s_y: float, load: float, per_mass: float) 
     return f * m, g * m, xx * m, xy * m, yx * m, yy * m
 
 
-@compiled
+@entry_by_address
 def flow_at(
     law: Any,
     s_x: float,
@@ -216,15 +217,15 @@ def flow_at(
 ) -> Friction:
     """Do as `flow` for the law with states at a pointer."""
     found: Any = pointee(law)
-    slip = (s_x, s_y)
-    write_flow(found, slip, load, per_mass, values, i, to)
+    slip, z = (s_x, s_y), states_in(found, values, i)
+    write_flow(found, slip, load, per_mass, z, i, to)
     if wanted:
-        write_gradient(found, slip, load, per_mass, values, i, to, jacobian, size)
+        write_gradient(found, slip, load, per_mass, z, values, i, to, jacobian, size)
     m = jacobian[i]
     return to[i, 0], to[i, 1], m[0, 0], m[0, 1], m[1, 0], m[1, 1]
 
 
-@compiled
+@entry_by_address
 def grain_at(law: Any, values: np.ndarray, i: int) -> float:
     """Do as `grain_of` for the law at a pointer."""
     found: Any = pointee(law)
@@ -232,10 +233,9 @@ def grain_at(law: Any, values: np.ndarray, i: int) -> float:
 
 
 def write_flow(
-    law: Any, slip: Vector, load: float, per_mass: float, values: np.ndarray, i: int, to: np.ndarray
+    law: Any, slip: Vector, load: float, per_mass: float, z: State, i: int, to: np.ndarray
 ) -> None:
     """Write friction over mass and the internal states' rates of change to ``to[i]``."""
-    z = states_in(law, values, i)
     to[i, :2] = np.array(force(law, slip, load, z)) * per_mass
     to[i, 2:] = change(law, slip, load, z)
 
@@ -245,6 +245,7 @@ def write_gradient(
     slip: Vector,
     load: float,
     per_mass: float,
+    z: State,
     values: np.ndarray,
     i: int,
     flow: np.ndarray,
@@ -256,15 +257,15 @@ def write_gradient(
     They are the law's own, or forward differences.
     """
     write = own_gradient if hasattr(law, "gradient") else differences
-    write(law, slip, load, per_mass, values, i, flow, jacobian, size)
+    write(law, slip, load, per_mass, z, values, i, flow, jacobian, size)
 
 
-@called_from_both
 def own_gradient(
     law: Any,
     slip: Vector,
     load: float,
     per_mass: float,
+    z: State,
     values: np.ndarray,
     i: int,
     flow: np.ndarray,
@@ -272,10 +273,13 @@ def own_gradient(
     size: np.ndarray,
 ) -> None:
     """Do as `write_gradient` for a law that gives its derivatives."""
-    rows = gradient(law, slip, load, states_in(law, values, i))
+    rows = gradient(law, slip, load, z)
     for j in range(len(size)):
         for k in range(len(size)):
             jacobian[i, j, k] = rows[j][k] * per_mass if j < 2 else rows[j][k]
+
+
+called_from_both(own_gradient, forceinline=True)  # it shares logarithms with the force
 
 
 @called_from_both
@@ -284,6 +288,7 @@ def differences(
     slip: Vector,
     load: float,
     per_mass: float,
+    z: State,
     values: np.ndarray,
     i: int,
     flow: np.ndarray,
@@ -299,7 +304,8 @@ def differences(
         before = at[k]
         at[k] = before + INCREMENT * (size[k] + abs(before))
         per = 1.0 / (at[k] - before)
-        write_flow(law, (at[0], at[1]), load, per_mass, values, TRIAL, flow)
+        there = states_in(law, values, TRIAL)
+        write_flow(law, (at[0], at[1]), load, per_mass, there, TRIAL, flow)
         for j in range(len(size)):
             jacobian[i, j, k] = (flow[TRIAL, j] - flow[i, j]) * per
         at[k] = before
@@ -332,12 +338,11 @@ def _states_in(law: Any, values: Any, i: Any) -> Callable[..., Any]:
 
 @stand_in(write_flow)
 def _write_flow(
-    law: Any, slip: Any, load: Any, per_mass: Any, values: Any, i: Any, to: Any
+    law: Any, slip: Any, load: Any, per_mass: Any, z: Any, i: Any, to: Any
 ) -> Callable[..., None]:
     n = _count(law)
 
-    def write(law: Any, slip: Any, load: Any, per_mass: Any, values: Any, i: Any, to: Any) -> None:
-        z = states_in(law, values, i)
+    def write(law: Any, slip: Any, load: Any, per_mass: Any, z: Any, i: Any, to: Any) -> None:
         f = force(law, slip, load, z)
         to[i, 0], to[i, 1] = f[0] * per_mass, f[1] * per_mass
         dz = change(law, slip, load, z)
@@ -347,12 +352,13 @@ def _write_flow(
     return write
 
 
-@stand_in(write_gradient)
+@stand_in(write_gradient, forceinline=True)
 def _write_gradient(
     law: Any,
     slip: Any,
     load: Any,
     per_mass: Any,
+    z: Any,
     values: Any,
     i: Any,
     flow: Any,
@@ -360,6 +366,6 @@ def _write_gradient(
     size: Any,
 ) -> Callable[..., None]:
     write: Any = own_gradient if hasattr(law.instance_class, "gradient") else differences
-    return lambda law, slip, load, per_mass, values, i, flow, jacobian, size: write(
-        law, slip, load, per_mass, values, i, flow, jacobian, size
+    return lambda law, slip, load, per_mass, z, values, i, flow, jacobian, size: write(
+        law, slip, load, per_mass, z, values, i, flow, jacobian, size
     )

@@ -6,7 +6,7 @@ The equations stand in `stiction.friction.laws.rate_and_state`.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import asinh, exp, hypot, log, sqrt
+from math import asinh, exp, log, sqrt
 from typing import Any, NamedTuple
 
 from stiction.friction.registry import called_by_laws, called_by_type
@@ -14,14 +14,37 @@ from stiction.friction.registry import called_by_laws, called_by_type
 SLOWEST = 1e-12  # m/s: steady sliding by 30 um a year, because there is no steady state at rest
 MOST_FOLDS = 680.0  # e-folds of slip speed between the smallest float and V*
 FIRM = 30.0  # above, asinh(exp(x)) is x + ln 2 to the last digit
+LOG_2 = log(2.0)
+SMALL = 1e-250  # m^2/s^2: above, the sum of two squares has all its digits
+UP, DOWN = 2.0**500, 2.0**-500
+REST = 1e-300  # m/s: slower is rest, where friction is proportional to slip
+
+
+@called_by_laws
+def slip_speed(slip: tuple[float, float]) -> float:
+    """Return |s|, also where the square underflows.
+
+    Unlike `hypot` it is plain arithmetic, which the compiler shares among force, change, gradient.
+    """
+    x, y = slip
+    up, down = (1.0, 1.0) if x * x + y * y > SMALL else (UP, DOWN)
+    x, y = up * x, up * y
+    return sqrt(x * x + y * y) * down
 
 
 @called_by_laws
 def asinh_of_exp(x: float) -> float:
     """Return asinh(exp(x)), for any x."""
+    return x + LOG_2 if x > FIRM else asinh(exp(x))
+
+
+@called_by_laws
+def slope_of_asinh(x: float) -> float:
+    """Return the derivative of asinh(exp(x)) by x."""
     if x > FIRM:
-        return x + log(2.0)
-    return asinh(exp(x))
+        return 1.0
+    e = exp(x)
+    return e / sqrt(1.0 + e * e)
 
 
 @called_by_laws
@@ -29,10 +52,8 @@ def friction_force(
     a: float, V_star: float, psi: float, slip: tuple[float, float], load: float
 ) -> tuple[float, float]:
     """Return a W asinh[(V/2V*) exp(psi/a)] along the slip, N."""
-    V = hypot(slip[0], slip[1])  # hypot, because the square may underflow
-    if V == 0.0:
-        return 0.0, 0.0
-    f = a * asinh_of_exp(log(V / (2.0 * V_star)) + psi / a) * load / V
+    V = max(slip_speed(slip), REST)
+    f = a * asinh_of_exp(log(V / V_star) + psi / a - LOG_2) * load / V
     return f * slip[0], f * slip[1]
 
 
@@ -41,15 +62,14 @@ def friction_gradient(
     a: float, V_star: float, psi: float, slip: tuple[float, float], load: float
 ) -> tuple[float, float, float, float, float]:
     """Return the derivatives of `friction_force`: xx, xy and yy by slip, x and y by psi."""
-    V = hypot(slip[0], slip[1])
-    if V == 0.0:
+    V = max(slip_speed(slip), REST)
+    x = log(V / V_star) + psi / a - LOG_2
+    across = a * asinh_of_exp(x) * load / V
+    if V == REST:
         stiff = a * load / grain_of(a, V_star, psi)
         return stiff, 0.0, stiff, 0.0, 0.0
     n_x, n_y = slip[0] / V, slip[1] / V
-    x = log(V / (2.0 * V_star)) + psi / a
-    e = exp(min(x, FIRM))
-    by_psi = load * e / sqrt(1.0 + e * e)
-    across = a * asinh_of_exp(x) * load / V
+    by_psi = load * slope_of_asinh(x)
     more = a * by_psi / V - across
     return (
         across + more * n_x * n_x,
@@ -95,8 +115,7 @@ class Ageing:
         law: Any, log_theta: float, slip: tuple[float, float], D: float
     ) -> tuple[float, float, float]:
         """Return its derivatives by slip x, y and the state."""
-        V = hypot(slip[0], slip[1])
-        f = -1.0 / (D * V) if V > 0.0 else 0.0
+        f = -1.0 / (D * max(slip_speed(slip), REST))
         return f * slip[0], f * slip[1], -law.V_star * exp(-log_theta) / D
 
 
@@ -107,18 +126,15 @@ class Slipping:
 
     def evolution(law: Any, log_theta: float, V: float, D: float) -> float:
         """Return d(log_theta)/dt, per second."""
-        if V == 0.0:
-            return 0.0
-        return -V / D * (log(V / law.V_star) + log_theta)
+        return -V / D * (log(max(V, REST) / law.V_star) + log_theta)
 
     def evolution_gradient(
         law: Any, log_theta: float, slip: tuple[float, float], D: float
     ) -> tuple[float, float, float]:
-        """Return its derivatives by slip x, y and the state; zero at zero slip."""
-        V = hypot(slip[0], slip[1])
-        if V == 0.0:
-            return 0.0, 0.0, 0.0
-        f = -(log(V / law.V_star) + log_theta + 1.0) / (D * V)
+        """Return its derivatives by slip x, y and the state; zero at rest."""
+        V = slip_speed(slip)
+        v = max(V, REST)
+        f = -(log(v / law.V_star) + log_theta + 1.0) / (D * v)
         return f * slip[0], f * slip[1], -V / D
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import hypot
 from typing import NamedTuple, Self
 
 from stiction.friction.law import Internal, Vector
@@ -18,6 +17,7 @@ from stiction.friction.laws.rate_and_state.common import (
     friction_force,
     friction_gradient,
     grain_of,
+    slip_speed,
     steady,
     steady_log_theta,
 )
@@ -68,7 +68,7 @@ class OneState(NamedTuple):
 
     def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
         """Return d(log_theta)/dt, per second."""
-        return (evolution(law, state[0], hypot(slip[0], slip[1]), law.D_c),)
+        return (evolution(law, state[0], slip_speed(slip), law.D_c),)
 
     def gradient(
         law, slip: Vector, load: float, state: tuple[float, ...]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import hypot
 from typing import NamedTuple, Self
 
 from stiction.friction.law import Internal, Vector
@@ -17,6 +16,7 @@ from stiction.friction.laws.rate_and_state.common import (
     friction_force,
     friction_gradient,
     grain_of,
+    slip_speed,
     steady,
     steady_log_theta,
 )
@@ -76,7 +76,7 @@ class TwoStates(NamedTuple):
 
     def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
         """Return d(log_theta_i)/dt, per second."""
-        V = hypot(slip[0], slip[1])
+        V = slip_speed(slip)
         return evolution(law, state[0], V, law.D_1), evolution(law, state[1], V, law.D_2)
 
     def gradient(
